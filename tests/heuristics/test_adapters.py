@@ -1,13 +1,14 @@
 """Searches that own their loop: same objective, same account, same budget."""
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 from scipy import optimize
-from support.two_joints import OPEN, PROBLEM, two_joints
+from support.two_joints import OPEN, PROBLEM
 from trajgap.heuristics import (
     DeathPenalty,
     External,
-    Search,
     differential_evolution,
     dual_annealing,
     one_by_one,
@@ -15,44 +16,15 @@ from trajgap.heuristics import (
     shgo,
 )
 from trajgap.heuristics.budget import Budgeted, BudgetSpent
-from trajgap.problem import (
-    Limits,
-    TrajgapError,
-    Verdict,
-    check,
-)
+from trajgap.problem import TrajgapError
 
 SCIPY = (differential_evolution(), dual_annealing(iterations=40), shgo())
-each_scipy = pytest.mark.parametrize("search", SCIPY, ids=lambda s: s.kind)
 
 
 def drawing(objective, bounds, rng):
     """Random search in batches of seven, for ever."""
     while True:
         objective(rng.uniform(bounds.lower, bounds.upper, (7, bounds.lower.size)))
-
-
-@each_scipy
-@pytest.mark.parametrize("handling", ["death-penalty", "stretch"])
-def test_scipy_under_our_account(search: External, handling: str) -> None:
-    assert isinstance(search, Search)
-    found = run(search, PROBLEM, 4, objective=handling)
-    assert found.feasible
-    assert found.algorithm == search.kind
-    assert check(PROBLEM, found.durations).verdict is Verdict.PASS
-    assert found.reported_time == found.trace[-1] == found.durations.sum()
-    assert found.trace.size == search.iterations + 1
-    assert (found.trace[1:] <= found.trace[:-1]).all()
-    assert found.evaluations <= 30 * (search.iterations + 1)
-
-
-@each_scipy
-def test_same_seed_same_bits(search: External) -> None:
-    a, b, other = (run(search, PROBLEM, seed, 20) for seed in (7, 7, 8))
-    assert a.durations.tobytes() == b.durations.tobytes()
-    assert a.trace.tobytes() == b.trace.tobytes()
-    same = a.trace.tobytes() == other.trace.tobytes()
-    assert same == (search.kind == "shgo")
 
 
 def test_differential_evolution_is_scipys() -> None:
@@ -72,11 +44,6 @@ def test_differential_evolution_is_scipys() -> None:
     assert found.evaluations == sum(judged)
     np.testing.assert_array_equal(found.durations, result.x)
     assert found.reported_time == result.fun
-
-
-def test_differential_evolution_one_by_one() -> None:
-    search = differential_evolution(vectorized=False, updating="immediate", iterations=60)
-    assert run(search, PROBLEM, 1).feasible
 
 
 def test_any_callable_and_its_budget() -> None:
@@ -117,23 +84,10 @@ def test_a_search_cannot_swallow_the_end_of_its_budget() -> None:
     assert run(External("stubborn", stubborn, iterations=3), PROBLEM, 0).evaluations == 120
 
 
-def test_nothing_feasible() -> None:
-    stuck = two_joints(Limits([6.0, 0.0]), duration_lower=0.1, duration_upper=3.0)
-    found = run(External("random", drawing, iterations=3), stuck, 0)
-    assert not found.feasible
-    assert np.isinf(found.trace).all()
-
-
 def test_one_by_one() -> None:
     single = one_by_one(lambda x: x.sum(axis=1))
     assert single(np.array([1.0, 2.5])) == 3.5
     assert isinstance(single(np.array([1.0])), float)
-
-
-@each_scipy
-def test_infinite_bounds(search: External) -> None:
-    with pytest.raises(TrajgapError, match=rf"^{search.kind}: needs finite duration bounds; give"):
-        run(search, OPEN, 0)
 
 
 def test_a_range_of_its_own() -> None:
@@ -145,44 +99,50 @@ def test_a_range_of_its_own() -> None:
     np.testing.assert_array_equal([seen[0].lower, seen[0].upper], [[0.1] * 3, [1.0] * 3])
 
 
-@pytest.mark.parametrize(
-    ("changes", "message"),
-    [
-        ({"iterations": -1}, "^x: iterations: expected a whole number of 0 or more, got -1"),
-        ({"per_iteration": 0}, "^x: per_iteration: expected a whole number of 1 or more, got 0"),
-        ({"penalty": 0}, "^x: penalty: expected a positive number, got 0"),
-        ({"position_range": (2.0, 1.0)}, "^x: position_range: give two numbers, the smaller"),
-        ({"searching": 3}, "^x: searching: expected a callable"),
-    ],
-)
-def test_settings_out_of_range(changes: dict[str, object], message: str) -> None:
+def given(**changes: object) -> External:
+    return External(**{"kind": "x", "searching": drawing, **changes})
+
+
+def asking(shape: tuple[int, ...]) -> External:
+    return given(searching=lambda objective, *_: objective(np.ones(shape)))
+
+
+REFUSED = [
+    (lambda: given(iterations=-1), "^x: iterations: expected a whole number of 0 or more, got -1"),
+    (lambda: given(per_iteration=0), "^x: per_iteration: expected a whole number of 1 or more, g"),
+    (lambda: given(penalty=0), "^x: penalty: expected a positive number, got 0"),
+    (lambda: given(position_range=(2.0, 1.0)), "^x: position_range: give two numbers, the smaller"),
+    (lambda: given(searching=3), "^x: searching: expected a callable"),
+    (
+        lambda: run(given(position_range=(4.0, 5.0)), PROBLEM, 0),
+        "^x: position_range: lies outside the duration",
+    ),
+    *(
+        (lambda s=s: run(s, OPEN, 0), f"^{s.kind}: needs finite duration bounds; give")
+        for s in SCIPY
+    ),
+    *(
+        (
+            lambda name=name: differential_evolution(**{name: 1}),
+            f"^diff.*: {name}: is set by the run",
+        )
+        for name in ("rng", "seed", "workers")
+    ),
+    (
+        lambda: run(given(searching=lambda *_: None), PROBLEM, 0),
+        "^x: judged no position; call the objective",
+    ),
+    *(
+        (lambda s=shape: run(asking(s), PROBLEM, 0), r"^objective: .* \(batch, 3\).* as x\[None\]")
+        for shape in ((3,), (2, 4), (1, 2, 3))
+    ),
+]
+
+
+@pytest.mark.parametrize(("call", "message"), REFUSED)
+def test_what_cannot_be_searched_is_refused(call: Callable[[], object], message: str) -> None:
     with pytest.raises(TrajgapError, match=message):
-        External(**{"kind": "x", "searching": drawing, **changes})
-
-
-def test_range_beside_the_bounds() -> None:
-    search = External("x", drawing, position_range=(4.0, 5.0))
-    with pytest.raises(TrajgapError, match=r"^x: position_range: lies outside the duration"):
-        run(search, PROBLEM, 0)
-
-
-@pytest.mark.parametrize("name", ["rng", "seed", "workers"])
-def test_what_the_run_sets_itself(name: str) -> None:
-    message = f"^differential-evolution: {name}: is set by the run; leave it out"
-    with pytest.raises(TrajgapError, match=message):
-        differential_evolution(**{name: 1})
-
-
-def test_nothing_judged() -> None:
-    with pytest.raises(TrajgapError, match=r"^idle: judged no position; call the objective"):
-        run(External("idle", lambda *_: None), PROBLEM, 0)
-
-
-@pytest.mark.parametrize("shape", [(3,), (2, 4), (1, 2, 3)])
-def test_positions_come_in_batches(shape: tuple[int, ...]) -> None:
-    search = External("x", lambda objective, *_: objective(np.ones(shape)))
-    with pytest.raises(TrajgapError, match=r"^objective: expected .* \(batch, 3\).* as x\[None\]"):
-        run(search, PROBLEM, 0)
+        call()
 
 
 def test_a_spent_budget_judges_nothing_more() -> None:

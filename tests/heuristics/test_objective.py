@@ -1,25 +1,30 @@
-"""The death penalty: judged by dense sampling, by scaling, and at every edge of its domain."""
+"""Objectives: the death penalty and the repair by stretch, judged by the checker at every edge."""
 
 import numpy as np
 import pytest
 from support.two_joints import WITH_JERK, two_joints
 from trajgap.heuristics import (
     PSO,
+    WOA,
     Counted,
     DeathPenalty,
     Stretch,
     run,
+    run_many,
     run_per_joint,
     uniform_rescaling,
 )
+from trajgap.heuristics.repair import judge_of
 from trajgap.problem import (
     Limits,
     Problem,
     TrajgapError,
+    Verdict,
     check,
     cubic_spline,
     evaluate,
     piecewise,
+    quintic_spline,
     three_five_three,
 )
 from trajgap.problem.checker import TOLERANCE
@@ -28,6 +33,10 @@ from trajgap.problem.checker import TOLERANCE
 def problem_with(**changes: object) -> Problem:
     bounds = {"duration_lower": [0.2, 0.3, 0.1], "duration_upper": [2.0, 3.0, 2.5]}
     return two_joints(**{"limits": WITH_JERK, **bounds, **changes})
+
+
+def wide(**changes: object) -> Problem:
+    return problem_with(**{"duration_lower": 0.1, "duration_upper": 9.0, **changes})
 
 
 def test_an_answer_at_the_edge_of_the_tolerance_passes_the_checker() -> None:
@@ -41,32 +50,33 @@ def test_an_answer_at_the_edge_of_the_tolerance_passes_the_checker() -> None:
     assert DeathPenalty(problem)(tight * (1 - TOLERANCE))[0] == np.inf
 
 
+@pytest.mark.parametrize("penalty", [np.inf, 1e6])
 @pytest.mark.parametrize(
-    "durations",
+    ("judge", "durations"),
     [
-        [0.19, 1.5, 1.5],
-        [1.5, 0.29, 1.5],
-        [1.5, 1.5, 2.51],
-        [0.0, 1.5, 1.5],
-        [-1.5, 1.5, 1.5],
-        [np.nan, 1.5, 1.5],
-        [1.5, np.inf, 1.5],
-        [1.5, 1.5, -np.inf],
+        *((DeathPenalty, h) for h in ([0.19, 1.5, 1.5], [1.5, 0.29, 1.5], [1.5, 1.5, 2.51])),
+        # No stretch mends these: less than the least, or more than the most, in another segment.
+        *((Stretch, h) for h in ([1.5, 9.01, 1.5], [0.05, 1.5, 1.5], [1e-3, 1e-3, 0.5])),
+        *(
+            (judge, h)
+            for judge in (DeathPenalty, Stretch)
+            for h in ([0.0, 1.5, 1.5], [-1.5, 1.5, 1.5], [np.nan, 1.5, 1.5], [1.5, np.inf, 1.5])
+        ),
     ],
 )
-@pytest.mark.parametrize("penalty", [np.inf, 1e6])
-def test_outside_the_bounds_is_infeasible(durations: list[float], penalty: float) -> None:
-    fitness = DeathPenalty(problem_with(), penalty)(np.array([durations, [1.9, 1.9, 1.9]]))
-    np.testing.assert_array_equal(fitness, [penalty, 1.9 + 1.9 + 1.9])
+def test_outside_the_bounds_is_infeasible(
+    judge: type, durations: list[float], penalty: float
+) -> None:
+    objective = judge((problem_with if judge is DeathPenalty else wide)(), penalty)
+    batch = np.array([durations, [1.9, 1.9, 1.9]])
+    np.testing.assert_array_equal(objective(batch), [penalty, 1.9 + 1.9 + 1.9])
+    np.testing.assert_array_equal(objective.decode(batch), batch)
 
 
-def test_bounds_themselves_are_feasible() -> None:
+def test_bounds_themselves_are_feasible_and_zero_is_not() -> None:
     problem = problem_with(duration_lower=[1.5, 1.5, 1.5], duration_upper=[1.5, 2.0, 2.5])
     batch = np.array([[1.5, 1.5, 1.5], [1.5, 2.0, 2.5]])
     np.testing.assert_array_equal(DeathPenalty(problem)(batch), [4.5, 6.0])
-
-
-def test_a_lower_bound_of_zero_excludes_zero() -> None:
     still = Problem(np.zeros((4, 1)), Limits(1.0), three_five_three())
     batch = np.array([[0.0, 1.0, 1.0], [1e-3, 1.0, 1.0]])
     np.testing.assert_array_equal(DeathPenalty(still)(batch), [np.inf, 2.001])
@@ -78,13 +88,6 @@ def test_a_batch_is_its_members() -> None:
     alone = np.array([objective(row[None])[0] for row in batch])
     np.testing.assert_array_equal(objective(batch), alone)
     assert 0 < np.isfinite(alone).sum() < 40
-
-
-def test_counts_every_position() -> None:
-    counted = Counted(DeathPenalty(problem_with()))
-    counted(np.full((7, 3), 1.5))
-    counted(np.full((2, 3), -1.0))
-    assert counted.evaluations == 9
 
 
 @pytest.mark.parametrize("judge", [DeathPenalty, Stretch])
@@ -106,16 +109,17 @@ def test_a_penalty_is_above_every_admissible_total(judge: type, penalty: float, 
         judge(problem_with(curve=free))
 
 
-@pytest.mark.parametrize(("values", "shape"), [([1.0], r"\(1,\)"), ([[1.0], [2.0]], r"\(2, 1\)")])
-def test_objective_must_return_one_value_each(values: list[object], shape: str) -> None:
+@pytest.mark.parametrize(
+    ("values", "said"),
+    [
+        ([1.0], r"expected 2 values .* got shape \(1,\)"),
+        ([[1.0], [2.0]], r"expected 2 values .* got shape \(2, 1\)"),
+        ([1.0, np.nan], "returned NaN; return inf for what is infeasible"),
+    ],
+)
+def test_an_objective_returns_one_number_each(values: list[object], said: str) -> None:
     counted = Counted(lambda _: np.array(values))
-    with pytest.raises(TrajgapError, match=rf"expected 2 values .* got shape {shape}"):
-        counted(np.ones((2, 3)))
-
-
-def test_objective_must_not_return_nan() -> None:
-    counted = Counted(lambda _: np.array([1.0, np.nan]))
-    with pytest.raises(TrajgapError, match="returned NaN; return inf for what is infeasible"):
+    with pytest.raises(TrajgapError, match=said):
         counted(np.ones((2, 3)))
 
 
@@ -132,3 +136,76 @@ def test_fixed_ratios_leave_nothing_to_search() -> None:
             refused()
     with pytest.raises(TrajgapError, match="uniform rescaling: the durations have fixed ratios"):
         uniform_rescaling(problem)
+
+
+def test_fitness_is_what_the_checker_calls_feasible_and_tight_time() -> None:
+    problem = wide(duration_lower=0.0, duration_upper=np.inf)
+    batch = np.exp(np.random.default_rng(5).uniform(np.log(0.4), np.log(3.0), (40, 3)))
+    repaired, rescaled = Stretch(problem)(batch), Stretch(problem, shorten=True)(batch)
+    found = [check(problem, h) for h in batch]
+    np.testing.assert_allclose(repaired, [f.feasible_time for f in found], rtol=1e-12)
+    np.testing.assert_allclose(rescaled, [f.tight_time for f in found], rtol=1e-12)
+    assert 5 < sum(f.verdict is Verdict.PASS for f in found) < 35
+    assert (rescaled <= repaired).all()
+
+
+def test_decoded_durations_keep_every_limit_and_touch_one() -> None:
+    problem = wide()
+    batch = np.random.default_rng(6).uniform(0.15, 0.6, (40, 3))
+    for h in Stretch(problem).decode(batch):
+        found = check(problem, h)
+        assert found.verdict is Verdict.PASS
+        assert found.worst is not None
+        assert found.worst.ratio == pytest.approx(1.0, abs=1e-12)
+
+
+def test_what_keeps_the_limits_is_not_touched() -> None:
+    problem = wide()
+    batch = np.random.default_rng(7).uniform(1.5, 3.0, (20, 3))
+    assert np.isfinite(DeathPenalty(problem)(batch)).all()
+    np.testing.assert_array_equal(Stretch(problem).decode(batch), batch)
+    np.testing.assert_array_equal(Stretch(problem)(batch), DeathPenalty(problem)(batch))
+    np.testing.assert_array_equal(DeathPenalty(problem).decode(batch), batch)
+
+
+def test_a_stretch_may_lift_a_duration_over_its_lower_bound() -> None:
+    problem = wide(duration_lower=0.3)
+    h = np.array([[0.2, 0.25, 0.2]])
+    assert DeathPenalty(problem)(h)[0] == np.inf
+    decoded = Stretch(problem).decode(h)
+    assert (decoded >= 0.3).all()
+    assert Stretch(problem)(h)[0] == decoded.sum()
+
+
+@pytest.mark.parametrize(("limits", "shorten"), [([5.0, 0.0], False), ([np.inf, np.inf], True)])
+def test_what_has_no_scale(limits: list[float], shorten: bool) -> None:
+    """A joint that moves with limit 0 has none that is long enough, no limit none that is short."""
+    objective = Stretch(wide(limits=Limits(limits), duration_lower=0.0), shorten=shorten)
+    assert objective(np.full((1, 3), 1.5))[0] == np.inf
+
+
+def test_a_prescribed_derivative_cannot_be_stretched() -> None:
+    problem = wide(curve=cubic_spline(3, ((1, 0.5),)))
+    DeathPenalty(problem)
+    with pytest.raises(TrajgapError, match=r"^stretch: a prescribed .* use the death penalty"):
+        Stretch(problem)
+
+
+def test_handlings_by_name() -> None:
+    kinds = {name: judge_of(wide(), np.inf, name) for name in ("stretch", "rescale")}
+    assert [isinstance(one, Stretch) and one.shorten for one in kinds.values()] == [False, True]
+    assert isinstance(judge_of(wide(), np.inf, "death-penalty"), DeathPenalty)
+    with pytest.raises(TrajgapError, match=r"^objective: 'streched' is unknown; .*'stretch'"):
+        run(PSO(), wide(), 0, 1, objective="streched")
+
+
+def test_its_effect_on_the_kind_of_problem_of_the_whale_paper() -> None:
+    """Eight way-points, six joints: every seed ends shorter than any does under the penalty."""
+    way = np.random.default_rng(0).uniform(-2, 2, (8, 6))
+    problem = Problem(way, Limits(2.0, 5.0), quintic_spline(7), 0.0, 5.0)
+    penal, stretched = (
+        [r.reported_time for r in run_many(WOA(), problem, range(6), objective=handling)]
+        for handling in ("death-penalty", "stretch")
+    )
+    assert np.median(stretched) < np.median(penal)
+    assert max(stretched) < np.median(penal)

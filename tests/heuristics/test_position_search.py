@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from support.positions import CURVES, WAYPOINTS, limited
+from support.positions import CURVES, SWINGING, limited
 from support.uneven import CURVES as UNEVEN
 from support.uneven import uneven_problem
 from trajgap.heuristics import (
@@ -14,7 +14,6 @@ from trajgap.heuristics import (
     Stretch,
     find_optimizer,
     run,
-    run_per_joint,
     run_within,
     search_box,
     uniform_rescaling,
@@ -34,14 +33,6 @@ from trajgap.problem import (
 from trajgap.problem.curves import Deferred, compilation, leading_kernel, range_kernel, spline
 
 SWARM = PSO(particles=20, iterations=60, position_initial=(0.2, 4.0))
-SWINGING = Problem(
-    WAYPOINTS[:, :2],
-    Limits([1.1, 1.7], [3.0, 2.2], position_upper=[0.92, 0.38]),
-    cubic_spline(3),
-    0.05,
-    6.0,
-)
-"""Left beyond the way-points: the shortest cubic spline swings further, some others do not."""
 
 
 def unlimited(problem: Problem) -> Problem:
@@ -104,16 +95,6 @@ def test_a_search_ends_within_the_limits_above_the_optimum(handling: str) -> Non
     assert freed.reported_time < best * (1 - 1e-2)
 
 
-def test_the_same_seed_beside_other_seeds_and_libraries() -> None:
-    problem = SWINGING
-    for name in ("random", "multistart", "scipy:differential_evolution"):
-        one = run_within(find_optimizer(name, 400), problem, 3, 400, "rescale")
-        again = run_within(find_optimizer(name, 400), problem, 3, 400, "rescale")
-        np.testing.assert_array_equal(one.durations, again.durations)
-        assert check(problem, one.durations).verdict is Verdict.PASS
-        assert one.reported_time == one.totals.min() >= solve(problem).total_time * (1 - 1e-9)
-
-
 def test_where_no_motion_stays_within_nothing_is_feasible() -> None:
     """A way-point beyond its limit: `solve` proves that there is none."""
     limits = SWINGING.limits.with_positions([-np.inf] * 2, [0.5, np.inf])
@@ -124,14 +105,6 @@ def test_where_no_motion_stays_within_nothing_is_feasible() -> None:
         assert not found.feasible
         assert found.reported_time == np.inf
         np.testing.assert_array_equal(found.durations, found.position)
-
-
-def test_each_joint_keeps_its_own_range() -> None:
-    problem = SWINGING
-    found = run_per_joint(SWARM, problem, 3, objective="rescale")
-    for j, one in enumerate(found.runs):
-        assert one.objective == "rescale"
-        assert check(problem.joint(j), one.durations).verdict is Verdict.PASS
 
 
 def test_equal_durations_that_swing_too_far_are_no_baseline() -> None:

@@ -2,7 +2,9 @@
 
 from dataclasses import dataclass, replace
 
+import numpy as np
 import pytest
+from support.drawn_settings import drawn
 from support.two_joints import WAYPOINTS, two_joints
 from trajgap.heuristics import (
     KINDS,
@@ -33,44 +35,19 @@ def same(a: Run, b: Run) -> None:
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_questions_of_all_sorts_together(kind: str) -> None:
-    algorithm = replace(from_settings(kind, {}), iterations=25)
-    questions = [
-        AskedRun(problem, seed, (), handling)
-        for problem in (PROBLEM, SLOWER, STOPPING)
-        for handling in HANDLINGS
-        for seed in (3, 8)
-    ]
-    for one, found in zip(questions, run_asked(algorithm, questions), strict=True):
-        same(found, run(algorithm, one.problem, one.seed, None, one.handling))
-
-
-OPEN = [
-    ("pso", {"draws": "particle", "velocity_rule": "free", "position_rule": "free"}),
-    ("pso", {"draws": "iteration", "position_rule": "initial", "penalty": 1e6}),
-    ("mnam-pso", {"mutated": "one", "niches_rule": "clusters"}),
-    ("mnam-pso", {"niches_rule": "diagonal", "inertia_reading": "rises", "mutation_scale": 2.0}),
-    ("woa", {"coefficients": "coordinate", "threshold_rule": "length", "replacement": "greedy"}),
-    ("woa", {"r_rule": "shared", "counter": "one", "replacement": "feasible", "penalty": 1e6}),
-    ("improved-woa", {"exploration": "weighted", "tent_rule": "member"}),
-    ("improved-woa", {"exploration": "dropped", "replacement": "greedy", "position_rule": "free"}),
-    ("ga", {"selection": "tournament", "crossover": "one-point", "elite": 3, "penalty": 1e6}),
-    ("ga", {"fitness_rule": "complement", "mutation": "creep", "mutated": "individual"}),
-    ("ga", {"encoding": "binary", "crossover": "uniform", "mutated": "individual"}),
-    ("ga", {"position_range": (0.1, 0.3), "fitness_rule": "complement"}),  # often none is feasible
-    ("improved-ga", {"pool_rule": "double-best", "best_quarter": "survives"}),
-    ("improved-ga", {"encoding": "binary", "adaptive_crossover": False, "penalty": 1e6}),
-    ("improved-ga", {"fitness_rule": "complement", "adaptive_mutation": False}),
-]
-
-
-@pytest.mark.parametrize(("kind", "settings"), OPEN)
-def test_every_branch_takes_runs_side_by_side(kind: str, settings: dict[str, object]) -> None:
-    algorithm = from_settings(kind, {**settings, "iterations": 25})
-    assert moves_together(algorithm)
-    questions = [AskedRun(p, seed) for p in (PROBLEM, SLOWER) for seed in range(3)]
-    for one, found in zip(questions, run_asked(algorithm, questions), strict=True):
-        same(found, run(algorithm, one.problem, one.seed))
+def test_questions_of_all_sorts_and_every_choice_together(kind: str) -> None:
+    for seed in range(13):
+        algorithm = drawn(kind, np.random.default_rng(seed)) if seed else from_settings(kind, {})
+        algorithm = replace(algorithm, iterations=12)
+        assert moves_together(algorithm) == (kind != "constrained-pso")
+        questions = [
+            AskedRun(problem, at, (), handling)
+            for problem in (PROBLEM, SLOWER, STOPPING)
+            for handling in HANDLINGS
+            for at in (3, 8)
+        ]
+        for one, found in zip(questions, run_asked(algorithm, questions), strict=True):
+            same(found, run(algorithm, one.problem, one.seed, None, one.handling))
 
 
 def test_joints_and_more_seeds_than_are_moved_at_once() -> None:

@@ -1,11 +1,8 @@
 """Work in processes that are really killed: done again once, in order, and never a hang."""
 
-import contextlib
 import multiprocessing
 import os
 import signal
-import subprocess
-import sys
 import time
 from collections.abc import Iterator
 from functools import partial
@@ -148,36 +145,6 @@ def test_kept_processes_work_again_and_end() -> None:
 def test_results_that_cannot_be_sent_are_named() -> None:
     with pytest.raises(RuntimeError, match=r"^memoryview: .*pickle"):
         list(in_processes(memoryview, [b"x"], 1))
-
-
-@pytest.mark.slow
-def test_an_audit_with_a_killed_worker_ends_as_without(tmp_path: Path) -> None:
-    arguments = ["audit", "irb460-pso-353", "--problem", "limit-80", "--reading", "waypoints-deg"]
-    arguments += ["--seeds", "4", "--workers", "2", "--json"]
-    command = [sys.executable, "-c", "import sys; from trajgap.compare.cli import main; main()"]
-    process = subprocess.Popen(
-        [*command, *arguments],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        cwd=tmp_path,
-    )
-    killed = None
-    while killed is None and process.poll() is None:
-        children = Path(f"/proc/{process.pid}/task/{process.pid}/children")
-        for pid in children.read_text().split() if children.exists() else ():
-            if b"spawn_main" in Path(f"/proc/{pid}/cmdline").read_bytes():
-                killed = int(pid)
-        time.sleep(0.02)
-    assert killed is not None
-    time.sleep(0.5)
-    with contextlib.suppress(ProcessLookupError):
-        os.kill(killed, signal.SIGKILL)
-    out, err = process.communicate(timeout=300)
-    assert (process.returncode, err) == (0, "")
-    alone = [*arguments[: arguments.index("--workers")], "--json"]
-    wanted = subprocess.run([*command, *alone], capture_output=True, text=True, cwd=tmp_path)
-    assert out == wanted.stdout
 
 
 @pytest.mark.parametrize("workers", [1, 2])

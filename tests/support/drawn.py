@@ -1,8 +1,10 @@
 """What is drawn: durations, a waterfall, and its steps."""
 
+import re
 import xml.etree.ElementTree as ElementTree
 from collections.abc import Callable
 
+import matplotlib
 import numpy as np
 from trajgap.compare.documents import Step, Waterfall
 from trajgap.compare.pictures.drawing import Picture, svg
@@ -25,6 +27,8 @@ def sound(make: Callable[[], Picture]) -> str:
     assert (root.tag, root.get("role")) == (f"{space}svg", "img")
     assert root.findtext(f"{space}title") == picture.title
     assert root.findtext(f"{space}desc") == picture.description != ""
+    assert not any(word in document for word in ("metadata", "DOCTYPE", matplotlib.__version__))
+    assert not re.search(r'(?:href|src)="(?!#)', document), "nothing is fetched"
     assert "<image" not in document  # a page may fetch none, not even one of its own
     assert len(document) < LARGEST
     return document

@@ -63,3 +63,13 @@ def limited(curve: Curve, room: float, limits: Limits | None = None) -> Problem:
         [-np.inf, low[1], low[2]], [high[0], np.inf, high[2]]
     )
     return Problem(WAYPOINTS, within, curve, 0.05, 6.0)
+
+
+SWINGING = Problem(
+    WAYPOINTS[:, :2],
+    Limits([1.1, 1.7], [3.0, 2.2], position_upper=[0.92, 0.38]),
+    cubic_spline(3),
+    0.05,
+    6.0,
+)
+"""Left beyond the way-points: the shortest cubic spline swings further, some others do not."""

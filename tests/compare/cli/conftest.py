@@ -51,3 +51,20 @@ def pages(monkeypatch: pytest.MonkeyPatch) -> None:
         (out / "index.html").write_text("page", encoding="utf-8")
 
     monkeypatch.setattr(PAGES, "write_report", write)
+
+
+@pytest.fixture
+def no_computing(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A command that computes is ended."""
+
+    def compute(*_: object, **__: object) -> None:
+        raise AssertionError("computes")
+
+    for name in (
+        "solving.solve",
+        "solving.solve_per_joint",
+        "checking.check",
+        "certifying.certify",
+    ):
+        monkeypatch.setattr(f"trajgap.compare.cli.{name}", compute)
+    monkeypatch.setattr(AUDITS, "audit", compute)

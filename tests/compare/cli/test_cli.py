@@ -20,24 +20,16 @@ from trajgap.problem import load_case, published_ids
 # --- what is printed ------------------------------------------------------------------------------
 
 
+COMMANDS = (
+    "cases", "show", "check", "solve", "verify", "audit", "explain", "bench", "study", "suite",
+    "new",
+)  # fmt: skip
+
+
 def test_help_documents_the_commands_and_the_exit_codes() -> None:
     done = program("--help")
-    assert done.returncode == 0
-    assert done.stderr == ""
-    for command in (
-        "cases",
-        "show",
-        "check",
-        "solve",
-        "verify",
-        "audit",
-        "explain",
-        "bench",
-        "study",
-        "suite",
-        "new",
-    ):
-        assert f"\n  {command} " in done.stdout
+    assert (done.returncode, done.stderr) == (0, "")
+    assert all(f"\n  {command} " in done.stdout for command in COMMANDS)
     assert "..." not in done.stdout.split("Commands:")[1]
     for line in ("0    done", "1    audit --strict", "2    bad input"):
         assert line in done.stdout
@@ -52,22 +44,7 @@ def test_help_imports_nothing_that_computes() -> None:
     assert done.stdout == "set()\n"
 
 
-@pytest.mark.parametrize(
-    "command",
-    [
-        "cases",
-        "show",
-        "check",
-        "solve",
-        "verify",
-        "audit",
-        "explain",
-        "bench",
-        "study",
-        "suite",
-        "new",
-    ],
-)
+@pytest.mark.parametrize("command", COMMANDS)
 def test_each_command_explains_itself(run: Run, command: str) -> None:
     code, out, err = run(command, "--help")
     assert (code, err) == (0, "")
@@ -102,20 +79,12 @@ def test_every_rule_is_explained_with_an_example(run: Run) -> None:
     for one in document["rules"]:
         texts = [one["asks"], one["concludes"], one["example"]]
         assert all(text[0] not in " " and text.endswith((".", "?")) for text in texts), one["id"]
-        assert not re.search(r"\bmend|alike\b.*print|  ", " ".join(texts)), one["id"]
+        assert "  " not in " ".join(texts), one["id"]
     code, out, err = run("explain", "tg301", "Best known")
     assert (code, err) == (0, "")
     assert out.startswith("TG301: ")
-    assert "Example: " in out
     assert "best known (On a reference value)" in out
-    listed = run("explain")[1]
-    assert all(rule.id in listed for rule in RULES)
-
-
-def test_what_cannot_be_explained_is_refused(run: Run) -> None:
-    said = "'TG311': is no rule and no word of the reports; did you mean 'TG301'?"
-    assert run("explain", "TG311") == (2, "", f"trajgap: {said}\n")
-    assert "`trajgap explain` lists all" in run("explain", "xylophone")[2]
+    assert all(rule.id in run("explain")[1] for rule in RULES)
 
 
 def test_a_crate_never_takes_the_place_of_a_file(
@@ -151,32 +120,20 @@ def test_cases(run: Run) -> None:
 def test_show(run: Run) -> None:
     code, out, err = run("show", PUMA)
     assert (code, err) == (0, "")
-    case = load_case(PUMA)
-    for word in (case.title, "durations-at-least-0.3 (default)", "0.961 1.258 1.078, total 3.298"):
-        assert word in out
-    plain = " ".join(out.split())
-    for claim in case.claims:
-        # By its id, which other commands ask for, once; and by what it says.
-        assert claim.id in out
-        assert claim.text[:20] in plain
-    asked = out[out.index("under “durations of at least 0.3 s”:") :]
-    for word in ("3-5-3 polynomials", "4 × 6", "velocity 6 rad/s; acceleration 8 rad/s^2"):
-        assert word in asked
+    # Claims by their ids, which other commands ask for, once; printed digits as they stand.
+    assert all(claim.id in out for claim in load_case(PUMA).claims)
+    assert "0.961 1.258 1.078, total 3.298" in out
     document = strict(run("show", PUMA, "--reading", "durations-positive", "--json")[1])
     assert_valid(document, "show")
     assert [r["id"] for r in document["readings"]] == ["durations-positive"]
 
 
 def test_show_says_what_holds_at_each_end(run: Run) -> None:
-    text = CASE.replace(
-        '{ family = "3-5-3" }',
-        '{ family = "cubic-spline", end_derivatives = [[0.2, -0.1]], finish_orders = [2] }',
-    )
+    ends = "end_derivatives = [[0.2, -0.1]], finish_orders = [2]"
+    text = CASE.replace('"3-5-3"', f'"cubic-spline", {ends}')
     Path("ends.toml").write_text(text, encoding="utf-8")
-    code, out, err = run("show", "ends.toml")
-    assert (code, err) == (0, "")
-    words = "velocity given at the start, acceleration at the finish, acceleration 0 at the finish"
-    assert words in " ".join(out.split())
+    out = " ".join(run("show", "ends.toml")[1].split())
+    assert "velocity given at the start, acceleration at the finish, acceleration 0 at" in out
 
 
 def test_check_judges_printed_digits(run: Run) -> None:
@@ -199,9 +156,8 @@ def test_check_without_flags_covers_every_problem_and_reading(run: Run) -> None:
     pairs = [(r["problem"], r["reading"]) for r in document["results"]]
     assert pairs == load_case(IRB).selections()
     assert all("joints" not in r for r in document["results"])
-    code, out, err = run("check", IRB, "--durations", "0.6445 0.5858 0.6387")
-    assert (code, err) == (0, "")
-    assert "keeps" in out
+    spaced = run("check", IRB, "--durations", "0.6445 0.5858 0.6387", "--json")
+    assert strict(spaced[1]) == document
 
 
 def test_check_reads_the_unit_of_the_case(run: Run) -> None:
@@ -219,10 +175,13 @@ def test_check_reads_the_unit_of_the_case(run: Run) -> None:
 
 
 def test_solve_shared(run: Run) -> None:
-    code, out, err = run("solve", IRB, "--problem", "limit-80", "--json")
+    code, out, err = run(
+        "solve", IRB, "--problem", "limit-80", "--starts", "1", "--seed", "3", "--json"
+    )
     assert (code, err) == (0, "")
     document = strict(out)
     assert_valid(document, "solve")
+    assert document["results"][0]["starts"] == 1
     assert [r["reading"] for r in document["results"]] == ["waypoints-rad", "waypoints-deg"]
     assert all(r["status"] == "optimal" for r in document["results"])
     code, out, err = run("solve", IRB, "--problem", "limit-80", "--reading", "waypoints-rad")
@@ -247,11 +206,6 @@ def test_solve_by_joint_and_shared(run: Run) -> None:
     assert f"{apart['longest_per_segment']['total_time']:.6f}" in out
 
 
-def test_starts_and_seed_reach_the_solver(run: Run) -> None:
-    one = strict(run("solve", IRB, "--starts", "1", "--seed", "3", "--json")[1])["results"][0]
-    assert one["starts"] == 1
-
-
 @pytest.mark.usefixtures("pages")
 def test_audit_writes_pages(run: Run, stand_in: dict[str, Any]) -> None:
     code, out, err = run("audit")
@@ -265,18 +219,6 @@ def test_audit_writes_pages(run: Run, stand_in: dict[str, Any]) -> None:
     assert out.index("Under the default") < out.index("Durations of joint 5 under 80 °/s.")
     assert out.endswith(f"pages: {Path('trajgap-audit') / 'index.html'}\n")
     assert [p.name for p in Path("trajgap-audit").iterdir()] == ["index.html"]
-
-
-@pytest.mark.parametrize(
-    ("folder", "why"),
-    [("nowhere", "is no folder; name the one with your files"), (".", "holds no trajgap-certif")],
-)
-def test_certificates_that_are_not_there_are_refused_before_computing(
-    run: Run, folder: str, why: str
-) -> None:
-    code, out, err = run("audit", IRB, "--certificates", folder)
-    assert (code, out) == (2, "")
-    assert err.startswith(f"trajgap: {folder}: --certificates: {why}")
 
 
 @pytest.mark.usefixtures("pages")
@@ -307,6 +249,8 @@ def test_audit_passes_its_options_on(run: Run, stand_in: dict[str, Any]) -> None
         "cache": True,
     }
     assert Path("deep/er/index.html").is_file()
+    assert run("audit", IRB, "--json", "--no-cache")[0] == 0
+    assert stand_in["cache"] is False
 
 
 @pytest.mark.usefixtures("stand_in", "pages")

@@ -14,10 +14,9 @@ from typing import Any
 import pytest
 from support.checkout import ROOT
 from support.command_line import CASE, Run, strict
-from support.documents import SCHEMA, assert_valid
+from support.documents import assert_valid
 from support.shipped_problems import COVERED_PROBLEMS
 from trajgap.compare.cli import certifying as cli_certify
-from trajgap.compare.cli import main
 from trajgap.compare.documents import Uncovered
 from trajgap.nlp import ExactProblem, shipped
 from trajgap.nlp.proofs.document import shipped_folder
@@ -38,11 +37,12 @@ def files_of(out: str) -> list[str]:
     return [line for line in out.splitlines() if not line.startswith(" ")]
 
 
-def test_words_are_those_of_the_library() -> None:
-    outcome = SCHEMA["$defs"]["certified_result"]["properties"]["outcome"]
-    assert [one["$ref"] for one in outcome["anyOf"]] == ["#/$defs/outcome", "#/$defs/uncovered"]
-    for name in ("certify", "verify"):
-        assert {"$ref": f"#/$defs/{name}"} in SCHEMA["anyOf"]
+@pytest.fixture
+def document() -> dict[str, Any]:
+    """The shipped certificate of the question, to be altered."""
+    found = shipped(COVERED_PROBLEMS[NAME])
+    assert found is not None
+    return json.loads(json.dumps(found))  # type: ignore[no-any-return]
 
 
 def test_each_joint_is_certified_and_its_file_proves(run: Run) -> None:
@@ -76,15 +76,20 @@ def test_shared_durations_are_one_question(run: Run) -> None:
     assert not Path("trajgap-certificates").exists(), "with --json only where told"
 
 
-def test_bounds_are_printed_outwards(run: Run) -> None:
+def test_bounds_are_printed_outwards_and_the_file_names_its_question(run: Run) -> None:
     _, out, _ = run("solve", *ONE, "--certify", "--gap", "0.1")
     row = out.splitlines()[-3].split()
-    verdict = verify(f"trajgap-certificates/{NAME}.json")
+    file = f"trajgap-certificates/{NAME}.json"
+    verdict = verify(file)
     assert verdict.lower is not None
     assert verdict.upper is not None
     assert Fraction(row[0]) <= verdict.lower
     assert Fraction(row[1]) >= verdict.upper
     assert row[-1] == "certified"
+    (one,) = strict(run("verify", file, "--json")[1])["verified"]
+    case = (ROOT / "problem" / "published" / f"{IRB}.toml").read_bytes()
+    assert one["question"]["case_sha256"] == hashlib.sha256(case).hexdigest()
+    assert one["question"]["joint"] is None
 
 
 def test_infeasible_is_proved(run: Run, folder: Path) -> None:
@@ -111,15 +116,16 @@ def test_a_curve_that_is_not_covered_is_named(run: Run) -> None:
 
 
 def test_a_time_limit_leaves_a_state_to_go_on_from(run: Run) -> None:
+    path, state = (f"trajgap-certificates/{NAME}{end}.json" for end in ("", ".state"))
     code, out, _ = run("solve", *ONE, "--certify", "--time", "0")
-    state = f"trajgap-certificates/{NAME}.state.json"
     assert code == cli_certify.NOT_PROVED
     assert f"go on with --resume {state}" in out
-    assert not Path(f"trajgap-certificates/{NAME}.json").exists(), "nothing is proved"
-    code, out, _ = run("solve", *ONE, "--certify", "--gap", "0.01", "--resume", state)
-    assert code == 0
-    assert "certified" in out
-    assert verify(f"trajgap-certificates/{NAME}.json").proves
+    assert not Path(path).exists(), "nothing is proved"
+    assert str(verify(state)).startswith("proves: ")
+    assert run("solve", "mine.toml", "--certify", "--resume", state)[0] == 2, "another problem"
+    assert run("solve", *ONE, "--certify", "--gap", "0.01", "--resume", state)[0] == 0
+    assert verify(path).proves
+    assert not Path(state).exists(), "a finished certificate needs none"
 
 
 def test_a_proof_that_the_verifier_refuses_is_not_called_certified(
@@ -178,18 +184,9 @@ def test_ctrl_c_leaves_the_interval_and_a_state(run: Run) -> None:
         "c._Stop.reporting = slow\n"
         "sys.exit(main())"
     )
+    arguments = ("solve", *ONE, "--certify", "--no-cache", "--out", "answer.json")
     process = subprocess.Popen(
-        [
-            sys.executable,
-            "-c",
-            started,
-            "solve",
-            *ONE,
-            "--certify",
-            "--no-cache",
-            "--out",
-            "answer.json",
-        ],
+        [sys.executable, "-c", started, *arguments],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
@@ -208,92 +205,73 @@ def test_ctrl_c_leaves_the_interval_and_a_state(run: Run) -> None:
     assert code == 0
 
 
-def test_verify_says_what_each_file_is_worth(run: Run, tmp_path: Path) -> None:
-    document = shipped(COVERED_PROBLEMS[NAME])
-    assert document is not None
-    harmless = json.loads(json.dumps(document))
-    harmless["claim"]["lower"] = "1"
-    broken = json.loads(json.dumps(document))
-    broken["claim"]["lower"] = "1.9"
+def test_verify_says_what_each_file_is_worth(run: Run, document: dict[str, Any]) -> None:
+    harmless = {**document, "claim": {**document["claim"], "lower": "1"}}
+    broken = {**document, "claim": {**document["claim"], "lower": "1.9"}}
     broken["seal"] = seal({key: x for key, x in broken.items() if key != "seal"})
     for name, one in (("good", document), ("harmless", harmless), ("broken", broken)):
-        (tmp_path / f"{name}.json").write_text(json.dumps(one))
+        Path(f"{name}.json").write_text(json.dumps(one))
     code, out, err = run("verify", "good.json", "harmless.json", "broken.json", "missing.json")
     assert (code, err) == (1, "")
     words = [line.split(": ")[1] for line in files_of(out)]
     assert words == ["proves", "altered, still proves", "refused", "refused"]
-    code, out, _ = run("verify", "good.json", "harmless.json", "--json")
-    assert code == 0
-    verified = strict(out)
-    assert_valid(verified, "verify")
-    assert [one["worth"] for one in verified["verified"]] == words[:2]
-    code, out, _ = run("verify", "broken.json", "--json")
-    assert code == 1
-    assert_valid(strict(out), "verify")
+    for names, wanted, worth in (
+        (("good", "harmless"), 0, words[:2]),
+        (("broken",), 1, words[2:3]),
+    ):
+        code, out, _ = run("verify", *(f"{name}.json" for name in names), "--json")
+        assert_valid(strict(out), "verify")
+        assert (code, [one["worth"] for one in strict(out)["verified"]]) == (wanted, worth)
 
 
-def test_huge_numbers_are_no_fault(run: Run, tmp_path: Path) -> None:
-    document = shipped(COVERED_PROBLEMS[NAME])
-    assert document is not None
-    document["claim"]["lower"] = "-1" + "0" * 350
-    (tmp_path / "huge.json").write_text(json.dumps(document))
-    code, out, _ = run("verify", "huge.json", "--json")
-    assert code == 1
-    assert "no number of at most 120 digits" in strict(out)["verified"][0]["reason"]
-    document["claim"]["lower"] = "-" + "9" * 120 + "e99"
-    (tmp_path / "huge.json").write_text(json.dumps(document))
-    code, out, _ = run("verify", "huge.json", "--json")
-    assert code == 0
-    assert strict(out)["verified"][0]["lower"] == pytest.approx(-1e219)
+def test_huge_numbers_are_no_fault(run: Run, document: dict[str, Any]) -> None:
+    def verified(lower: str) -> tuple[int, Any]:
+        document["claim"]["lower"] = lower
+        Path("huge.json").write_text(json.dumps(document))
+        code, out, _ = run("verify", "huge.json", "--json")
+        return code, strict(out)["verified"][0]
+
+    code, one = verified("-1" + "0" * 350)
+    assert (code, "no number of at most 120 digits" in one["reason"]) == (1, True)
+    code, one = verified("-" + "9" * 120 + "e99")
+    assert (code, one["lower"]) == (0, pytest.approx(-1e219))
     assert run("verify", "huge.json")[0] == 0
 
 
-def test_verify_says_which_question_it_proved(run: Run) -> None:
-    run("solve", *ONE, "--certify", "--gap", "0.1")
-    file = f"trajgap-certificates/{NAME}.json"
-    code, out, _ = run("verify", file)
-    assert code == 0
-    document = json.loads(Path(file).read_text())
+def test_verify_says_which_question_it_proved(run: Run, document: dict[str, Any]) -> None:
+    file = str(shipped_folder() / f"{NAME}.json")
+    _, out, _ = run("verify", file)
     asked = f"case {IRB}, problem limit-80, reading waypoints-rad"
     assert out.splitlines()[1] == f"    {asked}; problem sha256 {seal(document['problem'])}"
-    (one,) = strict(run("verify", file, "--json")[1])["verified"]
-    case = (ROOT / "problem" / "published" / f"{IRB}.toml").read_bytes()
-    assert one["question"]["case_sha256"] == hashlib.sha256(case).hexdigest()
-    assert one["question"]["joint"] is None
+    code, out, _ = run("verify", file, "--time", "0", "--json")
+    (one,) = strict(out)["verified"]
+    assert_valid(strict(out), "verify")
+    assert (code, one["worth"], one["lower_why"]) == (1, "out of time", "out of time")
 
 
-def test_verify_compares_with_a_case_number_by_number(run: Run, tmp_path: Path) -> None:
-    run("solve", *ONE, "--certify", "--gap", "0.1")
-    file = Path(f"trajgap-certificates/{NAME}.json")
-    code, out, _ = run("verify", str(file), "--case", IRB)
-    asked = "Shortest time of joint 5 under 80 °/s; way-points in radians"
-    assert code == 0
-    assert out.splitlines()[2] == f"    the same problem as in the case: {asked}"
+def test_verify_compares_with_a_case_number_by_number(run: Run, document: dict[str, Any]) -> None:
+    def verified(case: str) -> tuple[int, Any]:
+        Path("c.json").write_text(json.dumps(document))
+        code, out, _ = run("verify", "c.json", "--case", case, "--json")
+        assert_valid(strict(out), "verify")
+        return code, strict(out)["verified"][0]
+
     # 5.0 is the same number as 5, another name and a hash of nothing change no question.
-    document = json.loads(file.read_text())
     document["problem"]["duration_lower"] = ["0.0", "0/7", "0e9"]
     document["question"] = dict.fromkeys(document["question"])
-    file.write_text(json.dumps(document))
-    # The file names nothing that a command could be given.
-    _, out, _ = run("verify", str(file), "--case", IRB)
-    ids = "problem limit-80, reading waypoints-rad"
-    assert out.splitlines()[2] == f"    the same problem as in the case: {asked} ({ids})"
-    code, out, _ = run("verify", str(file), "--case", IRB, "--json")
-    assert code == 0
-    (one,) = strict(out)["verified"]
-    assert one["worth"] == "altered, still proves"
+    code, one = verified(IRB)
+    assert (code, one["worth"]) == (0, "altered, still proves")
     assert one["in_case"]["reading"] == "waypoints-rad"
+    # The file names nothing that a command could be given.
+    assert "problem limit-80, reading waypoints-rad" in run("verify", "c.json", "--case", IRB)[1]
     # Another limit is another problem, and proved for itself.
     document["problem"]["duration_lower"] = ["1e-9", "0", "0"]
     document["question"] |= {"case": IRB, "problem": "limit-80", "reading": "waypoints-rad"}
-    file.write_text(json.dumps(document))
-    code, out, _ = run("verify", str(file), "--case", IRB)
-    assert code == 1
-    assert out.splitlines()[2] == "    not in the case: its problem differs in duration_lower"
-    code, out, _ = run("verify", str(file), "--case", "mine.toml", "--json")
-    assert code == 1
-    assert_valid(strict(out), "verify")
-    assert strict(out)["verified"][0]["in_case_why"] == "no problem of the case is this one"
+    code, one = verified(IRB)
+    assert (code, one["in_case"]) == (1, None)
+    assert "differs in duration_lower" in one["in_case_why"]
+    code, one = verified("mine.toml")
+    assert (code, one["in_case_why"]) == (1, "no problem of the case is this one")
 
 
 def test_verify_compares_each_joint_and_any_curve(run: Run) -> None:
@@ -305,15 +283,6 @@ def test_verify_compares_each_joint_and_any_curve(run: Run) -> None:
             (one,) = strict(out)["verified"]
             wanted = one["question"] | {"case_sha256": one["in_case"]["case_sha256"]}
             assert one["in_case"] == wanted
-
-
-def test_verify_ends_with_its_time(run: Run) -> None:
-    run("solve", *ONE, "--certify", "--gap", "0.1")
-    code, out, _ = run("verify", f"trajgap-certificates/{NAME}.json", "--time", "0", "--json")
-    assert code == 1
-    (one,) = strict(out)["verified"]
-    assert_valid(strict(out), "verify")
-    assert one["worth"] == one["lower_why"] == "out of time"
 
 
 def test_a_certificate_of_the_old_format_is_made_again(run: Run) -> None:
@@ -346,57 +315,6 @@ def test_each_question_has_files_of_its_own() -> None:
     assert names[CertifiedQuestion("c", "p", "r", "A")].startswith("c-p-r-joint-a_")
 
 
-def test_a_state_beside_a_finished_certificate_goes(run: Run) -> None:
-    state = Path(f"trajgap-certificates/{NAME}.state.json")
-    run("solve", *ONE, "--certify", "--time", "0")
-    assert str(verify(state)).startswith("proves: ")
-    run("solve", *ONE, "--certify", "--gap", "0.1", "--resume", str(state))
-    assert not state.exists()
-    assert verify(f"trajgap-certificates/{NAME}.json").proves
-
-
-@pytest.mark.parametrize(
-    ("arguments", "reason"),
-    [
-        (("--gap", "0.1"), "--gap needs --certify"),
-        (("--certificates", "x"), "--certificates needs --certify"),
-        (("--resume", "x"), "--resume needs --certify"),
-        (("--workers", "2"), "--workers needs --certify"),
-        (("--certify", "--resume", "missing.json"), "missing.json: cannot be read"),
-        (("--certify", "--resume", "mine.toml"), "mine.toml: no JSON"),
-        (("--certify", "--certificates", "taken"), "is no trajgap-certificate-2"),
-        (("--certify", "--gap", "1"), "--gap: 1 is no relative width; give 0 or more, below 1"),
-        (("--certify", "--gap", "inf"), "--gap: inf is no relative width"),
-        (("--certify", "--certificates", "mine.toml"), "mine.toml: --certificates: is no folder"),
-        (("--certify", "--certificates", "mine.toml/x/y"), "mine.toml: --certificates: is no fold"),
-    ],
-)
-def test_bad_options(run: Run, arguments: tuple[str, ...], reason: str) -> None:
-    Path("taken").mkdir()
-    Path("taken/mine.main.plain.joint-a.json").write_text("{}")
-    code, out, err = run("solve", "mine.toml", *arguments)
-    assert (code, out) == (2, "")
-    assert err.count("\n") == 1
-    assert reason in err
-
-
-def test_a_nested_file_in_the_way_is_refused(run: Run) -> None:
-    folder = Path("trajgap-certificates")
-    folder.mkdir()
-    (folder / f"{NAME}.json").write_text("[" * 99_999)
-    code, _, err = run("solve", *ONE, "--certify", "--time", "0")
-    assert code == 2
-    assert "is no trajgap-certificate-2" in err
-
-
-def test_a_state_of_another_problem_is_refused(run: Run) -> None:
-    run("solve", *ONE, "--certify", "--time", "0")
-    state = f"trajgap-certificates/{NAME}.state.json"
-    code, _, err = run("solve", "mine.toml", "--certify", "--resume", state)
-    assert code == 2
-    assert "is none of those selected" in err
-
-
 def test_a_state_file_that_was_edited_is_refused(run: Run) -> None:
     run("solve", *ONE, "--certify", "--time", "0")
     path = Path(f"trajgap-certificates/{NAME}.state.json")
@@ -420,20 +338,47 @@ def test_a_width_that_is_not_reached_is_not_called_certified(run: Run) -> None:
     assert (code, result["outcome"]) == (3, "interval")
 
 
-def test_a_bound_over_any_curve_is_certified_verified_and_named(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    folder = tmp_path / "proofs"
-    assert main(["solve", *ONE, "--certify", "--any-curve", "--certificates", str(folder)]) == 0
-    capsys.readouterr()
+def test_a_bound_over_any_curve_is_certified_verified_and_named(run: Run) -> None:
+    folder = Path("proofs")
+    certify = ("solve", *ONE, "--certify", "--certificates", str(folder))
+    assert run(*certify, "--any-curve")[0] == 0
     (file,) = folder.iterdir()
     assert file.name == f"{NAME}.any-curve.json"
-    assert main(["verify", str(file), "--case", IRB, "--json"]) == 0
-    (one,) = json.loads(capsys.readouterr().out)["verified"]
-    assert one["subject"] == "any curve"
+    code, out, _ = run("verify", str(file), "--case", IRB, "--json")
+    (one,) = strict(out)["verified"]
+    assert (code, one["subject"]) == (0, "any curve")
     shown = json.loads((shipped_folder() / f"{NAME}.any-curve.json").read_text("utf-8"))
     assert one["lower"] == pytest.approx(float(Fraction(shown["claim"]["lower"])), rel=1e-6)
-    assert main(["solve", *ONE, "--certify", "--certificates", str(folder)]) == 0
+    assert run(*certify)[0] == 0
     assert len(list(folder.iterdir())) == 2, "another question, another file"
-    assert main(["solve", *ONE, "--any-curve"]) == 2
-    assert "--any-curve needs --certify" in capsys.readouterr().err
+
+
+MOVING = """
+format = 1
+id = "moving"
+title = "Moving"
+source = { year = 2020 }
+robot = { name = "arm", joints = ["a", "b"] }
+units = { position = "rad", velocity = "rad/s", acceleration = "rad/s^2", time = "s" }
+waypoints = { joint_rows = [["0", "1", "0.4"], ["0.2", "-0.3", "0.5"]] }
+limits = { velocity = [2, 1.5], acceleration = [5, 4] }
+interpolant = { family = "cubic-spline", end_derivatives = [[0.5, -0.2]], finish_derivatives = [0] }
+"""
+"""A joint that starts forwards and one that starts backwards."""
+
+
+def test_ends_in_motion_have_a_bound_over_any_curve_and_no_other_proof(run: Run) -> None:
+    Path("moving.toml").write_text(MOVING, encoding="utf-8")
+    code, out, err = run("solve", "moving.toml", "--certify")
+    assert (code, err) == (3, "")
+    assert "no proof covers such a curve yet; what --any-curve proves" in " ".join(out.split())
+    assert not Path("trajgap-certificates").exists()
+    code, _, err = run("solve", "moving.toml", "--certify", "--any-curve", "--out", "c.json")
+    assert (code, err) == (0, "")
+    (found,) = strict(Path("c.json").read_text())["intervals"]
+    run("solve", "moving.toml", "--out", "s.json")
+    (solved,) = strict(Path("s.json").read_text())["results"]
+    assert 0 < found["lower"] < solved["total_time"]
+    code, out, err = run("verify", found["certificate"], "--case", "moving.toml")
+    assert (code, err) == (0, "")
+    assert "proves" in out

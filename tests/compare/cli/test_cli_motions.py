@@ -2,11 +2,9 @@
 
 import json
 import time
-from pathlib import Path
 
 import numpy as np
 import pytest
-from support.command_line import assert_refused
 from support.documents import assert_valid
 from trajgap.compare.cli import main
 
@@ -116,18 +114,14 @@ def test_flag_file_urdf_in_this_order(files, capsys):
 
 def test_strict_is_for_scripts(files, capsys):
     flags = ["check", "m.csv", "--interpolation", "quintic", "--velocity", "2"]
-    said = run(capsys, *flags)
-    assert (
-        "pass: every stated limit is kept at every instant; not judged: position, acceleration and "
-        "jerk, no limit stated (relative"
-    ) in " ".join(said.split())
     rest = ["--position", "inf", "--acceleration", "inf", "--jerk", "inf"]
     for more, code in (([], 1), (rest, 0), (rest[:4], 1), ([*rest, "--velocity", "1"], 1)):
         found = document(capsys, *flags, *more, "--strict", code=code, kind="motion_check")
         assert found["result"]["verdict"] == ("violated" if "1" in more else "pass")
         lacking = {one["quantity"] for one in found["result"]["not_judged"]}
         assert lacking == {"position", "acceleration", "jerk"} - {x[2:] for x in more}
-    assert "not judged" not in run(capsys, *flags, *rest)
+    for more in ([], rest):
+        assert ("not judged" in run(capsys, *flags, *more)) == (more == [])
 
 
 @pytest.mark.parametrize("misspelt", ["csv", "urdf", "yaml"])
@@ -143,18 +137,6 @@ def test_a_misspelt_joint_is_not_passed_over(files, capsys, misspelt):
     file = "l.yaml" if misspelt == "csv" else changed
     assert f"{file}: {wanted[0]}: is no joint with limits there; rename it or add it;" in said
     assert f"did you mean {wanted[1]!r}" in said
-
-
-@pytest.mark.slow
-def test_a_name_of_any_length_in_a_file_leaves_the_line_readable(files, capsys):
-    name = "elbow " + 9000 * "- " + "velocity"
-    Path("long.csv").write_text(f"time,a,{name},a velocity\n0,0,0,0\n1,1,1,0\n")
-    code = main(["check", "long.csv", "--velocity", "2"])
-    output = capsys.readouterr()
-    assert_refused(
-        (code, output.out, output.err), "long.csv: line 1: ", "; give it for every joint"
-    )
-    assert len(output.err) < 2000
 
 
 def test_a_hundred_thousand_samples_of_seven_joints(files, capsys):
@@ -182,37 +164,6 @@ def test_a_hundred_thousand_samples_of_seven_joints(files, capsys):
     assert taken < 10.0  # 1 s; the rest is for a loaded machine
 
 
-@pytest.mark.parametrize(
-    ("arguments", "wanted"),
-    [
-        (["m.csv"], "none are given; add --velocity"),
-        (["none.csv", "--velocity", "1"], "none.csv: no such file"),
-        (["m.csv", "--velocity", "1", "--interpolation", "best"], "'best' is unknown; use none"),
-        (["m.csv", "--velocity", "1", "--noise", "much"], "--noise: 'much' is no number"),
-        (["m.csv", "--velocity", "1,2,3"], "3 limits for 2 joints"),
-        (["m.csv", "--urdf", "m.csv"], "m.csv: line 1: not valid XML"),
-        (["m.csv", "--limits", "arm.urdf", "--urdf", "m.csv"], "line 1: not valid XML"),
-        (["m.csv", "--joints", "a,b", "--urdf", "arm.urdf"], "a: is no joint with limits there"),
-        (["m.csv", "--velocity", "inf"], "none is finite, so that nothing is judged"),
-        (["m.csv", "--velocity", "1e400"], "--velocity: '1e400' is beyond the range of float64"),
-        (["m.csv", "--velocity=2,.3e+999"], "--velocity: '.3e+999' is beyond the range"),
-        (["m.csv", "--velocity", "9" * 400], "--velocity: a number of 400 characters"),
-        (["1e999/m.csv", "--velocity", "1"], "1e999/m.csv: no such file"),
-        (["m.csv", "--velocity", "1", "--noise", "1e400"], "--noise: '1e400' is beyond"),
-        (["m.csv", "--velocity", "1e101"], "is beyond 1e+100; write inf where there is no limit"),
-        (["m.csv", "--durations", "1,1,1"], "m.csv: "),
-        (["m.csv", "--problem", "x", "--velocity", "1"], "--problem is of a case"),
-        (["puma560-mnam-pso-353"], "Missing option '--durations'"),
-        (["puma560-mnam-pso-353", "--durations", "1,1,1", "--urdf", "x"], "--urdf is of a motion"),
-        (["m.csv", "--velocity", "1", "--out", "m.csv"], "exists already"),
-    ],
-)
-def test_one_line_says_how_to_fix_it(files, capsys, arguments, wanted):
-    said = run(capsys, "check", *arguments, code=2)
-    assert wanted in said
-    assert said.count("\n") == 1
-
-
 SLOW = pytest.mark.slow
 
 
@@ -237,24 +188,3 @@ def test_the_motion_of_an_answer_is_written_and_read_back(tmp_path, monkeypatch,
             capsys, "check", "out.json", "--velocity", "1.3962634", "--tolerance", "1e-6"
         )
         assert again["result"]["limits_verdict"] == "pass"
-
-
-@pytest.mark.parametrize(
-    ("arguments", "wanted"),
-    [
-        (["--rate", "100"], "--rate needs --samples"),
-        (["--format", "csv"], "--format needs --samples"),
-        (["--retimed"], "--retimed needs --samples"),
-        (["--samples", "x", "--certify"], "leave --certify out"),
-        (["--samples", "x", "--format", "mp3"], "'mp3' is unknown; use csv, ros, ppoly"),
-        (["--samples", "x"], "add --problem"),
-        (["--certify", "--time", "1e400"], "--time: '1e400' is beyond the range of float64; give"),
-    ],
-)
-def test_what_cannot_be_written_is_said(tmp_path, monkeypatch, capsys, arguments, wanted):
-    own = tmp_path / "own"
-    own.mkdir()
-    monkeypatch.chdir(own)
-    said = run(capsys, "solve", "irb460-pso-353", *arguments, code=2)
-    assert wanted in said
-    assert not list(own.iterdir())

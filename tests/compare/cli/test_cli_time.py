@@ -1,4 +1,4 @@
-"""Time limits on the command line: `solve --time`, `verify --time`, and what lies in a folder."""
+"""Time limits and kept proofs on the command line: what is left, and that nothing else changes."""
 
 from __future__ import annotations
 
@@ -63,12 +63,6 @@ def test_the_limit_is_that_of_each_problem(run: Run, monkeypatch: pytest.MonkeyP
     assert len(asked) > 1
 
 
-def test_no_time_is_negative(run: Run) -> None:
-    code, _, err = run(*SHARED, "--time", "-1")
-    assert code == 2
-    assert "--time" in err
-
-
 def test_reading_a_file_is_part_of_the_time(run: Run) -> None:
     with Path("hole.json").open("wb") as file:
         file.truncate(MOST_BYTES // 2)  # takes no room on the disk
@@ -106,3 +100,62 @@ def test_what_cannot_be_proved_again_in_time_is_not_thrown_away(
         path.write_text(json.dumps(wrong))
         assert run("solve", *ONE, "--certify", "--gap", "0.2", "--time", "50")[0] == 0
         assert path.read_text() != json.dumps(wrong)
+
+
+CERTIFY = ("solve", "mine.toml", "--certify", "--gap", "1e-2", "--json")
+"""Two joints, each by itself."""
+
+
+@pytest.fixture
+def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A cache folder of the test's own, which does not exist yet."""
+    monkeypatch.setenv("TRAJGAP_CACHE", str(tmp_path / "cache"))
+    return tmp_path / "cache" / "proofs"
+
+
+def timeless(text: str) -> Any:
+    """A document without its seconds."""
+
+    def kept(part: Any) -> Any:
+        if isinstance(part, dict):
+            return {k: kept(x) for k, x in part.items() if k != "seconds"}
+        return [kept(x) for x in part] if isinstance(part, list) else part
+
+    return kept(json.loads(text))
+
+
+def test_a_warm_run_prints_the_same_document(run: Run, cache: Path) -> None:
+    cold = run(*CERTIFY)
+    assert (cold[0], cold[2]) == (0, "")
+    files = {file: file.read_bytes() for file in cache.iterdir()}
+    assert len(files) == 2
+    warm = run(*CERTIFY)
+    assert (warm[0], warm[2]) == (0, "")
+    assert timeless(warm[1]) == timeless(cold[1])
+    assert {file: file.read_bytes() for file in cache.iterdir()} == files
+
+
+def test_the_certificates_in_the_folder_are_the_same(run: Run, cache: Path) -> None:
+    asked = [*CERTIFY[:-1], "--certificates"]
+    run(*asked, "cold")
+    code, out, _ = run(*asked, "warm")
+    assert code == 0
+    assert "2 kept proofs were proved again" in out
+    names = sorted(file.name for file in Path("cold").iterdir())
+    assert names == sorted(file.name for file in Path("warm").iterdir())
+    assert all(Path("cold", n).read_bytes() == Path("warm", n).read_bytes() for n in names)
+
+
+def test_no_cache_neither_keeps_nor_uses(run: Run, cache: Path) -> None:
+    assert run(*CERTIFY, "--no-cache")[0] == 0
+    assert not cache.exists()
+    run(*CERTIFY)
+    code, out, _ = run(*CERTIFY[:-1], "--no-cache")
+    assert code == 0
+    assert "kept proof" not in out
+
+
+def test_a_plain_solve_keeps_nothing(run: Run, cache: Path) -> None:
+    for more in ((), ("--no-cache",)):
+        assert run("solve", "mine.toml", "--json", *more)[0] == 0
+    assert not cache.exists()

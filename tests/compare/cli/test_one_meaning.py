@@ -1,10 +1,14 @@
-"""One meaning per verb: `solve` in Python and on the command line."""
+"""One meaning per verb: `solve` in Python and on the command line; a path is timed once."""
 
 import json
+from dataclasses import replace
 
+import numpy as np
 import pytest
-from trajgap.nlp import Evidence, exact_problem, shipped_file, solve
-from trajgap.problem import Coupling, Limits, Problem, load_case, three_five_three
+from trajgap.compare.cli import solving
+from trajgap.nlp import Evidence, Solution, Status, exact_problem, shipped_file, solve
+from trajgap.nlp.retiming import retime
+from trajgap.problem import Coupling, Limits, Problem, fit, load_case, three_five_three
 
 
 @pytest.mark.parametrize(
@@ -26,38 +30,27 @@ def test_python_and_the_command_line_solve_alike(run, case_id):
                for r in shown)  # fmt: skip
 
 
-def test_a_problem_next_to_a_certified_one_is_not_certified():
-    case = load_case("puma560-mnam-pso-353")
-    problem = case.problem()
-    assert solve(problem).evidence is Evidence.CERTIFIED
-    moved = problem.waypoints.copy()
-    moved[1, 0] *= 1 + 1e-13
-    limits = Limits(problem.limits.velocity * (1 + 1e-13), problem.limits.acceleration)
-    other = (
-        {"waypoints": moved},
-        {"limits": limits},
-        {"duration_lower": problem.duration_lower * (1 + 1e-13)},
-        {"duration_upper": 9.0},
-    )
-    for change in other:
-        given = {
-            "waypoints": problem.waypoints,
-            "limits": problem.limits,
-            "duration_lower": problem.duration_lower,
-            "duration_upper": problem.duration_upper,
-            **change,
-        }
-        again = Problem(curve=three_five_three(), **given)
-        assert solve(again, starts=1).evidence is Evidence.BEST_KNOWN, change
-
-
-def test_names_do_not_matter():
-    problem = load_case("puma560-mnam-pso-353").problem()
-    same = Problem(
-        problem.waypoints, problem.limits, three_five_three(),
-        problem.duration_lower, problem.duration_upper, name="typed by hand",
-    )  # fmt: skip
-    assert solve(same, starts=1).lower_bound == solve(problem, starts=1).lower_bound
+@pytest.mark.parametrize(
+    ("change", "evidence"),
+    [
+        ({"waypoints": 1 + 1e-13}, Evidence.BEST_KNOWN),
+        ({"velocity": 1 + 1e-13}, Evidence.BEST_KNOWN),
+        ({"duration_lower": 1 + 1e-13}, Evidence.BEST_KNOWN),
+        ({"duration_upper": 9.0}, Evidence.BEST_KNOWN),
+        ({"name": "typed by hand"}, Evidence.CERTIFIED),
+    ],
+)
+def test_a_problem_next_to_a_certified_one_is_not_certified(change, evidence):
+    known = load_case("puma560-mnam-pso-353").problem()
+    assert solve(known).evidence is Evidence.CERTIFIED
+    moved = known.waypoints.copy()
+    moved[1, 0] *= change.get("waypoints", 1)
+    limits = Limits(known.limits.velocity * change.get("velocity", 1), known.limits.acceleration)
+    lower = known.duration_lower * change.get("duration_lower", 1)
+    upper = change.get("duration_upper", known.duration_upper)
+    name = change.get("name", known.name)
+    given = Problem(moved, limits, three_five_three(), lower, upper, name=name)
+    assert solve(given, starts=1).evidence is evidence
 
 
 def test_an_instance_of_the_suite_is_certified_in_python_too():
@@ -73,3 +66,27 @@ def test_a_number_longer_than_a_certificate_may_state_ends_nothing():
     )
     assert solve(same, starts=1).evidence is Evidence.BEST_KNOWN
     assert shipped_file(exact_problem(same)) is None
+
+
+def test_the_same_motion_within_the_same_limits_is_timed_once(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    asked = []
+    monkeypatch.setattr(solving, "retime", lambda *given: asked.append(given) or retime(*given))
+    q = np.array([[0.13], [0.81], [0.32], [1.07]])
+    problem = Problem(q, Limits([1.6], [4.0]), three_five_three())
+    answer = Solution(problem, Status.FEASIBLE, durations=np.array([1.3, 1.1, 1.7]))
+    longer = replace(answer, durations=np.array([1.3, 1.1, 1.8]))
+    bounded = replace(answer, problem=replace(problem, duration_lower=np.full(3, 0.3)))
+    slower = replace(answer, problem=replace(problem, limits=Limits([1.6], [3.0])))
+    mirrored = replace(answer, problem=replace(problem, waypoints=-q))
+    known: solving._Retimings = {}
+    found = [
+        solving._retimed(one, known) for one in (answer, longer, bounded, slower, mirrored, answer)
+    ]
+    assert len(asked) == 4
+    assert found[2] is found[0] is found[5]
+    for one, said in zip((answer, longer, bounded, slower, mirrored), found, strict=False):
+        problem, h = one.problem, one.durations
+        alone = retime(fit(problem.curve, problem.waypoints, h), problem.limits)
+        assert str(said) == str(alone)

@@ -1,8 +1,29 @@
-"""Reasons of a verdict: each once, with its readings in words, and nothing lost."""
+"""Reasons of a verdict, each once with its readings in words, and what stands beside a word."""
 
 from __future__ import annotations
 
-from trajgap.compare.documents import Named, Said, grouped, in_full, under, with_readings
+from trajgap.compare.documents import (
+    DOUBTED,
+    Caveat,
+    CaveatKind,
+    ClaimVerdict,
+    Confidence,
+    Judgement,
+    Named,
+    Said,
+    Scope,
+    built_remark,
+    grouped,
+    in_full,
+    nature_caveat,
+    said_beside,
+    tally,
+    under,
+    with_readings,
+    worth_little,
+)
+from trajgap.nlp import Evidence
+from trajgap.problem.cases import Nature
 
 READINGS = tuple("abcdef")
 LABELS = {"a": "first", "b": "second", "c": "third", "d": "fourth", "e": "fifth", "f": "sixth"}
@@ -11,10 +32,6 @@ NAMED = Named(LABELS, {}, "c")
 
 def said(readings: str, message: str, verdict: str = "refuted", rule: str = "TG201") -> list[Said]:
     return [Said(verdict, message, rule, one) for one in readings]
-
-
-def test_of_two_readings_both_are_called_both() -> None:
-    assert under(("a", "b"), ("a", "b"), NAMED) == "under both readings"
 
 
 def test_an_implausible_reading_is_named_as_one_with_its_reason_where_asked() -> None:
@@ -80,3 +97,35 @@ def test_rules_that_say_the_same_are_named_together() -> None:
         [*said("a", "same.", rule="TG201"), *said("b", "same.", rule="TG302")], READINGS, NAMED
     )
     assert (one.rules, one.readings) == (("TG201", "TG302"), ("a", "b"))
+
+
+S, R, N = ClaimVerdict.SUPPORTED, ClaimVerdict.REFUTED, ClaimVerdict.NOT_CHECKABLE
+DOUBT = Caveat(CaveatKind.DOUBTED, f"{DOUBTED}: two tables are alike.")
+BUILT = Caveat(CaveatKind.BUILT, built_remark())
+
+
+def judged(verdict: ClaimVerdict, *caveats: Caveat) -> Judgement:
+    decided = {} if verdict is N else {"confidence": Confidence.PROVEN}
+    return Judgement(
+        claim="c",
+        verdict=verdict,
+        scope=Scope.ALL,
+        evidence=Evidence.NONE,
+        why="",
+        caveats=caveats,
+        beside=said_beside(verdict, caveats),
+        readings={},
+        **decided,
+    )
+
+
+def test_what_holds_by_construction_is_counted_as_no_evidence() -> None:
+    aim = nature_caveat(Nature.AIM)
+    every = [judged(S), judged(S, BUILT), judged(S, DOUBT), judged(S, DOUBT), judged(N)]
+    every.append(judged(N, aim))
+    assert tally(every) == (
+        "Verdicts on 6 claims: 3 rest on proofs under a reading, 1 holds by construction, "
+        "1 is open, 1 states no result."
+    )
+    assert worth_little(every) == "1 by construction, 2 on doubted numbers"
+    assert worth_little([judged(S), judged(R, DOUBT)]) == ""

@@ -1,9 +1,139 @@
+"""Sessions and their engines: killed, lost, two at once, with more runs than they could hold."""
+
+import os
+import signal
+import tracemalloc
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from pathlib import Path
+from typing import Any
 
 import pytest
 from support.killed_study import STUDY, kill_and_resume, session, texts
-from support.small_studies import written
-from trajgap.compare.gaps import load_study
+from support.small_studies import HEAD, small_trial, written
+from trajgap.compare.gaps import (
+    Engine,
+    Row,
+    RowStatus,
+    Store,
+    StudySession,
+    Trial,
+    TrialOutcome,
+    export_rows,
+    load_study,
+    on_dask,
+    on_this_machine,
+    outcomes,
+    run_study,
+    run_trial,
+    study_rows,
+)
+from trajgap.problem import ProcessError
+
+
+def test_trials_are_read_as_they_are_needed() -> None:
+    read = 0
+
+    def trials() -> Iterator[Trial]:
+        nonlocal read
+        for seed in range(100):
+            read += 1
+            yield small_trial(seed=seed)
+
+    with on_this_machine(2) as engine:
+        coming = outcomes(trials(), engine)
+        next(coming)
+        assert read <= 6
+        coming.close()
+
+
+class Failing(Executor):
+    """An executor whose futures end as told."""
+
+    def __init__(self, end: Callable[[Future[Any]], object]) -> None:
+        self.end = end
+
+    def submit(self, *_: Any, **__: Any) -> Future[Any]:
+        future: Future[Any] = Future()
+        self.end(future)
+        return future
+
+
+class KilledWorker(Exception):
+    """As Dask names it."""
+
+
+def test_a_run_at_which_workers_of_dask_die_is_reported() -> None:
+    engine = Engine(Failing(lambda f: f.set_exception(KilledWorker())), lambda: 1, "far")
+    (outcome,) = outcomes([small_trial()], engine)
+    assert outcome.row.status is RowStatus.FAILED
+    assert outcome.row.message == "support.optimizers:draws: workers died at it, several times"
+
+
+CLOSED = ThreadPoolExecutor(1)
+CLOSED.shutdown()
+
+
+@pytest.mark.parametrize(
+    ("executor", "said"),
+    [
+        (Failing(lambda f: f.cancel() and f.set_running_or_notify_cancel()), r"\(.*cancelled.*\)"),
+        (Failing(lambda f: f.set_exception(OSError("gone"))), r"\(OSError: gone\)"),
+        (Failing(lambda f: f.set_exception(KeyError("odd"))), r"\(KeyError: 'odd'\)"),
+        (CLOSED, r"\(RuntimeError: cannot schedule.*\)"),
+        (Failing(lambda f: f.set_exception(ProcessError("none"))), "^none$"),  # cannot start one
+    ],
+)
+def test_an_engine_that_is_lost_ends_the_session(executor: Executor, said: str) -> None:
+    said = said if said == "^none$" else f"far: lost {said}; what is finished is stored"
+    with pytest.raises(ProcessError, match=said):
+        list(outcomes([small_trial()], Engine(executor, lambda: 1, "far")))
+
+
+def test_dask_that_does_not_answer_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("distributed")
+    monkeypatch.setattr("trajgap.compare.gaps.engines._PATIENCE", 0.2)
+    with (
+        pytest.raises(ProcessError, match=r"dask: no scheduler answers at tcp://127.0.0.1:9 \("),
+        on_dask("tcp://127.0.0.1:9"),
+    ):
+        pass
+
+
+def test_dask_that_is_not_installed_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(__import__("sys").modules, "distributed", None)
+    with (
+        pytest.raises(ProcessError, match=r'dask: is not installed; run `.*"trajgap\[dask\]"`'),
+        on_dask("tcp://127.0.0.1:9"),
+    ):
+        pass
+
+
+@pytest.mark.filterwarnings("ignore")  # Dask's own, of its ports and its closing connections
+@pytest.mark.slow
+def test_a_dask_cluster_gives_the_same_rows_though_a_worker_is_killed(tmp_path: Path) -> None:
+    distributed = pytest.importorskip("distributed")
+    trials = [small_trial("support.optimizers:dawdles", seed=seed) for seed in range(24)]
+    wanted = {trial.key: run_trial(trial) for trial in trials}
+    found: dict[str, TrialOutcome] = {}
+    with (
+        distributed.LocalCluster(
+            n_workers=2,
+            threads_per_worker=1,
+            processes=True,
+            dashboard_address=None,
+            local_directory=str(tmp_path),
+        ) as cluster,
+        on_dask(cluster.scheduler_address) as engine,
+    ):
+        pids = [nanny.pid for nanny in cluster.workers.values()]
+        assert engine.slots() == 2
+        for outcome in outcomes(trials, engine):
+            found[outcome.row.key] = outcome
+            if len(found) == 5:
+                os.kill(pids[0], signal.SIGKILL)
+        assert [nanny.pid for nanny in cluster.workers.values()] != pids
+    assert {key: outcome.row for key, outcome in found.items()} == wanted
 
 
 @pytest.mark.slow
@@ -29,3 +159,48 @@ def test_two_sessions_on_one_store_end_with_the_same_rows(tmp_path: Path) -> Non
     wanted = texts(plan, tmp_path / "one.sqlite")
     assert len(wanted) == len(plan)
     assert texts(plan, tmp_path / "two.sqlite") == wanted
+
+
+ROOM = 2_000_000
+"""Bytes that a session may grow by: a tenth of 10,000 rows, each of some 2,000 bytes."""
+
+
+class Here(Executor):
+    """An executor that calls at once."""
+
+    def submit(self, call: Callable[..., Any], *given: Any, **named: Any) -> Future[Any]:
+        future: Future[Any] = Future()
+        future.set_result(call(*given, **named))
+        return future
+
+
+def at_once(trial: Trial) -> TrialOutcome:
+    """A row as long as those of runs, without a search."""
+    trace = tuple((at, 9.0 / at) for at in range(1, 60))
+    return TrialOutcome(Row.begun(trial, trace=trace, evaluations=60), 0.0)
+
+
+@pytest.mark.slow  # a quick look at the same: test_engines, trials are read as they are needed
+def test_memory_does_not_grow_over_ten_thousand_runs(tmp_path: Path) -> None:
+    runs = 10_000
+    text = f'{HEAD}[[optimizers]]\nname = "random"\n'.replace("seeds = 4", f"seeds = {runs // 2}")
+    plan = load_study(written(tmp_path, text))
+    held = 0
+
+    def forget_the_start(session: StudySession) -> None:
+        nonlocal held
+        if session.run == runs // 10:
+            held = tracemalloc.get_traced_memory()[0]
+            tracemalloc.reset_peak()
+
+    with Store(tmp_path / "runs.sqlite") as store:
+        next(plan.trials(store))  # the optimum is solved before anything is counted
+        tracemalloc.start()
+        try:
+            engine = Engine(Here(), lambda: 2, "here", at_once)
+            assert run_study(plan, store, engine, progress=forget_the_start).run == runs
+            assert export_rows(study_rows(plan, store), tmp_path / "rows.csv") == runs
+            assert sum(1 for _ in store.rows()) == runs
+            assert tracemalloc.get_traced_memory()[1] - held < ROOM
+        finally:
+            tracemalloc.stop()

@@ -14,7 +14,6 @@ from trajgap.compare.gaps import (
     StudySession,
     export_rows,
     load_study,
-    on_dask,
     on_this_machine,
     parse_study,
     run_study,
@@ -139,28 +138,14 @@ def exported(plan: StudyPlan, store: Path, folder: Path) -> dict[str, bytes]:
 
 
 @pytest.mark.slow
-@pytest.mark.filterwarnings("ignore")  # Dask's own, of its ports and its closing connections
-def test_exports_are_the_same_bytes_on_one_process_three_and_dask(
+def test_exports_are_the_same_bytes_on_one_process_and_three(
     plan: StudyPlan, whole: Path, tmp_path: Path
 ) -> None:
-    distributed = pytest.importorskip("distributed")
     wanted = exported(plan, whole, tmp_path / "one")
     assert len(wanted) > 8
     with on_this_machine(3) as engine, Store(tmp_path / "three.sqlite") as store:
         run_study(plan, store, engine)
     assert exported(plan, tmp_path / "three.sqlite", tmp_path / "three") == wanted
-    with (
-        distributed.LocalCluster(
-            n_workers=2,
-            threads_per_worker=1,
-            dashboard_address=None,
-            local_directory=str(tmp_path),
-        ) as cluster,
-        on_dask(cluster.scheduler_address) as engine,
-        Store(tmp_path / "dask.sqlite") as store,
-    ):
-        run_study(plan, store, engine)
-    assert exported(plan, tmp_path / "dask.sqlite", tmp_path / "dask") == wanted
 
 
 def test_each_joint_is_a_problem_where_the_case_says_so(tmp_path: Path) -> None:

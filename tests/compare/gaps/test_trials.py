@@ -1,13 +1,21 @@
+"""Trials: the row of a run, whatever an optimiser does, here and in a process of its own."""
+
+import os
 import random
+import signal
+import sys
+import threading
 import time
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 import pytest
 from support.small_studies import small_problem, small_trial
-from trajgap.compare.gaps import RowStatus, canonical, origin_of, run_trial
+from trajgap.compare.gaps import RowStatus, canonical, origin_of, run_trial, trial_process
+from trajgap.compare.gaps.trial_process import Crew
 from trajgap.heuristics import KINDS, PSO, run
-from trajgap.problem import check
+from trajgap.problem import ProcessError, check
 
 
 @pytest.mark.parametrize("handling", ["death-penalty", "stretch", "rescale"])
@@ -26,12 +34,6 @@ def test_a_row_is_what_the_loop_of_the_papers_finds(handling: str) -> None:
     assert judged.worst is not None
     assert row.worst_ratio == judged.worst.ratio
     assert row.feasible
-
-
-def test_the_same_trial_gives_the_same_row() -> None:
-    assert run_trial(small_trial()) == run_trial(small_trial())
-    assert run_trial(small_trial()).durations != run_trial(small_trial(seed=4)).durations
-    assert run_trial(small_trial()).durations != run_trial(small_trial(stream=(1,))).durations
 
 
 def everybodys_numbers(seed: int) -> tuple[float, float]:
@@ -64,6 +66,23 @@ def test_settings_of_one_trial_are_not_those_of_the_next() -> None:
 
 
 @pytest.mark.parametrize(
+    "name",
+    ["overspends", "scribbles", "returns_short", "forks", "leaves_traces", "warns"],
+)
+def test_what_does_no_harm_changes_nothing(name: str, tmp_path: Path) -> None:
+    before, floats = run_trial(small_trial("support.optimizers:draws")), np.geterr()
+    row = run_trial(small_trial(f"support.optimizers:{name}"))
+    with (tmp_path / "returned").open("a", encoding="utf-8") as file:
+        file.write(row.status)
+    assert (tmp_path / "returned").read_text(encoding="utf-8") == "finished", "by one process"
+    assert row.evaluations == 200 or name not in ("overspends", "scribbles", "returns_short")
+    if name in ("scribbles", "returns_short", "forks"):
+        assert (row.durations, row.trace) == (before.durations, before.trace)
+    assert np.geterr() == floats
+    assert run_trial(small_trial("support.optimizers:draws")) == before
+
+
+@pytest.mark.parametrize(
     ("name", "message"),
     [
         ("support.optimizers:raises", "ZeroDivisionError: one over nothing!!!"),
@@ -89,39 +108,6 @@ def test_what_goes_wrong_is_a_row_with_its_message(name: str, message: str) -> N
     row.message.encode()
     assert (row.durations, row.reported_time, row.feasible_gap) == (None, None, None)
     assert row.reference_upper == 2.5
-
-
-def test_a_spent_budget_ends_a_run_and_is_no_fault() -> None:
-    row = run_trial(small_trial("support.optimizers:overspends"))
-    assert (row.status, row.evaluations) == (RowStatus.FINISHED, 200)
-
-
-@pytest.mark.parametrize("name", ["scribbles", "returns_short"])
-def test_what_does_no_harm_changes_nothing(name: str) -> None:
-    row = run_trial(small_trial(f"support.optimizers:{name}"))
-    honest = run_trial(small_trial("support.optimizers:draws"))
-    assert (row.durations, row.trace) == (honest.durations, honest.trace)
-
-
-def test_what_a_run_does_to_its_process_ends_with_it() -> None:
-    before = run_trial(small_trial("pso"))
-    floats = np.geterr()
-    assert run_trial(small_trial("support.optimizers:leaves_traces")).status is RowStatus.FINISHED
-    assert np.geterr() == floats
-    assert run_trial(small_trial("pso")) == before
-
-
-def test_a_fork_in_the_calling_process_does_not_come_back(tmp_path: Path) -> None:
-    returned = tmp_path / "returned"
-    row = run_trial(small_trial("support.optimizers:forks"))
-    with returned.open("a", encoding="utf-8") as file:
-        file.write(row.status)
-    assert row.durations == run_trial(small_trial("support.optimizers:draws")).durations
-    assert returned.read_text(encoding="utf-8") == "finished"
-
-
-def test_warnings_of_an_optimiser_are_its_own() -> None:
-    assert run_trial(small_trial("support.optimizers:warns")).status is RowStatus.FINISHED
 
 
 def test_a_run_that_takes_too_long_is_a_row_without_clock_times() -> None:
@@ -155,3 +141,192 @@ def test_where_an_optimiser_comes_from(tmp_path: Path, monkeypatch: pytest.Monke
     assert before.startswith("sha256:")
     assert origin_of("mine_once:f") != before
     assert origin_of("nowhere_at_all:f").startswith("trajgap ")
+
+
+# --- processes ------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def crew() -> Iterator[Crew]:
+    found = Crew()
+    yield found
+    found.end()
+
+
+@pytest.fixture(scope="module")
+def going_on() -> Iterator[Crew]:
+    """A crew for the tests after which it can run trials as before: to start costs a second."""
+    found = Crew()
+    yield found
+    found.end()
+
+
+def test_a_trial_gives_the_same_row_in_a_process_of_its_own(going_on: Crew) -> None:
+    outcome = going_on.run(small_trial())
+    assert outcome.row == run_trial(small_trial())
+    assert outcome.row.status is RowStatus.FINISHED
+    assert outcome.seconds > 0
+
+
+def test_one_process_runs_many_trials(going_on: Crew) -> None:
+    going_on.run(small_trial())
+    first = going_on._own.child
+    going_on.run(small_trial("support.optimizers:raises"))
+    assert going_on._own.child is first
+
+
+@pytest.mark.slow
+def test_a_run_whose_process_dies_is_done_again(crew: Crew, tmp_path: Path) -> None:
+    settings = canonical({"mark": str(tmp_path / "mark")})
+    row = crew.run(small_trial("support.optimizers:dies_once", settings=settings)).row
+    assert row.status is RowStatus.FINISHED
+    assert row.durations == run_trial(small_trial("support.optimizers:draws")).durations
+
+
+def test_what_an_optimiser_prints_and_reads_is_not_ours(going_on: Crew) -> None:
+    assert going_on.run(small_trial("support.optimizers:prints")).row.status is RowStatus.FINISHED
+
+
+def test_a_run_at_which_two_processes_die_is_reported(going_on: Crew) -> None:
+    row = going_on.run(small_trial("support.optimizers:dies")).row
+    assert row.status is RowStatus.FAILED
+    assert row.message == "support.optimizers:dies: its process ended 2 times (SIGKILL)"
+    assert going_on.run(small_trial()).row.status is RowStatus.FINISHED
+
+
+def test_a_run_that_forks_answers_once(going_on: Crew) -> None:
+    honest = run_trial(small_trial("support.optimizers:draws"))
+    for seed in (3, 4):
+        row = going_on.run(small_trial("support.optimizers:forks", seed=seed)).row
+        assert (row.optimizer, row.seed) == ("support.optimizers:forks", seed)
+        assert (row.durations == honest.durations) == (seed == 3)
+    assert going_on.run(small_trial()).row == run_trial(small_trial())
+
+
+def test_what_a_run_leaves_behind_holds_nothing_up(going_on: Crew, tmp_path: Path) -> None:
+    mark = tmp_path / "mark"
+    settings = canonical({"mark": str(mark)})
+    trial = small_trial("support.optimizers:forks_and_leaves", settings=settings, seconds=60)
+    row = going_on.run(trial).row
+    assert row.message.endswith("its process ended 2 times (SIGKILL)")
+    left = int(mark.read_text(encoding="utf-8"))
+    assert going_on.run(small_trial()).row.status is RowStatus.FINISHED
+    assert is_gone(left)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="other systems know no subreaper")
+@pytest.mark.parametrize("how", ["the crew ends", "the trial dies", "the parent is gone"])
+def test_a_grandchild_in_a_session_of_its_own_ends_too(
+    crew: Crew, tmp_path: Path, how: str
+) -> None:
+    mark = tmp_path / "mark"
+    settings = canonical({"mark": str(mark), "dies": how == "the trial dies"})
+    trial = small_trial("support.optimizers:leaves_a_grandchild", settings=settings, seconds=60)
+    row = crew.run(trial).row
+    left = [int(line) for line in mark.read_text(encoding="utf-8").split()]
+    if how == "the trial dies":
+        assert row.message.endswith("its process ended 2 times (SIGKILL)")
+        assert len(left) == 2
+    else:
+        assert row.status is RowStatus.FINISHED
+        os.kill(left[0], 0)  # it lives as long as the process that ran the trial
+        if how == "the crew ends":
+            crew.end()
+        else:
+            crew._own.child._process.stdin.close()
+    assert all(map(is_gone, left))
+
+
+def is_gone(pid: int) -> bool:
+    """Whether a process ends within ten seconds; one that nobody waited for counts as ended."""
+    for _ in range(100):
+        try:
+            os.kill(pid, 0)
+            status = Path(f"/proc/{pid}/stat")
+            if status.exists() and status.read_text().rpartition(")")[2].split()[0] == "Z":
+                return True
+        except (ProcessLookupError, FileNotFoundError):
+            return True
+        time.sleep(0.1)
+    return False
+
+
+def test_a_search_that_catches_everything_is_ended_from_outside(
+    going_on: Crew, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(trial_process, "_GRACE", 0.5)
+    row = going_on.run(small_trial("support.optimizers:hangs", seconds=0.5)).row
+    assert row.status is RowStatus.FAILED
+    assert row.message.startswith("support.optimizers:hangs: took longer than 0.5 s; raise")
+    assert going_on.run(small_trial()).row.status is RowStatus.FINISHED
+
+
+def test_a_process_does_not_outlive_its_parent(crew: Crew) -> None:
+    crew.run(small_trial())
+    child = crew._own.child
+    child._process.stdin.close()
+    assert child._process.wait(60) == -signal.SIGKILL
+
+
+def test_a_process_that_cannot_start_is_reported(
+    crew: Crew, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    said: list[str] = []
+
+    def try_starting() -> None:
+        try:
+            crew.run(small_trial())
+        except ProcessError as error:
+            said.append(str(error))
+
+    def in_a_thread_of_its_own() -> str:
+        thread = threading.Thread(target=try_starting)
+        thread.start()
+        thread.join()
+        return said.pop()
+
+    monkeypatch.setattr(trial_process, "_PROGRAM", "raise SystemExit(3)")
+    assert in_a_thread_of_its_own().startswith("workers: a process ends at once; see why: python")
+    monkeypatch.setattr(sys, "executable", "/no/such/python")
+    assert in_a_thread_of_its_own().startswith("workers: a process cannot be started (")
+
+
+def test_a_crew_that_has_ended_starts_nothing(crew: Crew) -> None:
+    crew.run(small_trial())
+    child = crew._own.child
+    crew.end()
+    assert child._process.returncode == -signal.SIGKILL
+    with pytest.raises(ProcessError, match=r"workers: stopped"):
+        crew.run(small_trial())
+
+
+def test_a_process_that_begins_while_the_crew_ends_ends_too(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    crew, beginning, may_begin = Crew(), threading.Event(), threading.Event()
+    begun: list[trial_process._Child] = []
+
+    class Slow(trial_process._Child):
+        def __init__(self) -> None:
+            beginning.set()
+            may_begin.wait()
+            super().__init__()
+            begun.append(self)
+
+    monkeypatch.setattr(trial_process, "_Child", Slow)
+    refused: list[Exception] = []
+
+    def run() -> None:
+        try:
+            crew.run(small_trial())
+        except ProcessError as error:
+            refused.append(error)
+
+    thread = threading.Thread(target=run)
+    thread.start()
+    beginning.wait()
+    crew.end()
+    may_begin.set()
+    thread.join()
+    assert [str(error) for error in refused] == ["workers: stopped"]
+    assert [child._process.poll() is None for child in begun] == [False]

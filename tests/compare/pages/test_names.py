@@ -1,6 +1,5 @@
 """Pictures, pages and places in a page: one name each, whatever the ids of a case."""
 
-import os
 import re
 import xml.etree.ElementTree as ElementTree
 from collections import Counter
@@ -97,18 +96,10 @@ def test_every_waterfall_has_its_picture(folder: Path) -> None:
                     assert f"pictures/{file.name}" in page
     assert len(files) >= 2 * 4
     assert foreign(folder) is None
-
-
-def test_an_earlier_report_is_known_by_the_names_of_its_time(folder: Path) -> None:
-    known = folder / "pictures" / "dash-waterfall-a-b-c.svg"
+    known = folder / "pictures" / "dash-waterfall-a-b-c.svg"  # as pictures were called once
     known.write_text("<svg/>", encoding="utf-8")
     assert foreign(folder) is None
     known.unlink()
-
-
-def test_a_folder_with_a_pipe_is_foreign(tmp_path: Path) -> None:
-    os.mkfifo(tmp_path / "audit.json")
-    assert foreign(tmp_path) == "audit.json"
 
 
 def test_what_hides_or_steers_is_shown(folder: Path) -> None:
@@ -141,18 +132,3 @@ def test_every_block_of_markdown_shows_it() -> None:
     assert HIDES.search(text) is None
     assert text.count("\\<U+202E\\>") == 10
     assert text.count("<br>") == 1
-
-
-def test_pages_of_cases_with_long_ids(tmp_path: Path) -> None:
-    ids = ["a" * 250, "a" * 251]
-    cases = [parse_case(DASH.replace('"dash"', f'"{name}"'), name) for name in ids]
-    report = audit(cases, seeds=2, problem="a", reading="c", certify_seconds=0)
-    write_report(report, tmp_path / "out")
-    # Two cases, the index and the glossary.
-    pages = list((tmp_path / "out").glob("*.html"))
-    assert len(pages) == 4
-    assert all(len(page.stem) < 130 for page in pages)
-    index = (tmp_path / "out" / "index.html").read_text(encoding="utf-8")
-    for target in re.findall(r'<a href="([^"#]+)"', index):
-        assert (tmp_path / "out" / target).is_file()
-    assert foreign(tmp_path / "out") is None

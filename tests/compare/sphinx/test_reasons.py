@@ -1,13 +1,18 @@
-"""Reasons of a verdict on a page: the default reading's first, many others folded."""
+"""Reasons of a verdict on a page, the words of claims, and the table of the suite."""
 
 from __future__ import annotations
 
 import pytest
 from docutils import nodes
 from support.checkout import ROOT
+from trajgap.compare.documents import ClaimVerdict
 from trajgap.compare.sphinx import Results
+from trajgap.compare.sphinx.claim_words import wanted_words
 from trajgap.compare.sphinx.directives import readings_of
 from trajgap.compare.sphinx.reasons import reasons
+from trajgap.compare.sphinx.suite import instances_of
+from trajgap.problem import TrajgapError
+from trajgap.problem.suite import list_instances, select_curve
 
 
 def finding(reading: str | None, message: str, verdict: str = "refuted", **changes: object):
@@ -52,12 +57,6 @@ def test_of_many_reasons_the_default_stands_first_and_the_others_are_folded() ->
         "Supported under “d”: kept.",
     ]
     assert closing.astext() == "</details>"
-
-
-def test_what_needs_no_reading_stands_first() -> None:
-    found = [finding("a", "one."), finding("b", "two."), finding(None, "three.")]
-    case = {"readings": {"default": "d"}, "findings": found}
-    assert texts(case)[0] == "Under every reading: three."
 
 
 def test_what_differs_in_numbers_is_shown_once_and_every_number_is_folded() -> None:
@@ -110,3 +109,50 @@ def test_a_long_reason_is_cut_at_a_sentence_and_in_full_a_fold_away() -> None:
     lead, opening, folded, _ = reasons({"readings": {"default": "a"}, "findings": many}, VERDICT)
     assert opening.astext() == "<details><summary>All 3 reasons</summary>"
     assert folded.astext().count("The end.") == 3
+
+
+@pytest.mark.parametrize(
+    ("option", "words"),
+    [
+        ("refuted, depends on the reading", ["refuted", "depends on the reading"]),
+        ("depends on\n   the reading,\ninconsistent,", ["depends on the reading", "inconsistent"]),
+        ("", []),
+        (", ".join(ClaimVerdict), list(ClaimVerdict)),
+    ],
+)
+def test_words_are_read_in_their_order(option: str, words: list[str]) -> None:
+    assert wanted_words(option) == words
+
+
+@pytest.mark.parametrize(
+    ("option", "wrong"),
+    [
+        ("refutedd", "refutedd"),
+        ("refuted, dependent on the reading", "dependent on the reading"),
+        ("Refuted", "Refuted"),
+    ],
+)
+def test_a_word_that_no_claim_can_have_is_an_error(option: str, wrong: str) -> None:
+    with pytest.raises(
+        TrajgapError, match=f":verdict: '{wrong}' is no verdict on a claim"
+    ) as caught:
+        wanted_words(option)
+    assert all(str(word) in str(caught.value) for word in ClaimVerdict)
+
+
+@pytest.mark.parametrize("word", ["quintic", "Septic", "353", "virtual", "septic-c6-"])
+def test_a_word_chooses_what_the_command_line_lists(word: str) -> None:
+    chosen = instances_of(word)
+    assert 0 < len(chosen) < len(list_instances())
+    assert list(chosen) == list(select_curve(word))
+
+
+def test_a_whole_name_keeps_to_that_curve() -> None:
+    assert {one.curve for one in instances_of("C2 cubic")} == {"C2 cubic"}
+    assert {one.curve for one in select_curve("C2 cubic")} > {"C2 cubic"}
+    assert instances_of(None) == list_instances()
+
+
+def test_a_curve_that_no_instance_has_is_an_error_with_those_that_there_are() -> None:
+    with pytest.raises(TrajgapError, match=r"no curve is called 'nonic'; known: .*C4 quintic"):
+        instances_of("nonic")

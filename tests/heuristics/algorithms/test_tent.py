@@ -49,6 +49,7 @@ def test_the_exact_orbit_of_a_decimal_never_ends(start: str) -> None:
     assert found.period is not None
     first, length = found.period
     assert found.exact[first] == found.exact[first + length]
+    assert len(set(found.exact[: first + length])) == first + length, "the first return"
     # They agree as long as doubling has not spent the 53 bits.
     np.testing.assert_allclose(found.doubles[:20], [float(x) for x in found.exact[:20]], atol=1e-9)
 

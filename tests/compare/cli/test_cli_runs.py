@@ -1,0 +1,269 @@
+"""The commands `bench` and `study`: what they print and write, and how they go on."""
+
+from __future__ import annotations
+
+import csv
+import os
+import re
+import signal
+import sqlite3
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from support.checkout import ROOT
+from support.command_line import START, Run, on_terminal, strict
+from support.documents import assert_valid
+from support.small_studies import HEAD, STUDY
+from trajgap.problem import load_case
+from trajgap.problem.suite import load_instance
+
+PUMA = "puma560-mnam-pso-353"
+SMALL = ("--seeds", "2", "--budget", "90", "--no-baselines")
+DOC = (ROOT / "docs" / "reference" / "bench.md").read_text(encoding="utf-8")
+GUIDE = (ROOT / "docs" / "guides" / "enter-your-optimiser.md").read_text(encoding="utf-8")
+
+
+def test_a_table_a_page_and_the_verdict_first(run: Run, folder: Path) -> None:
+    code, out, err = run("bench", PUMA, "--optimizer", "pso,random", *SMALL)
+    assert (code, err) == (0, "")
+    head, _, rest = out.partition("\nClosest: ")
+    lines = f"Closest: {rest}".splitlines()
+    title = load_case(PUMA).title
+    assert " ".join(head.split()).startswith(f"{title} ({PUMA}); ")
+    # The interval of the shipped certificate.
+    assert lines[1].startswith("Optimum: 3.2966933 to 3.2966964 s, certified; ")
+    table = [line for line in lines if re.match(r"(pso|random) ", line)]
+    assert len(table) == 2
+    assert all("of 2" in line for line in table)
+    assert lines[-1] == "page: trajgap-bench/index.html"
+    there = folder / "trajgap-bench"
+    pictures = [f"pictures/bench-{name}-0.svg" for name in ("gaps", "profile")]
+    written = sorted(p.relative_to(there).as_posix() for p in there.rglob("*.*"))
+    assert written == ["bench.json", "index.html", *pictures, "rows.csv"]
+    page = (there / "index.html").read_text("utf-8")
+    assert lines[0] in page
+    assert all(f"{title} ({PUMA}); " in (there / name).read_text("utf-8") for name in pictures)
+    found = re.findall(r'(?:href|src)="([^"#]+)"', page)
+    targets = {one for one in found if not one.startswith("data:")}  # the icon is in the page
+    assert targets
+    assert all((there / target).is_file() for target in targets)
+
+
+def test_json_keeps_to_the_schema_and_repeats(run: Run, folder: Path) -> None:
+    asked = ("--reading", "durations-positive", "--set", 'pso={"particles": 9}', "--json")
+    arguments = ("bench", PUMA, "--optimizer", "pso", "--optimizer", "random", *SMALL, *asked)
+    code, out, err = run(*arguments)
+    assert (code, err) == (0, "")
+    document = strict(out)
+    assert_valid(document, "bench")
+    (result,) = document["results"]
+    assert result["reading"] == "durations-positive"
+    assert {one["optimizer"] for one in result["standings"]} == {"pso", "random"}
+    # The case's own settings but for the one given, the budget in place of its iterations.
+    (pso,) = (one for one in result["standings"] if one["optimizer"] == "pso")
+    assert '"position_initial":[0.3,3' in pso["settings"]
+    assert '"particles":9,' in pso["settings"]
+    assert '"iterations"' not in pso["settings"]
+    assert not (folder / "trajgap-bench").exists()
+    assert run(*arguments)[1] == out
+
+
+def test_joints_that_the_case_searches_apart_are_named(run: Run) -> None:
+    code, out, err = run("bench", "mine.toml", "--optimizer", "random", *SMALL)
+    assert (code, err) == (0, "")
+    assert out.splitlines()[0] == "Mine (mine)"
+    assert "The case searches each joint by itself" in " ".join(out.split())
+    assert "best known; true gaps may be larger" in out
+
+
+def test_an_optimiser_that_always_fails_is_shown_by_the_exit_code(run: Run) -> None:
+    arguments = ("bench", PUMA, *SMALL, "--json", "--optimizer")
+    code, out, _ = run(*arguments, "random,support.faulty:raises")
+    assert code == 1
+    assert {one["failed"] for one in strict(out)["results"][0]["standings"]} == {0, 2}
+    code, out, _ = run(*arguments, "support.faulty:raises_at_times", "--seeds", "8")
+    (standing,) = strict(out)["results"][0]["standings"]
+    assert (code, 0 < standing["failed"] < 8) == (0, True)
+
+
+def test_instances_of_the_suite_and_what_all_of_them_say(run: Run, folder: Path) -> None:
+    """Two instances at once: bounds as the suite has them, every number over both by hand."""
+    arguments = ("bench", "suite:septic-puma*,353-puma560", "--optimizer", "random", *SMALL)
+    code, out, err = run(*arguments, "--json", "--out", "pages", "--store", "runs.sqlite")
+    assert (code, err) == (0, "")
+    document = strict(out)
+    assert_valid(document, "bench")
+    names = ["353-puma560", "septic-puma560"]
+    assert [one["problem"] for one in document["results"]] == names
+    for name, one in zip(names, document["results"], strict=True):
+        known = load_instance(name)
+        assert one["optimum"] == {
+            "upper": known.upper, "lower": known.lower, "evidence": str(known.evidence)
+        }  # fmt: skip
+    (standing,) = document["overall"]
+    each = [one["standings"][0] for one in document["results"]]
+    assert (standing["problems"], standing["first"], standing["failed"]) == (2, 2, 0)
+    assert standing["median"] == pytest.approx(sum(one["median"] for one in each) / 2)
+    assert standing["worst"] == max(one["median"] for one in each)
+    for at, target in enumerate(standing["targets"]):
+        rates = [one["targets"][at]["rate"] for one in each]
+        assert target["rate"] == sum(rates) / 2
+        assert target["solved"] == sum(rate >= 0.5 for rate in rates)
+    page = (folder / "pages" / "index.html").read_text("utf-8")
+    assert "All 2 problems" in page
+    assert all(f" (suite:{name})<" in page for name in names)
+    # Nothing that the store holds is run again.
+    began = (folder / "runs.sqlite").read_bytes()
+    code, out, _ = run(*arguments, "--store", "runs.sqlite")
+    assert code == 0
+    assert out.startswith("Within 1 % of the optimum most often: random, in 0 % of its runs over 2")
+    assert (folder / "runs.sqlite").read_bytes() == began
+
+
+# --- docs/reference/bench.md, docs/guides/enter-your-optimiser.md --------------------------------
+
+
+def test_the_optimiser_of_the_guide_has_ten_lines_and_is_measured(run: Run, folder: Path) -> None:
+    mine = re.search(r":caption: mine.py\n\n(.*?)^```", GUIDE, re.MULTILINE | re.DOTALL)
+    assert mine
+    assert len(mine[1].splitlines()) <= 10
+    (folder / "mine.py").write_text(mine[1], encoding="utf-8")
+    code, out, err = run(
+        "bench", PUMA, "--optimizer", "mine:evolve", "--seeds", "3", "--budget", "600",
+        "--no-baselines",
+    )  # fmt: skip
+    assert (code, err) == (0, "")
+    verdict = r"^Closest: mine:evolve \(median gap [0-9.]+ % over 3 runs\)\.$"
+    assert re.search(verdict, out, re.MULTILINE)
+
+
+def test_the_docs_name_what_is_there() -> None:
+    from trajgap.compare.documents import BENCH_COLUMNS
+    from trajgap.heuristics import BASELINES, KINDS
+    from trajgap.heuristics.optimizers.scipy_methods import ENDED_BY_BUDGET
+
+    for name in (*KINDS, *BASELINES, *ENDED_BY_BUDGET):
+        assert f"`{name}`" in DOC or f":{name}`" in DOC, name
+    for column in BENCH_COLUMNS[1:6]:
+        assert column in DOC, column
+
+
+FEW = (
+    HEAD.replace("seeds = 4", "seeds = 2")
+    + """
+[[optimizers]]
+name = "pso"
+settings = { particles = 10 }
+
+[[optimizers]]
+name = "support.optimizers:raises"
+"""
+)
+
+
+@pytest.fixture(autouse=True)
+def study(folder: Path) -> Path:
+    path = folder / "few.toml"
+    path.write_text(FEW, encoding="utf-8")
+    return path
+
+
+def test_a_study_is_run_exported_and_gone_on_with(run: Run) -> None:
+    code, out, err = run("study", "few.toml", "--workers", "1", "--export", "few.csv")
+    assert (code, err) == (1, "")  # of one optimiser every run failed
+    lines = out.splitlines()
+    assert lines[0] == "few.sqlite: 8 runs done now, 0 were there"
+    assert "failed, 4 times: ZeroDivisionError: one over nothing" in " ".join(out.split())
+    assert lines[1] == "Mine (mine/main, plain)"
+    assert "particles 10" in out
+    assert "{" not in out
+    assert "run the failed ones again: trajgap study few.toml --retry" in lines
+    with open("few.csv", encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == 8
+    code, out, _ = run("study", "few.toml", "--workers", "1", "--store", "few.sqlite")
+    assert code == 1
+    assert out.splitlines()[0] == "few.sqlite: 0 runs done now, 8 were there"
+    last = "next: trajgap study few.toml --store few.sqlite --export few.csv"
+    assert out.splitlines()[-1] == last
+    gaps = [float(row["feasible_gap_lowest"]) for row in rows[:2]]
+    shown = next(line for line in out.splitlines() if line.startswith("pso ")).split()
+    assert shown[-2:] == [f"{100 * min(gaps):+.3g}", f"{50 * sum(gaps):+.3g}"]
+
+
+def test_the_exit_code_is_0_where_each_optimiser_has_a_run(run: Run, study: Path) -> None:
+    study.write_text(
+        FEW.replace("support.optimizers:raises", "support.faulty:raises_at_times").replace(
+            "seeds = 2", "seeds = 8"
+        ),
+        encoding="utf-8",
+    )
+    code, out, err = run("study", "few.toml", "--workers", "1")
+    assert (code, err) == (0, "")
+    assert "times: ZeroDivisionError: at times" in out
+
+
+def test_the_command_that_goes_on_still_exports(
+    run: Run, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from trajgap.compare.cli import studying
+
+    def interrupted(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(studying, "run_study", interrupted)
+    code, out, err = run(
+        "study", "few.toml", "--export", "a b.csv", "--export", "few.ioh", "--workers", "1"
+    )
+    assert (code, out) == (130, "")
+    assert "`trajgap study few.toml --export 'a b.csv' --export few.ioh` goes on from there" in err
+    assert not (folder / "few.ioh").exists()
+    _, _, err = run("study", "few.toml", "--store", "kept.sqlite", "--workers", "1")
+    assert "`trajgap study few.toml --store kept.sqlite` goes on from there" in err
+
+
+@pytest.mark.slow
+def test_ctrl_c_keeps_what_is_finished_and_says_how_to_go_on(study: Path) -> None:
+    study.write_text(
+        STUDY.replace("support.optimizers:raises", "support.optimizers:sleeps"), encoding="utf-8"
+    )
+    paths = os.pathsep.join(filter(None, sys.path))
+    process = subprocess.Popen(
+        [sys.executable, "-c", START, "study", "few.toml", "--workers", "1"],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        env={**os.environ, "PYTHONPATH": paths},
+    )
+    while stored() < 24:
+        assert process.poll() is None
+        signal.sigtimedwait([], 0.1)
+    process.send_signal(signal.SIGINT)
+    out, err = process.communicate(timeout=120)
+    assert (process.returncode, out) == (130, "")
+    assert err.strip() == (
+        "trajgap: interrupted; 24 of 32 runs are stored, `trajgap study few.toml` goes on from "
+        "there"
+    )
+    assert stored() == 24
+
+
+def stored() -> int:
+    try:
+        with sqlite3.connect("file:few.sqlite?mode=ro", uri=True) as data:
+            (found,) = data.execute("SELECT count(*) FROM runs").fetchone()
+            return int(found)
+    except sqlite3.Error:
+        return 0
+
+
+@pytest.mark.slow
+def test_a_terminal_shows_how_it_goes(study: Path) -> None:
+    paths = os.pathsep.join(filter(None, sys.path))
+    code, seen = on_terminal(["study", "few.toml", "--workers", "1"], PYTHONPATH=paths)
+    assert code == 1
+    assert "8 runs done now" in seen
+    assert "a second" in seen
+    assert " left" in seen
