@@ -43,7 +43,7 @@ def test_stretched_agrees_with_the_closed_form_under_every_unit_reading(units: s
     problem = load_case(POLISH).problem(reading_id=f"{units}-stretched")
     expected = solve_in_closed_form(problem.curve, problem.waypoints, problem.limits.derivatives)
     solution = solve(problem, starts=2)
-    assert solution.status is Status.OPTIMAL
+    assert solution.status is Status.CONVERGED
     assert solution.total_time == pytest.approx(expected.sum(), rel=1e-9, abs=0)
     np.testing.assert_allclose(solution.durations, expected, rtol=1e-8)
     assert expected.sum() == pytest.approx(BEST[units][0], abs=1e-9)
@@ -79,7 +79,7 @@ def test_stretched_agrees_with_the_closed_form_with_jerk_limits(seed: int) -> No
 def test_timed_optimum_of_the_polishing_paper_in_one_unit() -> None:
     problem = load_case(POLISH).problem(reading_id="angles-rad-v-rad-a-rad-timed")
     solution = solve(problem, starts=2)
-    assert solution.status is Status.OPTIMAL
+    assert solution.status is Status.CONVERGED
     assert solution.total_time == pytest.approx(BEST["angles-rad-v-rad-a-rad"][1], abs=2e-9)
     assert solution.check is not None
     assert solution.check.verdict is Verdict.PASS
@@ -129,7 +129,7 @@ def test_timed_optimum_agrees_with_a_search_that_shares_no_code() -> None:
         ).fun
         for start in ([0.0, 0.0], [-0.3, 0.2], [0.3, -0.2])
     ]
-    assert solution.status is Status.OPTIMAL
+    assert solution.status is Status.CONVERGED
     assert solution.total_time == pytest.approx(min(found), rel=2e-6)
 
 
@@ -159,7 +159,7 @@ def test_totals_scale_with_time_and_not_with_mirrors_or_names() -> None:
 def test_clamped_splines_are_solved_to_a_kkt_point(kind) -> None:
     problem, _ = clamped(kind, 21, count=5, joints=2)
     solution = solve(problem, starts=2)
-    assert solution.status is Status.OPTIMAL
+    assert solution.status is Status.CONVERGED
     assert solution.check is not None
     assert solution.check.limits is Verdict.PASS
     assert solution.kkt_residual is not None
@@ -181,7 +181,7 @@ def test_degree_5_at_the_waypoints_has_the_optimum_of_the_quintic_spline() -> No
     problem, _ = clamped((5, "waypoints", "times", "timed"), 22, count=6)
     other = solve(replace(problem, curve=quintic_spline(5)))
     found = solve(problem)
-    assert found.status is Status.OPTIMAL
+    assert found.status is Status.CONVERGED
     assert found.total_time == pytest.approx(other.total_time, rel=1e-9)
 
 
@@ -221,7 +221,7 @@ def test_bounds_positions_and_impossible_limits(time: str) -> None:
     low = 1.2 * float(free.durations[1])
     held = solve(replace(problem, duration_lower=[0.0, low, 0.0]), starts=2)
     assert held.durations[1] == pytest.approx(low, rel=1e-9)
-    assert held.status is Status.OPTIMAL
+    assert held.status is Status.CONVERGED
     zero = solve(replace(problem, limits=Limits([0.0, 1.0])))
     assert zero.status is Status.INFEASIBLE
     assert "joint 1 moves, but its velocity limit is 0" in str(zero.why)
@@ -238,7 +238,7 @@ def test_bounds_positions_and_impossible_limits(time: str) -> None:
 def test_each_joint_by_itself() -> None:
     problem, _ = uniform("timed", 35, count=4, joints=2)
     answer = solve_per_joint(problem, starts=2)
-    assert answer.status is Status.OPTIMAL
+    assert answer.status is Status.CONVERGED
     assert not answer.ranges
     assert "piecewise polynomials only" in str(answer.why)
     longest = np.max([s.durations for s in answer.joints], axis=0)
@@ -266,4 +266,4 @@ def test_the_chord_of_all_joints_enters_the_solver_unscaled() -> None:
     curve = ClampedBSpline(5, 5, "averaged-continued", "chord")
     problem = Problem(q, Limits([2.0, 0.03], [5.0, 0.06]), curve)
     solution = solve(problem, starts=2)
-    assert solution.status is Status.OPTIMAL
+    assert solution.status is Status.CONVERGED

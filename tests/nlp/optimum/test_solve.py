@@ -30,7 +30,7 @@ def test_every_one_of_20_random_starts_reaches_the_shared_puma_optimum(form: For
     starts = random_starts(problem, 20, np.random.default_rng(20260101))
     solution = solve(problem, initial=starts, form=form)
     best = min(solution.totals)
-    assert solution.status is Status.OPTIMAL
+    assert solution.status is Status.CONVERGED
     assert all(total <= best * (1 + 1e-6) for total in solution.totals)
     assert solution.starts_at_best == solution.starts == 20
     assert solution.check is not None
@@ -95,7 +95,7 @@ def test_one_rest_to_rest_segment_has_the_textbook_time(
         bound = limits.derivatives[:, order - 1]
         expected = float(((span * peak / bound) ** (1 / order)).max())
         solution = solve(Problem(q, limits, rest_to_rest(1, degree)))
-        assert solution.status is Status.OPTIMAL
+        assert solution.status is Status.CONVERGED
         assert solution.total_time == pytest.approx(expected, rel=1e-10)
 
 
@@ -155,7 +155,7 @@ def test_the_virtual_cubic_of_gasparetto_2008_beats_its_printed_total() -> None:
         scale * np.array([60, 66, 85, 70, 75, 70.0]),
     )
     solution = solve(Problem(q, limits, cubic_spline_virtual(4)))
-    assert solution.status is Status.OPTIMAL
+    assert solution.status is Status.CONVERGED
     assert solution.total_time < 9.1
     assert solution.starts_at_best == solution.starts
 
@@ -229,7 +229,7 @@ def test_relaxing_the_family_never_costs_time() -> None:
         problem.waypoints, problem.limits, piecewise((5, 5, 5), 2), problem.duration_lower
     )
     solution = solve(free)
-    assert solution.status is Status.OPTIMAL
+    assert solution.status is Status.CONVERGED
     assert solution.total_time < solve(problem).total_time
     judged = check(free, solution.durations, solution.nodal)
     assert judged.verdict is Verdict.PASS
@@ -245,7 +245,7 @@ def test_a_segment_without_motion_is_named_and_its_infimum_is_the_rest() -> None
     assert "segment 2" in solution.why
     assert solution.infimum == pytest.approx(sum(parts), rel=1e-9)
     bounded = solve(Problem(q, limits, rest_to_rest(3, 5), [0.0, 0.25, 0.0]))
-    assert bounded.status is Status.OPTIMAL
+    assert bounded.status is Status.CONVERGED
     assert bounded.total_time == pytest.approx(sum(parts) + 0.25, rel=1e-9)
 
 
@@ -296,7 +296,7 @@ def test_a_joint_that_must_not_move_and_does_not_is_no_obstacle() -> None:
     q = np.array([[0.3, 1.0], [0.9, 1.0], [0.5, 1.0], [1.4, 1.0]])
     alone = solve(Problem(q[:, :1], Limits(1.0, 3.0), three_five_three()))
     both = solve(Problem(q, Limits([1.0, 0.0], [3.0, 0.0]), three_five_three()))
-    assert both.status is Status.OPTIMAL
+    assert both.status is Status.CONVERGED
     assert both.total_time == pytest.approx(alone.total_time, rel=1e-9)
 
 
@@ -307,7 +307,7 @@ def test_duration_and_position_limits_are_kept_and_listed() -> None:
     assert any(a.joint is None and a.quantity == "duration" for a in longer.active)
     tight = Limits(6.0, 8.0, np.inf, -3.0, 0.9, joints=6)
     solution = solve(Problem(problem.waypoints, tight, problem.curve, 0.3))
-    assert solution.status is Status.OPTIMAL
+    assert solution.status is Status.CONVERGED
     assert solution.check.verdict is Verdict.PASS
     assert solution.total_time > solve(problem).total_time
 

@@ -102,7 +102,7 @@ def test_a_motion_that_starts_later_is_written_from_0():
 
 def test_a_solution_gives_its_motion():
     problem = Problem(WAYPOINTS, Limits(3.0, 9.0), three_five_three(), joints=NAMES)
-    answer = Solution(problem, Status.OPTIMAL, durations=H)
+    answer = Solution(problem, Status.CONVERGED, durations=H)
     np.testing.assert_array_equal(answer.trajectory.breaks, motion().breaks)
     rows = answer.sample(0.05)
     assert rows.joints == NAMES
