@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from pathlib import Path
 from typing import Any
 
@@ -35,6 +36,12 @@ def _hole(folder: Path) -> Path:
     return path
 
 
+def _pipe(folder: Path) -> Path:
+    """Whoever opens it waits for somebody who writes."""
+    os.mkfifo(folder / "pipe")
+    return folder / "pipe"
+
+
 def _every_key() -> list[Forgery]:
     parts: tuple[str, ...] = ("", "question", "problem", "claim", "proof")
     found = []
@@ -61,6 +68,7 @@ FILES = [
             "file", lambda folder: "a\0b"),
     Forgery("reading._read: no regular file; name a certificate",
             "file", lambda folder: "/dev/zero"),
+    Forgery("reading._read: no regular file; name a certificate", "file", _pipe),
     Forgery(LARGE, "file", _hole),
     # Such a file says that its size is 0.
     Forgery(f"{LARGE} (2)", "file", lambda folder: "/proc/self/status",

@@ -148,7 +148,7 @@ FORGERIES = [
               {"proof.tree": words}) for words in ("a b", "aA.", "a?.", "#.", "a#-1.", ".1 2:-3.")),
     *(Forgery(_TREE + "malformed: the tree at character {end} (2)", "quintic-spline",
               {"proof.tree": words})
-      for words in ("#1()", "#1(2", ".12", ".12  3", ".1 2:", ".1 2.5 ", ".\u0661 2",
+      for words in ("#1()", "#1(2", ".12", ".12  3", ".1 2:", ".1 2.5 ", ".1.5 2", ".\u0661 2",
                     ".1 " + "9" * 17)),
     Forgery(_TREE + "the tree has too many nodes", "quintic-spline", {},
             {"quintic_tree.MOST_NODES": 3}),
