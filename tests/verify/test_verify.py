@@ -12,7 +12,6 @@ import numpy as np
 import pytest
 from support.alterations import Path_, changed, fields, get, put
 from support.certificate_kinds import KINDS, stated, text
-from trajgap.verify import Subject, verdict
 from trajgap.verify import verify_certificate as verify
 from trajgap.verify.curve import nonnegative
 from trajgap.verify.reading import Clock
@@ -35,12 +34,14 @@ def attack(base: dict[str, Any], optimum: float, path: Path_, rng: np.random.Gen
     assert verdict.altered
     assert str(verdict).startswith("altered, still proves")
     assert verdict.lower is not None
+    kind = KINDS[base["proof"]["kind"]]
     if data["problem"] != base["problem"]:
-        optimum = KINDS[base["proof"]["kind"]].optimum(stated(data))
+        optimum = kind.optimum(stated(data))
     assert float(verdict.lower) <= optimum * (1 + 1e-9), path
     assert not verdict.infeasible
     if verdict.upper is not None:
         assert verdict.lower <= verdict.upper, path
+        assert not kind.exact or float(verdict.upper) >= optimum * (1 - 1e-9), path
     return "still proves"
 
 
@@ -57,10 +58,7 @@ def mutate(kind: str, per_field: int, seed: int) -> Counter[str]:
 
 
 def test_every_kind_of_proof_is_attacked() -> None:
-    # Proofs about any curve are attacked in test_forged_any_curve.py, trees of steps in
-    # test_cubic_attacks.py.
-    declared = {k for k in PROOFS if verdict._proof_kind(k).subject is Subject.DECLARED}
-    assert {*KINDS, "cubic"} == declared
+    assert set(KINDS) == set(PROOFS)
 
 
 SIBLING = "four-three-four"
@@ -79,10 +77,11 @@ def test_no_mutation_proves_a_false_statement(kind: str) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS)
-def test_a_thousand_mutations_of_each_field_prove_nothing_false(kind: str) -> None:
-    outcomes = mutate(kind, 1000, 11)
-    assert outcomes["refused"] > 5000
-    assert outcomes["still proves"] > 500
+def test_many_mutations_of_each_field_prove_nothing_false(kind: str) -> None:
+    many = KINDS[kind].many
+    outcomes = mutate(kind, many, 11)
+    assert outcomes["refused"] > 5 * many
+    assert outcomes["still proves"] > many / 2
 
 
 def positive(poly: list[Fraction], high: Fraction) -> bool:
