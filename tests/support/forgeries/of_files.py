@@ -188,6 +188,8 @@ STRICT = [
             {"problem.limits.0.0": ["1", "2"]}),
     Forgery("problem._pair: an upper limit is negative", "by hand",
             {"problem.limits.0.0": ["-2", "-1"]}),
+    Forgery("problem._pair: an upper limit is negative", "by hand",
+            {"problem.limits.0.0": [None, "-1"]}),
     Forgery("problem._declaration: malformed: prescribed: a derivative occurs twice",
             "by hand", {"problem.prescribed.0": [[1, "0"], [1, "0"]]}),
     Forgery("problem._declaration: malformed: virtual: a break occurs twice",

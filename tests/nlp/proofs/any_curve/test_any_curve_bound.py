@@ -284,7 +284,7 @@ NO_VALUE = [
         "a way-point lies outside",
     ),
     # It would have to go out and come back.
-    (TURNING, "nothing moves, but the two end velocities differ"),
+    (TURNING, "nothing moves between the way-points, but the two end velocities differ"),
     (
         spline_problem([0.0, 1.0, 0.5], 2.0, 8.0, duration_upper=0.45),
         "segment 1 cannot be done within its upper bound",

@@ -191,16 +191,6 @@ def test_a_stopped_run_has_a_proof_and_goes_on() -> None:
         certify(problem, resume=state)
 
 
-def test_ctrl_c_keeps_what_is_proved() -> None:
-    def stop(_: Progress) -> None:
-        raise KeyboardInterrupt
-
-    problem = printed("puma560-mnam-pso-353", "six-joints", "durations-positive")
-    found = certify_any(problem, report=stop)
-    assert found.outcome is Outcome.INTERVAL
-    proved(found)
-
-
 def detour() -> Problem:
     """One box does not settle it."""
     q = np.random.default_rng(5).normal(0.0, 1.0, (4, 2)).round(2)

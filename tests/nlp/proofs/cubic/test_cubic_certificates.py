@@ -8,8 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from support.cubic_problems import NATURAL, base, base_problem, both, dense_best
-from support.intervals import judged
+from support.cubic_problems import NATURAL, base, base_problem, both, random_problem
 from trajgap.nlp.proofs.certifiers import certify
 from trajgap.nlp.proofs.cubic.certifier import CUBIC
 from trajgap.nlp.proofs.cubic.proof import Target, least
@@ -21,11 +20,9 @@ from trajgap.nlp.proofs.document import certificate, problem_document
 from trajgap.nlp.proofs.exact import exact_problem
 from trajgap.nlp.proofs.outcome import Certified, Outcome, Request
 from trajgap.problem import (
-    Interpolant,
     Limits,
     Problem,
     cubic_spline,
-    cubic_spline_virtual,
     evaluate,
     fit,
 )
@@ -34,53 +31,6 @@ from trajgap.verify import verify_certificate as verify
 from trajgap.verify.cubic.box import Box
 from trajgap.verify.cubic.system import Cubic
 from trajgap.verify.reading import Clock
-
-
-def random_curve(rng: np.random.Generator) -> Interpolant:
-    kind = int(rng.integers(0, 4))
-    if kind == 3:
-        return cubic_spline_virtual(3)
-    count = int(rng.integers(2, 4))
-    curve = cubic_spline(count, NATURAL if kind == 1 else ((1, 0.0),))
-    if kind < 2:
-        return curve
-    ends = (curve.prescribed[0], *curve.prescribed[1:-1], NATURAL)
-    return Interpolant(curve.degrees, curve.continuity, ends, name="clamped, then natural")
-
-
-def random_problem(seed: int) -> Problem:
-    """Small problem with unequal joints; every kind of limit, bound and end turns up."""
-    rng = np.random.default_rng(seed)
-    curve, joints = random_curve(rng), int(rng.integers(1, 3))
-    waypoints = curve.segments + 1 - len(curve.virtual)
-    q = rng.normal(0.3, 1.0, (waypoints, joints))
-    scale = rng.uniform(0.3, 3.0, (3, joints))
-    some = rng.random(3) < 0.6
-    some[0] |= not some.any() or curve.prescribed[0] == NATURAL
-    v, a, j = (scale[i] if some[i] else np.full(joints, np.inf) for i in range(3))
-    lower = rng.uniform(0.1, 1.0, curve.segments) if rng.random() < 0.4 else 0.0
-    upper = rng.uniform(4.0, 9.0, curve.segments) if rng.random() < 0.3 else np.inf
-    return Problem(q, Limits(v, a, j), curve, lower, upper)
-
-
-def attack(seed: int, gap: float = 0.1, seconds: float = 2.0) -> Outcome:
-    problem = random_problem(seed)
-    found = certify(problem, gap=gap, seconds=seconds)
-    return judged(problem, found, dense_best(problem))
-
-
-@pytest.mark.parametrize("seed", range(2))
-def test_dense_search_never_leaves_the_interval(seed: int) -> None:
-    attack(seed)
-
-
-@pytest.mark.slow
-def test_dense_search_never_leaves_the_interval_of_two_hundred_problems() -> None:
-    outcomes = [attack(seed, 0.05, 20.0) for seed in range(2, 204)]
-    # Without limits of acceleration some take longer; all of them are proved to hold.
-    decided = outcomes.count(Outcome.CERTIFIED) + outcomes.count(Outcome.INFEASIBLE)
-    assert decided >= 150
-
 
 # --- closed forms and identities ------------------------------------------------------------------
 

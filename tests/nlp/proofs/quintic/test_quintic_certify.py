@@ -17,8 +17,6 @@ from scipy.interpolate import make_interp_spline
 from scipy.optimize import minimize
 from support.checkout import ROOT
 from support.unjudged import unjudged
-from support.unlucky import answering
-from trajgap.nlp import solve
 from trajgap.nlp.proofs.certifiers import certify, covered
 from trajgap.nlp.proofs.document import certificate
 from trajgap.nlp.proofs.exact import exact_problem
@@ -39,31 +37,6 @@ from trajgap.verify.reading import Clock
 
 module = import_module("trajgap.nlp.proofs.quintic.certifier")
 ENDS = [(1, 0.0), (2, 0.0)]
-
-
-def random_problem(rng: np.random.Generator) -> Problem:
-    """Few segments and joints; some limits absent, some durations bounded from below."""
-    n, joints = int(rng.integers(2, 4)), int(rng.integers(1, 3))
-    v, a, j = np.exp(rng.uniform(-0.7, 0.7, (3, joints))) * np.array([[1.0], [2.0], [12.0]])
-    j = np.where(rng.random(joints) < 0.7, np.inf, j)
-    v = np.where(rng.random(joints) < 0.2, np.inf, v)
-    shortest = np.where(rng.random(n) < 0.2, 0.8, 0.0)
-    waypoints = rng.uniform(-1.5, 1.5, (n + 1, joints))
-    return Problem(waypoints, Limits(v, a, j), quintic_spline(n), shortest)
-
-
-def best_found(problem: Problem, rng: np.random.Generator, count: int = 4000) -> float:
-    """Smallest total over random directions, gathered around the best again and again."""
-    n = problem.segments
-    shares, spread = rng.dirichlet(np.ones(n), count), 1.0
-    for _ in range(5):
-        stretch = evaluate(problem, shares).stretch
-        stretch = np.maximum(stretch, (problem.duration_lower / shares).max(axis=1))
-        totals = stretch * shares.sum(axis=1)
-        best, spread = int(totals.argmin()), 0.3 * spread
-        least, top = float(totals[best]), shares[best]
-        shares = np.vstack([top, top * np.exp(spread * rng.standard_normal((count, n)))])
-    return least
 
 
 def row_value(
@@ -153,32 +126,6 @@ def test_a_window_never_excludes_a_feasible_motion(limited: tuple[float, float])
         assert excluded > 0
 
 
-def attacked(seeds: range, gap: float) -> None:
-    narrow = 0
-    for seed in seeds:
-        rng = np.random.default_rng(seed)
-        problem = random_problem(rng)
-        found = certify(problem, gap=gap, seconds=600.0)
-        assert found.upper is not None
-        best = best_found(problem, rng)
-        assert float(found.lower) <= best * (1 + 1e-12), seed
-        assert float(found.upper) <= best * (1 + 2 * gap), seed
-        narrow += found.outcome is Outcome.CERTIFIED
-        verdict = verify(json.loads(json.dumps(certificate(found))))
-        assert verdict.proves, (seed, verdict)
-        assert verdict.lower == found.lower
-    assert narrow == len(seeds)
-
-
-def test_dense_search_stays_within_the_interval() -> None:
-    attacked(range(6), 0.03)
-
-
-@pytest.mark.slow
-def test_dense_search_stays_within_two_hundred_intervals() -> None:
-    attacked(range(100, 300), 0.005)
-
-
 @pytest.mark.slow
 def test_a_row_of_the_docs_is_proved_again() -> None:
     page = (ROOT / "docs" / "explanation" / "certificates-quintic.md").read_text("utf-8")
@@ -222,16 +169,6 @@ def test_limits_falsified_on_purpose_prove_too_much_and_are_refused(
     assert "not proved" in verdict.reason
 
 
-def test_an_answer_that_is_too_long_is_never_certified(monkeypatch: pytest.MonkeyPatch) -> None:
-    best = solve(small(), seed=0).durations
-    assert best is not None
-    long = tuple(Fraction(float(h)) for h in 1.05 * best * np.array([1.2, 0.9, 1.1]))
-    answering(monkeypatch, lambda call, initial: long if initial is None else True)
-    found = certify(small(), gap=0.01)
-    assert found.outcome is Outcome.CERTIFIED
-    assert float(found.upper or 0) == pytest.approx(best.sum(), rel=1e-6)
-
-
 def stopped(after: int) -> Certified:
     """A run that is interrupted at a certain report."""
     count = 0
@@ -243,39 +180,6 @@ def stopped(after: int) -> Certified:
             raise KeyboardInterrupt
 
     return certify(small(), gap=1e-3, report=report)
-
-
-def test_a_stopped_run_keeps_what_it_proved_and_goes_on() -> None:
-    found = stopped(3)
-    assert found.outcome is Outcome.INTERVAL
-    assert found.upper is not None
-    assert 0 < found.lower < found.upper
-    verdict = verify(json.loads(json.dumps(certificate(found))))
-    assert verdict.proves
-    state = json.loads(json.dumps(state_document(found)))
-    waited = certify(small(), gap=1e-3, seconds=0.0, resume=state)
-    assert waited.lower == found.lower
-    assert verify(certificate(waited)).proves
-    finished = certify(small(), gap=1e-3, resume=state)
-    assert finished.outcome is Outcome.CERTIFIED
-    assert finished.gap <= 1e-3
-
-
-@pytest.mark.parametrize(
-    ("alter", "match"),
-    [
-        (lambda s: s["proof"].update(total=str(Fraction(s["proof"]["total"]) * 2)), "not proved"),
-        (lambda s: s["proof"].update(tree=[["."]]), "not proved"),
-        (lambda s: s["proof"].update(kind="three-piece"), "not proved"),
-        (lambda s: s["claim"].update(durations=["1", "0.1", "1"]), "exceeds its limit"),
-        (lambda s: s.pop("proof"), "missing"),
-    ],
-)
-def test_an_altered_state_is_refused(alter: Callable[[Any], Any], match: str) -> None:
-    state = json.loads(json.dumps(state_document(stopped(3))))
-    alter(state)
-    with pytest.raises(TrajgapError, match=match):
-        certify(small(), resume=state)
 
 
 def test_a_proof_that_contradicts_the_answer_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:

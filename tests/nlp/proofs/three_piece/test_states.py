@@ -27,27 +27,6 @@ from trajgap.verify import verify_certificate as verify
 module = import_module("trajgap.nlp.proofs.three_piece.search")
 
 
-def test_a_stopped_run_goes_on_where_it_stopped(monkeypatch: pytest.MonkeyPatch) -> None:
-    exact = COVERED_PROBLEMS["puma560-mnam-pso-353.six-joints.durations-positive.joint-1"]
-
-    def interrupt(progress: Progress) -> None:
-        if progress.nodes > 150 and progress.open_boxes > 0:
-            raise KeyboardInterrupt
-
-    monkeypatch.setattr(module, "_BATCH", 16)
-    first = certify(exact, report=interrupt)
-    assert first.outcome is Outcome.INTERVAL
-    assert first.proposals is not None
-    assert first.open_boxes > 0
-    assert first.lower > 0
-    assert 1e-6 < first.gap < 1
-    assert verify(certificate(first)).proves
-    second = certify(exact, resume=first)
-    assert second.outcome is Outcome.CERTIFIED
-    assert second.nodes < 400
-    assert verify(certificate(second)).proves
-
-
 def stopped_at(name: str, monkeypatch: pytest.MonkeyPatch) -> Certified:
     """A run that was stopped with a proved lower bound and with open boxes."""
 
@@ -182,24 +161,3 @@ def test_what_is_no_state_is_refused() -> None:
     for other in (finished, certificate(finished), {}, {"format": "trajgap-state-1"}):
         with pytest.raises(TrajgapError, match="resume: no trajgap-state-2"):
             certify(exact, resume=other)
-
-
-def test_a_proof_that_is_not_one_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    name = "irb460-pso-353.limit-80.waypoints-rad"
-    found = stopped_at(name, monkeypatch)
-    state = state_of(found)
-    total = state["proof"]["total"]
-    state["proof"]["total"] = str(found.upper)
-    with pytest.raises(TrajgapError, match=r"not proved .leaf at node"):
-        certify(COVERED_PROBLEMS[name], resume=state)
-    state["proof"]["total"] = total
-    state["proof"]["tree"][-1] = ["?"]
-    with pytest.raises(TrajgapError, match=r"not proved .the tree leaves a part open"):
-        certify(COVERED_PROBLEMS[name], resume=state)
-
-
-def test_a_state_is_proved_like_a_certificate(monkeypatch: pytest.MonkeyPatch) -> None:
-    found = stopped_at("irb460-pso-353.limit-80.waypoints-rad", monkeypatch)
-    verdict = verify(state_of(found))
-    assert str(verdict).startswith("proves: ")
-    assert (verdict.lower, verdict.upper) == (found.lower, found.upper)
