@@ -9,8 +9,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 from numpy.typing import NDArray
 from scipy.optimize import linprog
 from support.any_curve_proofs import certify_any, interval, proved
@@ -19,7 +17,7 @@ from support.joint_splines import spline_problem
 from trajgap.nlp.proofs import evidence
 from trajgap.nlp.proofs.any_curve.estimate import estimate_any_curve
 from trajgap.nlp.proofs.any_curve.exact import missing, question
-from trajgap.nlp.proofs.any_curve.reach import furthest, reachable
+from trajgap.nlp.proofs.any_curve.reach import reachable
 from trajgap.nlp.proofs.any_curve.rows import BRAKE, REACH, UNIT, ReachRow, exact_row
 from trajgap.nlp.proofs.document import certificate, shipped_folder
 from trajgap.nlp.proofs.evidence import printed_problem_or_none
@@ -35,6 +33,7 @@ from trajgap.problem import (
 )
 from trajgap.verify import Subject
 from trajgap.verify import verify_certificate as verify
+from trajgap.verify.any_curve import _Row
 
 Array = NDArray[np.float64]
 
@@ -222,38 +221,19 @@ def test_more_joints_or_tighter_limits_never_lower_the_optimum() -> None:
 # --- rows -----------------------------------------------------------------------------------------
 
 
-@settings(max_examples=200, deadline=None)
-@given(
-    st.tuples(*[st.floats(-1, 1)] * 2),
-    st.floats(0.02, 6),
-    st.floats(0, 1),
-    st.tuples(*[st.floats(-3, 3)] * 2),
-    st.tuples(st.floats(0.01, 1), st.floats(1, 50), st.floats(0, 50)),
-    st.sampled_from([REACH, BRAKE]),
-)
-def test_rows_hold_for_every_motion(
-    ends: tuple[float, float],
-    h: float,
-    mix: float,
-    slopes: tuple[float, float],
-    others: tuple[float, float, float],
-    kind: int,
-) -> None:
-    velocity, acceleration = 1.0, 1.5
-    v0, v1 = ends
-    high = furthest(*map(np.asarray, (v0, v1, h, velocity, acceleration)))
-    if not np.isfinite(high):
-        return
-    low = -furthest(*map(np.asarray, (-v0, -v1, h, velocity, acceleration)))
-    d = float(low + mix * (high - low))
-    sign = 1 if d >= 0 else -1
-    asked = question(exact_problem(spline_problem([0.0, d, 1.0], velocity, acceleration)))
-    box = ((Fraction(h * others[0]), Fraction(h * others[1])),) * 2
-    a, b = (round(s * UNIT) for s in slopes)
-    row = ReachRow(kind, 0, 0, sign, a, b, round(others[2] * UNIT))
-    exact = exact_row(asked, row, box, Fraction(velocity))
-    left = exact.time * Fraction(h) + exact.start * Fraction(v0) + exact.end * Fraction(v1)
-    assert left - exact.right >= -1e-9 * (1 + abs(exact.right))
+@pytest.mark.parametrize("seed", range(40))
+def test_rows_of_search_and_verifier_are_the_same(seed: int) -> None:
+    """Which hold for every motion, as tests/verify asserts."""
+    rng = np.random.default_rng(seed)
+    step, v, a = (Fraction(float(x)) for x in rng.uniform([-2.0, 0.3, 0.3], [2.0, 3.0, 3.0]))
+    asked = question(exact_problem(spline_problem([0.0, float(step), 1.0], float(v), float(a))))
+    box = ((Fraction(float(rng.uniform(0.1, 1.0))), Fraction(float(rng.uniform(1.0, 3.0)))),) * 2
+    sign = 1 if step >= 0 else -1
+    numbers = [round(float(x) * UNIT) for x in rng.uniform([-3.0, -3.0, 0.0], [3.0, 3.0, 50.0])]
+    for kind, word in ((REACH, "reach"), (BRAKE, "brake")):
+        mine = exact_row(asked, ReachRow(kind, 0, 0, sign, *numbers), box, v)
+        theirs = _Row(word, 0, 0, sign, *numbers).terms(step, v, a, box[0])
+        assert (mine.time, mine.start, mine.end, mine.right) == theirs
 
 
 def shipped_bounds() -> dict[str, Path]:

@@ -21,7 +21,7 @@ from trajgap.nlp.proofs.document import certificate, problem_document, shipped, 
 from trajgap.nlp.proofs.exact import decimal, exact_problem
 from trajgap.nlp.proofs.outcome import Outcome
 from trajgap.nlp.proofs.three_piece.boxes import Boxes
-from trajgap.nlp.proofs.three_piece.rows import PLACES, PieceRow, Prover, exact_row
+from trajgap.nlp.proofs.three_piece.rows import PieceRow, Prover
 from trajgap.problem import (
     Limits,
     Problem,
@@ -110,17 +110,6 @@ def test_no_time_gives_no_lower_bound() -> None:
         certificate(found)
 
 
-def test_velocity_limits_alone_scale_the_optimum() -> None:
-    # With velocity limits only, T·V is constant: 80 against 110 °/s.
-    slow, fast = (
-        shipped(COVERED_PROBLEMS[f"irb460-pso-353.limit-{v}.waypoints-rad"]) for v in (80, 110)
-    )
-    assert slow is not None
-    assert fast is not None
-    product = [Fraction(x["claim"]["upper"]) * v for x, v in ((slow, 80), (fast, 110))]
-    assert float(product[0]) == pytest.approx(float(product[1]), rel=1e-9)
-
-
 @pytest.mark.parametrize("degree", [3, 5, 7, 9])
 def test_rest_to_rest_is_certified_in_closed_form(degree: int) -> None:
     q = np.array([[0.3, -0.2], [1.4, 0.1], [1.4, 2.3], [0.9, 2.2]])
@@ -152,26 +141,6 @@ def test_what_is_not_covered_is_said() -> None:
         certify(Problem(q, Limits(1.0), uniform_cubic_b_spline(4, "timed")))
     with pytest.raises(TrajgapError, match="nothing limits"):
         certify(Problem(q, Limits(), three_five_three()))
-
-
-def test_rows_are_the_limits_of_the_curve() -> None:
-    # Second route: the row's sign against the curve's derivative over its limit, for many points.
-    exact = COVERED_PROBLEMS["puma560-mnam-pso-353.six-joints.durations-positive"]
-    q = np.array([[float(x) for x in row] for row in exact.waypoints])
-    rng = np.random.default_rng(5)
-    for _ in range(20):
-        h = rng.uniform(0.2, 1.5, 3)
-        curve = fit(exact.curve, q, h)
-        joint, order = int(rng.integers(0, 6)), int(rng.integers(1, 3))
-        place, sign = int(rng.integers(0, PLACES + 1)), int(rng.choice([-1, 1]))
-        total = Fraction(float(h.sum()))
-        poly = exact_row(exact, PieceRow("place", joint, order, sign, place), total)
-        a, b = h[0] / (h[0] + h[1]), h[2] / (h[1] + h[2])
-        powers = np.arange(len(poly))
-        value = float((a**powers) @ poly.astype(float) @ (b**powers))
-        ratio = sign * curve(h[0] + h[1] * place / PLACES, order)[joint] / [6.0, 8.0][order - 1]
-        share = (a * b) ** 2 * ((1 - a) * (1 - b)) ** order
-        assert value == pytest.approx((ratio - 1.0) * share, abs=1e-12)
 
 
 def test_exact_coefficients_agree_with_the_fit() -> None:

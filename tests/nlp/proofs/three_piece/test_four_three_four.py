@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import math
 from dataclasses import replace
 from fractions import Fraction
 from importlib import import_module
@@ -12,13 +11,12 @@ import numpy as np
 import pytest
 from support.checkout import ROOT
 from support.three_pieces import dense_best
-from trajgap.nlp.proofs.answer import exact_coefficients
 from trajgap.nlp.proofs.certifiers import certify, covered
 from trajgap.nlp.proofs.document import certificate
 from trajgap.nlp.proofs.exact import exact_problem
 from trajgap.nlp.proofs.outcome import Outcome
 from trajgap.nlp.proofs.three_piece.ratios import SHAPES, ThreePieces, shape_of
-from trajgap.nlp.proofs.three_piece.rows import PLACES, STRICT, PieceRow, exact_row
+from trajgap.nlp.proofs.three_piece.rows import PieceRow, exact_row
 from trajgap.problem import (
     Limits,
     Problem,
@@ -41,41 +39,6 @@ CURVE = piecewise((4, 3, 4))
 def fixed(joints: int = 2) -> Problem:
     q = np.array([[0.25, -0.5], [1.0, 0.125], [-0.375, 0.75], [0.5, -1.0]])[:, :joints]
     return Problem(q, Limits(1.0, 2.0, 8.0), CURVE)
-
-
-def rational(rng: np.random.Generator) -> Fraction:
-    return Fraction(int(rng.integers(1, 60)), int(rng.integers(1, 60)))
-
-
-def test_rows_are_the_exact_spline() -> None:
-    # Second route: the 14 conditions, solved by elimination for each choice of durations.
-    limits = Limits(2.0, 3.0, 5.0, -9.0, 7.0)
-    exact = exact_problem(replace(fixed(), limits=limits))
-    rng = np.random.default_rng(1)
-    kinds = {"place": 1, "place-first": 0, "place-last": 2}
-    for _ in range(6):
-        h = [rational(rng) for _ in range(3)]
-        curve = exact_coefficients(CURVE, exact.waypoints, h)
-        assert curve is not None
-        a, b = h[0] / (h[0] + h[1]), h[2] / (h[1] + h[2])
-        x, y = h[1] / h[0], h[1] / h[2]
-        shares = (a * (1 - b), (1 - a) * (1 - b), b * (1 - a))
-        for (kind, k), order, sign in itertools.product(kinds.items(), range(4), (1, -1)):
-            place, joint = int(rng.integers(0, PLACES + 1)), int(rng.integers(0, 2))
-            poly = exact_row(exact, PieceRow(kind, joint, order, sign, place), sum(h, Fraction(0)))
-            value = sum(c * a**i * b**j for (i, j), c in np.ndenumerate(poly))
-            derivative = [
-                math.perm(p, order) * c / h[k] ** order for p, c in enumerate(curve[joint][k])
-            ][order:]
-            s = Fraction(place, PLACES)
-            at = sign * sum((c * s**p for p, c in enumerate(derivative)), Fraction(0))
-            below = (a * b) ** 2 * (3 * x * y + 2 * x + 2 * y + 1) * (x, 1, y)[k]
-            if order == 0:
-                limit = (7 if sign > 0 else 9) + STRICT
-                assert value == (at - limit) * below
-            else:
-                ratio = at / Fraction((2, 3, 5)[order - 1])
-                assert value == (ratio - 1) * below * shares[k] ** order
 
 
 @pytest.mark.parametrize("shape", SHAPES, ids=lambda shape: shape.proof)
