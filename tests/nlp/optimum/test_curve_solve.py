@@ -9,9 +9,7 @@ import pytest
 from scipy.optimize import minimize
 from support.b_splines import ByScipy, clamped, uniform
 from trajgap.nlp import Status, kkt, random_starts, solve, solve_per_joint
-from trajgap.nlp.optimum.curve_formulation import build_curve, curve_structure
 from trajgap.problem import (
-    ClampedBSpline,
     Limits,
     Problem,
     TrajgapError,
@@ -133,18 +131,6 @@ def test_timed_optimum_agrees_with_a_search_that_shares_no_code() -> None:
     assert solution.total_time == pytest.approx(min(found), rel=2e-6)
 
 
-def test_totals_scale_with_time_and_not_with_mirrors_or_names() -> None:
-    problem, _ = uniform("timed", 32, count=4)
-    base = solve(problem, starts=2).total_time
-    slower = problem.limits.with_derivatives(problem.limits.derivatives / 1.7 ** np.arange(1, 4))
-    assert solve(replace(problem, limits=slower), starts=2).total_time == pytest.approx(
-        1.7 * base, rel=1e-9
-    )
-    for q in (3.0 - problem.waypoints, problem.waypoints[::-1]):
-        other = replace(problem, waypoints=q)
-        assert solve(other, starts=2).total_time == pytest.approx(base, rel=1e-9)
-
-
 @pytest.mark.parametrize(
     "kind",
     [
@@ -245,25 +231,6 @@ def test_each_joint_by_itself() -> None:
     np.testing.assert_allclose(answer.durations, longest)
 
 
-def test_a_build_prints_and_is_shared_by_problems_of_one_shape() -> None:
-    one, _ = uniform("timed", 1, count=4)
-    other, _ = uniform("timed", 2, count=4)
-    assert curve_structure(one) == curve_structure(other)
-    text = str(build_curve(curve_structure(one)))
-    assert "3 segment durations" in text
-    assert "time a B-spline too, 3 joint(s)" in text
-
-
 def test_kkt_residual_far_from_an_optimum_is_large() -> None:
     problem, h = uniform("timed", 36, count=4)
     assert kkt(problem, 3.0 * h).residual > 0.01
-
-
-def test_the_chord_of_all_joints_enters_the_solver_unscaled() -> None:
-    """Joints of very different size: the chord is that of the joint vector as it is."""
-    rng = np.random.default_rng(5)
-    q = np.cumsum(rng.uniform(0.5, 1.0, (5, 2)) * [1.0, 0.01], axis=0)
-    curve = ClampedBSpline(5, 5, "averaged-continued", "chord")
-    problem = Problem(q, Limits([2.0, 0.03], [5.0, 0.06]), curve)
-    solution = solve(problem, starts=2)
-    assert solution.status is Status.OPTIMAL

@@ -77,12 +77,9 @@ def test_dense_samples_of_another_library_agree() -> None:
 
 
 @EVERY
-def test_limits_of_other_units_of_time_scale_it(curve) -> None:
-    """T(cV, c²A, c³J) = T/c, and a bound on durations is in force where it asks for more."""
+def test_a_bound_on_a_duration_is_in_force_where_it_asks_for_more(curve) -> None:
     problem = Problem(Q, LIMITS, curve, ratios=RATIOS)
     own = shortest(problem)
-    quick = LIMITS.with_derivatives(LIMITS.derivatives * 1.3 ** np.array([1, 2, 3]))
-    assert shortest(replace(problem, limits=quick)) == pytest.approx(own / 1.3, rel=1e-9)
     held = replace(problem, duration_lower=[0.0, own, 0.0])
     assert shortest(held) == pytest.approx(own * RATIOS.sum() / 1.7, rel=1e-9)
 
@@ -101,26 +98,6 @@ def test_one_segment_has_one_ratio() -> None:
     fixed = shortest(replace(problem, ratios="equal"))
     assert fixed == pytest.approx(solve(problem).total_time, rel=1e-9)
     assert fixed == pytest.approx(shortest(replace(problem, ratios=[7.3])), rel=1e-12)
-
-
-@EVERY
-def test_joints_exchanged_and_time_reversed_change_nothing(curve) -> None:
-    uneven = LIMITS.with_sides([LIMITS.derivatives, 0.8 * LIMITS.derivatives])
-    problem = Problem(Q, uneven, curve, ratios=RATIOS)
-    own = shortest(problem)
-    exchanged = replace(
-        problem,
-        waypoints=Q[:, ::-1],
-        limits=uneven.with_sides(uneven.sides[:, ::-1]),
-    )
-    assert shortest(exchanged) == pytest.approx(own, rel=1e-12)
-    # Backwards in time velocities and jerks change their sides.
-    back = uneven.sides.copy()
-    back[:, :, [0, 2]] = back[::-1][:, :, [0, 2]]
-    reversed_ = replace(
-        problem, waypoints=Q[::-1], limits=uneven.with_sides(back), ratios=RATIOS[::-1]
-    )
-    assert shortest(reversed_) == pytest.approx(own, rel=BLURRED)
 
 
 def test_the_limit_that_asks_for_most_is_the_active_one() -> None:

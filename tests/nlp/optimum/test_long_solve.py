@@ -18,7 +18,6 @@ from trajgap.problem import (
     Interpolant,
     Limits,
     Problem,
-    TrajgapError,
     Verdict,
     check,
     cubic_spline,
@@ -99,13 +98,6 @@ def test_sensitivities_of_position_limits_are_differences_of_totals(
         assert sum(found) == pytest.approx(0.1 * (wider - answer.total_time) / step, rel=1e-2)
 
 
-def test_the_number_of_starts_is_one_or_more() -> None:
-    problem = problem_of(cubic_spline(9))
-    with pytest.raises(TrajgapError, match="starts: must be 1 or more, got 0"):
-        solve(problem, starts=0)
-    assert solve(problem, starts=1).status is Status.OPTIMAL
-
-
 def one_joint(curve: Interpolant, seed: int) -> Problem:
     """Way-points of a random walk of uneven limits: here and there it runs at its velocity limit.
 
@@ -148,16 +140,6 @@ def test_the_tracked_formulation_ends_at_the_same_total(name: str, seed: int) ->
     problem = problem_of(CURVES[name], seed)
     tracked = solve(problem, form=Form.LIFTED)
     assert solve(problem).total_time == pytest.approx(tracked.total_time, rel=1e-8)
-
-
-def test_time_scaling_and_mirror() -> None:
-    problem = problem_of(CURVES["quintic"])
-    total = solve(problem).total_time
-    slower = problem.limits.with_derivatives(problem.limits.derivatives / 3.0 ** np.arange(1, 4))
-    scaled = solve(Problem(problem.waypoints, slower, problem.curve)).total_time
-    assert scaled == pytest.approx(3.0 * total, rel=1e-8)
-    mirrored = solve(Problem(1.0 - problem.waypoints[::-1], problem.limits, problem.curve))
-    assert mirrored.total_time == pytest.approx(total, rel=1e-8)
 
 
 def test_bounds_on_durations_and_positions_are_kept_and_priced() -> None:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
 from dataclasses import replace
 
 import numpy as np
@@ -116,23 +114,3 @@ def test_what_does_not_settle_goes_to_ipopt(monkeypatch: pytest.MonkeyPatch) -> 
 def test_a_curve_with_a_moving_end_is_left_to_ipopt() -> None:
     problem = Problem([[0.0], [1.0]], Limits(2.0), piecewise((3,), ends=((1, 0.5),)))
     assert not applies([problem])
-
-
-def test_the_ranges_of_small_problems_need_neither_casadi_nor_pictures() -> None:
-    said = subprocess.run(
-        [
-            sys.executable,
-            "-c",
-            "import sys\n"
-            "from trajgap.nlp import solve_per_joint\n"
-            "from trajgap.problem import Limits, Problem, three_five_three\n"
-            "q = [[0, 1], [1, 0.3], [0.5, -0.4], [2, 0]]\n"
-            "answer = solve_per_joint(Problem(q, Limits(1, 2), three_five_three()))\n"
-            "assert answer.ranges, answer\n"
-            "print(*sorted({'casadi', 'matplotlib', 'toppra'} & set(sys.modules)))",
-        ],
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    assert said.stdout.strip() == ""

@@ -170,39 +170,6 @@ def test_most_small_problems_settle() -> None:
     assert sum(settled) >= 17
 
 
-def test_the_answer_follows_the_units_and_the_order_of_joints() -> None:
-    problem = small_problem("C4 quintic", 1)
-    joints = np.roll(np.arange(len(problem.joints)), 1)
-    pace, unit = 37.0, 180 / np.pi
-    rates = problem.limits.derivatives[joints] * unit * pace ** np.arange(1.0, 4.0)
-    limits = replace(
-        problem.limits.with_derivatives(rates),
-        position_lower=problem.limits.position_lower[joints] * unit,
-        position_upper=problem.limits.position_upper[joints] * unit,
-    )
-    other = replace(
-        problem,
-        waypoints=problem.waypoints[:, joints] * unit,
-        limits=limits,
-        duration_lower=problem.duration_lower / pace,
-    )
-    one, two = _quick(problem), _quick(other)
-    assert one.durations is not None
-    assert two.durations == pytest.approx(one.durations / pace, rel=1e-7)
-
-
-@pytest.mark.parametrize("family", ["3-5-3", "4-3-4", "C2 cubic"])
-def test_a_motion_backwards_takes_as_long(family: str) -> None:
-    problem = small_problem(family, 2)
-    mirrored = replace(
-        problem,
-        waypoints=problem.waypoints[::-1],
-        duration_lower=problem.duration_lower[::-1],
-        duration_upper=problem.duration_upper[::-1],
-    )
-    assert _quick(mirrored).total_time == pytest.approx(_quick(problem).total_time, rel=1e-9)
-
-
 def test_sequential_least_squares_find_nothing_shorter() -> None:
     problem = small_problem("3-5-3", 6)
     assert not problem.limits.limits_position
@@ -292,20 +259,18 @@ def test_a_kernel_is_compiled_once_that_is_worth_the_wait() -> None:
     assert calls == [2.0]
 
 
-def test_a_small_problem_needs_neither_casadi_nor_pictures() -> None:
-    said = subprocess.run(
-        [
-            sys.executable,
-            "-c",
-            "import sys\n"
-            "from trajgap.nlp import solve\n"
-            "from trajgap.problem import Limits, Problem, three_five_three\n"
-            "answer = solve(Problem([[0], [1], [0.5], [2]], Limits(1, 2), three_five_three()))\n"
-            "assert answer.status == 'optimal', answer\n"
-            "print(*sorted({'casadi', 'matplotlib', 'toppra'} & set(sys.modules)))",
-        ],
-        capture_output=True,
-        text=True,
-        check=True,
-    )
+SMALL = """
+import sys
+from trajgap.nlp import solve, solve_per_joint
+from trajgap.problem import Limits, Problem, three_five_three
+problem = Problem([[0, 1], [1, 0.3], [0.5, -0.4], [2, 0]], Limits(1, 2), three_five_three())
+assert solve(problem).status == "optimal"
+assert solve_per_joint(problem).ranges
+print(*sorted({"casadi", "matplotlib", "toppra"} & set(sys.modules)))
+"""
+
+
+def test_a_small_problem_and_its_ranges_need_neither_casadi_nor_pictures() -> None:
+    command = [sys.executable, "-c", SMALL]
+    said = subprocess.run(command, capture_output=True, text=True, check=True)
     assert said.stdout.strip() == ""
