@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.util
 import sys
 from collections import Counter
 from pathlib import Path
@@ -11,8 +10,7 @@ from typing import Any
 
 import pytest
 from scipy.stats import binomtest
-
-BENCHMARKS = Path(__file__).parents[3] / "benchmarks"
+from support.benchmarks import loaded
 
 PRINTED = """6324: improvable, optimal, C2 cubic spline, gain 0.000935
 6950: wrong none found, none found, rest-to-rest polynomials of degree 5, gain 1
@@ -27,16 +25,6 @@ solve 441 s, brute force 710 s
 | fault | wrong none found | 1 | 0.1000% |
 | fault | answer does not pass | 1 | 0.1000% |
 """
-
-
-def loaded(name: str) -> ModuleType:
-    spec = importlib.util.spec_from_file_location(name, BENCHMARKS / f"{name}.py")
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[spec.name] = module  # dataclasses look their module up
-    spec.loader.exec_module(module)
-    return module
 
 
 @pytest.fixture

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import importlib.util
-import sys
 from dataclasses import replace
-from pathlib import Path
-from types import ModuleType
 
 import numpy as np
 import pytest
 from scipy.optimize import minimize
+from support.benchmarks import loaded
 from trajgap.compare import audit
 from trajgap.nlp import Solution, Status, solve, solve_per_joint
 from trajgap.nlp.optimum import feasibility, limit_rows
@@ -33,8 +30,6 @@ from trajgap.problem import (
     three_five_three,
     uniform_cubic_b_spline,
 )
-
-BENCHMARK = Path(__file__).parents[3] / "benchmarks/solver_errors.py"
 
 HEAD = """
 format = 1
@@ -362,25 +357,15 @@ def test_a_descent_that_stops_short_is_resumed_to_an_optimum() -> None:
     assert kkt(problem, ended.durations).residual < 1e-8
 
 
-def benchmark() -> ModuleType:
-    spec = importlib.util.spec_from_file_location("solver_errors", BENCHMARK)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[spec.name] = module  # dataclasses look their module up
-    spec.loader.exec_module(module)
-    return module
-
-
 @pytest.mark.parametrize("seed", [16, 39, 142, 221, pytest.param(309, marks=pytest.mark.slow)])
 def test_brute_force_improves_no_answer_and_contradicts_no_word(seed: int) -> None:
-    errors = benchmark()
+    errors = loaded("solver_errors")
     problem = errors.random_problem(np.random.default_rng(seed))
     assert errors.judged(solve(problem), errors.brute_force(problem, seed)) == ""
 
 
 def test_the_benchmark_sees_wrong_words_and_improvable_answers() -> None:
-    errors = benchmark()
+    errors = loaded("solver_errors")
     problem = two_joints()
     brute = errors.brute_force(problem, 0)
     good = solve(problem)

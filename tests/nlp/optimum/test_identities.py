@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from support.b_splines import uniform
+from support.long_problems import long_problem
 from support.small_problems import small_problem
 from support.uneven import CURVES as UNEVEN
 from support.uneven import uneven_problem
@@ -48,12 +49,6 @@ AT_RATIOS = {
     "stretched": uniform_cubic_b_spline(4, "stretched"),
     "timed": uniform_cubic_b_spline(4, "timed"),
 }
-
-
-def long_problem(curve: Interpolant) -> Problem:
-    count = len(curve.waypoint_breaks)
-    q = np.cumsum(np.random.default_rng(3).normal(size=(count, 2)) * [0.4, 0.9], axis=0) - 5.0
-    return Problem(q, Limits([1.5, 3.0], [6.0, 15.0], [np.inf, 90.0]), curve)
 
 
 PROBLEMS = {

@@ -6,6 +6,7 @@ from dataclasses import replace
 import casadi as ca
 import numpy as np
 import pytest
+from support.long_problems import LIMITS, long_curves, long_problem
 from trajgap.nlp import Status, solve
 from trajgap.nlp.optimum import long_search as long_search_module
 from trajgap.nlp.optimum import long_windows
@@ -19,31 +20,18 @@ from trajgap.problem import (
     Limits,
     Problem,
     check,
-    cubic_spline,
     cubic_spline_virtual,
     evaluate,
     fit,
-    piecewise,
-    quintic_spline,
 )
 from trajgap.problem.curves import Places, Trajectory
 
 SEGMENTS = 40
-CURVES = {
-    "cubic": cubic_spline(SEGMENTS),
-    "quintic": quintic_spline(SEGMENTS),
-    "virtual": cubic_spline_virtual(SEGMENTS - 1),
-    "degrees of two kinds": piecewise((4, *(3,) * (SEGMENTS - 2), 4), 2),
-    "ends apart": cubic_spline(SEGMENTS, ((1, (0.25, -0.4)),), ((1, (-0.1, 0.3)),)),
-}
+CURVES = long_curves(SEGMENTS)
 
 
-def problem_of(curve: Interpolant, **changes: object) -> Problem:
-    rng = np.random.default_rng(11)
-    count = len(curve.waypoint_breaks)
-    q = np.cumsum(rng.normal(size=(count, 2)) * [0.4, 0.9], axis=0) - 5.0
-    limits = Limits([1.5, 3.0], [6.0, 15.0], [np.inf, 90.0], -30.0, [20.0, np.inf])
-    return Problem(q, limits, curve, **changes)  # type: ignore[arg-type]
+def problem_of(curve: Interpolant) -> Problem:
+    return long_problem(curve, 11, LIMITS.with_positions(-30.0, [20.0, np.inf]))
 
 
 @pytest.fixture

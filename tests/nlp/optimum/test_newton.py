@@ -263,8 +263,9 @@ SMALL = """
 import sys
 from trajgap.nlp import solve, solve_per_joint
 from trajgap.problem import Limits, Problem, three_five_three
+one = Problem([[0], [1], [0.5], [2]], Limits(1, 2), three_five_three())
+assert solve(one).status == "optimal"
 problem = Problem([[0, 1], [1, 0.3], [0.5, -0.4], [2, 0]], Limits(1, 2), three_five_three())
-assert solve(problem).status == "optimal"
 assert solve_per_joint(problem).ranges
 print(*sorted({"casadi", "matplotlib", "toppra"} & set(sys.modules)))
 """

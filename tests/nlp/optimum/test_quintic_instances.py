@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import importlib.util
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from support.benchmarks import loaded
 from support.checkout import ROOT
 from trajgap.nlp import Status, random_starts, solve
 from trajgap.nlp.optimum.starts import SETTLED_SEGMENTS, equal_start, settled
@@ -21,23 +21,13 @@ from trajgap.problem import (
     quintic_spline,
 )
 
-
-def _instances() -> tuple[tuple[float, ...], list[Problem]]:
-    path = ROOT / "benchmarks" / "quintic_instances.py"
-    spec = importlib.util.spec_from_file_location("quintic_instances", path)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module.STEPS, module.instances()
-
-
-STEPS, INSTANCES = _instances()
+QUINTIC = loaded("quintic_instances")
+STEPS, INSTANCES = QUINTIC.STEPS, QUINTIC.instances()
 
 
 def test_twenty_problems_of_seven_segments_and_six_joints() -> None:
     assert len(INSTANCES) == 20
-    _, again = _instances()
+    again = QUINTIC.instances()
     assert len({p.name for p in INSTANCES}) == 20
     _, limits, _, _ = load_case("z1-woa-bspline").statement("b-spline", "v-deg-a-deg").data()
     for k, (problem, same) in enumerate(zip(INSTANCES, again, strict=True)):
