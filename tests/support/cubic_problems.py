@@ -20,7 +20,7 @@ from trajgap.problem import (
     cubic_spline_virtual,
     evaluate,
 )
-from trajgap.verify import read_problem
+from trajgap.verify import TICKS, read_problem
 from trajgap.verify.cubic.system import Cubic
 
 NATURAL = ((2, 0.0),)
@@ -84,9 +84,11 @@ def base() -> Certified:
     return certify(base_problem(), gap=0.02)
 
 
-def both(problem: Problem, cap: int) -> tuple[Prover, Cubic]:
+def both(problem: Problem, total: Fraction | None = None) -> tuple[Prover, Cubic]:
     """Solver and verifier for one problem, by their own routes."""
     exact = exact_problem(problem)
-    prover = Prover(cubic_system(exact, Fraction(11)), cap)
+    system = cubic_system(exact, Fraction(11) if total is None else total)
+    cap = 11 * TICKS if total is None else int(total / Fraction(2) ** system.second * TICKS)
+    prover = Prover(system, cap)
     proof = {"powers": list(prover.system.powers), "second": prover.system.second, "cap": cap}
     return prover, Cubic(read_problem(problem_document(exact)), proof)

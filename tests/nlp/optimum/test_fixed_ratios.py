@@ -100,23 +100,6 @@ def test_one_segment_has_one_ratio() -> None:
     assert fixed == pytest.approx(shortest(replace(problem, ratios=[7.3])), rel=1e-12)
 
 
-def test_the_limit_that_asks_for_most_is_the_active_one() -> None:
-    problem = Problem(Q, LIMITS, cubic_spline(3), ratios=RATIOS)
-    answer = solve(problem)
-    assert answer.kkt_residual is not None
-    assert answer.kkt_residual <= 1e-10
-    (only,) = answer.active
-    order = ("velocity", "acceleration", "jerk").index(only.quantity) + 1
-    # T = (p/limit)^(1/r), so that dT/T = −1/r of a share more of the limit.
-    assert only.multiplier == pytest.approx(answer.total_time / order, rel=1e-9)
-    j = problem.joints.index(str(only.joint))
-    eased = LIMITS.derivatives.copy()
-    eased[j, order - 1] *= 1.0001
-    other = replace(problem, limits=LIMITS.with_derivatives(eased))
-    change = (shortest(other) - answer.total_time) / 0.0001 * 0.1
-    assert change == pytest.approx(only.sensitivity, rel=1e-3)
-
-
 @pytest.mark.parametrize("ratios", ["equal", "chord", RATIOS])
 def test_joints_by_themselves_give_the_same_total(ratios) -> None:
     problem = Problem(Q, LIMITS, cubic_spline(3), coupling=Coupling.PER_JOINT, ratios=ratios)

@@ -169,3 +169,33 @@ def test_units_names_mirrors_and_the_way_back(name: str) -> None:
 def test_both_forms_find_the_same_optimum(name: str) -> None:
     one, two = (solve(PROBLEMS[name], form=form).total_time for form in Form)
     assert one == pytest.approx(two, rel=1e-8)
+
+
+OTHERS = ("moving cubic", "uneven quintic", "timed", "small 4-3-4", "long cubic", "cubic at ratios")
+
+
+@pytest.mark.parametrize("name", [*USUAL, *OTHERS])
+def test_sensitivities_are_the_differences_of_totals(name: str) -> None:
+    """All limits of rates grow by shares of their own, on both sides alike."""
+    problem = PROBLEMS[name]
+    found, given = solve(problem), problem.limits
+    share = np.random.default_rng(7).uniform(-1.0, 1.0, given.sides.shape[1:])
+    step, totals = 1e-5, []
+    for way in (step, -step):
+        limits = given.with_sides(given.sides * np.exp(way * share))
+        answer = solve(replace(problem, limits=limits), initial=found.durations)
+        totals.append(answer.total_time)
+    orders = ("velocity", "acceleration", "jerk")
+    predicted = sum(
+        a.multiplier * share[problem.joints.index(a.joint), orders.index(a.quantity)]
+        for a in found.active
+        if a.quantity in orders
+    )
+    assert predicted != 0.0
+    assert (totals[1] - totals[0]) / (2 * step) == pytest.approx(predicted, rel=1e-3, abs=1e-5)
+    assert all(a.multiplier > 0 for a in found.active)
+    assert all(a.sensitivity == pytest.approx(-0.1 * a.multiplier) for a in found.active)
+    if not given.limits_position and not any(a.quantity == "duration" for a in found.active):
+        # T(cV, c²A, c³J) = T/c.
+        weighted = sum((1 + orders.index(a.quantity)) * a.multiplier for a in found.active)
+        assert name == "moving cubic" or weighted == pytest.approx(found.total_time, rel=1e-7)

@@ -8,7 +8,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.optimize import minimize
 from support.small_problems import FAMILIES, small_problem
 from trajgap.nlp import Solution, Status, kkt, solve
 from trajgap.nlp.optimum import newton_curve, newton_kernel, newton_program, solver
@@ -131,34 +130,28 @@ def test_the_quadratic_program_is_that_of_non_negative_least_squares() -> None:
     assert unlike <= 2  # least squares give up a little earlier where rows contradict each other
 
 
+@pytest.mark.parametrize(
+    ("seeds", "least"),
+    [(range(2), 0), pytest.param(range(100, 150), 40, marks=pytest.mark.slow)],
+)
 @pytest.mark.parametrize("family", FAMILIES)
-def test_answers_are_those_of_the_tracked_nlp(family: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    for seed in range(2):
-        problem = small_problem(family, seed)
-        quick = settled_quickly(problem, 4, 0, FLOOR)
-        if quick is None:
-            continue
-        assert quick.kkt_residual is not None
-        assert quick.kkt_residual <= 1e-8
-        assert check(problem, quick.durations).verdict is Verdict.PASS
-        assert quick.total_time <= _tracked(problem, monkeypatch).total_time * (1 + TOTALS)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("family", FAMILIES)
-def test_answers_of_many_problems_agree(family: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_answers_are_those_of_the_tracked_nlp(
+    family: str, seeds: range, least: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
     settled = 0
-    for seed in range(100, 150):
+    for seed in seeds:
         problem = small_problem(family, seed)
         quick = settled_quickly(problem, 4, 0, FLOOR)
         if quick is None:
             continue
         settled += 1
+        assert quick.kkt_residual is not None
+        assert quick.kkt_residual <= 1e-8
+        assert check(problem, quick.durations).verdict is Verdict.PASS
         other = _tracked(problem, monkeypatch)
         assert quick.total_time <= other.best * (1 + TOTALS), seed
-        if other.status is Status.OPTIMAL:
-            assert quick.status is Status.OPTIMAL
-    assert settled >= 40
+        assert quick.status is Status.OPTIMAL or other.status is not Status.OPTIMAL
+    assert settled >= least
 
 
 def test_most_small_problems_settle() -> None:
@@ -168,24 +161,6 @@ def test_most_small_problems_settle() -> None:
         for seed in range(4)
     ]
     assert sum(settled) >= 17
-
-
-def test_sequential_least_squares_find_nothing_shorter() -> None:
-    problem = small_problem("3-5-3", 6)
-    assert not problem.limits.limits_position
-    answer = _quick(problem)
-    assert answer.durations is not None
-    ended = minimize(
-        lambda z: float(np.exp(z).sum()),
-        np.log(answer.durations) + np.array([0.2, -0.1, 0.15]),
-        method="SLSQP",
-        bounds=[(np.log(max(low, 1e-3)), None) for low in problem.duration_lower],
-        constraints={"type": "ineq", "fun": lambda z: 1.0 - check(problem, np.exp(z)).stretch},
-        options={"maxiter": 60, "ftol": 1e-10},
-    )
-    h = np.exp(ended.x)
-    shortest = h.sum() * max(1.0, check(problem, h).stretch)
-    assert answer.total_time * (1 - 1e-9) <= shortest <= answer.total_time * 1.05
 
 
 def test_the_published_optimum_is_found_from_every_start() -> None:

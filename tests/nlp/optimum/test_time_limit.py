@@ -40,7 +40,6 @@ from trajgap.problem import (
     Verdict,
     check,
     cubic_spline,
-    quintic_spline,
     three_five_three,
     uniform_cubic_b_spline,
 )
@@ -223,15 +222,6 @@ def test_the_windows_of_a_proof_look_at_the_clock() -> None:
     with pytest.raises(OutOfTime):
         windows.windows(steps, np.array([[1.0, 2.0, 9.0]] * 2), np.ones(3), clock=clock_)
     assert looks == 3
-    quintic = Problem(
-        np.vstack([np.zeros(2), np.cumsum(steps, axis=0)]),
-        Limits([1.0] * 2, [2.0] * 2),
-        quintic_spline(3),
-    )
-    found = certify(quintic, seconds=0.0)
-    mean = np.abs(steps).max(axis=1).sum()  # at 1 rad/s
-    assert found.nodes == 0
-    assert float(found.lower) == pytest.approx(mean, rel=1e-8)
 
 
 def test_a_formulation_that_is_kept_costs_no_second_solve_any_time() -> None:

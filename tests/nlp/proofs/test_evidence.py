@@ -15,8 +15,7 @@ from support.shipped_problems import COVERED_PROBLEMS
 from trajgap.compare.audits.rules.distances import judge_distances
 from trajgap.compare.audits.study import Study
 from trajgap.compare.audits.waterfall import waterfalls
-from trajgap.compare.documents import Gap, Reference, SolveDocument, Why, solve_result
-from trajgap.compare.gaps.optimality_gap import gap
+from trajgap.compare.documents import Gap, SolveDocument, Why, solve_result
 from trajgap.nlp import (
     Evidence,
     ExactProblem,
@@ -45,7 +44,6 @@ from trajgap.problem import (
     load_case,
     parse_case,
     rest_to_rest,
-    three_five_three,
 )
 from trajgap.verify import Subject
 
@@ -253,17 +251,6 @@ def test_the_weakest_word_stands_for_all() -> None:
     assert weakest([]) is N
 
 
-def test_a_gap_is_measured_against_the_interval() -> None:
-    certified = Reference(upper=2.0, lower=1.6)
-    found = gap((2.4, 3.2), certified)
-    assert found.lowest == pytest.approx(0.2)
-    assert found.highest == pytest.approx(1.0)
-    inside = gap(1.8, certified)
-    assert inside.lowest < 0 < inside.highest, "between the bounds is not below the optimum"
-    assert gap((1.4, 1.5), certified).highest < 0
-    assert gap(1.8, Reference(upper=2.0)).highest < 0
-
-
 def test_a_total_below_the_proved_bound_is_called_that(monkeypatch: pytest.MonkeyPatch) -> None:
     study = one_study()
     monkeypatch.setattr(Study, "claim_total", lambda *_: ("1.5 s", (1.4995, 1.5005)))
@@ -320,11 +307,6 @@ def test_a_bound_for_any_curve_may_round_above_the_answer_and_no_more(
 def test_what_is_proved_of_any_curve_is_called_certified_under_every_reading() -> None:
     for waterfall in waterfalls(Study(load_case(IRB), seeds=2)):
         assert waterfall.steps[-1].evidence is Evidence.CERTIFIED
-
-
-def test_only_a_proof_sets_a_lower_bound() -> None:
-    problem = Problem(np.array([[0.0], [1.0], [0.5], [1.5]]), Limits(1.0), three_five_three())
-    assert solve(problem).lower_bound is None
 
 
 def test_a_problem_that_no_certificate_can_state_is_not_certified() -> None:

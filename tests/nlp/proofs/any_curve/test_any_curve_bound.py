@@ -10,22 +10,18 @@ from support.any_curve_proofs import certify_any, interval
 from support.any_motions import PUMA_PROBLEM, verified
 from support.joint_splines import rest_to_rest_time, spline_problem
 from support.puma import PUMA
-from trajgap.nlp import Evidence, solve
+from trajgap.nlp import Evidence
 from trajgap.nlp.optimum import stopping_after
 from trajgap.nlp.proofs.any_curve import estimate
 from trajgap.nlp.proofs.any_curve.estimate import estimate_any_curve
 from trajgap.nlp.proofs.any_curve.reach import furthest, profile, reachable
-from trajgap.nlp.retiming.toppra_check import retime
 from trajgap.problem import (
-    Interpolant,
     Limits,
     Problem,
     TrajgapError,
     check,
     cubic_spline,
     cubic_spline_virtual,
-    fit,
-    piecewise,
     quintic_spline,
     rest_to_rest,
     three_five_three,
@@ -174,37 +170,6 @@ def test_reachable_displacements_have_a_curve(v0: float, v1: float, h: float, sh
 
 
 # --- beside splines -------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize(
-    "interpolant",
-    [
-        three_five_three(),
-        cubic_spline(3),
-        quintic_spline(3),
-        rest_to_rest(3, 3),
-        piecewise((4, 4, 4), 2),
-        piecewise((5, 5, 5), 2),
-        pytest.param(cubic_spline_virtual(4), marks=pytest.mark.slow),
-    ],
-    ids=lambda i: i.name,
-)
-def test_no_spline_is_faster(interpolant: Interpolant) -> None:
-    problem = replace(PUMA_PROBLEM, curve=interpolant, duration_lower=0.0, duration_upper=np.inf)
-    solution = solve(problem, starts=1)
-    assert solution.durations is not None
-    found = estimate_any_curve(problem, initial=solution.durations)
-    assert verified(problem, found) <= solution.total_time
-    assert found.starts == 7
-
-
-def test_no_retiming_is_faster() -> None:
-    h = np.array([0.9, 0.8, 0.9])
-    curve = fit(quintic_spline(3), PUMA, h * check(PUMA_PROBLEM, h).stretch)
-    retimed = retime(curve, PUMA_PROBLEM.limits)
-    assert retimed.extrapolated is not None
-    assert retimed.error is not None
-    assert estimate_any_curve(PUMA_PROBLEM).total_time <= retimed.extrapolated + retimed.error
 
 
 @pytest.mark.parametrize("seed", range(8))

@@ -3,21 +3,18 @@
 from __future__ import annotations
 
 import copy
-import json
 from functools import cache
 from typing import Any
 
 import numpy as np
 import pytest
 from support.any_curve_proofs import certify_any, proved
-from support.certificate_kinds import KINDS, text
 from trajgap.nlp.proofs.any_curve.estimate import estimate_any_curve
 from trajgap.nlp.proofs.certifiers import certify, covered
 from trajgap.nlp.proofs.document import certificate, sealed
 from trajgap.nlp.proofs.exact import exact_problem, printed_problem
 from trajgap.nlp.proofs.outcome import Certified, Outcome
 from trajgap.problem import Array, Limits, Problem, TrajgapError, cubic_spline, parse_case
-from trajgap.verify import Subject
 from trajgap.verify import verify_certificate as verify
 
 WAY = np.array([[0.25, -0.5], [1.25, -1.0], [0.5, -0.25]])
@@ -141,28 +138,6 @@ def test_the_bound_alone_proves_and_with_other_ends_only_what_is_true() -> None:
             assert float(verdict.lower or 0) <= min(shown * (1 + 1e-9), best_of_a_grid(*own))
     assert refused >= 3
     assert proves >= 3
-
-
-DECLARED = [kind for kind, one in KINDS.items() if one.subject is Subject.DECLARED]
-
-
-@pytest.mark.parametrize("kind", DECLARED)
-def test_no_proof_of_a_declared_curve_takes_ends_in_motion(kind: str) -> None:
-    data = json.loads(text(kind))
-    if "prescribed" not in data["problem"]:
-        assert kind == "stretched"
-        return
-    assert verify(data).subject is Subject.DECLARED
-    joints = len(data["problem"]["joints"])
-    for at in (0, -1):
-        for k, (_, value) in enumerate(data["problem"]["prescribed"][at]):
-            listed = copy.deepcopy(data)
-            listed["problem"]["prescribed"][at][k][1] = [value] * joints
-            assert verify(sealed(listed)).proves, "zeros for each joint are the same zeros"
-            for forged in ("0.001", ["0"] * (joints - 1) + ["0.001"]):
-                moving = copy.deepcopy(data)
-                moving["problem"]["prescribed"][at][k][1] = forged
-                assert not verify(sealed(moving)).proves
 
 
 # --- what is said, and printed digits -------------------------------------------------------------

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from support.executors import LastFirst
 from trajgap.nlp.proofs.certifiers import certify
 from trajgap.nlp.proofs.exact import exact_problem
 from trajgap.nlp.proofs.executors import Here
@@ -26,24 +27,6 @@ PROBLEM = Problem(
     Limits([1.0, 1.3], [2.1, 1.7], [11.0, 9.0]),
     quintic_spline(3),
 )
-
-
-class LastFirst(Executor):
-    """Finishes what was submitted last as soon as two wait: parts come back out of order."""
-
-    def __init__(self) -> None:
-        self.held: list[tuple[Future[Any], Callable[[], Any]]] = []
-
-    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
-        future: Future[Any] = Future()
-        self.held.append((future, lambda: fn(*args, **kwargs)))
-        return future
-
-    def finish(self) -> None:
-        for future, work in reversed(self.held):
-            if not future.cancelled():
-                future.set_result(work())
-        self.held.clear()
 
 
 def stage(total: float, executor: Executor, workers: int) -> tuple[subtrees.Stage, Leaves]:
