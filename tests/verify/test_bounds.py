@@ -209,7 +209,6 @@ def test_a_row_is_the_limit_it_stands_for(name: str, seed: int) -> None:
             if order
             else problem.position[(1 + sign) // 2][j]
         )
-        assert ends is not None
         limit = float(ends[0])
         if order == 0:
             expected = by * (reached - sign * limit - 2**-40)

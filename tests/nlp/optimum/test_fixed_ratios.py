@@ -53,7 +53,6 @@ def shortest(problem: Problem) -> float:
 
 def excess(problem: Problem, total: float) -> float:
     """The largest ratio of a peak to its limit less 1, by the batch evaluator."""
-    assert problem.shares is not None
     return float(evaluate(problem, total * problem.shares[None]).ratios.max()) - 1.0
 
 
@@ -197,5 +196,4 @@ def test_a_short_segment_beside_a_long_one_passes_the_check() -> None:
     close = Q.copy()
     close[1] = close[0] + 1e-7
     answer = solve(Problem(close, LIMITS, quintic_spline(3), ratios="chord"))
-    assert answer.check is not None
     assert answer.check.verdict is Verdict.PASS

@@ -115,7 +115,6 @@ def test_certified_bounds_and_answers_of_nearly_coincident_points_agree() -> Non
     from trajgap.nlp import certify
 
     found = certify(case(NATURAL_NEAR).problem(), gap=0.05, seconds=20)
-    assert found.upper is not None
     assert float(found.upper) < 0.6402
 
 

@@ -70,7 +70,6 @@ def test_free_speeds_under_jerk_limits_give_the_spline(columns: int) -> None:
     solution = solve(problem)
     assert solution.status is Status.OPTIMAL
     assert solution.problem is problem
-    assert solution.durations is not None
     assert check(problem, solution.durations, solution.nodal).verdict is Verdict.PASS
     # Brute force over the cubic splines of scipy, whose acceleration does not jump.
     brute = differential_evolution(
@@ -112,9 +111,8 @@ def test_a_joint_without_a_jerk_limit_makes_it_feasible_only() -> None:
     solution = solve(some)
     assert solution.status is Status.FEASIBLE
     assert "held as smooth as the others" in str(solution.why)
-    assert solution.durations is not None
     assert check(some, solution.durations, solution.nodal).verdict is Verdict.PASS
-    # BENDS joint that stands still is smooth by itself.
+    # A joint that stands still is smooth by itself.
     still = replace(some, waypoints=np.column_stack([Q[:, 0], np.full(4, 0.3)]))
     assert same_motions(still)
     assert solve(still).status is Status.OPTIMAL
@@ -123,8 +121,6 @@ def test_a_joint_without_a_jerk_limit_makes_it_feasible_only() -> None:
 def test_known_motions_and_starts_go_with_it() -> None:
     problem = free_speeds()
     best = solve(problem)
-    assert best.durations is not None
-    assert best.nodal is not None
     slow = np.array(best.durations) * 1.5
     known = solve(
         problem, initial=slow, known=best.durations[None], known_nodal=best.nodal[None], starts=1
@@ -144,7 +140,6 @@ def test_infeasible_is_a_proof_for_the_first_problem_where_the_motions_are_the_s
     assert as_answer(some, found) is None
     alike = replace(free_speeds(), duration_upper=np.full(3, 2.0))
     answer = as_answer(alike, found)
-    assert answer is not None
     assert answer.problem is alike
 
 
@@ -282,7 +277,6 @@ def test_a_motion_without_a_jump_is_found_where_there_is_one() -> None:
     solution = solve(problem)
     assert solution.status is Status.FEASIBLE
     assert "at which the motion does not jump" in str(solution.why)
-    assert solution.durations is not None
     assert check(problem, solution.durations).verdict is Verdict.PASS
     assert solution.total_time == pytest.approx(min(brute_totals(ON)), rel=1e-6)
 

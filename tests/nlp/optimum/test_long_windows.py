@@ -62,9 +62,7 @@ def test_joined_windows_end_at_the_optimum_of_the_whole(
         patch.setattr(long_search_module, "FEWEST", SEGMENTS + 1)
         whole = long_search(problem, way_start(problem), floor)
     assert len(small_windows) == 1
-    assert whole is not None
     assert answer.status is Status.OPTIMAL
-    assert answer.kkt_residual is not None
     assert answer.kkt_residual <= 1e-8
     assert answer.total_time == pytest.approx(float(whole.durations.sum()), rel=1e-8)
     assert solve(problem).durations == pytest.approx(answer.durations, rel=0.0, abs=0.0)
@@ -74,7 +72,6 @@ def test_what_windows_leave_is_nearly_the_optimum(small_windows: list[Joined | N
     problem = problem_of(CURVES["quintic"])
     answer = solve(problem)
     (joined,) = small_windows
-    assert joined is not None
     unit = float(way_start(problem).mean())
     h = joined.state.x[:SEGMENTS] * unit
     assert h.sum() == pytest.approx(answer.total_time, rel=0.01)
@@ -173,7 +170,6 @@ def test_time_that_ends_between_windows_and_after_them(
     monkeypatch.setattr(long_search_module, "time_up", lambda: True)
     late = long_search(problem, start, floor)
     assert small_windows[-1] is not None
-    assert late is not None
     assert late.kkt is None
     assert check(problem, late.durations).max_violation <= 1e-9
 

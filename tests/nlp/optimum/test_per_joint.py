@@ -148,11 +148,9 @@ def test_a_range_that_is_known_in_closed_form() -> None:
     q = np.array([[0.3], [1.1], [0.4], [2.0]])
     problem = Problem(q, Limits(2.0, 3.0, joints=1), rest_to_rest(3, 5))
     least = solve(problem).durations
-    assert least is not None
     cap = float(least.sum()) + 0.01
     for k in range(3):
         found = reached([problem], [least], [cap], -np.eye(3)[k])
-        assert found is not None
         assert found[0] == pytest.approx(least + 0.01 * np.eye(3)[k], abs=1e-9)
 
 
@@ -161,10 +159,8 @@ def test_bounds_of_durations_hold() -> None:
         np.array([[0.3], [1.1], [0.4]]), Limits(2.0, 3.0, joints=1), rest_to_rest(2, 5)
     )
     least = solve(problem).durations
-    assert least is not None
     bounded = replace(problem, duration_upper=least + np.array([0.004, 1.0]))
     found = reached([bounded], [least], [float(least.sum()) + 0.01], np.array([-1.0, 0.0]))
-    assert found is not None
     assert found[0][0] == pytest.approx(least[0] + 0.004, abs=1e-9)
 
 

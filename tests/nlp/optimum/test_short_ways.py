@@ -116,7 +116,6 @@ def test_the_optimum_with_a_far_shorter_segment_is_found(name: str, seed: int) -
     solution = solve(problem, seed=seed)
     assert solution.status is Status.OPTIMAL or seed > 0
     assert solution.total_time <= h.sum() * ROUNDED
-    assert solution.check is not None
     assert solution.check.verdict is Verdict.PASS
 
 

@@ -68,7 +68,6 @@ def test_a_resumed_run_without_time_replays_nothing_and_loses_nothing(
         str(Fraction(given["claim"][side])) for side in ("lower", "upper")
     )
     again = state_document(found)
-    assert again is not None
     assert again["proposals"] == given["proposals"]
 
 
@@ -106,7 +105,6 @@ def test_what_a_state_proved_stays_if_the_rest_is_not_judged_in_time(
     monkeypatch.setattr(judged, "verify_certificate", lambda *_, **__: LATE)
     found = certify(LONG, gap=0.1, resume=given)
     assert found.lower == Fraction(given["claim"]["lower"]) > 0
-    assert found.verdict is not None
     assert found.verdict.proves
     assert verify(certificate(found)).lower == found.lower
     assert found.proposals is not None
@@ -222,7 +220,6 @@ def test_cubic_searches_say_how_large_their_proof_is(monkeypatch: pytest.MonkeyP
 def test_the_judge_has_a_second_even_if_the_time_is_over() -> None:
     found: Certified = certify(QUICK, gap=0.01)
     again = judged.judged(replace(found, verdict=None), judged.Deadline.after(-5.0))
-    assert again.verdict is not None
     assert again.verdict.proves
     assert import_module("trajgap.nlp.proofs.judged").Deadline.after(-5.0).left == 0.0
 

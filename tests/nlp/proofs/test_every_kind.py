@@ -214,7 +214,6 @@ def test_a_broken_relaxation_is_caught(name: str, monkeypatch: pytest.MonkeyPatc
     assert raw[-1].lower > optimum, "the attack above would not have seen it"
     assert not verify_certificate(certificate(raw[-1])).proves
     assert (found.outcome, found.lower, found.proof) == (Outcome.OPEN, 0, None)
-    assert found.verdict is not None
     assert "leaf at node" in found.verdict.reason or name == "cubic"
 
 

@@ -80,8 +80,6 @@ def test_what_is_proved_is_called_certified() -> None:
     assert any("certified optimum" in text and "proved, gap" in text for text in texts)
     answer = study.optimum(*PAIR)
     interval = proved(printed_problem(study.case.statement(*PAIR)))
-    assert interval is not None
-    assert answer.lower_bound is not None
     assert Fraction(answer.lower_bound) <= interval.lower < answer.total_time
     (waterfall,) = waterfalls(study)
     step = next(s for s in waterfall.steps if s.name.startswith("optimum"))
@@ -121,7 +119,6 @@ def test_a_certificate_that_does_not_prove_its_claim_is_not_used(
 ) -> None:
     exact = COVERED_PROBLEMS[f"{IRB}.limit-80.waypoints-rad"]
     wrong = copy.deepcopy(shipped(exact))
-    assert wrong is not None
     wrong["claim"]["lower"] = str(Fraction(wrong["claim"]["lower"]) * 2)
     monkeypatch.setattr(certificate_module, "all_shipped", lambda: (wrong,))
     assert shipped(exact) == wrong
@@ -150,7 +147,6 @@ def test_a_certificate_for_other_end_velocities_is_not_used(
     # The question and the verifier must read the ends in the same place.
     exact = COVERED_PROBLEMS[f"{PUMA}.six-joints.durations-positive"]
     document = shipped(exact, Subject.ANY)
-    assert document is not None
     if "curve" in forged:
         for key in ("degrees", "continuity"):
             del document["problem"][key]
@@ -184,7 +180,6 @@ def test_a_closed_form_needs_no_file() -> None:
 def test_an_answer_below_the_bound_is_not_called_certified() -> None:
     exact = COVERED_PROBLEMS[f"{IRB}.limit-80.waypoints-rad"]
     answer = one_study().optimum(*PAIR)
-    assert answer.durations is not None
     short = replace(answer, durations=answer.durations * 0.99, lower_bound=None)
     assert with_certificate(short, exact).evidence is Evidence.BEST_KNOWN
 
@@ -193,16 +188,12 @@ def test_an_answer_that_rounding_puts_below_the_bound_takes_the_proved_durations
     problem = Problem([[0.0], [1.0], [0.25]], Limits(1.0, 2.0), rest_to_rest(2, 5))
     exact = exact_problem(problem)
     found = proved(exact)
-    assert found is not None
     answer = solve(problem)
-    assert answer.durations is not None
     bound = float(found.lower)
     below = answer.durations * (bound / answer.durations.sum()) * (1 - 1e-14)
     kept = with_certificate(replace(answer, durations=below, lower_bound=None), exact)
     assert kept.evidence is Evidence.CERTIFIED
-    assert kept.durations is not None
     assert sum(map(Fraction, kept.durations.tolist())) >= found.lower
-    assert kept.check is not None
     assert kept.check.peaks == check(problem, kept.durations).peaks
     farther = below * (1 - 1e-11)
     short = with_certificate(replace(answer, durations=farther, lower_bound=None), exact)
@@ -213,7 +204,6 @@ def test_a_worse_answer_is_replaced_by_that_of_the_certificate() -> None:
     study = one_study()
     exact = COVERED_PROBLEMS[f"{IRB}.limit-80.waypoints-rad"]
     answer = study.optimum(*PAIR)
-    assert answer.durations is not None
     worse = replace(answer, durations=answer.durations * 1.2, lower_bound=None)
     repaired = with_certificate(worse, exact)
     assert repaired.total_time == pytest.approx(answer.total_time, rel=1e-9)
@@ -292,7 +282,6 @@ def test_a_bound_for_any_curve_may_round_above_the_answer_and_no_more(
 ) -> None:
     study = one_study()
     found = estimate_any_curve(study.problem(*study.pairs[0])).total_time
-    assert found is not None
     lower = Fraction(found) * Fraction(1 + above)
     bound = ProvedInterval(lower, lower + Fraction(1, 10**9), None, False)
     monkeypatch.setattr(
@@ -334,5 +323,4 @@ interpolant = { family = "cubic-spline" }
     assert document is not None
     assert interval_of(document, exact) is None
     found = interval_of(document, other)
-    assert found is not None
     assert found.upper is not None

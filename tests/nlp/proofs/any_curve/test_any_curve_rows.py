@@ -98,7 +98,6 @@ def test_dense_grids_never_beat_the_bound_and_come_near_it(seed: int) -> None:
     low, high = interval(problem)
     found = estimate_any_curve(problem)
     known = found.durations
-    assert known is not None
     assert low <= verified(problem, found) <= high * (1 + 1e-9)
     wide = np.exp(rng.uniform(-1.5, 1.5, (1000, 2))) * known
     near = (1 + rng.uniform(-0.05, 0.05, (1000, 2))) * known
@@ -114,7 +113,6 @@ def test_grids_of_three_segments(seed: int) -> None:
     problem = random_problem(rng, 3, 2)
     low, high = interval(problem)
     known = estimate_any_curve(problem).durations
-    assert known is not None
     h = np.concatenate([np.exp(rng.normal(0, 0.2, (300, 3))) * known, [known * 1.02]])
     good = grid_feasible(problem, h, np.linspace(-1, 1, 61))
     assert low <= float(h[good].sum(axis=1).min()) <= 1.05 * high
@@ -252,10 +250,8 @@ def test_every_shipped_question_has_a_bound_that_is_proved() -> None:
                 name = f"{case_id}, {problem.id}, {reading.id}"
                 found = evidence.proved(exact, Subject.ANY)
                 assert found is not None, f"{name}: run benchmarks/any_curve_bound.py"
-                assert found.upper is not None
                 assert found.upper - found.lower <= found.upper / 10**5, name
                 estimate = estimate_any_curve(statement.problem(), starts=1).total_time
-                assert estimate is not None
                 assert float(found.lower) <= estimate * (1 + 1e-12), name
                 assert float(found.upper) == pytest.approx(estimate, rel=1e-9), name
 

@@ -77,7 +77,6 @@ def poor(monkeypatch: pytest.MonkeyPatch) -> Problem:
 
     def longer(*given: Any) -> Any:
         motion = first(*given)
-        assert motion is not None
         slow = Fraction(21, 20)
         return (
             tuple(h * slow for h in motion[0]),
@@ -94,8 +93,6 @@ def test_a_poor_first_answer_is_replaced(monkeypatch: pytest.MonkeyPatch) -> Non
     found = certify_any(poor(monkeypatch), gap=1e-6)
     proved(found)
     assert found.outcome is Outcome.CERTIFIED
-    assert found.upper is not None
-    assert honest.upper is not None
     assert float(found.upper) == pytest.approx(float(honest.upper), rel=1e-6)
 
 
@@ -105,7 +102,6 @@ def test_an_answer_that_is_not_optimal_is_never_certified(monkeypatch: pytest.Mo
     monkeypatch.setattr(any_curve_certify, "_local_motion", lambda *_: None)
     found = certify_any(poor(monkeypatch), gap=1e-6, seconds=1.0)
     assert found.outcome is Outcome.INTERVAL
-    assert honest.upper is not None
     assert found.lower <= honest.upper
     assert proved(found).upper == found.upper
 
@@ -206,8 +202,6 @@ def stretched_first_motion(monkeypatch: pytest.MonkeyPatch, factor: float | None
         known = real(problem, **options)
         if factor is None:
             return replace(known, durations=None)
-        assert known.durations is not None
-        assert known.nodal_velocities is not None
         slow = known.nodal_velocities / factor
         return replace(known, durations=known.durations * factor, nodal_velocities=slow)
 
@@ -248,7 +242,6 @@ def test_a_resumed_run_takes_a_shorter_answer_that_it_finds(
         stretched_first_motion(patch, 1.5)
         state = stopped_state(detour())
     found = certify_any(detour(), gap=0.1, resume=state)
-    assert found.upper is not None
     assert found.upper < Fraction(state["claim"]["upper"]) * Fraction(3, 4)
     proved(found)
 
@@ -264,7 +257,6 @@ def test_a_state_of_a_higher_cap_is_resumed_below_a_lower_one(
     proof = state["proof"]
     search = Search(question(exact_problem(detour())), Fraction(5))
     whole = search.whole()
-    assert whole is not None
     cuts = [node for node in proof["tree"] if node[0] == "/"]
     assert any(Fraction(at) >= whole[k][1] for _, k, at in cuts), "no cut lies beyond"
     root = restored(search, proof, 1.0)
@@ -286,7 +278,6 @@ def test_an_interrupt_between_answer_and_boxes_leaves_a_true_pair(
 
     monkeypatch.setattr(any_curve_certify, "restored", stop)
     found = certify_any(detour(), resume=state)
-    assert found.upper is not None
     assert found.upper < Fraction(state["claim"]["upper"]) * Fraction(3, 4)
     assert found.outcome is Outcome.INTERVAL
     proved(found)

@@ -97,7 +97,6 @@ def test_a_bound_within_the_larger_sides_keeps_the_ends() -> None:
 def test_an_estimate_knows_the_ends_of_each_joint() -> None:
     seen = estimate_any_curve(problem_with())
     assert seen.total_time == pytest.approx(float(found().upper or 0), rel=1e-5)
-    assert seen.nodal_velocities is not None
     np.testing.assert_allclose(seen.nodal_velocities[[0, -1]], [START, FINISH])
     fast = estimate_any_curve(problem_with(start=(0.0, 1.3)))
     assert fast.why == "the velocity prescribed at the start exceeds the limit of joint b"
@@ -134,7 +133,6 @@ def test_the_bound_alone_proves_and_with_other_ends_only_what_is_true() -> None:
             own = (tuple(ends[0].tolist()), tuple(ends[1].tolist()))
             # The grid lies above the truth by a few per cent, the estimate by rounding.
             shown = estimate_any_curve(problem_with(*own)).total_time
-            assert shown is not None
             assert float(verdict.lower or 0) <= min(shown * (1 + 1e-9), best_of_a_grid(*own))
     assert refused >= 3
     assert proves >= 3
@@ -188,7 +186,6 @@ def test_a_declared_curve_in_motion_is_refused_in_one_sentence() -> None:
         exact_problem(problem_with((0.5, 0.5), (0.5, 0.5))),
     ):
         why = covered(problem)
-        assert why is not None
         assert why.endswith(
             "prescribes derivatives other than 0, and no proof covers such a curve yet; what "
             "--any-curve proves over any curve is a lower bound for it"

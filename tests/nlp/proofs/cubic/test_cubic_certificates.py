@@ -67,8 +67,6 @@ def test_a_natural_spline_along_a_line_has_constant_speed() -> None:
 
 
 def meets(one: Certified, other: Certified, factor: float) -> bool:
-    assert one.upper is not None
-    assert other.upper is not None
     low, high = float(other.lower) / factor, float(other.upper) / factor
     return low <= float(one.upper) * (1 + 1e-9) and float(one.lower) <= high * (1 + 1e-9)
 
@@ -121,7 +119,6 @@ def test_weights_without_the_target_prove_nothing_about_it() -> None:
     prover.narrow(box)
     relaxation = Relaxation(prover.system, prover.system.starting_rows(), prover.total)
     found = relaxation.over(prover.side(box), box.ranges).bound(Target(0, -1))
-    assert found is not None
     assert prover.bound(box, Target(0, -1), found.weights) is not None
     assert prover.bound(box, Target(0, -1), replace(found.weights, scale=0)) is None
 
@@ -186,7 +183,6 @@ def test_durations_far_too_short_are_proved_infeasible_within_the_range_of_a_pro
     problem = Problem([[0.0], [1.0], [2.0], [3.0]], Limits(0.01, 1.0), cubic_spline(3), 0.0, 5.0)
     found = certify(problem)
     assert found.outcome is Outcome.INFEASIBLE
-    assert found.verdict is not None
     assert found.verdict.infeasible
     document = certificate(found)
     assert max(document["proof"]["root"]) <= document["proof"]["cap"] <= MOST_INTEGER
@@ -214,8 +210,6 @@ def test_the_example_s_certificate_is_fresh_and_proves() -> None:
     verdict = verify(document)
     assert verdict.proves
     assert not verdict.altered
-    assert verdict.lower is not None
-    assert verdict.upper is not None
     assert verdict.upper - verdict.lower <= verdict.upper / 100
     # The paper's compromise between time and jerk is no least time, and lies above.
     assert verdict.upper < Fraction("9.05")
@@ -241,7 +235,6 @@ def verifier_is_as_strong(prover: Prover, cubic: Cubic, root: TickBox, slack: fl
     """The verifier's ranges are those that the search relied on, or narrower."""
     side = prover.side(root)
     found = narrowed(prover.system, side, *a_priori(prover.system, side, prover.total))
-    assert found is not None
     nothing: list[list[Any]] = [[None] * cubic.size for _ in range(cubic.joints)]
     box = Box(cubic, list(root.low), list(root.high), nothing, 0)
     box.narrow(Clock(60.0))

@@ -81,7 +81,6 @@ def test_feasible_splines_lie_in_every_linear_program(
 ) -> None:
     problem, rng = small(), np.random.default_rng(5)
     best = solve(problem).durations
-    assert best is not None
     limits = np.stack([problem.limits.velocity, problem.limits.acceleration], axis=1)
     upper = 3.0 * float(best.sum())
     relaxation = reference["Relaxation"](problem, range(2), upper)
@@ -114,7 +113,6 @@ def test_near_the_answer_the_linear_program_says_little_more_than_the_box(
 ) -> None:
     problem = runpy.run_path(str(BENCHMARKS / "quintic_instances.py"))["instances"]()[0]
     best = solve(problem, seed=0).durations
-    assert best is not None
     upper = float(best.sum())
     limits = np.stack([problem.limits.velocity, problem.limits.acceleration], axis=1)
     whole = reference["Relaxation"](problem, range(6), upper)

@@ -35,7 +35,6 @@ def stage(total: float, executor: Executor, workers: int) -> tuple[subtrees.Stag
     assert session.seek()
     kind = certifier._Search(session, executor)
     upper = session.upper
-    assert upper is not None
     tree = kind.stage(kind.rounded(upper * Fraction(total)))
     question = subtrees.Stage(kind.steps, kind.limits, float(tree.total), kind.library.terms, 0.0)
     return question, tree.leaves
@@ -187,8 +186,6 @@ def test_the_result_is_the_same_on_two_threads() -> None:
     one, two = (certify(PROBLEM, gap=0.05, seconds=1e6, workers=workers) for workers in (1, 2))
     assert one.outcome is two.outcome is Outcome.CERTIFIED
     assert (one.lower, one.upper, one.durations) == (two.lower, two.upper, two.durations)
-    assert one.proof is not None
-    assert two.proof is not None
     assert one.proof.document() == two.proof.document()
 
 
