@@ -12,6 +12,8 @@ import numpy as np
 import pytest
 from support.alterations import Path_, changed, fields, get, put
 from support.certificate_kinds import KINDS, stated, text
+from trajgap.problem import evaluate
+from trajgap.verify import Subject
 from trajgap.verify import verify_certificate as verify
 from trajgap.verify.curve import nonnegative
 from trajgap.verify.reading import Clock
@@ -58,6 +60,20 @@ def mutate(kind: str, per_field: int, seed: int) -> Counter[str]:
 
 def test_every_kind_of_proof_is_attacked() -> None:
     assert set(KINDS) == set(PROOFS)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_interval_holds_beside_other_programs(kind: str) -> None:
+    """The judge of `trajgap.problem` passes the answer, and no search undercuts the lower bound."""
+    base, one = document(kind), KINDS[kind]
+    problem, claim = stated(base), base["claim"]
+    h = np.array([float(Fraction(x)) for x in claim["durations"]])
+    assert h.sum() <= float(Fraction(claim["upper"])) + 1e-12
+    assert float(Fraction(claim["lower"])) <= one.optimum(problem) * (1 + 1e-9)
+    if one.subject is Subject.DECLARED:
+        assert (problem.duration_lower <= h * (1 + 1e-12)).all()
+        assert (h <= problem.duration_upper).all()
+        assert evaluate(problem, h[None]).stretch[0] <= 1 + 1e-9
 
 
 SIBLING = "four-three-four"

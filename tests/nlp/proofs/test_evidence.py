@@ -42,7 +42,6 @@ from trajgap.problem import (
     check,
     cubic_spline,
     load_case,
-    parse_case,
     rest_to_rest,
 )
 from trajgap.verify import Subject
@@ -177,11 +176,17 @@ def test_a_closed_form_needs_no_file() -> None:
     assert with_certificate(solve(spline), exact_problem(spline)).evidence is Evidence.BEST_KNOWN
 
 
-def test_an_answer_below_the_bound_is_not_called_certified() -> None:
-    exact = COVERED_PROBLEMS[f"{IRB}.limit-80.waypoints-rad"]
+@pytest.mark.parametrize(
+    ("factor", "evidence"), [(0.99, Evidence.BEST_KNOWN), (1.2, Evidence.CERTIFIED)]
+)
+def test_an_answer_beyond_the_interval(factor: float, evidence: Evidence) -> None:
+    """Below it it is not certified, and above it that of the certificate takes its place."""
     answer = one_study().optimum(*PAIR)
-    short = replace(answer, durations=answer.durations * 0.99, lower_bound=None)
-    assert with_certificate(short, exact).evidence is Evidence.BEST_KNOWN
+    other = replace(answer, durations=answer.durations * factor, lower_bound=None)
+    found = with_certificate(other, COVERED_PROBLEMS[f"{IRB}.limit-80.waypoints-rad"])
+    assert found.evidence is evidence
+    if factor > 1.0:
+        assert found.total_time == pytest.approx(answer.total_time, rel=1e-9)
 
 
 def test_an_answer_that_rounding_puts_below_the_bound_takes_the_proved_durations() -> None:
@@ -198,16 +203,6 @@ def test_an_answer_that_rounding_puts_below_the_bound_takes_the_proved_durations
     farther = below * (1 - 1e-11)
     short = with_certificate(replace(answer, durations=farther, lower_bound=None), exact)
     assert short.evidence is Evidence.BEST_KNOWN
-
-
-def test_a_worse_answer_is_replaced_by_that_of_the_certificate() -> None:
-    study = one_study()
-    exact = COVERED_PROBLEMS[f"{IRB}.limit-80.waypoints-rad"]
-    answer = study.optimum(*PAIR)
-    worse = replace(answer, durations=answer.durations * 1.2, lower_bound=None)
-    repaired = with_certificate(worse, exact)
-    assert repaired.total_time == pytest.approx(answer.total_time, rel=1e-9)
-    assert repaired.evidence is Evidence.CERTIFIED
 
 
 def test_the_output_of_a_procedure_is_not_certified() -> None:
@@ -300,22 +295,8 @@ def test_what_is_proved_of_any_curve_is_called_certified_under_every_reading() -
 
 def test_a_problem_that_no_certificate_can_state_is_not_certified() -> None:
     """1e-300 has more digits than a certificate may write."""
-    case = parse_case(
-        """
-format = 1
-id = "tiny"
-title = "a way-point of 1e-300 rad"
-source = { year = 2024 }
-robot = { name = "arm", joints = ["1"] }
-units = { position = "rad", velocity = "rad/s", time = "s" }
-waypoints = { where = "Table 1", joint_rows = [["1e-300", "0.4", "0.9"]] }
-limits = { velocity = 2 }
-interpolant = { family = "cubic-spline" }
-""",
-        "tiny.toml",
-    )
-    exact = printed_problem_or_none(case.statement())
-    assert exact is not None
+    tiny = Problem([[1e-300], [0.4], [0.9]], Limits(2.0), cubic_spline(2))
+    exact = exact_problem(tiny)
     assert proved(exact) is None
     other = printed_problem_or_none(load_case("irb460-pso-353").statement("limit-80"))
     assert other is not None

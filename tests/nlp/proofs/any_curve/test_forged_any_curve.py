@@ -6,7 +6,6 @@ import copy
 import json
 from dataclasses import replace
 from fractions import Fraction
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -45,16 +44,11 @@ from trajgap.verify import verify_certificate as verify
 # --- attacks --------------------------------------------------------------------------------------
 
 
-@lru_cache(maxsize=1)
-def attacked() -> tuple[Problem, str]:
-    problem = spline_problem([[0.0, 0.0], [0.25, 1.0], [3.0, 1.125]], [3.0, 1.5], [2.0, 4.0])
-    found = certify_any(problem, gap=1e-5)
-    return problem, json.dumps(certificate(found))
+ATTACKED = spline_problem([[0.0, 0.0], [0.25, 1.0], [3.0, 1.125]], [3.0, 1.5], [2.0, 4.0])
 
 
 def test_falsified_rows_are_seen_and_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    problem, _ = attacked()
-    honest = certify_any(problem, gap=1e-5)
+    honest = certify_any(ATTACKED, gap=1e-5)
 
     def stronger(asked: Any, row: ReachRow, box: Any, speed: Fraction) -> ExactRow:
         found = exact_row(asked, row, box, speed)
@@ -62,7 +56,7 @@ def test_falsified_rows_are_seen_and_refused(monkeypatch: pytest.MonkeyPatch) ->
 
     monkeypatch.setattr(any_curve_rows, "exact_row", stronger)
     raw = unjudged(monkeypatch)
-    found = certify_any(problem, gap=1e-5)
+    found = certify_any(ATTACKED, gap=1e-5)
     assert raw[0].upper is not None
     assert raw[0].lower >= honest.lower
     verdict = verify(certificate(raw[0]))
@@ -71,50 +65,53 @@ def test_falsified_rows_are_seen_and_refused(monkeypatch: pytest.MonkeyPatch) ->
     assert (found.outcome, found.lower, found.proof) == (Outcome.OPEN, 0, None)
 
 
-def poor(monkeypatch: pytest.MonkeyPatch) -> Problem:
-    """A problem for which the local solver's first answer is 5 % too long."""
-    first = any_curve_certify._first_motion
+def stretched_first_motion(
+    monkeypatch: pytest.MonkeyPatch, factor: float | None, later: bool = False
+) -> None:
+    """Let the local solver find a motion that takes ``factor`` times as long, or none.
 
-    def longer(*given: Any) -> Any:
-        motion = first(*given)
-        slow = Fraction(21, 20)
-        return (
-            tuple(h * slow for h in motion[0]),
-            tuple(tuple(v / slow for v in row) for row in motion[1]),
-        )
+    It is asked again only where ``later`` is true.
+    """
+    real = estimate_any_curve
 
-    monkeypatch.setattr(any_curve_certify, "_first_motion", longer)
-    return attacked()[0]
+    def found(problem: Problem, **options: Any) -> Any:
+        known = real(problem, **options)
+        if factor is None:
+            return replace(known, durations=None)
+        slow = known.nodal_velocities / factor
+        return replace(known, durations=known.durations * factor, nodal_velocities=slow)
+
+    monkeypatch.setattr(any_curve_certify, "estimate_any_curve", found)
+    if not later:
+        monkeypatch.setattr(any_curve_certify, "_local_motion", lambda *_: None)
 
 
 def test_a_poor_first_answer_is_replaced(monkeypatch: pytest.MonkeyPatch) -> None:
-    problem, _ = attacked()
-    honest = certify_any(problem, gap=1e-6)
-    found = certify_any(poor(monkeypatch), gap=1e-6)
+    honest = certify_any(ATTACKED, gap=1e-6)
+    stretched_first_motion(monkeypatch, 1.05, later=True)
+    found = certify_any(ATTACKED, gap=1e-6)
     proved(found)
     assert found.outcome is Outcome.CERTIFIED
     assert float(found.upper) == pytest.approx(float(honest.upper), rel=1e-6)
 
 
 def test_an_answer_that_is_not_optimal_is_never_certified(monkeypatch: pytest.MonkeyPatch) -> None:
-    problem, _ = attacked()
-    honest = certify_any(problem, gap=1e-6)
-    monkeypatch.setattr(any_curve_certify, "_local_motion", lambda *_: None)
-    found = certify_any(poor(monkeypatch), gap=1e-6, seconds=1.0)
+    honest = certify_any(ATTACKED, gap=1e-6)
+    stretched_first_motion(monkeypatch, 1.05)
+    found = certify_any(ATTACKED, gap=1e-6, seconds=1.0)
     assert found.outcome is Outcome.INTERVAL
     assert found.lower <= honest.upper
     assert proved(found).upper == found.upper
 
 
 def test_a_bound_that_is_too_high_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    problem, _ = attacked()
 
     def higher(*given: Any) -> Fraction:
         return any_curve_rows.bound(*given) * Fraction(1001, 1000)
 
     monkeypatch.setattr(any_curve_search, "bound", higher)
     raw = unjudged(monkeypatch)
-    assert certify_any(problem, gap=1e-2).proof is None
+    assert certify_any(ATTACKED, gap=1e-2).proof is None
     assert not verify(certificate(raw[0])).proves
 
 
@@ -192,21 +189,6 @@ def detour() -> Problem:
     q = np.random.default_rng(5).normal(0.0, 1.0, (4, 2)).round(2)
     limits = Limits(np.array([2.0, 1.5]), np.array([2.0, 3.0]))
     return Problem(q, limits, cubic_spline(3), duration_upper=np.array([20.0, 30.0, 40.0]))
-
-
-def stretched_first_motion(monkeypatch: pytest.MonkeyPatch, factor: float | None) -> None:
-    """Let the local solver find a motion that takes ``factor`` times as long, or none."""
-    real = estimate_any_curve
-
-    def found(problem: Problem, **options: Any) -> Any:
-        known = real(problem, **options)
-        if factor is None:
-            return replace(known, durations=None)
-        slow = known.nodal_velocities / factor
-        return replace(known, durations=known.durations * factor, nodal_velocities=slow)
-
-    monkeypatch.setattr(any_curve_certify, "estimate_any_curve", found)
-    monkeypatch.setattr(any_curve_certify, "_local_motion", lambda *_: None)
 
 
 def stopped_state(problem: Problem, after: int = 1) -> dict[str, Any]:
