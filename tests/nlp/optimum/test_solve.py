@@ -97,42 +97,32 @@ def test_one_rest_to_rest_segment_has_the_textbook_time(
         assert solution.total_time == pytest.approx(expected, rel=1e-10)
 
 
-@pytest.mark.parametrize(
-    ("degrees", "unit", "waypoints", "velocity", "acceleration", "jerk", "printed"),
-    [
-        (
-            True,
-            "task 1",
-            [[-10, 20, 15, 150, 30, 120], [55, 35, 30, 10, 70, 25]],
-            [100, 95, 100, 150, 130, 110],
-            [60, 60, 75, 70, 90, 80],
-            [60, 66, 85, 70, 75, 70],
-            4.7177,
-        ),
-        (
-            False,
-            "task 2",
-            np.pi
-            * np.array(
-                [
-                    [-1 / 3, 1 / 6, 0, -2 / 5, 1 / 4, 0],
-                    [2 / 5, 1 / 3, -1 / 6, -1 / 15, -1 / 2, 1 / 4],
-                ]
-            ),
-            [1.8, 2, 1.5, 2, 2.5, 2],
-            [4, 5, 3.5, 4, 5, 4],
-            [20, 25, 20, 20, 30, 25],
-            2.7998,
-        ),
-    ],
-)
+DEGREE = np.pi / 180
+FANG = [
+    (
+        [[-10, 20, 15, 150, 30, 120], [55, 35, 30, 10, 70, 25]],
+        [100 * DEGREE, 95 * DEGREE, 100 * DEGREE, 150 * DEGREE, 130 * DEGREE, 110 * DEGREE],
+        [60 * DEGREE, 60 * DEGREE, 75 * DEGREE, 70 * DEGREE, 90 * DEGREE, 80 * DEGREE],
+        [60 * DEGREE, 66 * DEGREE, 85 * DEGREE, 70 * DEGREE, 75 * DEGREE, 70 * DEGREE],
+        4.7177,
+    ),
+    (  # printed as shares of π
+        [[-60, 30, 0, -72, 45, 0], [72, 60, -30, -12, -90, 45]],
+        [1.8, 2, 1.5, 2, 2.5, 2],
+        [4, 5, 3.5, 4, 5, 4],
+        [20, 25, 20, 20, 30, 25],
+        2.7998,
+    ),
+]
+
+
+@pytest.mark.parametrize(("degrees", "velocity", "acceleration", "jerk", "printed"), FANG)
 def test_the_septic_times_of_fang_2020_are_met_to_their_printed_digits(
-    degrees: bool, unit: str, waypoints, velocity, acceleration, jerk, printed: float
+    degrees, velocity, acceleration, jerk, printed: float
 ) -> None:
     """Y. Fang et al., Mechanism and Machine Theory 153 (2020) 103957, tables 4 and 7."""
-    scale = np.pi / 180 if degrees else 1.0
-    q, v, a, j = (np.asarray(x, float) * scale for x in (waypoints, velocity, acceleration, jerk))
-    solution = solve(Problem(q, Limits(v, a, j), rest_to_rest(1, 7)))
+    limits = Limits(velocity, acceleration, jerk)
+    solution = solve(Problem(DEGREE * np.array(degrees), limits, rest_to_rest(1, 7)))
     assert solution.total_time == pytest.approx(printed, abs=5.1e-5)
 
 

@@ -15,6 +15,7 @@ from support.any_curve_proofs import certify_any, interval, proved
 from support.any_motions import verified
 from support.joint_splines import spline_problem
 from trajgap.nlp.proofs import evidence
+from trajgap.nlp.proofs.any_curve import exact
 from trajgap.nlp.proofs.any_curve.estimate import estimate_any_curve
 from trajgap.nlp.proofs.any_curve.exact import missing, question
 from trajgap.nlp.proofs.any_curve.reach import reachable
@@ -33,6 +34,7 @@ from trajgap.problem import (
 )
 from trajgap.verify import Subject
 from trajgap.verify import verify_certificate as verify
+from trajgap.verify.any_curve import _furthest as verified_reach
 from trajgap.verify.any_curve import _Row
 
 Array = NDArray[np.float64]
@@ -232,6 +234,17 @@ def test_rows_of_search_and_verifier_are_the_same(seed: int) -> None:
         mine = exact_row(asked, ReachRow(kind, 0, 0, sign, *numbers), box, v)
         theirs = _Row(word, 0, 0, sign, *numbers).terms(step, v, a, box[0])
         assert (mine.time, mine.start, mine.end, mine.right) == theirs
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_search_and_verifier_reach_equally_far(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    h, top, bend = (Fraction(float(x)) for x in rng.uniform(0.3, 3.0, 3))
+    first = Fraction(float(rng.uniform(-1.0, 1.0))) * top
+    last = max(-top, min(top, first + Fraction(float(rng.uniform(-1.0, 1.0))) * bend * h))
+    for limit in (None, top):
+        found = exact._furthest(first, last, h, limit, bend)
+        assert found == verified_reach(first, last, h, limit, bend)
 
 
 def shipped_bounds() -> dict[str, Path]:
