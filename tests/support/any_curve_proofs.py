@@ -9,6 +9,7 @@ from trajgap.nlp.proofs.document import certificate
 from trajgap.nlp.proofs.exact import ExactProblem, printed_problem
 from trajgap.nlp.proofs.outcome import Certified, Outcome
 from trajgap.problem import (
+    Problem,
     load_case,
 )
 from trajgap.verify import CertificateVerdict, Subject
@@ -33,3 +34,13 @@ def proved(found: Certified) -> CertificateVerdict:
 
 def printed(case: str, problem: str, reading: str) -> ExactProblem:
     return printed_problem(load_case(case).statement(problem, reading))
+
+
+def interval(problem: Problem, gap: float = 1e-6) -> tuple[float, float]:
+    """A certified interval of the wanted width."""
+    found = certify_any(problem, gap=gap, seconds=30)
+    proved(found)
+    assert found.outcome is Outcome.CERTIFIED, found
+    assert found.upper is not None
+    assert 0 <= found.gap <= gap
+    return float(found.lower), float(found.upper)

@@ -1,7 +1,6 @@
 """One small certificate of every kind of proof, and the true optimum of the problem in a file.
 
-Each kind of proof that `verify` knows has an entry in `KINDS`, so that the attacks in
-test_verify.py reach it.
+Each kind of proof that `verify` knows has an entry in `KINDS`, so that attacks reach it.
 """
 
 from __future__ import annotations
@@ -14,12 +13,15 @@ from functools import cache
 from typing import Any
 
 import numpy as np
+from support.cubic_problems import dense_best as dense_of_cubics
 from support.forgeries.forgery import document as committed
 from support.three_pieces import dense_best
+from trajgap.nlp import estimate_any_curve
 from trajgap.problem import (
     Curve,
     Limits,
     Problem,
+    cubic_spline,
     evaluate,
     piecewise,
     quintic_spline,
@@ -28,6 +30,7 @@ from trajgap.problem import (
     three_five_three,
     uniform_cubic_b_spline,
 )
+from trajgap.verify import Subject
 from trajgap.verify.quintic_tree import read_tree
 from trajgap.verify.reading import Clock
 from trajgap.verify.verdict import seal
@@ -43,6 +46,11 @@ class Kind:
     gap: float
     optimum: Callable[[Problem], float]
     """An upper estimate of the least total, inf where nothing is feasible."""
+    exact: bool = False
+    """Whether the estimate is a lower one, too."""
+    many: int = 1000
+    """Attacks on each field in a slow test."""
+    subject: Subject = Subject.DECLARED
 
 
 WAYPOINTS = np.array([[0.25, -0.5], [1.0, 0.125], [-0.375, 0.75], [0.5, 0.25]])
@@ -60,6 +68,23 @@ def posed(curve: Curve, jerk: float, *bounds: Any, positions: Any = SIDES, **mor
 
 def _by_directions(problem: Problem) -> float:
     return dense_best(problem, 81)
+
+
+def cubic() -> Problem:
+    q = np.array([[0.25, -0.5], [1.0, 0.125], [-0.375, 0.75], [0.5, 0.25]])
+    limits = Limits([1.0, 0.9], [2.0, 1.5], [9.0, 8.0])
+    return Problem(q, limits, cubic_spline(3), (0.5, 1.5, 0.1), (6.0, 2.0, 7.0))
+
+
+def any_curve() -> Problem:
+    """A joint that brakes for the other one."""
+    q = np.array([[0.0, 0.0], [0.25, 1.0], [3.0, 1.125]])
+    return Problem(q, Limits([3.0, 1.5], [2.0, 4.0]), cubic_spline(2), (0.4, 0.7), (2.0, 1.875))
+
+
+def any_curve_optimum(problem: Problem) -> float:
+    found = estimate_any_curve(problem).total_time
+    return float("inf") if found is None else found
 
 
 def _alone(needs: np.ndarray, problem: Problem) -> float:
@@ -112,7 +137,10 @@ KINDS = {
         lambda: posed(piecewise((4, 3, 4)), 8.0, SHORT, (9.0, 9.0, 9.0)), 1e-5, _by_directions
     ),
     "rest-to-rest": Kind(
-        lambda: posed(rest_to_rest(2, 5), 8.0, (0.5, 4.0), (6.0, 7.0)), 1e-6, rest_optimum
+        lambda: posed(rest_to_rest(2, 5), 8.0, (0.5, 4.0), (6.0, 7.0)),
+        1e-6,
+        rest_optimum,
+        exact=True,
     ),
     "quintic-spline": Kind(
         lambda: posed(quintic_spline(3), 9.0, SHORT, positions=()), 0.1, _by_directions
@@ -123,13 +151,17 @@ KINDS = {
         ),
         1e-6,
         stretched_optimum,
+        exact=True,
     ),
     # Tight in the second joint, and in no segment at its end.
     "fixed-ratios": Kind(
         lambda: posed(quintic_spline(3), 9.0, SHORT, (9.0, 9.0, 9.0), ratios=[1.0, 1.75, 1.25]),
         1e-6,
         ratios_optimum,
+        exact=True,
     ),
+    "cubic": Kind(cubic, 1e-3, lambda problem: dense_of_cubics(problem, 2000), many=100),
+    "any-curve": Kind(any_curve, 1e-5, any_curve_optimum, exact=True, subject=Subject.ANY),
 }
 
 
@@ -156,10 +188,18 @@ def stated(document: Document) -> Problem:
     limits = Limits(
         v, a, j, numbers(p["position_lower"], -np.inf), numbers(p["position_upper"], np.inf)
     )
+    kind = KINDS[document["proof"]["kind"]]
+    curve = kind.make().curve
+    if kind.subject is Subject.ANY:  # of which the velocities at the ends matter
+        first, last = (
+            tuple((1, float(Fraction(x))) for order, x in p["prescribed"][end] if order == 1)
+            for end in (0, -1)
+        )
+        curve = cubic_spline(2, first, last)
     return Problem(
         np.array([numbers(row, 0.0) for row in p["waypoints"]]),
         limits,
-        KINDS[document["proof"]["kind"]].make().curve,
+        curve,
         numbers(p["duration_lower"], 0.0),
         numbers(p["duration_upper"], np.inf),
         ratios=numbers(p["ratios"], 0.0) if "ratios" in p else None,

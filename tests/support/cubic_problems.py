@@ -13,15 +13,44 @@ from trajgap.nlp.proofs.document import problem_document
 from trajgap.nlp.proofs.exact import exact_problem
 from trajgap.nlp.proofs.outcome import Certified
 from trajgap.problem import (
+    Interpolant,
     Limits,
     Problem,
+    cubic_spline,
     cubic_spline_virtual,
     evaluate,
 )
-from trajgap.verify import read_problem
+from trajgap.verify import TICKS, read_problem
 from trajgap.verify.cubic.system import Cubic
 
 NATURAL = ((2, 0.0),)
+
+
+def random_curve(rng: np.random.Generator) -> Interpolant:
+    kind = int(rng.integers(0, 4))
+    if kind == 3:
+        return cubic_spline_virtual(3)
+    count = int(rng.integers(2, 4))
+    curve = cubic_spline(count, NATURAL if kind == 1 else ((1, 0.0),))
+    if kind < 2:
+        return curve
+    ends = (curve.prescribed[0], *curve.prescribed[1:-1], NATURAL)
+    return Interpolant(curve.degrees, curve.continuity, ends, name="clamped, then natural")
+
+
+def random_problem(seed: int) -> Problem:
+    """Small problem with unequal joints; every kind of limit, bound and end turns up."""
+    rng = np.random.default_rng(seed)
+    curve, joints = random_curve(rng), int(rng.integers(1, 3))
+    waypoints = curve.segments + 1 - len(curve.virtual)
+    q = rng.normal(0.3, 1.0, (waypoints, joints))
+    scale = rng.uniform(0.3, 3.0, (3, joints))
+    some = rng.random(3) < 0.6
+    some[0] |= not some.any() or curve.prescribed[0] == NATURAL
+    v, a, j = (scale[i] if some[i] else np.full(joints, np.inf) for i in range(3))
+    lower = rng.uniform(0.1, 1.0, curve.segments) if rng.random() < 0.4 else 0.0
+    upper = rng.uniform(4.0, 9.0, curve.segments) if rng.random() < 0.3 else np.inf
+    return Problem(q, Limits(v, a, j), curve, lower, upper)
 
 
 def dense_best(problem: Problem, count: int = 40_000) -> float:
@@ -55,9 +84,11 @@ def base() -> Certified:
     return certify(base_problem(), gap=0.02)
 
 
-def both(problem: Problem, cap: int) -> tuple[Prover, Cubic]:
+def both(problem: Problem, total: Fraction | None = None) -> tuple[Prover, Cubic]:
     """Solver and verifier for one problem, by their own routes."""
     exact = exact_problem(problem)
-    prover = Prover(cubic_system(exact, Fraction(11)), cap)
+    system = cubic_system(exact, Fraction(11) if total is None else total)
+    cap = 11 * TICKS if total is None else int(total / Fraction(2) ** system.second * TICKS)
+    prover = Prover(system, cap)
     proof = {"powers": list(prover.system.powers), "second": prover.system.second, "cap": cap}
     return prover, Cubic(read_problem(problem_document(exact)), proof)

@@ -1,4 +1,4 @@
-"""What proofs lean on, against motions and splines made here: no bound excludes one of them."""
+"""What proofs lean on, against motions made here: no bound excludes one of them."""
 
 from __future__ import annotations
 
@@ -9,87 +9,18 @@ from typing import Any
 import numpy as np
 import pytest
 from scipy.integrate import quad
-from scipy.interpolate import CubicSpline, make_interp_spline
 from support.forgeries.forgery import NO_ANSWER, altered, document
 from trajgap.verify import read_problem
 from trajgap.verify.any_curve import AnyCurve, _furthest, _Row
-from trajgap.verify.cubic.box import Box
-from trajgap.verify.cubic.system import Cubic
-from trajgap.verify.cubic.weights import least
-from trajgap.verify.curve import pieces, uniform_pieces, value_at
 from trajgap.verify.problem import StatedProblem
 from trajgap.verify.reading import Clock
 from trajgap.verify.three_piece import SIZE, FourThreeFour, ThreeFiveThree, _covers
 
 CLOCK = Clock(1e9)
-SPLINE_ENDS = [(1, 0.0), (2, 0.0)]
 
 
 def exact(values: Any) -> list[Fraction]:
     return [Fraction(float(x)) for x in values]
-
-
-# --- curves ---------------------------------------------------------------------------------------
-
-
-def spline(data: dict[str, Any], h: np.ndarray, joint: int) -> Any:
-    """The declared spline of one joint, by scipy."""
-    p = data["problem"]
-    t = np.concatenate([[0.0], np.cumsum(h)])
-    q = [float(Fraction(row[joint])) for row in p["waypoints"]]
-    if p["degrees"][0] == 5:
-        return make_interp_spline(t, q, k=5, bc_type=(SPLINE_ENDS, SPLINE_ENDS))
-    if p["virtual"]:
-        return _with_virtual(t, q)
-    ends = tuple((entries[0][0], 0.0) for entries in (p["prescribed"][0], p["prescribed"][-1]))
-    return CubicSpline(t, q, bc_type=ends)
-
-
-def _with_virtual(t: np.ndarray, q: list[float]) -> CubicSpline:
-    """At rest without acceleration: the two free positions make the accelerations vanish."""
-
-    def at(x: float, y: float) -> CubicSpline:
-        return CubicSpline(t, [q[0], x, *q[1:-1], y, q[-1]], bc_type=((1, 0.0), (1, 0.0)))
-
-    def ends(curve: CubicSpline) -> np.ndarray:
-        return np.array([curve(t[0], 2), curve(t[-1], 2)])
-
-    base = ends(at(0.0, 0.0))
-    matrix = np.array([ends(at(1.0, 0.0)) - base, ends(at(0.0, 1.0)) - base]).T
-    return at(*np.linalg.solve(matrix, -base))
-
-
-@pytest.mark.parametrize("kind", ["cubic", "cubic-virtual", "quintic-spline"])
-def test_a_declared_spline_is_that_of_scipy(kind: str) -> None:
-    data = document(kind)
-    problem, rng = read_problem(data["problem"]), np.random.default_rng(3)
-    for _ in range(4):
-        h = rng.uniform(0.4, 2.0, problem.segments)
-        found = pieces(problem, exact(h), CLOCK)
-        t = np.concatenate([[0.0], np.cumsum(h)])
-        for j in range(problem.joints):
-            curve = spline(data, h, j)
-            for k, s in product(range(problem.segments), (0.0, 0.3, 1.0)):
-                own = value_at(found[j][k], Fraction(s * float(h[k])))
-                assert float(own) == pytest.approx(float(curve(t[k] + s * h[k])), abs=1e-9)
-
-
-def test_a_uniform_b_spline_goes_through_its_points_with_two_equal_vertices_at_each_end() -> None:
-    problem = read_problem(document("stretched")["problem"])
-    for j, curve in enumerate(uniform_pieces(problem, CLOCK)):
-        q = [row[j] for row in problem.waypoints]
-        # Control vertices by the recursion V₋ + 4V + V₊ = 6q, V₀ = V₁ and Vₙ₊₁ = Vₙ.
-        n = len(q)
-        matrix = np.zeros((n + 2, n + 2))
-        for i in range(n):
-            matrix[i, i : i + 3] = 1, 4, 1
-        matrix[n, :2], matrix[n + 1, -2:] = (1, -1), (1, -1)
-        v = np.linalg.solve(matrix, [*(6 * float(x) for x in q), 0.0, 0.0])
-        for k, piece in enumerate(curve):
-            a, b, c, d = v[k : k + 4]
-            power = [(a + 4 * b + c) / 6, (c - a) / 2, (a - 2 * b + c) / 2,
-                     (d - 3 * c + 3 * b - a) / 6]  # fmt: skip
-            assert [float(x) for x in piece] == pytest.approx(power, abs=1e-12)
 
 
 # --- any curve ------------------------------------------------------------------------------------
@@ -135,8 +66,9 @@ def test_how_far_a_span_reaches(seed: int) -> None:
         return float(min(a + bend * t, b + bend * (h - t), most))
 
     for most in (top, np.inf):
-        own = float(_furthest(*exact((a, b, h)), None if most > top else Fraction(top),
-                              Fraction(bend)))  # fmt: skip
+        own = float(
+            _furthest(*exact((a, b, h)), None if most > top else Fraction(top), Fraction(bend))
+        )
         assert own == pytest.approx(quad(speed, 0.0, h, args=(most,), limit=400)[0], abs=1e-6)
 
 
@@ -177,9 +109,13 @@ def test_a_total_below_the_cap_bounds_the_durations_and_the_speed() -> None:
     cap = Fraction(document("any-curve")["proof"]["cap"])
     # 2/3 s at 1.5 rad/s; 2.75/3 s at 3 rad/s; what is left of the cap for the other.
     assert kind.root() == [(Fraction(2, 3), Fraction(2)), (Fraction(11, 12), Fraction("1.875"))]
-    changes = {**NO_ANSWER, "problem.duration_upper": [None, None],
-               "problem.limits.0.0": None, "problem.prescribed.0": [[1, "0.25"]],
-               "problem.prescribed.2": [[1, "-0.5"]]}  # fmt: skip
+    changes = {
+        **NO_ANSWER,
+        "problem.duration_upper": [None, None],
+        "problem.limits.0.0": None,
+        "problem.prescribed.0": [[1, "0.25"]],
+        "problem.prescribed.2": [[1, "-0.5"]],
+    }
     data = altered("any-curve", changes)
     free = AnyCurve(read_problem(data["problem"]), data["proof"], Fraction(3), CLOCK)
     low = [Fraction(2, 3), Fraction(data["problem"]["duration_lower"][1])]
@@ -219,8 +155,12 @@ def test_a_row_is_the_limit_it_stands_for(name: str, seed: int) -> None:
     """As docs/explanation/certificates.md states it, at random durations."""
     rng = np.random.default_rng([seed, 8])
     limits = [[["-1.1", "1"], ["-2.2", "2"], ["-9", "8.5"]], ["0.9", "1.5", "8"]]
-    changes = {**NO_ANSWER, "problem.limits": limits, "problem.position_upper": ["1.25", "1.75"],
-               "problem.position_lower": ["-1.5", "-1.75"]}  # fmt: skip
+    changes = {
+        **NO_ANSWER,
+        "problem.limits": limits,
+        "problem.position_upper": ["1.25", "1.75"],
+        "problem.position_lower": ["-1.5", "-1.75"],
+    }
     problem = read_problem(altered(name, changes)["problem"])
     total, h = 13.7, rng.uniform(0.5, 4.0, 3)
     a, b = h[0] / (h[0] + h[1]), h[2] / (h[1] + h[2])
@@ -229,14 +169,14 @@ def test_a_row_is_the_limit_it_stands_for(name: str, seed: int) -> None:
     kinds = [k for k in spots if k in SQUARES[name].divisors]
     entries: list[list[Any]] = [
         [kind, j, order, sign, int(rng.integers(0, 2**20 + 1)), cap]
-        for kind in kinds for j in (0, 1) for order in range(4) for sign in (1, -1)
-        for cap in (-1, 1)
-    ]  # fmt: skip
+        for kind, j, order, sign, cap in product(kinds, (0, 1), range(4), (1, -1), (-1, 1))
+    ]
+    ends_and_mean = product(("first", "last", "mean"), (0, 1), (1, 2, 3), (-1, 2))
     entries += [
         [kind, j, order, 1, 0, cap]
-        for kind in ("first", "last", "mean") for j in (0, 1) for order in (1, 2, 3)
-        for cap in (-1, 2) if kind != "mean" or order == 1
-    ]  # fmt: skip
+        for kind, j, order, cap in ends_and_mean
+        if kind != "mean" or order == 1
+    ]
     entries += [["lower", k, 0, 1, 0, cap] for k in range(3) for cap in (-1, 0)]
     proof = {"kind": name, "total": str(total), "rows": entries, "tree": []}
     kind = SQUARES[name](problem, proof, Fraction(total), CLOCK)
@@ -264,9 +204,11 @@ def test_a_row_is_the_limit_it_stands_for(name: str, seed: int) -> None:
             )
             reached = abs(way) * least_of[order - 1]
             side = (1 if way >= 0 else -1) * (-1 if word == "last" and order == 2 else 1)
-        ends = (problem.sides[(1 + side) // 2][j][order - 1] if order else
-                problem.position[(1 + sign) // 2][j])  # fmt: skip
-        assert ends is not None
+        ends = (
+            problem.sides[(1 + side) // 2][j][order - 1]
+            if order
+            else problem.position[(1 + sign) // 2][j]
+        )
         limit = float(ends[0])
         if order == 0:
             expected = by * (reached - sign * limit - 2**-40)
@@ -281,10 +223,9 @@ def test_a_polynomial_is_covered_only_where_it_is_nowhere_negative() -> None:
         poly = {(i, j): int(rng.integers(-9, 10)) for i in range(SIZE) for j in range(SIZE)}
         poly[0, 0] += int(rng.integers(0, 60))
         at = rng.integers(0, 8, 2)
-        box = (Fraction(int(at[0]), 8), Fraction(int(at[0]) + 1, 8),
-               Fraction(int(at[1]), 8), Fraction(int(at[1]) + 1, 8))  # fmt: skip
-        grid = [[float(low + (high - low) * Fraction(k, 16)) for k in range(17)]
-                for low, high in (box[:2], box[2:])]  # fmt: skip
+        sides = [[Fraction(int(k) + edge, 8) for edge in (0, 1)] for k in at]
+        box = (*sides[0], *sides[1])
+        grid = [np.linspace(float(low), float(high), 17) for low, high in sides]
         lowest = min(sum(c * x**i * y**j for (i, j), c in poly.items()) for x, y in product(*grid))
         if _covers(poly, box, CLOCK):
             covered += 1
@@ -294,147 +235,3 @@ def test_a_polynomial_is_covered_only_where_it_is_nowhere_negative() -> None:
     assert covered > 50
     with pytest.raises(IndexError):
         _covers({(SIZE, 0): 1}, (Fraction(0), Fraction(1), Fraction(0), Fraction(1)), CLOCK)
-
-
-# --- cubic splines --------------------------------------------------------------------------------
-
-
-def state(data: dict[str, Any], cubic: Cubic, h: np.ndarray) -> tuple[list[Any], list[Any]]:
-    """Coordinates and each joint's unknowns of the true spline, in the units of the proof."""
-    second = float(cubic.second)
-    t = np.concatenate([[0.0], np.cumsum(h)])
-    ends = t if not cubic.virtual else np.delete(t, (1, len(t) - 2))
-    spans = np.diff(ends) / second
-    y = [*spans]
-    if cubic.virtual:
-        y += [h[0] / second, h[-1] / second]
-        y += [y[-2] ** 2 / spans[0], y[-1] ** 2 / spans[-1]]
-    x = []
-    for j in range(cubic.joints):
-        curve, angle = spline(data, h, j), 2.0 ** data["proof"]["powers"][j]
-        bends = curve(t, 2) * second**2 / angle
-        x.append([*bends, *(curve(ends, 1) * second / angle)])
-    return y, x
-
-
-def drawn(name: str, seed: int, width: float) -> Any:
-    """A system, a box around random durations, and true splines within."""
-    rng = np.random.default_rng([seed, 10])
-    natural = {"problem.prescribed": [[[2, "0"]], [], [], [[2, "0"]]]} if seed % 2 else {}
-    if name == "cubic-virtual":
-        natural = {}
-    data = altered(name, {**NO_ANSWER, **natural, "problem.limits": [["30", "200", "4000"]] * 2,
-                          "proof.cap": 2**28})  # fmt: skip
-    cubic = Cubic(read_problem(data["problem"]), data["proof"])
-    h = rng.uniform(0.3, 1.2, cubic.n)
-    inside = [h * (1 + width * rng.uniform(-0.4, 0.4, cubic.n)) for _ in range(12)]
-    found = [state(data, cubic, each) for each in (h, *inside)]
-    ys = np.array([y[: cubic.free] for y, _ in found]) * 2**24
-    box = Box(cubic, [int(v) for v in ys.min(axis=0)], [int(v) + 1 for v in ys.max(axis=0)],
-              [[None] * cubic.size for _ in range(2)], 0)  # fmt: skip
-    return rng, data, cubic, box, found
-
-
-@pytest.mark.parametrize("seed", range(6))
-@pytest.mark.parametrize("name", ["cubic", "cubic-virtual"])
-def test_ranges_hold_every_spline_of_a_box(name: str, seed: int) -> None:
-    for width in (0.0, 0.02, 0.3):
-        _, _, cubic, box, found = drawn(name, seed, width)
-        box.narrow(CLOCK)
-        assert not box.empty
-        for y, x in found:
-            for side, value in zip(box.sides(), y, strict=True):
-                assert float(side[0]) - 1e-7 <= value <= float(side[1]) + 1e-7
-            for j, v in product(range(2), range(cubic.size)):
-                low, high = box.x[j][v]
-                slack = 1e-7 * (1 + abs(x[j][v]))
-                assert float(low) - slack <= x[j][v] <= float(high) + slack
-                if width == 0.0:  # and they are worth something
-                    assert float(high - low) < 1e-3 * (1 + abs(x[j][v]))
-
-
-@pytest.mark.parametrize("seed", range(10))
-@pytest.mark.parametrize("name", ["cubic", "cubic-virtual"])
-def test_weights_bound_every_spline_of_a_box(name: str, seed: int) -> None:
-    """Conditions and equations with weights, at true splines: never below what is called least."""
-    for width in (0.0, 0.05):
-        rng, _, cubic, box, found = drawn(name, seed, width)
-        box.narrow(CLOCK)
-        rows = [["total", -1, 0, 1, 0], ["lower", -1, 1, 1, 0], ["upper", -1, 2, 1, 0],
-                ["jerk", 0, 1, 1, 0], ["jerk", 1, 0, -1, 0], ["velocity", 0, 0, 1, 40],
-                ["velocity", 1, cubic.m - 1, -1, 9], ["velocity", 0, 1, -1, 64],
-                ["jerk", 1, cubic.n - 1, 1, 0], ["upper", -1, 0, 1, 0]]  # fmt: skip
-        known = [cubic.condition(row) for row in rows]
-        held = [z for k in range(len(rows)) for z in (k, int(rng.integers(0, 9)))]
-        count = 2 * cubic.size
-        equations = [z for k in range(count) for z in (k, int(rng.integers(-5, 6)))]
-        target = {k: int(rng.integers(-3, 8)) for k in range(cubic.free)}
-        terms: dict[Any, Fraction] = {}
-        for k, w in zip(held[::2], held[1::2], strict=True):
-            for key, z in known[k][1].items():
-                terms[known[k][0], key] = terms.get((known[k][0], key), 0) + w * z
-        for k, w in zip(equations[::2], equations[1::2], strict=True):
-            j, i = divmod(k, cubic.size)
-            for key, z in cubic.equations[i].items():
-                terms[j, key] = terms.get((j, key), 0) + w * z
-        length = sum(type(key) is not int and z != 0 for (_, key), z in terms.items())
-        mix = "".join(rng.choice(list("0g7wm"), length))
-        bound = float(least(box, target, [held, equations, mix], known))
-        values = []
-        for y, x in found:
-            value = sum(w * y[k] for k, w in target.items())
-            for k, w in zip(held[::2], held[1::2], strict=True):
-                joint, own, along, rest = known[k]
-                value += w * float(rest) + w * sum(float(z) * y[c] for c, z in along.items())
-                value += w * sum(
-                    float(z) * (x[joint][key] if type(key) is int else y[key[0]] * x[joint][key[1]])
-                    for key, z in own.items()
-                )
-            values.append(value)
-        scale = 1 + max(map(abs, values))
-        assert bound <= min(values) + 1e-6 * scale
-        if width == 0.0:
-            assert bound >= min(values) - 2e-2 * scale
-
-
-def test_a_condition_is_the_limit_it_stands_for() -> None:
-    for name in ("cubic", "cubic-virtual"):
-        for seed in range(4):
-            _, data, cubic, _, found = drawn(name, seed, 0.4)
-            second = float(cubic.second)
-            for y, x in found:
-                for joint, k, sign, place in product((0, 1), range(cubic.m), (1, -1), (0, 13, 64)):
-                    own = cubic.condition(["velocity", joint, k, sign, place])
-                    angle = 2.0 ** data["proof"]["powers"][joint]
-                    value = float(own[3]) + sum(
-                        float(z)
-                        * (x[joint][key] if type(key) is int else y[key[0]] * x[joint][key[1]])
-                        for key, z in own[1].items()
-                    )
-                    length, start = y[k], x[joint][cubic.n + 1 + k]
-                    a, b = x[joint][cubic.breaks[k]], x[joint][cubic.breaks[k + 1]]
-                    if cubic.virtual and k in (0, cubic.m - 1):
-                        h = y[cubic.m] if k == 0 else y[cubic.m + 1]
-                        length -= h
-                        a = x[joint][1 if k == 0 else cubic.n - 1]
-                        b = x[joint][2 if k == 0 else cubic.n - 2]
-                        start = h * a / 2
-                    s = place / 64
-                    speed = start + length * (a * (s - s * s / 2) + b * s * s / 2)
-                    limit = 30 * second / angle
-                    assert value == pytest.approx(sign * speed - limit, abs=1e-6 * limit)
-
-
-@pytest.mark.parametrize("sides", [((0.4, 0.5), (1.0, 1.2)), ((0.0, 0.5), (0.0, 1.0))])
-def test_squares_of_a_length_over_a_span_lie_in_their_range(sides: Any) -> None:
-    data = altered("cubic-virtual", {**NO_ANSWER, "proof.cap": 2**28})
-    cubic = Cubic(read_problem(data["problem"]), data["proof"])
-    low, high = [2**22] * 5, [2**25] * 5
-    for k, (a, b) in ((3, sides[0]), (0, sides[1])):
-        low[k], high[k] = int(a * 2**24), int(b * 2**24)
-    box = Box(cubic, low, high, [[None] * cubic.size for _ in range(2)], 0)
-    found = tuple(map(float, box.sides()[5]))
-    (h0, h1), (t0, t1) = sides
-    # A piece is no longer than its span.
-    assert found[0] == pytest.approx(h0 * h0 / t1, abs=1e-6)
-    assert found[1] == pytest.approx(h1 * h1 / t0 if t0 else h1, abs=1e-6)

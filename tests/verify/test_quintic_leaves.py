@@ -1,7 +1,8 @@
-"""What a leaf of a quintic proof bounds, against splines by scipy and sums by sampling."""
+"""What a leaf of a quintic proof bounds, and how a tree of them is read."""
 
 from __future__ import annotations
 
+import json
 from fractions import Fraction
 from itertools import pairwise
 
@@ -9,12 +10,19 @@ import numpy as np
 import pytest
 from scipy.interpolate import make_interp_spline
 from scipy.optimize import minimize
-from support.forgeries.forgery import NO_ANSWER, altered
-from trajgap.verify import read_problem
+from support.certificate_kinds import text
+from support.forgeries.forgery import NO_ANSWER, altered, document
+from trajgap.verify import (
+    MOST_QUINTIC_SEGMENTS,
+    USUAL_WEIGHT,
+    read_problem,
+    verify_certificate,
+)
 from trajgap.verify.quintic import QuinticSpline
 from trajgap.verify.quintic_bound import Bound, Task
 from trajgap.verify.quintic_parts import Cubic, Part
-from trajgap.verify.reading import Clock
+from trajgap.verify.quintic_tree import read_tree
+from trajgap.verify.reading import Clock, OutOfTime, Refused
 
 CLOCK = Clock(1e9)
 SPLINE_ENDS = [(1, 0.0), (2, 0.0)]
@@ -135,3 +143,43 @@ def test_products_of_three_variables_have_one_number_each(n: int) -> None:
         assert value[thrice.cubes[k]] == pytest.approx(x[k] ** 3)
         for m in range(n):
             assert value[thrice.squares[k, m]] == pytest.approx(x[k] ** 2 * x[m])
+
+
+KIND = "quintic-spline"
+
+
+def test_the_nodes_of_a_text() -> None:
+    words = "caz.#7#0(-2.5e-3).-12 0.1302 2932 934:193"
+    assert read_tree(words, Clock(9.0)) == [
+        2,
+        0,
+        MOST_QUINTIC_SEGMENTS - 1,
+        ["."],
+        [".", 7, "0"],
+        [".", 0, "-2.5e-3"],
+        [".", -12, 0, USUAL_WEIGHT],
+        [".", 1302, 2932, USUAL_WEIGHT, 934, 193],
+    ]
+
+
+@pytest.mark.parametrize(("words", "at"), [("a b", 1), ("#1()", 2), (".1.5 2", 1)])
+def test_the_place_of_a_wrong_character_is_said(words: str, at: int) -> None:
+    with pytest.raises(Refused, match=f"the tree at character {at}$"):
+        read_tree(words, Clock(9.0))
+
+
+def test_reading_ends_with_the_time() -> None:
+    with pytest.raises(OutOfTime):
+        read_tree("ab..", Clock(-1.0))
+
+
+def test_a_text_proves_what_its_nodes_prove() -> None:
+    written = document(KIND)
+    listed = json.loads(text(KIND))
+    assert isinstance(written["proof"]["tree"], str)
+    assert isinstance(listed["proof"]["tree"], list)
+    found = verify_certificate(written)
+    assert found.proves
+    assert not found.altered
+    assert found.lower == verify_certificate(listed).lower
+    assert len(json.dumps(written)) < len(json.dumps(listed))

@@ -12,7 +12,8 @@ import numpy as np
 import pytest
 from support.alterations import Path_, changed, fields, get, put
 from support.certificate_kinds import KINDS, stated, text
-from trajgap.verify import Subject, verdict
+from trajgap.problem import evaluate
+from trajgap.verify import Subject
 from trajgap.verify import verify_certificate as verify
 from trajgap.verify.curve import nonnegative
 from trajgap.verify.reading import Clock
@@ -34,13 +35,14 @@ def attack(base: dict[str, Any], optimum: float, path: Path_, rng: np.random.Gen
         return "refused"
     assert verdict.altered
     assert str(verdict).startswith("altered, still proves")
-    assert verdict.lower is not None
+    kind = KINDS[base["proof"]["kind"]]
     if data["problem"] != base["problem"]:
-        optimum = KINDS[base["proof"]["kind"]].optimum(stated(data))
+        optimum = kind.optimum(stated(data))
     assert float(verdict.lower) <= optimum * (1 + 1e-9), path
     assert not verdict.infeasible
     if verdict.upper is not None:
         assert verdict.lower <= verdict.upper, path
+        assert not kind.exact or float(verdict.upper) >= optimum * (1 - 1e-9), path
     return "still proves"
 
 
@@ -57,10 +59,21 @@ def mutate(kind: str, per_field: int, seed: int) -> Counter[str]:
 
 
 def test_every_kind_of_proof_is_attacked() -> None:
-    # Proofs about any curve are attacked in test_forged_any_curve.py, trees of steps in
-    # test_cubic_attacks.py.
-    declared = {k for k in PROOFS if verdict._proof_kind(k).subject is Subject.DECLARED}
-    assert {*KINDS, "cubic"} == declared
+    assert set(KINDS) == set(PROOFS)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_interval_holds_beside_other_programs(kind: str) -> None:
+    """The judge of `trajgap.problem` passes the answer, and no search undercuts the lower bound."""
+    base, one = document(kind), KINDS[kind]
+    problem, claim = stated(base), base["claim"]
+    h = np.array([float(Fraction(x)) for x in claim["durations"]])
+    assert h.sum() <= float(Fraction(claim["upper"])) + 1e-12
+    assert float(Fraction(claim["lower"])) <= one.optimum(problem) * (1 + 1e-9)
+    if one.subject is Subject.DECLARED:
+        assert (problem.duration_lower <= h * (1 + 1e-12)).all()
+        assert (h <= problem.duration_upper).all()
+        assert evaluate(problem, h[None]).stretch[0] <= 1 + 1e-9
 
 
 SIBLING = "four-three-four"
@@ -79,10 +92,11 @@ def test_no_mutation_proves_a_false_statement(kind: str) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS)
-def test_a_thousand_mutations_of_each_field_prove_nothing_false(kind: str) -> None:
-    outcomes = mutate(kind, 1000, 11)
-    assert outcomes["refused"] > 5000
-    assert outcomes["still proves"] > 500
+def test_many_mutations_of_each_field_prove_nothing_false(kind: str) -> None:
+    many = KINDS[kind].many
+    outcomes = mutate(kind, many, 11)
+    assert outcomes["refused"] > 5 * many
+    assert outcomes["still proves"] > many / 2
 
 
 def positive(poly: list[Fraction], high: Fraction) -> bool:

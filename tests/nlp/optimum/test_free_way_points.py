@@ -68,7 +68,6 @@ def test_the_optimum_agrees_with_slsqp(virtual: tuple[int, ...]) -> None:
     )
     solution = solve(problem)
     assert solution.status is Status.CONVERGED
-    assert solution.nodal is not None
     assert solution.nodal.shape == (len(virtual), 2)
     theirs = by_scipy(problem, ranges=False)
     # Held at samples alone, limits allow a little more.
@@ -83,14 +82,11 @@ def test_position_limits_hold_for_virtual_breaks_and_between() -> None:
     wide = Problem(Q, LIMITS, curve, duration_lower=0.2)
     tight = Problem(Q, LIMITS.with_positions(LOW, HIGH), curve, duration_lower=0.2)
     free, held = solve(wide), solve(tight)
-    assert free.durations is not None
     assert held.durations is not None
     assert free.nodal is not None
     beyond = check(tight, free.durations, free.nodal)
     assert beyond.verdict is Verdict.VIOLATED
-    assert beyond.worst is not None
     assert beyond.worst.quantity == "position"
-    assert held.check is not None
     assert held.check.verdict is Verdict.PASS
     assert held.total_time > free.total_time * (1 + 1e-6)
     path = fit(curve, Q, held.durations, held.nodal)(np.linspace(0, held.total_time, 2001))
@@ -106,7 +102,6 @@ def test_a_virtual_break_out_of_range_is_a_violated_position() -> None:
     problem = Problem(Q[:2], LIMITS.with_positions(-1.5, 1.5), curve)
     found = check(problem, [2.0, 2.0, 2.0, 2.0], [[1.9, 0.0]])
     assert found.verdict is Verdict.VIOLATED
-    assert found.worst is not None
     assert (found.worst.quantity, found.worst.joint) == ("position", problem.joints[0])
     assert found.worst.value >= 1.9
 
@@ -116,7 +111,6 @@ def test_a_segment_at_a_virtual_break_that_shrinks_is_no_optimum() -> None:
     curve = quintic_spline_virtual(3)
     solution = solve(Problem(Q[:3, :1], Limits(1.1, 3.0, 20.0), curve), starts=2)
     assert solution.durations is not None
-    assert solution.check is not None
     assert solution.check.verdict is Verdict.PASS
     assert solution.status is Status.NOT_ATTAINED
     assert solution.why == "the total falls as the duration of segment 1, 4 goes to 0"

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import importlib.util
-import sys
 from dataclasses import replace
-from pathlib import Path
-from types import ModuleType
 
 import numpy as np
 import pytest
 from scipy.optimize import minimize
+from support.benchmarks import loaded
 from trajgap.compare import audit
 from trajgap.nlp import Solution, Status, solve, solve_per_joint
 from trajgap.nlp.optimum import feasibility, limit_rows
@@ -25,7 +22,6 @@ from trajgap.problem import (
     Verdict,
     check,
     cubic_spline,
-    load_case,
     parse_case,
     piecewise,
     quintic_spline,
@@ -34,11 +30,9 @@ from trajgap.problem import (
     uniform_cubic_b_spline,
 )
 
-BENCHMARK = Path(__file__).parents[3] / "benchmarks/solver_errors.py"
-
 HEAD = """
 format = 1
-id = "{id}"
+id = "near"
 title = "solver"
 [source]
 [robot]
@@ -61,28 +55,16 @@ acceleration = 2.0
 family = "cubic-spline"
 end_orders = [2]
 """
-QUINTIC_NEAR = """
-[waypoints]
-joint_rows = [[-0.9916, 1.6801773, 1.6801763, 0.5139]]
-[limits]
-velocity = 0.00692
-acceleration = 0.00022
-[interpolant]
-family = "quintic-spline"
-"""
-BOXED = """
-[waypoints]
-joint_rows = [[-0.6432, 1.66535, 1.33154, -1.05607, 0.75371]]
-[limits]
-velocity = 2.24057
-acceleration = 2.87475
-jerk = 6.80544
-[durations]
-lower = [0.767, 0.352, 0.405, 0.378]
-upper = [2.408, 1.594, 1.740, 2.077]
-[interpolant]
-family = "cubic-spline"
-"""
+QUINTIC_NEAR = Problem(
+    [[-0.9916], [1.6801773], [1.6801763], [0.5139]], Limits(0.00692, 0.00022), quintic_spline(3)
+)
+BOXED = Problem(
+    [[-0.6432], [1.66535], [1.33154], [-1.05607], [0.75371]],
+    Limits(2.24057, 2.87475, 6.80544),
+    cubic_spline(4),
+    [0.767, 0.352, 0.405, 0.378],
+    [2.408, 1.594, 1.740, 2.077],
+)
 CLAIMS = """
 [[claims]]
 id = "keeps"
@@ -98,20 +80,22 @@ of = ["keeps"]
 """
 
 
-def case(name: str, *parts: str):
-    return parse_case(HEAD.format(id=name) + "".join(parts), f"{name}.toml")
+def case(*parts: str):
+    return parse_case("".join((HEAD, *parts)), "near.toml")
 
 
 @pytest.mark.parametrize(
-    ("text", "passes"),
+    ("problem", "passes"),
     [
-        (NATURAL_NEAR, [0.64009, 0.00000125908]),
+        (case(NATURAL_NEAR).problem(), [0.64009, 0.00000125908]),
         (QUINTIC_NEAR, [700.6, 0.00076, 280.2]),
         (BOXED, [1.9765, 0.9903, 1.7399, 2.0769]),
     ],
+    ids=["natural", "quintic", "boxed"],
 )
-def test_no_answer_is_worse_than_a_motion_that_passes(text: str, passes: list[float]) -> None:
-    problem = case("near", text).problem()
+def test_no_answer_is_worse_than_a_motion_that_passes(
+    problem: Problem, passes: list[float]
+) -> None:
     assert check(problem, passes).verdict is Verdict.PASS
     solution = solve(problem)
     assert solution.status is Status.CONVERGED
@@ -120,7 +104,7 @@ def test_no_answer_is_worse_than_a_motion_that_passes(text: str, passes: list[fl
 
 
 def test_an_audit_never_calls_best_known_what_its_own_checks_undercut() -> None:
-    report = audit(case("claimed", NATURAL_NEAR, CLAIMS), seeds=2, certify_seconds=0)
+    report = audit(case(NATURAL_NEAR, CLAIMS), seeds=2, certify_seconds=0)
     optimum = report.cases[0].study.optimum("main", "as-printed")
     assert optimum.best < 0.64009 + 0.00000125908
     relaxed = report.cases[0].study.relaxed("main", "as-printed")
@@ -130,8 +114,7 @@ def test_an_audit_never_calls_best_known_what_its_own_checks_undercut() -> None:
 def test_certified_bounds_and_answers_of_nearly_coincident_points_agree() -> None:
     from trajgap.nlp import certify
 
-    found = certify(case("near", NATURAL_NEAR).problem(), gap=0.05, seconds=20)
-    assert found.upper is not None
+    found = certify(case(NATURAL_NEAR).problem(), gap=0.05, seconds=20)
     assert float(found.upper) < 0.6402
 
 
@@ -333,7 +316,7 @@ def test_exact_rows_have_the_gradients_of_their_excesses(
 
 
 def test_a_descent_starts_outside_the_limits_and_ends_within() -> None:
-    problem = case("boxed", BOXED).problem()
+    problem = BOXED
     box = LogBox(np.log(problem.duration_lower), np.log(problem.duration_upper))
     start = np.sqrt(problem.duration_lower * problem.duration_upper)
     assert check(problem, start).verdict is Verdict.VIOLATED
@@ -362,25 +345,15 @@ def test_a_descent_that_stops_short_is_resumed_to_an_optimum() -> None:
     assert kkt(problem, ended.durations).residual < 1e-8
 
 
-def benchmark() -> ModuleType:
-    spec = importlib.util.spec_from_file_location("solver_errors", BENCHMARK)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[spec.name] = module  # dataclasses look their module up
-    spec.loader.exec_module(module)
-    return module
-
-
 @pytest.mark.parametrize("seed", [16, 39, 142, 221, pytest.param(309, marks=pytest.mark.slow)])
 def test_brute_force_improves_no_answer_and_contradicts_no_word(seed: int) -> None:
-    errors = benchmark()
+    errors = loaded("solver_errors")
     problem = errors.random_problem(np.random.default_rng(seed))
     assert errors.judged(solve(problem), errors.brute_force(problem, seed)) == ""
 
 
 def test_the_benchmark_sees_wrong_words_and_improvable_answers() -> None:
-    errors = benchmark()
+    errors = loaded("solver_errors")
     problem = two_joints()
     brute = errors.brute_force(problem, 0)
     good = solve(problem)
@@ -390,14 +363,3 @@ def test_the_benchmark_sees_wrong_words_and_improvable_answers() -> None:
     assert errors.judged(replace(good, durations=0.9 * good.durations), brute) != ""
     lost = Solution(problem, Status.INFEASIBLE, "wrong")
     assert errors.judged(lost, brute) == "wrong infeasible"
-
-
-def test_shipped_optima_are_those_of_the_exact_descents() -> None:
-    """The two solvers of small problems share nothing but the extrema; they agree."""
-    problem = load_case("puma560-mnam-pso-353").problem()
-    solution = solve(problem)
-    floor = 1e-4 * solution.durations.mean()
-    box = LogBox(np.full(3, np.log(floor)), np.full(3, 5.0))
-    low = np.maximum(box.low, np.log(np.maximum(problem.duration_lower, 1e-300)))
-    ended = descend(problem, 2.0 * solution.durations, LogBox(low, box.high))
-    assert ended.durations.sum() == pytest.approx(solution.total_time, rel=1e-9)

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from support.long_problems import long_curves, long_problem
 from trajgap.nlp import Status, solve
 from trajgap.nlp.optimum import long_search as long_search_module
 from trajgap.nlp.optimum import solver
@@ -18,11 +19,9 @@ from trajgap.problem import (
     Interpolant,
     Limits,
     Problem,
-    TrajgapError,
     Verdict,
     check,
     cubic_spline,
-    cubic_spline_virtual,
     extrema,
     fit,
     piecewise,
@@ -33,33 +32,16 @@ from trajgap.problem.curves import Places
 SEGMENTS = 26
 
 
-def problem_of(curve: Interpolant, seed: int = 3, **changes: object) -> Problem:
-    rng = np.random.default_rng(seed)
-    count = len(curve.waypoint_breaks)
-    q = np.cumsum(rng.normal(size=(count, 2)) * [0.4, 0.9], axis=0) - 5.0
-    limits = changes.pop("limits", Limits([1.5, 3.0], [6.0, 15.0], [np.inf, 90.0]))
-    return Problem(q, limits, curve, **changes)  # type: ignore[arg-type]
-
-
-CURVES = {
-    "cubic": cubic_spline(SEGMENTS),
-    "quintic": quintic_spline(SEGMENTS),
-    "virtual": cubic_spline_virtual(SEGMENTS - 1),
-    "degrees of two kinds": piecewise((4, *(3,) * (SEGMENTS - 2), 4), 2),
-    "moving ends": cubic_spline(SEGMENTS, ((1, 0.25),)),
-    "ends apart": cubic_spline(SEGMENTS, ((1, (0.25, -0.4)),), ((1, (-0.1, 0.3)),)),
-}
+CURVES = long_curves(SEGMENTS)
 
 
 @pytest.mark.parametrize("name", CURVES)
 def test_the_answer_is_optimal_by_the_dense_conditions(name: str) -> None:
-    problem = problem_of(CURVES[name])
+    problem = long_problem(CURVES[name])
     answer = solve(problem)
     assert answer.status is Status.CONVERGED
     assert answer.durations is not None
-    assert answer.check is not None
     assert answer.check.verdict is Verdict.PASS
-    assert answer.kkt_residual is not None
     assert answer.kkt_residual <= 1e-8
     dense = kkt(problem, answer.durations, active=1e-6)
     assert dense.residual <= 1e-6
@@ -99,13 +81,6 @@ def test_sensitivities_of_position_limits_are_differences_of_totals(
         assert sum(found) == pytest.approx(0.1 * (wider - answer.total_time) / step, rel=1e-2)
 
 
-def test_the_number_of_starts_is_one_or_more() -> None:
-    problem = problem_of(cubic_spline(9))
-    with pytest.raises(TrajgapError, match="starts: must be 1 or more, got 0"):
-        solve(problem, starts=0)
-    assert solve(problem, starts=1).status is Status.CONVERGED
-
-
 def one_joint(curve: Interpolant, seed: int) -> Problem:
     """Way-points of a random walk of uneven limits: here and there it runs at its velocity limit.
 
@@ -132,8 +107,6 @@ def test_a_plateau_at_the_velocity_limit_keeps_no_search_from_its_end(
 ) -> None:
     problem = one_joint(curve, seed)
     answer = long_search(problem, way_start(problem), np.full(curve.segments, 1e-5))
-    assert answer is not None
-    assert answer.kkt is not None
     assert answer.kkt.residual <= 1e-8
     assert check(problem, answer.durations).verdict is Verdict.PASS
     mirrored = Problem(problem.waypoints[::-1], problem.limits, curve)
@@ -145,52 +118,42 @@ def test_a_plateau_at_the_velocity_limit_keeps_no_search_from_its_end(
 @pytest.mark.parametrize("name", ["cubic", "quintic"])
 @pytest.mark.parametrize("seed", [1, 2])
 def test_the_tracked_formulation_ends_at_the_same_total(name: str, seed: int) -> None:
-    problem = problem_of(CURVES[name], seed)
+    problem = long_problem(CURVES[name], seed)
     tracked = solve(problem, form=Form.LIFTED)
     assert solve(problem).total_time == pytest.approx(tracked.total_time, rel=1e-8)
 
 
-def test_time_scaling_and_mirror() -> None:
-    problem = problem_of(CURVES["quintic"])
-    total = solve(problem).total_time
-    slower = problem.limits.with_derivatives(problem.limits.derivatives / 3.0 ** np.arange(1, 4))
-    scaled = solve(Problem(problem.waypoints, slower, problem.curve)).total_time
-    assert scaled == pytest.approx(3.0 * total, rel=1e-8)
-    mirrored = solve(Problem(1.0 - problem.waypoints[::-1], problem.limits, problem.curve))
-    assert mirrored.total_time == pytest.approx(total, rel=1e-8)
-
-
 def test_bounds_on_durations_and_positions_are_kept_and_priced() -> None:
     curve = CURVES["cubic"]
-    free = solve(problem_of(curve))
+    free = solve(long_problem(curve))
     assert free.durations is not None
-    trajectory = fit(curve, problem_of(curve).waypoints, free.durations)
+    trajectory = fit(curve, long_problem(curve).waypoints, free.durations)
     top = max(extrema(trajectory, 1, 0), key=lambda e: e.value)
-    edge = max(float(problem_of(curve).waypoints[:, 1].max()), 0.5 * (top.value + top.value)) - 1e-3
-    edge = max(edge, float(problem_of(curve).waypoints[:, 1].max()) + 1e-4)
+    edge = (
+        max(float(long_problem(curve).waypoints[:, 1].max()), 0.5 * (top.value + top.value)) - 1e-3
+    )
+    edge = max(edge, float(long_problem(curve).waypoints[:, 1].max()) + 1e-4)
     limits = Limits([1.5, 3.0], [6.0, 15.0], [np.inf, 90.0], -np.inf, [np.inf, edge])
     lower = np.zeros(SEGMENTS)
     lower[7] = 1.3 * free.durations[7]
-    problem = problem_of(curve, limits=limits, duration_lower=lower)
+    problem = long_problem(curve, limits=limits, duration_lower=lower)
     answer = solve(problem)
     assert answer.status is Status.CONVERGED
     assert answer.durations is not None
-    assert answer.check is not None
     assert answer.check.verdict is Verdict.PASS
     assert answer.total_time > free.total_time
     walls = [a for a in answer.active if a.quantity == "duration"]
     assert [a.segment for a in walls] == [7]
     longer = lower.copy()
     longer[7] *= 1.0001
-    more = solve(problem_of(curve, limits=limits, duration_lower=longer))
+    more = solve(long_problem(curve, limits=limits, duration_lower=longer))
     slope = (more.total_time - answer.total_time) / np.log(1.0001)
     assert walls[0].multiplier == pytest.approx(slope, rel=1e-3)
 
 
 def test_a_known_motion_is_never_lost() -> None:
-    problem = problem_of(CURVES["cubic"])
+    problem = long_problem(CURVES["cubic"])
     answer = solve(problem)
-    assert answer.durations is not None
     slow = solve(problem, known=answer.durations[None] * 1.01)
     assert slow.total_time == pytest.approx(answer.total_time, rel=1e-9)
     stopped = solve(problem, known=answer.durations[None], seconds=0.0)
@@ -198,10 +161,9 @@ def test_a_known_motion_is_never_lost() -> None:
 
 
 def test_out_of_time_the_best_motion_so_far_is_the_answer() -> None:
-    problem = problem_of(CURVES["quintic"])
+    problem = long_problem(CURVES["quintic"])
     answer = solve(problem, seconds=0.0)
     assert answer.status is Status.FEASIBLE
-    assert answer.check is not None
     assert answer.check.verdict is Verdict.PASS
     ended = "the search ended before it met the conditions of an optimum"
     assert answer.why == f"{ended}; {CUT_SHORT}"
@@ -210,7 +172,7 @@ def test_out_of_time_the_best_motion_so_far_is_the_answer() -> None:
 def test_a_round_that_fails_begins_again_from_the_best_motion(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    problem = problem_of(CURVES["cubic"])
+    problem = long_problem(CURVES["cubic"])
     total = solve(problem).total_time
     round_ = long_search_module.solve_round
     calls: list[int] = []
@@ -232,28 +194,27 @@ def test_a_round_that_fails_begins_again_from_the_best_motion(
 
 @pytest.mark.slow
 def test_what_does_not_settle_is_searched_as_before() -> None:
-    q = problem_of(CURVES["cubic"]).waypoints.copy()
+    q = long_problem(CURVES["cubic"]).waypoints.copy()
     q[14] = q[13] + 1e-9
     problem = Problem(q, Limits([1.5, 3.0], [np.inf, np.inf]), CURVES["cubic"])
     answer = solve(problem)
     tracked = solve(problem, form=Form.LIFTED)
     assert answer.total_time == pytest.approx(tracked.total_time, rel=1e-6)
-    assert answer.check is not None
     assert answer.check.verdict is Verdict.PASS
 
 
 def test_what_is_not_searched_here(monkeypatch: pytest.MonkeyPatch) -> None:
     seen: list[Problem] = []
-    standing = np.repeat(problem_of(CURVES["cubic"]).waypoints[:9], 3, axis=0)
+    standing = np.repeat(long_problem(CURVES["cubic"]).waypoints[:9], 3, axis=0)
     monkeypatch.setattr(solver, "solve_long", lambda problem, _: seen.append(problem))
     for problem in (
-        problem_of(cubic_spline(24)),
-        problem_of(piecewise((5,) * 26, 2)),
+        long_problem(cubic_spline(24)),
+        long_problem(piecewise((5,) * 26, 2)),
         Problem(standing, Limits(1.0, 5.0, joints=2), CURVES["cubic"]),
     ):
         ask = solver.Ask(4, 0, None, np.empty((0, 0)), None, None, np.inf)
         assert not long_enough(problem, ask)
-    solve(problem_of(cubic_spline(24)), starts=1)
+    solve(long_problem(cubic_spline(24)), starts=1)
     assert seen == []
 
 
@@ -261,7 +222,7 @@ def test_what_is_not_searched_here(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_expressions_are_those_of_the_fitted_curve(name: str) -> None:
     import casadi as ca
 
-    problem = problem_of(CURVES[name])
+    problem = long_problem(CURVES[name])
     h = way_start(problem) * np.random.default_rng(1).uniform(0.7, 1.4, SEGMENTS)
     program = LongProgram(problem, float(h.mean()), np.zeros(SEGMENTS))
     trajectory = fit(problem.curve, problem.waypoints, h)
@@ -279,7 +240,6 @@ def test_expressions_are_those_of_the_fitted_curve(name: str) -> None:
         np.testing.assert_allclose(found, truth, rtol=1e-7, atol=1e-9)
     assert rows.places.s.size > 10
     local = long_search(problem, way_start(problem), np.full(SEGMENTS, 1e-4))
-    assert local is not None
     assert check(problem, local.durations).max_violation <= 1e-9
 
 

@@ -6,6 +6,7 @@ from dataclasses import replace
 import casadi as ca
 import numpy as np
 import pytest
+from support.long_problems import LIMITS, long_curves, long_problem
 from trajgap.nlp import Status, solve
 from trajgap.nlp.optimum import long_search as long_search_module
 from trajgap.nlp.optimum import long_windows
@@ -19,31 +20,18 @@ from trajgap.problem import (
     Limits,
     Problem,
     check,
-    cubic_spline,
     cubic_spline_virtual,
     evaluate,
     fit,
-    piecewise,
-    quintic_spline,
 )
 from trajgap.problem.curves import Places, Trajectory
 
 SEGMENTS = 40
-CURVES = {
-    "cubic": cubic_spline(SEGMENTS),
-    "quintic": quintic_spline(SEGMENTS),
-    "virtual": cubic_spline_virtual(SEGMENTS - 1),
-    "degrees of two kinds": piecewise((4, *(3,) * (SEGMENTS - 2), 4), 2),
-    "ends apart": cubic_spline(SEGMENTS, ((1, (0.25, -0.4)),), ((1, (-0.1, 0.3)),)),
-}
+CURVES = long_curves(SEGMENTS)
 
 
-def problem_of(curve: Interpolant, **changes: object) -> Problem:
-    rng = np.random.default_rng(11)
-    count = len(curve.waypoint_breaks)
-    q = np.cumsum(rng.normal(size=(count, 2)) * [0.4, 0.9], axis=0) - 5.0
-    limits = Limits([1.5, 3.0], [6.0, 15.0], [np.inf, 90.0], -30.0, [20.0, np.inf])
-    return Problem(q, limits, curve, **changes)  # type: ignore[arg-type]
+def problem_of(curve: Interpolant) -> Problem:
+    return long_problem(curve, 11, LIMITS.with_positions(-30.0, [20.0, np.inf]))
 
 
 @pytest.fixture
@@ -74,9 +62,7 @@ def test_joined_windows_end_at_the_optimum_of_the_whole(
         patch.setattr(long_search_module, "FEWEST", SEGMENTS + 1)
         whole = long_search(problem, way_start(problem), floor)
     assert len(small_windows) == 1
-    assert whole is not None
     assert answer.status is Status.CONVERGED
-    assert answer.kkt_residual is not None
     assert answer.kkt_residual <= 1e-8
     assert answer.total_time == pytest.approx(float(whole.durations.sum()), rel=1e-8)
     assert solve(problem).durations == pytest.approx(answer.durations, rel=0.0, abs=0.0)
@@ -86,7 +72,6 @@ def test_what_windows_leave_is_nearly_the_optimum(small_windows: list[Joined | N
     problem = problem_of(CURVES["quintic"])
     answer = solve(problem)
     (joined,) = small_windows
-    assert joined is not None
     unit = float(way_start(problem).mean())
     h = joined.state.x[:SEGMENTS] * unit
     assert h.sum() == pytest.approx(answer.total_time, rel=0.01)
@@ -185,7 +170,6 @@ def test_time_that_ends_between_windows_and_after_them(
     monkeypatch.setattr(long_search_module, "time_up", lambda: True)
     late = long_search(problem, start, floor)
     assert small_windows[-1] is not None
-    assert late is not None
     assert late.kkt is None
     assert check(problem, late.durations).max_violation <= 1e-9
 

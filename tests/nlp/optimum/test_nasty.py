@@ -1,4 +1,4 @@
-"""Nasty problems that were once answered wrongly, and answers that must not look at the clock."""
+"""Nasty problems: nothing known is missed, rounding hides nothing, no answer looks at the clock."""
 
 from __future__ import annotations
 
@@ -12,18 +12,25 @@ from pathlib import Path
 import numpy as np
 import pytest
 from attacks.nasty import answered, nasty, rebuilt
+from scipy.interpolate import CubicSpline
 from trajgap.nlp import Solution, Status, certify, solve
 from trajgap.nlp.optimum import limit_rows, optimality, solver
+from trajgap.nlp.optimum.decided import decided
 from trajgap.nlp.optimum.limit_rows import exact_rows
 from trajgap.nlp.optimum.optimality import kkt
+from trajgap.nlp.optimum.straight import straight_durations
 from trajgap.nlp.proofs import exact_problem
 from trajgap.problem import (
+    Interpolant,
     Limits,
     Problem,
     SingularError,
     Verdict,
     check,
+    cubic_spline,
+    piecewise,
     quintic_spline,
+    rest_to_rest,
     three_five_three,
 )
 
@@ -82,7 +89,6 @@ def test_rounding_that_hides_a_spline_is_undecided_and_raises_nothing(
 @pytest.mark.slow
 def test_a_search_among_singular_splines_ends() -> None:
     solution = solve(near_coincident())
-    assert solution.check is not None
     assert solution.check.verdict is Verdict.PASS
 
 
@@ -106,7 +112,6 @@ def test_a_known_motion_counts_stretched_until_it_keeps_the_limits() -> None:
         worse = Solution(problem, Status.FEASIBLE, durations=poor[0])
         found = solver._with_known(problem, worse, asked)
         assert found.total_time == pytest.approx(best.total_time, rel=1e-8)
-        assert found.check is not None
         assert found.check.verdict is Verdict.PASS
 
 
@@ -124,3 +129,178 @@ def test_no_answer_depends_on_the_clock(monkeypatch: pytest.MonkeyPatch) -> None
     assert after.durations.tolist() == before.durations.tolist()
     assert (again.lower, again.upper, again.nodes) == (proved.lower, proved.upper, proved.nodes)
     assert 0 < proved.nodes < 200
+
+
+NEAR_QUINTIC = Problem(
+    np.array([[-0.394038, 2.80925], [-0.394038023162454, 2.809249937965431], [-2.52596, 2.12646]]),
+    Limits([5.14295, 4.66445]),
+    quintic_spline(2),
+)
+"""Tight, its velocity is known to 1.3e-7 only."""
+NEAR_REST = Problem(
+    np.array([[-3.08589], [-3.0858899778318474], [-1.21865]]),
+    Limits(2.43707, 8.27705, 10.201, joints=1),
+    rest_to_rest(2, 5),
+)
+"""The first segment moves by 2.2e-8: its jerk is known to 2.8e-8."""
+NEAR_SLOW = Problem(
+    np.array([[0.00168312783469821], [0.00251930784423248], [0.00251930779740281]]),
+    Limits(2.1137213420343702e-05, 2.757546657639957e-07, joints=1),
+    rest_to_rest(2, 3),
+)
+"""The second segment moves by 4.7e-11."""
+NEAR_FIVE = Problem(
+    np.array(
+        [
+            [0.02641919780979038, -0.05700448060931738],
+            [-0.00631502113016282, 0.02240755551189397],
+            [0.00652073455840059, 0.03352738393464709],
+            [0.0065207544991108, 0.0335274146687773],
+            [0.15895292051981613, 0.00249910148870389],
+        ]
+    ),
+    Limits(
+        [1.086840655163135, 0.22097923251188928],
+        [7.368688674971463, 1.5888442219157457],
+        [65.07287923439381, 24.72364296814572],
+        [-0.04583593782741489, -0.0786535884520687],
+        [0.20667036201780242, 0.05966648540146378],
+    ),
+    quintic_spline(4),
+)
+"""The third segment moves by 4e-8."""
+
+
+@pytest.mark.parametrize(
+    ("problem", "passes"),
+    [
+        (NEAR_QUINTIC, [4.9419900922386256e-05, 0.71683133566835033]),
+        (NEAR_REST, [0.0050712534971524368, 2.2229969394083788]),
+        pytest.param(
+            NEAR_FIVE,
+            [5.57461316053e-01, 9.62392269288e-02, 2.6287550645156e-07, 5.16148513876e-01],
+            marks=pytest.mark.slow,
+        ),
+    ],
+)
+def test_no_search_beats_an_answer_that_rounding_blurs(
+    problem: Problem, passes: list[float]
+) -> None:
+    """The searches of the attacks and of the benchmark found these motions."""
+    assert check(problem, passes).verdict is Verdict.PASS
+    solution = solve(problem)
+    assert solution.status is Status.CONVERGED
+    assert solution.kkt_residual < 1e-8
+    assert check(problem, solution.durations, solution.nodal).verdict is Verdict.PASS
+    assert solution.best <= sum(passes) * (1 + 1e-6)
+
+
+@pytest.mark.parametrize(("problem", "factors"), [(NEAR_REST, None), (NEAR_SLOW, (1.5, 6.0))])
+def test_blurred_rest_to_rest_answers_are_those_in_closed_form(
+    problem: Problem, factors: tuple[float, float] | None
+) -> None:
+    way = np.abs(np.diff(problem.waypoints, axis=0))[:, 0]
+    speed, bend = factors or (1.875, 10.0 / np.sqrt(3.0))
+    v, a, j = problem.limits.derivatives[0]
+    least = np.maximum(speed * way / v, np.sqrt(bend * way / a))
+    if np.isfinite(j):
+        least = np.maximum(least, np.cbrt(60.0 * way / j))
+    assert solve(problem).best == pytest.approx(least.sum(), rel=1e-7)
+
+
+def test_a_stretch_past_rounding_is_said_and_small() -> None:
+    solution = solve(NEAR_QUINTIC)
+    assert "than a tight motion, which rounding errors blur" in str(solution.why)
+    shorter = solution.durations / (1 + 2e-7)
+    assert check(NEAR_QUINTIC, shorter).verdict is not Verdict.PASS
+
+
+def test_a_motion_at_its_duration_bound_is_decided_by_a_descent() -> None:
+    h = np.array([4.99108e-05, 0.7166245])
+    h *= check(NEAR_QUINTIC, h).stretch
+    bounded = replace(NEAR_QUINTIC, duration_upper=[h[0], 2.0])
+    assert check(bounded, h).verdict is Verdict.UNDECIDED
+    found = decided(bounded, h)
+    assert found.durations[0] <= h[0]
+    assert found.total < h.sum()
+    assert check(bounded, found.durations).verdict is Verdict.PASS
+    assert decided(replace(NEAR_REST, duration_upper=[9.0, 2.0]), np.array([1.0, 2.0])) is None
+
+
+@pytest.mark.parametrize("curve", [rest_to_rest(2, 5), piecewise((5, 5), 2)])
+def test_where_a_stretch_gives_a_feasible_motion_it_is_the_answer(
+    monkeypatch: pytest.MonkeyPatch, curve: Interpolant
+) -> None:
+    from trajgap.nlp.optimum import solver
+
+    def lost(one: Problem, *_: object) -> Solution:
+        return Solution(one, Status.FAILED, "lost")
+
+    monkeypatch.setattr(solver, "_tracked", lost)
+    monkeypatch.setattr(solver, "_searched", lost)
+    monkeypatch.setattr(solver, "_challenged", lambda one, *_: lost(one))
+    monkeypatch.setattr(solver, "_after_restoration", lambda one, *_: lost(one))
+    problem = Problem(np.array([[0.3], [1.1], [0.2]]), Limits(1.0, 2.0, joints=1), curve)
+    solution = solve(problem)
+    assert solution.status is not Status.FAILED
+    assert check(problem, solution.durations, solution.nodal).verdict is Verdict.PASS
+
+
+WAY = np.array(
+    [[0.00014985578991195], [0.00025145336379865], [0.00095632029691939], [0.0028869372]]
+)
+LIMITS = Limits(
+    acceleration=12.899170530102031,
+    jerk=1124.7368118743839,
+    position_lower=-0.00075,
+    position_upper=0.00344,
+    joints=1,
+)
+NATURAL = cubic_spline(3, ends=((2, 0.0),))
+LINE = Problem(WAY, LIMITS, NATURAL)
+
+
+def test_without_a_velocity_limit_a_line_takes_no_time() -> None:
+    solution = solve(LINE)
+    assert solution.status is Status.NOT_ATTAINED
+    assert solution.infimum == solution.best == 0.0
+    assert "nothing accelerates" in str(solution.why)
+    assert check(LINE, solution.durations).verdict is Verdict.PASS
+    assert solution.total_time < 2.0977e-4  # what differential evolution finds
+    assert "infimum         0.000000000 s" in str(solution)
+    # A second route: the natural spline of scipy at such durations does not bend.
+    times = np.concatenate([[0.0], np.cumsum(np.diff(WAY[:, 0]))]) / np.ptp(WAY)
+    bent = CubicSpline(times, WAY[:, 0], bc_type="natural")(np.linspace(0.0, 1.0, 50), 2)
+    assert np.abs(bent).max() < 1e-10 * np.ptp(WAY)
+
+
+def test_joints_on_one_line_share_it_and_bounds_above_do_not_matter() -> None:
+    both = Problem(
+        np.hstack([WAY, -2.0 * WAY, np.ones_like(WAY)]),
+        Limits([np.inf, np.inf, 1.0], [5.0, 7.0, 1.0]),
+        NATURAL,
+        duration_upper=[1e-5, 1e-2, 3.0],
+    )
+    solution = solve(both)
+    assert solution.best == 0.0
+    assert (solution.durations <= both.duration_upper).all()
+    ratio = solution.durations / np.diff(WAY[:, 0])
+    assert ratio == pytest.approx(ratio[0], rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        replace(LINE, limits=Limits(1.0, 12.9, joints=1)),
+        replace(LINE, curve=cubic_spline(3)),
+        replace(LINE, curve=quintic_spline(3)),
+        replace(LINE, duration_lower=[1e-5, 0.0, 0.0]),
+        replace(LINE, waypoints=WAY[[0, 2, 1, 3]]),
+        replace(LINE, waypoints=WAY[[0, 1, 1, 3]]),
+        Problem(np.hstack([WAY, WAY**2]), Limits(acceleration=1.0, joints=2), NATURAL),
+    ],
+    ids=["velocity", "rest", "rest-5", "lower bound", "turn", "still", "bend"],
+)
+def test_what_is_no_line_or_is_limited_is_searched(other: Problem) -> None:
+    assert straight_durations(LINE) is not None
+    assert straight_durations(other) is None

@@ -8,7 +8,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.optimize import minimize
 from support.small_problems import FAMILIES, small_problem
 from trajgap.nlp import Solution, Status, kkt, solve
 from trajgap.nlp.optimum import newton_curve, newton_kernel, newton_program, solver
@@ -131,34 +130,27 @@ def test_the_quadratic_program_is_that_of_non_negative_least_squares() -> None:
     assert unlike <= 2  # least squares give up a little earlier where rows contradict each other
 
 
+@pytest.mark.parametrize(
+    ("seeds", "least"),
+    [(range(2), 0), pytest.param(range(100, 150), 40, marks=pytest.mark.slow)],
+)
 @pytest.mark.parametrize("family", FAMILIES)
-def test_answers_are_those_of_the_tracked_nlp(family: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    for seed in range(2):
-        problem = small_problem(family, seed)
-        quick = settled_quickly(problem, 4, 0, FLOOR)
-        if quick is None:
-            continue
-        assert quick.kkt_residual is not None
-        assert quick.kkt_residual <= 1e-8
-        assert check(problem, quick.durations).verdict is Verdict.PASS
-        assert quick.total_time <= _tracked(problem, monkeypatch).total_time * (1 + TOTALS)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("family", FAMILIES)
-def test_answers_of_many_problems_agree(family: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_answers_are_those_of_the_tracked_nlp(
+    family: str, seeds: range, least: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
     settled = 0
-    for seed in range(100, 150):
+    for seed in seeds:
         problem = small_problem(family, seed)
         quick = settled_quickly(problem, 4, 0, FLOOR)
         if quick is None:
             continue
         settled += 1
+        assert quick.kkt_residual <= 1e-8
+        assert check(problem, quick.durations).verdict is Verdict.PASS
         other = _tracked(problem, monkeypatch)
         assert quick.total_time <= other.best * (1 + TOTALS), seed
-        if other.status is Status.CONVERGED:
-            assert quick.status is Status.CONVERGED
-    assert settled >= 40
+        assert quick.status is Status.CONVERGED or other.status is not Status.CONVERGED
+    assert settled >= least
 
 
 def test_most_small_problems_settle() -> None:
@@ -168,57 +160,6 @@ def test_most_small_problems_settle() -> None:
         for seed in range(4)
     ]
     assert sum(settled) >= 17
-
-
-def test_the_answer_follows_the_units_and_the_order_of_joints() -> None:
-    problem = small_problem("C4 quintic", 1)
-    joints = np.roll(np.arange(len(problem.joints)), 1)
-    pace, unit = 37.0, 180 / np.pi
-    rates = problem.limits.derivatives[joints] * unit * pace ** np.arange(1.0, 4.0)
-    limits = replace(
-        problem.limits.with_derivatives(rates),
-        position_lower=problem.limits.position_lower[joints] * unit,
-        position_upper=problem.limits.position_upper[joints] * unit,
-    )
-    other = replace(
-        problem,
-        waypoints=problem.waypoints[:, joints] * unit,
-        limits=limits,
-        duration_lower=problem.duration_lower / pace,
-    )
-    one, two = _quick(problem), _quick(other)
-    assert one.durations is not None
-    assert two.durations == pytest.approx(one.durations / pace, rel=1e-7)
-
-
-@pytest.mark.parametrize("family", ["3-5-3", "4-3-4", "C2 cubic"])
-def test_a_motion_backwards_takes_as_long(family: str) -> None:
-    problem = small_problem(family, 2)
-    mirrored = replace(
-        problem,
-        waypoints=problem.waypoints[::-1],
-        duration_lower=problem.duration_lower[::-1],
-        duration_upper=problem.duration_upper[::-1],
-    )
-    assert _quick(mirrored).total_time == pytest.approx(_quick(problem).total_time, rel=1e-9)
-
-
-def test_sequential_least_squares_find_nothing_shorter() -> None:
-    problem = small_problem("3-5-3", 6)
-    assert not problem.limits.limits_position
-    answer = _quick(problem)
-    assert answer.durations is not None
-    ended = minimize(
-        lambda z: float(np.exp(z).sum()),
-        np.log(answer.durations) + np.array([0.2, -0.1, 0.15]),
-        method="SLSQP",
-        bounds=[(np.log(max(low, 1e-3)), None) for low in problem.duration_lower],
-        constraints={"type": "ineq", "fun": lambda z: 1.0 - check(problem, np.exp(z)).stretch},
-        options={"maxiter": 60, "ftol": 1e-10},
-    )
-    h = np.exp(ended.x)
-    shortest = h.sum() * max(1.0, check(problem, h).stretch)
-    assert answer.total_time * (1 - 1e-9) <= shortest <= answer.total_time * 1.05
 
 
 def test_the_published_optimum_is_found_from_every_start() -> None:
@@ -292,20 +233,19 @@ def test_a_kernel_is_compiled_once_that_is_worth_the_wait() -> None:
     assert calls == [2.0]
 
 
-def test_a_small_problem_needs_neither_casadi_nor_pictures() -> None:
-    said = subprocess.run(
-        [
-            sys.executable,
-            "-c",
-            "import sys\n"
-            "from trajgap.nlp import solve\n"
-            "from trajgap.problem import Limits, Problem, three_five_three\n"
-            "answer = solve(Problem([[0], [1], [0.5], [2]], Limits(1, 2), three_five_three()))\n"
-            "assert answer.status == 'optimal', answer\n"
-            "print(*sorted({'casadi', 'matplotlib', 'toppra'} & set(sys.modules)))",
-        ],
-        capture_output=True,
-        text=True,
-        check=True,
-    )
+SMALL = """
+import sys
+from trajgap.nlp import solve, solve_per_joint
+from trajgap.problem import Limits, Problem, three_five_three
+one = Problem([[0], [1], [0.5], [2]], Limits(1, 2), three_five_three())
+assert solve(one).status == "optimal"
+problem = Problem([[0, 1], [1, 0.3], [0.5, -0.4], [2, 0]], Limits(1, 2), three_five_three())
+assert solve_per_joint(problem).ranges
+print(*sorted({"casadi", "matplotlib", "toppra"} & set(sys.modules)))
+"""
+
+
+def test_a_small_problem_and_its_ranges_need_neither_casadi_nor_pictures() -> None:
+    command = [sys.executable, "-c", SMALL]
+    said = subprocess.run(command, capture_output=True, text=True, check=True)
     assert said.stdout.strip() == ""

@@ -106,24 +106,17 @@ ROUNDED = 1 + 1e-9
 """Two searches that end in one optimum differ by rounding."""
 
 
+@pytest.mark.parametrize("seed", [0, 1, *(pytest.param(k, marks=pytest.mark.slow) for k in (2, 3))])
 @pytest.mark.parametrize("name", FOUND)
-def test_the_optimum_with_a_far_shorter_segment_is_found(name: str) -> None:
+def test_the_optimum_with_a_far_shorter_segment_is_found(name: str, seed: int) -> None:
     problem, durations, other = FOUND[name]
     h = np.array(durations)
     assert check(problem, h).verdict is Verdict.PASS
     assert h.sum() < 0.9995 * other
-    solution = solve(problem)
-    assert solution.status is Status.CONVERGED
+    solution = solve(problem, seed=seed)
+    assert solution.status is Status.CONVERGED or seed > 0
     assert solution.total_time <= h.sum() * ROUNDED
-    assert solution.check is not None
     assert solution.check.verdict is Verdict.PASS
-
-
-@pytest.mark.parametrize("seed", [0, 1, *(pytest.param(k, marks=pytest.mark.slow) for k in (2, 3))])
-@pytest.mark.parametrize("name", FOUND)
-def test_whatever_the_seed_of_the_search(name: str, seed: int) -> None:
-    problem, durations, _ = FOUND[name]
-    assert solve(problem, seed=seed).total_time <= sum(durations) * ROUNDED
 
 
 def test_the_same_reversed_in_time() -> None:

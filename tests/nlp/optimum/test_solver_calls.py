@@ -1,12 +1,14 @@
-"""Calls of a solver that were made before: the same numbers up to rounding, and no others."""
+"""Calls of a solver: what IPOPT is asked for, and calls that were made before."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
+import casadi as ca
 import numpy as np
 import pytest
 from trajgap.nlp.optimum import curve_tracking, solve, solver_calls
+from trajgap.nlp.optimum.ipopt import ipopt_options
 from trajgap.nlp.optimum.solver_calls import kept_calls, solved_before
 from trajgap.problem import Array, Limits, Problem, Verdict, check, uniform_cubic_b_spline
 
@@ -66,7 +68,6 @@ def test_what_is_asked_in_other_units_is_solved_once(monkeypatch: pytest.MonkeyP
 
     def counted(*arguments: object) -> object:
         calls = solver_calls._CALLS.get()
-        assert calls is not None
         before = len(calls)
         found = own(*arguments)  # type: ignore[arg-type]
         counts.append(len(calls) - before)
@@ -85,7 +86,6 @@ def test_what_is_asked_in_other_units_is_solved_once(monkeypatch: pytest.MonkeyP
     assert sum(counts[done:]) == 0
     assert other.total_time == pytest.approx(one.total_time / pace, rel=1e-13)
     assert (other.starts, other.iterations) == (one.starts, one.iterations)
-    assert other.durations is not None
     assert check(twin, other.durations).limits is Verdict.PASS
     slower = solve(Problem(Q, Limits(0.99 * v, a), curve), starts=2)
     assert sum(counts[2 * done :]) > 2
@@ -100,3 +100,15 @@ def test_outside_every_call_is_made() -> None:
     assert asked("one", given, calls) == 2
     solver_calls._CALLS.reset(token)
     assert asked("one", given, calls) == 1
+
+
+@pytest.mark.parametrize("warm", [False, True])
+def test_nothing_is_printed_where_a_function_is_not_defined(
+    warm: bool, capfd: pytest.CaptureFixture[str]
+) -> None:
+    x = ca.MX.sym("x")
+    program = {"x": x, "f": x, "g": ca.sqrt(x - 2.0)}
+    solver = ca.nlpsol("cold", "ipopt", program, ipopt_options(warm))
+    solver(x0=1.0, lbg=0.0, ubg=1.0)
+    assert solver.stats()["return_status"] == "Invalid_Number_Detected"
+    assert capfd.readouterr() == ("", "")

@@ -1,4 +1,4 @@
-"""The time limit of a certification: states, search and judging share it."""
+"""The time limit of a certification: states, search, answer and judging share it."""
 
 from __future__ import annotations
 
@@ -13,21 +13,30 @@ from typing import Any
 import numpy as np
 import pytest
 from trajgap.nlp.proofs import judged, session, state
+from trajgap.nlp.proofs.answer import prove_feasible, solve_exactly
 from trajgap.nlp.proofs.certifiers import certify
 from trajgap.nlp.proofs.cubic import replay
 from trajgap.nlp.proofs.document import certificate
 from trajgap.nlp.proofs.exact import exact_problem
 from trajgap.nlp.proofs.outcome import Certified, Outcome, Progress, Request
+from trajgap.nlp.proofs.quintic import certifier
 from trajgap.nlp.proofs.session import OutOfTime, Session
 from trajgap.nlp.proofs.state import state_document
-from trajgap.problem import Limits, Problem, TrajgapError, cubic_spline, cubic_spline_virtual
-from trajgap.verify import CertificateVerdict, Subject
+from trajgap.problem import (
+    Limits,
+    Problem,
+    TrajgapError,
+    cubic_spline,
+    cubic_spline_virtual,
+    quintic_spline,
+)
+from trajgap.verify import CertificateVerdict, Subject, verify_certificate
 from trajgap.verify import verify_certificate as verify
 
 LATE = CertificateVerdict(False, False, "nothing was decided", out_of_time=True)
-Q = np.array([[0.2, -0.3], [1.3, 0.4], [0.6, 1.1]])
-QUICK = Problem(Q, Limits([1.1, 0.9], [1.9, 2.3]), cubic_spline(2))
-LONG = Problem(Q[:, :1], Limits([1.1], [1.9], [7.0]), cubic_spline_virtual(3))
+WAY = np.array([[0.2, -0.3], [1.3, 0.4], [0.6, 1.1]])
+QUICK = Problem(WAY, Limits([1.1, 0.9], [1.9, 2.3]), cubic_spline(2))
+LONG = Problem(WAY[:, :1], Limits([1.1], [1.9], [7.0]), cubic_spline_virtual(3))
 
 
 def interrupted(progress: Progress) -> None:
@@ -59,7 +68,6 @@ def test_a_resumed_run_without_time_replays_nothing_and_loses_nothing(
         str(Fraction(given["claim"][side])) for side in ("lower", "upper")
     )
     again = state_document(found)
-    assert again is not None
     assert again["proposals"] == given["proposals"]
 
 
@@ -97,7 +105,6 @@ def test_what_a_state_proved_stays_if_the_rest_is_not_judged_in_time(
     monkeypatch.setattr(judged, "verify_certificate", lambda *_, **__: LATE)
     found = certify(LONG, gap=0.1, resume=given)
     assert found.lower == Fraction(given["claim"]["lower"]) > 0
-    assert found.verdict is not None
     assert found.verdict.proves
     assert verify(certificate(found)).lower == found.lower
     assert found.proposals is not None
@@ -120,17 +127,18 @@ def test_a_state_is_judged_within_the_time_limit(monkeypatch: pytest.MonkeyPatch
     assert asked == [7.0 + judged.SPARE]
 
 
-class Hands:
-    """A clock that goes only when it is told to."""
+class Ticking:
+    """A clock that goes on by a step whenever somebody looks at it."""
 
-    now = 0.0
+    now, step = 0.0, 0.0
 
     def perf_counter(self) -> float:
+        self.now += self.step
         return self.now
 
 
-def waiting(monkeypatch: pytest.MonkeyPatch) -> tuple[Hands, Session]:
-    hands = Hands()
+def waiting(monkeypatch: pytest.MonkeyPatch) -> tuple[Ticking, Session]:
+    hands = Ticking()
     monkeypatch.setattr(session, "time", hands)
     return hands, Session(exact_problem(QUICK), Request(seconds=100.0))
 
@@ -212,6 +220,133 @@ def test_cubic_searches_say_how_large_their_proof_is(monkeypatch: pytest.MonkeyP
 def test_the_judge_has_a_second_even_if_the_time_is_over() -> None:
     found: Certified = certify(QUICK, gap=0.01)
     again = judged.judged(replace(found, verdict=None), judged.Deadline.after(-5.0))
-    assert again.verdict is not None
     assert again.verdict.proves
     assert import_module("trajgap.nlp.proofs.judged").Deadline.after(-5.0).left == 0.0
+
+
+RNG = np.random.default_rng(20261128)
+Q = RNG.normal(size=(6, 2))
+CUBIC = Problem(Q, Limits([1.1] * 2, [1.9] * 2), cubic_spline(5))
+QUINTIC = Problem(Q[:3], Limits([1.1] * 2, [1.9] * 2), quintic_spline(2))
+SLOW = np.full(5, 20.0)
+"""s; no limit is near."""
+
+
+def test_elimination_solves_and_stops() -> None:
+    matrix = [[Fraction(int(x)) for x in row] for row in RNG.integers(-4, 5, (9, 9))]
+    for i in range(8):
+        matrix[i][i + 1 :] = [Fraction(0)] * (8 - i) if i % 2 else matrix[i][i + 1 :]
+    right = [[Fraction(int(x)) for x in row] for row in RNG.integers(-4, 5, (9, 3))]
+    solved = solve_exactly(matrix, right)
+    assert solved is not None
+    for row, values in zip(matrix, right, strict=True):
+        again = [sum(x * s[k] for x, s in zip(row, solved, strict=True)) for k in range(3)]
+        assert again == values
+    assert solve_exactly([*matrix[:8], matrix[0]], right) is None
+    looks = 0
+
+    def clock() -> None:
+        nonlocal looks
+        looks += 1
+        if looks == 5:
+            raise OutOfTime
+
+    with pytest.raises(OutOfTime):
+        solve_exactly(matrix, right, clock)
+
+
+def test_the_proof_of_an_answer_is_cut_short_and_proves_nothing(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    assert prove_feasible(exact_problem(CUBIC), SLOW) is not None
+    ticks = Ticking()
+    monkeypatch.setattr(session, "time", ticks)
+    one = Session(exact_problem(CUBIC), Request(seconds=100.0))
+    ticks.step = 10.0
+    with pytest.raises(OutOfTime):
+        one.offer(SLOW)
+    assert 100.0 < ticks.now < 150.0
+    ticks.step = 0.0
+    found = one.result(False, certifier.QUINTIC.subject)
+    assert (found.outcome, found.lower, found.upper) == (Outcome.OPEN, 0, None)
+    assert found.left_out == session.UNPROVED
+
+
+def test_an_answer_of_usual_size_is_proved_though_the_time_is_over(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    ticks = Ticking()
+    monkeypatch.setattr(session, "time", ticks)
+    one = Session(exact_problem(CUBIC), Request(seconds=1.0))
+    ticks.now = 500.0
+    assert one.offer(SLOW)
+    assert one.upper == sum(map(Fraction, SLOW))
+
+
+def test_a_search_is_not_compiled_where_that_takes_longer_than_is_left(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def never(*_: object) -> int:
+        raise AssertionError("compiled")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(certifier, "at_hand", lambda _: False)
+        patch.setattr(certifier, "search", never)
+        found = certify(QUINTIC, gap=0.5, seconds=0.9 * certifier.COMPILING)
+    assert (found.outcome, found.nodes) == (Outcome.INTERVAL, 0)
+    assert found.left_out == certifier.UNCOMPILED
+    assert found.upper is not None
+
+
+def test_what_a_search_may_take_is_what_the_clock_leaves_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    ticks = Ticking()
+    monkeypatch.setattr(session, "time", ticks)
+    one = Session(exact_problem(CUBIC), Request(seconds=100.0))
+    ticks.now = 30.0
+    assert one.searching == pytest.approx(100.0 / (1.0 + session.JUDGING) - 30.0)
+    # The verifier proves the answer once more: what that took is left to it.
+    ticks.step = 0.05
+    assert one.offer(SLOW)
+    ticks.step, answering = 0.0, ticks.now - 30.0
+    assert answering > 1.0
+    ticks.now = 30.0
+    shorter = one.searching
+    assert shorter == pytest.approx((100.0 - answering) / (1.0 + session.JUDGING) - 30.0, abs=0.1)
+    ticks.now = 30.0 + shorter - 0.01
+    one.check_clock()
+    ticks.now = 30.0 + shorter + 0.01
+    with pytest.raises(OutOfTime):
+        one.check_clock()
+    assert one.left_out == session.UNBOUNDED
+
+
+def test_without_time_mean_velocities_bound_a_quintic_spline() -> None:
+    problem = Problem(Q, Limits([1.1, 0.7], [1.9] * 2), quintic_spline(5))
+    found = certify(problem, gap=1e-6, seconds=0.0)
+    # No joint is faster on average than at all: |Δq|/V of the slowest one, segment by segment.
+    least = (np.abs(np.diff(Q, axis=0)) / [1.1, 0.7]).max(axis=1).sum()
+    assert float(found.lower) == pytest.approx(least, rel=1e-8)
+    assert found.lower < least
+    verdict = verify_certificate(certificate(found), seconds=5.0)
+    assert verdict.proves, verdict.reason
+    assert verdict.lower == found.lower
+    assert found.outcome is (Outcome.OPEN if found.upper is None else Outcome.INTERVAL)
+    assert found.stopped
+    assert found.left_out in (session.BARE, session.UNPROVED)
+
+
+def test_a_search_proves_more_than_mean_velocities() -> None:
+    at_once = certify(QUINTIC, gap=0.2, seconds=0.0)
+    searched = certify(QUINTIC, gap=0.2, seconds=60.0)
+    assert searched.outcome is Outcome.CERTIFIED
+    assert at_once.lower < searched.lower
+
+
+def test_an_interval_without_a_lower_bound_says_why() -> None:
+    unlimited = Problem(Q[:3], Limits([np.inf] * 2, [1.9] * 2), quintic_spline(2))
+    found = certify(unlimited, gap=1e-6, seconds=0.0)
+    assert (found.lower, found.proof) == (0, None)
+    assert found.upper is None or found.outcome is Outcome.INTERVAL
+    assert found.left_out in (session.UNBOUNDED, session.UNPROVED, certifier.UNCOMPILED)

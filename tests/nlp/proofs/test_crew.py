@@ -6,20 +6,19 @@ import os
 import signal
 import subprocess
 import sys
-from collections import deque
-from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from concurrent.futures import Executor, ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from support.executors import LastFirst
 from trajgap.nlp.proofs import certifiers, crew
 from trajgap.nlp.proofs.certifiers import certify
 from trajgap.nlp.proofs.crew import ProofCrew
 from trajgap.nlp.proofs.document import certificate
-from trajgap.nlp.proofs.outcome import Certified, Outcome, Progress
+from trajgap.nlp.proofs.outcome import Certified, Outcome
 from trajgap.nlp.proofs.processes import Processes, ProcessGone
-from trajgap.nlp.proofs.state import state_document
 from trajgap.problem import Limits, Problem, cubic_spline
 from trajgap.verify import Subject, verify_certificate
 
@@ -59,24 +58,6 @@ def talking(common: str, number: int) -> int:
 
 def refusing(common: str, number: int) -> int:
     raise ValueError(f"{common} {number}")
-
-
-class LastFirst(Executor):
-    """Works on the piece that was handed out last."""
-
-    def __init__(self) -> None:
-        self.given: deque[tuple[Future[Any], Any, Any]] = deque()
-
-    def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Future[Any]:
-        future: Future[Any] = Future()
-        self.given.append((future, fn, args))
-        return future
-
-    def finish(self) -> None:
-        if self.given:
-            future, fn, args = self.given.pop()
-            if future.set_running_or_notify_cancel():
-                future.set_result(fn(*args))
 
 
 @pytest.fixture
@@ -168,29 +149,11 @@ def test_a_cubic_proof_does_not_depend_on_who_worked_on_it(
     late, waited = LastFirst(), crew.wait
 
     def finishing(futures: Any, timeout: float) -> Any:
-        late.finish()
+        late.finish(1)
         return waited(futures, 0.0)
 
     monkeypatch.setattr(crew, "wait", finishing)
     assert proof(certify(ROUGH, gap=0.01, workers=4, executor=late)) == alone
-
-
-@pytest.mark.usefixtures("at_once")
-@pytest.mark.parametrize("workers", [1, 2])
-def test_a_cubic_proof_that_is_stopped_goes_on(workers: int) -> None:
-    def stop(now: Progress) -> None:
-        if now.nodes > 1:
-            raise KeyboardInterrupt
-
-    part = certify(ROUGH, gap=0.01, workers=workers, report=stop)
-    assert part.outcome is Outcome.INTERVAL
-    assert part.stopped
-    state = state_document(part)
-    assert state is not None
-    assert verify_certificate(state).proves
-    whole = certify(ROUGH, gap=0.01, workers=workers, resume=state)
-    assert whole.outcome is Outcome.CERTIFIED
-    assert whole.gap <= 0.01
 
 
 @pytest.mark.usefixtures("at_once")

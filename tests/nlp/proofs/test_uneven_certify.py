@@ -2,24 +2,18 @@
 
 import copy
 from fractions import Fraction
-from typing import Any
 
 import numpy as np
 import pytest
+from support.small_certificates import sealed
 from support.uneven import LIMITS, WAYPOINTS, mirrored, uneven_problem
 from trajgap.nlp import Outcome, certify, solve
 from trajgap.nlp.proofs import certificate
 from trajgap.problem import Limits, Problem, cubic_spline, piecewise, rest_to_rest
-from trajgap.verify import Subject, seal, verify_certificate
+from trajgap.verify import Subject, verify_certificate
 
 SIDED = ("rest-to-rest", "stretched", "3-5-3")
 """Kinds of curve whose proofs know each side."""
-
-
-def resealed(document: dict[str, Any]) -> dict[str, Any]:
-    document["problem_hash"] = seal(document["problem"])
-    document["seal"] = seal({k: x for k, x in document.items() if k != "seal"})
-    return document
 
 
 @pytest.mark.parametrize("curve", SIDED)
@@ -27,7 +21,6 @@ def test_both_sides_are_certified(curve: str) -> None:
     problem = uneven_problem(curve)
     found = certify(problem, seconds=60.0)
     assert found.outcome is Outcome.CERTIFIED
-    assert found.upper is not None
     total = solve(problem).total_time
     assert float(found.lower) <= total * (1 + 1e-9)
     assert float(found.upper) == pytest.approx(total, rel=1e-8)
@@ -57,13 +50,13 @@ def test_a_looser_side_is_refused(curve: str, side: int) -> None:
     for row in wider["problem"]["limits"]:
         for pair in row:
             pair[side] = str(Fraction(pair[side]) * 4)
-    found = verify_certificate(resealed(wider))
+    found = verify_certificate(sealed(wider))
     # The motion that was found keeps wider limits, too: only the lower bound may fail.
     narrower = copy.deepcopy(document)
     for row in narrower["problem"]["limits"]:
         for pair in row:
             pair[side] = str(Fraction(pair[side]) / 4)
-    answer = verify_certificate(resealed(narrower))
+    answer = verify_certificate(sealed(narrower))
     assert not answer.proves
     assert "exceeds its limit" in answer.reason
     reached = solve(
@@ -77,15 +70,6 @@ def _with(limits: Limits, side: int, factor: float) -> Limits:
     sides = limits.sides.copy()
     sides[side] *= factor
     return limits.with_sides(sides)
-
-
-@pytest.mark.parametrize(
-    "entry", [["1", "2"], ["-2", "-1"], ["-1"], ["-1", "1", "2"], [None, "-1"]]
-)
-def test_a_pair_that_leaves_out_0_is_refused(entry: list[str | None]) -> None:
-    document = certificate(certify(uneven_problem("rest-to-rest"), seconds=60.0))
-    document["problem"]["limits"][0][0] = entry
-    assert not verify_certificate(resealed(document)).proves
 
 
 def test_a_missing_side_is_no_limit() -> None:
@@ -102,7 +86,6 @@ def test_other_kinds_prove_within_the_larger_size() -> None:
     problem = Problem(WAYPOINTS, limits, cubic_spline(3))
     found = certify(problem, seconds=60.0)
     assert found.outcome is Outcome.INTERVAL
-    assert found.upper is not None
     assert found.widened
     total, hull = solve(problem).total_time, solve(problem.hull).total_time
     assert hull < total * (1 - 1e-4)
@@ -123,14 +106,6 @@ def test_any_curve_is_bounded_within_the_larger_size_and_claims_no_answer() -> N
     assert verify_certificate(document).proves
     wide = certificate(certify(problem.hull, seconds=60.0, subject=Subject.ANY))
     wide["problem"] = document["problem"]
-    refused = verify_certificate(resealed(wide))
+    refused = verify_certificate(sealed(wide))
     assert not refused.proves
     assert "lower and upper limits differ" in refused.reason
-
-
-def test_what_is_infeasible_within_the_larger_size_is_infeasible() -> None:
-    line, curve = np.array([[0.0], [1.0]]), rest_to_rest(1, 3)
-    limits = Limits(velocity=[[-9.0, 1.0]])
-    found = certify(Problem(line, limits, curve, duration_upper=1.4))
-    assert found.outcome is Outcome.INFEASIBLE
-    assert verify_certificate(certificate(found)).infeasible

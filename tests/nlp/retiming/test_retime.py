@@ -179,7 +179,6 @@ def test_first_order_and_extrapolation_within_its_error() -> None:
     curve = puma(three_five_three(), PUMA_353)
     coarse = retime(curve, PUMA_LIMITS, gridpoints=(100, 200, 400))
     fine = retime(curve, PUMA_LIMITS, gridpoints=(2000, 4000, 8000))
-    assert coarse.order is not None
     assert 0.8 < coarse.order < 1.5
     assert abs(coarse.extrapolated - fine.extrapolated) <= coarse.error
     assert fine.error < coarse.error / 5
@@ -259,7 +258,6 @@ def test_no_inequality_for_a_trajectory_that_breaks_its_limits() -> None:
     found = retime(puma(three_five_three(), 0.5 * PUMA_353), PUMA_LIMITS)
     assert found.applicable
     assert found.inequality_holds is None
-    assert found.why is not None
     assert found.why.startswith("the trajectory exceeds a limit itself (ratio 3.99")
 
 
@@ -267,7 +265,6 @@ def test_no_inequality_on_grids_that_are_too_coarse() -> None:
     found = retime(puma(three_five_three(), PUMA_353), PUMA_LIMITS, gridpoints=(2, 3, 4))
     assert found.applicable
     assert found.inequality_holds is None
-    assert found.why is not None
     assert found.why.startswith("the grids are too coarse (error estimate")
 
 

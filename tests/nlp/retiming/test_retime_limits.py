@@ -97,6 +97,7 @@ def test_samples_against_finite_differences() -> None:
     [
         (Limits(6.0, 8.0, 50.0, joints=6), "jerk is limited"),
         (Limits(6.0, joints=6), "no acceleration is limited"),
+        (Limits([[-6.0, 5.0]] * 6, 8.0), "the two sides"),
         (Limits([6, 6, 0, 6, 6, 6], 8.0), "joint 3 moves, but its velocity limit is 0"),
         (Limits(6.0, [8, 0, 8, 8, 8, 8]), "joint 2 moves, but its acceleration limit is 0"),
     ],
@@ -105,7 +106,6 @@ def test_not_applicable_by_limits(limits: Limits, why: str) -> None:
     curve = puma(three_five_three(), PUMA_353)
     found = retime(curve, limits)
     assert not found.applicable
-    assert found.why is not None
     assert found.why.startswith(why)
     assert found.extrapolated is None
     assert found.durations == ()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
+from itertools import islice
 from typing import Any
 
 from support.forgeries.forgery import NO_ANSWER, Document, Forgery
@@ -47,6 +48,18 @@ def _no_numpy(*_: Any) -> Any:
 def _none(*_: Any) -> Iterator[Any]:
     """No part is even asked for."""
     return iter(())
+
+
+def _first(
+    work: Callable[..., Any], common: Any, parts: Iterable[tuple[Any, ...]]
+) -> Iterator[Any]:
+    """The others are not asked for."""
+    return (work(common, *part) for part in islice(parts, 1))
+
+
+def _lost(work: Callable[..., Any], common: Any, parts: Iterable[tuple[Any, ...]]) -> Iterator[Any]:
+    """The result of the last part does not come back."""
+    return iter([work(common, *part) for part in parts][:-1])
 
 
 def _here(work: Callable[..., Any], common: Any, parts: Iterable[tuple[Any, ...]]) -> Iterator[Any]:
@@ -188,8 +201,11 @@ TREES = [
     Forgery("tree._walked_above: the tree is too deep", "cubic", _deep, spread=_here),
     Forgery("tree._walk_parts: why or ", "cubic-virtual",
             {"proof.tree.-1": ["?"]}, spread=_here),
-    Forgery("tree._walk_parts: a part of the tree was not judged", "cubic-virtual", {},
-            spread=_none),
+    # The cubic tree is one part below a chain of steps.
+    *(Forgery("tree._walk_parts: a part of the tree was not judged", kind, {}, spread=spread)
+      for kind, spread in (("cubic-virtual", _none), ("cubic-virtual", _lost),
+                           ("quintic-spline", _none), ("quintic-spline", _first),
+                           ("quintic-spline", _lost))),
     Forgery("three_piece._ThreePieces.cut: the tree is too deep", "three-piece",
             {**NO_ANSWER, "proof.tree": [0] * 300}),
 ]  # fmt: skip

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from pathlib import Path
 from typing import Any
 
@@ -35,6 +36,12 @@ def _hole(folder: Path) -> Path:
     return path
 
 
+def _pipe(folder: Path) -> Path:
+    """Whoever opens it waits for somebody who writes."""
+    os.mkfifo(folder / "pipe")
+    return folder / "pipe"
+
+
 def _every_key() -> list[Forgery]:
     parts: tuple[str, ...] = ("", "question", "problem", "claim", "proof")
     found = []
@@ -61,6 +68,7 @@ FILES = [
             "file", lambda folder: "a\0b"),
     Forgery("reading._read: no regular file; name a certificate",
             "file", lambda folder: "/dev/zero"),
+    Forgery("reading._read: no regular file; name a certificate", "file", _pipe),
     Forgery(LARGE, "file", _hole),
     # Such a file says that its size is 0.
     Forgery(f"{LARGE} (2)", "file", lambda folder: "/proc/self/status",
@@ -105,6 +113,7 @@ STRICT = [
         ("problem.continuity", [0, 0]), ("problem.continuity", []),
         ("problem.prescribed", [[], []]), ("problem.virtual", [1, 1]),
         ("problem.prescribed.0.0", [1]), ("problem.prescribed.0.0", [1, ["0", "0"]]),
+        ("problem.prescribed.0.0", [1, []]),
         ("problem.prescribed.0", [[1, "0"]] * 10),
         ("problem.position_lower", []), ("problem.position_upper", [None, None]),
         ("problem.duration_lower", ["0"]), ("problem.duration_upper", [None] * 3),
@@ -132,6 +141,8 @@ STRICT = [
         ("claim.lower", "1" * 121), ("claim.lower", "1/" + "1" * 121), ("claim.lower", "1e100"),
         ("claim.lower", None), ("claim.upper", None), ("claim.durations.0", 1),
         ("problem.waypoints.0.0", 1), ("problem.prescribed.0.0", [1, 0]),
+        ("problem.prescribed.0.0", [1, [None]]), ("problem.prescribed.0.0", [1, [["0"]]]),
+        ("problem.prescribed.0.0", [1, [0.5]]), ("problem.prescribed.0.0", [1, None]),
         ("problem.duration_upper.1", 4), ("proof.total", 5), ("proof.tree.0.1.3", 1),
         ("problem.limits.0.0", {"value": 1, "pi": 0}),
         check=VALUES,
@@ -177,6 +188,8 @@ STRICT = [
             {"problem.limits.0.0": ["1", "2"]}),
     Forgery("problem._pair: an upper limit is negative", "by hand",
             {"problem.limits.0.0": ["-2", "-1"]}),
+    Forgery("problem._pair: an upper limit is negative", "by hand",
+            {"problem.limits.0.0": [None, "-1"]}),
     Forgery("problem._declaration: malformed: prescribed: a derivative occurs twice",
             "by hand", {"problem.prescribed.0": [[1, "0"], [1, "0"]]}),
     Forgery("problem._declaration: malformed: virtual: a break occurs twice",

@@ -145,7 +145,8 @@ FORGERIES = [
     Forgery(_BOUND + f"Bound._spectrum: {WIDE}", "quintic-spline",
             _narrow("1", "1/1024", total="2055/2048", leaf=[".", 1, 0, 1])),
     *(Forgery(_TREE + "malformed: the tree at character {end}", "quintic-spline",
-              {"proof.tree": words}) for words in ("a b", "aA.", "a?.", "#.", "a#-1.", ".1 2:-3.")),
+              {"proof.tree": words}) for words in ("a b", "aA.", "a?.", "#.", "a#-1.", ".1.5 2",
+                                         ".1 2:-3.")),
     *(Forgery(_TREE + "malformed: the tree at character {end} (2)", "quintic-spline",
               {"proof.tree": words})
       for words in ("#1()", "#1(2", ".12", ".12  3", ".1 2:", ".1 2.5 ", ".\u0661 2",

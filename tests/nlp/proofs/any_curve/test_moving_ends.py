@@ -3,21 +3,18 @@
 from __future__ import annotations
 
 import copy
-import json
 from functools import cache
 from typing import Any
 
 import numpy as np
 import pytest
 from support.any_curve_proofs import certify_any, proved
-from support.certificate_kinds import KINDS, text
 from trajgap.nlp.proofs.any_curve.estimate import estimate_any_curve
 from trajgap.nlp.proofs.certifiers import certify, covered
 from trajgap.nlp.proofs.document import certificate, sealed
 from trajgap.nlp.proofs.exact import exact_problem, printed_problem
 from trajgap.nlp.proofs.outcome import Certified, Outcome
 from trajgap.problem import Array, Limits, Problem, TrajgapError, cubic_spline, parse_case
-from trajgap.verify import Subject
 from trajgap.verify import verify_certificate as verify
 
 WAY = np.array([[0.25, -0.5], [1.25, -1.0], [0.5, -0.25]])
@@ -67,22 +64,6 @@ def best_of_a_grid(start: tuple[float, ...], finish: tuple[float, ...]) -> float
     return float(totals.min())
 
 
-def test_a_joint_that_starts_in_motion_brakes_in_closed_form() -> None:
-    """Up to a peak p with p² = Ad + v²/2, in (2p − v)/A; another joint has another start."""
-    d, a, v0 = 1.0, 2.0, np.array([0.6, -0.4])
-    way = np.array([[0.0, 3.0], [d, 3.0 + d]])
-    need = (2 * np.sqrt(a * d + v0**2 / 2) - v0) / a
-    result = certify_any(
-        problem_with(tuple(v0), (0.0, 0.0), way, np.full(2, 9.0), np.full(2, a)),
-        gap=1e-8,
-        seconds=20,
-    )
-    proved(result)
-    assert result.outcome is Outcome.CERTIFIED
-    assert float(result.lower) <= need.max() * (1 + 1e-12)
-    assert float(result.upper or 0) >= need.max() * (1 - 1e-12)
-
-
 def test_a_dense_grid_of_durations_and_speeds_agrees() -> None:
     result = found()
     proved(result)
@@ -116,7 +97,6 @@ def test_a_bound_within_the_larger_sides_keeps_the_ends() -> None:
 def test_an_estimate_knows_the_ends_of_each_joint() -> None:
     seen = estimate_any_curve(problem_with())
     assert seen.total_time == pytest.approx(float(found().upper or 0), rel=1e-5)
-    assert seen.nodal_velocities is not None
     np.testing.assert_allclose(seen.nodal_velocities[[0, -1]], [START, FINISH])
     fast = estimate_any_curve(problem_with(start=(0.0, 1.3)))
     assert fast.why == "the velocity prescribed at the start exceeds the limit of joint b"
@@ -153,47 +133,9 @@ def test_the_bound_alone_proves_and_with_other_ends_only_what_is_true() -> None:
             own = (tuple(ends[0].tolist()), tuple(ends[1].tolist()))
             # The grid lies above the truth by a few per cent, the estimate by rounding.
             shown = estimate_any_curve(problem_with(*own)).total_time
-            assert shown is not None
             assert float(verdict.lower or 0) <= min(shown * (1 + 1e-9), best_of_a_grid(*own))
     assert refused >= 3
     assert proves >= 3
-
-
-def test_exchanged_ends_are_refused() -> None:
-    for at in (0, -1):
-        data = copy.deepcopy(certificate(found()))
-        data["problem"]["prescribed"][at][0][1].reverse()
-        assert not verify(sealed(data)).proves
-
-
-@pytest.mark.parametrize(
-    "value", [["0.5"], ["0.5", "0.5", "0.5"], [], [["0.5"], "1"], ["0.5", None], [0.5, 0.25], None]
-)
-def test_values_that_are_not_one_for_each_joint_are_refused(value: Any) -> None:
-    data = certificate(found())
-    data["problem"]["prescribed"][0][0][1] = value
-    verdict = verify(sealed(data))
-    assert not verdict.proves
-    assert "prescribed" in verdict.reason or "number" in verdict.reason
-
-
-@pytest.mark.parametrize("kind", list(KINDS))
-def test_no_proof_of_a_declared_curve_takes_ends_in_motion(kind: str) -> None:
-    data = json.loads(text(kind))
-    if "prescribed" not in data["problem"]:
-        assert kind == "stretched"
-        return
-    assert verify(data).subject is Subject.DECLARED
-    joints = len(data["problem"]["joints"])
-    for at in (0, -1):
-        for k, (_, value) in enumerate(data["problem"]["prescribed"][at]):
-            listed = copy.deepcopy(data)
-            listed["problem"]["prescribed"][at][k][1] = [value] * joints
-            assert verify(sealed(listed)).proves, "zeros for each joint are the same zeros"
-            for forged in ("0.001", ["0"] * (joints - 1) + ["0.001"]):
-                moving = copy.deepcopy(data)
-                moving["problem"]["prescribed"][at][k][1] = forged
-                assert not verify(sealed(moving)).proves
 
 
 # --- what is said, and printed digits -------------------------------------------------------------
@@ -244,7 +186,6 @@ def test_a_declared_curve_in_motion_is_refused_in_one_sentence() -> None:
         exact_problem(problem_with((0.5, 0.5), (0.5, 0.5))),
     ):
         why = covered(problem)
-        assert why is not None
         assert why.endswith(
             "prescribes derivatives other than 0, and no proof covers such a curve yet; what "
             "--any-curve proves over any curve is a lower bound for it"

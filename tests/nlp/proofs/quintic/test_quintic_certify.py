@@ -13,12 +13,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from scipy.interpolate import make_interp_spline
-from scipy.optimize import minimize
 from support.checkout import ROOT
 from support.unjudged import unjudged
-from support.unlucky import answering
-from trajgap.nlp import solve
 from trajgap.nlp.proofs.certifiers import certify, covered
 from trajgap.nlp.proofs.document import certificate
 from trajgap.nlp.proofs.exact import exact_problem
@@ -38,46 +34,11 @@ from trajgap.verify.quintic_bound import Bound, Task
 from trajgap.verify.reading import Clock
 
 module = import_module("trajgap.nlp.proofs.quintic.certifier")
-ENDS = [(1, 0.0), (2, 0.0)]
-
-
-def random_problem(rng: np.random.Generator) -> Problem:
-    """Few segments and joints; some limits absent, some durations bounded from below."""
-    n, joints = int(rng.integers(2, 4)), int(rng.integers(1, 3))
-    v, a, j = np.exp(rng.uniform(-0.7, 0.7, (3, joints))) * np.array([[1.0], [2.0], [12.0]])
-    j = np.where(rng.random(joints) < 0.7, np.inf, j)
-    v = np.where(rng.random(joints) < 0.2, np.inf, v)
-    shortest = np.where(rng.random(n) < 0.2, 0.8, 0.0)
-    waypoints = rng.uniform(-1.5, 1.5, (n + 1, joints))
-    return Problem(waypoints, Limits(v, a, j), quintic_spline(n), shortest)
-
-
-def best_found(problem: Problem, rng: np.random.Generator, count: int = 4000) -> float:
-    """Smallest total over random directions, gathered around the best again and again."""
-    n = problem.segments
-    shares, spread = rng.dirichlet(np.ones(n), count), 1.0
-    for _ in range(5):
-        stretch = evaluate(problem, shares).stretch
-        stretch = np.maximum(stretch, (problem.duration_lower / shares).max(axis=1))
-        totals = stretch * shares.sum(axis=1)
-        best, spread = int(totals.argmin()), 0.3 * spread
-        least, top = float(totals[best]), shares[best]
-        shares = np.vstack([top, top * np.exp(spread * rng.standard_normal((count, n)))])
-    return least
-
-
-def row_value(
-    q: np.ndarray, h: np.ndarray, segment: int, order: int, sign: int, spot: int, limit: float
-) -> float:
-    """Row of `bound` at given durations, by scipy's spline."""
-    t = np.concatenate([[0.0], np.cumsum(h)])
-    curve = make_interp_spline(t, q, k=5, bc_type=(ENDS, ENDS))
-    value = sign * float(curve(t[segment] + spot / PLACES * h[segment], order))
-    return (value - limit) * h[segment] ** (order - 2)
 
 
 @pytest.mark.parametrize("seed", range(16))
-def test_the_bound_is_below_every_sampled_curve(seed: int) -> None:
+def test_the_bound_of_a_box_is_that_of_the_verifier(seed: int) -> None:
+    """Which tests/verify compares with sampled curves."""
     rng = np.random.default_rng(seed)
     n, joints, count = int(rng.integers(2, 6)), 3, 5
     h0, width = np.exp(rng.uniform(-0.5, 0.5, n)), [0.01, 0.04, 0.08, 0.15][seed % 4]
@@ -98,36 +59,14 @@ def test_the_bound_is_below_every_sampled_curve(seed: int) -> None:
         row_shape(order[i], float(sign[i]), spot[i], shape[i])
     tau, total = float(rng.integers(-9, 10)), float(h0.sum())
 
-    def least(e: np.ndarray) -> float:
-        centred = (n, joints, r, e, step, total, matrix, inverse, x0, slope)
-        rows = (segment, joint, 2 - order, limit, shape, weight)
-        return float(bound(*centred, *rows, tau, np.empty(n)))
-
-    def value(point: np.ndarray) -> float:
-        found = [
-            row_value(q[:, joint[i]], 1 / point, segment[i], order[i], sign[i], spot[i], limit[i])
-            for i in range(count)
-        ]
-        return float(weight @ found + tau * ((1 / point).sum() - total))
-
-    corners = np.array(list(itertools.product((-1.0, 1.0), repeat=n)))
-    points = r + e * np.vstack([corners, rng.uniform(-1, 1, (30, n))])
-    values = [value(p) for p in points]
-    lowest = points[int(np.argmin(values))]
-    inside = list(zip(r - e, r + e, strict=True))
-    lowest_value = min(*values, minimize(value, lowest, bounds=inside).fun)
-    assert least(e) <= lowest_value + 1e-9
-    # The verifier bounds the same sum by its own program.
-    rows = np.stack([segment, joint, order, sign, spot], axis=1).tolist()
+    centred = (n, joints, r, e, step, total, matrix, inverse, x0, slope)
+    rows = (segment, joint, 2 - order, limit, shape, weight)
+    least = float(bound(*centred, *rows, tau, np.empty(n)))
+    read = np.stack([segment, joint, order, sign, spot], axis=1).tolist()
     terms = itertools.chain.from_iterable(enumerate(weight.astype(int).tolist()))
-    task = Task(step, limits, total, rows, Clock(1e9))
+    task = Task(step, limits, total, read, Clock(1e9))
     proved = Bound(task, (1 / high)[None], (1 / low)[None], [[int(tau), *terms]]).least()[0]
-    assert proved <= lowest_value + 1e-9
-    assert proved == pytest.approx(least(e), rel=1e-6, abs=1e-6)
-    # It is worth something: second order in the width, exact at the centre.
-    assert least(1e-9 * e) == pytest.approx(value(r), abs=1e-6)
-    halved = [least(0.1 * e / 2**k) for k in (0, 6)]
-    assert value(r) - halved[1] < (value(r) - halved[0]) / 40
+    assert proved == pytest.approx(least, rel=1e-6, abs=1e-6)
 
 
 @pytest.mark.parametrize("limited", [(1.0, 2.0), (np.inf, 2.0), (1.0, np.inf)])
@@ -153,32 +92,6 @@ def test_a_window_never_excludes_a_feasible_motion(limited: tuple[float, float])
         assert excluded > 0
 
 
-def attacked(seeds: range, gap: float) -> None:
-    narrow = 0
-    for seed in seeds:
-        rng = np.random.default_rng(seed)
-        problem = random_problem(rng)
-        found = certify(problem, gap=gap, seconds=600.0)
-        assert found.upper is not None
-        best = best_found(problem, rng)
-        assert float(found.lower) <= best * (1 + 1e-12), seed
-        assert float(found.upper) <= best * (1 + 2 * gap), seed
-        narrow += found.outcome is Outcome.CERTIFIED
-        verdict = verify(json.loads(json.dumps(certificate(found))))
-        assert verdict.proves, (seed, verdict)
-        assert verdict.lower == found.lower
-    assert narrow == len(seeds)
-
-
-def test_dense_search_stays_within_the_interval() -> None:
-    attacked(range(6), 0.03)
-
-
-@pytest.mark.slow
-def test_dense_search_stays_within_two_hundred_intervals() -> None:
-    attacked(range(100, 300), 0.005)
-
-
 @pytest.mark.slow
 def test_a_row_of_the_docs_is_proved_again() -> None:
     page = (ROOT / "docs" / "explanation" / "certificates-quintic.md").read_text("utf-8")
@@ -186,7 +99,6 @@ def test_a_row_of_the_docs_is_proved_again() -> None:
     assert sum(f"| {problem.name} | [" in page for problem in problems) == 20
     problem = next(p for p in problems if p.name == "step 3.0 rad, number 2")
     found = certify(problem, gap=0.01, seconds=600.0)
-    assert found.upper is not None
     interval = f"[{float(found.lower):.6f}, {float(found.upper):.6f}]"
     assert f"| {problem.name} | {interval} |" in page
     assert verify(json.loads(json.dumps(certificate(found)))).proves
@@ -201,7 +113,6 @@ def test_limits_falsified_on_purpose_prove_too_much_and_are_refused(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     truth = certify(small(), gap=0.01)
-    assert truth.upper is not None
     limits: Callable[[Any], np.ndarray] = module._limits
     monkeypatch.setattr(module, "_limits", lambda problem: 0.9 * limits(problem))
     false = unjudged(monkeypatch)
@@ -222,16 +133,6 @@ def test_limits_falsified_on_purpose_prove_too_much_and_are_refused(
     assert "not proved" in verdict.reason
 
 
-def test_an_answer_that_is_too_long_is_never_certified(monkeypatch: pytest.MonkeyPatch) -> None:
-    best = solve(small(), seed=0).durations
-    assert best is not None
-    long = tuple(Fraction(float(h)) for h in 1.05 * best * np.array([1.2, 0.9, 1.1]))
-    answering(monkeypatch, lambda call, initial: long if initial is None else True)
-    found = certify(small(), gap=0.01)
-    assert found.outcome is Outcome.CERTIFIED
-    assert float(found.upper or 0) == pytest.approx(best.sum(), rel=1e-6)
-
-
 def stopped(after: int) -> Certified:
     """A run that is interrupted at a certain report."""
     count = 0
@@ -245,39 +146,6 @@ def stopped(after: int) -> Certified:
     return certify(small(), gap=1e-3, report=report)
 
 
-def test_a_stopped_run_keeps_what_it_proved_and_goes_on() -> None:
-    found = stopped(3)
-    assert found.outcome is Outcome.INTERVAL
-    assert found.upper is not None
-    assert 0 < found.lower < found.upper
-    verdict = verify(json.loads(json.dumps(certificate(found))))
-    assert verdict.proves
-    state = json.loads(json.dumps(state_document(found)))
-    waited = certify(small(), gap=1e-3, seconds=0.0, resume=state)
-    assert waited.lower == found.lower
-    assert verify(certificate(waited)).proves
-    finished = certify(small(), gap=1e-3, resume=state)
-    assert finished.outcome is Outcome.CERTIFIED
-    assert finished.gap <= 1e-3
-
-
-@pytest.mark.parametrize(
-    ("alter", "match"),
-    [
-        (lambda s: s["proof"].update(total=str(Fraction(s["proof"]["total"]) * 2)), "not proved"),
-        (lambda s: s["proof"].update(tree=[["."]]), "not proved"),
-        (lambda s: s["proof"].update(kind="three-piece"), "not proved"),
-        (lambda s: s["claim"].update(durations=["1", "0.1", "1"]), "exceeds its limit"),
-        (lambda s: s.pop("proof"), "missing"),
-    ],
-)
-def test_an_altered_state_is_refused(alter: Callable[[Any], Any], match: str) -> None:
-    state = json.loads(json.dumps(state_document(stopped(3))))
-    alter(state)
-    with pytest.raises(TrajgapError, match=match):
-        certify(small(), resume=state)
-
-
 def test_a_proof_that_contradicts_the_answer_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     found = certify(small(), gap=0.1)
     document = certificate(found)
@@ -288,7 +156,6 @@ def test_a_proof_that_contradicts_the_answer_is_refused(monkeypatch: pytest.Monk
     assert verify(document).reason == reason
     # The solver says so, too.
     state = state_document(certify(small(), gap=0.1, seconds=0.0))
-    assert state is not None
     state["claim"] |= {"durations": None, "upper": None, "lower": "100"}
     state["proof"] = document["proof"]
     with pytest.raises(TrajgapError, match="contradicts"):
@@ -303,9 +170,7 @@ def test_motions_of_a_millisecond_are_proved_in_units_of_their_own() -> None:
     problem = Problem(FAST, Limits(200.0, 1.2e6), quintic_spline(3))
     found = certify(problem, gap=0.03, seconds=20.0)
     assert found.outcome is Outcome.CERTIFIED
-    assert found.verdict is not None
     assert found.verdict.lower == found.lower
-    assert found.proof is not None
     proof = found.proof.document()
     assert proof["second"] < -8
     # The same motion in units of 2⁻¹⁰ s, which are powers of two and so spoil no digit.

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from support.executors import LastFirst
 from trajgap.nlp.proofs.certifiers import certify
 from trajgap.nlp.proofs.exact import exact_problem
 from trajgap.nlp.proofs.executors import Here
@@ -28,31 +29,12 @@ PROBLEM = Problem(
 )
 
 
-class LastFirst(Executor):
-    """Finishes what was submitted last as soon as two wait: parts come back out of order."""
-
-    def __init__(self) -> None:
-        self.held: list[tuple[Future[Any], Callable[[], Any]]] = []
-
-    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
-        future: Future[Any] = Future()
-        self.held.append((future, lambda: fn(*args, **kwargs)))
-        return future
-
-    def finish(self) -> None:
-        for future, work in reversed(self.held):
-            if not future.cancelled():
-                future.set_result(work())
-        self.held.clear()
-
-
 def stage(total: float, executor: Executor, workers: int) -> tuple[subtrees.Stage, Leaves]:
     """The tree that proves ``total`` times the best total that is known."""
     session = Session(exact_problem(PROBLEM), Request(seconds=1e6, workers=workers))
     assert session.seek()
     kind = certifier._Search(session, executor)
     upper = session.upper
-    assert upper is not None
     tree = kind.stage(kind.rounded(upper * Fraction(total)))
     question = subtrees.Stage(kind.steps, kind.limits, float(tree.total), kind.library.terms, 0.0)
     return question, tree.leaves
@@ -204,8 +186,6 @@ def test_the_result_is_the_same_on_two_threads() -> None:
     one, two = (certify(PROBLEM, gap=0.05, seconds=1e6, workers=workers) for workers in (1, 2))
     assert one.outcome is two.outcome is Outcome.CERTIFIED
     assert (one.lower, one.upper, one.durations) == (two.lower, two.upper, two.durations)
-    assert one.proof is not None
-    assert two.proof is not None
     assert one.proof.document() == two.proof.document()
 
 

@@ -1,4 +1,4 @@
-"""Certified intervals: attacked by dense search, broken rows, stops, and an unlucky answer."""
+"""Certified intervals of three pieces: what is shipped, closed forms, rows, and altered states."""
 
 from __future__ import annotations
 
@@ -6,27 +6,27 @@ import copy
 import json
 from dataclasses import replace
 from fractions import Fraction
+from functools import partial
 from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from support.alterations import changed, get, places, put
 from support.checkout import ROOT
-from support.intervals import judged
 from support.shipped_problems import COVERED_PROBLEMS
-from support.three_pieces import dense_best, random_problem
-from support.unjudged import unjudged
 from support.unlucky import answering
 from trajgap.nlp import solve
-from trajgap.nlp.proofs.answer import exact_coefficients, never_above
+from trajgap.nlp.proofs.answer import exact_coefficients, keeps_limits, never_above
 from trajgap.nlp.proofs.certifiers import certify, covered
 from trajgap.nlp.proofs.document import certificate, problem_document, shipped, shipped_folder
-from trajgap.nlp.proofs.exact import ExactProblem, decimal, exact_problem
-from trajgap.nlp.proofs.outcome import Certified, Outcome
-from trajgap.nlp.proofs.three_piece import rows as three_piece
+from trajgap.nlp.proofs.exact import decimal, exact_problem
+from trajgap.nlp.proofs.outcome import Certified, Outcome, Progress, Request
+from trajgap.nlp.proofs.session import Session
+from trajgap.nlp.proofs.state import resumed, state_document
 from trajgap.nlp.proofs.three_piece.boxes import Boxes
-from trajgap.nlp.proofs.three_piece.rows import PLACES, PieceRow, Prover, exact_row
+from trajgap.nlp.proofs.three_piece.rows import PieceRow, Prover
 from trajgap.problem import (
     Limits,
     Problem,
@@ -42,24 +42,6 @@ from trajgap.verify import verify_certificate as verify
 module = import_module("trajgap.nlp.proofs.three_piece.search")
 
 
-def attack(seed: int) -> Outcome:
-    problem = random_problem(seed)
-    found = certify(problem, gap=1e-3, seconds=20.0)
-    return judged(problem, found, dense_best(problem))
-
-
-@pytest.mark.parametrize("seed", range(3))
-def test_dense_search_never_leaves_the_interval(seed: int) -> None:
-    attack(seed)
-
-
-@pytest.mark.slow
-def test_dense_search_never_leaves_the_interval_of_two_hundred_problems() -> None:
-    outcomes = [attack(seed) for seed in range(3, 208)]
-    decided = outcomes.count(Outcome.CERTIFIED) + outcomes.count(Outcome.INFEASIBLE)
-    assert decided >= 195
-
-
 def test_shipped_certificates_are_fresh_and_prove() -> None:
     assert COVERED_PROBLEMS
     for name, exact in COVERED_PROBLEMS.items():
@@ -69,8 +51,6 @@ def test_shipped_certificates_are_fresh_and_prove() -> None:
         verdict = verify(document)
         assert verdict.proves, f"{name}: {verdict}"
         assert not verdict.altered
-        assert verdict.lower is not None
-        assert verdict.upper is not None
         assert verdict.upper - verdict.lower <= verdict.upper / 10**6
         assert len(json.dumps(document)) < 200_000
     files = {path.stem: json.loads(path.read_text("utf-8")) for path in all_files()}
@@ -83,69 +63,26 @@ def all_files() -> list[Path]:
     return sorted(shipped_folder().glob("*.json"))
 
 
-def test_the_table_in_the_docs_is_that_of_the_files() -> None:
-    page = (ROOT / "docs" / "explanation" / "certificates.md").read_text("utf-8")
+@pytest.mark.parametrize(
+    ("page", "subject"),
+    [("certificates.md", Subject.DECLARED), ("certificates-any-curve.md", Subject.ANY)],
+)
+def test_the_table_in_the_docs_is_that_of_the_files(page: str, subject: Subject) -> None:
     rows = {}
-    for line in page.splitlines():
+    for line in (ROOT / "docs" / "explanation" / page).read_text("utf-8").splitlines():
         cells = [cell.strip() for cell in line.strip("|").split("|")]
         if len(cells) == 8 and cells[0].startswith("`"):
             rows[cells[0].strip("`")] = cells
-    files = {path.stem: path for path in shipped_folder().glob("*.json")}
-    about = {name: json.loads(path.read_text("utf-8")) for name, path in files.items()}
-    mine = {n for n, d in about.items() if d["claim"]["subject"] == Subject.DECLARED}
-    assert set(rows) == mine
+    claims = {path.stem: json.loads(path.read_text("utf-8"))["claim"] for path in all_files()}
+    sizes = {path.stem: path.stat().st_size for path in all_files()}
+    assert set(rows) == {name for name, claim in claims.items() if claim["subject"] == subject}
     for name, cells in rows.items():
-        lower, upper = (Fraction(about[name]["claim"][key]) for key in ("lower", "upper"))
+        lower, upper = (Fraction(claims[name][key]) for key in ("lower", "upper"))
         least, most = (Fraction(cell) for cell in cells[1:3])
         assert 0 <= lower - least < Fraction(1, 10**9), f"{name}: rounded outwards"
         assert 0 <= most - upper < Fraction(1, 10**9), f"{name}: rounded outwards"
         assert cells[3] == f"{float(1 - lower / upper):.1e}", name
-        assert int(cells[6]) == files[name].stat().st_size, name
-
-
-def unlucky(monkeypatch: pytest.MonkeyPatch, seconds: float = 2.0) -> tuple[float, Certified]:
-    """Certify with an answer 5 % above the optimum and no search for a better one."""
-    exact = COVERED_PROBLEMS["puma560-mnam-pso-353.six-joints.durations-positive"]
-    true = shipped(exact)
-    assert true is not None
-    upper = Fraction(true["claim"]["upper"])
-    worse = tuple(Fraction(h) * Fraction(21, 20) for h in true["claim"]["durations"])
-    answering(monkeypatch, lambda call, initial: worse)
-    monkeypatch.setattr(module._Search, "_look", lambda run, *_: run.session.check_clock())
-    return float(upper), certify(exact, seconds=seconds)
-
-
-def test_an_answer_that_is_not_optimal_is_never_certified(monkeypatch: pytest.MonkeyPatch) -> None:
-    optimum, found = unlucky(monkeypatch)
-    assert found.outcome is Outcome.INTERVAL
-    assert 0.9 * optimum < found.lower <= optimum
-
-
-def test_a_broken_relaxation_is_caught(monkeypatch: pytest.MonkeyPatch) -> None:
-    def broken(problem: ExactProblem, row: PieceRow, total: Fraction) -> three_piece.Poly:
-        return exact_row(problem, row, total * Fraction(9, 10))
-
-    raw = unjudged(monkeypatch)
-    monkeypatch.setattr(three_piece, "exact_row", broken)
-    optimum, found = unlucky(monkeypatch, seconds=20.0)
-    assert raw[0].lower > optimum, "the attack above would not have seen it"
-    assert not verify(certificate(raw[0])).proves
-    assert (found.outcome, found.lower, found.proof) == (Outcome.OPEN, 0, None)
-    assert found.verdict is not None
-    assert "leaf at node" in found.verdict.reason
-
-
-def test_a_local_answer_is_replaced_by_a_better_one(monkeypatch: pytest.MonkeyPatch) -> None:
-    exact = COVERED_PROBLEMS["puma560-mnam-pso-353.six-joints.durations-positive.joint-6"]
-    true = shipped(exact)
-    assert true is not None
-    double = tuple(Fraction(h) * 2 for h in true["claim"]["durations"])
-    calls = answering(monkeypatch, lambda call, initial: double if call == 1 else True)
-    found = certify(exact)
-    assert len(calls) > 1
-    assert found.outcome is Outcome.CERTIFIED
-    assert found.upper is not None
-    assert float(found.upper) == pytest.approx(float(Fraction(true["claim"]["upper"])), rel=1e-6)
+        assert int(cells[6]) == sizes[name], name
 
 
 @pytest.mark.parametrize(
@@ -161,7 +98,6 @@ def test_what_no_certificate_can_state_is_not_covered(change: dict[str, Any], re
     assert covered(exact_problem(problem)) is None
     wider = replace(problem, **change)
     why = covered(exact_problem(wider))
-    assert why is not None
     assert why.startswith("no certificate can state the problem (malformed: ")
     assert reason in why
     with pytest.raises(TrajgapError, match="no certificate can state the problem"):
@@ -174,29 +110,6 @@ def test_no_time_gives_no_lower_bound() -> None:
     assert (found.outcome, found.lower) == (Outcome.INTERVAL, 0)
     with pytest.raises(TrajgapError, match="nothing is proved"):
         certificate(found)
-
-
-def test_velocity_limits_alone_scale_the_optimum() -> None:
-    # With velocity limits only, T·V is constant: 80 against 110 °/s.
-    slow, fast = (
-        shipped(COVERED_PROBLEMS[f"irb460-pso-353.limit-{v}.waypoints-rad"]) for v in (80, 110)
-    )
-    assert slow is not None
-    assert fast is not None
-    product = [Fraction(x["claim"]["upper"]) * v for x, v in ((slow, 80), (fast, 110))]
-    assert float(product[0]) == pytest.approx(float(product[1]), rel=1e-9)
-
-
-def test_limits_that_no_duration_meets_are_proved_infeasible() -> None:
-    q = np.array([[0.2], [1.1], [-0.4], [0.7]])
-    problem = Problem(q, Limits(1.0, 2.0), three_five_three(), 0.1, (4.0, 1.4, 4.0))
-    found = certify(problem)
-    assert found.outcome is Outcome.INFEASIBLE
-    verdict = verify(certificate(found))
-    assert verdict.proves
-    assert verdict.upper is None
-    assert "infeasible" in str(verdict)
-    assert "proved" in str(found)
 
 
 @pytest.mark.parametrize("degree", [3, 5, 7, 9])
@@ -215,36 +128,6 @@ def test_rest_to_rest_is_certified_in_closed_form(degree: int) -> None:
     verdict = verify(document)
     assert verdict.proves
     assert verdict.lower == found.lower
-    for k in range(3):
-        wrong = copy.deepcopy(document)
-        least = Fraction(wrong["proof"]["tree"][0][k + 1][3]) * (1 + Fraction(1, 10**9))
-        wrong["proof"]["tree"][0][k + 1][3] = decimal(least)
-        assert not verify(wrong).proves
-    document["claim"]["lower"] = decimal(found.lower * (1 + Fraction(1, 10**12)))
-    assert "exceeds the total" in verify(document).reason
-
-
-def test_a_rest_to_rest_segment_that_is_too_short_is_proved_infeasible() -> None:
-    problem = Problem([[0.0], [1.0]], Limits(1.0), rest_to_rest(1, 5), 0.1, 1.8)
-    found = certify(problem)
-    assert found.outcome is Outcome.INFEASIBLE
-    document = certificate(found)
-    assert verify(document).proves
-    document["problem"]["duration_upper"] = ["1.9"]
-    assert not verify(document).proves
-
-
-def test_positions_that_no_direction_keeps_are_proved_infeasible() -> None:
-    # It enters the middle piece from below at a way-point that is too high already.
-    q = np.array([[0.0], [1.0], [0.75], [0.0]])
-    limits = Limits(1.0, position_upper=0.9375)
-    found = certify(Problem(q, limits, three_five_three()))
-    assert found.outcome is Outcome.INFEASIBLE
-    document = certificate(found)
-    assert verify(document).proves
-    wider = copy.deepcopy(document)
-    wider["problem"]["position_upper"] = ["1.5"]
-    assert not verify(wider).proves
 
 
 def test_what_is_not_covered_is_said() -> None:
@@ -253,26 +136,6 @@ def test_what_is_not_covered_is_said() -> None:
         certify(Problem(q, Limits(1.0), uniform_cubic_b_spline(4, "timed")))
     with pytest.raises(TrajgapError, match="nothing limits"):
         certify(Problem(q, Limits(), three_five_three()))
-
-
-def test_rows_are_the_limits_of_the_curve() -> None:
-    # Second route: the row's sign against the curve's derivative over its limit, for many points.
-    exact = COVERED_PROBLEMS["puma560-mnam-pso-353.six-joints.durations-positive"]
-    q = np.array([[float(x) for x in row] for row in exact.waypoints])
-    rng = np.random.default_rng(5)
-    for _ in range(20):
-        h = rng.uniform(0.2, 1.5, 3)
-        curve = fit(exact.curve, q, h)
-        joint, order = int(rng.integers(0, 6)), int(rng.integers(1, 3))
-        place, sign = int(rng.integers(0, PLACES + 1)), int(rng.choice([-1, 1]))
-        total = Fraction(float(h.sum()))
-        poly = exact_row(exact, PieceRow("place", joint, order, sign, place), total)
-        a, b = h[0] / (h[0] + h[1]), h[2] / (h[1] + h[2])
-        powers = np.arange(len(poly))
-        value = float((a**powers) @ poly.astype(float) @ (b**powers))
-        ratio = sign * curve(h[0] + h[1] * place / PLACES, order)[joint] / [6.0, 8.0][order - 1]
-        share = (a * b) ** 2 * ((1 - a) * (1 - b)) ** order
-        assert value == pytest.approx((ratio - 1.0) * share, abs=1e-12)
 
 
 def test_exact_coefficients_agree_with_the_fit() -> None:
@@ -284,7 +147,6 @@ def test_exact_coefficients_agree_with_the_fit() -> None:
         [[Fraction(float(x)) for x in row] for row in q],
         [Fraction(float(x)) for x in h],
     )
-    assert curve is not None
     second = np.array(curve[1][1], dtype=float)
     expected = fit(interpolant, q, h)(0.75 + 0.5 * 1.25)[1]
     assert second @ 0.5 ** np.arange(6) == pytest.approx(expected, rel=1e-12)
@@ -327,3 +189,108 @@ def test_boxes_halve() -> None:
 def test_exact_numbers_are_written_exactly(number: Fraction, text: str) -> None:
     assert decimal(number) == text
     assert Fraction(text) == number
+
+
+def stopped_at(name: str, monkeypatch: pytest.MonkeyPatch) -> Certified:
+    """A run that was stopped with a proved lower bound and with open boxes."""
+
+    def interrupt(progress: Progress) -> None:
+        if progress.lower > 0 and progress.open_boxes > 0:
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(module, "_BATCH", 8)
+    found = certify(COVERED_PROBLEMS[name], report=interrupt)
+    assert found.outcome is Outcome.INTERVAL
+    return found
+
+
+def state_of(found: Certified) -> dict[str, Any]:
+    """The state of a stopped run, through JSON."""
+    document = state_document(found)
+    assert document is not None
+    return dict(json.loads(json.dumps(document)))
+
+
+def test_an_edited_state_proves_nothing_false(monkeypatch: pytest.MonkeyPatch) -> None:
+    name = "irb460-pso-353.limit-80.waypoints-rad"
+    exact, found = COVERED_PROBLEMS[name], stopped_at(name, monkeypatch)
+    base = state_of(found)
+    assert resumed(exact, base).lower == found.lower
+    rng = np.random.default_rng(3)
+    outcomes = []
+    for part in ("claim", "proof", "proposals"):
+        numbers = places({"proof": base[part]})
+        for _ in range(50):
+            path = numbers[rng.integers(0, len(numbers))]
+            data = copy.deepcopy(base)
+            put({"proof": data[part]}, path, changed(get({"proof": base[part]}, path), rng))
+            try:
+                state = resumed(exact, data)
+                session = Session(exact, Request(resume=state))
+                pending = session.taken_up(partial(module._proposed, exact, "three-piece"))
+            except TrajgapError:
+                outcomes.append((part, "refused"))
+                continue
+            outcomes.append((part, "taken"))
+            assert state.lower <= found.upper, path
+            assert state.proof is not None or state.lower == 0
+            if state.durations is not None:
+                assert keeps_limits(exact, state.durations), path
+            assert pending is None or (0.5**pending.boxes.level).prod(axis=1).sum() == 1.0
+    for part in ("claim", "proof", "proposals"):
+        assert outcomes.count((part, "refused")) > 20
+    assert outcomes.count(("proof", "taken")) > 0
+    assert outcomes.count(("proposals", "taken")) > 10
+
+
+def test_a_resumed_bound_alone_proves_nothing_infeasible(monkeypatch: pytest.MonkeyPatch) -> None:
+    name = "irb460-pso-353.limit-80.waypoints-rad"
+    exact, found = COVERED_PROBLEMS[name], stopped_at(name, monkeypatch)
+    state = state_of(found)
+    state["claim"] |= {"durations": None, "upper": None}
+    assert state["proof"] is not None
+    assert None in exact.duration_upper
+    answering(monkeypatch, lambda call, initial: None)
+    again = certify(exact, resume=state)
+    assert again.outcome is Outcome.OPEN
+    assert again.lower == found.lower
+    assert verify(certificate(again)).proves
+
+
+def test_edited_open_boxes_only_cost_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    name = "irb460-pso-353.limit-80.waypoints-rad"
+    exact, found = COVERED_PROBLEMS[name], stopped_at(name, monkeypatch)
+    state = state_of(found)
+    # "Everything is proved by any row", and a total that is far too long.
+    state["proposals"] |= {"tree": [[".", 0, "1"]], "total": "100"}
+    again = certify(exact, gap=1e-3, resume=state)
+    assert again.outcome is Outcome.CERTIFIED
+    assert again.lower >= found.lower
+    assert verify(certificate(again)).proves
+
+
+@pytest.mark.parametrize(
+    ("part", "change", "reason"),
+    [
+        ("proposals", {"kind": "stretched"}, "a state of kind"),
+        ("proposals", {"tree": None}, "malformed"),
+        ("claim", {"durations": ["0.1", "0.1", "0.1"]}, "not proved .answer"),
+        ("claim", {"durations": ["0.4", "0.4"]}, "not proved .answer: one duration per segment"),
+        ("claim", {"lower": "1e-9"}, "not proved .the lower bound exceeds the total"),
+        ("problem", {"unit": "deg"}, "about another problem"),
+    ],
+)
+def test_a_bad_state_is_refused(part: str, change: dict[str, Any], reason: str) -> None:
+    exact = COVERED_PROBLEMS["irb460-pso-353.limit-80.waypoints-rad"]
+    state = state_of(certify(exact, seconds=0.0))
+    state[part] |= change
+    with pytest.raises(TrajgapError, match=reason):
+        certify(exact, resume=state)
+
+
+def test_what_is_no_state_is_refused() -> None:
+    exact = COVERED_PROBLEMS["irb460-pso-353.limit-80.waypoints-rad"]
+    finished = certify(exact, gap=0.1)
+    for other in (finished, certificate(finished), {}, {"format": "trajgap-state-1"}):
+        with pytest.raises(TrajgapError, match="resume: no trajgap-state-2"):
+            certify(exact, resume=other)

@@ -1,0 +1,201 @@
+"""Optima of every family: what follows from units, names, mirrors and the direction of time."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from support.b_splines import uniform
+from support.long_problems import long_problem
+from support.small_problems import small_problem
+from support.uneven import CURVES as UNEVEN
+from support.uneven import uneven_problem
+from trajgap.nlp import Form, Solution, Status, kkt, solve
+from trajgap.problem import (
+    Curve,
+    Interpolant,
+    Limits,
+    Problem,
+    Verdict,
+    check,
+    cubic_spline,
+    cubic_spline_virtual,
+    piecewise,
+    quintic_spline,
+    rest_to_rest,
+    three_five_three,
+    uniform_cubic_b_spline,
+)
+from trajgap.problem.curves import Derivatives
+
+Q = np.array([[0.2, -1.0, 0.7], [0.9, 0.3, 0.1], [0.4, 1.1, -0.8], [1.3, 0.6, 0.2]])
+LIMITS = Limits([1.5, 2.0, 1.0], [4.0, 6.0, 5.0], [30.0, 50.0, 40.0])
+USUAL = {
+    "3-5-3": three_five_three(),
+    "cubic": cubic_spline(3),
+    "quintic": quintic_spline(3),
+    "rest-to-rest": rest_to_rest(3, 5),
+}
+MOVING = {
+    "cubic": cubic_spline(3, ((1, (0.5, -0.2)),), ((1, (-0.3, 0.4)),)),
+    "velocity, then acceleration": cubic_spline(3, ((1, (0.5, -0.2)),), ((2, (0.0, 1.5)),)),
+    "quintic": quintic_spline(3, ((1, (0.5, -0.2)), (2, 0.3)), ((1, (-0.3, 0.4)), (2, 0.0))),
+    "4-3-4": piecewise((4, 3, 4), 2, ((1, (0.5, -0.2)), (2, 0.0)), None, ((1, 0.1), (2, 0.0))),
+}
+MOVING_Q = np.array([[0.3, -1.0], [0.9, -0.55], [0.2, 0.35], [-0.45, 0.1]])
+AT_RATIOS = {
+    **USUAL,
+    "stretched": uniform_cubic_b_spline(4, "stretched"),
+    "timed": uniform_cubic_b_spline(4, "timed"),
+}
+
+
+PROBLEMS = {
+    **{f"{name}": Problem(Q, LIMITS, curve) for name, curve in USUAL.items()},
+    **{
+        f"moving {name}": Problem(MOVING_Q, Limits([1.1, 1.7], [3.0, 2.2]), curve, 0.05, 6.0)
+        for name, curve in MOVING.items()
+    },
+    **{f"uneven {name}": uneven_problem(name) for name in UNEVEN},
+    "uneven, free": replace(
+        uneven_problem("quintic"),
+        limits=Limits([[-0.9, 1.4], [-2, 1.1]], [[-3, 5], [-6, 2.5]]),
+        curve=piecewise((5, 5, 5), 2),
+    ),
+    **{
+        f"{name} at ratios": Problem(Q, LIMITS, curve, 0.3, ratios=[1.0, 1.7, 0.6])
+        for name, curve in AT_RATIOS.items()
+    },
+    "timed": uniform("timed", 32, count=4)[0],
+    "small C4 quintic": small_problem("C4 quintic", 1),
+    "small 4-3-4": small_problem("4-3-4", 2),
+    "small C2 cubic": small_problem("C2 cubic", 2),
+    "small 3-5-3": small_problem("3-5-3", 2),
+    "long quintic": long_problem(quintic_spline(26)),
+    "long cubic": long_problem(cubic_spline(26)),
+    "long virtual": long_problem(cubic_spline_virtual(25)),
+    "long, uneven": replace(
+        long_problem(cubic_spline(26)),
+        limits=Limits([[-1.0, 2.0]] * 2, [[-4.0, 2.0]] * 2, [[-30.0, 60.0]] * 2),
+    ),
+}
+ROUGH = {"uneven, free": 1e-6, "timed at ratios": 2e-8, "long, uneven": 1e-6}
+"""Relative differences of totals beyond 1e-8: other optima nearby, or blurred by rounding."""
+
+
+def with_ends(curve: Curve, first: Derivatives, last: Derivatives) -> Curve:
+    assert isinstance(curve, Interpolant)
+    return piecewise(curve.degrees, curve.continuity[0], first, finish=last)
+
+
+def moved(at: Derivatives, factors: np.ndarray, pace: float) -> Derivatives:
+    """Prescribed derivatives times a factor for each joint, in another unit of time."""
+    return tuple((r, tuple(np.broadcast_to(v, factors.shape) * factors * pace**r)) for r, v in at)
+
+
+def prescribed(problem: Problem) -> tuple[Derivatives, Derivatives] | None:
+    """Derivatives at both ends, where they are not 0."""
+    ends = problem.curve.ends if isinstance(problem.curve, Interpolant) else ((), ())
+    moving = any(np.any(v) for at in ends for _, v in at)
+    return (ends[0], ends[1]) if moving else None
+
+
+def renamed(problem: Problem, pace: float) -> Problem:
+    """Joints in another order, all mirrored and in other units, a clock that runs faster."""
+    joints = problem.waypoints.shape[1]
+    order, unit = np.roll(np.arange(joints), 1), np.linspace(0.8, 57.3, joints)
+    given = problem.limits
+    # Mirrored, every lower side is an upper one.
+    sides = given.sides[::-1][:, order] * unit[:, None] * pace ** np.arange(1, 4)
+    limits = given.with_sides(sides).with_positions(
+        unit * (3.0 - given.position_upper[order]), unit * (3.0 - given.position_lower[order])
+    )
+    curve, ends = problem.curve, prescribed(problem)
+    if ends is not None:
+        first, last = (
+            tuple((r, tuple(np.broadcast_to(v, joints)[order])) for r, v in at) for at in ends
+        )
+        curve = with_ends(curve, moved(first, -unit, pace), moved(last, -unit, pace))
+    return replace(
+        problem,
+        waypoints=(3.0 - problem.waypoints[:, order]) * unit,
+        limits=limits,
+        curve=curve,
+        duration_lower=problem.duration_lower / pace,
+        duration_upper=problem.duration_upper / pace,
+    )
+
+
+def backwards(problem: Problem) -> Problem:
+    """Velocities and jerks change their sides, and prescribed ones their sign."""
+    sides = problem.limits.sides.copy()
+    sides[:, :, [0, 2]] = sides[::-1][:, :, [0, 2]]
+    curve, ends = problem.curve, prescribed(problem)
+    if ends is not None:
+        ones = np.ones(problem.waypoints.shape[1])
+        curve = with_ends(curve, moved(ends[1], ones, -1.0), moved(ends[0], ones, -1.0))
+    return replace(
+        problem,
+        waypoints=problem.waypoints[::-1],
+        limits=problem.limits.with_sides(sides),
+        curve=curve,
+        duration_lower=problem.duration_lower[::-1],
+        duration_upper=problem.duration_upper[::-1],
+        ratios=None if problem.ratios is None else problem.ratios[::-1],
+    )
+
+
+def optimum(problem: Problem) -> Solution:
+    found = solve(problem)
+    assert found.status is Status.CONVERGED
+    assert check(problem, found.durations, found.nodal).limits is Verdict.PASS
+    return found
+
+
+@pytest.mark.parametrize("name", PROBLEMS)
+def test_units_names_mirrors_and_the_way_back(name: str) -> None:
+    problem, pace = PROBLEMS[name], 1.7
+    found, near = optimum(problem), ROUGH.get(name, 1e-8)
+    if problem.shares is None:
+        assert kkt(problem, found.durations, found.nodal).residual <= 1e-7
+    assert solve(renamed(problem, pace)).total_time == pytest.approx(
+        found.total_time / pace, rel=near
+    )
+    assert solve(backwards(problem)).total_time == pytest.approx(found.total_time, rel=near)
+
+
+@pytest.mark.parametrize("name", [*USUAL, "moving cubic"])
+def test_both_forms_find_the_same_optimum(name: str) -> None:
+    one, two = (solve(PROBLEMS[name], form=form).total_time for form in Form)
+    assert one == pytest.approx(two, rel=1e-8)
+
+
+OTHERS = ("moving cubic", "uneven quintic", "timed", "small 4-3-4", "long cubic", "cubic at ratios")
+
+
+@pytest.mark.parametrize("name", [*USUAL, *OTHERS])
+def test_sensitivities_are_the_differences_of_totals(name: str) -> None:
+    """All limits of rates grow by shares of their own, on both sides alike."""
+    problem = PROBLEMS[name]
+    found, given = solve(problem), problem.limits
+    share = np.random.default_rng(7).uniform(-1.0, 1.0, given.sides.shape[1:])
+    step, totals = 1e-5, []
+    for way in (step, -step):
+        limits = given.with_sides(given.sides * np.exp(way * share))
+        answer = solve(replace(problem, limits=limits), initial=found.durations)
+        totals.append(answer.total_time)
+    orders = ("velocity", "acceleration", "jerk")
+    predicted = sum(
+        a.multiplier * share[problem.joints.index(a.joint), orders.index(a.quantity)]
+        for a in found.active
+        if a.quantity in orders
+    )
+    assert predicted != 0.0
+    assert (totals[1] - totals[0]) / (2 * step) == pytest.approx(predicted, rel=1e-3, abs=1e-5)
+    assert all(a.multiplier > 0 for a in found.active)
+    assert all(a.sensitivity == pytest.approx(-0.1 * a.multiplier) for a in found.active)
+    if not given.limits_position and not any(a.quantity == "duration" for a in found.active):
+        # T(cV, c²A, c³J) = T/c.
+        weighted = sum((1 + orders.index(a.quantity)) * a.multiplier for a in found.active)
+        assert name == "moving cubic" or weighted == pytest.approx(found.total_time, rel=1e-7)
