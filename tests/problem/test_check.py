@@ -5,15 +5,12 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 from support import exact_route
 from support.checked import one_joint, table
 from support.samples import DECLARATIONS, FREE, sample_problem
 from trajgap.problem import (
     QUANTITIES,
     Limits,
-    Problem,
     TrajgapError,
     Verdict,
     check,
@@ -22,25 +19,6 @@ from trajgap.problem import (
     three_five_three,
 )
 from trajgap.problem.curves import spline as spline_module
-
-PUMA = np.array(
-    [
-        [0.1885, -1.6336, 0.2513, 0.3142, 0.1885, 0.3142],
-        [0.8168, -2.0071, -0.3770, -0.0628, -0.1257, -0.1257],
-        [0.1257, -1.0681, -1.0681, 0.4398, 0.2513, -0.1885],
-        [-0.8796, -1.0053, -0.3142, 0.8796, 0.5027, -0.2513],
-    ]
-)  # rad: mos.2024.136535, Table 1
-
-
-HOMOGENEOUS = [name for name, i in DECLARATIONS.items() if i.homogeneous]
-
-
-SEEDS = st.integers(0, 10**6)
-
-
-NAMES = st.sampled_from(HOMOGENEOUS)
-
 
 # --- known answers -------------------------------------------------------------------------------
 
@@ -69,15 +47,6 @@ def test_rest_to_rest_cubic_has_its_textbook_peaks() -> None:
     assert result.feasible_time == result.tight_time == pytest.approx(0.4 * max(roots))
 
 
-def test_puma_joint_one_at_its_printed_durations() -> None:
-    # Table 3, joint 1: its peak acceleration sits at 8 rad/s² to the printed precision
-    problem = Problem(PUMA, Limits(6, 8), three_five_three(), duration_lower=0.3)
-    result = check(problem.joint(0), [0.961, 1.258, 1.078])
-    assert result.worst is not None
-    assert result.worst.quantity == "acceleration"
-    assert abs(result.worst.value) == pytest.approx(8.0033, abs=5e-5)
-
-
 @pytest.mark.parametrize("name", [*DECLARATIONS, *FREE])
 def test_values_lie_within_the_stated_error(name: str) -> None:
     interpolant = (DECLARATIONS | FREE)[name]
@@ -100,39 +69,7 @@ def test_values_lie_within_the_stated_error(name: str) -> None:
 # --- identities ----------------------------------------------------------------------------------
 
 
-@given(NAMES, SEEDS)
-def test_stretch_makes_it_tight(name: str, seed: int) -> None:
-    problem, h = sample_problem(DECLARATIONS[name], seed)
-    loose = check(problem, h)
-    if any(jump.order < 2 for jump in loose.jumps):
-        return
-    tight = check(problem, loose.stretch * h)
-    assert tight.worst is not None
-    assert tight.worst.ratio == pytest.approx(1.0, abs=1e-11 if name == "rest 7" else 1e-12)
-    if not tight.jumps:
-        assert tight.verdict is Verdict.PASS
-    if loose.tight_time is not None:
-        assert loose.tight_time == pytest.approx(tight.total_time, rel=1e-14)
-        assert loose.feasible_time == max(loose.tight_time, loose.total_time)
-
-
 # --- the batched evaluation beside the checker ---------------------------------------------------
-
-
-@given(st.sampled_from([*DECLARATIONS, *FREE]), SEEDS, st.floats(0.1, 1.0))
-def test_evaluate_agrees_with_check(name: str, seed: int, spread: float) -> None:
-    interpolant = (DECLARATIONS | FREE)[name]
-    problem, _ = sample_problem(interpolant, seed)
-    rng = np.random.default_rng(seed)
-    batch = 10.0 ** rng.uniform(-spread, spread, (3, interpolant.segments))
-    nodal = rng.normal(size=(interpolant.free, 3)) if interpolant.free else None
-    result = evaluate(problem, batch, nodal)
-    assert result.ratios.shape == (3, 3, 3)
-    for i, h in enumerate(batch):
-        one = check(problem, h, nodal)
-        room = 1e-9 * table(one, problem.joints).max(axis=1, keepdims=True)
-        assert (np.abs(result.ratios[i] - table(one, problem.joints)) <= room).all()
-        assert result.stretch[i] == pytest.approx(one.stretch, rel=1e-9)
 
 
 @pytest.mark.parametrize("name", ["3-5-3", "quintic", "cubic, virtual", "rest 7"])

@@ -6,14 +6,13 @@ import numpy as np
 import pytest
 from support import exact_route
 from support.checked import one_joint, table
-from support.samples import FREE, sample_problem
+from support.samples import sample_problem
 from trajgap.problem import (
     QUANTITIES,
     Check,
     Interpolant,
     Limits,
     Problem,
-    TrajgapError,
     Verdict,
     check,
     cubic_spline,
@@ -163,16 +162,6 @@ def test_repeated_waypoints() -> None:
     assert {p.segment for p in check(rest, [0.9, 1e-3, 1.1]).peaks} <= {0, 2}
 
 
-def test_one_segment() -> None:
-    problem = one_joint([0.4, -0.6], quintic_spline(1), velocity=1.875, acceleration=20.0)
-    # minimum-jerk: |v| = 15/8 d/T, |a| = 10/√3 d/T²
-    result = check(problem, 1.0)
-    np.testing.assert_allclose(
-        np.abs(table(result, ("1",), "value")[0, :2]), [1.875, 10 / np.sqrt(3)], rtol=1e-12
-    )
-    assert result.stretch == pytest.approx(1.0, abs=1e-13)
-
-
 # --- repairs and their reasons -------------------------------------------------------------------
 
 
@@ -260,31 +249,6 @@ def test_duration_bounds() -> None:
     assert slow.tight_why == "a stretched duration falls below its lower bound"
 
 
-def test_free_derivatives_are_taken_as_given() -> None:
-    quintics = FREE["5-5-5 C2"]
-    problem, h = sample_problem(quintics, 12, joints=1)
-    nodal = np.array([[0.4], [-0.3], [1.1], [0.7]])
-    given_values = Interpolant(
-        (5, 5, 5),
-        (2, 2),
-        (
-            ((1, 0.0), (2, 0.0)),
-            ((1, 0.4), (2, 1.1)),
-            ((1, -0.3), (2, 0.7)),
-            ((1, 0.0), (2, 0.0)),
-        ),
-    )
-    other = Problem(problem.waypoints, problem.limits, given_values)
-    np.testing.assert_allclose(
-        table(check(problem, h, nodal), ("1",)), table(check(other, h), ("1",)), rtol=1e-12
-    )
-    np.testing.assert_allclose(
-        evaluate(problem, [h], nodal).ratios, evaluate(other, [h]).ratios, rtol=1e-12
-    )
-    with pytest.raises(TrajgapError, match="give nodal derivatives of shape"):
-        check(problem, h)
-
-
 def test_summary_reads_on_one_screen() -> None:
     problem = one_joint([1.2, 1.9], rest_to_rest(1, 3), velocity=2.0)
     text = str(check(problem, [0.4]))
@@ -295,17 +259,6 @@ def test_summary_reads_on_one_screen() -> None:
         "feasible time   0.525000 s",
         "tight time      0.525000 s",
     ]
-
-
-def test_check_refuses_durations() -> None:
-    problem, _ = sample_problem(three_five_three(), 3)
-    for wrong, message in (
-        ([1.0, 1.0], r"durations: expected 3 \(one per segment\), got 2"),
-        ([1.0, -1.0, 1.0], "must all be positive and finite"),
-        ("x", "durations: not numbers"),
-    ):
-        with pytest.raises(TrajgapError, match=message):
-            check(problem, wrong)
 
 
 def test_a_reachable_total_holds_for_every_waypoint_of_the_box() -> None:

@@ -66,22 +66,13 @@ def test_limits_of_one_joint_and_replaced() -> None:
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (
-            {"velocity": [1, 2], "jerk": [1, 2, 3]},
-            r"limits.velocity: expected one value or 3 \(one per joint\), got shape \(2,\)",
-        ),
+        ({"velocity": [1, 2], "jerk": [1, 2, 3]}, r"limits.velocity: expected one value or 3"),
         ({"acceleration": np.ones((2, 3))}, r"limits.acceleration: .* got shape \(2, 3\)"),
         ({"acceleration": np.ones((2, 2))}, r"limits.acceleration: 1 to 1 leaves out 0"),
         ({"velocity": [1, 2], "joints": 3}, r"limits.velocity: expected one value or 3"),
-        (
-            {"velocity": [1, np.nan]},
-            r"limits.velocity: is NaN; write inf where there is no limit",
-        ),
+        ({"velocity": [1, np.nan]}, r"limits.velocity: is NaN; write inf where there is no limit"),
         ({"position_upper": np.nan}, r"limits.position_upper: is NaN"),
-        (
-            {"jerk": [-1, 2]},
-            r"limits.jerk: is negative; give the largest absolute value, 0 or more",
-        ),
+        ({"jerk": [-1, 2]}, r"limits.jerk: is negative; give the largest absolute value, 0 or"),
         ({"velocity": -np.inf}, r"limits.velocity: is negative"),
         ({"velocity": "fast"}, r"limits.velocity: not numbers; give one value, or one per joint"),
         ({"jerk": [1, [2, 3]]}, r"limits.jerk: not numbers"),
@@ -151,18 +142,9 @@ def test_joint_alone_is_judged_alike() -> None:
         ({"waypoints": np.ones((4, 0))}, r"waypoints: expected shape .* got \(4, 0\)"),
         ({"waypoints": np.full((4, 2), np.nan)}, r"waypoints: every angle must be finite"),
         ({"waypoints": np.full((4, 2), np.inf)}, r"waypoints: every angle must be finite"),
-        (
-            {"waypoints": WAYPOINTS[:3]},
-            r"waypoints: 3-5-3 polynomials with 3 segments needs 4, got 3",
-        ),
-        (
-            {"curve": cubic_spline_virtual(5)},
-            r"waypoints: C2 cubic spline with two virtual .* with 6 segments needs 5, got 4",
-        ),
-        (
-            {"limits": Limits([1, 2, 3])},
-            r"limits: given for 3 joints, way-points for 2",
-        ),
+        ({"waypoints": WAYPOINTS[:3]}, r"waypoints: 3-5-3 polynomials with 3 segments needs 4"),
+        ({"curve": cubic_spline_virtual(5)}, r"waypoints: C2 cubic spline with two virtual .*"),
+        ({"limits": Limits([1, 2, 3])}, r"limits: given for 3 joints, way-points for 2"),
         ({"duration_lower": [0.1, 0.2]}, r"duration_lower: expected one value or 3, got 2"),
         ({"duration_upper": np.ones((3, 1))}, r"duration_upper: expected one value or 3, got 3"),
         ({"duration_lower": np.nan}, r"duration_lower: must be 0 or more and not NaN"),
@@ -171,14 +153,8 @@ def test_joint_alone_is_judged_alike() -> None:
             {"duration_lower": 2, "duration_upper": [3, 1, 3]},
             r"duration_lower: lies above duration_upper",
         ),
-        (
-            {"duration_lower": np.inf},
-            r"duration bounds: no positive finite duration lies between them",
-        ),
-        (
-            {"duration_upper": [1, 0, 1]},
-            r"duration bounds: no positive finite duration lies between them",
-        ),
+        ({"duration_lower": np.inf}, r"duration bounds: no positive finite duration lies between"),
+        ({"duration_upper": [1, 0, 1]}, r"duration bounds: no positive finite duration lies"),
         ({"joints": ("a",)}, r"joints: 1 labels for 2 joints"),
         ({"joints": ("a", "a")}, r"joints: a label occurs twice in a, a"),
         ({"waypoints": "abc"}, r"waypoints: not a table of numbers; give one row per way-point"),

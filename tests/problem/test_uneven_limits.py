@@ -4,23 +4,18 @@ import pickle
 
 import numpy as np
 import pytest
-from support.uneven import LIMITS, WAYPOINTS, sampled_ratios, uneven_problem
+from support.uneven import LIMITS, WAYPOINTS, uneven_problem
 from trajgap.problem import (
-    Curve,
     Limits,
     Problem,
-    Timing,
     TrajgapError,
     Verdict,
     check,
-    clamped_readings,
     cubic_spline,
-    evaluate,
     keeps_limits,
     piecewise,
     reachable_total,
     rest_to_rest,
-    uniform_cubic_b_spline,
 )
 
 DURATIONS = np.array([0.7, 1.3, 0.9])
@@ -86,23 +81,6 @@ def test_a_side_of_zero_forbids_that_side_alone() -> None:
     # At -1 rad/s all the way, nothing lies on the limited side.
     steady = check(Problem(-rising, free, piecewise((1,), 0, ())), [1.0])
     assert (steady.verdict, steady.peaks[0].ratio) == (Verdict.PASS, 0.0)
-
-
-@pytest.mark.parametrize("kind", ["clamped", "timed", "stretched"])
-def test_other_kernels_know_both_sides(kind: str) -> None:
-    timing = Timing.STRETCHED if kind == "stretched" else Timing.TIMED
-    curve: Curve = uniform_cubic_b_spline(4, timing)
-    if kind == "clamped":
-        known = (one for one in clamped_readings(4) if one.time is Timing.TIMED)
-        curve = next(one.curve for one in known if one.curve is not None)
-    problem = Problem(WAYPOINTS, LIMITS, curve)
-    h = np.vstack([DURATIONS, 1.7 * DURATIONS, [np.nan, 1.0, 1.0]])
-    ratios = evaluate(problem, h).ratios
-    assert ratios[0].max() == pytest.approx(sampled_ratios(problem, h[0], 2001).max(), rel=1e-4)
-    worst = check(problem, h[1]).worst
-    assert worst is not None
-    assert worst.ratio == pytest.approx(ratios[1].max(), rel=1e-9)
-    assert np.isinf(ratios[2]).all()
 
 
 def test_a_box_of_waypoints_is_reached_within_both_sides() -> None:

@@ -169,11 +169,7 @@ def test_small_angles_and_small_lower_bounds_are_read():
 @pytest.mark.parametrize(
     ("old", "new", "line"),
     [
-        (
-            "[units]",
-            "[units",
-            r"line 13, column 7: not valid TOML, expected .*; correct the syntax",
-        ),
+        ("[units]", "[units", r"line 13, column 7: not valid TOML, expected .*; correct the"),
         ('id = "base"', 'id = "base', r"line 2, column \d+: not valid TOML, illegal .*; correct"),
         ("title = ", "id = ", r"line 3, column \d+: not valid TOML, .*; correct the syntax"),
         ("title = ", "title = " + "[" * 100_000, r"is nested too deeply; flatten it"),

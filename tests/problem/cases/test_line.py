@@ -59,21 +59,13 @@ def test_its_angles_are_in_the_unit_of_the_file() -> None:
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        (
-            "first = [0.1,",
-            'first = ["0.1",',
-            "waypoints.line.first: angles between the ends",
-        ),
+        ("first = [0.1,", 'first = ["0.1",', "waypoints.line.first: angles between the ends"),
         (", 0.2]", "]", "waypoints.line.last: 5 angles for the 6 joints of the robot; give one"),
         ("points = 4", "points = 1", "waypoints.line.points: 1 is out of range; give at least 2"),
         ('"5", "6"]', '"6", "5"]', "waypoints.line: needs the robot's table, and all its joints"),
         ('model = "puma560"', "", "waypoints.line: needs the robot's table, and all its joints in"),
         ('position = "rad"', "", "units.position: is missing; add one of rad, deg, m, cm, mm"),
-        (
-            "line =",
-            "joint_rows = [[1]]\nline =",
-            "waypoints: needs one of joint_rows, waypoint_rows",
-        ),
+        ("line =", "joint_rows = [[1]]\nline =", "waypoints: needs one of joint_rows"),
         ("-0.5, 0.3, 0.2,", "-0.5, 2.8, 0.2,", "waypoints.line: "),
     ],
 )

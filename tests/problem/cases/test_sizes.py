@@ -98,10 +98,7 @@ def test_way_points_of_a_reading_count_too() -> None:
         ("instances = 9_000", r"families\[0\]\.instances: gives 18,000 instances, at most 10,000"),
         ("instances = 5_000\nruns = 10", r"families\[0\]\.runs: gives 200,000 runs, at most 100,0"),
         ("instances = 1\nruns = 10_001", r"families\[0\]\.runs: 10001 is out of range"),
-        (
-            "instances = 1\nseed = 9223372036854775808",
-            r"families\[0\]\.seed: 92233720368547",
-        ),
+        ("instances = 1\nseed = 9223372036854775808", r"families\[0\]\.seed: 92233720368547"),
         ("instances = 1\nsamples = 1_000_001", r"families\[0\]\.samples: 1000001 is out of range"),
     ],
 )

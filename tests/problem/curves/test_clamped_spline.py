@@ -12,8 +12,6 @@ from trajgap.problem import (
     ClampedBSpline,
     Count,
     CurveError,
-    Knots,
-    Limits,
     Parameters,
     Problem,
     Timing,
@@ -23,14 +21,12 @@ from trajgap.problem import (
     clamped_control_points,
     clamped_readings,
     evaluate,
-    extrema,
     fit,
-    peak_gradients,
     piecewise,
     quintic_spline,
     solve_in_closed_form,
 )
-from trajgap.problem.curves.clamped_knots import average_matrix, chord_fractions
+from trajgap.problem.curves.clamped_knots import average_matrix
 
 KINDS = [
     (degree, knots, parameters, time)
@@ -163,18 +159,9 @@ def test_few_waypoints() -> None:
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (
-            {"degree": 3},
-            "over-determined, 12 conditions on 10 control points; with knots at the",
-        ),
-        (
-            {"degree": 7},
-            "under-determined, 12 conditions on 14 control points; with knots at the",
-        ),
-        (
-            {"knots": "averaged"},
-            "over-determined, 12 conditions on 8 control points; continue the averaging index",
-        ),
+        ({"degree": 3}, "over-determined, 12 conditions on 10 control points; with knots at the"),
+        ({"degree": 7}, "under-determined, 12 conditions on 14 control points; with knots at the"),
+        ({"knots": "averaged"}, "over-determined, 12 conditions on 8 control points; continue"),
         ({"knots": "averaged", "waypoints": 4}, "degree 5 needs at least 6 way-points; lower the"),
         ({"degree": 2}, "interpolant.degree: must lie in 3..7, got 2"),
         ({"degree": 8}, "interpolant.degree: must lie in 3..7, got 8"),
@@ -260,91 +247,6 @@ def test_rest_at_the_ends_and_continuity(kind) -> None:
         assert times == {round(t, 9) for t in np.cumsum(9 * h)[:-1]}
 
 
-@each_kind
-def test_batch_and_checker_agree_and_time_scales(kind) -> None:
-    problem, h = clamped(kind, 5)
-    ratios = evaluate(problem, np.vstack([h, 1.3 * h])).ratios
-    found = np.array([p.ratio for p in check(problem, h).peaks]).reshape(3, 3)
-    np.testing.assert_allclose(ratios[0], found, rtol=1e-11)
-    np.testing.assert_allclose(ratios[1], found / 1.3 ** np.arange(1, 4), rtol=1e-11)
-    mirrored = replace(problem, waypoints=2.0 - problem.waypoints)
-    np.testing.assert_allclose(evaluate(mirrored, h[None]).ratios[0], found, rtol=1e-9)
-    backwards = replace(problem, waypoints=problem.waypoints[::-1])
-    np.testing.assert_allclose(evaluate(backwards, h[None, ::-1]).ratios[0], found, rtol=1e-8)
-    order = [2, 0, 1]
-    swapped = Problem(
-        problem.waypoints[:, order],
-        Limits(*problem.limits.derivatives[order].T),
-        problem.curve,
-    )
-    np.testing.assert_allclose(evaluate(swapped, h[None]).ratios[0], found[order], rtol=1e-11)
-
-
-@each_kind
-def test_peaks_are_those_of_dense_samples(kind) -> None:
-    problem, h = clamped(kind, 6)
-    trajectory = fit(problem.curve, problem.waypoints, h)
-    exact = evaluate(problem, h[None]).ratios[0] * problem.limits.derivatives
-    s = np.linspace(0, 1, 1001)
-    for order in (1, 2, 3):
-        for joint in range(3):
-            top = max(
-                np.abs(
-                    np.polynomial.polynomial.polyval(s, trajectory.derivative(k, joint, order))
-                ).max()
-                for k in range(len(trajectory.durations))
-            )
-            assert top <= exact[joint, order - 1] * (1 + 1e-10)
-            assert top == pytest.approx(exact[joint, order - 1], rel=1e-4)
-
-
-@each_kind
-def test_gradients_of_peaks_are_finite_differences(kind) -> None:
-    problem, h = clamped(kind, 7, count=5)
-    curve, q = problem.curve, problem.waypoints
-    trajectory = fit(curve, q, h)
-    points = [e for j in range(3) for r in (1, 2, 3) for e in extrema(trajectory, j, r)]
-    gradients = peak_gradients(problem, h, points)
-
-    def values(q: np.ndarray, durations: np.ndarray) -> np.ndarray:
-        moved = fit(held, q, durations)
-        polyval = np.polynomial.polynomial.polyval
-        return np.array(
-            [polyval(e.s, moved.derivative(e.segment, e.joint, e.order)) for e in points]
-        )
-
-    rows = {"times": None, "chord": chord_fractions(q)}
-    each = tuple(chord_fractions(q[:, [j]])[0] for j in range(3))
-    held = replace(curve, fractions=rows.get(curve.parameters, each))
-    for k in range(len(h)):
-        step = np.zeros(len(h))
-        step[k] = 1e-6
-        expected = (values(q, h + step) - values(q, h - step)) / 2e-6
-        scale = np.abs(expected).max()
-        np.testing.assert_allclose(gradients.durations[:, k], expected, atol=3e-7 * scale)
-    for w in range(5):
-        for j in range(3):
-            moved = q.copy()
-            moved[w, j] += 1.0
-            slope = values(moved, h) - values(q, h)
-            own = [i for i, e in enumerate(points) if e.joint == j]
-            np.testing.assert_allclose(
-                gradients.waypoints[own, w], slope[own], rtol=1e-8, atol=1e-8
-            )
-
-
-@pytest.mark.parametrize("parameters", ["chord", "joint-chord"])
-def test_one_joint_alone_keeps_the_curve_that_it_has_among_all(parameters: str) -> None:
-    for time in Timing:
-        problem, h = clamped((5, "averaged-continued", parameters, time), 8)
-        together = evaluate(problem, h[None]).ratios[0]
-        for joint in range(3):
-            alone = evaluate(problem.joint(joint), h[None]).ratios[0, 0]
-            np.testing.assert_allclose(alone, together[joint], rtol=1e-11)
-    alone = problem.joint(1)
-    assert alone.curve.for_joint(alone.waypoints, 0) == alone.curve
-
-
 def test_average_matrix_is_the_printed_sum() -> None:
     u = np.array([0.0, 0.1, 0.35, 0.4, 0.7, 1.0])
     for degree in (3, 4, 5):
@@ -403,20 +305,3 @@ def test_chords_need_waypoints_that_differ() -> None:
     still[4] = still[3]
     with pytest.raises(TrajgapError, match="waypoints: 3 and 4 coincide, chord parameters do not"):
         fit(problem.curve, still, h)
-
-
-def test_bad_input_is_one_line() -> None:
-    problem, h = clamped((5, "averaged-continued", "times", "timed"), 14)
-    with pytest.raises(TrajgapError, match=r"^durations: expected 7 \(one per segment\), got 6$"):
-        check(problem, h[:6])
-    with pytest.raises(TrajgapError, match=r"needs 8 rows, got shape \(7, 3\)"):
-        fit(problem.curve, problem.waypoints[:7], h)
-    with pytest.raises(TrajgapError, match=r"a batch has shape \(vectors, 7\)"):
-        evaluate(problem, np.ones((2, 4)))
-    assert np.isinf(evaluate(problem, [[1, 1, 1, 0, 1, 1, 1.0]]).stretch[0])
-
-
-def test_words_are_read_as_members() -> None:
-    curve = ClampedBSpline(8, 5, "waypoints", "times")
-    assert curve == ClampedBSpline(8, 5, Knots.WAYPOINTS, Parameters.TIMES, Timing.TIMED)
-    assert curve.name == "clamped B-spline of degree 5, knots at the way-points"

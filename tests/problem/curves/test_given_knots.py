@@ -7,51 +7,21 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from scipy.interpolate import BSpline, make_interp_spline
+from support.b_splines import INNER, SHARES, H, Q, given, printed, vector
 from trajgap.nlp import solve
 from trajgap.problem import (
     ClampedBSpline,
     CurveError,
-    Extremum,
     Limits,
     Problem,
     TrajgapError,
     Verdict,
     check,
     clamped_control_points,
-    evaluate,
-    extrema,
     fit,
-    peak_gradients,
 )
 from trajgap.problem.curves import average_matrix
 from trajgap.problem.curves.clamped_knots import chord_fractions
-
-Q = np.array([[0.3, -1.0], [0.9, -0.55], [0.2, 0.35], [-0.45, 0.1], [0.1, 0.42]])
-H = np.array([0.83, 1.12, 0.74, 1.21])
-SHARES = (0.0, 0.19, 0.48, 0.71, 1.0)
-INNER = {
-    3: (0.08, 0.27, 0.46, 0.71, 0.85),
-    4: (0.13, 0.3, 0.62, 0.85),
-    5: (0.2, 0.45, 0.7),
-    6: (0.3, 0.64),
-    7: (0.55,),
-}
-
-
-def vector(degree: int, first: float = 0.0, last: float = 1.0) -> tuple[float, ...]:
-    inner = [first + (last - first) * u for u in INNER[degree]]
-    return (*[first] * (degree + 1), *inner, *[last] * (degree + 1))
-
-
-def given(degree: int, **changes: object) -> ClampedBSpline:
-    whole = vector(degree)
-    return ClampedBSpline(5, degree, "given", "times", knot_vector=whole, **changes)  # type: ignore[arg-type]
-
-
-def printed(degree: int, **changes: object) -> ClampedBSpline:
-    """Way-points at printed parameters, each segment stretched by itself."""
-    keys: dict[str, object] = {"fractions": (SHARES,), "knot_vector": vector(degree), **changes}
-    return ClampedBSpline(5, degree, "given", "given", "stretched", **keys)  # type: ignore[arg-type]
 
 
 def scipys(degree: int, sites: np.ndarray, orders: tuple[int, ...] = (1, 2)) -> BSpline:
@@ -121,27 +91,6 @@ def test_the_averaged_knots_written_out_are_the_averaged_knots(degree: int, time
         )
 
 
-@pytest.mark.parametrize("curve", [given(4), printed(4)], ids=["timed", "stretched"])
-def test_batches_are_those_of_the_checker(curve: ClampedBSpline) -> None:
-    problem = Problem(Q, Limits(1.3, 4.0, 30.0), curve)
-    rows = np.array([H, 1.1 * H, H[::-1]])
-    alone = [check(problem, row).stretch for row in rows]
-    np.testing.assert_allclose(evaluate(problem, rows).stretch, alone, rtol=1e-10)
-
-
-@pytest.mark.parametrize("curve", [given(4), printed(4)], ids=["timed", "stretched"])
-def test_gradients_are_finite_differences(curve: ClampedBSpline) -> None:
-    problem, step = Problem(Q, Limits(1.3, 4.0, 30.0), curve), 1e-6
-
-    def top(h: np.ndarray) -> Extremum:
-        return max(extrema(fit(curve, Q, h), 1, 2), key=lambda e: e.value)
-
-    found = peak_gradients(problem, H, [top(H)]).durations[0]
-    for k in range(4):
-        ends = [top(H + sign * step * np.eye(4)[k]).value for sign in (1, -1)]
-        assert found[k] == pytest.approx((ends[0] - ends[1]) / (2 * step), rel=1e-5, abs=1e-5)
-
-
 def test_durations_far_from_the_knots_proportions_define_no_curve() -> None:
     problem = Problem(Q, Limits(2.0, 9.0), given(3))
     odd = [0.1, 0.1, 0.1, 5.0]
@@ -181,17 +130,11 @@ def test_an_optimum_is_found_where_equal_durations_pass_no_curve() -> None:
         ({"knot_vector": ()}, r'knot_vector: is missing where knots are "given"'),
         ({"knots": "waypoints"}, r'knot_vector: is for knots that are "given"; leave it out'),
         ({"parameters": "chord"}, r'where knots are "given" and time is "timed", .* write "times"'),
-        (
-            {"parameters": "chord", "time": "stretched"},
-            r'where knots are "given" and time is "stretched", .* write "given"',
-        ),
-        (
-            {"parameters": "given", "time": "stretched"},
-            r'fractions: are missing where parameters are "given"',
-        ),
+        ({"parameters": "chord", "time": "stretched"}, r'where knots are "given" and time is'),
+        ({"parameters": "given", "time": "stretched"}, r"fractions: are missing where parameters"),
         (
             {"parameters": "given", "time": "stretched", "fractions": ((0.0, 0.5, 0.4, 0.8, 1.0),)},
-            r"fractions: each must be larger than the one before",
+            r"fractions: each must be larger than the one",
         ),
         ({"knot_vector": vector(5)[:-1]}, r"the last knot, 1, stands 5 times; .* has it 6 times"),
         ({"knot_vector": vector(5)[1:]}, r"the first knot, 0, stands 5 times; .* has it 6 times"),
@@ -205,11 +148,7 @@ def test_an_optimum_is_found_where_equal_durations_pass_no_curve() -> None:
             r"0.5 is followed by 0.2, but knots do not decrease",
         ),
         ({"knot_vector": (*[0] * 6, 0.2, np.nan, 0.7, *[1] * 6)}, r"knots must be finite"),
-        (
-            {"knot_vector": (*[0] * 6, 0.2, 0.7, *[1] * 6)},
-            r"over-determined, 9 conditions on 8 control points; 15 knots in all determine it, and "
-            r"14 are given",
-        ),
+        ({"knot_vector": (*[0] * 6, 0.2, 0.7, *[1] * 6)}, r"over-determined, 9 conditions on 8"),
         (
             {"knot_vector": (*[0] * 6, 0.2, 0.4, 0.5, 0.7, *[1] * 6)},
             r"under-determined, 9 conditions on 10 control points; 15 knots in all",
@@ -222,8 +161,7 @@ def test_an_optimum_is_found_where_equal_durations_pass_no_curve() -> None:
                 "time": "stretched",
                 "fractions": ((0.0, 0.01, 0.02, 0.3, 1.0),),
             },
-            r"no curve passes way-point 2, whose parameter 0.02 \(of 0 to 1\) does not lie between "
-            r"the knots 0.08 and 0.85 \(Schoenberg and Whitney\)",
+            r"no curve passes way-point 2, whose parameter 0.02 \(of 0 to 1\) does not lie between the",
         ),
     ],
 )

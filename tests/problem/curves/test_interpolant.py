@@ -90,10 +90,7 @@ def test_rest_at_every_waypoint_is_over_determined() -> None:
         (((3,), (), ((), ((1, np.inf),))), r"prescribed\[1\]: values must be finite"),
         (((3,), (), (REST, REST)), r"over-determined, 6 conditions on 4 coefficients"),
         # v at the start of a straight line is not free: the two way-points fix it
-        (
-            ((1, 5), (0,), (((1, 0.0),), (), ())),
-            r"5 conditions on 8 coefficients contradict each other \(rank 4\); spread the degrees",
-        ),
+        (((1, 5), (0,), (((1, 0.0),), (), ())), r"5 conditions on 8 coefficients contradict each"),
     ],
 )
 def test_refusals(arguments: tuple[object, ...], message: str) -> None:

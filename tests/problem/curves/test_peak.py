@@ -17,7 +17,6 @@ from numpy.polynomial import Polynomial as Power
 from support import exact_route
 from support.samples import DECLARATIONS, sample_problem
 from trajgap.problem import (
-    Extremum,
     Interpolant,
     Limits,
     Problem,
@@ -200,18 +199,6 @@ def test_extrema_against_fifty_digits(name: str) -> None:
                 assert abs(e.value - inner @ e.s ** np.arange(inner.size)) <= 1e-14 * size
 
 
-def test_every_sampled_bump_is_an_extremum() -> None:
-    problem, h = sample_problem(DECLARATIONS["quintic"], 4)
-    curve = fit(problem.curve, problem.waypoints, h)
-    t = np.linspace(0.0, h.sum(), 20_001)
-    for j in range(3):
-        for order in range(4):
-            y = curve(t, order)[:, j]
-            bumps = t[1:-1][(y[1:-1] - y[:-2]) * (y[2:] - y[1:-1]) < 0]
-            places = np.array([e.time for e in extrema(curve, j, order)])
-            assert bumps.size == 0 or np.abs(bumps[:, None] - places).min(axis=1).max() < 3e-4
-
-
 def test_another_piece_that_may_be_larger_blurs_the_peak() -> None:
     # Speeds of the two cubics peak at 1.5 and 1.2; the second is known to 0.5 only.
     curve = fit(rest_to_rest(2, 3), np.array([[0.2], [1.2], [2.0]]), [1.0, 1.0])
@@ -241,10 +228,3 @@ def test_exact_route_knows_a_simple_peak() -> None:
     piece = [Fraction(0), Fraction(0), Fraction(1, 4), Fraction(-1, 8)]
     assert float(exact_route.peak([piece], [2.0], 0)) == pytest.approx(4 / 27, rel=1e-15)
     assert float(exact_route.peak([piece], [2.0], 1)) == pytest.approx(0.5, rel=1e-15)
-
-
-def test_an_extremum_is_a_record() -> None:
-    one = Extremum(0, 1, 2, 0.5, 1.25, -3.0)
-    assert (one.joint, one.segment, one.order, one.s, one.time, one.value) == (
-        0, 1, 2, 0.5, 1.25, -3.0,
-    )  # fmt: skip

@@ -33,32 +33,6 @@ LONG = {
 """Declarations of a dozen segments and more, whose inverse is found by bands."""
 
 
-@pytest.mark.parametrize(
-    ("durations", "message"),
-    [
-        ("abc", "durations: not numbers; give seconds, one per segment"),
-        ([1.0, None, 2.0], "must all be positive and finite"),
-        ([1.0, [2.0, 1.0], 2.0], "durations: not numbers"),
-        ([1.0, 2.0], r"durations: expected 3 \(one per segment\), got 2"),
-        (1.0, r"durations: expected 3 \(one per segment\), got 1"),
-        ([], r"durations: expected 3 \(one per segment\), got 0"),
-        ([[1.0, 2.0, 3.0]], r"durations: expected 3 .* got 3 in shape \(1, 3\)"),
-        ([1.0, 0.0, 2.0], r"durations: \[1.0, 0.0, 2.0\] s must all be positive and finite"),
-        ([1.0, -0.5, 2.0], "must all be positive and finite"),
-        ([1.0, np.nan, 2.0], "must all be positive and finite"),
-        ([1.0, np.inf, 2.0], "must all be positive and finite"),
-        (
-            [1.0, 1e-31, 2.0],
-            r"durations: \[1.0, 1e-31, 2.0\] s must all lie between 1e-30 and 1e\+30",
-        ),
-        ([1e31, 1.0, 2.0], "must all lie between 1e-30 and 1e.30 s"),
-    ],
-)
-def test_durations_refused(durations: object, message: str) -> None:
-    with pytest.raises(TrajgapError, match=message):
-        fit(three_five_three(), waypoints(4), durations)  # type: ignore[arg-type]
-
-
 def test_waypoints_and_nodal_values_refused() -> None:
     with pytest.raises(
         TrajgapError, match=r"3-5-3 polynomials with 3 segments needs 4 rows, got shape \(5, "

@@ -52,24 +52,6 @@ def test_derivatives_in_time_are_finite_differences_of_an_independent_inversion(
         np.testing.assert_allclose(trajectory(t, 3), jerk, rtol=2e-3, atol=2e-2)
 
 
-@pytest.mark.parametrize("time", ["timed", NATURAL])
-@pytest.mark.parametrize("seed", range(3))
-def test_peaks_are_those_of_dense_samples(seed: int, time: str) -> None:
-    problem, h = uniform(time, seed)
-    other = ByScipy(problem.waypoints, h, time == NATURAL)
-    # Jerk jumps at the knots: their left sides count too.
-    e = np.concatenate([np.linspace(0, 5, 200001)[:-1], np.nextafter(np.arange(1, 6), 0)])
-    q1, q2, q3 = (other.q(e, r) for r in (1, 2, 3))
-    t1, t2, t3 = (other.t(e, r) for r in (1, 2, 3))
-    velocity, acceleration = q1 / t1, (q2 * t1 - q1 * t2) / t1**3
-    n2, n2_slope = q2 * t1 - q1 * t2, q3 * t1 - q1 * t3
-    jerk = (n2_slope * t1 - 3 * n2 * t2) / t1**5
-    sampled = np.array([np.abs(x).max(axis=0) for x in (velocity, acceleration, jerk)]).T
-    exact = evaluate(problem, h[None]).ratios[0] * problem.limits.derivatives
-    assert (sampled <= exact * (1 + 1e-12)).all()
-    np.testing.assert_allclose(sampled, exact, rtol=1e-6)
-
-
 @pytest.mark.parametrize("limited", ["all", "velocity", "acceleration"])
 def test_no_piece_that_is_skipped_holds_the_peak(limited: str) -> None:
     """Against every extremum of every piece, for durations whose neighbours differ much."""
@@ -179,24 +161,6 @@ def test_a_derivative_is_no_polynomial() -> None:
     assert trajectory.derivative(1, 2, 0) == pytest.approx(trajectory.scaled[1, :4, 2])
     with pytest.raises(TrajgapError, match="time is not linear here"):
         trajectory.derivative(1, 2, 1)
-
-
-def test_extrema_hold_both_ends_and_every_turn_of_each_piece() -> None:
-    problem, h = uniform("timed", 16)
-    trajectory = fit(problem.curve, problem.waypoints, h)
-    inside = np.linspace(0.0, 1.0, 2001)
-    for j in range(3):
-        for order in range(4):
-            found = extrema(trajectory, j, order)
-            for k in range(len(h)):
-                own = {e.s: e.value for e in found if e.segment == k}
-                y = np.array([trajectory.value(k, j, order, s) for s in inside])
-                turns = inside[1:-1][(y[1:-1] - y[:-2]) * (y[2:] - y[1:-1]) < 0]
-                room = 1e-12 * np.abs(y).max()
-                for s in (0.0, *turns, 1.0):
-                    near = min(own, key=lambda place: abs(place - s))
-                    assert abs(near - s) <= (1e-3 if 0.0 < s < 1.0 else 0.0)
-                    assert own[near] == pytest.approx(trajectory.value(k, j, order, near), abs=room)
 
 
 def test_position_limits_are_found_between_waypoints() -> None:

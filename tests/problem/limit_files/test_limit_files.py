@@ -209,11 +209,7 @@ TWO_ARMS = "joint_limits: {left_1: {max_velocity: 1}, right_1: {}}\n"
     [
         # A name that no file knows.
         (["arm.urdf"], ("turn", "wheel_"), r"arm.urdf: wheel_: .*did you mean 'wheel'\?"),
-        (
-            ["arm.urdf"],
-            ("turn", "x"),
-            "x: is no joint with limits there; rename it or add it; known: wheel, slide",
-        ),
+        (["arm.urdf"], ("turn", "x"), "x: is no joint with limits there; rename it or add it"),
         (["arm.urdf"], ("turm", "slyde"), "turm: .*'turn'.*; also slyde: .*'slide'"),
         (["arm.urdf"], ("turn", "finger"), "finger: is no joint with limits there"),  # it mimics
         (["flags", "arm.urdf"], ("turn", "wheel_"), "did you mean 'wheel'"),
@@ -275,10 +271,7 @@ def test_what_is_unstated_is_known_and_goes_into_no_problem(tmp_path):
         ({"a": "pvaj", "b": "aj", "c": "aj"}, "joint a; acceleration and jerk, no limit stated"),
         ({"a": "j", "b": "j", "c": "j"}, "jerk, no limit stated"),
         ({"a": "pvaj", "c": "pvaj", "b": "p"}, "joints a and c; position, no limit stated"),
-        (
-            {"a": "paj", "b": "j", "c": "j"},
-            "jerk; position and acceleration of joint a, no limit stated",
-        ),
+        ({"a": "paj", "b": "j", "c": "j"}, "jerk; position and acceleration of joint a, no limit"),
         ({"a": "v", "c": "v"}, "velocity of joints a and c, no limit stated"),
         ({"a": "pvaj", "b": "pvaj", "c": "pvaj"}, "joints a, b and c, no limit stated"),
     ],
