@@ -6,6 +6,7 @@ import json
 
 import numpy as np
 import pytest
+from support.refusals import Refusal, each_refusal
 from trajgap.problem import CaseError, case_schema, compare_transcriptions, parse_case
 from trajgap.problem.cases import ratio_words
 
@@ -90,22 +91,9 @@ def test_chord_lengths_are_those_of_the_joints_that_take_part() -> None:
     assert not own.statement("second", "total-chosen").loose_ratios
 
 
-@pytest.mark.parametrize(
-    ("ratios", "said"),
-    [
-        ("[1, 2, 3]", r"durations\.ratios: 3 ratios for 2 segments; give one each"),
-        ('"even"', r"durations\.ratios: 'even' is no ratio; give one number per segment"),
-        ("2", r"durations\.ratios: a number is no ratio; give one number per segment"),
-        ("[]", r"durations\.ratios: is an empty list"),
-        ("[1, 0]", r"durations\.ratios\[1\]: 0 may be 0 or less; give a positive ratio"),
-        ('[1, "0.0"]', r"durations\.ratios\[1\]: 0\.0 may be 0 or less; give a positive ratio"),
-        ("[1, -2]", r"durations\.ratios\[1\]: -2 may be 0 or less"),
-        ("[1, 1e13]", r"durations\.ratios: the largest is more than 1e\+12 times the smallest"),
-    ],
-)
-def test_what_is_no_ratio_is_refused(ratios: str, said: str) -> None:
-    with pytest.raises(CaseError, match=said):
-        case(ratios)
+@each_refusal("ratios")
+def test_what_is_no_ratio_is_refused(one: Refusal) -> None:
+    one.said_by(lambda: parse_case(one.text(CASE), "ratios.toml"), "ratios.toml: ")
 
 
 def test_neighbours_that_coincide_have_no_chord() -> None:

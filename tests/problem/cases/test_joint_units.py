@@ -7,7 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from support.scara import scara
+from support.refusals import Refusal, each_refusal
+from support.scara import SCARA, scara
 from trajgap.problem import CaseError, scaffold
 from trajgap.problem.cases import compare_transcriptions, parse_case
 
@@ -82,67 +83,9 @@ def test_prescribed_ends_are_in_the_unit_of_their_joint():
     assert start == pytest.approx((np.pi / 10, np.radians(10), 0.02))
 
 
-REFUSED = [
-    ((POSITION, 'position = ["deg", "mm"]'), "units.position: 2 units for 3 joints; give one for"),
-    ((POSITION, "position = []"), "units.position: is an empty list; give one value for all"),
-    ((POSITION, 'position = ["deg", "deg", "mm/s"]'), "units.position[2]: 'mm/s' measures"),
-    ((VELOCITY, 'velocity = ["r/min", "deg/s", "mm/s"]'), "units.velocity[0]: unknown unit"),
-    ((VELOCITY, 'velocity = "deg/s"'), "units.velocity: joint 'd3' has 'deg/s' here and 'mm' in"),
-    (
-        (ACCELERATION, 'acceleration = ["deg/s^2", "mm/s^2", "m/s^2"]'),
-        "units.acceleration[1]: joint '2' has 'mm/s^2' here and 'deg' in units.position; give both "
-        "as an angle or both as a length",
-    ),
-    (('"revolute", "prismatic"]', '"prismatic", "prismatic"]'), "units.position: joint '2' is in"),
-    (("velocity = [30, 150, 120]", "velocity = 30"), "limits.velocity: is one number for joints"),
-    (('of = "durations"\nderivative = "velocity"\nvalues = ["11.4", "48.5", "107.6"]', 'of = "durations"\nderivative = "velocity"\nvalue = "107.6"'), "claims[2].value: is one number for joints in different units (rpm, deg/s"),
-    (('derivative = "velocity"\nvalues = ["6.42", "36.7", "78.3"]', 'derivative = "velocity"\nvalue = "78.3"'), "claims[5].value: is one number for joints"),
-    (
-        ('[units]\n', '[[problems]]\nid = "turned"\nturns = { d3 = [0, 1, 0, 0] }\n\n[units]\n'),
-        "turns.d3: joint 'd3' slides, and turns are of angles; leave it out",
-    ),
-    (('joint = "d3"\n\n[[clues]]', 'joint = "1"\n\n[[clues]]'), "clues[0].unit: 'mm/s' does not"),
-    (
-        ('unit = ["deg/s", "rpm", "m/min"]', 'unit = ["deg/s", "m/min", "m/min"]'),
-        "clues[1].unit[1]: 'm/min' does not fit joint '2'; list one unit per joint",
-    ),
-    (
-        ('unit = ["deg/s", "rpm", "m/min"]', 'unit = ["deg/s", "m/min"]'),
-        "clues[1].unit: 2 units for 3 joints; give one for all, or one each",
-    ),
-    (
-        ('unit = ["deg/s", "rpm", "m/min"]', 'unit = ["deg/s", "knots", "m/min"]'),
-        "clues[1].unit[1]: 'knots' is no unit of velocity",
-    ),
-    (
-        ('[[cartesian]]\nid = "a"',
-         '[[clues]]\nid = "half"\nkind = "half-turns"\nwhere = "Table 1"\ntext = "mm"\n'
-         'joint = "d3"\n\n[[cartesian]]\nid = "a"'),
-        "clues[2].joint: joint 'd3' slides, and half turns are of angles; name another",
-    ),
-    (('family = "cubic-spline"', 'family = "clamped-b-spline"\ndegree = 5\n' 'knots = "averaged-continued"\nparameters = "chord"'), 'interpolant.parameters: "chord" adds angles and lengths, so that its knots depend on their'),
-    (
-        ('family = "cubic-spline"', 'family = "cubic-spline"\nend_derivatives = [5]'),
-        "interpolant.end_derivatives[0]: is one number for joints in different units",
-    ),
-    (('"12.0"]', '"12e18"]'), "lies outside the magnitudes from 1e-12 to 1e+12 m and s that are"),
-    (
-        ('[[claims]]\nid = "durations"',
-         '[[columns]]\nid = "extra"\nwhere = "Table 1"\njoint = "4"\nvalues = [1, 2, 3, 4]\n\n'
-         '[[claims]]\nid = "durations"'),
-        "columns[0].unit: is needed where units.position lists one per joint of the robot's",
-    ),
-]  # fmt: skip
-
-
-@pytest.mark.parametrize(("change", "line"), REFUSED, ids=[line[:60] for _, line in REFUSED])
-def test_each_refusal_has_its_line(change: tuple[str, str], line: str) -> None:
-    with pytest.raises(CaseError) as caught:
-        scara(change)
-    message = str(caught.value)
-    assert message.startswith("scara.toml: ")
-    assert "\n" not in message
-    assert line in message
+@each_refusal("scara")
+def test_each_refusal_has_its_line(one: Refusal) -> None:
+    one.said_by(lambda: parse_case(one.text(SCARA), "scara.toml"), "scara.toml: ")
 
 
 def test_instances_need_steps_that_a_sliding_joint_has():

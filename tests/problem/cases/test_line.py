@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
-from trajgap.problem import CaseError, ctraj, forward_kinematics, load_robot, parse_case
+from support.refusals import Refusal, each_refusal
+from trajgap.problem import ctraj, forward_kinematics, load_robot, parse_case
 
 FIRST = [0.1, -0.6, 0.4, 0.2, 0.5, 0.1]
 LAST = [0.3, -0.5, 0.3, 0.2, 0.4, 0.2]
@@ -56,22 +56,6 @@ def test_its_angles_are_in_the_unit_of_the_file() -> None:
     assert statement.waypoints is case.statement().waypoints  # computed once
 
 
-@pytest.mark.parametrize(
-    ("old", "new", "message"),
-    [
-        ("first = [0.1,", 'first = ["0.1",', "waypoints.line.first: angles between the ends"),
-        (", 0.2]", "]", "waypoints.line.last: 5 angles for the 6 joints of the robot; give one"),
-        ("points = 4", "points = 1", "waypoints.line.points: 1 is out of range; give at least 2"),
-        ('"5", "6"]', '"6", "5"]', "waypoints.line: needs the robot's table, and all its joints"),
-        ('model = "puma560"', "", "waypoints.line: needs the robot's table, and all its joints in"),
-        ('position = "rad"', "", "units.position: is missing; add one of rad, deg, m, cm, mm"),
-        ("line =", "joint_rows = [[1]]\nline =", "waypoints: needs one of joint_rows"),
-        ("-0.5, 0.3, 0.2,", "-0.5, 2.8, 0.2,", "waypoints.line: "),
-    ],
-)
-def test_lines_that_are_refused(old: str, new: str, message: str) -> None:
-    text = case_text()
-    assert old in text
-    with pytest.raises(CaseError) as caught:
-        parse_case(text.replace(old, new, 1), "line.toml")
-    assert str(caught.value).startswith(f"line.toml: {message}")
+@each_refusal("line")
+def test_lines_that_are_refused(one: Refusal) -> None:
+    one.said_by(lambda: parse_case(one.text(case_text()), "line.toml"), "line.toml: ")

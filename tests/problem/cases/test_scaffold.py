@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from support.refusals import Refusal, each_refusal
 from trajgap.problem.cases.literature import LITERATURE
 from trajgap.problem.cases.load import parse_case
 from trajgap.problem.cases.scaffolding import scaffold
@@ -59,9 +60,6 @@ def test_a_gap_in_the_last_line_end_does_not_matter(table):
     assert scaffold(table("a,b\r\n1,2\r\n3,4"), RAD) == scaffold(table("a,b\n1,2\n3,4\n"), RAD)
 
 
-HOLDS_NUMBERS = "line 1: holds numbers; the first line names the joints, put a header above it"
-
-
 @pytest.mark.parametrize(
     ("text", "joints", "labels"),
     [
@@ -110,48 +108,10 @@ def test_what_is_written_loads_or_the_table_is_refused(tmp_path_factory, joints,
     assert [j.strip() for j in joints] == list(case.robot.joints)
 
 
-@pytest.mark.parametrize(
-    ("text", "reason"),
-    [
-        ("", "is empty; `trajgap new` writes a file to start from"),
-        (b"a,b\n\x00,1", "is a binary file; a UTF-8 text file is needed"),
-        ("a,b\n1,2\n", "holds 1 way-points; give at least two rows of numbers"),
-        ("a,b\n1,2\n3\n", "line 3: has 1 cells, the header 2; fill or remove cells"),
-        ("a,a\n1,2\n3,4\n", "line 1, column 2: joint 'a' is named twice; rename one"),
-        ("a,\n1,2\n3,4\n", "line 1, column 2: the joint has no name; head every column"),
-        ("point\nA\nB\n", "line 1: names no joint; head one column per joint"),
-        ("0.1,-2\n1,2\n3,4\n", HOLDS_NUMBERS),
-        # The first line is a way-point, and the next one must not be taken for the start.
-        ("10,20\n55,35\n60,20\n", HOLDS_NUMBERS),
-        ("2,1\n55,35\n60,20\n", HOLDS_NUMBERS),
-        ("10 20\n55 35\n60 20\n", HOLDS_NUMBERS),
-        ("A,10,20\nB,55,35\nC,60,20\n", HOLDS_NUMBERS),
-        ("P1,1e1,7\nP2,55,35\nP3,5,3\n", HOLDS_NUMBERS),
-        ("joint 1;joint 2\n10 20\n30 40\n", "line 2: holds 2 numbers with spaces between, in one"),
-        (
-            "name,A,B,C\nJ1,1,2,3\nJ2,4,5,6\n",
-            "column 1: names joints, J1 first; give a row for each way-point, or head this column "
-            '"joint" if each row is a joint',
-        ),
-        ("joint,A,B\n10,1,2\n20,4,5\n", "column 1: holds numbers; name each joint there, such as"),
-        ("joint,A\nJ1,1\nJ2,4\n", "holds 1 way-points; give at least two rows of numbers"),
-        ("joint,A,B\nJ1,1,2\nJ1,4,5\n", "line 3, column 1: joint 'J1' is named twice; rename one"),
-        ("i,a,b\n1,5,2\n2,5,3\n3,9,7\n", 'column 1: numbers the rows; head it "point" in place'),
-        ("time (s),a\n0.5,2\n1.0,3\n", "line 1, column 1: 'time (s)' is no joint; leave instants"),
-        ("a;b\n1;2\n3;0,5\n", "line 3, column 2: '0,5' has a decimal comma; write a decimal point"),
-        (
-            "a,b\n1,nan\n3,4\n",
-            "line 2, column 2: 'nan' is not a finite decimal number; "
-            'write the printed digits alone, such as "0.660"',
-        ),
-        ('a,b\n1,"2\n3,4\n', "line 3: not valid CSV, unexpected end of data; fix it"),
-    ],
-)
-def test_tables_that_are_refused(table, text, reason):
-    path = table(text)
-    with pytest.raises(CaseError) as caught:
-        scaffold(path, RAD)
-    assert str(caught.value) == f"{path}: {reason}"
+@each_refusal("tables")
+def test_tables_that_are_refused(table, one: Refusal):
+    path = table(one.text(""))
+    one.said_by(lambda: scaffold(path, RAD), f"{path}: ")
 
 
 @pytest.mark.parametrize(
@@ -176,10 +136,12 @@ def test_options_that_are_refused(table, units, options, reason):
     path = table("a,b\n1,2\n3,4\n")
     with pytest.raises(CaseError) as caught:
         scaffold(path, units, **options)
-    assert str(caught.value) == reason
+    assert str(caught.value).startswith(reason)
 
 
-def test_a_missing_table(tmp_path):
+def test_tables_that_cannot_be_read(table, tmp_path):
+    with pytest.raises(CaseError, match="is a binary file; a UTF-8 text file is needed"):
+        scaffold(table(b"a,b\n\x00,1"), RAD)
     with pytest.raises(CaseError, match=r"none\.csv: no such file; check the path"):
         scaffold(tmp_path / "none.csv", RAD)
 
