@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 from support import exact_route
-from support.samples import DECLARATIONS, FREE, sample_problem
+from support.samples import DECLARATIONS, sample_problem
 from support.splines_drawn import exact_scaled, waypoints
 from trajgap.problem import (
     Interpolant,
@@ -79,81 +79,6 @@ def test_singular_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
         TrajgapError, match=r"3-5-3 polynomials: singular for durations \[1. 1. 1.\]"
     ):
         fit(three_five_three(), waypoints(4), [1.0, 1.0, 1.0])
-
-
-def complex_step(
-    interpolant: Interpolant, q: np.ndarray, h: np.ndarray, nodal: np.ndarray | None, k: int
-) -> np.ndarray:
-    """Derivative of the scaled coefficients by a complex step in the unscaled system."""
-    step = 1e-30
-    degrees = interpolant.degrees
-    first = np.concatenate([[0], np.cumsum([d + 1 for d in degrees])])
-    t = h.astype(complex)
-    t[k] += 1j * step
-    rows, right = [], []
-    extra = dict(zip(interpolant.free_derivatives, nodal, strict=True)) if nodal is not None else {}
-
-    def derivative(segment: int, order: int, time: complex) -> np.ndarray:
-        row = np.zeros(first[-1], complex)
-        for p in range(order, degrees[segment] + 1):
-            factor = np.prod(np.arange(p, p - order, -1.0))
-            row[first[segment] + p] = factor * (time ** (p - order) if p > order else 1.0)
-        return row
-
-    places = {b: i for i, b in enumerate(interpolant.waypoint_breaks)}
-    for b in range(len(degrees) + 1):
-        given_here = {o: np.full(q.shape[1], v) for o, v in interpolant.prescribed[b]}
-        given_here |= {o: v for (at, o), v in extra.items() if at == b}
-        if b in places:
-            given_here[0] = q[places[b]]
-        for order, value in given_here.items():
-            if b > 0:
-                rows.append(derivative(b - 1, order, t[b - 1]))
-                right.append(value)
-            if b < len(degrees):
-                rows.append(derivative(b, order, 0.0))
-                right.append(value)
-        if 0 < b < len(degrees):
-            for order in range(interpolant.continuity[b - 1] + 1):
-                if order not in given_here:
-                    rows.append(derivative(b - 1, order, t[b - 1]) - derivative(b, order, 0.0))
-                    right.append(np.zeros(q.shape[1]))
-    flat = np.linalg.solve(np.array(rows), np.array(right, complex))
-    out = np.zeros((len(degrees), 10, q.shape[1]))
-    for s, d in enumerate(degrees):
-        for p in range(d + 1):
-            out[s, p] = (flat[first[s] + p] * t[s] ** p).imag / step
-    return out
-
-
-@pytest.mark.parametrize("name", [*DECLARATIONS, *FREE])
-def test_coefficient_gradient_against_a_complex_step(name: str) -> None:
-    interpolant = (DECLARATIONS | FREE)[name]
-    problem, h = sample_problem(interpolant, 21)
-    q = problem.waypoints
-    rng = np.random.default_rng(1)
-    nodal = rng.normal(size=(interpolant.free, 3)) if interpolant.free else None
-    gradient = coefficient_gradient(interpolant, q, h, nodal)
-    base = coefficients(interpolant, q, h, nodal)
-    for k in range(interpolant.segments):
-        reference = complex_step(interpolant, q, h, nodal, k)
-        size = max(1.0, np.abs(reference).max(), np.abs(base).max())
-        np.testing.assert_allclose(gradient.durations[k], reference, atol=1e-10 * size)
-    # linear in way-points and nodal values: exact differences
-    for i in range(q.shape[0]):
-        moved = q.copy()
-        moved[i] += 1.0
-        change = coefficients(interpolant, moved, h, nodal) - base
-        for j in range(3):
-            np.testing.assert_allclose(gradient.waypoints[i], change[:, :, j], atol=1e-10)
-    for i in range(interpolant.free):
-        assert nodal is not None
-        changed = nodal.copy()
-        changed[i] += 1.0
-        change = coefficients(interpolant, q, h, changed) - base
-        for j in range(3):
-            np.testing.assert_allclose(gradient.nodal[i], change[:, :, j], atol=1e-10)
-    assert gradient.nodal.shape == (interpolant.free, interpolant.segments, 10)
 
 
 def test_motion_values_count_from_the_first_waypoint() -> None:
