@@ -150,26 +150,6 @@ def points(count):
     return "1,2\n" + "".join(f"0.{k}1,{k % 3}.5\n" for k in range(count))
 
 
-@pytest.mark.parametrize("name", LITERATURE)
-def test_every_name_of_the_literature_declares_a_curve(table, name):
-    text = scaffold(table(points(4)), RAD, family=name, velocity="6", acceleration="8")
-    assert f"# what papers call {name}" in text
-    assert parse_case(text, "x").problem().curve.segments >= 3
-
-
-def test_what_papers_call_curves_has_their_degrees_and_ends(table):
-    path = table(points(4))
-
-    def curve(name):
-        return parse_case(scaffold(path, RAD, family=name), "x").problem().curve
-
-    assert curve("4-3-4").degrees == (4, 3, 4)
-    assert curve("quintic-b-spline").degrees == (5, 5, 5)
-    assert curve("septic-polynomials").degrees == (7, 7, 7)
-    assert curve("natural-cubic").prescribed == (((2, 0.0),), (), (), ((2, 0.0),))
-    assert curve("clamped-cubic").prescribed == (((1, 0.0),), (), (), ((1, 0.0),))
-
-
 def test_a_default_without_a_shortest_motion_is_not_one(table):
     path = table(points(5))
     assert 'family = "cubic-spline-virtual"' in scaffold(path, RAD | {"jerk": "rad/s^3"}, jerk="9")
@@ -271,3 +251,137 @@ def test_settings_are_bare_and_what_may_be_rounded_is_quoted(table, unit, rows, 
     assert [[number.exact for number in row] for row in points] == bare
     assert ("exact" in text.split("[waypoints]")[1].split("[limits]")[0]) == (remark is not None)
     assert remark is None or remark in text
+
+
+# --- names that papers give to curves -------------------------------------------------------------
+
+
+@pytest.fixture
+def declared(table):
+    """The curve of a case that `scaffold` writes for so many way-points under a name."""
+
+    def declare(name, count):
+        text = scaffold(table(points(count)), {"position": "rad"}, family=name)
+        assert f"# what papers call {name}" in text or f'family = "{name}"' in text
+        return parse_case(text, "x").problem().curve
+
+    return declare
+
+
+@pytest.mark.parametrize("name", LITERATURE)
+def test_every_name_of_the_literature_declares_a_curve(declared, name):
+    curve = declared(name, 4)
+    assert curve.segments >= 3
+    orders = {"natural-cubic": 2, "clamped-cubic": 1}
+    if name in orders:
+        assert curve.ends == (((orders[name], 0.0),),) * 2
+
+
+@pytest.mark.parametrize(
+    ("name", "count", "degrees"),
+    [
+        ("virtual-cubic-spline", 4, (3,) * 5),
+        ("cubic spline with two virtual points", 4, (3,) * 5),
+        ("cubic spline with 2 virtual knots", 4, (3,) * 5),
+        ("Natural cubic splines", 5, (3,) * 4),
+        ("natural spline", 5, (3,) * 4),
+        ("C2 cubic spline", 5, (3,) * 4),
+        ("C4 quintic spline", 5, (5,) * 4),
+        ("clamped cubic spline", 5, (3,) * 4),
+        ("fifth-order B-spline", 6, (5,) * 5),
+        ("quintic B splines", 6, (5,) * 5),
+        ("5th-degree polynomial", 3, (5, 5)),
+        ("quintic polynomial", 3, (5, 5)),
+        ("3-4-5 polynomial", 2, (5,)),
+        ("4-5-6-7 polynomial", 2, (7,)),
+        ("seventh-order polynomial", 2, (7,)),
+        ("3-5-3 polynomials", 4, (3, 5, 3)),
+        ("353", 4, (3, 5, 3)),
+        ("4-3-4", 4, (4, 3, 4)),
+        ("septic-polynomials", 4, (7, 7, 7)),
+        ("4-3-3-3-4", 6, (4, 3, 3, 3, 4)),
+        ("4–3–3–4 spline", 5, (4, 3, 3, 4)),
+        ("5-3-3-3-5", 6, (5, 3, 3, 3, 5)),
+        ("5-5-5", 4, (5, 5, 5)),
+    ],
+)  # fmt: skip
+def test_a_name_declares_the_curve_that_it_means(declared, name, count, degrees):
+    curve = declared(name, count)
+    assert (curve.degrees, curve.free) == (degrees, 0)
+
+
+def test_degrees_that_are_not_settled_are_left_open(declared, table):
+    """27 coefficients, and conditions that are alike at both ends and at all joints: 22 by hand."""
+    curve = declared("5-4-4-4-5", 6)
+    assert (curve.degrees, curve.free) == ((5, 4, 4, 4, 5), 27 - (10 + 8 + 4))
+    text = scaffold(table(points(6)), {"position": "rad"}, family="5-4-4-4-5")
+    assert "27 coefficients and 22 conditions: say what settles the other 5" in text
+
+
+def test_other_splines_through_the_middle_are_told_apart(declared):
+    """Five and four virtual points: two are what is known."""
+    assert declared("quintic spline", 5).degrees == (5,) * 4
+    assert declared("septic B-spline", 8).name.startswith("clamped B-spline of degree 7")
+    assert declared("uniform cubic B-spline", 5).name == declared("uniform-cubic-b-spline", 5).name
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "trigonometric spline", "Bezier", "NURBS", "cubic Hermite spline", "exponential spline",
+        "cycloidal", "spline with three virtual points", "Akima spline", "x", "",
+    ],
+)  # fmt: skip
+def test_what_is_not_known_is_said_and_nothing_is_suggested(declared, name):
+    with pytest.raises(CaseError) as caught:
+        declared(name, 4)
+    ((field, reason),) = caught.value.faults
+    assert field == "family"
+    assert reason.startswith(f"{name!r} is not known; use one of 3-5-3, ")
+    assert "degrees such as 4-3-3-4" in reason
+
+
+@pytest.mark.parametrize(
+    ("name", "meant"),
+    [
+        ("quintic", "quintic-b-spline or quintic-polynomials or quintic-spline"),
+        ("clamped", "clamped-b-spline or clamped-cubic"),
+        ("quintc-spline", "quintic-spline"),
+        ("virtual", "cubic-spline-virtual or quintic-spline-virtual"),
+        ("cubic", "clamped-cubic or cubic-b-spline or cubic-polynomials or cubic-spline or"),
+    ],
+)
+def test_a_name_that_may_mean_several_is_answered_with_them(declared, name, meant):
+    with pytest.raises(CaseError) as caught:
+        declared(name, 4)
+    ((_, reason),) = caught.value.faults
+    assert reason.startswith(f"{name!r} is not known; did you mean {meant}")
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "LSPB",
+        "parabolic blends",
+        "trapezoidal velocity profile",
+        "S-curve",
+        "double S",
+        "sine-jerk",
+        "sinusoidal jerk profile",
+    ],
+)
+def test_profiles_are_refused_with_where_they_belong(declared, name):
+    with pytest.raises(CaseError, match="is a profile from rest to rest, not a curve through"):
+        declared(name, 4)
+
+
+def test_a_case_file_that_names_a_curve_as_papers_do_is_shown_how_to_write_it(table):
+    text = scaffold(table(points(6)), {"position": "rad"}, family="cubic-spline")
+    for name, written in (
+        ("virtual-cubic-spline", 'write family = "cubic-spline-virtual"'),
+        ("4-3-3-3-4", 'write family = "polynomials", degrees = [4, 3, 3, 3, 4]'),
+    ):
+        with pytest.raises(CaseError) as caught:
+            parse_case(text.replace('"cubic-spline"', f'"{name}"'), "x")
+        ((field, reason),) = caught.value.faults
+        assert (field, reason) == ("interpolant.family", f"{name!r} is not allowed; {written}")

@@ -80,36 +80,28 @@ def test_the_mean_value_is_that_of_the_divided_difference():
 
 
 def test_noise_is_averaged_over_wider_windows():
-    rng = np.random.default_rng(5)
     time = np.linspace(0.0, 4.0, 4001)
-    q = 1.3 * time[:, None] + 1e-3 * rng.uniform(-1, 1, (4001, 1))
-    limits = JointLimits.from_values(("1",), velocity=1.28)
-    noisy = check_samples(Samples(("1",), time, q, noise=1e-3), limits)
-    assert noisy.verdict is Verdict.VIOLATED  # neighbours alone would allow 1.3 ± 2
-    as_if_exact = check_samples(
-        Samples(("1",), time, q), JointLimits.from_values(("1",), velocity=1.6)
-    )
-    assert as_if_exact.verdict is Verdict.VIOLATED  # of the noise, which was not stated
-    loose = check_samples(
-        Samples(("1",), time, q, noise=1e-3), JointLimits.from_values(("1",), velocity=1.6)
-    )
-    assert loose.verdict is Verdict.UNDECIDED
+    q = 1.3 * time[:, None] + 1e-3 * np.random.default_rng(5).uniform(-1, 1, (4001, 1))
+    for noise, limit, verdict in (
+        (1e-3, 1.28, Verdict.VIOLATED),  # neighbours alone would allow 1.3 ± 2
+        (0.0, 1.6, Verdict.VIOLATED),  # of the noise, which was not stated
+        (1e-3, 1.6, Verdict.UNDECIDED),
+    ):
+        limits = JointLimits.from_values(("1",), velocity=limit)
+        assert check_samples(Samples(("1",), time, q, noise=noise), limits).verdict is verdict
 
 
 def test_stated_derivatives_are_judged_themselves():
-    time, q = np.array([0.0, 1.0, 2.0]), np.zeros((3, 1))
     v = np.array([[0.0], [2.5], [0.0]])
-    found = check_samples(
-        Samples(("1",), time, q, v), JointLimits.from_values(("1",), velocity=2.0)
-    )
-    assert (found.verdict, found.worst.value, found.worst.time) == (Verdict.VIOLATED, 2.5, 1.0)
-    rate = check_samples(
-        Samples(("1",), time, q, v), JointLimits.from_values(("1",), acceleration=2.4)
-    )
-    assert abs(rate.worst.value) == pytest.approx(2.5)
-    assert check_samples(
-        Samples(("1",), time, q, v), JointLimits.from_values(("1",), acceleration=2.6)
-    ).worst.ratio == pytest.approx(2.5 / 2.6)
+    samples = Samples(("1",), np.array([0.0, 1.0, 2.0]), np.zeros((3, 1)), v)
+
+    def found(**limits):
+        return check_samples(samples, JointLimits.from_values(("1",), **limits))
+
+    speed = found(velocity=2.0)
+    assert (speed.verdict, speed.worst.value, speed.worst.time) == (Verdict.VIOLATED, 2.5, 1.0)
+    assert abs(found(acceleration=2.4).worst.value) == pytest.approx(2.5)
+    assert found(acceleration=2.6).worst.ratio == pytest.approx(2.5 / 2.6)
 
 
 def test_limits_are_of_the_same_joints():

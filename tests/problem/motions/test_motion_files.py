@@ -1,12 +1,14 @@
 """Files with motions of every format, and one clear line for each that is none."""
 
 import json
+from fractions import Fraction
 from itertools import pairwise
 
 import numpy as np
 import pytest
 import yaml
-from scipy.interpolate import CubicSpline, PPoly
+from scipy.interpolate import CubicSpline
+from support.exact_motions import Row, hermite, value
 from support.refusals import Refusal, each_refusal
 from trajgap.problem import CaseError
 from trajgap.problem.motions import Interpolation, Motion, interpolated, read_motion
@@ -82,8 +84,11 @@ def test_polynomials_by_piece_and_as_scipy_has_them(tmp_path):
         assert isinstance(read.content, Motion)
         assert read.joints == ("x", "y")
         np.testing.assert_allclose(read.content(at), one(at), atol=1e-12)
-    degrees = read_motion(write(tmp_path, "d.json", json.dumps(by_piece)), ("deg",)).content
-    np.testing.assert_allclose(degrees(at), np.deg2rad(one(at)), atol=1e-12)
+    stated = by_piece | {"units": {"position": "deg"}}
+    for given, units in ((by_piece, ("deg",)), (stated, ())):
+        read = read_motion(write(tmp_path, "d.json", json.dumps(given)), *[units][: len(units)])
+        np.testing.assert_allclose(read.content(at), np.deg2rad(one(at)), atol=1e-12)
+    assert read.units == ("deg", "deg")
 
 
 def message(stamp):
@@ -122,22 +127,6 @@ def test_ros_messages(tmp_path, stamp, wrap, ending):
     assert samples.acceleration is None
 
 
-def controller(t, p0, v0, a0, p1, v1, a1, h):
-    """joint_trajectory_controller's formulas, of powers of time, as it prints them."""
-    if v0 is None or v1 is None:
-        return p0 + t * (p1 - p0) / h
-    if a0 is None or a1 is None:
-        c2 = (-3 * p0 + 3 * p1 - 2 * v0 * h - v1 * h) / h**2
-        c3 = (2 * p0 - 2 * p1 + v0 * h + v1 * h) / h**3
-        return p0 + v0 * t + c2 * t**2 + c3 * t**3
-    c3 = (-20 * p0 + 20 * p1 - 3 * a0 * h**2 + a1 * h**2 - 12 * v0 * h - 8 * v1 * h) / (2 * h**3)
-    c4 = (30 * p0 - 30 * p1 + 3 * a0 * h**2 - 2 * a1 * h**2 + 16 * v0 * h + 14 * v1 * h) / (
-        2 * h**4
-    )
-    c5 = (-12 * p0 + 12 * p1 - a0 * h**2 + a1 * h**2 - 6 * v0 * h - 6 * v1 * h) / (2 * h**5)
-    return p0 + v0 * t + a0 / 2 * t**2 + c3 * t**3 + c4 * t**4 + c5 * t**5
-
-
 def test_the_controllers_choice_between_each_pair(tmp_path):
     rows = [  # time, position, velocity, acceleration
         (0.0, 0.3, 0.0, 0.0),
@@ -158,11 +147,15 @@ def test_the_controllers_choice_between_each_pair(tmp_path):
     text = json.dumps({"joint_names": ["j"], "points": points})
     samples = read_motion(write(tmp_path, "m.json", text)).content
     motion = interpolated(samples, Interpolation.CONTROLLER)
-    for (t0, p0, v0, a0), (t1, p1, v1, a1) in pairwise(rows):
+    for (t0, *first), (t1, *last) in pairwise(rows):
+        # What both ends state: positions alone, velocities too, or all.
+        stated = sum(None not in pair for pair in zip(first, last, strict=True))
+        ends = [(t, [Fraction(x or 0) for x in one]) for t, one in ((t0, first), (t1, last))]
+        one = hermite([Row(Fraction(t), tuple(x)) for t, x in ends], 2 * stated - 1)
         for part in (0.0, 0.2, 0.9):
-            h = t1 - t0
-            wanted = controller(part * h, p0, v0, a0, p1, v1, a1, h)
-            assert motion(t0 + part * h)[0] == pytest.approx(wanted, abs=1e-9)
+            place = Fraction(part * (t1 - t0))
+            wanted = float(value(one.pieces[0], place))
+            assert motion(t0 + float(place))[0] == pytest.approx(wanted, abs=1e-9)
     assert motion.between.startswith("straight lines and cubic Hermite and quintic Hermite")
 
 
@@ -277,11 +270,3 @@ def test_a_bag_needs_its_library_or_is_read(tmp_path):
         one.write_bytes(b"not a data base")
     with pytest.raises(CaseError, match="no readable bag"):
         read_motion(tmp_path / "bag")
-
-
-def test_a_polynomial_file_is_no_more_than_it_says(tmp_path):
-    found = {"breaks": [0, 2], "coefficients": [[[1, 2]] * 3], "units": {"position": "deg"}}
-    read = read_motion(write(tmp_path, "p.json", json.dumps(found)))
-    assert read.units == ("deg", "deg")
-    wanted = PPoly(np.array([[[1.0, 2.0]]] * 3), [0.0, 2.0])
-    np.testing.assert_allclose(read.content(1.5), np.deg2rad(wanted(1.5)))
