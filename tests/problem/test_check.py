@@ -1,26 +1,29 @@
 """The checker and the batched evaluation: identities, known answers, every verdict and reason."""
 
 import os
+from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
 import pytest
 from support import exact_route
 from support.checked import one_joint, table
+from support.positions import CURVES, limited
 from support.samples import DECLARATIONS, FREE, sample_problem
 from trajgap.problem import (
     QUANTITIES,
+    Array,
     Limits,
+    Problem,
     TrajgapError,
     Verdict,
     check,
     evaluate,
+    keeps_limits,
     rest_to_rest,
     three_five_three,
 )
 from trajgap.problem.curves import spline as spline_module
-
-# --- known answers -------------------------------------------------------------------------------
 
 
 def test_rest_to_rest_cubic_has_its_textbook_peaks() -> None:
@@ -94,23 +97,6 @@ def test_same_bits_in_any_company(name: str, monkeypatch: pytest.MonkeyPatch) ->
     np.testing.assert_array_equal(single, together.ratios)
 
 
-def test_evaluate_bad_durations_are_infinite_and_nothing_else() -> None:
-    problem, h = sample_problem(three_five_three(), 1, limits=Limits(2, [np.inf, 3, 4], joints=3))
-    good = evaluate(problem, [h])
-    bad = [0.0, -1.0, np.nan, np.inf, -np.inf]
-    batch = np.tile(h, (2 * len(bad) + 1, 1))
-    for i, value in enumerate(bad):
-        batch[2 * i + 1, i % 3] = value
-    result = evaluate(problem, batch)
-    assert np.isinf(result.ratios[1::2]).all()
-    assert np.isinf(result.stretch[1::2]).all()
-    for i in range(0, len(batch), 2):
-        np.testing.assert_array_equal(result.ratios[i], good.ratios[0])
-        assert result.stretch[i] == good.stretch[0]
-    assert (good.ratios[0, :, 2] == 0).all()
-    assert good.ratios[0, 0, 1] == 0
-
-
 def test_evaluate_overflow_is_infinite() -> None:
     problem, _ = sample_problem(three_five_three(), 1)
     ratios = evaluate(problem, [[1e-200, 1.0, 1.0], [1.0, 1e-300, 1.0], [5e-324, 1.0, 1.0]]).ratios
@@ -138,3 +124,49 @@ def test_evaluate_shapes() -> None:
     free, _ = sample_problem(FREE["5-5-5 C2"], 1)
     with pytest.raises(TrajgapError, match="give nodal derivatives of shape"):
         evaluate(free, [h])
+
+
+# --- positions ------------------------------------------------------------------------------------
+
+
+UNLIMITED = Limits(joints=3)
+
+
+def drawn(problem: Problem, count: int, seed: int = 3, spread: float = 1.5) -> Array:
+    return np.exp(np.random.default_rng(seed).uniform(-spread, spread, (count, problem.segments)))
+
+
+def position_ratios(problem: Problem, h: Array) -> list[float]:
+    """The checker's, the larger one of each joint."""
+    peaks = [p for p in check(problem, h).peaks if p.quantity == "position"]
+    return [max(p.ratio for p in peaks if p.joint == joint) for joint in problem.joints]
+
+
+@pytest.mark.parametrize("name", CURVES)
+def test_the_batch_says_what_the_checker_says(name: str) -> None:
+    """Verdicts and ratios, on both sides of the limits wherever durations move the path."""
+    for room in (0.003, 0.05, 0.4):
+        problem = limited(CURVES[name], room, UNLIMITED)
+        h = drawn(problem, 8)
+        found, kept = evaluate(problem, h).positions, keeps_limits(problem, h, 5e-10)
+        for one, ratios, inside in zip(h, found, kept, strict=True):
+            own = check(problem, one)
+            if own.worst is not None and own.worst.quantity == "curve":
+                assert np.isinf(ratios).all()
+                assert not inside
+                continue
+            assert ratios == pytest.approx(position_ratios(problem, one), rel=1e-7, abs=1e-9)
+            assert inside == (own.limits is Verdict.PASS)
+
+
+def test_ratios_of_derivatives_do_not_depend_on_position_limits() -> None:
+    problem = limited(three_five_three(), 0.1)
+    h = drawn(problem, 50)
+    free = replace(problem, limits=problem.limits.with_positions([-np.inf] * 3, [np.inf] * 3))
+    np.testing.assert_array_equal(evaluate(problem, h).ratios, evaluate(free, h).ratios)
+    assert (evaluate(free, h).positions == -np.inf).all()
+    (beyond,) = np.nonzero((evaluate(problem, h).positions > 1 + 1e-9).any(axis=1))
+    np.testing.assert_array_equal(
+        np.flatnonzero(keeps_limits(free, h, 1e-9) & ~keeps_limits(problem, h, 1e-9)),
+        np.flatnonzero(keeps_limits(free, h, 1e-9) & np.isin(np.arange(50), beyond)),
+    )

@@ -5,18 +5,15 @@ import dataclasses
 import numpy as np
 import pytest
 from support import exact_route
-from support.checked import one_joint, table
+from support.checked import one_joint
 from support.samples import sample_problem
 from trajgap.problem import (
     QUANTITIES,
-    Check,
     Interpolant,
     Limits,
     Problem,
     Verdict,
     check,
-    cubic_spline,
-    cubic_spline_virtual,
     evaluate,
     extrema,
     fit,
@@ -97,55 +94,20 @@ def test_acceleration_jump_counts_where_jerk_is_limited() -> None:
     assert check(Problem(still, limited, rest), [0.8, 0.9]).verdict is Verdict.PASS
 
 
-def test_joint_that_must_not_move() -> None:
-    for interpolant in (three_five_three(), cubic_spline(3), rest_to_rest(3, 5)):
-        q = np.array([[0.3, 61.7], [0.9, 61.7], [0.4, 61.7], [-0.2, 61.7]])
-        limits = Limits([9, 0], [90, 0], [900, 0])
-        still = Problem(q, limits, interpolant)
-        result = check(still, [1.0, 1.3, 0.8])
-        assert result.verdict in (Verdict.PASS, Verdict.DISCONTINUOUS)
-        assert not table(result, still.joints)[1].any()
-        assert not evaluate(still, [[1.0, 1.3, 0.8]]).ratios[0, 1].any()
-        moving = Problem(q[:, ::-1], limits, interpolant)
-        result = check(moving, [1.0, 1.3, 0.8])
-        assert result.verdict is Verdict.VIOLATED
-        assert np.isinf(result.stretch)
-        assert np.isinf(evaluate(moving, [[1.0, 1.3, 0.8]]).stretch[0])
-        if not any(j.order < 2 for j in result.jumps) and interpolant.continuity[0] > 1:
-            assert result.feasible_time is None
-            assert result.feasible_why == "a joint with limit 0 moves; no stretch repairs that"
-
-
-def test_at_rest_between_virtual_waypoints() -> None:
-    problem = Problem(
-        np.array([[0.3, 61.7], [0.9, 61.7], [0.4, 61.7]]),
-        Limits([9, 0], [90, 0], [900, 0]),
-        cubic_spline_virtual(3),
-    )
-    h = [0.4, 0.9, 1.3, 0.7]
-    assert not evaluate(problem, [h]).ratios[0, 1].any()
-    assert check(problem, h).verdict is Verdict.PASS
-
-
-def test_nothing_limited() -> None:
+@pytest.mark.parametrize("limited", [False, True])
+def test_nothing_limited_or_nothing_moves(limited: bool) -> None:
     problem, h = sample_problem(three_five_three(), 1, limits=Limits(joints=3))
+    if limited:
+        still, limits = np.full((4, 3), 0.7), Limits(1, 2, 3, joints=3)
+        problem = dataclasses.replace(problem, waypoints=still, limits=limits)
     result = check(problem, h)
     assert result.verdict is Verdict.PASS
-    assert result.worst is None
-    assert (result.peaks, result.stretch, result.max_violation) == ((), 0.0, 0.0)
+    assert (result.stretch, result.max_violation) == (0.0, 0.0)
+    assert limited or (result.worst, result.peaks) == (None, ())
     assert result.feasible_time == pytest.approx(h.sum())
     assert result.tight_time is None
     assert result.tight_why == "nothing moves or nothing is limited; the total time can shrink to 0"
     assert not evaluate(problem, [h]).ratios.any()
-    assert "tight time      none: nothing moves" in str(result)
-
-
-def test_nothing_moves() -> None:
-    problem = Problem(np.full((4, 2), 0.7), Limits(1, 2, 3, joints=2), three_five_three())
-    result = check(problem, [1.0, 1.0, 1.0])
-    assert result.verdict is Verdict.PASS
-    assert result.tight_why == "nothing moves or nothing is limited; the total time can shrink to 0"
-    assert not evaluate(problem, [[0.1, 0.2, 0.3]]).ratios.any()
 
 
 def test_repeated_waypoints() -> None:
@@ -163,18 +125,6 @@ def test_repeated_waypoints() -> None:
 
 
 # --- repairs and their reasons -------------------------------------------------------------------
-
-
-def test_prescribed_velocity_has_no_repair() -> None:
-    problem = one_joint([0.2, 0.9, 0.5], cubic_spline(2, ((1, 0.25),)), velocity=1.0)
-    broken = check(problem, [0.3, 0.3])
-    assert broken.verdict is Verdict.VIOLATED
-    assert broken.feasible_time is broken.tight_time is None
-    assert broken.feasible_why == "a prescribed end derivative is not 0; stretching would change it"
-    kept = check(problem, [2.0, 2.0])
-    assert kept.verdict is Verdict.PASS
-    assert kept.feasible_time == pytest.approx(4.0)
-    assert kept.tight_time is None
 
 
 def test_what_rounding_hides_has_no_repair() -> None:
@@ -204,49 +154,39 @@ def test_position_within_one_ulp_of_its_limit_is_undecided() -> None:
     assert result.verdict is Verdict.UNDECIDED
 
 
-def test_duration_bounds() -> None:
+@pytest.mark.parametrize(
+    ("at", "lower", "upper", "verdict", "worst", "feasible", "tight"),
+    [
+        (1.0, 0.0, np.inf, "pass", None, "", ""),
+        # Exactly at a bound is inside, and not the worst peak.
+        (1.0, 1.0, 1.0, "pass", None, "", ""),
+        (2.0, 2.0, 2.0, "pass", None, "", "below its lower bound"),
+        (1.0, [1, 1.25, 1], np.inf, "violated", (1, 1.25), "below its lower bound", None),
+        (1.0, 0.0, [1, 1, 0.5], "violated", (2, 2.0), "exceeds its upper bound", None),
+        # Too fast, and the repair would be too slow.
+        (0.5, 0.0, 0.8, "violated", None, "exceeds its upper bound", None),
+        # Feasible, but the free rescaling would be too fast.
+        (2.0, 1.5, np.inf, "pass", None, "", "below its lower bound"),
+    ],
+)
+def test_duration_bounds(at, lower, upper, verdict, worst, feasible, tight) -> None:
     problem, h = sample_problem(three_five_three(), 3)
-    c = check(problem, h).stretch
-    tight = h * c
-
-    def judged(
-        lower: np.ndarray | float, upper: np.ndarray | float, at: np.ndarray = tight
-    ) -> Check:
-        return check(dataclasses.replace(problem, duration_lower=lower, duration_upper=upper), at)
-
-    assert judged(0.0, np.inf).verdict is Verdict.PASS
-    # exactly at a bound is inside, and not the worst peak
-    at_bound = judged(tight, tight)
-    assert at_bound.verdict is Verdict.PASS
-    assert at_bound.worst is not None
-    assert at_bound.worst.quantity in QUANTITIES
-    slow = judged(2 * tight, 2 * tight, 2 * tight)
-    assert slow.worst is not None
-    assert slow.worst.quantity in QUANTITIES
-    assert slow.worst.ratio < 0.6
-    short = judged(tight * [1, 1.25, 1], np.inf)
-    assert short.verdict is Verdict.VIOLATED
-    assert short.worst is not None
-    assert (short.worst.quantity, short.worst.segment, short.worst.joint) == ("duration", 1, None)
-    assert short.worst.ratio == pytest.approx(1.25)
-    assert short.worst.time is None
-    assert "segment 2 duration" in str(short)
-    assert short.feasible_why == "a stretched duration falls below its lower bound"
-    long = judged(0.0, tight * [1, 1, 0.5])
-    assert long.worst is not None
-    assert (long.worst.segment, long.worst.ratio) == (2, pytest.approx(2.0))
-    assert long.feasible_why == "a stretched duration exceeds its upper bound"
-    # too fast, and the repair would be too slow
-    half = judged(0.0, 0.8 * tight.max(), 0.5 * tight)
-    assert half.verdict is Verdict.VIOLATED
-    assert half.feasible_time is None
-    assert half.feasible_why == "a stretched duration exceeds its upper bound"
-    # feasible, but the free rescaling would be too fast
-    slow = judged(1.5 * tight, np.inf, 2.0 * tight)
-    assert slow.verdict is Verdict.PASS
-    assert slow.feasible_time == pytest.approx(2 * tight.sum())
-    assert slow.tight_time is None
-    assert slow.tight_why == "a stretched duration falls below its lower bound"
+    h = h * check(problem, h).stretch
+    bounds = {"duration_lower": h * lower, "duration_upper": h * upper}
+    found = check(dataclasses.replace(problem, **bounds), at * h)
+    assert found.verdict == verdict
+    assert found.worst is not None
+    assert found.worst.quantity == "duration" if worst else found.worst.quantity in QUANTITIES
+    if worst:
+        assert (found.worst.segment, found.worst.joint, found.worst.time) == (worst[0], None, None)
+        assert found.worst.ratio == pytest.approx(worst[1])
+    assert (found.feasible_time is None) == bool(feasible)
+    assert feasible in str(found.feasible_why)
+    if not feasible:
+        assert found.feasible_time == pytest.approx(at * h.sum())
+    if tight is not None:
+        assert (found.tight_time is None) == bool(tight)
+        assert tight in str(found.tight_why)
 
 
 def test_summary_reads_on_one_screen() -> None:

@@ -1,18 +1,30 @@
 """Limits and problems: what they fill in, what they freeze, and what they refuse in one line."""
 
+from __future__ import annotations
+
 import dataclasses
+import pickle
+from dataclasses import replace
 
 import numpy as np
 import pytest
+from support.uneven import LIMITS, uneven_problem
+from support.uneven import WAYPOINTS as TURNING
+from trajgap.nlp import problem_seal
 from trajgap.problem import (
     QUANTITIES,
     Coupling,
     Limits,
     Problem,
     TrajgapError,
+    Verdict,
     check,
+    cubic_spline,
     cubic_spline_virtual,
+    keeps_limits,
     piecewise,
+    reachable_total,
+    rest_to_rest,
     three_five_three,
 )
 
@@ -173,3 +185,148 @@ def test_every_refusal_is_a_value_error() -> None:
     assert issubclass(TrajgapError, ValueError)
     with pytest.raises(TrajgapError, match="over-determined"):
         piecewise((3, 3, 3), 2)
+
+
+# --- sides that differ ----------------------------------------------------------------------------
+
+
+DURATIONS = np.array([0.7, 1.3, 0.9])
+
+
+def test_pairs_are_kept_by_side() -> None:
+    limits = Limits(2.0, [[-15, 10], [-3, 3]], joints=2)
+    assert limits.uneven
+    assert limits.is_uneven("acceleration")
+    assert not limits.is_uneven("velocity")
+    np.testing.assert_array_equal(limits.sides[:, :, 1], [[15, 3], [10, 3]])
+    np.testing.assert_array_equal(limits.ends("acceleration"), [[-15, -3], [10, 3]])
+    np.testing.assert_array_equal(limits.widest, [[2, 15, np.inf], [2, 3, np.inf]])
+    np.testing.assert_array_equal(limits.hull.derivatives, limits.widest)
+    np.testing.assert_array_equal(limits.velocity, [2, 2])
+    np.testing.assert_array_equal(limits.joint(0).sides, limits.sides[:, :1])
+    assert not limits.joint(1).uneven
+    again = pickle.loads(pickle.dumps(limits))
+    np.testing.assert_array_equal(again.sides, limits.sides)
+    assert "-15" in repr(limits)
+
+
+def test_equal_pairs_are_sizes() -> None:
+    pairs = Limits(acceleration=[[-4, 4], [-3, 3]])
+    assert not pairs.uneven
+    np.testing.assert_array_equal(pairs.acceleration, [4, 3])
+    assert pairs.hull is pairs
+
+
+def test_one_pair_serves_every_joint() -> None:
+    problem = Problem(TURNING, Limits(acceleration=[[-15, 10]]), cubic_spline(3))
+    np.testing.assert_array_equal(problem.limits.ends("acceleration"), [[-15, -15], [10, 10]])
+    assert not problem.hull.limits.uneven
+
+
+def test_what_knows_sizes_alone_meets_an_error() -> None:
+    for name in ("velocity", "acceleration", "jerk", "derivatives"):
+        with pytest.raises(TrajgapError, match="differ in size"):
+            getattr(LIMITS, name)
+
+
+@pytest.mark.parametrize(
+    ("pair", "message"),
+    [([[1, 2]], "1 to 2 leaves out 0"), ([[-2, -1]], "leaves out 0"), ([[np.nan, 1]], "is NaN")],
+)
+def test_pairs_refuse(pair: list[list[float]], message: str) -> None:
+    with pytest.raises(TrajgapError, match=message):
+        Limits(velocity=pair)
+
+
+def test_a_side_of_zero_forbids_that_side_alone() -> None:
+    rising, curve = np.array([[0.0], [1.0]]), rest_to_rest(1, 3)
+    forward = Limits(velocity=[[0, 2]])
+    assert check(Problem(rising, forward, curve), [1.0]).verdict is Verdict.PASS
+    back = check(Problem(-rising, forward, curve), [1.0])
+    assert back.verdict is Verdict.VIOLATED
+    assert back.feasible_time is None
+    assert not keeps_limits(Problem(-rising, forward, curve), np.array([[1.0]]), 1e-9)[0]
+    free = Limits(velocity=[[-np.inf, 2]])
+    unlimited = check(Problem(-rising, free, curve), [1e-3])
+    assert unlimited.verdict is Verdict.PASS
+    assert unlimited.peaks[0].ratio == 0.0
+    # At -1 rad/s all the way, nothing lies on the limited side.
+    steady = check(Problem(-rising, free, piecewise((1,), 0, ())), [1.0])
+    assert (steady.verdict, steady.peaks[0].ratio) == (Verdict.PASS, 0.0)
+
+
+def test_a_box_of_waypoints_is_reached_within_both_sides() -> None:
+    problem = uneven_problem("cubic")
+    total = reachable_total(problem, DURATIONS, TURNING - 1e-3, TURNING + 1e-3)
+    assert total is not None
+    for seed in range(5):
+        q = TURNING + np.random.default_rng(seed).uniform(-1e-3, 1e-3, TURNING.shape)
+        moved = Problem(q, LIMITS, problem.curve)
+        assert check(moved, DURATIONS * total / DURATIONS.sum()).verdict is Verdict.PASS
+
+
+# --- ratios of durations --------------------------------------------------------------------------
+
+
+Q = np.array([[0.2, -1.0], [0.5, -0.6], [0.5, 0.6]])
+
+
+def posed(ratios: object, **other: object) -> Problem:
+    return Problem(Q, Limits(1.0), cubic_spline(2), ratios=ratios, **other)
+
+
+@pytest.mark.parametrize(
+    ("ratios", "shares"),
+    [
+        ("equal", [0.5, 0.5]),
+        ("chord", [0.5 / 1.7, 1.2 / 1.7]),
+        ([1, 3], [0.25, 0.75]),
+        ([1e200, 3e200], [0.25, 0.75]),
+        ((1e-310, 3e-310), [0.25, 0.75]),
+    ],
+)
+def test_their_scale_is_irrelevant(ratios, shares) -> None:
+    problem = posed(ratios)
+    np.testing.assert_allclose(problem.shares, shares, rtol=1e-12)
+    for same in (problem.joint(1), problem.hull, replace(problem, name="x")):
+        assert same.shares.tolist() == problem.shares.tolist()
+    assert pickle.loads(pickle.dumps(problem)).shares.tolist() == problem.shares.tolist()
+    assert not problem.ratios.flags.writeable
+
+
+def test_without_them_each_duration_is_chosen() -> None:
+    problem = Problem(Q, Limits(1.0), cubic_spline(2))
+    assert problem.ratios is problem.shares is problem.unscaled is None
+
+
+@pytest.mark.parametrize(
+    ("ratios", "said"),
+    [
+        ([1, 2, 3], r"ratios: expected 2, one per segment, got 3"),
+        (1.0, r"ratios: expected 2, one per segment, got 1"),
+        ([1, 0], r"ratios: every one must be positive and finite"),
+        ([1, np.inf], r"ratios: every one must be positive and finite"),
+        ([1, np.nan], r"ratios: every one must be positive and finite"),
+        ([1, 1e13], r"ratios: the largest is more than 1e\+12 times the smallest; correct them"),
+        ([1, "x"], r'ratios: not numbers; give one per segment, "equal" or "chord"'),
+        ("even", r"ratios: 'even' is unknown; give one number per segment"),
+    ],
+)
+def test_bad_ratios_are_one_line(ratios, said: str) -> None:
+    with pytest.raises(TrajgapError, match=said):
+        posed(ratios)
+
+
+def test_chord_lengths_need_steps_at_every_segment() -> None:
+    with pytest.raises(TrajgapError, match="between way-points 2 and 3, which coincide"):
+        Problem([[0.0], [1.0], [1.0]], Limits(1.0), cubic_spline(2), ratios="chord")
+    with pytest.raises(TrajgapError, match='"chord" needs a way-point at every end of the 4'):
+        Problem(Q, Limits(1.0), cubic_spline_virtual(3), ratios="chord")
+
+
+def test_the_seal_of_a_question_holds_its_ratios() -> None:
+    free = Problem(Q, Limits(1.0), cubic_spline(2))
+    seals = {problem_seal(one) for one in (free, posed("equal"), posed("chord"), posed([1, 3]))}
+    assert len(seals) == 4
+    assert problem_seal(posed([2, 6])) == problem_seal(posed([1, 3]))
+    assert problem_seal(posed([5, 5])) == problem_seal(posed("equal"))

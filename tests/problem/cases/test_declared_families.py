@@ -16,9 +16,7 @@ from trajgap.problem import (
     check,
     ctraj,
     cubic_spline,
-    fit,
     forward_kinematics,
-    jtraj,
     load_robot,
     parse_case,
     scaffold,
@@ -107,30 +105,6 @@ def test_a_declared_family_is_checked_solved_and_searched(name: str) -> None:
     through(declared(name), Verdict.DISCONTINUOUS if "stretched" in name else Verdict.PASS)
 
 
-def test_the_toolboxes_point_to_point_move_is_jtraj() -> None:
-    toolbox = pytest.importorskip("roboticstoolbox")
-    q = np.array(WAYPOINTS)
-    h = np.array([0.8, 1.3, 0.6])
-    mine = fit(jtraj(3), q, h)
-    start = np.concatenate([[0.0], np.cumsum(h)])
-    for k in range(3):
-        # The end of a segment is the start of the next, where jerk jumps.
-        local = np.linspace(0.0, h[k], 41)[:-1]
-        theirs = toolbox.jtraj(q[k], q[k + 1], np.append(local, h[k]))
-        for order, values in enumerate((theirs.s, theirs.sd, theirs.sdd)):
-            np.testing.assert_allclose(mine(start[k] + local, order), values[:-1], atol=1e-12)
-
-
-def test_the_toolboxes_straight_move_has_the_poses_of_ctraj() -> None:
-    toolbox = pytest.importorskip("roboticstoolbox")
-    spatial = pytest.importorskip("spatialmath")
-    line, first, last = straight()
-    theirs = toolbox.ctraj(
-        spatial.SE3(first, check=False), spatial.SE3(last, check=False), s=np.linspace(0, 1, 5)
-    )
-    np.testing.assert_allclose(line.poses, np.array([pose.A for pose in theirs]), atol=1e-12)
-
-
 def test_the_programs_of_the_page_run(capsys: pytest.CaptureFixture[str]) -> None:
     page = (ROOT / "docs" / "reference" / "interpolants.md").read_text()
     programs = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
@@ -140,16 +114,12 @@ def test_the_programs_of_the_page_run(capsys: pytest.CaptureFixture[str]) -> Non
     assert "optimal" in capsys.readouterr().out
 
 
-def straight():
+def test_a_straight_line_becomes_a_case_file(tmp_path: Path) -> None:
     arm, start = load_robot("puma560"), np.array([0.1, -0.6, 0.4, 0.2, 0.5, 0.1])
     first = forward_kinematics(arm, start)
     last = first.copy()
     last[:3, 3] += [0.02, 0.12, 0.06]
-    return ctraj(arm, first, last, 5, guess=start), first, last
-
-
-def test_a_straight_line_becomes_a_case_file(tmp_path: Path) -> None:
-    line, _, _ = straight()
+    line = ctraj(arm, first, last, 5, guess=start)
     path = tmp_path / "line.csv"
     path.write_text(line.table)
     units = {"position": "rad", "velocity": "rad/s", "acceleration": "rad/s^2"}
