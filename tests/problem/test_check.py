@@ -67,9 +67,8 @@ def test_values_lie_within_the_stated_error(name: str) -> None:
             truth = Fraction(exact_route.peak(pieces, h, order))
             assert abs(Fraction(abs(p.value)) - truth) <= Fraction(p.error)
             assert p.error <= 1e-9 * max(1.0, abs(p.value))
-
-
-# --- identities ----------------------------------------------------------------------------------
+            batch = evaluate(problem, [h], nodal).ratios[0, j, order - 1]
+            assert batch == pytest.approx(float(truth) / p.limit, rel=1e-10)
 
 
 # --- the batched evaluation beside the checker ---------------------------------------------------

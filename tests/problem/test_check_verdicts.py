@@ -4,9 +4,9 @@ import dataclasses
 
 import numpy as np
 import pytest
-from support import exact_route
 from support.checked import one_joint
 from support.samples import sample_problem
+from support.uneven import LIMITS as UNEVEN
 from trajgap.problem import (
     QUANTITIES,
     Interpolant,
@@ -14,11 +14,13 @@ from trajgap.problem import (
     Problem,
     Verdict,
     check,
+    cubic_spline,
     evaluate,
     extrema,
     fit,
     piecewise,
     quintic_spline,
+    reachable_total,
     rest_to_rest,
     three_five_three,
     uniform_cubic_b_spline,
@@ -110,20 +112,6 @@ def test_nothing_limited_or_nothing_moves(limited: bool) -> None:
     assert not evaluate(problem, [h]).ratios.any()
 
 
-def test_repeated_waypoints() -> None:
-    q = np.array([[0.3, 1.0], [0.9, 1.4], [0.9, 1.4], [-0.2, 0.8]])
-    problem = Problem(q, Limits(2, 6, joints=2), three_five_three())
-    result = check(problem, [0.9, 0.4, 1.1])
-    for p in result.peaks:
-        j, order = problem.joints.index(str(p.joint)), QUANTITIES.index(p.quantity) + 1
-        pieces = exact_route.fitted(problem.curve, q[:, j], [0.9, 0.4, 1.1])
-        truth = float(exact_route.peak(pieces, [0.9, 0.4, 1.1], order))
-        assert abs(p.value) == pytest.approx(truth, rel=1e-12)
-    # rest-to-rest stands still between equal way-points
-    rest = Problem(q, Limits(2, 6, joints=2), rest_to_rest(3, 5))
-    assert {p.segment for p in check(rest, [0.9, 1e-3, 1.1]).peaks} <= {0, 2}
-
-
 # --- repairs and their reasons -------------------------------------------------------------------
 
 
@@ -201,27 +189,26 @@ def test_summary_reads_on_one_screen() -> None:
     ]
 
 
-def test_a_reachable_total_holds_for_every_waypoint_of_the_box() -> None:
-    from trajgap.problem import reachable_total
-
+@pytest.mark.parametrize("uneven", [False, True])
+@pytest.mark.parametrize("curve", [three_five_three(), quintic_spline(3), cubic_spline(3)])
+def test_a_reachable_total_holds_for_every_waypoint_of_the_box(
+    curve: Interpolant, uneven: bool
+) -> None:
     rng = np.random.default_rng(11)
     q = np.array([[0.2, -1.0], [0.9, 0.3], [0.4, 1.1], [1.3, 0.6]])
-    limits = Limits([1.5, 2.0], [4.0, 6.0], [60.0, 90.0])
-    h = np.array([0.8, 0.9, 1.1])
-    for interpolant in (three_five_three(), quintic_spline(3)):
-        problem = Problem(q, limits, interpolant)
-        total = reachable_total(problem, h, q - 0.03, q + 0.05)
-        assert total is not None
-        stretched = h * total / h.sum()
-        for _ in range(300):
-            other = Problem(q + rng.uniform(-0.03, 0.05, q.shape), limits, interpolant)
-            assert check(other, stretched).verdict is Verdict.PASS
-        exact = reachable_total(problem, h, q, q)
-        assert exact == pytest.approx(check(problem, h).feasible_time, rel=1e-8)
-    bounded = Problem(q, limits, three_five_three(), 0.0, 0.5)
-    assert reachable_total(bounded, h, q, q) is None
-    ranged = Problem(q, Limits(1.5, 4.0, np.inf, -2.0, 2.0, joints=2), three_five_three())
-    assert reachable_total(ranged, h, q, q) is None
+    limits = UNEVEN if uneven else Limits([1.5, 2.0], [4.0, 6.0], [60.0, 90.0])
+    problem, h = Problem(q, limits, curve), np.array([0.8, 0.9, 1.1])
+    total = reachable_total(problem, h, q - 0.03, q + 0.05)
+    assert total is not None
+    for _ in range(100):
+        other = dataclasses.replace(problem, waypoints=q + rng.uniform(-0.03, 0.05, q.shape))
+        assert check(other, h * total / h.sum()).verdict is Verdict.PASS
+    exact = reachable_total(problem, h, q, q)
+    assert exact == pytest.approx(check(problem, h).feasible_time, rel=1e-8)
+    bounded = dataclasses.replace(problem, duration_upper=0.5)
+    ranged = dataclasses.replace(problem, limits=limits.with_positions([-2.0] * 2, [2.0] * 2))
+    for unknown in (bounded, ranged):
+        assert reachable_total(unknown, h, q, q) is None
 
 
 def test_a_still_segment_of_any_length_does_not_blur_the_peak_of_another() -> None:

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from support.uneven import LIMITS, uneven_problem
+from support.uneven import LIMITS
 from support.uneven import WAYPOINTS as TURNING
 from trajgap.nlp import problem_seal
 from trajgap.problem import (
@@ -23,7 +23,6 @@ from trajgap.problem import (
     cubic_spline_virtual,
     keeps_limits,
     piecewise,
-    reachable_total,
     rest_to_rest,
     three_five_three,
 )
@@ -86,6 +85,9 @@ def test_limits_of_one_joint_and_replaced() -> None:
         ({"position_upper": np.nan}, r"limits.position_upper: is NaN"),
         ({"jerk": [-1, 2]}, r"limits.jerk: is negative; give the largest absolute value, 0 or"),
         ({"velocity": -np.inf}, r"limits.velocity: is negative"),
+        ({"velocity": [[1, 2]]}, r"limits.velocity: 1 to 2 leaves out 0"),
+        ({"velocity": [[-2, -1]]}, r"limits.velocity: .* leaves out 0"),
+        ({"velocity": [[np.nan, 1]]}, r"limits.velocity: is NaN"),
         ({"velocity": "fast"}, r"limits.velocity: not numbers; give one value, or one per joint"),
         ({"jerk": [1, [2, 3]]}, r"limits.jerk: not numbers"),
         (
@@ -109,17 +111,10 @@ def test_problem_fills_in() -> None:
     assert problem_with(coupling="per-joint").coupling is Coupling.PER_JOINT
     np.testing.assert_array_equal(problem_with().duration_lower, np.zeros(3))
     assert np.isinf(problem_with().duration_upper).all()
-
-
-def test_one_joint_as_a_plain_list() -> None:
-    problem = Problem([0.1, 0.5, 0.2, 0.9], Limits(2, 5), three_five_three())
-    assert problem.waypoints.shape == (4, 1)
-
-
-def test_one_limit_for_all_joints() -> None:
-    problem = problem_with(limits=Limits(2, 5, 9, -3, 4))
-    np.testing.assert_array_equal(problem.limits.derivatives, [[2, 5, 9], [2, 5, 9]])
-    np.testing.assert_array_equal(problem.limits.position_upper, [4, 4])
+    assert Problem([0.1, 0.5, 0.2, 0.9], Limits(2), three_five_three()).waypoints.shape == (4, 1)
+    same = problem_with(limits=Limits(2, 5, 9, -3, 4)).limits
+    np.testing.assert_array_equal(same.derivatives, [[2, 5, 9], [2, 5, 9]])
+    np.testing.assert_array_equal(same.position_upper, [4, 4])
 
 
 def test_problem_is_a_frozen_copy() -> None:
@@ -171,6 +166,22 @@ def test_joint_alone_is_judged_alike() -> None:
         ({"joints": ("a", "a")}, r"joints: a label occurs twice in a, a"),
         ({"waypoints": "abc"}, r"waypoints: not a table of numbers; give one row per way-point"),
         ({"waypoints": [[1, 2], [3], [4, 5], [6, 7]]}, r"waypoints: not a table of numbers"),
+        ({"ratios": [1, 2, 3, 4]}, r"ratios: expected 3, one per segment, got 4"),
+        ({"ratios": 1.0}, r"ratios: expected 3, one per segment, got 1"),
+        ({"ratios": [1, 0, 1]}, r"ratios: every one must be positive and finite"),
+        ({"ratios": [1, np.inf, 1]}, r"ratios: every one must be positive and finite"),
+        ({"ratios": [1, np.nan, 1]}, r"ratios: every one must be positive and finite"),
+        ({"ratios": [1, 1, 1e13]}, r"ratios: the largest is more than 1e\+12 times the smallest"),
+        ({"ratios": [1, 1, "x"]}, r'ratios: not numbers; give one per segment, "equal" or "chord"'),
+        ({"ratios": "even"}, r"ratios: 'even' is unknown; give one number per segment"),
+        (
+            {"ratios": "chord", "waypoints": WAYPOINTS[[0, 1, 1, 2]]},
+            r"ratios: .* between way-points 2 and 3, which coincide",
+        ),
+        (
+            {"ratios": "chord", "waypoints": WAYPOINTS[:3], "curve": cubic_spline_virtual(3)},
+            r'ratios: "chord" needs a way-point at every end of the 4',
+        ),
         ({"coupling": "loose"}, r"coupling: 'loose' is none of shared, per-joint"),
         ({"duration_lower": "short"}, r"duration_lower: not numbers; give seconds"),
     ],
@@ -188,9 +199,6 @@ def test_every_refusal_is_a_value_error() -> None:
 
 
 # --- sides that differ ----------------------------------------------------------------------------
-
-
-DURATIONS = np.array([0.7, 1.3, 0.9])
 
 
 def test_pairs_are_kept_by_side() -> None:
@@ -229,15 +237,6 @@ def test_what_knows_sizes_alone_meets_an_error() -> None:
             getattr(LIMITS, name)
 
 
-@pytest.mark.parametrize(
-    ("pair", "message"),
-    [([[1, 2]], "1 to 2 leaves out 0"), ([[-2, -1]], "leaves out 0"), ([[np.nan, 1]], "is NaN")],
-)
-def test_pairs_refuse(pair: list[list[float]], message: str) -> None:
-    with pytest.raises(TrajgapError, match=message):
-        Limits(velocity=pair)
-
-
 def test_a_side_of_zero_forbids_that_side_alone() -> None:
     rising, curve = np.array([[0.0], [1.0]]), rest_to_rest(1, 3)
     forward = Limits(velocity=[[0, 2]])
@@ -253,16 +252,6 @@ def test_a_side_of_zero_forbids_that_side_alone() -> None:
     # At -1 rad/s all the way, nothing lies on the limited side.
     steady = check(Problem(-rising, free, piecewise((1,), 0, ())), [1.0])
     assert (steady.verdict, steady.peaks[0].ratio) == (Verdict.PASS, 0.0)
-
-
-def test_a_box_of_waypoints_is_reached_within_both_sides() -> None:
-    problem = uneven_problem("cubic")
-    total = reachable_total(problem, DURATIONS, TURNING - 1e-3, TURNING + 1e-3)
-    assert total is not None
-    for seed in range(5):
-        q = TURNING + np.random.default_rng(seed).uniform(-1e-3, 1e-3, TURNING.shape)
-        moved = Problem(q, LIMITS, problem.curve)
-        assert check(moved, DURATIONS * total / DURATIONS.sum()).verdict is Verdict.PASS
 
 
 # --- ratios of durations --------------------------------------------------------------------------
@@ -294,38 +283,9 @@ def test_their_scale_is_irrelevant(ratios, shares) -> None:
     assert not problem.ratios.flags.writeable
 
 
-def test_without_them_each_duration_is_chosen() -> None:
-    problem = Problem(Q, Limits(1.0), cubic_spline(2))
-    assert problem.ratios is problem.shares is problem.unscaled is None
-
-
-@pytest.mark.parametrize(
-    ("ratios", "said"),
-    [
-        ([1, 2, 3], r"ratios: expected 2, one per segment, got 3"),
-        (1.0, r"ratios: expected 2, one per segment, got 1"),
-        ([1, 0], r"ratios: every one must be positive and finite"),
-        ([1, np.inf], r"ratios: every one must be positive and finite"),
-        ([1, np.nan], r"ratios: every one must be positive and finite"),
-        ([1, 1e13], r"ratios: the largest is more than 1e\+12 times the smallest; correct them"),
-        ([1, "x"], r'ratios: not numbers; give one per segment, "equal" or "chord"'),
-        ("even", r"ratios: 'even' is unknown; give one number per segment"),
-    ],
-)
-def test_bad_ratios_are_one_line(ratios, said: str) -> None:
-    with pytest.raises(TrajgapError, match=said):
-        posed(ratios)
-
-
-def test_chord_lengths_need_steps_at_every_segment() -> None:
-    with pytest.raises(TrajgapError, match="between way-points 2 and 3, which coincide"):
-        Problem([[0.0], [1.0], [1.0]], Limits(1.0), cubic_spline(2), ratios="chord")
-    with pytest.raises(TrajgapError, match='"chord" needs a way-point at every end of the 4'):
-        Problem(Q, Limits(1.0), cubic_spline_virtual(3), ratios="chord")
-
-
 def test_the_seal_of_a_question_holds_its_ratios() -> None:
     free = Problem(Q, Limits(1.0), cubic_spline(2))
+    assert free.ratios is free.shares is free.unscaled is None
     seals = {problem_seal(one) for one in (free, posed("equal"), posed("chord"), posed([1, 3]))}
     assert len(seals) == 4
     assert problem_seal(posed([2, 6])) == problem_seal(posed([1, 3]))

@@ -5,7 +5,6 @@ about the same polynomials: one segment with all its start derivatives prescribe
 """
 
 import math
-from decimal import Decimal
 from fractions import Fraction
 
 import numpy as np
@@ -15,17 +14,14 @@ from hypothesis import strategies as st
 from numpy.polynomial import Chebyshev
 from numpy.polynomial import Polynomial as Power
 from support import exact_route
-from support.samples import DECLARATIONS, sample_problem
 from trajgap.problem import (
     Interpolant,
     Limits,
     Problem,
     check,
     evaluate,
-    extrema,
     fit,
     rest_to_rest,
-    three_five_three,
 )
 from trajgap.problem.curves.peak import critical_points, largest
 
@@ -168,19 +164,6 @@ def test_no_turning_point_outside_or_without_sign_change() -> None:
     np.testing.assert_allclose(critical_points(np.array([0.0, 1.0, -1.0, 0.0, 0.0])), [0.5])
 
 
-@pytest.mark.parametrize("name", DECLARATIONS)
-def test_extrema_against_fifty_digits(name: str) -> None:
-    interpolant = DECLARATIONS[name]
-    problem, h = sample_problem(interpolant, 9, joints=2)
-    curve = fit(interpolant, problem.waypoints, h)
-    for j in range(2):
-        pieces = exact_route.fitted(interpolant, problem.waypoints[:, j], h)
-        for order in range(4):
-            truth = float(exact_route.peak(pieces, h, order))
-            found = extrema(curve, j, order)
-            assert max(abs(e.value) for e in found) == pytest.approx(truth, rel=1e-10, abs=1e-10)
-
-
 def test_another_piece_that_may_be_larger_blurs_the_peak() -> None:
     # Speeds of the two cubics peak at 1.5 and 1.2; the second is known to 0.5 only.
     curve = fit(rest_to_rest(2, 3), np.array([[0.2], [1.2], [2.0]]), [1.0, 1.0])
@@ -189,20 +172,6 @@ def test_another_piece_that_may_be_larger_blurs_the_peak() -> None:
     assert top.value == pytest.approx(1.5)
     assert bound == pytest.approx(0.2)
     assert largest(curve, 0, 1, np.array([0.25, 0.5]))[1] == 0.25
-
-
-def test_batched_evaluation_against_fifty_digits() -> None:
-    problem, _ = sample_problem(three_five_three(), 2, joints=2)
-    rng = np.random.default_rng(8)
-    batch = 10.0 ** rng.uniform(-1.0, 1.0, (12, 3))
-    ratios = evaluate(problem, batch).ratios
-    for i, h in enumerate(batch):
-        for j in range(2):
-            pieces = exact_route.fitted(problem.curve, problem.waypoints[:, j], h)
-            for order in (1, 2, 3):
-                limit = problem.limits.derivatives[j, order - 1]
-                truth = exact_route.peak(pieces, h, order) / Decimal(float(limit))
-                assert ratios[i, j, order - 1] == pytest.approx(float(truth), rel=1e-12)
 
 
 def test_exact_route_knows_a_simple_peak() -> None:

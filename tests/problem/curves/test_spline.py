@@ -1,15 +1,14 @@
 """Coefficients by other routes: scipy's splines, the papers' 14×14 system, rational arithmetic."""
 
-import importlib.util
 from fractions import Fraction
-from types import ModuleType
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from scipy.interpolate import BPoly, make_interp_spline
-from support.checkout import ROOT
 from support.samples import DECLARATIONS, FREE, sample_problem
 from support.splines_drawn import exact_scaled, waypoints
+from support.suite import benchmark
 from trajgap.problem import (
     cubic_spline,
     cubic_spline_virtual,
@@ -97,18 +96,8 @@ def test_polynomials_between_given_derivatives_are_hermites(degree: int) -> None
     np.testing.assert_allclose(fit(curve, q[:2], [1.4])(at), moving(at), atol=1e-11)
 
 
-def author_code() -> ModuleType:
-    path = ROOT / "benchmarks" / "author_code.py"
-    spec = importlib.util.spec_from_file_location("author_code", path)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
 def test_353_is_the_papers_system() -> None:
-    theirs = author_code()
+    theirs = SimpleNamespace(**benchmark("author_code"))
     q = waypoints(4)
     for h in np.random.default_rng(2).uniform(0.2, 3.0, (20, 3)):
         mine = coefficients(three_five_three(), q, h)
@@ -120,7 +109,7 @@ def test_353_is_the_papers_system() -> None:
 
 
 def test_353_peaks_are_the_author_codes() -> None:
-    theirs = author_code()
+    theirs = SimpleNamespace(**benchmark("author_code"))
     problem, _ = sample_problem(three_five_three(), 11)
     rng = np.random.default_rng(4)
     for h in rng.uniform(0.2, 3.0, (5, 3)):

@@ -26,13 +26,14 @@ from trajgap.problem import (
     check,
     control_vertices,
     evaluate,
+    extrema,
     fit,
     keeps_limits,
     solve_in_closed_form,
     uniform_cubic_b_spline,
 )
 from trajgap.problem.curves.stretched import segment_peaks
-from trajgap.problem.curves.uniform_matrices import clock_matrix, shape_matrix, vertex_matrix
+from trajgap.problem.curves.uniform_matrices import vertex_matrix
 
 TIMES = (*Timing, NATURAL)
 
@@ -59,28 +60,6 @@ def test_vertices_meet_the_waypoint_equations_exactly(count: int, natural: bool)
 def test_vertices_agree_with_a_dense_solve() -> None:
     w = uniform("timed")[0].waypoints
     np.testing.assert_allclose(control_vertices(w), vertices_by_solving(w), rtol=0, atol=1e-13)
-
-
-def test_shape_is_scipys_b_spline() -> None:
-    w = uniform("stretched", 3)[0].waypoints
-    spline = spline_by_scipy(w)
-    c = (shape_matrix(len(w)) @ w.astype(np.longdouble)).astype(float)
-    for k in range(len(w) - 1):
-        for s in (0.0, 0.3, 1.0):
-            value = np.polynomial.polynomial.polyval(s, c[k])
-            np.testing.assert_allclose(value, spline(k + s), rtol=0, atol=1e-13)
-
-
-def test_clock_passes_the_time_nodes_and_is_linear_in_the_durations() -> None:
-    h = np.array([0.7, 1.3, 0.9, 1.1])
-    c = (clock_matrix(5) @ h.astype(np.longdouble)).astype(float)
-    nodes = np.concatenate([[0.0], np.cumsum(h)])
-    np.testing.assert_allclose(c[:, 0], nodes[:-1], atol=1e-15)
-    np.testing.assert_allclose(c.sum(axis=1), nodes[1:], atol=1e-15)
-    spline = spline_by_scipy(nodes[:, None])
-    np.testing.assert_allclose(
-        c @ 0.4 ** np.arange(4), spline(np.arange(4) + 0.4)[:, 0], atol=1e-14
-    )
 
 
 # --- both readings --------------------------------------------------------------------------------
@@ -217,15 +196,8 @@ def test_no_piece_that_is_skipped_holds_the_peak(limited: str) -> None:
         trajectory = fit(problem.curve, problem.waypoints, one)
         for j in range(wanted.shape[0]):
             for order in orders:
-                every = [
-                    abs(
-                        trajectory.values(
-                            k, j, order, np.append(trajectory.turning(k, j, order), [0, 1])
-                        )
-                    )
-                    for k in range(h.size)
-                ]
-                assert found[j, order - 1] == pytest.approx(np.concatenate(every).max(), rel=1e-12)
+                every = max(abs(e.value) for e in extrema(trajectory, j, order))
+                assert found[j, order - 1] == pytest.approx(every, rel=1e-12)
                 compared += 1
         assert not found[~wanted].any()
     assert compared > 100
