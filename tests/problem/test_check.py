@@ -1,5 +1,6 @@
 """The checker and the batched evaluation: identities, known answers, every verdict and reason."""
 
+import dataclasses
 import os
 from dataclasses import replace
 from fractions import Fraction
@@ -10,18 +11,27 @@ from support import exact_route
 from support.checked import one_joint, table
 from support.positions import CURVES, limited
 from support.samples import DECLARATIONS, FREE, sample_problem
+from support.uneven import LIMITS as UNEVEN
 from trajgap.problem import (
     QUANTITIES,
     Array,
+    Interpolant,
     Limits,
     Problem,
     TrajgapError,
     Verdict,
     check,
+    cubic_spline,
     evaluate,
+    extrema,
+    fit,
     keeps_limits,
+    piecewise,
+    quintic_spline,
+    reachable_total,
     rest_to_rest,
     three_five_three,
+    uniform_cubic_b_spline,
 )
 from trajgap.problem.curves import spline as spline_module
 
@@ -169,3 +179,200 @@ def test_ratios_of_derivatives_do_not_depend_on_position_limits() -> None:
         np.flatnonzero(keeps_limits(free, h, 1e-9) & ~keeps_limits(problem, h, 1e-9)),
         np.flatnonzero(keeps_limits(free, h, 1e-9) & np.isin(np.arange(50), beyond)),
     )
+
+
+# --- verdicts -------------------------------------------------------------------------------------
+
+
+def test_tolerance_decides() -> None:
+    problem = one_joint([0.2, 1.2], rest_to_rest(1, 3), velocity=1.5)
+    for factor, verdict in (
+        (1.0, Verdict.PASS),
+        (1 + 2e-9, Verdict.PASS),
+        (1 - 0.9e-9, Verdict.PASS),
+        (1 - 1.1e-9, Verdict.VIOLATED),
+        (0.5, Verdict.VIOLATED),
+    ):
+        assert check(problem, [factor]).verdict is verdict
+    assert check(problem, [1 - 1e-4], tolerance=1e-3).verdict is Verdict.PASS
+    assert check(problem, [1 - 1e-12], tolerance=0.0).verdict is Verdict.VIOLATED
+    assert check(problem, [1.0], tolerance=0.0).verdict is Verdict.UNDECIDED
+    # what is violated stays violated, whatever is undecided beside it
+    pair = Problem([[0.2, 0.2], [1.4, 1.2]], Limits(1.5), rest_to_rest(1, 3))
+    assert check(pair, [1.0], tolerance=0.0).verdict is Verdict.VIOLATED
+
+
+def test_rounding_that_hides_the_limit_is_undecided() -> None:
+    # Near 2 : 3 this system is singular; 1e-12 from there its coefficients have four digits.
+    quartics = Interpolant((4, 4), (3,), (((3, 0.0),), ((2, 0.0),), ((1, 0.0),)))
+    h = [2.0, 3.0 * (1 + 1e-12)]
+    peak = check(one_joint([0.3, 1.1, -0.4], quartics, velocity=1.0), h).peaks[0]
+    assert peak.error > 1e-6 * abs(peak.value)
+    for factor, verdict in (
+        (1.0, Verdict.UNDECIDED),
+        (0.5, Verdict.VIOLATED),
+        (2.0, Verdict.PASS),
+    ):
+        problem = one_joint([0.3, 1.1, -0.4], quartics, velocity=factor * abs(peak.value))
+        assert check(problem, h).verdict is verdict
+
+
+def test_velocity_jump_is_discontinuous() -> None:
+    lines = piecewise((1, 1, 1), 0, ())
+    problem = one_joint([0.3, 1.0, 0.6, 0.8], lines, velocity=5.0, acceleration=7.0)
+    result = check(problem, [0.5, 0.4, 1.0])
+    assert result.verdict is Verdict.DISCONTINUOUS
+    assert [(j.order, j.break_index, j.joint) for j in result.jumps] == [(1, 1, "1"), (1, 2, "1")]
+    # speeds 1.4, −1.0, 0.2
+    np.testing.assert_allclose([j.size for j in result.jumps], [-2.4, 1.2], rtol=1e-12)
+    np.testing.assert_allclose([j.time for j in result.jumps], [0.5, 0.9], rtol=1e-12)
+    assert result.feasible_time is result.tight_time is None
+    assert result.feasible_why == "the motion jumps at a break; stretching does not repair that"
+    assert result.tight_why == result.feasible_why
+    # a limit that is exceeded is said first
+    slow = one_joint([0.3, 1.0, 0.6, 0.8], lines, velocity=1.0)
+    assert check(slow, [0.5, 0.4, 1.0]).verdict is Verdict.VIOLATED
+    # equal slopes: no jump
+    straight = one_joint([0.3, 0.5, 0.9, 1.0], lines, velocity=5.0)
+    assert check(straight, [0.2, 0.4, 0.1]).verdict is Verdict.PASS
+
+
+def test_acceleration_jump_counts_where_jerk_is_limited() -> None:
+    rest = rest_to_rest(2, 3)
+    free = Limits([5, 5], [20, 20])
+    limited = Limits([5, 5], [20, 20], [np.inf, 900])
+    waypoints = np.array([[0.1, 0.4], [0.5, 1.0], [0.3, 1.9]])
+    result = check(Problem(waypoints, free, rest), [0.8, 0.9])
+    assert result.verdict is Verdict.PASS
+    assert {(j.order, j.joint) for j in result.jumps} == {(2, "1"), (2, "2")}
+    assert check(Problem(waypoints, limited, rest), [0.8, 0.9]).verdict is Verdict.DISCONTINUOUS
+    still = waypoints.copy()
+    still[:, 1] = 0.4
+    assert check(Problem(still, limited, rest), [0.8, 0.9]).verdict is Verdict.PASS
+
+
+@pytest.mark.parametrize("limited", [False, True])
+def test_nothing_limited_or_nothing_moves(limited: bool) -> None:
+    problem, h = sample_problem(three_five_three(), 1, limits=Limits(joints=3))
+    if limited:
+        still, limits = np.full((4, 3), 0.7), Limits(1, 2, 3, joints=3)
+        problem = dataclasses.replace(problem, waypoints=still, limits=limits)
+    result = check(problem, h)
+    assert result.verdict is Verdict.PASS
+    assert (result.stretch, result.max_violation) == (0.0, 0.0)
+    assert limited or (result.worst, result.peaks) == (None, ())
+    assert result.feasible_time == pytest.approx(h.sum())
+    assert result.tight_time is None
+    assert result.tight_why == "nothing moves or nothing is limited; the total time can shrink to 0"
+    assert not evaluate(problem, [h]).ratios.any()
+
+
+# --- repairs and their reasons -------------------------------------------------------------------
+
+
+def test_what_rounding_hides_has_no_repair() -> None:
+    # A straight line at constant speed, 3 rad in 6 ns: its acceleration is 0, and nobody sees it.
+    line = uniform_cubic_b_spline(2, "timed")
+    hidden = check(one_joint([13.8194, 10.6226], line, acceleration=126.6), [5.6e-9])
+    assert hidden.verdict is Verdict.UNDECIDED
+    assert hidden.worst is not None
+    assert hidden.worst.error > hidden.worst.limit
+    assert hidden.feasible_time is hidden.tight_time is None
+    assert hidden.feasible_why == "rounding hides whether a stretch repairs it"
+    assert hidden.tight_why == hidden.feasible_why
+    seen = check(one_joint([13.8194, 10.6226], line, acceleration=126.6), [5.6e-3])
+    assert seen.verdict is Verdict.PASS
+    assert seen.feasible_time == pytest.approx(5.6e-3)
+
+
+def test_position_within_one_ulp_of_its_limit_is_undecided() -> None:
+    bump = Interpolant((3,), (), (((1, 1e-8),), ((1, 0.0),)))
+    q = np.array([[300.0], [300.0]])
+    top = max(e.value for e in extrema(fit(bump, q, [1.0]), 0, 0))
+    assert top > 300.0
+    limits = Limits(9, position_lower=300.0 - 1e-8, position_upper=np.nextafter(top, 0.0), joints=1)
+    result = check(Problem(q, limits, bump), [1.0])
+    assert result.worst is not None
+    assert result.worst.ratio > 1 + 1e-9
+    assert result.verdict is Verdict.UNDECIDED
+
+
+@pytest.mark.parametrize(
+    ("at", "lower", "upper", "verdict", "worst", "feasible", "tight"),
+    [
+        (1.0, 0.0, np.inf, "pass", None, "", ""),
+        # Exactly at a bound is inside, and not the worst peak.
+        (1.0, 1.0, 1.0, "pass", None, "", ""),
+        (2.0, 2.0, 2.0, "pass", None, "", "below its lower bound"),
+        (1.0, [1, 1.25, 1], np.inf, "violated", (1, 1.25), "below its lower bound", None),
+        (1.0, 0.0, [1, 1, 0.5], "violated", (2, 2.0), "exceeds its upper bound", None),
+        # Too fast, and the repair would be too slow.
+        (0.5, 0.0, 0.8, "violated", None, "exceeds its upper bound", None),
+        # Feasible, but the free rescaling would be too fast.
+        (2.0, 1.5, np.inf, "pass", None, "", "below its lower bound"),
+    ],
+)
+def test_duration_bounds(at, lower, upper, verdict, worst, feasible, tight) -> None:
+    problem, h = sample_problem(three_five_three(), 3)
+    h = h * check(problem, h).stretch
+    bounds = {"duration_lower": h * lower, "duration_upper": h * upper}
+    found = check(dataclasses.replace(problem, **bounds), at * h)
+    assert found.verdict == verdict
+    assert found.worst is not None
+    assert found.worst.quantity == "duration" if worst else found.worst.quantity in QUANTITIES
+    if worst:
+        assert (found.worst.segment, found.worst.joint, found.worst.time) == (worst[0], None, None)
+        assert found.worst.ratio == pytest.approx(worst[1])
+    assert (found.feasible_time is None) == bool(feasible)
+    assert feasible in str(found.feasible_why)
+    if not feasible:
+        assert found.feasible_time == pytest.approx(at * h.sum())
+    if tight is not None:
+        assert (found.tight_time is None) == bool(tight)
+        assert tight in str(found.tight_why)
+
+
+def test_summary_reads_on_one_screen() -> None:
+    problem = one_joint([1.2, 1.9], rest_to_rest(1, 3), velocity=2.0)
+    text = str(check(problem, [0.4]))
+    assert text.splitlines() == [
+        "violated (for all t, relative tolerance 1e-09)",
+        "total time      0.400000 s",
+        "worst           joint 1 velocity 2.625 against 2 (ratio 1.312500000) at t = 0.200000 s",
+        "feasible time   0.525000 s",
+        "tight time      0.525000 s",
+    ]
+
+
+@pytest.mark.parametrize("uneven", [False, True])
+@pytest.mark.parametrize("curve", [three_five_three(), quintic_spline(3), cubic_spline(3)])
+def test_a_reachable_total_holds_for_every_waypoint_of_the_box(
+    curve: Interpolant, uneven: bool
+) -> None:
+    rng = np.random.default_rng(11)
+    q = np.array([[0.2, -1.0], [0.9, 0.3], [0.4, 1.1], [1.3, 0.6]])
+    limits = UNEVEN if uneven else Limits([1.5, 2.0], [4.0, 6.0], [60.0, 90.0])
+    problem, h = Problem(q, limits, curve), np.array([0.8, 0.9, 1.1])
+    total = reachable_total(problem, h, q - 0.03, q + 0.05)
+    assert total is not None
+    for _ in range(100):
+        other = dataclasses.replace(problem, waypoints=q + rng.uniform(-0.03, 0.05, q.shape))
+        assert check(other, h * total / h.sum()).verdict is Verdict.PASS
+    exact = reachable_total(problem, h, q, q)
+    assert exact == pytest.approx(check(problem, h).feasible_time, rel=1e-8)
+    bounded = dataclasses.replace(problem, duration_upper=0.5)
+    ranged = dataclasses.replace(problem, limits=limits.with_positions([-2.0] * 2, [2.0] * 2))
+    for unknown in (bounded, ranged):
+        assert reachable_total(unknown, h, q, q) is None
+
+
+def test_a_still_segment_of_any_length_does_not_blur_the_peak_of_another() -> None:
+    """Errors grow as 1/h³: with a still segment of 1e-5 s they once hid a limit that is met."""
+    q = np.array([[0.10379], [-0.035097], [-0.035097], [0.009476]])
+    problem = Problem(q, Limits(jerk=2813.87), rest_to_rest(3, 5))
+    h = np.array([0.2, 1e-5, 0.2])
+    h[[0, 2]] *= check(problem, h).stretch
+    verdict = check(problem, h)
+    assert verdict.verdict is Verdict.PASS
+    assert verdict.worst.error < 1e-12 * verdict.worst.limit
+    assert check(problem, [h[0] * (1 - 1e-8), *h[1:]]).verdict is Verdict.VIOLATED

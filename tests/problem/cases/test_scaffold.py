@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -303,54 +305,37 @@ def test_other_splines_through_the_middle_are_told_apart(declared):
     assert declared("uniform cubic B-spline", 5).name == declared("uniform-cubic-b-spline", 5).name
 
 
+UNKNOWN = (
+    *("trigonometric spline", "Bezier", "NURBS", "cubic Hermite spline", "exponential spline", ""),
+    *("cycloidal", "spline with three virtual points", "Akima spline", "x"),
+)
+PROFILES = (
+    *("LSPB", "parabolic blends", "trapezoidal velocity profile", "S-curve", "double S"),
+    *("sine-jerk", "sinusoidal jerk profile"),
+)
+SEVERAL = {
+    "quintic": "quintic-b-spline or quintic-polynomials or quintic-spline? All: ",
+    "clamped": "clamped-b-spline or clamped-cubic? All: ",
+    "quintc-spline": "quintic-spline? All: ",
+    "virtual": "cubic-spline-virtual or quintic-spline-virtual? All: ",
+    "cubic": "clamped-cubic or cubic-b-spline or cubic-polynomials or cubic-spline or natural-cubic",
+}
+
+
 @pytest.mark.parametrize(
-    "name",
+    ("name", "said"),
     [
-        "trigonometric spline", "Bezier", "NURBS", "cubic Hermite spline", "exponential spline",
-        "cycloidal", "spline with three virtual points", "Akima spline", "x", "",
+        *((name, f"{name!r} is not known; use one of 3-5-3, ") for name in UNKNOWN),
+        *((name, f"{name!r} is not known; did you mean {all}") for name, all in SEVERAL.items()),
+        *((name, "is a profile from rest to rest, not a curve through") for name in PROFILES),
     ],
-)  # fmt: skip
-def test_what_is_not_known_is_said_and_nothing_is_suggested(declared, name):
-    with pytest.raises(CaseError) as caught:
+)
+def test_what_is_not_known_is_answered_with_what_may_be_meant(declared, name, said):
+    with pytest.raises(CaseError, match=re.escape(said)) as caught:
         declared(name, 4)
     ((field, reason),) = caught.value.faults
     assert field == "family"
-    assert reason.startswith(f"{name!r} is not known; use one of 3-5-3, ")
-    assert "degrees such as 4-3-3-4" in reason
-
-
-@pytest.mark.parametrize(
-    ("name", "meant"),
-    [
-        ("quintic", "quintic-b-spline or quintic-polynomials or quintic-spline"),
-        ("clamped", "clamped-b-spline or clamped-cubic"),
-        ("quintc-spline", "quintic-spline"),
-        ("virtual", "cubic-spline-virtual or quintic-spline-virtual"),
-        ("cubic", "clamped-cubic or cubic-b-spline or cubic-polynomials or cubic-spline or"),
-    ],
-)
-def test_a_name_that_may_mean_several_is_answered_with_them(declared, name, meant):
-    with pytest.raises(CaseError) as caught:
-        declared(name, 4)
-    ((_, reason),) = caught.value.faults
-    assert reason.startswith(f"{name!r} is not known; did you mean {meant}")
-
-
-@pytest.mark.parametrize(
-    "name",
-    [
-        "LSPB",
-        "parabolic blends",
-        "trapezoidal velocity profile",
-        "S-curve",
-        "double S",
-        "sine-jerk",
-        "sinusoidal jerk profile",
-    ],
-)
-def test_profiles_are_refused_with_where_they_belong(declared, name):
-    with pytest.raises(CaseError, match="is a profile from rest to rest, not a curve through"):
-        declared(name, 4)
+    assert name not in UNKNOWN or "degrees such as 4-3-3-4" in reason
 
 
 def test_a_case_file_that_names_a_curve_as_papers_do_is_shown_how_to_write_it(table):

@@ -107,6 +107,11 @@ def test_a_solution_gives_its_motion():
     rows = answer.sample(0.05)
     assert rows.joints == NAMES
     np.testing.assert_array_equal(rows.position, motion()(rows.time))
+    curve, nodal = piecewise((5, 5)), np.array([[0.4, -0.3], [0.2, 0.1]])
+    free = Problem(WAYPOINTS[:3], Limits(3.0, 9.0), curve, joints=NAMES)
+    rows = Solution(free, Status.FEASIBLE, durations=H[:2], nodal=nodal).sample(0.1)
+    truth = fit(curve, WAYPOINTS[:3], H[:2], nodal)
+    np.testing.assert_array_equal(rows.velocity, truth(rows.time, 1))
     nothing = Solution(problem, Status.INFEASIBLE, "the reason")
     for ask in (lambda: nothing.trajectory, lambda: nothing.sample(0.1)):
         with pytest.raises(TrajgapError, match="no motion: infeasible, the reason"):
@@ -131,13 +136,3 @@ def test_a_step_is_a_time(step):
 def test_a_name_with_a_comma_is_no_column():
     with pytest.raises(TrajgapError, match="holds a separator"):
         csv_text(sampled(motion(), 0.1, ("a,b", "c")))
-
-
-def test_free_derivatives_are_part_of_the_motion():
-    curve = piecewise((5, 5))
-    nodal = np.array([[0.4, -0.3], [0.2, 0.1]])
-    assert curve.free == 2
-    problem = Problem(WAYPOINTS[:3], Limits(3.0, 9.0), curve, joints=NAMES)
-    answer = Solution(problem, Status.FEASIBLE, durations=H[:2], nodal=nodal)
-    truth = fit(curve, WAYPOINTS[:3], H[:2], nodal)
-    np.testing.assert_array_equal(answer.sample(0.1).velocity, truth(answer.sample(0.1).time, 1))

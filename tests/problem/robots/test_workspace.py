@@ -8,12 +8,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-from trajgap.nlp import solve
 from trajgap.problem import (
-    Limits,
-    Problem,
-    Verdict,
-    check,
     cubic_spline,
     fit,
     jtraj,
@@ -173,14 +168,6 @@ def test_a_move_on_the_spot_turns_only() -> None:
     line = ctraj(arm, first, last, 5, guess=START)
     curve = rest_to_rest(4, 5)
     assert line.deviation(fit(curve, line.waypoints, np.full(4, 0.3))) < 5e-3
-
-
-def test_its_waypoints_make_a_problem_like_any_other() -> None:
-    arm, first, last = ends()
-    line = ctraj(arm, first, last, 5, guess=START)
-    problem = Problem(line.waypoints, Limits(2.0, 8.0, joints=6), cubic_spline(4))
-    solution = solve(problem, starts=1)
-    assert check(problem, solution.durations).verdict is Verdict.PASS
 
 
 def test_what_cannot_be_done_is_said() -> None:
