@@ -318,7 +318,7 @@ SEVERAL = {
     "clamped": "clamped-b-spline or clamped-cubic? All: ",
     "quintc-spline": "quintic-spline? All: ",
     "virtual": "cubic-spline-virtual or quintic-spline-virtual? All: ",
-    "cubic": "clamped-cubic or cubic-b-spline or cubic-polynomials or cubic-spline or natural-cubic",
+    "cubic": "clamped-cubic or cubic-b-spline or cubic-polynomials or cubic-spline or natural",
 }
 
 
