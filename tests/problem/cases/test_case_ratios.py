@@ -6,25 +6,15 @@ import json
 
 import numpy as np
 import pytest
+from support.case_texts import case_text
 from support.refusals import Refusal, each_refusal
 from trajgap.problem import CaseError, case_schema, compare_transcriptions, parse_case
 from trajgap.problem.cases import ratio_words
 
-CASE = """
-format = 1
-id = "made-up"
-title = "Made up"
-source = { kind = "teaching" }
-robot = { name = "arm", joints = ["a", "b"] }
-units = { position = "deg", velocity = "deg/s", time = "s" }
-interpolant = { family = "cubic-spline" }
-
-[waypoints]
-waypoint_rows = [[0, 10], [30, 50], [90, 130]]
-
-[limits]
-velocity = 10
-
+CASE = case_text(
+    "waypoint_rows = [[0, 10], [30, 50], [90, 130]]",
+    'family = "cubic-spline"',
+    more="""
 [durations]
 lower = 0
 ratios = RATIOS
@@ -35,8 +25,7 @@ id = "first"
 [[problems]]
 id = "second"
 joints = ["b"]
-[problems.durations]
-ratios = [2, "1.50"]
+durations = { ratios = [2, "1.50"] }
 
 [[readings]]
 id = "total-chosen"
@@ -45,9 +34,9 @@ why = "one factor"
 [[readings]]
 id = "each-chosen"
 why = "shortest"
-[readings.durations]
-ratios = "free"
-"""
+durations = { ratios = "free" }
+""",
+)
 
 
 def case(ratios: str, text: str = CASE):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
+from support.case_texts import case_text
 from support.refusals import Refusal, each_refusal
 from trajgap.problem import (
     Case,
@@ -19,27 +20,12 @@ from trajgap.problem import (
     quintic_spline_virtual,
 )
 
-HEAD = """
-format = 1
-id = "four"
-title = "Four way-points of three joints"
-[source]
-title = "none"
-[robot]
-name = "arm"
-joints = ["a", "b", "c"]
-[units]
-position = "deg"
-velocity = "deg/s"
-acceleration = "deg/s^2"
-time = "s"
-[waypoints]
-waypoint_rows = [[10, -50, 3], [50, -30, 9], [12, 20, 30], [-25, 6, 4]]
-[limits]
-velocity = [63, 97, 80]
-acceleration = [170, 126, 300]
-[interpolant]
-"""
+POINTS = "[10, -50, 3], [50, -30, 9], [12, 20, 30], [-25, 6, 4]"
+HEAD = case_text(
+    f"waypoint_rows = [{POINTS}]",
+    joints="a b c",
+    limits="velocity = [63, 97, 80]\nacceleration = [170, 126, 300]",
+)
 H = np.array([0.8, 1.3, 0.7])
 CUBIC, QUINTIC, SEPTIC = (f'family = "{name}-spline"' for name in ("cubic", "quintic", "septic"))
 GIVEN = 'family = "clamped-b-spline"\ndegree = 4\nknots = "given"\n'
@@ -206,7 +192,7 @@ def test_what_conditions_leave_open_are_positions_of_virtual_breaks_first(
 
 def test_a_long_curve_that_leaves_something_free_is_refused_before_it_is_built() -> None:
     rows = ", ".join(f"[{k % 7}, {k % 5}, 1]" for k in range(9_000))
-    text = HEAD.replace("[10, -50, 3], [50, -30, 9], [12, 20, 30], [-25, 6, 4]", rows)
+    text = HEAD.replace(POINTS, rows)
     with pytest.raises(CaseError, match="leaves 1 of 36000 coefficients free, and at most 600 are"):
         parse_case(f"{text}{CUBIC}\nvirtual = [2]\nfree = 1\n", "four.toml")
 

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from support.case_texts import case_text
 from support.checkout import ROOT
 from trajgap.heuristics import PSO, run
 from trajgap.nlp import Status, solve
@@ -24,26 +25,6 @@ from trajgap.problem import (
 from trajgap.problem.cases import declaration
 
 WAYPOINTS = ((0.3, -1.0), (0.9, -0.55), (0.2, 0.35), (-0.45, 0.1))
-HEAD = """
-format = 1
-id = "family"
-title = "One family"
-[source]
-title = "none"
-[robot]
-name = "arm"
-joints = ["1", "2"]
-[units]
-position = "rad"
-velocity = "rad/s"
-acceleration = "rad/s^2"
-time = "s"
-[limits]
-velocity = [1.1, 1.7]
-acceleration = [3.0, 2.2]
-[durations]
-lower = 0.25
-"""
 FAMILIES = {
     "3-5-3": "",
     "polynomials": "degrees = [4, 3, 4]",
@@ -64,10 +45,12 @@ FAMILIES = {
 
 
 def declared(name: str) -> Problem:
-    rows = ", ".join(f"[{a}, {b}]" for a, b in WAYPOINTS)
-    text = (
-        f"{HEAD}[waypoints]\nwaypoint_rows = [{rows}]\n"
-        f'[interpolant]\nfamily = "{name.split()[0]}"\n{FAMILIES[name]}\n'
+    text = case_text(
+        f"waypoint_rows = {[list(row) for row in WAYPOINTS]}",
+        f'family = "{name.split()[0]}"\n{FAMILIES[name]}',
+        unit="rad",
+        limits="velocity = [1.1, 1.7]\nacceleration = [3.0, 2.2]",
+        more="[durations]\nlower = 0.25",
     )
     return parse_case(text, "family.toml").problem()
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from support.case_texts import case_text
 from support.refusals import Refusal, each_refusal
 from support.scara import SCARA, scara
 from trajgap.problem import CaseError, scaffold
@@ -15,27 +16,6 @@ from trajgap.problem.cases import compare_transcriptions, parse_case
 POSITION = 'position = ["deg", "deg", "mm"]'
 VELOCITY = 'velocity = ["rpm", "deg/s", "mm/s"]'
 ACCELERATION = 'acceleration = ["deg/s^2", "deg/s^2", "m/s^2"]'
-
-
-SMALL = """
-format = 1
-id = "small"
-title = "small"
-[source]
-[robot]
-name = "two"
-joints = ["a", "b"]
-[units]
-UNITS
-[waypoints]
-waypoint_rows = [[5, 10], [30, -20]]
-[limits]
-velocity = 30
-[interpolant]
-family = "rest-to-rest"
-degree = 5
-"""
-"""A case whose units are filled in."""
 
 
 def test_each_joint_is_read_in_its_unit():
@@ -133,8 +113,9 @@ def test_new_takes_a_unit_for_each_joint(tmp_path):
 
 def test_a_list_of_one_unit_is_that_unit():
     """One limit then serves all joints, as it does without the list."""
-    text = SMALL.replace("UNITS", 'position = ["deg", "deg"]\nvelocity = ["rpm", "rpm"]')
-    listed = parse_case(text, "listed.toml").problem()
-    text = SMALL.replace("UNITS", 'position = "deg"\nvelocity = "rpm"')
-    assert np.array_equal(listed.waypoints, parse_case(text, "one.toml").problem().waypoints)
-    assert listed.limits.velocity == pytest.approx([np.pi, np.pi], rel=1e-15)
+    text = case_text("waypoint_rows = [[5, 10], [30, -20]]", 'family = "rest-to-rest"\ndegree = 5')
+    text = text.replace('velocity = "deg/s"', 'velocity = "rpm"')
+    listed = text.replace('"deg"', '["deg", "deg"]').replace('"rpm"', '["rpm", "rpm"]')
+    one, other = (parse_case(each, "small.toml").problem() for each in (text, listed))
+    assert np.array_equal(other.waypoints, one.waypoints)
+    assert other.limits.velocity == pytest.approx([np.pi / 3] * 2, rel=1e-15)

@@ -3,39 +3,26 @@
 from __future__ import annotations
 
 import numpy as np
+from support.case_texts import case_text
 from support.refusals import Refusal, each_refusal
 from trajgap.problem import ctraj, forward_kinematics, load_robot, parse_case
 
 FIRST = [0.1, -0.6, 0.4, 0.2, 0.5, 0.1]
 LAST = [0.3, -0.5, 0.3, 0.2, 0.4, 0.2]
-TEXT = """
-format = 1
-id = "line"
-title = "a straight move of the PUMA 560"
-[source]
-year = 2024
-[robot]
-name = "PUMA 560"
-joints = ["1", "2", "3", "4", "5", "6"]
-model = "puma560"
-[units]
-position = "{unit}"
-velocity = "rad/s"
-[waypoints]
-line = {{ first = {first}, last = {last}, points = 4 }}
-[limits]
-velocity = 1
-[interpolant]
-family = "3-5-3"
-"""
 
 
-def case_text(first: object = FIRST, last: object = LAST, unit: str = "rad") -> str:
-    return TEXT.format(first=first, last=last, unit=unit)
+def line_text(first: object = FIRST, last: object = LAST, unit: str = "rad") -> str:
+    return case_text(
+        f"line = {{ first = {first}, last = {last}, points = 4 }}",
+        'family = "3-5-3"',
+        joints="1 2 3 4 5 6",
+        robot='model = "puma560"',
+        unit=unit,
+    )
 
 
 def test_its_waypoints_are_those_of_ctraj_and_lie_on_the_line() -> None:
-    problem = parse_case(case_text(), "line.toml").problem()
+    problem = parse_case(line_text(), "line.toml").problem()
     arm = load_robot("puma560")
     poses = forward_kinematics(arm, np.array([FIRST, LAST]))
     line = ctraj(arm, *poses, 4, guess=FIRST)
@@ -48,8 +35,8 @@ def test_its_waypoints_are_those_of_ctraj_and_lie_on_the_line() -> None:
 
 def test_its_angles_are_in_the_unit_of_the_file() -> None:
     degrees = [np.rad2deg(ends).tolist() for ends in (FIRST, LAST)]
-    case = parse_case(case_text(*degrees, unit="deg"), "line.toml")
-    other = parse_case(case_text(), "line.toml").problem()
+    case = parse_case(line_text(*degrees, unit="deg"), "line.toml")
+    other = parse_case(line_text(), "line.toml").problem()
     np.testing.assert_allclose(case.problem().waypoints, other.waypoints, atol=1e-9)
     statement = case.statement()
     assert statement.complete
@@ -58,4 +45,4 @@ def test_its_angles_are_in_the_unit_of_the_file() -> None:
 
 @each_refusal("line")
 def test_lines_that_are_refused(one: Refusal) -> None:
-    one.said_by(lambda: parse_case(one.text(case_text()), "line.toml"), "line.toml: ")
+    one.said_by(lambda: parse_case(one.text(line_text()), "line.toml"), "line.toml: ")
