@@ -96,12 +96,6 @@ def test_the_words_are_those_of_the_schema() -> None:
 
 
 def test_readings_are_called_by_their_ratios() -> None:
-    text = CASE.partition("[[problems]]")[0] + "[[readings]]" + CASE.partition("[[readings]]")[2]
-    assert case('"chord"', text).labels == {
-        "total-chosen": "durations in the ratios of the distances",
-        "each-chosen": "each duration chosen",
-    }
-    assert case("[2, 3]", text).labels["total-chosen"] == "durations in the ratios 2 : 3"
     assert ratio_words((1,) * 7) == "durations in the ratios as listed"
     # Where problems say it, a reading that is silent says nothing of its own.
     assert "total-chosen" in case('"equal"').labels["total-chosen"]

@@ -195,24 +195,3 @@ def test_a_long_curve_that_leaves_something_free_is_refused_before_it_is_built()
     text = HEAD.replace(POINTS, rows)
     with pytest.raises(CaseError, match="leaves 1 of 36000 coefficients free, and at most 600 are"):
         parse_case(f"{text}{CUBIC}\nvirtual = [2]\nfree = 1\n", "four.toml")
-
-
-# --- readings -------------------------------------------------------------------------------------
-
-
-def test_readings_are_called_by_what_their_keys_say() -> None:
-    written = {
-        "on": (f"{CUBIC}\nfinish_derivatives = [[5, 0, -2]]", "finish velocity 5 0 -2"),
-        "timed": (TIMED + WHOLE, "way-points at the times"),
-        "stretched": (STRETCHED + WHOLE + VALUES, "way-points at printed parameters"),
-        "one": (f"{QUINTIC}\nvirtual = [2]\nfree = 1", "virtual point at break 2"),
-        "two": (f"{QUINTIC}\nvirtual = [4, 1]\nfree = 2", "virtual points at breaks 1 and 4"),
-        "short": ('family = "quintic-spline-virtual"', "quintic spline with virtual points"),
-    }
-    readings = "".join(
-        f'[[readings]]\nid = "{name}"\nwhy = "It is admitted."\n[readings.interpolant]\n{block}\n'
-        for name, (block, _) in written.items()
-    )
-    labels = case(QUINTIC, readings).labels
-    for name, (_, words) in written.items():
-        assert words in labels[name]
