@@ -128,12 +128,7 @@ def test_what_is_cut_or_too_deep(tmp_path, text, wanted):
         read_limits(path)
 
 
-def test_a_source_of_another_robot_is_refused(tmp_path):
-    stated = read_limits(write(tmp_path, "arm.urdf", ARM))
-    with pytest.raises(
-        CaseError, match=r"joint with limits there; rename it or add it; known: turn, wheel, slide"
-    ):
-        stated.for_joints(("x", "y"))
+def test_a_range_of_acceleration_has_no_deceleration_beside_it():
     ranges = limits_of_flags({"acceleration": "-1:2"}, ("turn",), np.ones(1))
     only = limits_of_flags({"deceleration": "3"}, ("turn",), np.ones(1))
     with pytest.raises(CaseError, match="two-sided"):

@@ -231,12 +231,6 @@ def test_faults(target, options, message):
         inverse_kinematics(PLANAR, target, 0, **options)
 
 
-def test_a_joint_that_slides_freely_is_refused():
-    chain = Chain(S, [0, 0], [0, 0], [0, 0], kinds=("revolute", "prismatic"))
-    with pytest.raises(TrajgapError, match="joint '2' slides without bounds"):
-        inverse_kinematics(chain, [0, 0, 1], 0)
-
-
 def test_names_of_components():
     assert POSE[:3] == POSITION == ("x", "y", "z")
 
