@@ -9,12 +9,11 @@ import numpy as np
 import pytest
 from support import exact_route
 from support.checked import one_joint, table
-from support.positions import CURVES, limited
+from support.positions import limited
 from support.samples import DECLARATIONS, FREE, sample_problem
 from support.uneven import LIMITS as UNEVEN
 from trajgap.problem import (
     QUANTITIES,
-    Array,
     Interpolant,
     Limits,
     Problem,
@@ -135,42 +134,9 @@ def test_evaluate_shapes() -> None:
         evaluate(free, [h])
 
 
-# --- positions ------------------------------------------------------------------------------------
-
-
-UNLIMITED = Limits(joints=3)
-
-
-def drawn(problem: Problem, count: int, seed: int = 3, spread: float = 1.5) -> Array:
-    return np.exp(np.random.default_rng(seed).uniform(-spread, spread, (count, problem.segments)))
-
-
-def position_ratios(problem: Problem, h: Array) -> list[float]:
-    """The checker's, the larger one of each joint."""
-    peaks = [p for p in check(problem, h).peaks if p.quantity == "position"]
-    return [max(p.ratio for p in peaks if p.joint == joint) for joint in problem.joints]
-
-
-@pytest.mark.parametrize("name", CURVES)
-def test_the_batch_says_what_the_checker_says(name: str) -> None:
-    """Verdicts and ratios, on both sides of the limits wherever durations move the path."""
-    for room in (0.003, 0.05, 0.4):
-        problem = limited(CURVES[name], room, UNLIMITED)
-        h = drawn(problem, 8)
-        found, kept = evaluate(problem, h).positions, keeps_limits(problem, h, 5e-10)
-        for one, ratios, inside in zip(h, found, kept, strict=True):
-            own = check(problem, one)
-            if own.worst is not None and own.worst.quantity == "curve":
-                assert np.isinf(ratios).all()
-                assert not inside
-                continue
-            assert ratios == pytest.approx(position_ratios(problem, one), rel=1e-7, abs=1e-9)
-            assert inside == (own.limits is Verdict.PASS)
-
-
 def test_ratios_of_derivatives_do_not_depend_on_position_limits() -> None:
     problem = limited(three_five_three(), 0.1)
-    h = drawn(problem, 50)
+    h = np.exp(np.random.default_rng(3).uniform(-1.5, 1.5, (50, problem.segments)))
     free = replace(problem, limits=problem.limits.with_positions([-np.inf] * 3, [np.inf] * 3))
     np.testing.assert_array_equal(evaluate(problem, h).ratios, evaluate(free, h).ratios)
     assert (evaluate(free, h).positions == -np.inf).all()
