@@ -103,6 +103,7 @@ def test_chosen_components_leave_the_others_free(components):
     target[2, 3] += 0.0 if "z" in components else 5.0
     found = inverse_kinematics(chain, target, 3, components=components)
     assert found.solved
+    assert (found.angle_error == 0.0) == (set(components) <= set(POSITION))
     end = forward_kinematics(chain, found.joints)
     turn = Rotation.from_matrix(target[:3, :3] @ end[:3, :3].T).as_rotvec()
     off = dict(zip(POSE, [*(target[:3, 3] - end[:3, 3]), *turn], strict=True))
