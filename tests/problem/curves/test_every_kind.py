@@ -137,11 +137,8 @@ def test_checker_batch_and_dense_samples_agree(name: str, uneven: bool) -> None:
         sampled = np.maximum(0.0, np.maximum(-least / below, most / above))
         assert (sampled <= found.ratios[0, :, r] * (1 + 1e-9) + 1e-9).all()
         assert found.ratios[0, :, r] == pytest.approx(sampled, rel=1e-4, abs=1e-6)
-    (least, most), low, high = (
-        ends(problem, h, nodal, 0).T,
-        limits.position_lower,
-        limits.position_upper,
-    )
+    least, most = ends(problem, h, nodal, 0).T
+    low, high = limits.position_lower, limits.position_upper
     half = np.where(np.isfinite(high - low), (high - low) / 2, 1.0)
     half[0], half[1] = max(1.0, abs(high[0])), max(1.0, abs(low[1]))
     dense = 1 + np.maximum(low - least, most - high) / half
@@ -197,13 +194,11 @@ def test_a_joint_alone_moves_as_among_all(name: str) -> None:
     problem, h, nodal = motion(name)
     together = evaluate(problem, h[None], nodal)
     for j in range(3):
-        alone = problem.joint(j)
-        own = evaluate(alone, h[None], None if nodal is None else nodal[:, [j]])
+        alone, free = problem.joint(j), None if nodal is None else nodal[:, [j]]
+        own = evaluate(alone, h[None], free)
         np.testing.assert_allclose(own.ratios[0, 0], together.ratios[0, j], rtol=1e-10, atol=1e-13)
         np.testing.assert_allclose(own.positions[0, 0], together.positions[0, j], rtol=1e-9)
-        assert {
-            p.joint for p in check(alone, h, None if nodal is None else nodal[:, [j]]).peaks
-        } == {str(j + 1)}
+        assert {p.joint for p in check(alone, h, free).peaks} == {str(j + 1)}
 
 
 def held(problem: Problem) -> object:
