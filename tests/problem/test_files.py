@@ -186,45 +186,41 @@ def test_a_kill_at_any_rename_leaves_a_report(tmp_path: Path) -> None:
     assert names(tmp_path) == ["out"]
 
 
+RENAMED = {
+    "killed": "Path.rename = lambda self, to: rename(self, to) if to.suffix == '.old' else die()",
+    "ended": (
+        "def interrupted(self, to):\n"
+        "    if '.old' in (self.suffix, to.suffix): return rename(self, to)\n"
+        "    module.remove_drafts()\n"
+        "    die()\n"
+        "Path.rename = interrupted"
+    ),
+}
+"""A process that is killed between two renames, and one that ends there as programs end."""
+
+
 @pytest.mark.parametrize("again", [True, False])
-def test_a_kill_between_two_renames_is_recovered_from(tmp_path: Path, again: bool) -> None:
+@pytest.mark.parametrize("how", RENAMED)
+def test_a_stop_between_two_renames_is_recovered_from(
+    tmp_path: Path, how: str, again: bool
+) -> None:
     out = tmp_path / "out"
     replace_folder(out, OLD)
-    killed(
-        "module._exchanged = lambda *_: False\n"
-        "rename = Path.rename\n"
-        "Path.rename = lambda self, to: rename(self, to) if to.suffix == '.old' else die()\n"
-        f"replace_folder(Path('out'), {NEW!r})",
-        tmp_path,
-    )
-    assert not out.exists()
+    start = "module._exchanged = lambda *_: False\nrename = Path.rename\n"
+    killed(f"{start}{RENAMED[how]}\nreplace_folder(Path('out'), {NEW!r})", tmp_path)
+    if how == "killed":
+        assert not out.exists()
+    else:
+        assert content(out) == OLD
+        assert names(tmp_path) == ["out"]
     if again:
         replace_folder(out, NEW)
         assert content(out) == NEW
         assert names(tmp_path) == ["out"]
     else:
-        recover_folder(out)
-        assert content(out) == OLD
-        recover_folder(out)
-        assert content(out) == OLD
-
-
-def test_a_folder_that_stepped_aside_is_back_when_the_program_ends(tmp_path: Path) -> None:
-    out = tmp_path / "out"
-    replace_folder(out, OLD)
-    killed(
-        "module._exchanged = lambda *_: False\n"
-        "rename = Path.rename\n"
-        "def interrupted(self, to):\n"
-        "    if '.old' in (self.suffix, to.suffix): return rename(self, to)\n"
-        "    module.remove_drafts()\n"
-        "    die()\n"
-        "Path.rename = interrupted\n"
-        f"replace_folder(Path('out'), {NEW!r})",
-        tmp_path,
-    )
-    assert content(out) == OLD
-    assert names(tmp_path) == ["out"]
+        for _ in range(2):
+            recover_folder(out)
+            assert content(out) == OLD
 
 
 def test_a_rename_that_fails_brings_the_folder_back(

@@ -1,18 +1,29 @@
 """Limits and problems: what they fill in, what they freeze, and what they refuse in one line."""
 
+from __future__ import annotations
+
 import dataclasses
+import pickle
+from dataclasses import replace
 
 import numpy as np
 import pytest
+from support.uneven import LIMITS
+from support.uneven import WAYPOINTS as TURNING
+from trajgap.nlp import problem_seal
 from trajgap.problem import (
     QUANTITIES,
     Coupling,
     Limits,
     Problem,
     TrajgapError,
+    Verdict,
     check,
+    cubic_spline,
     cubic_spline_virtual,
+    keeps_limits,
     piecewise,
+    rest_to_rest,
     three_five_three,
 )
 
@@ -66,23 +77,17 @@ def test_limits_of_one_joint_and_replaced() -> None:
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (
-            {"velocity": [1, 2], "jerk": [1, 2, 3]},
-            r"limits.velocity: expected one value or 3 \(one per joint\), got shape \(2,\)",
-        ),
+        ({"velocity": [1, 2], "jerk": [1, 2, 3]}, r"limits.velocity: expected one value or 3"),
         ({"acceleration": np.ones((2, 3))}, r"limits.acceleration: .* got shape \(2, 3\)"),
         ({"acceleration": np.ones((2, 2))}, r"limits.acceleration: 1 to 1 leaves out 0"),
         ({"velocity": [1, 2], "joints": 3}, r"limits.velocity: expected one value or 3"),
-        (
-            {"velocity": [1, np.nan]},
-            r"limits.velocity: is NaN; write inf where there is no limit",
-        ),
+        ({"velocity": [1, np.nan]}, r"limits.velocity: is NaN; write inf where there is no limit"),
         ({"position_upper": np.nan}, r"limits.position_upper: is NaN"),
-        (
-            {"jerk": [-1, 2]},
-            r"limits.jerk: is negative; give the largest absolute value, 0 or more",
-        ),
+        ({"jerk": [-1, 2]}, r"limits.jerk: is negative; give the largest absolute value, 0 or"),
         ({"velocity": -np.inf}, r"limits.velocity: is negative"),
+        ({"velocity": [[1, 2]]}, r"limits.velocity: 1 to 2 leaves out 0"),
+        ({"velocity": [[-2, -1]]}, r"limits.velocity: .* leaves out 0"),
+        ({"velocity": [[np.nan, 1]]}, r"limits.velocity: is NaN"),
         ({"velocity": "fast"}, r"limits.velocity: not numbers; give one value, or one per joint"),
         ({"jerk": [1, [2, 3]]}, r"limits.jerk: not numbers"),
         (
@@ -106,17 +111,10 @@ def test_problem_fills_in() -> None:
     assert problem_with(coupling="per-joint").coupling is Coupling.PER_JOINT
     np.testing.assert_array_equal(problem_with().duration_lower, np.zeros(3))
     assert np.isinf(problem_with().duration_upper).all()
-
-
-def test_one_joint_as_a_plain_list() -> None:
-    problem = Problem([0.1, 0.5, 0.2, 0.9], Limits(2, 5), three_five_three())
-    assert problem.waypoints.shape == (4, 1)
-
-
-def test_one_limit_for_all_joints() -> None:
-    problem = problem_with(limits=Limits(2, 5, 9, -3, 4))
-    np.testing.assert_array_equal(problem.limits.derivatives, [[2, 5, 9], [2, 5, 9]])
-    np.testing.assert_array_equal(problem.limits.position_upper, [4, 4])
+    assert Problem([0.1, 0.5, 0.2, 0.9], Limits(2), three_five_three()).waypoints.shape == (4, 1)
+    same = problem_with(limits=Limits(2, 5, 9, -3, 4)).limits
+    np.testing.assert_array_equal(same.derivatives, [[2, 5, 9], [2, 5, 9]])
+    np.testing.assert_array_equal(same.position_upper, [4, 4])
 
 
 def test_problem_is_a_frozen_copy() -> None:
@@ -151,18 +149,9 @@ def test_joint_alone_is_judged_alike() -> None:
         ({"waypoints": np.ones((4, 0))}, r"waypoints: expected shape .* got \(4, 0\)"),
         ({"waypoints": np.full((4, 2), np.nan)}, r"waypoints: every angle must be finite"),
         ({"waypoints": np.full((4, 2), np.inf)}, r"waypoints: every angle must be finite"),
-        (
-            {"waypoints": WAYPOINTS[:3]},
-            r"waypoints: 3-5-3 polynomials with 3 segments needs 4, got 3",
-        ),
-        (
-            {"curve": cubic_spline_virtual(5)},
-            r"waypoints: C2 cubic spline with two virtual .* with 6 segments needs 5, got 4",
-        ),
-        (
-            {"limits": Limits([1, 2, 3])},
-            r"limits: given for 3 joints, way-points for 2",
-        ),
+        ({"waypoints": WAYPOINTS[:3]}, r"waypoints: 3-5-3 polynomials with 3 segments needs 4"),
+        ({"curve": cubic_spline_virtual(5)}, r"waypoints: C2 cubic spline with two virtual .*"),
+        ({"limits": Limits([1, 2, 3])}, r"limits: given for 3 joints, way-points for 2"),
         ({"duration_lower": [0.1, 0.2]}, r"duration_lower: expected one value or 3, got 2"),
         ({"duration_upper": np.ones((3, 1))}, r"duration_upper: expected one value or 3, got 3"),
         ({"duration_lower": np.nan}, r"duration_lower: must be 0 or more and not NaN"),
@@ -171,18 +160,28 @@ def test_joint_alone_is_judged_alike() -> None:
             {"duration_lower": 2, "duration_upper": [3, 1, 3]},
             r"duration_lower: lies above duration_upper",
         ),
-        (
-            {"duration_lower": np.inf},
-            r"duration bounds: no positive finite duration lies between them",
-        ),
-        (
-            {"duration_upper": [1, 0, 1]},
-            r"duration bounds: no positive finite duration lies between them",
-        ),
+        ({"duration_lower": np.inf}, r"duration bounds: no positive finite duration lies between"),
+        ({"duration_upper": [1, 0, 1]}, r"duration bounds: no positive finite duration lies"),
         ({"joints": ("a",)}, r"joints: 1 labels for 2 joints"),
         ({"joints": ("a", "a")}, r"joints: a label occurs twice in a, a"),
         ({"waypoints": "abc"}, r"waypoints: not a table of numbers; give one row per way-point"),
         ({"waypoints": [[1, 2], [3], [4, 5], [6, 7]]}, r"waypoints: not a table of numbers"),
+        ({"ratios": [1, 2, 3, 4]}, r"ratios: expected 3, one per segment, got 4"),
+        ({"ratios": 1.0}, r"ratios: expected 3, one per segment, got 1"),
+        ({"ratios": [1, 0, 1]}, r"ratios: every one must be positive and finite"),
+        ({"ratios": [1, np.inf, 1]}, r"ratios: every one must be positive and finite"),
+        ({"ratios": [1, np.nan, 1]}, r"ratios: every one must be positive and finite"),
+        ({"ratios": [1, 1, 1e13]}, r"ratios: the largest is more than 1e\+12 times the smallest"),
+        ({"ratios": [1, 1, "x"]}, r'ratios: not numbers; give one per segment, "equal" or "chord"'),
+        ({"ratios": "even"}, r"ratios: 'even' is unknown; give one number per segment"),
+        (
+            {"ratios": "chord", "waypoints": WAYPOINTS[[0, 1, 1, 2]]},
+            r"ratios: .* between way-points 2 and 3, which coincide",
+        ),
+        (
+            {"ratios": "chord", "waypoints": WAYPOINTS[:3], "curve": cubic_spline_virtual(3)},
+            r'ratios: "chord" needs a way-point at every end of the 4',
+        ),
         ({"coupling": "loose"}, r"coupling: 'loose' is none of shared, per-joint"),
         ({"duration_lower": "short"}, r"duration_lower: not numbers; give seconds"),
     ],
@@ -193,7 +192,95 @@ def test_problem_refuses(changes: dict[str, object], message: str) -> None:
     assert "\n" not in str(refusal.value)
 
 
-def test_every_refusal_is_a_value_error() -> None:
-    assert issubclass(TrajgapError, ValueError)
-    with pytest.raises(TrajgapError, match="over-determined"):
-        piecewise((3, 3, 3), 2)
+# --- sides that differ ----------------------------------------------------------------------------
+
+
+def test_pairs_are_kept_by_side() -> None:
+    limits = Limits(2.0, [[-15, 10], [-3, 3]], joints=2)
+    assert limits.uneven
+    assert limits.is_uneven("acceleration")
+    assert not limits.is_uneven("velocity")
+    np.testing.assert_array_equal(limits.sides[:, :, 1], [[15, 3], [10, 3]])
+    np.testing.assert_array_equal(limits.ends("acceleration"), [[-15, -3], [10, 3]])
+    np.testing.assert_array_equal(limits.widest, [[2, 15, np.inf], [2, 3, np.inf]])
+    np.testing.assert_array_equal(limits.hull.derivatives, limits.widest)
+    np.testing.assert_array_equal(limits.velocity, [2, 2])
+    np.testing.assert_array_equal(limits.joint(0).sides, limits.sides[:, :1])
+    assert not limits.joint(1).uneven
+    again = pickle.loads(pickle.dumps(limits))
+    np.testing.assert_array_equal(again.sides, limits.sides)
+    assert "-15" in repr(limits)
+
+
+def test_equal_pairs_are_sizes() -> None:
+    pairs = Limits(acceleration=[[-4, 4], [-3, 3]])
+    assert not pairs.uneven
+    np.testing.assert_array_equal(pairs.acceleration, [4, 3])
+    assert pairs.hull is pairs
+
+
+def test_one_pair_serves_every_joint() -> None:
+    problem = Problem(TURNING, Limits(acceleration=[[-15, 10]]), cubic_spline(3))
+    np.testing.assert_array_equal(problem.limits.ends("acceleration"), [[-15, -15], [10, 10]])
+    assert not problem.hull.limits.uneven
+
+
+def test_what_knows_sizes_alone_meets_an_error() -> None:
+    for name in ("velocity", "acceleration", "jerk", "derivatives"):
+        with pytest.raises(TrajgapError, match="differ in size"):
+            getattr(LIMITS, name)
+
+
+def test_a_side_of_zero_forbids_that_side_alone() -> None:
+    rising, curve = np.array([[0.0], [1.0]]), rest_to_rest(1, 3)
+    forward = Limits(velocity=[[0, 2]])
+    assert check(Problem(rising, forward, curve), [1.0]).verdict is Verdict.PASS
+    back = check(Problem(-rising, forward, curve), [1.0])
+    assert back.verdict is Verdict.VIOLATED
+    assert back.feasible_time is None
+    assert not keeps_limits(Problem(-rising, forward, curve), np.array([[1.0]]), 1e-9)[0]
+    free = Limits(velocity=[[-np.inf, 2]])
+    unlimited = check(Problem(-rising, free, curve), [1e-3])
+    assert unlimited.verdict is Verdict.PASS
+    assert unlimited.peaks[0].ratio == 0.0
+    # At -1 rad/s all the way, nothing lies on the limited side.
+    steady = check(Problem(-rising, free, piecewise((1,), 0, ())), [1.0])
+    assert (steady.verdict, steady.peaks[0].ratio) == (Verdict.PASS, 0.0)
+
+
+# --- ratios of durations --------------------------------------------------------------------------
+
+
+Q = np.array([[0.2, -1.0], [0.5, -0.6], [0.5, 0.6]])
+
+
+def posed(ratios: object, **other: object) -> Problem:
+    return Problem(Q, Limits(1.0), cubic_spline(2), ratios=ratios, **other)
+
+
+@pytest.mark.parametrize(
+    ("ratios", "shares"),
+    [
+        ("equal", [0.5, 0.5]),
+        ("chord", [0.5 / 1.7, 1.2 / 1.7]),
+        ([1, 3], [0.25, 0.75]),
+        ([1e200, 3e200], [0.25, 0.75]),
+        ((1e-310, 3e-310), [0.25, 0.75]),
+    ],
+)
+def test_their_scale_is_irrelevant(ratios, shares) -> None:
+    problem = posed(ratios)
+    np.testing.assert_allclose(problem.shares, shares, rtol=1e-12)
+    for same in (problem.joint(1), problem.hull, replace(problem, name="x")):
+        assert same.shares.tolist() == problem.shares.tolist()
+    assert pickle.loads(pickle.dumps(problem)).shares.tolist() == problem.shares.tolist()
+    assert not problem.ratios.flags.writeable
+
+
+def test_the_seal_of_a_question_holds_its_ratios() -> None:
+    free = Problem(Q, Limits(1.0), cubic_spline(2))
+    assert free.ratios is free.shares is free.unscaled is None
+    seals = {problem_seal(one) for one in (free, posed("equal"), posed("chord"), posed([1, 3]))}
+    assert len(seals) == 4
+    assert problem_seal(posed([2, 6])) == problem_seal(posed([1, 3]))
+    assert problem_seal(posed([5, 5])) == problem_seal(posed("equal"))

@@ -36,6 +36,39 @@ def uniform(time: str, seed: int = 0, count: int = 6, joints: int = 3, spread: f
     return Problem(q, limits, curve), h
 
 
+Q = np.array([[0.3, -1.0], [0.9, -0.55], [0.2, 0.35], [-0.45, 0.1], [0.1, 0.42]])
+H = np.array([0.83, 1.12, 0.74, 1.21])
+SHARES = (0.0, 0.19, 0.48, 0.71, 1.0)
+"""Printed parameters of the five way-points ``Q``."""
+INNER = {
+    3: (0.08, 0.27, 0.46, 0.71, 0.85),
+    4: (0.13, 0.3, 0.62, 0.85),
+    5: (0.2, 0.45, 0.7),
+    6: (0.3, 0.64),
+    7: (0.55,),
+}
+"""Printed inner knots by degree."""
+
+
+def vector(degree: int, first: float = 0.0, last: float = 1.0) -> tuple[float, ...]:
+    """A whole printed knot vector on any scale."""
+    inner = [first + (last - first) * u for u in INNER[degree]]
+    return (*[first] * (degree + 1), *inner, *[last] * (degree + 1))
+
+
+def given(degree: int) -> ClampedBSpline:
+    """Printed knots, way-points at their times."""
+    return ClampedBSpline(5, degree, "given", "times", knot_vector=vector(degree))
+
+
+def printed(degree: int) -> ClampedBSpline:
+    """Printed knots, way-points at printed parameters, each segment stretched by itself."""
+    whole = vector(degree)
+    return ClampedBSpline(
+        5, degree, "given", "given", "stretched", fractions=(SHARES,), knot_vector=whole
+    )
+
+
 def vertices_by_solving(w: np.ndarray) -> np.ndarray:
     """(2) and (3) as a dense system in all m + 2 vertices, closing conditions included."""
     m = w.shape[0]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 from trajgap.problem import (
-    Array,
     Curve,
     Knots,
     Limits,
@@ -13,7 +12,6 @@ from trajgap.problem import (
     clamped_readings,
     cubic_spline,
     cubic_spline_virtual,
-    fit,
     piecewise,
     quintic_spline,
     rest_to_rest,
@@ -46,14 +44,6 @@ CURVES: dict[str, Curve] = {
     },
 }
 """Every kind of curve that a case file can declare, through four way-points."""
-
-
-def sampled_range(problem: Problem, h: Array, places: int = 401) -> Array:
-    """Least and largest position of every joint at dense places of each piece, (joints, 2)."""
-    motion = fit(problem.curve, problem.waypoints, h)
-    parts = zip(motion.breaks[:-1], motion.breaks[1:], strict=True)
-    q = np.vstack([motion(np.linspace(a, b, places)) for a, b in parts])
-    return np.stack([q.min(axis=0), q.max(axis=0)], axis=1)
 
 
 def limited(curve: Curve, room: float, limits: Limits | None = None) -> Problem:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from support.case_texts import case_text
 from support.checkout import ROOT
 from trajgap.heuristics import PSO, run
 from trajgap.nlp import Status, solve
@@ -16,9 +17,7 @@ from trajgap.problem import (
     check,
     ctraj,
     cubic_spline,
-    fit,
     forward_kinematics,
-    jtraj,
     load_robot,
     parse_case,
     scaffold,
@@ -26,26 +25,6 @@ from trajgap.problem import (
 from trajgap.problem.cases import declaration
 
 WAYPOINTS = ((0.3, -1.0), (0.9, -0.55), (0.2, 0.35), (-0.45, 0.1))
-HEAD = """
-format = 1
-id = "family"
-title = "One family"
-[source]
-title = "none"
-[robot]
-name = "arm"
-joints = ["1", "2"]
-[units]
-position = "rad"
-velocity = "rad/s"
-acceleration = "rad/s^2"
-time = "s"
-[limits]
-velocity = [1.1, 1.7]
-acceleration = [3.0, 2.2]
-[durations]
-lower = 0.25
-"""
 FAMILIES = {
     "3-5-3": "",
     "polynomials": "degrees = [4, 3, 4]",
@@ -66,10 +45,12 @@ FAMILIES = {
 
 
 def declared(name: str) -> Problem:
-    rows = ", ".join(f"[{a}, {b}]" for a, b in WAYPOINTS)
-    text = (
-        f"{HEAD}[waypoints]\nwaypoint_rows = [{rows}]\n"
-        f'[interpolant]\nfamily = "{name.split()[0]}"\n{FAMILIES[name]}\n'
+    text = case_text(
+        f"waypoint_rows = {[list(row) for row in WAYPOINTS]}",
+        f'family = "{name.split()[0]}"\n{FAMILIES[name]}',
+        unit="rad",
+        limits="velocity = [1.1, 1.7]\nacceleration = [3.0, 2.2]",
+        more="[durations]\nlower = 0.25",
     )
     return parse_case(text, "family.toml").problem()
 
@@ -107,30 +88,6 @@ def test_a_declared_family_is_checked_solved_and_searched(name: str) -> None:
     through(declared(name), Verdict.DISCONTINUOUS if "stretched" in name else Verdict.PASS)
 
 
-def test_the_toolboxes_point_to_point_move_is_jtraj() -> None:
-    toolbox = pytest.importorskip("roboticstoolbox")
-    q = np.array(WAYPOINTS)
-    h = np.array([0.8, 1.3, 0.6])
-    mine = fit(jtraj(3), q, h)
-    start = np.concatenate([[0.0], np.cumsum(h)])
-    for k in range(3):
-        # The end of a segment is the start of the next, where jerk jumps.
-        local = np.linspace(0.0, h[k], 41)[:-1]
-        theirs = toolbox.jtraj(q[k], q[k + 1], np.append(local, h[k]))
-        for order, values in enumerate((theirs.s, theirs.sd, theirs.sdd)):
-            np.testing.assert_allclose(mine(start[k] + local, order), values[:-1], atol=1e-12)
-
-
-def test_the_toolboxes_straight_move_has_the_poses_of_ctraj() -> None:
-    toolbox = pytest.importorskip("roboticstoolbox")
-    spatial = pytest.importorskip("spatialmath")
-    line, first, last = straight()
-    theirs = toolbox.ctraj(
-        spatial.SE3(first, check=False), spatial.SE3(last, check=False), s=np.linspace(0, 1, 5)
-    )
-    np.testing.assert_allclose(line.poses, np.array([pose.A for pose in theirs]), atol=1e-12)
-
-
 def test_the_programs_of_the_page_run(capsys: pytest.CaptureFixture[str]) -> None:
     page = (ROOT / "docs" / "reference" / "interpolants.md").read_text()
     programs = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
@@ -140,16 +97,12 @@ def test_the_programs_of_the_page_run(capsys: pytest.CaptureFixture[str]) -> Non
     assert "optimal" in capsys.readouterr().out
 
 
-def straight():
+def test_a_straight_line_becomes_a_case_file(tmp_path: Path) -> None:
     arm, start = load_robot("puma560"), np.array([0.1, -0.6, 0.4, 0.2, 0.5, 0.1])
     first = forward_kinematics(arm, start)
     last = first.copy()
     last[:3, 3] += [0.02, 0.12, 0.06]
-    return ctraj(arm, first, last, 5, guess=start), first, last
-
-
-def test_a_straight_line_becomes_a_case_file(tmp_path: Path) -> None:
-    line, _, _ = straight()
+    line = ctraj(arm, first, last, 5, guess=start)
     path = tmp_path / "line.csv"
     path.write_text(line.table)
     units = {"position": "rad", "velocity": "rad/s", "acceleration": "rad/s^2"}

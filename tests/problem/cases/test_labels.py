@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 from support.base_case import BASE
+from support.case_texts import case_text
 from trajgap.problem.cases import parse_case, published_ids
 from trajgap.problem.cases.load import load_case
 from trajgap.problem.errors import CaseError
@@ -45,33 +46,62 @@ def test_a_label_is_a_few_words_on_one_line(label: str) -> None:
         labels(with_label(plain=label))
 
 
+KNOTS = 'family = "clamped-b-spline"\ndegree = 4\nknots = "given"\n'
+WHOLE = "knot_vector = [0, 0, 0, 0, 0, 2.5, 5, 8, 10, 10, 10, 10, 10]\n"
+STRETCHED = 'parameters = "given"\ntime = "stretched"\nparameter_values = [0, 3, 6.5, 10]\n'
+
+
 @pytest.mark.parametrize(
     ("changes", "wanted"),
     [
         ('coupling = "shared"', "durations shared by the joints"),
-        ('interpolant = { family = "quintic-spline" }', "quintic spline"),
         ('interpolant = { family = "rest-to-rest", degree = 5 }', "degree 5"),
         ("durations = { upper = 3 }", "durations at most 3 s"),
         ("limits = { velocity = 7 }", "velocity limits 7"),
         ('joints = ["b"]', "joint b alone"),
         ('turns = { "b" = [-1, 0, 0, 0] }', "whole turns taken off joint b"),
         ('turns = { "b" = [1, 0, 0, 0] }', "whole turns added to joint b"),
+        ('durations = { ratios = "free" }', "each duration chosen"),
+        ('durations = { ratios = "chord" }', "durations in the ratios of the distances"),
+        ("durations = { ratios = [2, 3, 1] }", "durations in the ratios 2 : 3 : 1"),
+        ('interpolant = { family = "quintic-spline" }', "quintic spline"),
+        (
+            'interpolant = { family = "quintic-spline-virtual" }',
+            "quintic spline with virtual points",
+        ),
+        (
+            '[readings.interpolant]\nfamily = "quintic-spline"\nvirtual = [2]\nfree = 1',
+            "virtual point at break 2",
+        ),
+        (
+            '[readings.interpolant]\nfamily = "quintic-spline"\nvirtual = [4, 1]\nfree = 2',
+            "virtual points at breaks 1 and 4",
+        ),
+        (
+            '[readings.interpolant]\nfamily = "cubic-spline"\nfinish_derivatives = [[5, -2]]',
+            "finish velocity 5 -2",
+        ),
+        (
+            f'[readings.interpolant]\n{KNOTS}parameters = "times"\n{WHOLE}',
+            "way-points at the times",
+        ),
+        (
+            f"[readings.interpolant]\n{KNOTS}{STRETCHED}{WHOLE}",
+            "way-points at printed parameters",
+        ),
     ],
 )
 def test_whatever_a_reading_changes_has_words(changes: str, wanted: str) -> None:
-    # The labels are made before any curve is built, so that each change is named by itself.
-    base = BASE.replace('id = "rad"\n', f'id = "rad"\n{changes}\n', 1)
-    head, at, tail = base.partition('[[readings]]\nid = "rad"')
-    block, sep, rest = tail.partition("\n\n")
-    lines = block.splitlines()
-    kept, names = [], set()
-    for line in lines:
-        name = line.partition(" = ")[0]
-        if name not in names:
-            kept.append(line)
-            names.add(name)
-    found = labels(head + at + "\n".join(kept) + sep + rest)
-    assert wanted in found["rad"].split(", ")
+    readings = "".join(
+        f'[[readings]]\nid = "{name}"\nwhy = "It is admitted."\n{block}\n'
+        for name, block in (
+            ("plain", 'durations = { lower = 0.2, ratios = "equal" }'),
+            ("other", changes),
+        )
+    )
+    points = "waypoint_rows = [[10, -50], [50, -30], [12, 20], [-25, 6]]"
+    found = labels(case_text(points, 'family = "3-5-3"', more=readings))
+    assert wanted in found["other"].split(", ")
     assert wanted not in found["plain"]
 
 

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from support.refusals import Refusal, each_refusal
 from trajgap.problem.cases.literature import LITERATURE
 from trajgap.problem.cases.load import parse_case
 from trajgap.problem.cases.scaffolding import scaffold
@@ -49,17 +52,8 @@ def test_a_plain_table_in_degrees(table):
     assert case.problem().curve.degrees == (3,)
 
 
-def test_the_family_can_be_chosen(table):
-    path = table("a\n1\n2\n3\n")
-    case = parse_case(scaffold(path, {"position": "rad"}, family="quintic-spline"), "x")
-    assert case.problem().curve.degrees == (5, 5)
-
-
 def test_a_gap_in_the_last_line_end_does_not_matter(table):
     assert scaffold(table("a,b\r\n1,2\r\n3,4"), RAD) == scaffold(table("a,b\n1,2\n3,4\n"), RAD)
-
-
-HOLDS_NUMBERS = "line 1: holds numbers; the first line names the joints, put a header above it"
 
 
 @pytest.mark.parametrize(
@@ -110,141 +104,52 @@ def test_what_is_written_loads_or_the_table_is_refused(tmp_path_factory, joints,
     assert [j.strip() for j in joints] == list(case.robot.joints)
 
 
-@pytest.mark.parametrize(
-    ("text", "reason"),
-    [
-        ("", "is empty; `trajgap new` writes a file to start from"),
-        (b"a,b\n\x00,1", "is a binary file; a UTF-8 text file is needed"),
-        ("a,b\n1,2\n", "holds 1 way-points; give at least two rows of numbers"),
-        ("a,b\n1,2\n3\n", "line 3: has 1 cells, the header 2; fill or remove cells"),
-        ("a,a\n1,2\n3,4\n", "line 1, column 2: joint 'a' is named twice; rename one"),
-        ("a,\n1,2\n3,4\n", "line 1, column 2: the joint has no name; head every column"),
-        ("point\nA\nB\n", "line 1: names no joint; head one column per joint"),
-        ("0.1,-2\n1,2\n3,4\n", HOLDS_NUMBERS),
-        # The first line is a way-point, and the next one must not be taken for the start.
-        ("10,20\n55,35\n60,20\n", HOLDS_NUMBERS),
-        ("2,1\n55,35\n60,20\n", HOLDS_NUMBERS),
-        ("10 20\n55 35\n60 20\n", HOLDS_NUMBERS),
-        ("A,10,20\nB,55,35\nC,60,20\n", HOLDS_NUMBERS),
-        ("P1,1e1,7\nP2,55,35\nP3,5,3\n", HOLDS_NUMBERS),
-        (
-            "joint 1;joint 2\n10 20\n30 40\n",
-            "line 2: holds 2 numbers with spaces between, in one cell; put commas between, "
-            "in every line",
-        ),
-        (
-            "name,A,B,C\nJ1,1,2,3\nJ2,4,5,6\n",
-            "column 1: names joints, J1 first; give a row for each way-point, or head this column "
-            '"joint" if each row is a joint',
-        ),
-        (
-            "joint,A,B\n10,1,2\n20,4,5\n",
-            "column 1: holds numbers; name each joint there, such as J1",
-        ),
-        ("joint,A\nJ1,1\nJ2,4\n", "holds 1 way-points; give at least two rows of numbers"),
-        ("joint,A,B\nJ1,1,2\nJ1,4,5\n", "line 3, column 1: joint 'J1' is named twice; rename one"),
-        (
-            "i,a,b\n1,5,2\n2,5,3\n3,9,7\n",
-            "column 1: numbers the rows; head it \"point\" in place of 'i', or write 1.0 if it is "
-            "a joint's",
-        ),
-        (
-            "time (s),a\n0.5,2\n1.0,3\n",
-            "line 1, column 1: 'time (s)' is no joint; leave instants out, and print durations",
-        ),
-        (
-            "a;b\n1;2\n3;0,5\n",
-            "line 3, column 2: '0,5' has a decimal comma; write a decimal point",
-        ),
-        (
-            "a,b\n1,nan\n3,4\n",
-            "line 2, column 2: 'nan' is not a finite decimal number; "
-            'write the printed digits alone, such as "0.660"',
-        ),
-        ('a,b\n1,"2\n3,4\n', "line 3: not valid CSV, unexpected end of data; fix it"),
-    ],
-)
-def test_tables_that_are_refused(table, text, reason):
-    path = table(text)
-    with pytest.raises(CaseError) as caught:
-        scaffold(path, RAD)
-    assert str(caught.value) == f"{path}: {reason}"
+@each_refusal("tables")
+def test_tables_that_are_refused(table, one: Refusal):
+    path = table(one.text(""))
+    one.said_by(lambda: scaffold(path, RAD), f"{path}: ")
 
 
 @pytest.mark.parametrize(
     ("units", "options", "reason"),
     [
         ({}, {}, "units.position: is missing; give one of rad, deg, m, cm, mm"),
-        (
-            {"position": "rad"},
-            {"jerk": "9"},
-            "units.jerk: is missing; give one of rad/s^3, deg/s^3, m/s^3, cm/s^3, mm/s^3",
-        ),
-        (
-            {"position": "rad/s"},
-            {},
-            "units.position: 'rad/s' measures velocity, not position; "
-            "use one of rad, deg, m, cm, mm",
-        ),
-        (
-            {"angle": "rad", "position": "rad"},
-            {},
-            "units.angle: no such quantity; known: position, velocity, acceleration, jerk, time",
-        ),
+        ({"position": "rad"}, {"jerk": "9"}, "units.jerk: is missing; give one of rad/s^3"),
+        ({"position": "rad/s"}, {}, "units.position: 'rad/s' measures velocity, not position"),
+        ({"angle": "rad", "position": "rad"}, {}, "units.angle: no such quantity; known:"),
         (RAD, {"velocity": "-6"}, "velocity: -6 is negative; give 0 or more"),
+        (RAD, {"velocity": "six"}, "velocity: 'six' is not a finite decimal number; write the"),
         (
             RAD,
-            {"velocity": "six"},
-            "velocity: 'six' is not a finite decimal number; "
-            'write the printed digits alone, such as "0.660"',
+            {"velocity": "1,2,3"},
+            "velocity: lists 3 numbers for 2 joints; give one for all, or",
         ),
-        (
-            RAD,
-            {"case_id": "My case"},
-            "case_id: 'My case' is not an id; use lower-case letters, digits, dots and dashes",
-        ),
-        (
-            RAD,
-            {"family": "3-5-3"},
-            "family: 3-5-3 polynomials of 3 segments passes 4 way-points, but 2 are given; "
-            "change the family, the degrees or the way-points",
-        ),
+        (RAD, {"case_id": "My case"}, "case_id: 'My case' is not an id; use lower-case letters"),
+        (RAD, {"family": "3-5-3"}, "family: 3-5-3 polynomials of 3 segments passes 4 way-points"),
+        (RAD, {"family": "clamped"}, "family: 'clamped' is not known; did you mean clamped-b-spl"),
+        (RAD, {"family": "bezier"}, "family: 'bezier' is not known; use one of 3-5-3"),
+        (RAD, {"family": "rest-to-rest"}, "degree: is missing"),
+        (RAD, {"durations": "1,x,2"}, "durations: 'x' is not a finite decimal number"),
+        (RAD, {"durations": "1,2,3"}, "durations: lists 3 numbers, and the curve has 4 segments"),
+        (RAD, {"durations": "1", "family": "rest-to-rest", "degree": 5}, "durations: lists 1 num"),
     ],
 )
 def test_options_that_are_refused(table, units, options, reason):
-    path = table("a,b\n1,2\n3,4\n")
+    path = table(points(5))
     with pytest.raises(CaseError) as caught:
         scaffold(path, units, **options)
-    assert str(caught.value) == reason
+    assert str(caught.value).startswith(reason)
 
 
-def test_a_missing_table(tmp_path):
+def test_tables_that_cannot_be_read(table, tmp_path):
+    with pytest.raises(CaseError, match="is a binary file; a UTF-8 text file is needed"):
+        scaffold(table(b"a,b\n\x00,1"), RAD)
     with pytest.raises(CaseError, match=r"none\.csv: no such file; check the path"):
         scaffold(tmp_path / "none.csv", RAD)
 
 
 def points(count):
     return "1,2\n" + "".join(f"0.{k}1,{k % 3}.5\n" for k in range(count))
-
-
-@pytest.mark.parametrize("name", LITERATURE)
-def test_every_name_of_the_literature_declares_a_curve(table, name):
-    text = scaffold(table(points(4)), RAD, family=name, velocity="6", acceleration="8")
-    assert f"# what papers call {name}" in text
-    assert parse_case(text, "x").problem().curve.segments >= 3
-
-
-def test_what_papers_call_curves_has_their_degrees_and_ends(table):
-    path = table(points(4))
-
-    def curve(name):
-        return parse_case(scaffold(path, RAD, family=name), "x").problem().curve
-
-    assert curve("4-3-4").degrees == (4, 3, 4)
-    assert curve("quintic-b-spline").degrees == (5, 5, 5)
-    assert curve("septic-polynomials").degrees == (7, 7, 7)
-    assert curve("natural-cubic").prescribed == (((2, 0.0),), (), (), ((2, 0.0),))
-    assert curve("clamped-cubic").prescribed == (((1, 0.0),), (), (), ((1, 0.0),))
 
 
 def test_a_default_without_a_shortest_motion_is_not_one(table):
@@ -289,35 +194,6 @@ def test_limits_of_each_joint_and_printed_times_are_taken_as_given(table):
     assert (alone.quantity, alone.value.text) == ("total_time", "3.36")
 
 
-@pytest.mark.parametrize(
-    ("options", "reason"),
-    [
-        ({"velocity": "1,2,3"}, "velocity: lists 3 numbers for 2 joints; give one for all, or one"),
-        ({"durations": "1,x,2"}, "durations: 'x' is not a finite decimal number"),
-        (
-            {"family": "clamped"},
-            "family: 'clamped' is not known; did you mean clamped-b-spline or "
-            "clamped-cubic? All: 3-5-3",
-        ),
-        (
-            {"durations": "1,2"},
-            "durations: lists 2 numbers, and the curve has 3 segments; give one for each",
-        ),
-        (
-            {"durations": "1,2,3,4", "family": "rest-to-rest", "degree": 5, "where": "x"},
-            "durations: lists 4 numbers, and the curve has 3 segments; give one for each",
-        ),
-        ({"family": "bezier"}, "family: 'bezier' is not known; use one of 3-5-3"),
-        ({"family": "rest-to-rest"}, "degree: is missing"),
-    ],
-)
-def test_new_options_that_are_refused(table, options, reason):
-    path = table(points(4))
-    with pytest.raises(CaseError) as caught:
-        scaffold(path, RAD, **options)
-    assert str(caught.value).startswith(reason)
-
-
 def test_all_faults_of_table_and_arguments_are_named_at_once(table):
     path = table("a,b\n1,x\n3\n")
     with pytest.raises(CaseError) as caught:
@@ -355,3 +231,120 @@ def test_settings_are_bare_and_what_may_be_rounded_is_quoted(table, unit, rows, 
     assert [[number.exact for number in row] for row in points] == bare
     assert ("exact" in text.split("[waypoints]")[1].split("[limits]")[0]) == (remark is not None)
     assert remark is None or remark in text
+
+
+# --- names that papers give to curves -------------------------------------------------------------
+
+
+@pytest.fixture
+def declared(table):
+    """The curve of a case that `scaffold` writes for so many way-points under a name."""
+
+    def declare(name, count):
+        text = scaffold(table(points(count)), {"position": "rad"}, family=name)
+        assert f"# what papers call {name}" in text or f'family = "{name}"' in text
+        return parse_case(text, "x").problem().curve
+
+    return declare
+
+
+@pytest.mark.parametrize("name", LITERATURE)
+def test_every_name_of_the_literature_declares_a_curve(declared, name):
+    curve = declared(name, 4)
+    assert curve.segments >= 3
+    orders = {"natural-cubic": 2, "clamped-cubic": 1}
+    if name in orders:
+        assert curve.ends == (((orders[name], 0.0),),) * 2
+
+
+@pytest.mark.parametrize(
+    ("name", "count", "degrees"),
+    [
+        ("virtual-cubic-spline", 4, (3,) * 5),
+        ("cubic spline with two virtual points", 4, (3,) * 5),
+        ("cubic spline with 2 virtual knots", 4, (3,) * 5),
+        ("Natural cubic splines", 5, (3,) * 4),
+        ("natural spline", 5, (3,) * 4),
+        ("C2 cubic spline", 5, (3,) * 4),
+        ("C4 quintic spline", 5, (5,) * 4),
+        ("clamped cubic spline", 5, (3,) * 4),
+        ("fifth-order B-spline", 6, (5,) * 5),
+        ("quintic B splines", 6, (5,) * 5),
+        ("5th-degree polynomial", 3, (5, 5)),
+        ("quintic polynomial", 3, (5, 5)),
+        ("3-4-5 polynomial", 2, (5,)),
+        ("4-5-6-7 polynomial", 2, (7,)),
+        ("seventh-order polynomial", 2, (7,)),
+        ("3-5-3 polynomials", 4, (3, 5, 3)),
+        ("353", 4, (3, 5, 3)),
+        ("4-3-4", 4, (4, 3, 4)),
+        ("septic-polynomials", 4, (7, 7, 7)),
+        ("4-3-3-3-4", 6, (4, 3, 3, 3, 4)),
+        ("4–3–3–4 spline", 5, (4, 3, 3, 4)),
+        ("5-3-3-3-5", 6, (5, 3, 3, 3, 5)),
+        ("5-5-5", 4, (5, 5, 5)),
+    ],
+)  # fmt: skip
+def test_a_name_declares_the_curve_that_it_means(declared, name, count, degrees):
+    curve = declared(name, count)
+    assert (curve.degrees, curve.free) == (degrees, 0)
+
+
+def test_degrees_that_are_not_settled_are_left_open(declared, table):
+    """27 coefficients, and conditions that are alike at both ends and at all joints: 22 by hand."""
+    curve = declared("5-4-4-4-5", 6)
+    assert (curve.degrees, curve.free) == ((5, 4, 4, 4, 5), 27 - (10 + 8 + 4))
+    text = scaffold(table(points(6)), {"position": "rad"}, family="5-4-4-4-5")
+    assert "27 coefficients and 22 conditions: say what settles the other 5" in text
+
+
+def test_other_splines_through_the_middle_are_told_apart(declared):
+    """Five and four virtual points: two are what is known."""
+    assert declared("quintic spline", 5).degrees == (5,) * 4
+    assert declared("septic B-spline", 8).name.startswith("clamped B-spline of degree 7")
+    assert declared("uniform cubic B-spline", 5).name == declared("uniform-cubic-b-spline", 5).name
+
+
+UNKNOWN = (
+    *("trigonometric spline", "Bezier", "NURBS", "cubic Hermite spline", "exponential spline", ""),
+    *("cycloidal", "spline with three virtual points", "Akima spline", "x"),
+)
+PROFILES = (
+    *("LSPB", "parabolic blends", "trapezoidal velocity profile", "S-curve", "double S"),
+    *("sine-jerk", "sinusoidal jerk profile"),
+)
+SEVERAL = {
+    "quintic": "quintic-b-spline or quintic-polynomials or quintic-spline? All: ",
+    "clamped": "clamped-b-spline or clamped-cubic? All: ",
+    "quintc-spline": "quintic-spline? All: ",
+    "virtual": "cubic-spline-virtual or quintic-spline-virtual? All: ",
+    "cubic": "clamped-cubic or cubic-b-spline or cubic-polynomials or cubic-spline or natural",
+}
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        *((name, f"{name!r} is not known; use one of 3-5-3, ") for name in UNKNOWN),
+        *((name, f"{name!r} is not known; did you mean {all}") for name, all in SEVERAL.items()),
+        *((name, "is a profile from rest to rest, not a curve through") for name in PROFILES),
+    ],
+)
+def test_what_is_not_known_is_answered_with_what_may_be_meant(declared, name, said):
+    with pytest.raises(CaseError, match=re.escape(said)) as caught:
+        declared(name, 4)
+    ((field, reason),) = caught.value.faults
+    assert field == "family"
+    assert name not in UNKNOWN or "degrees such as 4-3-3-4" in reason
+
+
+def test_a_case_file_that_names_a_curve_as_papers_do_is_shown_how_to_write_it(table):
+    text = scaffold(table(points(6)), {"position": "rad"}, family="cubic-spline")
+    for name, written in (
+        ("virtual-cubic-spline", 'write family = "cubic-spline-virtual"'),
+        ("4-3-3-3-4", 'write family = "polynomials", degrees = [4, 3, 3, 3, 4]'),
+    ):
+        with pytest.raises(CaseError) as caught:
+            parse_case(text.replace('"cubic-spline"', f'"{name}"'), "x")
+        ((field, reason),) = caught.value.faults
+        assert (field, reason) == ("interpolant.family", f"{name!r} is not allowed; {written}")

@@ -5,7 +5,6 @@ about the same polynomials: one segment with all its start derivatives prescribe
 """
 
 import math
-from decimal import Decimal
 from fractions import Fraction
 
 import numpy as np
@@ -15,18 +14,14 @@ from hypothesis import strategies as st
 from numpy.polynomial import Chebyshev
 from numpy.polynomial import Polynomial as Power
 from support import exact_route
-from support.samples import DECLARATIONS, sample_problem
 from trajgap.problem import (
-    Extremum,
     Interpolant,
     Limits,
     Problem,
     check,
     evaluate,
-    extrema,
     fit,
     rest_to_rest,
-    three_five_three,
 )
 from trajgap.problem.curves.peak import critical_points, largest
 
@@ -84,16 +79,6 @@ def test_chebyshev_reaches_one_at_every_extremum(degree: int) -> None:
     known_peaks = [1.0, 2 * d2, 4 * d2 * (d2 - 1) / 3]
     for peaks in peaks_by_both(coefficients):
         np.testing.assert_allclose(peaks, known_peaks, rtol=1e-9, atol=1e-9)
-
-
-@pytest.mark.parametrize("degree", range(1, 9))
-def test_tilted_chebyshev_has_its_peak_inside(degree: int) -> None:
-    # The ends are drawn in, so that a finder that looks only there is wrong.
-    wave = chebyshev(degree)
-    dome = wave * Power([0.05, 3.8, -3.8]) if degree < 7 else wave
-    expected = [companion_peak(dome.deriv(r) if r else dome) for r in range(3)]
-    for peaks in peaks_by_both(np.asarray(dome.coef)):
-        np.testing.assert_allclose(peaks, expected, rtol=1e-9)
 
 
 @pytest.mark.parametrize("degree", range(9))
@@ -179,39 +164,6 @@ def test_no_turning_point_outside_or_without_sign_change() -> None:
     np.testing.assert_allclose(critical_points(np.array([0.0, 1.0, -1.0, 0.0, 0.0])), [0.5])
 
 
-@pytest.mark.parametrize("name", DECLARATIONS)
-def test_extrema_against_fifty_digits(name: str) -> None:
-    interpolant = DECLARATIONS[name]
-    problem, h = sample_problem(interpolant, 9, joints=2)
-    curve = fit(interpolant, problem.waypoints, h)
-    for j in range(2):
-        pieces = exact_route.fitted(interpolant, problem.waypoints[:, j], h)
-        for order in range(4):
-            truth = float(exact_route.peak(pieces, h, order))
-            found = extrema(curve, j, order)
-            assert max(abs(e.value) for e in found) == pytest.approx(truth, rel=1e-10, abs=1e-10)
-            assert [e.time for e in found] == sorted(e.time for e in found)
-            assert {(e.joint, e.order) for e in found} == {(j, order)}
-            for e in found:
-                assert 0.0 <= e.s <= 1.0
-                assert e.time == pytest.approx(curve.breaks[e.segment] + e.s * h[e.segment])
-                inner = curve.derivative(e.segment, j, order)
-                size = np.abs(inner).sum()
-                assert abs(e.value - inner @ e.s ** np.arange(inner.size)) <= 1e-14 * size
-
-
-def test_every_sampled_bump_is_an_extremum() -> None:
-    problem, h = sample_problem(DECLARATIONS["quintic"], 4)
-    curve = fit(problem.curve, problem.waypoints, h)
-    t = np.linspace(0.0, h.sum(), 20_001)
-    for j in range(3):
-        for order in range(4):
-            y = curve(t, order)[:, j]
-            bumps = t[1:-1][(y[1:-1] - y[:-2]) * (y[2:] - y[1:-1]) < 0]
-            places = np.array([e.time for e in extrema(curve, j, order)])
-            assert bumps.size == 0 or np.abs(bumps[:, None] - places).min(axis=1).max() < 3e-4
-
-
 def test_another_piece_that_may_be_larger_blurs_the_peak() -> None:
     # Speeds of the two cubics peak at 1.5 and 1.2; the second is known to 0.5 only.
     curve = fit(rest_to_rest(2, 3), np.array([[0.2], [1.2], [2.0]]), [1.0, 1.0])
@@ -222,29 +174,8 @@ def test_another_piece_that_may_be_larger_blurs_the_peak() -> None:
     assert largest(curve, 0, 1, np.array([0.25, 0.5]))[1] == 0.25
 
 
-def test_batched_evaluation_against_fifty_digits() -> None:
-    problem, _ = sample_problem(three_five_three(), 2, joints=2)
-    rng = np.random.default_rng(8)
-    batch = 10.0 ** rng.uniform(-1.0, 1.0, (12, 3))
-    ratios = evaluate(problem, batch).ratios
-    for i, h in enumerate(batch):
-        for j in range(2):
-            pieces = exact_route.fitted(problem.curve, problem.waypoints[:, j], h)
-            for order in (1, 2, 3):
-                limit = problem.limits.derivatives[j, order - 1]
-                truth = exact_route.peak(pieces, h, order) / Decimal(float(limit))
-                assert ratios[i, j, order - 1] == pytest.approx(float(truth), rel=1e-12)
-
-
 def test_exact_route_knows_a_simple_peak() -> None:
     # s² − s³ over two seconds: speed (2t/4 − 3t²/8), largest |v| at the end
     piece = [Fraction(0), Fraction(0), Fraction(1, 4), Fraction(-1, 8)]
     assert float(exact_route.peak([piece], [2.0], 0)) == pytest.approx(4 / 27, rel=1e-15)
     assert float(exact_route.peak([piece], [2.0], 1)) == pytest.approx(0.5, rel=1e-15)
-
-
-def test_an_extremum_is_a_record() -> None:
-    one = Extremum(0, 1, 2, 0.5, 1.25, -3.0)
-    assert (one.joint, one.segment, one.order, one.s, one.time, one.value) == (
-        0, 1, 2, 0.5, 1.25, -3.0,
-    )  # fmt: skip

@@ -10,7 +10,6 @@ from trajgap.problem import (
     Limits,
     Peak,
     Problem,
-    Verdict,
     check,
     cubic_spline,
     extrema,
@@ -152,20 +151,3 @@ def test_the_checker_says_the_same_by_both_searches(
     np.testing.assert_allclose(
         [e.size for e in one_by_one.jumps], [e.size for e in together.jumps], rtol=1e-9
     )
-
-
-@pytest.mark.parametrize("kind", ["cubic", "quintic"])
-def test_long_checks_keep_time_scaling_and_mirrors(kind: str) -> None:
-    problem, h = long_problem(kind, 300)
-    free = Problem(problem.waypoints, Limits(2.0, 9.0, 80.0, joints=2), problem.curve)
-    found = check(free, h)
-    stretched = check(free, h * found.stretch)
-    assert stretched.stretch == pytest.approx(1.0, abs=1e-12)
-    assert stretched.verdict is Verdict.PASS
-    mirrored = Problem(-free.waypoints[::-1], free.limits, free.curve)
-    again = check(mirrored, h[::-1])
-    for one, other in zip(found.peaks, again.peaks, strict=True):
-        assert other.ratio == pytest.approx(one.ratio, rel=1e-11)
-        assert other.segment == 299 - one.segment or one.time == pytest.approx(
-            again.total_time - (other.time or 0.0), abs=1e-6
-        )

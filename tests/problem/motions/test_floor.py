@@ -1,10 +1,9 @@
-"""The floor between standstills, against closed forms, a linear program and ruckig."""
+"""The floor between standstills, against closed forms and ruckig."""
 
 import math
 
 import numpy as np
 import pytest
-from scipy.optimize import linprog
 from trajgap.problem.motions import (
     Interpolation,
     JointLimits,
@@ -33,33 +32,6 @@ INF = math.inf
 )
 def test_known_times(distance, limits, time):
     assert shortest(distance, *limits) == pytest.approx(time, rel=1e-12)
-
-
-def furthest(time, velocity, acceleration, jerk, cells=400):
-    """How far rest to rest gets in a time with piecewise constant jerk, by a linear program."""
-    h = time / cells
-    to_a = np.tril(np.full((cells, cells), h))
-    to_v = np.tril(np.ones((cells, cells)), -1) @ to_a * h + np.eye(cells) * h * h / 2
-    to_v += np.tril(np.full((cells, cells), 0.0))
-    ends = np.vstack([to_a[-1], to_v[-1]])
-    lags = (np.arange(cells, 0, -1) - 0.5) * h
-    way = lags**2 / 2 * h + h**3 / 24
-    rows = np.vstack([to_a, -to_a, to_v, -to_v])
-    most = np.repeat([acceleration, acceleration, velocity, velocity], cells)
-    found = linprog(-way, rows, most, ends, [0.0, 0.0], bounds=(-jerk, jerk))
-    assert found.status == 0
-    return -found.fun
-
-
-@pytest.mark.parametrize(
-    "limits", [(2.0, 5.0, 40.0), (0.7, 5.0, 40.0), (2.0, 1.0, 40.0), (9.0, 9.0, 7.0)]
-)
-def test_a_linear_program_reaches_no_further(limits):
-    distance = 1.3
-    time = shortest(distance, *limits)
-    cells = 120
-    assert furthest(time, *limits, cells) <= distance * (1 + 1e-3)
-    assert furthest(1.03 * time, *limits, cells) >= distance
 
 
 def test_ruckig_takes_as_long():

@@ -1,5 +1,6 @@
 """Interpolations beside their exact ones, of the samples as they stand and of shaken ones."""
 
+import json
 from fractions import Fraction
 from itertools import pairwise
 
@@ -13,7 +14,9 @@ from trajgap.problem.motions import (
     JointLimits,
     Samples,
     check_motion,
+    check_samples,
     interpolated,
+    read_motion,
 )
 
 DEGREE = {"linear": 1, "cubic": 3, "quintic": 5}
@@ -136,3 +139,120 @@ def test_lines_that_may_bend_within_their_noise_do_not_pass():
     assert (noisy.verdict, noisy.limits) == (Verdict.UNDECIDED, Verdict.PASS)
     assert "velocity of joint a may jump" in noisy.open[0]
     assert noisy.feasible_time is None
+
+
+# --- what the digits of a file leave open ---------------------------------------------------------
+
+
+ROWS = "time,a,b,a velocity,b velocity\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "time", "positions"),
+    [
+        # Fixed places: those of the column, though single numbers show fewer.
+        ("time,a\n0.0,1\n0.25,1.125\n0.5,2.5\n", 5e-3, [5e-4]),
+        # Significant digits: 123.456 is known to 5e-4, though 0.000123456 has nine places.
+        ("time,a\n0.000001,123.456\n0.10001,0.000123456\n", 5e-6, [5e-4]),
+        ("time,a\n0,1.5e-3\n1e-2,-2.25e1\n", 5e-3, [5e-2]),
+        # Every digit of float64: no rounding but its own.
+        ("time,a\n0.0,0.1\n0.30000000000000004,0.5\n", 0.0, [5e-2]),
+        ("time,a\n0.0000000000000000e+00,1.0000000000000000e+00\n1,2\n", 0.0, [0.0]),
+        # A column that never changes has the digits of its neighbours.
+        ("time,a,b\n0.000,0,1.12345\n0.001,0,2.5\n", 5e-4, [5e-6, 5e-6]),
+        ("time,a\n0.00,3\n0.01,3\n", 5e-3, [0.5]),
+        ("0 1.5\n1 2.25\n# 3 4.123456\n", 0.5, [5e-3]),
+        (ROWS + "0.000,1.0,2.00,0,0\n0.125,1.5,2.25,0,0\n", 5e-4, [5e-2, 5e-3]),
+    ],
+)
+def test_half_a_unit_of_the_last_place(tmp_path, text, time, positions):
+    (tmp_path / "m.csv").write_text(text)
+    samples = read_motion(tmp_path / "m.csv").content
+    assert samples.clock == pytest.approx(time, rel=1e-9)
+    np.testing.assert_allclose(samples.margin, positions, rtol=1e-9)
+    assert samples.clock >= time
+    assert (samples.margin >= positions).all()
+
+
+@pytest.mark.parametrize("form", [".4f", ".9f", ".7g", ".5e", ".17g", ".16e", ""])
+def test_what_was_rounded_away_is_within_what_the_digits_say(tmp_path, form):
+    rng = np.random.default_rng(len(form))
+    time = np.cumsum(rng.uniform(0.1, 0.2, 3000))
+    values = 10.0 ** rng.integers(-3, 3) * rng.normal(size=(3000, 2))
+    rows = zip(time.tolist(), *values.T.tolist(), strict=True)
+    text = "\n".join(",".join(format(x, form) if form else repr(x) for x in row) for row in rows)
+    (tmp_path / "m.csv").write_text(text)
+    samples = read_motion(tmp_path / "m.csv").content
+    eps = 2.0**-52
+    assert (np.abs(samples.time - time) <= samples.clock + eps * time).all()
+    off = np.abs(samples.position - values)
+    assert (off <= samples.margin + eps * np.abs(values)).all()
+    assert samples.clock < 1e-3
+    if form in (".17g", ".16e", ""):
+        assert (samples.clock, *samples.margin) == (0.0, 0.0, 0.0)
+
+
+def test_options_replace_what_the_digits_say(tmp_path):
+    (tmp_path / "m.csv").write_text(ROWS + "0.000,1.0,2.00,0.5,0.5\n0.125,1.5,2.25,0.25,1.5\n")
+
+    def read(*noise, **clock):
+        return read_motion(tmp_path / "m.csv", ("deg",), *noise, **clock).content
+
+    one = np.pi / 180
+    digits, stated = read(), read((0.0, 0.1), time_noise=0.02)
+    np.testing.assert_allclose(digits.rounding.of(1, 2), [5e-3 * one, 5e-2 * one])
+    assert (stated.clock, digits.clock) == (0.02, pytest.approx(5e-4))
+    np.testing.assert_allclose(stated.margin, [0.0, 0.1 * one])
+    # 0 says that derivatives are exact too.
+    np.testing.assert_allclose(stated.rounding.of(1, 2), [0.0, 5e-2 * one])
+    assert read((0.0,), time_noise=0.0).assumed == ""
+    assert "times to 0.02 s, positions to 0 to 0.00175 rad" in stated.assumed
+
+
+def test_a_message_is_exact_for_its_controller_alone(tmp_path):
+    points = [
+        {
+            "positions": [round(0.3 * k**2, 3)],
+            "time_from_start": {"sec": k, "nanosec": 0},
+        }
+        for k in range(6)
+    ]
+    (tmp_path / "m.json").write_text(json.dumps({"joint_names": ["a"], "points": points}))
+    samples = read_motion(tmp_path / "m.json").content
+    assert (samples.clock, samples.margin[0]) == (pytest.approx(5e-10), pytest.approx(0.05))
+    limits = JointLimits.from_values(("a",), velocity=2.71)
+    given = check_motion(interpolated(samples, Interpolation.CONTROLLER), limits)
+    assert given.limits is Verdict.PASS
+    assert given.concluded[1:] == ()
+    rounded = check_motion(interpolated(samples, Interpolation.LINEAR), limits)
+    assert rounded.limits is Verdict.UNDECIDED
+
+
+def smooth(rows):
+    """A motion whose jerk is 16 rad/s³ at most, with six decimals of position and of time."""
+    time = np.cumsum(np.random.default_rng(3).uniform(1.1e-3, 1.3e-3, rows)) - 1.1e-3
+    place = np.column_stack([0.25 * np.sin(4 * time), 0.4 - 2 * np.cos(2 * time)])
+    return "time,a,b\n" + "".join(
+        f"{t:.6f},{x:.6f},{y:.6f}\n" for t, (x, y) in zip(time, place, strict=True)
+    )
+
+
+def test_a_motion_whose_samples_were_rounded_is_not_accused(tmp_path):
+    """In the file the jerk of the spline is above 10⁴ rad/s³; that of the motion is 16."""
+    (tmp_path / "m.csv").write_text(smooth(500))
+    samples = read_motion(tmp_path / "m.csv").content
+    limits = JointLimits.from_values(("a", "b"), jerk=17.0)
+    for found in (
+        check_samples(samples, limits),
+        check_motion(interpolated(samples, Interpolation.SPLINE), limits),
+    ):
+        assert found.verdict is Verdict.UNDECIDED
+        assert (found.stretch, found.feasible_time) == (1.0, None)
+        assert "times to 5e-07 s, positions to 5e-07 rad" in found.concluded[1]
+    assert found.worst.ratio > 100
+    assert "Write more digits" in found.open[-1]
+    # What every such motion breaks is still told, with a slow-down that noise has no part in.
+    slow = check_samples(samples, JointLimits.from_values(("a", "b"), velocity=[2.0, 3.0]))
+    assert slow.verdict is Verdict.VIOLATED
+    speed = 4 * np.sin(2 * samples.time[-1])
+    assert 0.995 * speed / 3 < slow.stretch < speed / 3

@@ -2,37 +2,24 @@
 
 from __future__ import annotations
 
-import importlib.util
 import sys
 from itertools import pairwise
-from pathlib import Path
-from types import ModuleType, SimpleNamespace
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 from scipy.integrate import quad
 from scipy.interpolate import PPoly
+from support.suite import benchmark
 from trajgap.problem.motions import shortest
-
-BENCHMARKS = Path(__file__).parents[3] / "benchmarks"
-
-
-def load(name: str) -> ModuleType:
-    if name not in sys.modules:
-        found = importlib.util.spec_from_file_location(name, BENCHMARKS / f"{name}.py")
-        assert found is not None
-        assert found.loader is not None
-        sys.modules[name] = module = importlib.util.module_from_spec(found)
-        found.loader.exec_module(module)
-    return sys.modules[name]
 
 
 @pytest.fixture(scope="module")
 def referee() -> Any:
     pytest.importorskip("toppra")
     before = list(sys.path)
-    yield load("referee")
+    yield SimpleNamespace(**benchmark("referee"))
     sys.path[:] = before
 
 

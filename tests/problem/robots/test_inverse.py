@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import re
 
 import numpy as np
@@ -15,6 +16,7 @@ from trajgap.problem.errors import TrajgapError
 from trajgap.problem.robots import inverse
 from trajgap.problem.robots.chain import Chain, Convention, forward_kinematics
 from trajgap.problem.robots.inverse import POSE, POSITION, IkStatus, inverse_kinematics
+from trajgap.problem.robots.nearness import proximity
 
 S, M = Convention.STANDARD, Convention.MODIFIED
 PLANAR = Chain(S, a=[0.7, 0.4], alpha=[0, 0], d=[0, 0], lower=[-3, -3], upper=[3, 3])
@@ -89,38 +91,26 @@ def test_planar_arm_has_its_two_closed_form_solutions():
         np.testing.assert_allclose(found.joints, [shoulder, bend], atol=1e-8)
 
 
-def test_chosen_components_leave_the_others_free():
-    chain = load_robot("puma560")
-    q = np.array([0.3, 0.8, -1.2, 0.4, 0.9, -0.2])
-    target = forward_kinematics(chain, q)
-    wrong = target.copy()
-    wrong[:3, :3] = rotation("x", 2.0)[:3, :3] @ wrong[:3, :3]
-    wrong[2, 3] += 5.0
-    found = inverse_kinematics(chain, wrong, 1, components=("x", "y"))
-    assert found.solved
-    assert found.angle_error == 0
-    end = forward_kinematics(chain, found.joints)
-    np.testing.assert_allclose(end[:2, 3], target[:2, 3], atol=1e-9)
-    assert inverse_kinematics(chain, target[:3, 3], 1).solved
-
-
-def test_partial_rotation_is_of_the_rotation_vector_in_the_base():
+@pytest.mark.parametrize(
+    "components", [("x", "y"), POSITION, ("y", "rx", "x", "z"), (*POSITION, "rz")]
+)
+def test_chosen_components_leave_the_others_free(components):
+    """Rotations are components of the rotation vector in the base; their order does not matter."""
     chain = load_robot("puma560")
     target = forward_kinematics(chain, [0.3, 0.8, -1.2, 0.4, 0.9, -0.2])
-    found = inverse_kinematics(chain, target, 3, components=("x", "y", "z", "rz"))
+    if not {"rx", "ry", "rz"} & set(components):
+        target[:3, :3] = rotation("x", 2.0)[:3, :3] @ target[:3, :3]
+    target[2, 3] += 0.0 if "z" in components else 5.0
+    found = inverse_kinematics(chain, target, 3, components=components)
     assert found.solved
+    assert (found.angle_error == 0.0) == (set(components) <= set(POSITION))
     end = forward_kinematics(chain, found.joints)
-    vector = Rotation.from_matrix(target[:3, :3] @ end[:3, :3].T).as_rotvec()
-    assert abs(vector[2]) < 1e-9
-    assert np.abs(vector[:2]).max() > 1e-3
-
-
-def test_order_of_components_does_not_matter():
-    chain, q = load_robot("z1"), [0.3, 0.8, -1.2, 0.4, 0.9, -0.2]
-    target = forward_kinematics(chain, q)
-    one = inverse_kinematics(chain, target, 3, components=("rz", "x", "y"))
-    two = inverse_kinematics(chain, target, 3, components=("x", "y", "rz"))
-    np.testing.assert_array_equal(one.joints, two.joints)
+    turn = Rotation.from_matrix(target[:3, :3] @ end[:3, :3].T).as_rotvec()
+    off = dict(zip(POSE, [*(target[:3, 3] - end[:3, 3]), *turn], strict=True))
+    assert all(abs(off[name]) < 2e-9 for name in components)
+    assert max(abs(off[name]) for name in set(POSE) - set(components)) > 1e-3
+    again = inverse_kinematics(chain, target, 3, components=components[::-1])
+    np.testing.assert_array_equal(again.joints, found.joints)
 
 
 def test_same_seed_same_answer():
@@ -229,11 +219,113 @@ def test_faults(target, options, message):
         inverse_kinematics(PLANAR, target, 0, **options)
 
 
-def test_a_joint_that_slides_freely_is_refused():
-    chain = Chain(S, [0, 0], [0, 0], [0, 0], kinds=("revolute", "prismatic"))
-    with pytest.raises(TrajgapError, match="joint '2' slides without bounds"):
-        inverse_kinematics(chain, [0, 0, 1], 0)
-
-
 def test_names_of_components():
     assert POSE[:3] == POSITION == ("x", "y", "z")
+
+
+# --- distance to a point over free joints ---------------------------------------------------------
+
+
+RING = Chain(Convention.STANDARD, a=[0.7, 0.4], alpha=[0, 0], d=[0, 0])
+NAN = np.nan
+
+
+def test_nothing_free_is_the_plain_distance():
+    found = proximity(RING, [0.1, 0.2, 0.3], [0.3, -0.4])
+    end = forward_kinematics(RING, [0.3, -0.4])[:3, 3]
+    assert found.upper == pytest.approx(np.linalg.norm(end - [0.1, 0.2, 0.3]), rel=1e-14)
+    assert found.upper - 2e-4 < found.lower <= found.upper
+    np.testing.assert_array_equal(found.joints, [0.3, -0.4])
+
+
+@pytest.mark.parametrize(
+    ("point", "held", "expected"),
+    [
+        # Joint 2 free: a circle of 0.4 about the elbow.
+        ([1.5, 0.0, 0.0], [0.0, NAN], 0.4),
+        ([0.7, 0.1, 0.0], [0.0, NAN], 0.3),
+        # Joint 1 free: a circle of fixed radius about the base.
+        ([0.0, 2.0, 0.0], [NAN, 0.0], 0.9),
+        # Both free: a ring from 0.3 to 1.1.
+        ([0.1, 0.0, 0.0], [NAN, NAN], 0.2),
+        ([0.0, -1.5, 0.3], [NAN, NAN], 0.5),
+        ([0.5, -0.5, 0.0], [NAN, NAN], 0.0),
+    ],
+)
+def test_by_hand(point, held, expected):
+    found = proximity(RING, point, held)
+    assert found.lower <= expected + 1e-9
+    assert found.upper >= expected - 1e-9
+    assert found.upper - found.lower <= 1e-4 * RING.reach + 1e-12
+    end = forward_kinematics(RING, found.joints)[:3, 3]
+    assert np.linalg.norm(end - point) == pytest.approx(found.upper, abs=1e-14)
+    if expected == 0:
+        assert found.upper < 1e-9
+
+
+@settings(max_examples=30, deadline=None)
+@given(chains(fewest=2, bounds=True), st.integers(0, 2**32 - 1))
+def test_bounds_hold_on_any_chain(chain, seed):
+    rng = np.random.default_rng(seed)
+    lower, upper = chain.span()
+    held = rng.uniform(lower, upper)
+    free = rng.permutation(chain.joints)[:2]
+    point = rng.uniform(-1, 1, 3)
+    masked = held.copy()
+    masked[free] = NAN
+    found = proximity(chain, point, masked, tolerance=0.02)
+    samples = np.tile(held, (3000, 1))
+    samples[:, free] = rng.uniform(lower[free], upper[free], (3000, 2))
+    seen = np.linalg.norm(forward_kinematics(chain, samples)[:, :3, 3] - point, axis=1).min()
+    assert found.lower <= seen + 1e-12
+    assert found.lower <= found.upper <= found.lower + 0.02 + 1e-12
+    kept = np.isfinite(masked)
+    np.testing.assert_array_equal(found.joints[kept], held[kept])
+    assert (lower[free] <= found.joints[free]).all()
+    assert (found.joints[free] <= upper[free]).all()
+
+
+def test_held_values_need_not_keep_the_bounds():
+    chain = RING.with_bounds([-1, -1], [1, 1])
+    found = proximity(chain, [0, 0, 0], [2.5, NAN])
+    assert found.joints[0] == 2.5
+    assert abs(found.joints[1]) <= 1
+
+
+def test_radial_compares_distances_from_the_base_alone():
+    chain = load_robot("irb460")
+    standard = Chain(Convention.STANDARD, chain.a, chain.alpha, chain.d)
+    theta3 = 0.7
+    radius = 0.6 * np.sqrt(2 + 2 * np.cos(theta3))
+    found = proximity(standard, [0.1, 0.2, -0.3], [NAN, NAN, theta3, 0.0, 0.0], radial=True)
+    expected = radius - np.linalg.norm([0.1, 0.2, -0.3])
+    assert found.lower <= expected <= found.upper + 1e-12
+    assert found.upper == pytest.approx(expected, abs=1e-12)
+
+
+def test_many_free_joints_end_with_a_valid_bound(monkeypatch):
+    module = importlib.import_module("trajgap.problem.robots.nearness")
+    monkeypatch.setattr(module, "_MOST_BOXES", 2000)
+    chain = load_robot("puma560")
+    found = proximity(chain, [2.5, 0, 0], np.full(6, NAN))
+    lower, upper = chain.span()
+    q = np.random.default_rng(0).uniform(lower, upper, (20_000, 6))
+    seen = np.linalg.norm(forward_kinematics(chain, q)[:, :3, 3] - [2.5, 0, 0], axis=1).min()
+    assert 0 <= found.lower <= seen
+    assert found.lower < found.upper
+    end = forward_kinematics(chain, found.joints)[:3, 3]
+    assert np.linalg.norm(end - [2.5, 0, 0]) == pytest.approx(found.upper, abs=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("point", "held", "message"),
+    [
+        ([1, 2], [0, 0], "point: is no finite position; give three numbers, m"),
+        ([1, 2, np.inf], [0, 0], "point: is no finite position; give three numbers, m"),
+        ([1, 2, 3], [0], "held: shape (1,) for 2 joints; give one number each, NaN where"),
+        ([1, 2, 3], [0, np.inf], "held: shape (2,) for 2 joints; give one number each, NaN"),
+    ],
+)
+def test_faults_of_a_point(point, held, message):
+    with pytest.raises(TrajgapError, match=re.escape(message)):
+        proximity(RING, point, held)

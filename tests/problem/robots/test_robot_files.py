@@ -1,7 +1,5 @@
 """Robots as data: tables of shipped files and case files, and one line for what is wrong."""
 
-# ruff: noqa: E501
-
 from __future__ import annotations
 
 import json
@@ -15,6 +13,7 @@ import numpy as np
 import pytest
 from support.base_case import BASE
 from support.checkout import ROOT
+from support.refusals import Refusal, each_refusal
 from trajgap.problem.cases.load import load_case, parse_case
 from trajgap.problem.cases.robot_file import load_robot, parse_robot, robot_file, robot_ids
 from trajgap.problem.cases.schema import case_schema
@@ -216,36 +215,15 @@ def test_the_schema_accepts_a_table_and_dumps_it_again():
     assert in_rad.model_dump(mode="json")["alpha"] == ["-π/2"]
 
 
-FAULTS = [
-    (('"modified"', '"craig"'), "robot.dh.convention: 'craig' is not allowed; use 'standard' or 'modified'"),
-    (('"mm"', '"inch"'), "robot.dh.length_unit: 'inch' is not allowed; use 'm', 'cm' or 'mm'"),
-    (('angle_unit = "deg"\n', ""), "robot.dh.angle_unit: is missing; add it"),
-    (('"-90", 90]', '"-90"]'), "robot.dh.alpha: has 2 entries, but d has 3; give one each"),
-    (('"-90", 90]', '"-π/2", 90]'), "robot.dh.alpha[1]: -π/2 is in rad, but angle_unit is deg; write it in that unit"),
-    (('"-90", 90]', '"x", 90]'), "robot.dh.alpha[1]: 'x' is not a finite decimal number; write the printed digits alone, such as \"0.660\""),
-    (('["a", "c", "b"]', '["a", "b"]'), "robot.dh.joints: 2 labels, but d has 3 entries; give one each"),
-    (('["a", "c", "b"]', '["a", "b", "b"]'), "robot.dh.joints: names a joint twice; rename one"),
-    (('["a", "c", "b"]', '["a", "c", "d"]'), "robot.joints[1]: joint 'b' is not in the robot's table; it has a, c, d"),
-    (('joints = ["a", "c", "b"]\n', ""), "robot.dh.d: has 3 entries for 2 joints; give one each, or name the table's joints"),
-    (('where = "Table 9"', 'other_conventions = ["modified"]'), "robot.dh.other_conventions: repeats modified; leave it out"),
-    (('lower = ["-10", -20', 'lower = ["-10", 30'), "robot.dh.lower[1]: lies above upper; exchange them"),
-    (("lower = [", "lower = [inf, "), "robot.dh.lower[0]: +inf leaves no position; write -inf for no limit"),
-    (("[robot.dh]", 'model = "z1"\n[robot.dh]'), "robot.model: stands beside dh; keep one of the two"),
-    (('joint = "c"', 'joint = "d"'), "columns[0].joint: joint 'd' is unknown; the robot has a, c, b"),
-    (('joint = "c"', 'joint = "a"'), "columns[0].joint: joint 'a' is printed twice; keep one"),
-    (('["1.5", 2, 3, 4]', "[1, 2]"), "columns[0].values: 2 values for 4 way-points; give one each"),
-    (("values = [0, 20,", "values = [20,"), "cartesian[0].values: has 2 numbers; give x, y and z"),
-    (('id = "p1"', 'id = "p0"'), "cartesian[1].id: 'p0' is already the id of cartesian[0]; rename one"),
-    (('id = "p1"', 'id = "p1"\nwaypoint = "B"'), "cartesian[0].waypoint: is missing, others name theirs; add it"),
-    (('id = "p3"\nwhere = "Table 3"\nunit = "mm"\nvalues = [3, 20, "3.5"]\n', 'id = "p3"\nwhere = "Table 3"\nunit = "mm"\nvalues = [3, 20, "3.5"]\n[[cartesian]]\nid = "p4"\nwhere = "Table 3"\nunit = "mm"\nvalues = [3, 20, "3.5"]\n'), "cartesian: 5 positions for 4 way-points; give one each, or name the way-point of each"),
-]  # fmt: skip
+@each_refusal("table")
+def test_each_fault_has_its_line(one: Refusal) -> None:
+    text = with_table(extra=CARTESIAN + COLUMN)
+    one.said_by(lambda: load_case_text(one.text(text)), "base.toml: ")
 
 
-@pytest.mark.parametrize(("change", "message"), FAULTS, ids=[m[:50] for _, m in FAULTS])
-def test_each_fault_has_its_line(change, message):
-    with pytest.raises(CaseError) as caught:
-        load_case_text(changed(with_table(extra=CARTESIAN + COLUMN), *change))
-    assert str(caught.value).startswith(f"base.toml: {message}")
+@each_refusal("robot")
+def test_faults_of_a_robot_file(one: Refusal) -> None:
+    one.said_by(lambda: parse_robot(one.text(ROBOT), "arm"), "arm: ")
 
 
 def test_positions_name_labels_that_exist():
@@ -278,19 +256,3 @@ def test_unknown_model():
     message = "base.toml: robot.model: no robot 'puma-560' is shipped; did you mean 'puma560'?"
     with pytest.raises(CaseError, match=f"^{re.escape(message)}$"):
         load_case_text(text)
-
-
-@pytest.mark.parametrize(
-    ("change", "message"),
-    [
-        (("format = 1\n", ""), "arm: format: is missing; add `format = 1`"),
-        (("format = 1", "format = 2"), "arm: format: is 2; this version reads 1"),
-        (("format = 1", "format = true"), "arm: format: is True; this version reads 1"),
-        (('name = "arm"', 'nam = "arm"'), "arm: nam: unknown key; did you mean 'name'?"),
-        (("[dh]", "[dh"), "arm: line 6, column 4: not valid TOML"),
-        (('convention = "modified"\n', ""), "arm: dh.convention: is missing; add it"),
-    ],
-)
-def test_faults_of_a_robot_file(change, message):
-    with pytest.raises(CaseError, match=f"^{re.escape(message)}"):
-        parse_robot(changed(ROBOT, *change), "arm")

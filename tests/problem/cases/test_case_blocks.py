@@ -1,0 +1,338 @@
+"""Blocks of case files: units of joints, limits by side, ratios of durations, straight lines."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import tomllib
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from support.base_case import BASE
+from support.case_texts import case_text
+from support.refusals import Refusal, each_refusal
+from support.scara import SCARA, scara
+from trajgap.problem import (
+    CaseError,
+    case_schema,
+    compare_transcriptions,
+    ctraj,
+    forward_kinematics,
+    load_robot,
+    parse_case,
+    scaffold,
+)
+from trajgap.problem.cases import Digits, ratio_words
+
+POSITION = 'position = ["deg", "deg", "mm"]'
+VELOCITY = 'velocity = ["rpm", "deg/s", "mm/s"]'
+ACCELERATION = 'acceleration = ["deg/s^2", "deg/s^2", "m/s^2"]'
+
+
+def test_each_joint_is_read_in_its_unit():
+    problem = scara().problem()
+    assert problem.linear == (False, False, True)
+    assert problem.waypoints[1] == pytest.approx([np.radians(60.1), np.radians(15.2), 0.085])
+    assert problem.limits.velocity == pytest.approx([np.pi, np.radians(150), 0.12], rel=1e-15)
+    assert problem.limits.acceleration[2] == 0.5
+    assert problem.limits.position_upper == pytest.approx([np.radians(150), np.radians(140), 0.150])
+
+
+def test_a_reading_gives_its_whole_list():
+    problem = scara().problem(None, "deg-s")
+    assert problem.limits.velocity == pytest.approx([np.radians(30), np.radians(150), 0.12])
+    assert scara().labels["deg-s"] == "velocities in °/s and mm/s"
+
+
+def test_a_problem_of_some_joints_keeps_listing_all():
+    header = '[[problems]]\nid = "slide"\njoints = ["d3"]\n\n[[readings]]\nid = "rpm"\n'
+    problem = scara(('[[readings]]\nid = "rpm"\n', header)).problem()
+    assert (problem.joints, problem.linear) == (("d3",), (True,))
+    assert problem.limits.velocity == pytest.approx([0.12])
+
+
+def test_one_number_serves_joints_of_one_unit():
+    """The slide alone: its one value needs no list."""
+    header = '[[problems]]\nid = "slide"\njoints = ["d3"]\n\n[[readings]]\nid = "rpm"\n'
+    claim = 'derivative = "velocity"\njoint = "d3"\nvalue = "0.2332"'
+    case = scara(
+        ('[[readings]]\nid = "rpm"\n', header),
+        (claim, 'derivative = "velocity"\nvalue = "233.2"'),
+    )
+    assert case.measured(case.claim("slide-velocity").printed[0], "velocity").value == (
+        pytest.approx(0.2332)
+    )
+
+
+def test_prescribed_ends_are_in_the_unit_of_their_joint():
+    case = scara(
+        ('family = "cubic-spline"', 'family = "cubic-spline"\nend_derivatives = [[3, 10, 20]]'),
+        ('[[claims]]\nid = "rest"', '[[claims]]\nid = "rest"\ntext = "at rest"'),
+    )
+    ((order, start),) = case.statement().curve().prescribed_at(0)
+    assert order == 1
+    assert start == pytest.approx((np.pi / 10, np.radians(10), 0.02))
+
+
+@each_refusal("scara")
+def test_each_refusal_has_its_line(one: Refusal) -> None:
+    one.said_by(lambda: parse_case(one.text(SCARA), "scara.toml"), "scara.toml: ")
+
+
+def test_instances_need_steps_that_a_sliding_joint_has():
+    block = (
+        '[[families]]\nid = "f"\nclaim = "durations"\nwhy = "w"\nkind = "joint"\nsteps = [1]\n'
+        "instances = 1\n\n"
+    )
+    with pytest.raises(CaseError, match=r'families\[0\].kind: "joint" measures a step as an angle'):
+        scara(('[[cartesian]]\nid = "a"', block + '[[cartesian]]\nid = "a"'))
+
+
+def test_chords_of_each_joint_and_chords_of_one_kind_are_taken():
+    curve = (
+        'family = "clamped-b-spline"\ndegree = 5\nknots = "averaged-continued"\nparameters = "{}"'
+    )
+    statement = scara(('family = "cubic-spline"', curve.format("joint-chord"))).statement()
+    chord = statement.declaration.model_copy(update={"parameters": "chord"})
+    turning = replace(statement, joints=(0, 1), declaration=chord)
+    assert turning.curve().parameters == "chord"
+    with pytest.raises(CaseError, match='"chord" adds angles and lengths'):
+        replace(statement, joints=(1, 2), declaration=chord).curve()
+
+
+def test_transcriptions_differ_where_a_unit_does():
+    other = scara((POSITION, 'position = ["deg", "rad", "mm"]'))
+    (found,) = compare_transcriptions(scara(), other)
+    assert (found.field, found.first, found.second) == ("units.position[1]", '"deg"', '"rad"')
+
+
+def test_new_takes_a_unit_for_each_joint(tmp_path):
+    table = tmp_path / "t.csv"
+    stream = io.StringIO()
+    csv.writer(stream).writerows([["q1", "q2", "d3"], ["10.5", "-20", "12"], ["60.1", "15", "85"]])
+    table.write_text(stream.getvalue())
+    units = {"position": "deg,rad,mm", "velocity": "rpm, rad/s, m/min"}
+    text = scaffold(table, units, velocity="30,2,7.2", family="cubic-spline")
+    assert tomllib.loads(text)["units"]["velocity"] == ["rpm", "rad/s", "m/min"]
+    limits = parse_case(text, "new.toml").problem().limits
+    assert limits.velocity == pytest.approx([np.pi, 2.0, 0.12])
+    with pytest.raises(CaseError, match=r"^units.position: 2 units for 3 joints"):
+        scaffold(table, units | {"position": "deg,mm"}, velocity="30,2,7.2")
+    with pytest.raises(CaseError, match=r"^units.time: 's,ms' are several units of time; give one"):
+        scaffold(table, units | {"time": "s,ms"}, velocity="30,2,7.2")
+
+
+def test_a_list_of_one_unit_is_that_unit():
+    """One limit then serves all joints, as it does without the list."""
+    text = case_text("waypoint_rows = [[5, 10], [30, -20]]", 'family = "rest-to-rest"\ndegree = 5')
+    text = text.replace('velocity = "deg/s"', 'velocity = "rpm"')
+    listed = text.replace('"deg"', '["deg", "deg"]').replace('"rpm"', '["rpm", "rpm"]')
+    one, other = (parse_case(each, "small.toml").problem() for each in (text, listed))
+    assert np.array_equal(other.waypoints, one.waypoints)
+    assert other.limits.velocity == pytest.approx([np.pi / 3] * 2, rel=1e-15)
+
+
+# --- limits that differ by side -------------------------------------------------------------------
+
+
+PAIRED = BASE.replace('velocity = [100, "95.0"]', 'velocity = [["-90.0", "100.0"], 95]').replace(
+    "acceleration = 60", "acceleration = [[-inf, 60], [-40, 40]]"
+)
+
+
+def test_each_side_has_its_own_digits() -> None:
+    case = parse_case(PAIRED, "f")
+    limits = case.problem("one", "plain").limits
+    np.testing.assert_allclose(
+        np.degrees(limits.ends("velocity")), [[-90, -95], [100, 95]], rtol=1e-15
+    )
+    np.testing.assert_allclose(
+        np.degrees(limits.ends("acceleration")), [[-np.inf, -40], [60, 40]], rtol=1e-15
+    )
+    tight = case.statement("one", "plain").problem(Digits.TIGHTEST).limits
+    loose = case.statement("one", "plain").problem(Digits.LOOSEST).limits
+    np.testing.assert_allclose(
+        np.degrees(tight.ends("velocity")), [[-89.95, -95], [99.95, 95]], rtol=1e-12
+    )
+    np.testing.assert_allclose(
+        np.degrees(loose.ends("velocity")), [[-90.05, -95], [100.05, 95]], rtol=1e-12
+    )
+    cut = case.statement("one", "plain").problem(Digits.LOOSEST_CUT).limits
+    assert np.degrees(cut.ends("velocity")[0][0]) == pytest.approx(-90.1, rel=1e-6)
+    assert np.degrees(cut.ends("velocity")[1][0]) == pytest.approx(100.1, rel=1e-6)
+
+
+def test_joints_that_take_part_keep_their_own() -> None:
+    both = parse_case(PAIRED.replace("limits = { velocity = 50 }", ""), "f")
+    limits = both.problem("two", "plain").limits
+    assert not limits.uneven
+    np.testing.assert_allclose(np.degrees(limits.velocity), [95], rtol=1e-15)
+
+
+def test_pairs_of_equal_size_are_sizes_to_the_last_bit() -> None:
+    sizes = parse_case(BASE, "f").problem("one", "plain").limits
+    pairs = BASE.replace(
+        'velocity = [100, "95.0"]', 'velocity = [[-100, 100], ["-95.0", "95.0"]]'
+    ).replace("acceleration = 60", "acceleration = [[-60, 60], [-60, 60]]")
+    limits = parse_case(pairs, "f").problem("one", "plain").limits
+    assert not limits.uneven
+    np.testing.assert_array_equal(limits.derivatives, sizes.derivatives)
+
+
+def test_transcriptions_are_compared_side_by_side() -> None:
+    one = parse_case(PAIRED, "f")
+    other = parse_case(PAIRED.replace('"-90.0"', '"-91.0"'), "f")
+    assert compare_transcriptions(one, parse_case(PAIRED, "f")) == []
+    found = compare_transcriptions(one, other)
+    assert [d.field for d in found] == ["limits.velocity[0][0]"]
+
+
+def test_the_schema_knows_pairs() -> None:
+    assert '"minItems": 2' in Path("docs/reference/case.schema.json").read_text(encoding="utf-8")
+    assert "LimitsBlock" in str(case_schema())
+
+
+# --- ratios of durations --------------------------------------------------------------------------
+
+
+CASE = case_text(
+    "waypoint_rows = [[0, 10], [30, 50], [90, 130]]",
+    'family = "cubic-spline"',
+    more="""
+[durations]
+lower = 0
+ratios = RATIOS
+
+[[problems]]
+id = "first"
+
+[[problems]]
+id = "second"
+joints = ["b"]
+durations = { ratios = [2, "1.50"] }
+
+[[readings]]
+id = "total-chosen"
+why = "one factor"
+
+[[readings]]
+id = "each-chosen"
+why = "shortest"
+durations = { ratios = "free" }
+""",
+)
+
+
+def case(ratios: str, text: str = CASE):
+    return parse_case(text.replace("RATIOS", ratios), "made-up.toml")
+
+
+@pytest.mark.parametrize(
+    ("ratios", "shares", "loose"),
+    [
+        ('"chord"', [1 / 3, 2 / 3], False),
+        ('"equal"', [0.5, 0.5], False),
+        ("[3, 1]", [0.75, 0.25], False),
+        ('["3.0", 1]', [0.75, 0.25], True),
+        ('"free"', None, False),
+    ],
+)
+def test_readings_are_laid_over_problems_over_the_file(ratios, shares, loose) -> None:
+    one = case(ratios)
+    first = one.problem("first", "total-chosen")
+    if shares is None:
+        assert first.ratios is None
+    else:
+        np.testing.assert_allclose(first.shares, shares, rtol=1e-12)
+    assert one.statement("first", "total-chosen").loose_ratios is loose
+    np.testing.assert_allclose(one.problem("second", "total-chosen").shares, [4 / 7, 3 / 7])
+    assert one.statement("second", "total-chosen").loose_ratios
+    for pid in ("first", "second"):
+        assert one.problem(pid, "each-chosen").ratios is None
+        assert not one.statement(pid, "each-chosen").loose_ratios
+
+
+def test_chord_lengths_are_those_of_the_joints_that_take_part() -> None:
+    text = CASE.replace("[30, 50]", '["30", 40]')
+    own = case('"chord"', text.replace('ratios = [2, "1.50"]', 'ratios = "chord"'))
+    together, alone = (own.problem(pid, "total-chosen").shares for pid in ("first", "second"))
+    lengths = np.hypot([30, 60], [30, 90])
+    np.testing.assert_allclose(together, lengths / lengths.sum())
+    np.testing.assert_allclose(alone, [0.25, 0.75])
+    # The angle of the other joint is a printed number, those of this one are exact.
+    assert own.statement("first", "total-chosen").loose_ratios
+    assert not own.statement("second", "total-chosen").loose_ratios
+
+
+@each_refusal("ratios")
+def test_what_is_no_ratio_is_refused(one: Refusal) -> None:
+    one.said_by(lambda: parse_case(one.text(CASE), "ratios.toml"), "ratios.toml: ")
+
+
+def test_neighbours_that_coincide_have_no_chord() -> None:
+    with pytest.raises(CaseError, match=r"durations\.ratios: .*way-points 2 and 3, which coincide"):
+        case('"chord"', CASE.replace("[90, 130]", "[30, 50]"))
+
+
+def test_the_words_are_those_of_the_schema() -> None:
+    ratios = case_schema()["$defs"]["Durations"]["properties"]["ratios"]
+    assert '"enum": ["equal", "chord", "free"]' in json.dumps(ratios)
+
+
+def test_readings_are_called_by_their_ratios() -> None:
+    assert ratio_words((1,) * 7) == "durations in the ratios as listed"
+    # Where problems say it, a reading that is silent says nothing of its own.
+    assert "total-chosen" in case('"equal"').labels["total-chosen"]
+
+
+def test_two_transcriptions_differ_in_their_ratios() -> None:
+    first, second = case("[1, 2]"), case('[1, "2.0"]')
+    assert not compare_transcriptions(first, first)
+    assert any("durations" in str(one) for one in compare_transcriptions(first, second))
+
+
+# --- way-points on a straight line of the robot's end ---------------------------------------------
+
+
+FIRST = [0.1, -0.6, 0.4, 0.2, 0.5, 0.1]
+LAST = [0.3, -0.5, 0.3, 0.2, 0.4, 0.2]
+
+
+def line_text(first: object = FIRST, last: object = LAST, unit: str = "rad") -> str:
+    return case_text(
+        f"line = {{ first = {first}, last = {last}, points = 4 }}",
+        'family = "3-5-3"',
+        joints="1 2 3 4 5 6",
+        robot='model = "puma560"',
+        unit=unit,
+    )
+
+
+def test_its_waypoints_are_those_of_ctraj_and_lie_on_the_line() -> None:
+    problem = parse_case(line_text(), "line.toml").problem()
+    arm = load_robot("puma560")
+    poses = forward_kinematics(arm, np.array([FIRST, LAST]))
+    line = ctraj(arm, *poses, 4, guess=FIRST)
+    np.testing.assert_allclose(problem.waypoints, line.waypoints, atol=1e-9)
+    np.testing.assert_array_equal(problem.waypoints[[0, -1]], [FIRST, LAST])
+    ends = forward_kinematics(arm, problem.waypoints)[:, :3, 3]
+    for k, share in enumerate(np.linspace(0, 1, 4)):
+        np.testing.assert_allclose(ends[k], ends[0] + share * (ends[3] - ends[0]), atol=1e-9)
+
+
+def test_its_angles_are_in_the_unit_of_the_file() -> None:
+    degrees = [np.rad2deg(ends).tolist() for ends in (FIRST, LAST)]
+    case = parse_case(line_text(*degrees, unit="deg"), "line.toml")
+    other = parse_case(line_text(), "line.toml").problem()
+    np.testing.assert_allclose(case.problem().waypoints, other.waypoints, atol=1e-9)
+    statement = case.statement()
+    assert statement.complete
+    assert statement.waypoints is case.statement().waypoints  # computed once
+
+
+@each_refusal("line")
+def test_lines_that_are_refused(one: Refusal) -> None:
+    one.said_by(lambda: parse_case(one.text(line_text()), "line.toml"), "line.toml: ")

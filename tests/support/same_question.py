@@ -1,0 +1,66 @@
+"""The same question in another dress: what every judge has to answer alike."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+from trajgap.problem import Array, Curve, Interpolant, Problem
+
+DRESSES = ("as it is", "mirror", "reverse", "slower", "permute", "degrees")
+SLOWER = 2.7
+
+
+def same_question(name: str, problem: Problem, h: Array) -> tuple[Problem, Array]:
+    """The problem mirrored, backwards, slower, with its joints in another order, or in degrees."""
+    limits, q = problem.limits, problem.waypoints
+    sides, low, high = limits.sides, limits.position_lower, limits.position_upper
+    if name == "mirror":
+        turned = limits.with_sides(sides[::-1]).with_positions(-high, -low)
+        curve = ends_of(problem.curve, lambda r, v: -v)
+        return replace(problem, waypoints=-q, limits=turned, curve=curve), h
+    if name == "reverse":
+        # Derivatives of odd order change their sign.
+        back = sides.copy()
+        back[:, :, ::2] = sides[::-1, :, ::2]
+        curve = ends_of(problem.curve, lambda r, v: (-1) ** r * v, back=True)
+        turned = limits.with_sides(back)
+        return replace(problem, waypoints=q[::-1], limits=turned, curve=curve), h[::-1]
+    if name == "slower":
+        slow = limits.with_sides(sides / SLOWER ** np.arange(1, 4))
+        curve = ends_of(problem.curve, lambda r, v: v / SLOWER**r)
+        return replace(problem, limits=slow, curve=curve), SLOWER * h
+    if name == "permute":
+        order = [2, 1, 0]
+        turned = limits.with_sides(sides[:, order]).with_positions(low[order], high[order])
+        curve = ends_of(problem.curve, lambda r, v: v[order] if v.ndim else v)
+        return replace(problem, waypoints=q[:, order], limits=turned, curve=curve), h
+    if name == "degrees":
+        scale = 180.0 / np.pi
+        wide = limits.with_sides(sides * scale).with_positions(low * scale, high * scale)
+        curve = ends_of(problem.curve, lambda r, v: scale * v)
+        return replace(problem, waypoints=q * scale, limits=wide, curve=curve), h
+    return problem, h
+
+
+def ends_of(curve: Curve, change: Callable[[int, Array], Array], back: bool = False) -> Curve:
+    """The curve with its prescribed derivatives changed, and backwards if asked."""
+    if not isinstance(curve, Interpolant):
+        return curve
+
+    def changed(order: int, value: object) -> object:
+        found = change(order, np.asarray(value, dtype=np.float64))
+        return tuple(found.tolist()) if found.ndim else float(found)
+
+    prescribed = tuple(tuple((r, changed(r, v)) for r, v in one) for one in curve.prescribed)
+    if not back:
+        return replace(curve, prescribed=prescribed)
+    count = len(curve.degrees)
+    return replace(
+        curve,
+        degrees=curve.degrees[::-1],
+        continuity=curve.continuity[::-1],
+        prescribed=prescribed[::-1],
+        virtual=tuple(sorted(count - b for b in curve.virtual)),
+    )
