@@ -18,7 +18,7 @@ _VANISHING = 1e-3
 search above it, and an infimum above 0 is nearly reached there."""
 
 
-_WIDEST = 0.01
+WIDEST = 0.01
 """Relative width up to which an interval is narrow enough to call the optimum certified."""
 _MET = 1e-9
 """Relative distance of a proved bound at which it meets a value: what rounding explains."""
@@ -26,7 +26,7 @@ _MET = 1e-9
 
 def close(lower: float, upper: float) -> bool:
     """Whether a proved interval is narrow enough to call the optimum within it certified."""
-    return upper - lower <= _WIDEST * lower
+    return upper - lower <= WIDEST * lower
 
 
 class Status(StrEnum):

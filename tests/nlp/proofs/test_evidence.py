@@ -20,21 +20,20 @@ from trajgap.nlp import (
     Evidence,
     ExactProblem,
     ProvedInterval,
+    Status,
     certificate,
     certify,
     estimate_any_curve,
-    lower_bounds,
     proved,
-    proved_joints,
     shipped,
     solve_per_joint,
     weakest,
-    with_certificate,
-    with_certificates,
+    with_interval,
 )
+from trajgap.nlp import solve as solve_and_prove
 from trajgap.nlp.optimum import solve
+from trajgap.nlp.optimum.solution import WIDEST
 from trajgap.nlp.proofs import interval_of, printed_problem_or_none
-from trajgap.nlp.proofs.evidence import WIDEST
 from trajgap.nlp.proofs.exact import exact_problem, printed_problem
 from trajgap.problem import (
     Limits,
@@ -96,7 +95,7 @@ def test_a_proof_of_a_wide_interval_certifies_nothing(
     monkeypatch.setattr(evidence_module, "shipped", lambda *_: document)
     answer = solve(one_study().problem(*PAIR))
     evidence_module.proved.cache_clear()
-    assert with_certificate(answer, problem).evidence == word
+    assert with_interval(answer, proved(problem)).evidence == word
     evidence_module.proved.cache_clear()
 
 
@@ -169,11 +168,13 @@ def test_every_shipped_reading_that_is_covered_is_certified() -> None:
 def test_a_closed_form_needs_no_file() -> None:
     problem = Problem([[0.0], [1.0], [0.25]], Limits(1.0, 2.0), rest_to_rest(2, 5))
     assert shipped(exact_problem(problem)) is None
-    answer = with_certificate(solve(problem), exact_problem(problem))
+    answer = with_interval(solve(problem), proved(exact_problem(problem)))
     assert answer.evidence is Evidence.CERTIFIED
     assert answer.lower_bound == pytest.approx(answer.total_time, rel=1e-8)
     spline = Problem([[0.0], [1.0], [0.25]], Limits(1.0, 2.0), cubic_spline(2))
-    assert with_certificate(solve(spline), exact_problem(spline)).evidence is Evidence.BEST_KNOWN
+    assert (
+        with_interval(solve(spline), proved(exact_problem(spline))).evidence is Evidence.BEST_KNOWN
+    )
 
 
 @pytest.mark.parametrize(
@@ -182,8 +183,9 @@ def test_a_closed_form_needs_no_file() -> None:
 def test_an_answer_beyond_the_interval(factor: float, evidence: Evidence) -> None:
     """Below it it is not certified, and above it that of the certificate takes its place."""
     answer = one_study().optimum(*PAIR)
-    other = replace(answer, durations=answer.durations * factor, lower_bound=None)
-    found = with_certificate(other, COVERED_PROBLEMS[f"{IRB}.limit-80.waypoints-rad"])
+    h = answer.durations * factor
+    other = replace(answer, status=Status.CONVERGED, durations=h, lower_bound=None)
+    found = with_interval(other, proved(COVERED_PROBLEMS[f"{IRB}.limit-80.waypoints-rad"]))
     assert found.evidence is evidence
     if factor > 1.0:
         assert found.total_time == pytest.approx(answer.total_time, rel=1e-9)
@@ -196,12 +198,12 @@ def test_an_answer_that_rounding_puts_below_the_bound_takes_the_proved_durations
     answer = solve(problem)
     bound = float(found.lower)
     below = answer.durations * (bound / answer.durations.sum()) * (1 - 1e-14)
-    kept = with_certificate(replace(answer, durations=below, lower_bound=None), exact)
+    kept = with_interval(replace(answer, durations=below, lower_bound=None), proved(exact))
     assert kept.evidence is Evidence.CERTIFIED
     assert sum(map(Fraction, kept.durations.tolist())) >= found.lower
     assert kept.check.peaks == check(problem, kept.durations).peaks
     farther = below * (1 - 1e-11)
-    short = with_certificate(replace(answer, durations=farther, lower_bound=None), exact)
+    short = with_interval(replace(answer, durations=farther, lower_bound=None), proved(exact))
     assert short.evidence is Evidence.BEST_KNOWN
 
 
@@ -209,14 +211,14 @@ def test_the_output_of_a_procedure_is_not_certified() -> None:
     case = load_case(PUMA)
     pair = ("six-joints", "durations-positive")
     problem = case.problem(*pair)
-    intervals = proved_joints(problem, case.statement(*pair))
     unaided = solve_per_joint(problem)
-    answer = with_certificates(solve_per_joint(problem, lower=lower_bounds(intervals)), intervals)
+    answer = solve_per_joint(problem, solver=solve_and_prove)
     # A proved bound saves descents; what they find agrees to rounding.
     for one, other in zip(unaided.joints, answer.joints, strict=True):
         assert one.total_time == pytest.approx(other.total_time, rel=1e-9)
-        assert (one.starts, one.starts_at_best) == (other.starts, other.starts_at_best)
         assert one.iterations > other.iterations
+    assert {s.status for s in answer.joints} == {Status.OPTIMAL}
+    assert answer.status is Status.CONVERGED
     assert {s.evidence for s in answer.joints} == {Evidence.CERTIFIED}
     assert answer.joint_evidence is Evidence.CERTIFIED
     assert answer.evidence is Evidence.BEST_KNOWN
