@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from support.papers.printing import block
+from support.toml_text import block
 
 QUINTIC = {"family": "rest-to-rest", "degree": 5}
 """Peaks at 15 d/(8 h) for a way d in h."""

@@ -19,6 +19,11 @@ def toml_text(document: dict[str, Any]) -> str:
     return "".join(_table(document, ()))
 
 
+def block(head: str, entries: dict[str, Any]) -> str:
+    """A head such as ``[units]`` with its plain keys."""
+    return "\n".join([head, *(f"{_key(key)} = {_value(value)}" for key, value in entries.items())])
+
+
 def _table(table: dict[str, Any], path: tuple[str, ...]) -> list[str]:
     lines, below = [], []
     for key, value in table.items():

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from support.findings import finding
 from support.made_up import Numbers, entry, paper, sentence
-from support.papers.printing import block
+from support.toml_text import block
 from trajgap.compare.documents import ClaimVerdict, Severity
 from trajgap.nlp import Status, solve
 from trajgap.problem import CaseError, Limits, Problem, load_case, parse_case, three_five_three
