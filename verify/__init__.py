@@ -6,6 +6,7 @@ quintic splines need numpy. Format and mathematics are in docs/explanation/certi
 """
 
 from .bounds import shown_bound
+from .floors import least_durations
 from .problem import CHORD, read_problem
 from .ranges import (
     MIX_DIGITS,
@@ -15,6 +16,7 @@ from .ranges import (
     MOST_QUINTIC_JOINTS,
     MOST_QUINTIC_SEGMENTS,
     MOST_WEIGHT,
+    PLACES,
     SHORTEST_TOTAL,
     SMALLEST,
     TICKS,
@@ -29,6 +31,7 @@ from .verdict import (
     STATE_FORMAT,
     CertificateVerdict,
     CertifiedQuestion,
+    proof_kind,
     seal,
     verify_certificate,
 )
@@ -47,6 +50,7 @@ __all__ = [
     "MOST_WEIGHT",
     "OLD_FORMATS",
     "OPEN",
+    "PLACES",
     "SECONDS",
     "SHORTEST_TOTAL",
     "SMALLEST",
@@ -59,7 +63,9 @@ __all__ = [
     "OutOfTime",
     "Refused",
     "Subject",
+    "least_durations",
     "number",
+    "proof_kind",
     "read_document",
     "read_problem",
     "seal",

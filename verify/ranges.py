@@ -93,3 +93,12 @@ WINDOW_UNIT = 2**16
 """The numbers of a window are multiples of 1/WINDOW_UNIT."""
 MOST_WINDOW = 2**20
 """Of such a number, in its unit."""
+
+# --- any declared curve ---------------------------------------------------------------------------
+
+MOST_DECLARED_SEGMENTS = 12
+"""What the number of roundings was counted for; boxes grow with a power of the segments."""
+MOST_DECLARED_UNKNOWNS = 64
+"""What the number of roundings was counted for: derivatives that agree at the inner breaks."""
+SMALLEST_CAP = Fraction(1, 10**15)
+"""Limits, with the total and the way of a joint about 1, are used between it and its inverse."""

@@ -26,10 +26,10 @@ from .state import resumed
 CERTIFIERS: tuple[str, ...] = (
     "closed_form.FIXED_RATIOS",
     "closed_form.REST_TO_REST",
-    "three_piece.THREE_PIECE",
     "closed_form.STRETCHED",
     "cubic.CUBIC",
     "quintic.QUINTIC",
+    "declared.DECLARED",
     "any_curve.ANY_CURVE",
 )
 """Every kind of proof, by module and name; of those that declare a curve the first is taken.

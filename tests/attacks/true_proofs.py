@@ -14,8 +14,8 @@ from attacks.sandbox import call
 
 KINDS: dict[str, tuple[str, dict[str, Any], float]] = {
     "rest-to-rest": ("rest-to-rest", {}, 1e-6),
-    "three-piece": ("3-5-3", {}, 0.05),
-    "four-three-four": ("polynomials", {"degrees": [4, 3, 4]}, 0.05),
+    "declared": ("3-5-3", {}, 0.05),
+    "declared, 4-3-4": ("polynomials", {"degrees": [4, 3, 4]}, 0.05),
     "stretched": ("uniform-cubic-b-spline", {"time": "stretched"}, 1e-6),
     "cubic": ("cubic-spline", {}, 0.1),
     "cubic, virtual": ("cubic-spline-virtual", {}, 0.2),

@@ -20,7 +20,6 @@ from trajgap.problem import (
     Limits,
     Problem,
     evaluate,
-    piecewise,
     quintic_spline,
     rest_to_rest,
     solve_in_closed_form,
@@ -44,17 +43,11 @@ class Kind:
     """An upper estimate of the least total, inf where nothing is feasible."""
 
 
-def three_piece() -> Problem:
+def declared() -> Problem:
     """Few boxes, and every kind of number."""
     q = np.array([[0.25, -0.5], [1.0, 0.125], [-0.375, 0.75], [0.5, 0.25]])
     limits = Limits([1.0, 0.9], [2.0, 1.5], [np.inf, 8.0], [-1.5, -np.inf], [np.inf, 1.75])
     return Problem(q, limits, three_five_three(), (0.5, 0.1, 0.1), (6.0, 6.0, 7.0))
-
-
-def four_three_four() -> Problem:
-    q = np.array([[0.25, -0.5], [1.0, 0.125], [-0.375, 0.75], [0.5, 0.25]])
-    limits = Limits([1.0, 0.9], [2.0, 1.5], [np.inf, 8.0], [-1.5, -np.inf], [np.inf, 1.75])
-    return Problem(q, limits, piecewise((4, 3, 4)), (0.5, 0.1, 0.1), (9.0, 9.0, 9.0))
 
 
 def rest() -> Problem:
@@ -128,8 +121,7 @@ def ratios_optimum(problem: Problem) -> float:
 
 
 KINDS = {
-    "three-piece": Kind(three_piece, 0.03, lambda problem: dense_best(problem, 81)),
-    "four-three-four": Kind(four_three_four, 1e-5, lambda problem: dense_best(problem, 81)),
+    "declared": Kind(declared, 0.03, lambda problem: dense_best(problem, 81)),
     "rest-to-rest": Kind(rest, 1e-6, rest_optimum),
     "quintic-spline": Kind(quintic, 0.1, lambda problem: dense_best(problem, 81)),
     "stretched": Kind(stretched, 1e-6, stretched_optimum),

@@ -17,9 +17,7 @@ from trajgap.verify.cubic.box import Box
 from trajgap.verify.cubic.system import Cubic
 from trajgap.verify.cubic.weights import least
 from trajgap.verify.curve import pieces, uniform_pieces, value_at
-from trajgap.verify.problem import StatedProblem
 from trajgap.verify.reading import Clock
-from trajgap.verify.three_piece import SIZE, FourThreeFour, ThreeFiveThree, _covers
 
 CLOCK = Clock(1e9)
 SPLINE_ENDS = [(1, 0.0), (2, 0.0)]
@@ -186,114 +184,6 @@ def test_a_total_below_the_cap_bounds_the_durations_and_the_speed() -> None:
     spare = cap - sum(low)
     assert free.root() == [(x, x + spare) for x in low]
     assert free._speeds == [Fraction(1, 4) + 2 * cap, Fraction("1.5")]
-
-
-# --- squares --------------------------------------------------------------------------------------
-
-
-def reference(problem: StatedProblem, h: np.ndarray, joint: int) -> Any:
-    """The three pieces by a dense system in floats: values by (segment, place in [0, 1], order)."""
-    degrees = problem.declaration.degrees if problem.declaration else []
-    first = np.concatenate([[0], np.cumsum([d + 1 for d in degrees])])
-
-    def line(k: int, s: float, order: int) -> np.ndarray:
-        out = np.zeros(first[-1])
-        for p in range(order, degrees[k] + 1):
-            out[first[k] + p] = np.prod(np.arange(p - order + 1, p + 1)) * s ** (p - order)
-        return out / h[k] ** order
-
-    q = [float(row[joint]) for row in problem.waypoints]
-    rows = [(line(k, s, 0), q[k + int(s)]) for k in range(3) for s in (0.0, 1.0)]
-    rows += [(line(0, 0.0, r), 0.0) for r in (1, 2)] + [(line(2, 1.0, r), 0.0) for r in (1, 2)]
-    rows += [(line(k, 1.0, r) - line(k + 1, 0.0, r), 0.0) for k in (0, 1) for r in (1, 2)]
-    solved = np.linalg.solve(np.array([row for row, _ in rows]), [x for _, x in rows])
-    return lambda k, s, order: float(line(k, s, order) @ solved)
-
-
-SQUARES = {"three-piece": ThreeFiveThree, "four-three-four": FourThreeFour}
-
-
-@pytest.mark.parametrize("seed", range(6))
-@pytest.mark.parametrize("name", SQUARES)
-def test_a_row_is_the_limit_it_stands_for(name: str, seed: int) -> None:
-    """As docs/explanation/certificates.md states it, at random durations."""
-    rng = np.random.default_rng([seed, 8])
-    limits = [[["-1.1", "1"], ["-2.2", "2"], ["-9", "8.5"]], ["0.9", "1.5", "8"]]
-    changes = {**NO_ANSWER, "problem.limits": limits, "problem.position_upper": ["1.25", "1.75"],
-               "problem.position_lower": ["-1.5", "-1.75"]}  # fmt: skip
-    problem = read_problem(altered(name, changes)["problem"])
-    total, h = 13.7, rng.uniform(0.5, 4.0, 3)
-    a, b = h[0] / (h[0] + h[1]), h[2] / (h[1] + h[2])
-    m, s = np.array([a * (1 - b), (1 - a) * (1 - b), b * (1 - a)]), 1 - a * b
-    spots = {"place": 1, "place-first": 0, "place-last": 2}
-    kinds = [k for k in spots if k in SQUARES[name].divisors]
-    entries: list[list[Any]] = [
-        [kind, j, order, sign, int(rng.integers(0, 2**20 + 1)), cap]
-        for kind in kinds for j in (0, 1) for order in range(4) for sign in (1, -1)
-        for cap in (-1, 1)
-    ]  # fmt: skip
-    entries += [
-        [kind, j, order, 1, 0, cap]
-        for kind in ("first", "last", "mean") for j in (0, 1) for order in (1, 2, 3)
-        for cap in (-1, 2) if kind != "mean" or order == 1
-    ]  # fmt: skip
-    entries += [["lower", k, 0, 1, 0, cap] for k in range(3) for cap in (-1, 0)]
-    proof = {"kind": name, "total": str(total), "rows": entries, "tree": []}
-    kind = SQUARES[name](problem, proof, Fraction(total), CLOCK)
-    longest = [float(x or 0) for x in problem.longest]
-    for (word, j, order, sign, place, cap), (poly, unit) in zip(entries, kind._rows, strict=True):
-        value = sum(float(x) / float(unit) * a**i * b**k for (i, k), x in poly.items())
-        most, hold = (total, s) if cap < 0 else (longest[cap] * (1 + 2**-40), m[cap])
-        if word == "lower":
-            expected = float(problem.shortest[j]) / most * hold - m[j]
-            assert value == pytest.approx(expected, rel=1e-9, abs=1e-12)
-            continue
-        curve = reference(problem, h, j)
-        q = [float(row[j]) for row in problem.waypoints]
-        if word in spots:
-            g, at = spots[word], place / 2**20
-            x, y = h[1] / h[0], h[1] / h[2]
-            divisor = SQUARES[name].divisors[word][1]
-            by = a * a * b * b * sum(c * x**i * y**k for (i, k), c in divisor.items())
-            reached, side = sign * curve(g, at, order) * h[g] ** order, sign
-        else:
-            g, by = {"first": 0, "mean": 1, "last": 2}[word], 1.0
-            way = q[g + 1] - q[g]
-            least_of = {"mean": (1, 1, 1)}.get(
-                word, (3, 6, 6) if name == "three-piece" else (1, 2, 6)
-            )
-            reached = abs(way) * least_of[order - 1]
-            side = (1 if way >= 0 else -1) * (-1 if word == "last" and order == 2 else 1)
-        ends = (problem.sides[(1 + side) // 2][j][order - 1] if order else
-                problem.position[(1 + sign) // 2][j])  # fmt: skip
-        assert ends is not None
-        limit = float(ends[0])
-        if order == 0:
-            expected = by * (reached - sign * limit - 2**-40)
-        else:
-            expected = by * reached * hold**order / (limit * most**order) - by * m[g] ** order
-        assert value == pytest.approx(expected, rel=1e-7, abs=1e-9), (word, j, order, sign, cap)
-
-
-def test_a_polynomial_is_covered_only_where_it_is_nowhere_negative() -> None:
-    rng, covered = np.random.default_rng(9), 0
-    for _ in range(300):
-        poly = {(i, j): int(rng.integers(-9, 10)) for i in range(SIZE) for j in range(SIZE)}
-        poly[0, 0] += int(rng.integers(0, 60))
-        at = rng.integers(0, 8, 2)
-        box = (Fraction(int(at[0]), 8), Fraction(int(at[0]) + 1, 8),
-               Fraction(int(at[1]), 8), Fraction(int(at[1]) + 1, 8))  # fmt: skip
-        grid = [[float(low + (high - low) * Fraction(k, 16)) for k in range(17)]
-                for low, high in (box[:2], box[2:])]  # fmt: skip
-        lowest = min(sum(c * x**i * y**j for (i, j), c in poly.items()) for x, y in product(*grid))
-        if _covers(poly, box, CLOCK):
-            covered += 1
-            assert lowest >= -1e-9
-        else:
-            assert lowest < 5.0
-    assert covered > 50
-    with pytest.raises(IndexError):
-        _covers({(SIZE, 0): 1}, (Fraction(0), Fraction(1), Fraction(0), Fraction(1)), CLOCK)
 
 
 # --- cubic splines --------------------------------------------------------------------------------

@@ -221,7 +221,8 @@ INSIDE: list[tuple[str, Any]] = [
         ("1", "0", None, "-1"),
         ("1", "1", "1", "1"), ("-1", "-1", "1", "-1"), ("1", "0.5", None, "1"))),
     ("cubic", {"proof.rows.0.1": 0}), ("cubic", {"proof.rows.0.4": 64}),
-    ("three-piece", {"proof.tree.0": ["/", 0, None]}),
+    ("declared", {"proof.tree.0": ["/", 2, None]}),
+    ("declared-free", {"proof.tree.0": ["/", 2, None]}),
 ]  # fmt: skip
 
 

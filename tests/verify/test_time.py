@@ -82,7 +82,7 @@ def test_tables_are_read_by_the_clock(name: str, looks: Any) -> None:
     assert next(looks) - before < TABLE
 
 
-def test_rows_of_three_pieces_are_read_by_the_clock(looks: Any) -> None:
+def test_rows_of_declared_curves_are_read_by_the_clock(looks: Any) -> None:
     data = rest_to_rest()
     data["problem"] |= {
         "degrees": [3, 5, 3],
@@ -93,8 +93,8 @@ def test_rows_of_three_pieces_are_read_by_the_clock(looks: Any) -> None:
         "duration_upper": [None] * 3,
     }
     data["claim"] |= {"durations": None, "upper": None, "lower": "0.1"}
-    rows = table(["mean", 0, 1, 1, 0, -1])
-    data["proof"] = {"kind": "three-piece", "total": "0.125", "tree": [["."]], "rows": rows}
+    rows = table([0, 0, 1, 1, 0])
+    data["proof"] = {"kind": "declared", "total": "0.125", "tree": [["."]], "rows": rows}
     assert "entries" in verify_certificate(sealed(data), seconds=1e9).reason
     assert verify_certificate(data, seconds=0.5 * TABLE * STEP).out_of_time
 

@@ -266,7 +266,7 @@ def test_a_stopped_run_keeps_what_it_proved_and_goes_on() -> None:
     [
         (lambda s: s["proof"].update(total=str(Fraction(s["proof"]["total"]) * 2)), "not proved"),
         (lambda s: s["proof"].update(tree=[["."]]), "not proved"),
-        (lambda s: s["proof"].update(kind="three-piece"), "not proved"),
+        (lambda s: s["proof"].update(kind="declared"), "not proved"),
         (lambda s: s["claim"].update(durations=["1", "0.1", "1"]), "exceeds its limit"),
         (lambda s: s.pop("proof"), "missing"),
     ],

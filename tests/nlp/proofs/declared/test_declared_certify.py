@@ -24,9 +24,6 @@ from trajgap.nlp.proofs.certifiers import certify, covered
 from trajgap.nlp.proofs.document import certificate, problem_document, shipped, shipped_folder
 from trajgap.nlp.proofs.exact import ExactProblem, decimal, exact_problem
 from trajgap.nlp.proofs.outcome import Certified, Outcome
-from trajgap.nlp.proofs.three_piece import rows as three_piece
-from trajgap.nlp.proofs.three_piece.boxes import Boxes
-from trajgap.nlp.proofs.three_piece.rows import PLACES, PieceRow, Prover, exact_row
 from trajgap.problem import (
     Limits,
     Problem,
@@ -39,7 +36,7 @@ from trajgap.problem import (
 from trajgap.verify import Subject
 from trajgap.verify import verify_certificate as verify
 
-module = import_module("trajgap.nlp.proofs.three_piece.search")
+module = import_module("trajgap.nlp.proofs.declared.certifier")
 
 
 def attack(seed: int) -> Outcome:
@@ -111,7 +108,7 @@ def unlucky(monkeypatch: pytest.MonkeyPatch, seconds: float = 2.0) -> tuple[floa
     upper = Fraction(true["claim"]["upper"])
     worse = tuple(Fraction(h) * Fraction(21, 20) for h in true["claim"]["durations"])
     answering(monkeypatch, lambda call, initial: worse)
-    monkeypatch.setattr(module._Search, "_look", lambda run, *_: run.session.check_clock())
+    monkeypatch.setattr(module._Stages, "_look", lambda run, *_: run.session.check_clock())
     return float(upper), certify(exact, seconds=seconds)
 
 
@@ -122,17 +119,19 @@ def test_an_answer_that_is_not_optimal_is_never_certified(monkeypatch: pytest.Mo
 
 
 def test_a_broken_relaxation_is_caught(monkeypatch: pytest.MonkeyPatch) -> None:
-    def broken(problem: ExactProblem, row: PieceRow, total: Fraction) -> three_piece.Poly:
-        return exact_row(problem, row, total * Fraction(9, 10))
+    real = module._kind
+
+    def broken(problem: ExactProblem, total: Fraction) -> Any:
+        return real(problem, total * Fraction(9, 10))
 
     raw = unjudged(monkeypatch)
-    monkeypatch.setattr(three_piece, "exact_row", broken)
+    monkeypatch.setattr(module, "_kind", broken)
     optimum, found = unlucky(monkeypatch, seconds=20.0)
     assert raw[0].lower > optimum, "the attack above would not have seen it"
     assert not verify(certificate(raw[0])).proves
     assert (found.outcome, found.lower, found.proof) == (Outcome.OPEN, 0, None)
     assert found.verdict is not None
-    assert "leaf at node" in found.verdict.reason
+    assert "a leaf with limits is not proved" in found.verdict.reason
 
 
 def test_a_local_answer_is_replaced_by_a_better_one(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -234,17 +233,17 @@ def test_a_rest_to_rest_segment_that_is_too_short_is_proved_infeasible() -> None
     assert not verify(document).proves
 
 
-def test_positions_that_no_direction_keeps_are_proved_infeasible() -> None:
-    # It enters the middle piece from below at a way-point that is too high already.
+def test_a_way_point_beyond_a_position_limit_is_proved_infeasible() -> None:
     q = np.array([[0.0], [1.0], [0.75], [0.0]])
-    limits = Limits(1.0, position_upper=0.9375)
-    found = certify(Problem(q, limits, three_five_three()))
-    assert found.outcome is Outcome.INFEASIBLE
-    document = certificate(found)
-    assert verify(document).proves
-    wider = copy.deepcopy(document)
-    wider["problem"]["position_upper"] = ["1.5"]
-    assert not verify(wider).proves
+    for side, factor in (("upper", 1.0), ("lower", -1.0)):
+        limits = Limits(1.0, **{f"position_{side}": 0.9375 * factor})
+        found = certify(Problem(factor * q, limits, three_five_three()))
+        assert found.outcome is Outcome.INFEASIBLE
+        document = certificate(found)
+        assert verify(document).proves
+        for wider in (1.0, 1.5):
+            document["problem"][f"position_{side}"] = [decimal(Fraction(wider * factor))]
+            assert not verify(document).proves
 
 
 def test_what_is_not_covered_is_said() -> None:
@@ -253,26 +252,6 @@ def test_what_is_not_covered_is_said() -> None:
         certify(Problem(q, Limits(1.0), uniform_cubic_b_spline(4, "timed")))
     with pytest.raises(TrajgapError, match="nothing limits"):
         certify(Problem(q, Limits(), three_five_three()))
-
-
-def test_rows_are_the_limits_of_the_curve() -> None:
-    # Second route: the row's sign against the curve's derivative over its limit, for many points.
-    exact = COVERED_PROBLEMS["puma560-mnam-pso-353.six-joints.durations-positive"]
-    q = np.array([[float(x) for x in row] for row in exact.waypoints])
-    rng = np.random.default_rng(5)
-    for _ in range(20):
-        h = rng.uniform(0.2, 1.5, 3)
-        curve = fit(exact.curve, q, h)
-        joint, order = int(rng.integers(0, 6)), int(rng.integers(1, 3))
-        place, sign = int(rng.integers(0, PLACES + 1)), int(rng.choice([-1, 1]))
-        total = Fraction(float(h.sum()))
-        poly = exact_row(exact, PieceRow("place", joint, order, sign, place), total)
-        a, b = h[0] / (h[0] + h[1]), h[2] / (h[1] + h[2])
-        powers = np.arange(len(poly))
-        value = float((a**powers) @ poly.astype(float) @ (b**powers))
-        ratio = sign * curve(h[0] + h[1] * place / PLACES, order)[joint] / [6.0, 8.0][order - 1]
-        share = (a * b) ** 2 * ((1 - a) * (1 - b)) ** order
-        assert value == pytest.approx((ratio - 1.0) * share, abs=1e-12)
 
 
 def test_exact_coefficients_agree_with_the_fit() -> None:
@@ -295,24 +274,6 @@ def test_peaks_are_judged_exactly() -> None:
     parabola = [Fraction(0), Fraction(4), Fraction(-4)]
     assert never_above(parabola, Fraction(1))
     assert not never_above(parabola, 1 - Fraction(1, 10**15))
-
-
-def test_a_proof_needs_weights() -> None:
-    exact = COVERED_PROBLEMS["irb460-pso-353.limit-80.waypoints-rad"]
-    row, side = PieceRow("first", 0, 1), (3, 0)
-    prover = Prover(exact, Fraction(1))
-    assert prover.proves((row,), (Fraction(1),), side, side)
-    assert not prover.proves((row,), (Fraction(0),), side, side)
-    assert not prover.proves((row,), (Fraction(-1),), side, side)
-    assert not prover.proves((), (), side, side)
-
-
-def test_boxes_halve() -> None:
-    whole = Boxes(np.zeros((1, 2), np.int64), np.zeros((1, 2), np.int64))
-    parts = whole.halves(np.array([1])).halves(np.array([0, 0]))
-    area = (0.5**parts.level).prod(axis=1).sum()
-    assert area == 1.0
-    assert len({parts.sides(n) for n in range(4)}) == 4
 
 
 @pytest.mark.parametrize(
