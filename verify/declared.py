@@ -76,7 +76,7 @@ class DeclaredCurve(ProofKind[Sides]):
 
     @property
     def infeasible(self) -> bool:
-        """Whether the proof is one position beyond its limit, whatever the durations."""
+        """Whether the proof is one way-point beyond its limit, whatever the durations."""
         return self._hopeless
 
     def _task(self, declared: Declaration) -> Task:
@@ -123,7 +123,7 @@ class DeclaredCurve(ProofKind[Sides]):
         zero = [k for k, x in enumerate(self.least, 1) if x <= 0]
         need(self._hopeless or not zero, f"segment {min(zero, default=0)}: {_NO_FLOOR}")
         high = [
-            self.task.total if x is None else nextafter(float(x / self.second), inf)
+            self.task.total * (1.0 + SLACK) if x is None else nextafter(float(x / self.second), inf)
             for x in self.problem.longest
         ]
         return self._shrunk([nextafter(float(x), 0.0) for x in self.least], high)
@@ -159,11 +159,21 @@ class DeclaredCurve(ProofKind[Sides]):
             return
         if len(data) == 1:
             row = self._rows[whole(data[0], 0, len(self._rows) - 1)]
-            need(self.task.beyond(row, float(PLACES)), "a position is not beyond its limit")
+            need(self._beyond(*row.tolist()), "no way-point is beyond its limit there")
             return
         self._waiting.append((box, data))
         if len(self._waiting) == self.batch:
             self.end()
+
+    def _beyond(self, segment: int, joint: int, order: int, sign: int, place: int) -> bool:
+        """Whether a way-point is there that is beyond a position limit."""
+        declared, ends = self.problem.declaration, self.problem.position[(1 + sign) // 2][joint]
+        virtual = [] if declared is None else declared.virtual
+        at = segment + place // PLACES
+        if order != 0 or place % PLACES != 0 or at in virtual or ends is None:
+            return False
+        angle = self.problem.waypoints[at - sum(b < at for b in virtual)][joint]
+        return sign * angle > max(sign * x for x in ends)
 
     def alone(self) -> DeclaredCurve:
         """Its leaves wait for nobody else's."""

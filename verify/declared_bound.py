@@ -84,15 +84,6 @@ class Task:
             power[..., p] = np.where(p > order, power[..., p - 1] * s, 1.0)
         return np.asarray(sign[..., None] * self.factors[order] * power)
 
-    def beyond(self, row: Rows, places: float) -> bool:
-        """Whether a position hangs on no duration, and is beyond its limit."""
-        shape, form = self.shapes(row, places), self.form
-        fixed = shape * form.fixed[row[0], :, row[1]]
-        moves = (shape[:, None] * form.basis[row[0]]).any()
-        size = np.abs(fixed).sum() + abs(self.cap(row))
-        far = fixed.sum() - self.cap(row) > ROUND * size
-        return bool(row[2] == 0 and not moves and far)
-
     def cap(self, rows: Rows) -> Array:
         """Limit of each row."""
         return np.asarray(self.caps[(1 + rows[..., 3]) // 2, rows[..., 1], rows[..., 2]])
@@ -241,7 +232,7 @@ class Centre:
         inside = lean < curve
         turn = -0.5 * lean * lean / np.where(inside, curve, 1.0)
         value += np.where(inside, turn, 0.5 * curve - lean).sum(axis=1)
-        found = value - error * (1.0 + 1e-9) - 10.0 * ROUND * size
+        found = value - error * (1.0 + 1e-9) - 2.0 * ROUND * size
         there = np.isfinite(here).all(axis=1) & self.held
         return np.where(there & np.isfinite(found), found, -np.inf)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
 from typing import Any
@@ -27,8 +27,16 @@ from .search import Found, TooSmall, search
 
 _KIND = "declared"
 """Of the proof, as documents name it."""
-_LADDER = Ladder(tuple(10.0**-k for k in range(1, 9)), share=0.9, apart=1.5, near=0.2, growth=30.0)
+_LADDER = Ladder(
+    tuple(x * 10.0**-k for k in range(1, 11) for x in (1.0, 0.3)),
+    share=0.9,
+    apart=1.5,
+    near=0.2,
+    growth=30.0,
+)
 """From a gap of 0.1 on, boxes grow to 2 to 6 times as many, whatever the last gap."""
+_FINE = 1e-9
+"""A gap below it may be too narrow for the rounding of floats: no stage before it is left out."""
 _DIGITS = 11
 """Of a total after its first: short in a certificate, and 1e-11 of a gap is no loss."""
 _SLIGHT = 1e-9
@@ -174,7 +182,8 @@ def _prove(session: Session) -> bool:
             session.infeasible = None not in session.exact.duration_upper
             if session.infeasible:
                 return True
-    session.climb(_LADDER, partial(down, digits=_DIGITS), stages.stage)
+    ladder = _LADDER if session.request.gap >= _FINE else replace(_LADDER, near=0.0)
+    session.climb(ladder, partial(down, digits=_DIGITS), stages.stage)
     return True
 
 

@@ -36,7 +36,7 @@ class Candidates:
     slopes: Array
 
 
-class Limits:
+class NearLimits:
     """What all boxes have in common, from the verifier's `Task`.
 
     Parameters

@@ -10,7 +10,7 @@ import numpy as np
 
 from ....problem import Array
 from ....verify import LEAF
-from .rows import Limits
+from .rows import NearLimits
 from .simplex import best_weights
 
 _WEIGHT = 2.0**12
@@ -19,8 +19,9 @@ _WIDEST = 1.2
 """Half-width of a logarithm from which on a box is cut without a look at its limits."""
 _SAFE = 1e-12
 """Share of the weights by which a bound is positive, so that it is in other batches too."""
-_NARROW = 1e-13
-"""Half-width at which a box is as small as it may get."""
+_NARROW = 1e-8
+"""Width of a logarithm at which a box is as small as it may get: what second-order terms change in
+it is below rounding."""
 
 Box = tuple[list[float], list[float]]
 
@@ -85,7 +86,7 @@ def search(
     watch : callable
         Called with the boxes left and those done.
     """
-    limits = Limits(kind.task, places)
+    limits = NearLimits(kind.task, places)
     found, waiting, made, done = Found(), [(0, kind.root())], 1, 0
     while waiting:
         batch, waiting = waiting[-kind.batch :], waiting[: -kind.batch]
@@ -113,7 +114,7 @@ def search(
 
 
 def _judged(
-    kind: Any, limits: Limits, sides: Array, signed: bool, look: Callable[[Array], None]
+    kind: Any, limits: NearLimits, sides: Array, signed: bool, look: Callable[[Array], None]
 ) -> tuple[list[Any], list[int]]:
     """What excludes each box, or None and the segment across which it is to be cut."""
     low, high = sides[:, 0], sides[:, 1]

@@ -68,12 +68,12 @@ FORGERIES = [
               "declared", {"proof.tree": [["/", 0, place], ["."], ["."]]}) for place in ("1", 0)),
     *(Forgery(_KIND + "leaf: it is not empty", "declared", {"proof.tree": tree})
       for tree in ([["."]], [0, ["."], ["."]])),
-    *(Forgery(_KIND + "leaf: a position is not beyond its limit", "declared",
+    *(Forgery(_KIND + "leaf: no way-point is beyond its limit there", "declared",
               {**NO_ANSWER, "proof.rows": [row], "proof.tree": [[".", 0]]})
       for row in ([0, 0, 0, -1, 0], [0, 0, 0, -1, 5], [1, 0, 0, -1, 2**19], [1, 1, 0, 1, 2**20],
                   [1, 1, 2, 1, 0])),
     # At a limit is not beyond it, and what hangs on the durations may be moved.
-    *(Forgery(_KIND + "leaf: a position is not beyond its limit", "declared",
+    *(Forgery(_KIND + "leaf: no way-point is beyond its limit there", "declared",
               {**NO_ANSWER, "problem.position_lower.0": low, "proof.rows": [row],
                "proof.tree": [[".", 0]]})
       for low, row in (("-0.375", [2, 0, 0, -1, 0]), ("0.5", [1, 0, 0, -1, 2**19]))),

@@ -25,10 +25,12 @@ from trajgap.nlp.proofs.document import certificate, problem_document, shipped, 
 from trajgap.nlp.proofs.exact import ExactProblem, decimal, exact_problem
 from trajgap.nlp.proofs.outcome import Certified, Outcome
 from trajgap.problem import (
+    Interpolant,
     Limits,
     Problem,
     TrajgapError,
     fit,
+    piecewise,
     rest_to_rest,
     three_five_three,
     uniform_cubic_b_spline,
@@ -233,17 +235,22 @@ def test_a_rest_to_rest_segment_that_is_too_short_is_proved_infeasible() -> None
     assert not verify(document).proves
 
 
-def test_a_way_point_beyond_a_position_limit_is_proved_infeasible() -> None:
-    q = np.array([[0.0], [1.0], [0.75], [0.0]])
-    for side, factor in (("upper", 1.0), ("lower", -1.0)):
-        limits = Limits(1.0, **{f"position_{side}": 0.9375 * factor})
-        found = certify(Problem(factor * q, limits, three_five_three()))
-        assert found.outcome is Outcome.INFEASIBLE
-        document = certificate(found)
-        assert verify(document).proves
-        for wider in (1.0, 1.5):
-            document["problem"][f"position_{side}"] = [decimal(Fraction(wider * factor))]
-            assert not verify(document).proves
+@pytest.mark.parametrize("curve", [three_five_three(), piecewise((4, 3, 4))])
+@pytest.mark.parametrize("place", [1, 3])
+@pytest.mark.parametrize("factor", [1.0, -1.0])
+def test_a_way_point_beyond_a_position_limit_is_proved_infeasible(
+    curve: Interpolant, place: int, factor: float
+) -> None:
+    q = np.array([[0.0], [0.5], [0.75], [0.25]])
+    q[place] = 1.0
+    key = "position_upper" if factor > 0.0 else "position_lower"
+    found = certify(Problem(factor * q, Limits(1.0, **{key: 0.9375 * factor}), curve))
+    assert found.outcome is Outcome.INFEASIBLE
+    document = certificate(found)
+    assert verify(document).proves
+    for wider in (1.0, 1.5):
+        document["problem"][key] = [decimal(Fraction(wider * factor))]
+        assert not verify(document).proves
 
 
 def test_what_is_not_covered_is_said() -> None:
