@@ -1,8 +1,9 @@
 """The sceptic's room: proves a certificate again, and imports nothing else of trajgap.
 
 ``python -m trajgap.verify FILE...`` does so from the command line. Copied out alone, the folder
-does the same as ``python -I FOLDER FILE...``, with the standard library only; proofs about C4
-quintic splines need numpy. Format and mathematics are in docs/explanation/certificates.md.
+does the same as ``python -I FOLDER FILE...``, with the standard library only; proofs about declared
+polynomials and C4 quintic splines need numpy. Format and mathematics are in
+docs/explanation/certificates.md.
 """
 
 from .bounds import shown_bound

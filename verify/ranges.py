@@ -37,7 +37,7 @@ MOST_ROWS = 100_000
 MOST_WEIGHTS = 20_000
 """Rows with a weight in one leaf or step."""
 
-# --- closed forms, 3-5-3 and 4-3-4 ----------------------------------------------------------------
+# --- closed forms and declared polynomials --------------------------------------------------------
 
 PLACES = 2**20
 """A place on a piece is a multiple of 1/PLACES: about the square root of a float's precision."""

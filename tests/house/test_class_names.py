@@ -9,7 +9,7 @@ from support.checkout import ROOT
 
 FOLDERS = ("problem", "nlp", "heuristics", "compare")
 """`verify` shares nothing with them, names included: it may use the same word for its own."""
-BY_ROOM = {"Prover", "Search", "Tree"}
+BY_ROOM = {"Search", "Tree"}
 """What each kind of proof has one of; docs/reference/conventions.md says so."""
 
 
