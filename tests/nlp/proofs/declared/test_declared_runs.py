@@ -71,16 +71,16 @@ def attack(seed: int) -> Outcome:
     return judged(problem, found, dense_best(problem))
 
 
-@pytest.mark.parametrize("seed", range(208, 212))
+@pytest.mark.parametrize("seed", range(4))
 def test_dense_search_never_leaves_the_interval(seed: int) -> None:
     attack(seed)
 
 
 @pytest.mark.slow
 def test_dense_search_never_leaves_the_interval_of_two_hundred_problems() -> None:
-    outcomes = [attack(seed) for seed in range(212, 418)]
+    outcomes = [attack(seed) for seed in range(4, 210)]
     decided = outcomes.count(Outcome.CERTIFIED) + outcomes.count(Outcome.INFEASIBLE)
-    assert decided >= 190
+    assert decided >= 195
 
 
 @pytest.mark.parametrize("name", CURVES)
