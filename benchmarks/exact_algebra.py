@@ -19,8 +19,6 @@ from trajgap.nlp.proofs import answer
 from trajgap.nlp.proofs.any_curve import search as any_curve
 from trajgap.nlp.proofs.certifiers import certify
 from trajgap.nlp.proofs.exact import printed_problem
-from trajgap.nlp.proofs.three_piece import rows as three_piece
-from trajgap.nlp.proofs.three_piece.square_polynomials import MONOMIALS, SHARES, SUM, _bernstein
 from trajgap.problem import load_case
 from trajgap.verify import Subject
 
@@ -38,8 +36,6 @@ PROBLEMS = (
 STEPS = {
     "elimination": (answer, "solve_exactly"),
     "polynomial below a bound": (answer, "never_above"),
-    "row as a polynomial": (three_piece, "exact_row"),
-    "Bernstein coefficients": (three_piece, "never_negative"),
     "least total over a box": (any_curve, "bound"),
 }
 """What the certifiers compute exactly, and where it is looked up."""
@@ -99,75 +95,9 @@ def prepared_below(coefficients, bound):
     return below
 
 
-@functools.cache
-def in_flint():
-    """The ring of a and b, and the polynomials of `square_polynomials` in it."""
-    ring = flint.fmpq_mpoly_ctx.get(("a", "b"), "lex")
-
-    def poly(table):
-        return ring.from_dict(
-            {(i, j): int(x) for i, line in enumerate(table) for j, x in enumerate(line) if x}
-        )
-
-    return ring, {key: poly(m) for key, m in MONOMIALS.items()}, [*map(poly, SHARES), poly(SUM)]
-
-
-def prepared_row(problem, row, total):
-    ring, monomials, shares = in_flint()
-    cap = total
-    if row.cap >= 0:
-        cap = problem.duration_upper[row.cap] * (1 + three_piece.STRICT)
-    cap, hold = q(cap), shares[row.cap]
-    if row.kind == "lower":
-        low = q(problem.duration_lower[row.joint])
-        return lambda: low / cap * hold - shares[row.joint]
-    shape, way = three_piece.shape_for(problem), [w[row.joint] for w in problem.waypoints]
-    segment = shape.kinds[row.kind]
-    limit = q(problem.limits[row.joint][row.order - 1].high)
-    piece = next((p for p in shape.pieces if p.kind == row.kind), None)
-    if piece is None:
-        least = 1 if row.kind == "mean" else shape.ends[row.order - 1]
-        moved = q(abs(way[segment + 1] - way[segment]) * least)
-        scale = moved / limit
-        return lambda: scale / cap**row.order * hold**row.order - shares[segment] ** row.order
-    s = flint.fmpq(row.place, three_piece.PLACES)
-    above = {key: flint.fmpq_poly([q(x) for x in c]) for key, c in piece.above(way).items()}
-
-    def polynomial():
-        left, right = ring.constant(0), ring.constant(0)
-        for key, powers in above.items():
-            for _ in range(row.order):
-                powers = powers.derivative()
-            left += row.sign * powers(s) * monomials[key]
-        for key, factor in piece.below.items():
-            right += factor * monomials[key]
-        left *= hold**row.order * (1 / (limit * cap**row.order))
-        return left - right * shares[segment] ** row.order
-
-    return polynomial
-
-
-def prepared_coefficients(poly, a, b):
-    size = poly.shape[0]
-    table = flint.fmpq_mat([[q(x) for x in line] for line in poly.tolist()])
-    first, second = (
-        flint.fmpz_mat([[int(x) for x in line] for line in _bernstein(*side, size).tolist()])
-        for side in (a, b)
-    )
-    second = second.transpose()
-
-    def covers():
-        whole, _ = table.numer_denom()
-        return min((first * whole * second).entries()) >= 0
-
-    return covers
-
-
 PREPARED = {
     "elimination": prepared_elimination,
     "polynomial below a bound": prepared_below,
-    "row as a polynomial": prepared_row,
-    "Bernstein coefficients": prepared_coefficients,
 }
 """Sums of products over a box are left out: they take a few per cent."""
 
@@ -176,9 +106,6 @@ def same(step, ours, theirs):
     """Whether both libraries found the same numbers."""
     if step == "elimination":
         return [[q(x) for x in row] for row in ours] == theirs.tolist()
-    if step == "row as a polynomial":
-        table = {(i, j): q(x) for i, line in enumerate(ours) for j, x in enumerate(line) if x}
-        return table == {tuple(map(int, key)): x for key, x in theirs.to_dict().items()}
     return ours == theirs
 
 
@@ -195,7 +122,6 @@ def ratio(step, calls, repeats):
     theirs = [PREPARED[step](*arguments) for arguments in calls]
     found = []
     for _ in range(repeats):
-        three_piece._without_cap.cache_clear()  # what a certification computes once, once more
         (ours, slow), (other, fast) = timed(mine), timed(theirs)
         assert all(map(functools.partial(same, step), ours, other)), step
         found.append(slow / fast)

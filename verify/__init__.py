@@ -1,11 +1,13 @@
 """The sceptic's room: proves a certificate again, and imports nothing else of trajgap.
 
 ``python -m trajgap.verify FILE...`` does so from the command line. Copied out alone, the folder
-does the same as ``python -I FOLDER FILE...``, with the standard library only; proofs about C4
-quintic splines need numpy. Format and mathematics are in docs/explanation/certificates.md.
+does the same as ``python -I FOLDER FILE...``, with the standard library only; proofs about declared
+polynomials and C4 quintic splines need numpy. Format and mathematics are in
+docs/explanation/certificates.md.
 """
 
 from .bounds import shown_bound
+from .floors import least_durations
 from .problem import CHORD, read_problem
 from .ranges import (
     MIX_DIGITS,
@@ -15,6 +17,7 @@ from .ranges import (
     MOST_QUINTIC_JOINTS,
     MOST_QUINTIC_SEGMENTS,
     MOST_WEIGHT,
+    PLACES,
     SHORTEST_TOTAL,
     SMALLEST,
     TICKS,
@@ -29,6 +32,7 @@ from .verdict import (
     STATE_FORMAT,
     CertificateVerdict,
     CertifiedQuestion,
+    proof_kind,
     seal,
     verify_certificate,
 )
@@ -47,6 +51,7 @@ __all__ = [
     "MOST_WEIGHT",
     "OLD_FORMATS",
     "OPEN",
+    "PLACES",
     "SECONDS",
     "SHORTEST_TOTAL",
     "SMALLEST",
@@ -59,7 +64,9 @@ __all__ = [
     "OutOfTime",
     "Refused",
     "Subject",
+    "least_durations",
     "number",
+    "proof_kind",
     "read_document",
     "read_problem",
     "seal",

@@ -37,7 +37,7 @@ MOST_ROWS = 100_000
 MOST_WEIGHTS = 20_000
 """Rows with a weight in one leaf or step."""
 
-# --- closed forms, 3-5-3 and 4-3-4 ----------------------------------------------------------------
+# --- closed forms and declared polynomials --------------------------------------------------------
 
 PLACES = 2**20
 """A place on a piece is a multiple of 1/PLACES: about the square root of a float's precision."""
@@ -93,3 +93,12 @@ WINDOW_UNIT = 2**16
 """The numbers of a window are multiples of 1/WINDOW_UNIT."""
 MOST_WINDOW = 2**20
 """Of such a number, in its unit."""
+
+# --- any declared curve ---------------------------------------------------------------------------
+
+MOST_DECLARED_SEGMENTS = 12
+"""What the number of roundings was counted for; boxes grow with a power of the segments."""
+MOST_DECLARED_UNKNOWNS = 64
+"""What the number of roundings was counted for: derivatives that agree at the inner breaks."""
+SMALLEST_CAP = Fraction(1, 10**15)
+"""Limits, with the total and the way of a joint about 1, are used between it and its inverse."""

@@ -54,18 +54,18 @@ KINDS = {
     "rest-to-rest": "closed_form.RestToRest",
     "stretched": "closed_form.Stretched",
     "fixed-ratios": "fixed_ratios.FixedRatios",
-    "three-piece": "three_piece.ThreeFiveThree",
-    "four-three-four": "three_piece.FourThreeFour",
     "any-curve": "any_curve.AnyCurve",
     "cubic": "cubic.CubicSpline",
     "quintic-spline": "quintic.QuinticSpline",
+    "declared": "declared.DeclaredCurve",
 }
-"""Module and class by ``proof.kind``; imported on first use, since one needs numpy."""
+"""Module and class by ``proof.kind``; imported on first use, since two need numpy."""
 _OF_RATIOS = "fixed-ratios"
 """The one kind that speaks about declared curves at fixed ratios of the durations."""
 
 
-def _proof_kind(name: str) -> type[ProofKind[Any]]:
+def proof_kind(name: str) -> type[ProofKind[Any]]:
+    """The class of a kind of proof."""
     module, _, kind = KINDS[name].rpartition(".")
     try:
         found: type[ProofKind[Any]] = getattr(import_module(f".{module}", __package__), kind)
@@ -316,7 +316,7 @@ def _read_proof(
     name = proof.get("kind")
     known = type(name) is str and name in KINDS
     need(known, f"unknown kind of proof {shown(repr(name))}")
-    make = _proof_kind(name)
+    make = proof_kind(name)
     own = (name == _OF_RATIOS) == (problem.chord or problem.shares is not None)
     need(
         own or make.subject is Subject.ANY,

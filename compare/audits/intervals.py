@@ -14,7 +14,7 @@ from ...problem import TrajgapError
 from ...verify import Subject
 
 ALLOWANCES = 3.0
-"""For all problems of a case, in what one problem is allowed: most three-piece and short spline
+"""For all problems of a case, in what one problem is allowed: most declared and short spline
 problems are certified in it, and a usual audit still ends in about a minute. Boxes are counted and
 not seconds, so that no verdict depends on how busy the machine is."""
 _GAP = 1e-4

@@ -29,10 +29,10 @@ from .state import resumed
 CERTIFIERS: tuple[str, ...] = (
     "closed_form.FIXED_RATIOS",
     "closed_form.REST_TO_REST",
-    "three_piece.THREE_PIECE",
     "closed_form.STRETCHED",
     "cubic.CUBIC",
     "quintic.QUINTIC",
+    "declared.DECLARED",
     "any_curve.ANY_CURVE",
 )
 """Every kind of proof, by module and name; of those that declare a curve the first is taken.
@@ -148,8 +148,8 @@ def certify(
     report : callable, optional
         Called with a `Progress` after every batch of boxes.
     workers : int
-        Parts of search and judging that run at a time; the result does not depend on it. 3-5-3 and
-        4-3-4 polynomials and closed forms take one core: they are over in a second.
+        Parts of search and judging that run at a time; the result does not depend on it. Closed
+        forms and declared polynomials such as 3-5-3 take one core: they are over in a second.
     executor : concurrent.futures.Executor, optional
         Where parts run, such as processes or a Dask cluster's `get_executor()`. Without one, C4
         quintic splines are searched in threads, since compiled searches do not hold the

@@ -67,7 +67,7 @@ def test_what_the_rule_sees(source: str) -> None:
     assert bool(bare_constants(source)) == (source in SEEN)
 
 
-BY_ROOM = {"Prover", "Search", "Tree"}
+BY_ROOM = {"Search", "Tree"}
 """What each kind of proof has one of; docs/reference/conventions.md says so."""
 
 

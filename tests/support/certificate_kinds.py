@@ -23,7 +23,6 @@ from trajgap.problem import (
     Problem,
     cubic_spline,
     evaluate,
-    piecewise,
     quintic_spline,
     rest_to_rest,
     solve_in_closed_form,
@@ -130,11 +129,8 @@ def ratios_optimum(problem: Problem) -> float:
 
 SHORT = (0.5, 0.1, 0.1)
 KINDS = {
-    "three-piece": Kind(
+    "declared": Kind(
         lambda: posed(three_five_three(), 8.0, SHORT, (6.0, 6.0, 7.0)), 0.03, _by_directions
-    ),
-    "four-three-four": Kind(
-        lambda: posed(piecewise((4, 3, 4)), 8.0, SHORT, (9.0, 9.0, 9.0)), 1e-5, _by_directions
     ),
     "rest-to-rest": Kind(
         lambda: posed(rest_to_rest(2, 5), 8.0, (0.5, 4.0), (6.0, 7.0)),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from support.forgeries import of_bounds, of_claims, of_files, of_quintics
+from support.forgeries import of_bounds, of_claims, of_declared, of_files, of_quintics
 from support.forgeries.forgery import Forgery, checks, judged, recorded
 
 FORGERIES = [
@@ -13,6 +13,7 @@ FORGERIES = [
     *of_claims.FORGERIES,
     *of_bounds.FORGERIES,
     *of_quintics.FORGERIES,
+    *of_declared.FORGERIES,
 ]
 
 

@@ -154,9 +154,10 @@ INSIDE: list[tuple[str, Any]] = [
         ("1", "1", "1", "1"), ("-1", "-1", "1", "-1"), ("1", "0.5", None, "1"))),
     # Zeros for each joint are the same zeros.
     *((kind, {"problem.prescribed.0.0": [1, ["0", "0"]]}) for kind in (
-        "cubic", "quintic-spline", "three-piece", "fixed-ratios", "any-curve")),
+        "cubic", "quintic-spline", "declared", "fixed-ratios", "any-curve")),
     ("cubic", {"proof.rows.0.1": 0}), ("cubic", {"proof.rows.0.4": 64}),
-    ("three-piece", {"proof.tree.0": ["/", 0, None]}),
+    ("declared", {"proof.tree.0": ["/", 2, None]}),
+    ("declared-free", {"proof.tree.0": ["/", 2, None]}),
 ]  # fmt: skip
 
 

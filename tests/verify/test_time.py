@@ -102,7 +102,7 @@ TABLES: dict[str, tuple[str, list[int], dict[str, Any]]] = {
     "windows": ("quintic-spline", [5, 5], {**QUINTIC, "windows": table([0] * 6)}),
     "quintic rows": ("quintic-spline", [5, 5], {**QUINTIC, "rows": table([0, 0, 1, 1, 0])}),
     "any curve": ("any-curve", [5, 5], {"cap": "9", "rows": table(["reach", 0, 0, 1, 0, 0, 0])}),
-    "three pieces": ("three-piece", [3, 5, 3], {"rows": table(["mean", 0, 1, 1, 0, -1])}),
+    "declared": ("declared", [3, 5, 3], {"rows": table([0, 0, 1, 1, 0])}),
 }
 
 

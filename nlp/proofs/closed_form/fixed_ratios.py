@@ -12,14 +12,13 @@ import numpy as np
 
 from ....problem import Interpolant, extrema, fit
 from ....problem.curves import StretchedUniformBSpline
-from ....verify import LEAF
+from ....verify import LEAF, PLACES
 from ...optimum import solve
 from ..answer import exact_coefficients, uniform_coefficients
 from ..certifier import Certifier
 from ..exact import ExactProblem, decimal
 from ..rounding import root_below
 from ..session import Session
-from ..three_piece import PLACES
 from .rest_polynomials import at
 
 MOST_REBUILT = 40

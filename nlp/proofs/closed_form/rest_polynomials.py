@@ -12,13 +12,12 @@ from typing import Any
 import numpy as np
 
 from ....problem import Interpolant
-from ....verify import LEAF
+from ....verify import LEAF, PLACES
 from ..answer import solve_exactly
 from ..certifier import Certifier
 from ..exact import ExactProblem, decimal
 from ..rounding import root_below
 from ..session import Session
-from ..three_piece import PLACES
 
 STILL = 1e-9
 """Duration, as a share of the total, of a segment in which nothing moves."""

@@ -6,10 +6,10 @@ import math
 from fractions import Fraction
 
 from ....problem.curves import StretchedUniformBSpline
+from ....verify import PLACES
 from ..answer import uniform_coefficients
 from ..certifier import Certifier
 from ..exact import ExactProblem
-from ..three_piece import PLACES
 from .rest_polynomials import SegmentBound, at, closed_form, proving, size
 
 

@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 from fractions import Fraction
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -21,8 +22,6 @@ from trajgap.compare.documents import Uncovered
 from trajgap.nlp import ExactProblem, shipped
 from trajgap.nlp.proofs.document import shipped_folder
 from trajgap.nlp.proofs.state import read_state
-from trajgap.nlp.proofs.three_piece import rows as three_piece
-from trajgap.nlp.proofs.three_piece.rows import PieceRow, exact_row
 from trajgap.problem import TrajgapError
 from trajgap.verify import CertifiedQuestion, Subject, seal
 from trajgap.verify import verify_certificate as verify
@@ -131,10 +130,13 @@ def test_a_time_limit_leaves_a_state_to_go_on_from(run: Run) -> None:
 def test_a_proof_that_the_verifier_refuses_is_not_called_certified(
     run: Run, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def broken(problem: ExactProblem, row: PieceRow, total: Fraction) -> three_piece.Poly:
-        return exact_row(problem, row, total * Fraction(9, 10))
+    module = import_module("trajgap.nlp.proofs.declared.certifier")
+    real = module._kind
 
-    monkeypatch.setattr(three_piece, "exact_row", broken)
+    def broken(problem: ExactProblem, total: Fraction) -> Any:
+        return real(problem, total * Fraction(9, 10))
+
+    monkeypatch.setattr(module, "_kind", broken)
     code, out, _ = run("solve", *ONE, "--certify", "--gap", "0.1", "--out", "c.json")
     assert code == cli_certify.NOT_PROVED
     assert "certified" not in out
@@ -169,7 +171,7 @@ def test_ctrl_c_leaves_the_interval_and_a_state(run: Run) -> None:
         "import sys, time, trajgap.compare.cli.certifying as c\n"
         "from importlib import import_module\n"
         "from trajgap.compare.cli import main\n"
-        "import_module('trajgap.nlp.proofs.three_piece.search')._BATCH = 4\n"
+        "import_module('trajgap.verify.declared')._LEAVES = 4\n"
         # However fast the search is, some report finds something proved.
         "import_module('trajgap.nlp.proofs.session').OFTEN = 0.0\n"
         "reporting = c._Stop.reporting\n"

@@ -1,4 +1,4 @@
-"""What holds of every kind of search: dense searches, unlucky answers, broken rows, stops."""
+"""Of every search but that of declared curves: dense searches, broken rows, stops."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cache
-from importlib import import_module
 from typing import Any
 
 import numpy as np
@@ -16,7 +15,6 @@ from support.cubic_problems import base_problem
 from support.cubic_problems import dense_best as dense_of_cubics
 from support.cubic_problems import random_problem as random_cubic
 from support.intervals import judged
-from support.three_pieces import dense_best, random_problem
 from support.unjudged import unjudged
 from support.unlucky import answering
 from trajgap.nlp import solve
@@ -27,12 +25,8 @@ from trajgap.nlp.proofs.cubic import ranges as cubic_ranges
 from trajgap.nlp.proofs.cubic import tree as cubic_tree
 from trajgap.nlp.proofs.cubic.system import CubicSystem
 from trajgap.nlp.proofs.document import certificate
-from trajgap.nlp.proofs.exact import ExactProblem
 from trajgap.nlp.proofs.outcome import Certified, Outcome, Progress
 from trajgap.nlp.proofs.state import state_document
-from trajgap.nlp.proofs.three_piece import rows as three_piece
-from trajgap.nlp.proofs.three_piece.rows import PieceRow, exact_row
-from trajgap.nlp.proofs.three_piece.square_polynomials import Poly
 from trajgap.problem import (
     Limits,
     Problem,
@@ -47,7 +41,6 @@ from trajgap.problem import (
 )
 from trajgap.verify import Subject, verify_certificate
 
-search = import_module("trajgap.nlp.proofs.three_piece.search")
 FOUR_THREE_FOUR = piecewise((4, 3, 4))
 Patches = tuple[tuple[Any, str, Any], ...]
 
@@ -97,12 +90,6 @@ class Drawn:
 
 
 DRAWN = {
-    "3-5-3": Drawn(random_problem, dense_best, range(3), 1e-3, 20.0, range(3, 208), 1e-3, 195),
-    "4-3-4": Drawn(
-        lambda seed: replace(random_problem(seed), curve=FOUR_THREE_FOUR),
-        lambda problem: dense_best(problem, 81),
-        *(range(2), 1e-6, 60.0, range(2, 206), 1e-6, 195),
-    ),
     "cubic": Drawn(random_cubic, dense_of_cubics, range(2), 0.1, 2.0, range(2, 204), 0.05, 150),
     "quintic": Drawn(
         random_quintic, best_quintic, range(6), 0.03, 600.0, range(100, 300), 0.005, 200
@@ -141,36 +128,15 @@ def test_dense_search_never_leaves_the_interval_of_two_hundred_problems(name: st
 # --- unlucky answers and broken rows --------------------------------------------------------------
 
 
-def weakened(*kinds: str) -> Patches:
-    """Rows of a shorter total in place of the true ones."""
-
-    def broken(problem: ExactProblem, row: PieceRow, total: Fraction) -> Poly:
-        wrong = not kinds or row.kind in kinds
-        return exact_row(problem, row, total * Fraction(9, 10) if wrong else total)
-
-    return ((three_piece, "exact_row", broken),)
-
-
 def _narrow(system: CubicSystem, cap: Fraction, true: Any = cubic_ranges.implied) -> Any:
     return [(0.7 * v, 0.7 * a) for v, a in true(system, cap)]
 
 
-def three(joints: int, curve: Any = FOUR_THREE_FOUR) -> Problem:
-    q = np.array([[0.25, -0.5], [1.0, 0.125], [-0.375, 0.75], [0.5, -1.0]])[:, :joints]
-    return Problem(q, Limits(1.0, 2.0, 8.0), curve)
-
-
-QUIET: Patches = ((search._Search, "_look", lambda run, *_: run.session.check_clock()),)
 QUIET_CUBIC: Patches = ((cubic_certify._Watch, "improve", lambda *_: None),)
 NARROW: Patches = tuple(
     (module, "implied", _narrow) for module in (cubic_ranges, cubic_tree, cubic_certify)
 )
-# Velocity peaks inside the end pieces.
-FAR = Problem([[0.0], [4.0], [5.0], [9.0]], Limits(1.0), FOUR_THREE_FOUR)
 UNLUCKY: dict[str, tuple[Problem, float, Patches, Patches]] = {
-    "3-5-3": (three(2, three_five_three()), 1e-6, QUIET, weakened()),
-    "4-3-4": (three(1), 1e-6, QUIET, weakened("place")),
-    "4-3-4, end pieces": (FAR, 1e-6, QUIET, weakened("place-first", "place-last")),
     "cubic": (base_problem(), 0.02, QUIET_CUBIC, NARROW),
 }
 """A problem, its gap, what keeps a search from a better answer, and what breaks its rows."""
@@ -211,14 +177,13 @@ def test_a_broken_relaxation_is_caught(name: str, monkeypatch: pytest.MonkeyPatc
     for owner, attribute, value in UNLUCKY[name][-1]:
         monkeypatch.setattr(owner, attribute, value)
     raw = unjudged(monkeypatch)
-    optimum, found = unlucky(name, 20.0 if name == "cubic" else 3.0, monkeypatch)
+    optimum, found = unlucky(name, 20.0, monkeypatch)
     assert raw[-1].lower > optimum, "the attack above would not have seen it"
     assert not verify_certificate(certificate(raw[-1])).proves
     assert (found.outcome, found.lower, found.proof) == (Outcome.OPEN, 0, None)
-    assert "leaf at node" in found.verdict.reason or name == "cubic"
 
 
-@pytest.mark.parametrize("name", ["3-5-3", "cubic"])
+@pytest.mark.parametrize("name", ["cubic"])
 def test_a_worse_local_answer_is_replaced(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     problem, gap, *_ = UNLUCKY[name]
     best = truth(name)
@@ -315,18 +280,6 @@ DETOUR = Problem(
     cubic_spline(3),
 )
 STOPPED: dict[str, tuple[Problem, Subject, float, Callable[[Progress, int], bool]]] = {
-    "3-5-3": (
-        three(2, three_five_three()),
-        Subject.DECLARED,
-        1e-6,
-        lambda now, _: now.lower > 0 and now.open_boxes > 0,
-    ),
-    "4-3-4": (
-        three(2),
-        Subject.DECLARED,
-        1e-6,
-        lambda now, _: now.lower > 0 and now.open_boxes > 0,
-    ),
     "cubic": (
         base_problem(),
         Subject.DECLARED,
@@ -341,7 +294,6 @@ STOPPED: dict[str, tuple[Problem, Subject, float, Callable[[Progress, int], bool
 @pytest.mark.parametrize("name", STOPPED)
 def test_a_stopped_run_goes_on_where_it_stopped(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     problem, subject, gap, when = STOPPED[name]
-    monkeypatch.setattr(search, "_BATCH", 8)
     reports = 0
 
     def interrupt(now: Progress) -> None:

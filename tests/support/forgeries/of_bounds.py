@@ -1,11 +1,8 @@
-"""Forgeries of lower bounds: of closed forms, squares, any curve and cubic splines."""
+"""Forgeries of lower bounds: of closed forms, any curve and cubic splines."""
 
 from __future__ import annotations
 
-from typing import Any
-
 from support.forgeries.forgery import B_SPLINE_AT_RATIOS, NO_ANSWER, Document, Forgery, document
-from trajgap.verify import three_piece
 
 ONE_LEAF = "a proof in closed form has one leaf"
 CUTS = ([0, ["."], ["."]], [["/", 0, "1"], ["."], ["."]])
@@ -71,83 +68,6 @@ CLOSED = [
           {"proof.total": "6.417801888546"}, {"proof.tree": [[".", 0, 1, 1, 560000]]},
           {"proof.tree": [[".", 1, 3, 1, 2]]}, {"proof.tree": [[".", 0, 2, 2, 0]]},
           {**NO_ANSWER, "problem.limits.0.0": "1.0001"})),
-]  # fmt: skip
-
-_SQUARE = "three_piece._ThreePieces."
-_NOT_THERE = "a row leans on a limit that is not there"
-
-
-def _wrong(nodes: list[list[Any]]) -> list[list[Any]]:
-    return [list(nodes[0]), list(nodes[1]), list(nodes[2])]
-
-
-def _row(row: list[Any], **more: Any) -> dict[str, Any]:
-    return {**NO_ANSWER, "proof.rows.0": row, **more}
-
-
-SQUARES = [
-    Forgery(_SQUARE + "__init__: the total is not positive", "three-piece",
-            {"proof.total": "0", "claim.lower": "0"}),
-    *(Forgery(_SQUARE + "cut: a square is halved, at no other place", "three-piece",
-              {"proof.tree.0": ["/", 0, place]}) for place in ("1/2", 0)),
-    Forgery(_SQUARE + "leaf: malformed: weights come in pairs", "three-piece",
-            {"proof.tree": [[".", 0, "1", 1]]}),
-    *(Forgery(_SQUARE + "leaf: a weight is negative, or all are 0", "three-piece",
-              {"proof.tree": [[".", *weights]]})
-      for weights in ([0, "-1"], [0, "0"], [0, "1", 1, "-1e-9"], [0, "0", 1, "0"])),
-    Forgery(_SQUARE + "leaf: it is not proved", "three-piece", {"proof.tree": [[".", 0, "1"]]}),
-    *(Forgery(_SQUARE + "leaf: it is not proved", kind, {**NO_ANSWER, **changes})
-      for kind, changes in (
-          ("three-piece", {"proof.total": "14.8642"}),
-          ("four-three-four", {"proof.total": "6.07616"}),
-          ("three-piece", {"problem.limits.0.0": "1.001"}),
-          ("three-piece", {"problem.limits.0.0": ["-1.001", "1"]}),
-          ("three-piece", {"problem.duration_upper.1": "5.6"}),
-          ("four-three-four", {"problem.limits.0.0": "1.1"}),
-          ("four-three-four", {"problem.limits.1.0": ["-0.9", "1.7"]}),
-          ("four-three-four", {"problem.limits.0.1": "2.1"}),
-          ("four-three-four", {"problem.duration_upper.1": "2.95"}))),
-    *(Forgery(_SQUARE + "_declared: declaration not covered: not the polynomials of this kind of "
-              "proof, at rest at the ends", kind, {**NO_ANSWER, "problem.degrees": degrees})
-      for kind, degrees in (("three-piece", [4, 3, 4]), ("four-three-four", [3, 5, 3]))),
-    *(Forgery(_SQUARE + "_declared: declaration not covered: not the polynomials of this kind of "
-              "proof, at rest at the ends", "three-piece", {**NO_ANSWER, path: value})
-      for path, value in (("problem.continuity", [2, 1]), ("problem.prescribed.0", [[1, "0"]]),
-                          ("problem.prescribed.3", [[1, "0.1"], [2, "0"]]))),
-    Forgery(_SQUARE + "_polynomial: a row leans on an upper bound that is not there",
-            "three-piece", {"problem.duration_upper.1": None}),
-    *(Forgery(_SQUARE + "_polynomial: a row leans on a position limit that is not there",
-              "three-piece", _row(["place", joint, 0, sign, 5, -1]))
-      for joint, sign in ((0, 1), (1, -1))),
-    Forgery(_SQUARE + f"_polynomial: {_NOT_THERE}", "three-piece", _row(["place", 0, 3, 1, 5, -1])),
-    *(Forgery(_SQUARE + f"_polynomial: {_NOT_THERE}", "three-piece",
-              _row(row, **{"problem.limits.0.1": sides}))
-      for row, sides in (  # the first piece goes up, the second down, the last up
-          (["place", 0, 2, 1, 5, -1], ["-2", None]), (["place", 0, 2, -1, 5, -1], [None, "2"]),
-          (["first", 0, 2, 1, 0, -1], ["-2", None]), (["last", 0, 2, 1, 0, -1], [None, "2"]))),
-    *(Forgery(_SQUARE + f"_polynomial: {_NOT_THERE}", "three-piece",
-              _row([kind, 0, 1, 1, 0, -1], **{"problem.limits.0.0": sides}))
-      for kind, sides in (("mean", [None, "1"]), ("first", ["-1", None]), ("last", ["-1", None]))),
-    Forgery(_SQUARE + f"_polynomial: {_NOT_THERE} (2)", "three-piece",
-            _row(["place", 0, 3, 1, 5, -1], **{"problem.limits.0.2": "0"})),
-    Forgery("three_piece._Row.read: a row of an unknown kind", "three-piece",
-            _row(["magic", 0, 1, 1, 0, -1])),
-    Forgery("three_piece._Row.read: a row of an unknown kind", "three-piece",
-            _row(["place-first", 0, 1, 1, 0, -1])),
-    Forgery("three_piece._Row.read: a mean speed has order 1", "three-piece",
-            _row(["mean", 0, 2, 1, 0, -1])),
-    *(Forgery("reading.whole: malformed: no integer in {low}..{high}: {shown(repr(value))}",
-              "three-piece", _row(row))
-      for row in (["place", 2, 1, 1, 0, -1], ["place", -1, 1, 1, 0, -1], ["lower", 3, 0, 1, 0, -1],
-                  ["place", 0, 4, 1, 0, -1], ["first", 0, 0, 1, 0, -1], ["place", 0, -1, 1, 0, -1],
-                  ["place", 0, 1, 1, 2**20 + 1, -1], ["place", 0, 1, 1, -1, -1],
-                  ["place", 0, 1, 1, 0, -2], ["place", 0, 1, 1, 0, 3])),
-    Forgery("reading.whole: malformed: no integer in {low}..{high}: {shown(repr(value))}",
-            "three-piece", {**NO_ANSWER, "proof.tree": [2]}),
-    # The check of the verifier's own algebra.
-    Forgery("three_piece._unit_curves: a piece is not of this form", "three-piece", {},
-            {"three_piece._unit_curves": three_piece._unit_curves.__wrapped__,
-             "three_piece._parabola": _wrong}),
 ]  # fmt: skip
 
 _MOTION = "any_curve.check_motion: "
@@ -350,4 +270,4 @@ CUBICS = [
               {"proof.root.0": 0, "proof.tree": [["r"], ["t", 0, 1, 1, 1, [], [3, w], "00"]]})
       for w in (1, -1)),
 ]  # fmt: skip
-FORGERIES = [*CLOSED, *SQUARES, *ANY, *CUBICS]
+FORGERIES = [*CLOSED, *ANY, *CUBICS]

@@ -84,7 +84,7 @@ ANSWERS = [
     Forgery(BOUNDS, "by hand", {"claim.durations": ["-1.875", "3.75"]}),
     # Of every kind, one duration that is a little longer or shorter than its bound.
     *(Forgery(BOUNDS, kind, {f"problem.duration_{side}.{k}": bound})
-      for kind, k in (("three-piece", 1), ("four-three-four", 1), ("cubic", 1),
+      for kind, k in (("declared", 1), ("declared-free", 1), ("cubic", 1),
                       ("cubic-virtual", 2), ("quintic-spline", 1), ("rest-to-rest", 1),
                       ("stretched", 1), ("fixed-ratios", 1), ("any-curve", 1))
       for side, bound in (("upper", "1.8"), ("lower", "5.75"))),
@@ -126,7 +126,7 @@ ANSWERS = [
 ]  # fmt: skip
 
 CLAIMS = [
-    Forgery("verdict._proof_kind: this kind of proof needs numpy ({error}); install numpy",
+    Forgery("verdict.proof_kind: this kind of proof needs numpy ({error}); install numpy",
             "quintic-spline", {}, {"verdict.import_module": _no_numpy}),
     *(Forgery("verdict._judged: malformed: infeasible: neither true nor false",
               "by hand", {"claim.infeasible": value}) for value in (0, 1, None, "false")),
@@ -139,7 +139,7 @@ CLAIMS = [
     Forgery(EXCEEDS_TOTAL, "by hand", {"claim.lower": "5.6250001"}),
     Forgery(EXCEEDS_TOTAL, "state", {"claim.lower": "0.001"}),
     *(Forgery(EXCEEDS_TOTAL, kind, {"claim.lower": lower})
-      for kind, lower in (("three-piece", "14.8628119279"), ("four-three-four", "6.0760983"),
+      for kind, lower in (("declared", "14.4570305663"), ("declared-free", "6.0704720574"),
                           ("cubic", "5.3533124924"), ("quintic-spline", "6.1107397602"),
                           ("any-curve", "3.0719962632"))),
     # Above the sum of all upper bounds, but not proved.
@@ -162,7 +162,7 @@ CLAIMS = [
                                     "problem.duration_upper": ["1.875", "3.75"]}),
     Forgery(INFEASIBLE, "state", {**CALLED_INFEASIBLE, "problem.duration_upper": ["1", "1"]}),
     *(Forgery(INFEASIBLE, kind, CALLED_INFEASIBLE)
-      for kind in ("three-piece", "four-three-four", "cubic", "cubic-virtual", "quintic-spline",
+      for kind in ("declared", "declared-free", "cubic", "cubic-virtual", "quintic-spline",
                    "rest-to-rest", "stretched", "fixed-ratios", "any-curve")),
     Forgery("verdict._read_answer: an upper bound without durations",
             "by hand", {"claim.durations": None}),
@@ -193,8 +193,8 @@ TREES = [
     *(Forgery("tree._open: the tree leaves a part open: node {count}",
               kind, {"proof.tree": [["?"]]}) for kind in ("by hand", "any-curve", "cubic")),
     Forgery(MANY, "by hand", lambda data: data["proof"]["tree"].append(["."])),
-    Forgery(MANY, "three-piece", lambda data: data["proof"]["tree"].append([".", 0, "1"])),
-    Forgery(OPEN, "three-piece", lambda data: data["proof"]["tree"].pop()),
+    Forgery(MANY, "declared", lambda data: data["proof"]["tree"].append([".", 0, 0, 1])),
+    Forgery(OPEN, "declared", lambda data: data["proof"]["tree"].pop()),
     Forgery(OPEN, "any-curve", lambda data: data["proof"]["tree"].pop()),
     Forgery(OPEN, "cubic", lambda data: data["proof"]["tree"].pop()),
     Forgery(DEEP, "cubic", _deep),
@@ -206,7 +206,5 @@ TREES = [
       for kind, spread in (("cubic-virtual", _none), ("cubic-virtual", _lost),
                            ("quintic-spline", _none), ("quintic-spline", _first),
                            ("quintic-spline", _lost))),
-    Forgery("three_piece._ThreePieces.cut: the tree is too deep", "three-piece",
-            {**NO_ANSWER, "proof.tree": [0] * 300}),
 ]  # fmt: skip
 FORGERIES = [*ANSWERS, *CLAIMS, *TREES]

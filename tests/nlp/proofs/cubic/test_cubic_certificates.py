@@ -163,7 +163,7 @@ def test_an_altered_state_is_refused() -> None:
         return {**document, part: {**document[part], **change}}
 
     with pytest.raises(TrajgapError, match="kind"):
-        certify(base_problem(), resume=wrong_in("proposals", kind="three-piece"))
+        certify(base_problem(), resume=wrong_in("proposals", kind="declared"))
     with pytest.raises(TrajgapError, match="malformed"):
         certify(base_problem(), resume={**document, "proposals": {"kind": "cubic"}})
     # As a power of ten it would fill the memory.

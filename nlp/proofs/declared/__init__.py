@@ -1,4 +1,4 @@
-"""Proofs for 3-5-3 and 4-3-4 polynomials: boxes of directions, rows in Bernstein form."""
+"""Proofs for any declared curve at rest: weighted limits over boxes of durations."""
 
 import lazy_loader
 

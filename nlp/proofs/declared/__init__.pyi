@@ -1,0 +1,1 @@
+from .certifier import DECLARED as DECLARED

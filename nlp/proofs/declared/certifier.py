@@ -1,0 +1,198 @@
+"""Certified interval of the least total of a declared curve at rest, by stages of rising totals."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import partial
+from typing import Any
+
+from ....problem import Array, Interpolant, Verdict, check
+from ....verify import (
+    PLACES,
+    Clock,
+    Refused,
+    least_durations,
+    proof_kind,
+    read_problem,
+)
+from ..certifier import Certifier
+from ..document import problem_document
+from ..exact import ExactProblem, decimal
+from ..rounding import down
+from ..session import Ladder, OutOfTime, Session, Shorter
+from .search import Found, TooSmall, search
+
+_KIND = "declared"
+"""Of the proof, as documents name it."""
+_LADDER = Ladder(
+    tuple(x * 10.0**-k for k in range(1, 11) for x in (1.0, 0.3)),
+    share=0.9,
+    apart=1.5,
+    near=0.2,
+    growth=30.0,
+)
+"""From a gap of 0.1 on, boxes grow to 2 to 6 times as many, whatever the last gap."""
+_FINE = 1e-9
+"""A gap below it may be too narrow for the rounding of floats: no stage before it is left out."""
+_DIGITS = 11
+"""Of a total after its first: short in a certificate, and 1e-11 of a gap is no loss."""
+_SLIGHT = 1e-9
+"""Share by which durations must be shorter to be worth a new start of the ladder."""
+_LOOKS = 3
+"""Directions of a batch that are checked for a better answer: the shortest ones."""
+_JUDGING = 0.4
+"""Seconds that judging takes for one of search: 0.1 to 0.3 were measured."""
+_ABOVE = 1 + Fraction(1, 2**40)
+"""Factor on the sum of all upper bounds that makes a total exceed every admissible one."""
+_DOUBLINGS = 20
+"""Of the total below which an answer is looked for: beyond, no joint moves at a limit."""
+_ROUNDS = 40
+"""Halvings of the distance, in logarithms, to a total that equals its own least durations."""
+
+
+@dataclass(frozen=True, eq=False)
+class Tree:
+    """Boxes of durations that prove a total."""
+
+    total: Fraction
+    found: Found
+
+    def document(self) -> dict[str, Any]:
+        """Kind "declared" of docs/explanation/certificates-declared.md."""
+        rows, tree = self.found.nodes()
+        return {"kind": _KIND, "total": decimal(self.total), "rows": rows, "tree": tree}
+
+
+def _kind(problem: ExactProblem, total: Fraction) -> Any:
+    """The verifier's own kind of proof, without rows."""
+    stated = read_problem(problem_document(problem))
+    return proof_kind(_KIND)(stated, {"rows": [], "tree": []}, total, Clock(math.inf))
+
+
+def _declares(problem: ExactProblem) -> bool:
+    return isinstance(problem.curve, Interpolant)
+
+
+def _missing(problem: ExactProblem) -> str | None:
+    limited = any(x is not None for j in range(len(problem.joints)) for r in (1, 2, 3)
+                  for x in problem.sides(j, r))  # fmt: skip
+    if not limited and not any(problem.duration_lower):
+        return "nothing limits the total from below"
+    try:
+        _kind(problem, Fraction(1)).root()
+    except Refused as error:
+        return f"{problem.curve.name}: {error}"
+    return None
+
+
+@dataclass(eq=False)
+class _Stages:
+    """What the stages share."""
+
+    session: Session
+
+    def stage(self, target: Fraction) -> Tree:
+        """Prove that no total is below ``target``."""
+        session = self.session
+        kind, before = _kind(session.exact, target), session.nodes
+        signed = all(x is None for x in session.exact.duration_upper)
+        second = float(kind.second)
+
+        def watch(left: int, done: int) -> None:
+            session.report(left, before + done)
+            session.check_clock()
+
+        try:
+            found = search(kind, PLACES, signed, lambda h: self._look(h * second, target), watch)
+        except TooSmall:
+            raise OutOfTime from None
+        return Tree(target, found)
+
+    def _look(self, durations: Array, target: Fraction) -> None:
+        """Raise `Shorter` if a direction of these durations holds a total below the one given."""
+        if not len(durations):
+            return
+        floats = self.session.floats
+        tried = self.session.stretched(durations)
+        totals = tried.sum(axis=1)
+        totals[(tried > floats.duration_upper).any(axis=1)] = math.inf
+        for best in totals.argsort()[:_LOOKS]:
+            if not totals[best] < float(target) * (1 - _SLIGHT):
+                break
+            # The stretch knows nothing of positions.
+            if check(floats, tried[best]).verdict is Verdict.PASS:
+                raise Shorter(tried[best])
+
+
+def _beyond(exact: ExactProblem) -> Found | None:
+    """A way-point beyond a position limit, which no durations help."""
+    virtual = exact.piecewise.virtual
+    breaks = [b for b in range(exact.segments + 1) if b not in virtual]
+    for b, angles in zip(breaks, exact.waypoints, strict=True):
+        for j, x in enumerate(angles):
+            for sign, ends in ((1, exact.position_upper[j]), (-1, exact.position_lower[j])):
+                if ends is not None and sign * x > max(sign * y for y in ends.ends):
+                    found = Found()
+                    segment, place = (b, 0) if b < exact.segments else (b - 1, PLACES)
+                    found.leaves[0] = ((segment, j, 0, sign, place),)
+                    return found
+    return None
+
+
+def _rising(session: Session) -> Iterator[Fraction]:
+    """Totals below which an answer is looked for where the local search finds none."""
+    longest = [x for x in session.exact.duration_upper if x is not None]
+    if len(longest) == session.exact.segments:
+        yield sum(longest, Fraction(0)) * _ABOVE
+        return
+    stated, total = read_problem(problem_document(session.exact)), Fraction(1)
+    for _ in range(_ROUNDS):
+        # Least durations shrink as the total grows.
+        least = sum(least_durations(stated, total), Fraction(0))
+        total = Fraction(math.sqrt(float(total) * float(least)))
+    for _ in range(_DOUBLINGS):
+        total *= 2
+        yield total
+
+
+def _prove(session: Session) -> bool:
+    # A stage that was interrupted begins anew: of a stopped run only the proof counts.
+    beyond = _beyond(session.exact)
+    if beyond is not None:
+        session.keep(Fraction(1), Tree(Fraction(1), beyond))
+        session.infeasible = True
+        return True
+    session.judging = _JUDGING
+    session.seek()
+    stages = _Stages(session)
+    totals = _rising(session)
+    while session.upper is None:
+        total = next(totals, None)
+        if total is None:
+            return False
+        try:
+            session.keep(total, stages.stage(total))
+        except Shorter as found:
+            if not session.seek(found.durations):
+                raise OutOfTime from None  # the improvement is too slight to prove
+        else:
+            session.infeasible = None not in session.exact.duration_upper
+            if session.infeasible:
+                return True
+    ladder = _LADDER if session.request.gap >= _FINE else replace(_LADDER, near=0.0)
+    session.climb(ladder, partial(down, digits=_DIGITS), stages.stage)
+    return True
+
+
+DECLARED = Certifier(
+    "declared piecewise polynomials at rest, each segment with a least duration",
+    _declares,
+    _missing,
+    _prove,
+    boxes=20_000,
+    sided=True,
+)
+"""Of any degrees, continuity and rest: 3-5-3, 4-3-4, septic splines and the like."""

@@ -1,0 +1,51 @@
+"""Declared curves of many kinds, and problems on them with limits of every order."""
+
+from __future__ import annotations
+
+import numpy as np
+from trajgap.problem import (
+    Interpolant,
+    Limits,
+    Problem,
+    cubic_spline,
+    cubic_spline_virtual,
+    piecewise,
+    quintic_spline,
+    quintic_spline_virtual,
+    septic_spline,
+    three_five_three,
+)
+
+CURVES = {
+    "3-5-3": (three_five_three(), 4),
+    "4-3-4": (piecewise((4, 3, 4)), 4),
+    "5-3-5, C3": (piecewise((5, 3, 5), 3), 4),
+    "4-3-3-4": (piecewise((4, 3, 3, 4)), 5),
+    "4-3-3-3-3-4": (piecewise((4, 3, 3, 3, 3, 4)), 7),
+    "septic, C6": (septic_spline(3), 4),
+    "clamped cubic": (cubic_spline(4), 5),
+    "cubic, virtual": (cubic_spline_virtual(3), 3),
+    "quintic": (quintic_spline(3), 4),
+    "quintic, virtual": (quintic_spline_virtual(3), 3),
+    "rest inside": (
+        Interpolant(
+            (5, 3, 4, 4),
+            (2, 2, 2),
+            (((1, 0.0), (2, 0.0)), (), ((1, 0.0), (2, 0.0)), (), ((1, 0.0), (2, 0.0))),
+            name="mixed degrees with a stop",
+        ),
+        5,
+    ),
+}
+
+
+def drawn(name: str, rng: np.random.Generator, joints: int) -> Problem:
+    """With a limit of every order, position included, whose sides differ."""
+    curve, count = CURVES[name]
+    q = rng.normal(0.3, 1.0, (count, joints))
+    high = rng.uniform(0.5, 3.0, (3, joints)) * np.array([[1.0], [2.0], [9.0]])
+    low = -high * rng.uniform(0.6, 1.4, (3, joints))
+    limits = Limits(
+        *np.stack([low, high], axis=2), q.min(axis=0) - 0.5, q.max(axis=0) + rng.uniform(0.1, 1.0)
+    )
+    return Problem(q, limits, curve, rng.uniform(0.1, 0.2, curve.segments))

@@ -1,0 +1,128 @@
+"""Forgeries of lower bounds of declared curves, which are proved in floats."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from support.forgeries.forgery import GONE, NO_ANSWER, Document, Forgery
+
+_KIND, _COVERED = "declared.DeclaredCurve.", "declared.covered: "
+NOT_PROVED = _KIND + "end: a leaf with limits is not proved"
+UNDETERMINED = "declared_form.linear_form: the conditions do not determine the curve"
+WHOLE = "reading.whole: malformed: no integer in {low}..{high}: {shown(repr(value))}"
+NOT_THERE = _KIND + "__init__: a row leans on a limit that is not there"
+
+
+def _leaf(change: Callable[[list[Any]], Any], least: int = 0) -> Callable[[Document], None]:
+    """A change of the first leaf whose τ is at least so large."""
+
+    def altered(data: Document) -> None:
+        leaves = (node for node in data["proof"]["tree"] if type(node) is list and len(node) > 2)
+        change(next(leaf for leaf in leaves if abs(leaf[1]) >= least))
+        data["claim"] |= {"durations": None, "upper": None}
+
+    return altered
+
+
+def _turned(leaf: list[Any]) -> None:
+    leaf[1] = -leaf[1]
+
+
+def _size(n: int, degree: int = 3, smooth: int = 2) -> Callable[[Document], None]:
+    """A spline of so many equal segments."""
+
+    def altered(data: Document) -> None:
+        rest = [[order, "0"] for order in range(1, (degree + 1) // 2)]
+        data["problem"] |= {
+            "degrees": [degree] * n, "continuity": [smooth] * (n - 1),
+            "prescribed": [rest, *[[]] * (n - 1), rest], "virtual": [],
+            "joints": ["1"], "limits": [["1", "2", None]], "position_lower": [None],
+            "position_upper": [None], "waypoints": [[str(k)] for k in range(n + 1)],
+            "duration_lower": ["0"] * n, "duration_upper": [None] * n,
+        }  # fmt: skip
+        data["claim"] |= {"durations": None, "upper": None}
+
+    return altered
+
+
+FORGERIES = [
+    Forgery(_KIND + "__init__: the total is not positive", "declared",
+            {"proof.total": "0", "claim.lower": "0"}),
+    Forgery(_KIND + "__init__: the curve has too many unknowns", "declared", _size(12, 9, 8)),
+    *(Forgery(NOT_THERE, "declared", {**NO_ANSWER, **changes}) for changes in (
+        {"proof.rows.0": [0, 0, 3, 1, 0]}, {"proof.rows.0": [0, 0, 0, 1, 0]},
+        {"proof.rows.0": [0, 1, 0, -1, 0]}, {"problem.limits.0.0": "0"},
+        {"problem.limits.0.0": [None, "1"]}, {"problem.limits.0.0": ["-1", None]},
+        {"problem.limits.0.0": "1e16"})),
+    # A segment in which nothing moves, and one next to a virtual way-point.
+    *(Forgery(_KIND + "root: segment {min(zero, default=0)}: {_NO_FLOOR}", "declared-free",
+              {**NO_ANSWER, "problem.duration_lower": ["0"] * 3, **changes})
+      for changes in (
+          {"problem.waypoints.1": ["-0.375", "0.75"]},
+          {"problem.limits": [[None] * 3] * 2, "proof.rows": []},
+          {"problem.degrees": [3, 3, 3], "problem.virtual": [1],
+           "problem.waypoints": [["0"] * 2, ["1"] * 2, ["0.5"] * 2],
+           "problem.prescribed.3": [[1, "0"]]})),
+    *(Forgery(_KIND + "cut: the place of a cut is not stated in this kind of proof",
+              "declared", {"proof.tree": [["/", 0, place], ["."], ["."]]}) for place in ("1", 0)),
+    *(Forgery(_KIND + "leaf: it is not empty", "declared", {"proof.tree": tree})
+      for tree in ([["."]], [0, ["."], ["."]])),
+    *(Forgery(_KIND + "leaf: no way-point is beyond its limit there", "declared",
+              {**NO_ANSWER, "proof.rows": [row], "proof.tree": [[".", 0]]})
+      for row in ([0, 0, 0, -1, 0], [0, 0, 0, -1, 5], [1, 0, 0, -1, 2**19], [1, 1, 0, 1, 2**20],
+                  [1, 1, 2, 1, 0])),
+    # At a limit is not beyond it, and what hangs on the durations may be moved.
+    *(Forgery(_KIND + "leaf: no way-point is beyond its limit there", "declared",
+              {**NO_ANSWER, "problem.position_lower.0": low, "proof.rows": [row],
+               "proof.tree": [[".", 0]]})
+      for low, row in (("-0.375", [2, 0, 0, -1, 0]), ("0.5", [1, 0, 0, -1, 2**19]))),
+    Forgery(_KIND + "end: a leaf misses a weight", "declared", {"proof.tree": [[".", 0, 0, 1, 0]]}),
+    Forgery(_KIND + "end: a leaf has too many rows", "declared",
+            {"proof.tree": [[".", 0, *[0, 1] * 65]]}),
+    *(Forgery(NOT_PROVED, kind, changes) for kind, changes in (
+        ("declared", {"proof.tree": [[".", 0, 0, 1]]}),
+        ("declared", {"proof.tree": [[".", 0, 0, 0]]}),
+        ("declared", {**NO_ANSWER, "proof.total": "14.8583"}),
+        ("declared-free", {**NO_ANSWER, "proof.total": "6.07595"}),
+        ("declared", {**NO_ANSWER, "problem.limits.0.0": "1.05"}),
+        ("declared", {**NO_ANSWER, "problem.limits.0.0": ["-1.05", "1"]}),
+        ("declared-free", {**NO_ANSWER, "problem.limits.0.1": "2.1"}),
+        ("declared-free", {**NO_ANSWER, "problem.limits.0.1": ["-2", "2.1"]}),
+        ("declared-free", {**NO_ANSWER, "problem.waypoints.1.0": "0.99"}),
+        # With an upper bound no answer is stretched to the total: nothing is cut off below it.
+        ("declared-free", {**NO_ANSWER, "problem.duration_upper": ["5", "5", "5"],
+                           "proof.tree": [[".", 1, 0, 1]]}),
+        ("declared-free", _leaf(_turned, 600_000 // 1024)),
+        ("declared-free", _leaf(lambda leaf: leaf.__setitem__(slice(2, None), [2, 1]))))),
+    Forgery(NOT_PROVED, "declared", lambda data: data["proof"].update(
+        tree=[0, *data["proof"]["tree"], [".", 0, 0, 1]])),
+    Forgery(_COVERED + "declaration not covered: no declared piecewise polynomial", "stretched",
+            lambda data: data.update(proof={"kind": "declared", "total": data["proof"]["total"],
+                                            "rows": [], "tree": [["."]]})),
+    *(Forgery(_COVERED + "declaration not covered: a derivative other than 0 is prescribed",
+              "declared", {**NO_ANSWER, f"problem.prescribed.{end}": value})
+      for end in (0, 3) for value in ([[1, "0.1"], [2, "0"]], [[1, ["0", "-1"]], [2, "0"]])),
+    Forgery(_COVERED + "one segment alone has no inner break", "declared", _size(1)),
+    Forgery(_COVERED + "more than {MOST_DECLARED_SEGMENTS} segments", "declared", _size(13)),
+    *(Forgery(UNDETERMINED, "declared", {**NO_ANSWER, path: value}) for path, value in (
+        ("problem.degrees.0", 4), ("problem.degrees.1", 3), ("problem.continuity.0", 1),
+        ("problem.prescribed.0", [[1, "0"]]))),
+    # A straight line is not at rest at its end, nor a cubic with two such conditions before it.
+    *(Forgery("declared_form._eliminated: the conditions contradict each other", "declared",
+              {**NO_ANSWER, path: value})
+      for path, value in (("problem.degrees.0", 1), ("problem.prescribed.1", [[1, "0"]]))),
+    *(Forgery(WHOLE, "declared", {path: value}) for path, value in (
+        ("proof.rows.0.0", 3), ("proof.rows.0.0", -1), ("proof.rows.0.1", 2),
+        ("proof.rows.0.1", -1), ("proof.rows.0.2", 4), ("proof.rows.0.2", -1),
+        ("proof.rows.0.4", 2**20 + 1), ("proof.rows.0.4", -1), ("proof.tree", [3]),
+        ("proof.tree", [[".", 99]]), ("proof.tree", [[".", -1]]),
+        # Only a total that answers may be stretched to lets τ be negative.
+        ("proof.tree", [[".", -1, 0, 1]]), ("proof.tree", [[".", 0, 0, -1]]),
+        ("proof.tree", [[".", 0, 99, 1]]), ("proof.tree", [[".", 0, -1, 1]]),
+        ("proof.tree", [[".", "1", 0, 1]]), ("proof.tree", [[".", 2**52 + 1, 0, 1]]),
+        ("proof.tree", [[".", 0, 0, 2**52 + 1]]))),
+    Forgery(WHOLE, "declared-free", {"proof.tree": [[".", -(2**52) - 1, 0, 1]]}),
+    Forgery("reading.fields: malformed: {what}: {', '.join(missing)}: missing", "declared",
+            {"proof.rows": GONE}),
+]  # fmt: skip

@@ -1,0 +1,323 @@
+"""Lower bounds of weighted limits over boxes of any declared curve, many boxes at once.
+
+The argument is that of docs/explanation/certificates-declared.md, with its symbols; arrays lead
+with the box. Whatever solves an equation (Y ≈ S⁻¹, E ≈ D S⁻¹, x₀, μ, and the bounds v, ξ, w) is a
+hint: its floats are taken as exact, and what it leaves over is bounded. All else is sums of
+products with fewer than 8000 roundings on any path, 9e-13 of the same sum over absolute values:
+`ROUND` of that sum is taken off, or added where a bound from above is wanted.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from contextlib import suppress
+from itertools import combinations_with_replacement, pairwise, product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .declared_form import Form
+
+Array = NDArray[np.float64]
+Rows = NDArray[np.int64]
+
+ROUND = 1e-12
+"""Of a sum over absolute values: more than its roundings can amount to."""
+ROOM = 1e-6
+"""By which hints are larger than the bounds that they are to pass as: far more than rounding."""
+SLIGHT = 1e-30
+"""Added to bounds that have to be positive: angles and the total are about 1 here."""
+BRIEFEST = 1e-9
+"""Durations in a leaf with limits are above it, in units of about the total: nothing underflows."""
+LARGEST = 1e12
+"""Of the entries of the hints, for the same reason; beyond, a leaf is not proved."""
+
+
+class Task:
+    """What all boxes have in common.
+
+    Parameters
+    ----------
+    form : Form
+    caps : ndarray, shape (2, joints, 4)
+        Limits of orders 0 to 3 on the lower and the upper side, as sizes with the sign of the side
+        taken off: σ q⁽ʳ⁾ ≤ caps[(1 + σ)/2]; inf where there is none.
+    total : float
+    """
+
+    def __init__(self, form: Form, caps: Array, total: float) -> None:
+        self.form, self.caps, self.total = form, caps, total
+        self.segments, self.powers, self.unknowns = form.basis.shape
+        self.joints = caps.shape[1]
+        n, half = self.segments, 0.5 * form.orders
+        self.half = half
+        """κ = r/2 of each derivative that is to agree."""
+        self.at = np.zeros((self.unknowns, n - 1))
+        self.at[np.arange(self.unknowns), form.breaks] = 1.0
+        ends = np.searchsorted(form.breaks, np.arange(n))
+        self.groups = [slice(int(a), int(b)) for a, b in pairwise(ends)]
+        """What is to agree at each inner break."""
+        self.across = np.diff(np.eye(n), axis=0)
+        """ζ of the inner breaks from δ of the segments."""
+        every = list(combinations_with_replacement(range(n), 3))
+        place = {one: at for at, one in enumerate(every)}
+        self.thrice = np.array(every).T
+        self.cubes = np.array([place[k, k, k] for k in range(n)])
+        # A product of three ζ is eight products of three δ.
+        self.spread = np.zeros(((n - 1) ** 3, len(every)))
+        for at, breaks in enumerate(product(range(n - 1), repeat=3)):
+            for sides in product((0, 1), repeat=3):
+                one = tuple(sorted(b + s for b, s in zip(breaks, sides, strict=True)))
+                self.spread[at, place[one]] += (-1.0) ** (3 - sum(sides))  # type: ignore[index]
+        powers = np.arange(self.powers)
+        self.factors = np.ones((4, self.powers))
+        for order in range(1, 4):
+            self.factors[order] = self.factors[order - 1] * np.maximum(powers - order + 1, 0)
+
+    def shapes(self, rows: Rows, places: float) -> Array:
+        """σ times the derivative of each power at the place: (..., power)."""
+        _, _, order, sign, place = np.moveaxis(rows, -1, 0)
+        s = place / places
+        power = np.ones((*s.shape, self.powers))
+        for p in range(1, self.powers):
+            # The power of s that is left of sᵖ.
+            power[..., p] = np.where(p > order, power[..., p - 1] * s, 1.0)
+        return np.asarray(sign[..., None] * self.factors[order] * power)
+
+    def cap(self, rows: Rows) -> Array:
+        """Limit of each row."""
+        return np.asarray(self.caps[(1 + rows[..., 3]) // 2, rows[..., 1], rows[..., 2]])
+
+
+class Centre:
+    """The curve at the centres of a batch of boxes, and how far the boxes reach.
+
+    Parameters
+    ----------
+    task : Task
+    low, high : ndarray, shape (box, segments)
+    """
+
+    def __init__(self, task: Task, low: Array, high: Array) -> None:
+        self.task, form = task, task.form
+        h = np.sqrt(low * high)
+        self.h, self.low = h, low
+        # Logarithm and quotient are near to their last digits.
+        self.e = np.log(np.maximum(high / h, h / low)) * (1.0 + ROUND) + ROUND
+        self.z = self.e[:, :-1] + self.e[:, 1:]
+        self.u = task.half * self.z[:, form.breaks]
+        self.t = np.tanh(self.u) * (1.0 + ROUND)
+        ratio = np.sqrt(h[:, 1:] / h[:, :-1])[:, form.breaks]
+        gain = np.ones_like(ratio)
+        for order in range(1, int(form.orders.max(initial=0)) + 1):
+            gain = np.where(form.orders >= order, gain * ratio, gain)
+        gain = gain[:, :, None]
+        ends, starts = gain * form.ends, form.starts / gain
+        end, start = gain * form.end, form.start / gain
+        s_, self.d_ = ends - starts, ends + starts
+        s, self.d = start - end, -(end + start)
+        self.s_, self.s = s_, s
+        self.y = inverted(s_)
+        self.hint = self.d_ @ self.y
+        self.x = self.y @ s
+        self.x += self.y @ (s - s_ @ self.x)
+        self.g = self.d_ @ self.x - self.d
+        # What the hints leave over, with all rounding.
+        top, fixed = np.abs(ends) + np.abs(starts), np.abs(end) + np.abs(start)
+        self.top = top
+        one, hint, y = np.eye(task.unknowns), np.abs(self.hint), np.abs(self.y)
+        self.rest = np.abs(s - s_ @ self.x) + ROUND * (fixed + top @ np.abs(self.x))
+        inverse = np.abs(one - self.y @ s_) + ROUND * (one + y @ top)
+        slope = np.abs(self.d_ - self.hint @ s_) + ROUND * (top + hint @ top)
+        loose = hint @ self.rest + ROUND * (fixed + top @ np.abs(self.x))
+        # |g| ≤ v and |x − x₀| ≤ ξ: see the page.
+        self.pull = hint * self.t[:, None, :]
+        size = np.abs(self.g)
+        least = 1e-9 * size.max(axis=1, keepdims=True, initial=0.0) + SLIGHT
+        self.v = self._reached(size + loose + least)
+        self.xi = (1.0 + ROOM) * (y @ (self.rest + self.t[:, :, None] * self.v)) + SLIGHT
+        more = (1.0 + ROUND) * (size + loose + SLIGHT + slope @ self.xi + self.pull @ self.v)
+        held = (self.v > more).all(axis=(1, 2))
+        more = y @ (self.rest + self.t[:, :, None] * self.v) + inverse @ self.xi
+        held &= (self.xi > (1.0 + ROUND) * (more + 0.5 * SLIGHT)).all(axis=(1, 2))
+        usual = np.maximum(hint, y).max(axis=(1, 2), initial=0.0) < LARGEST
+        self.held = held & usual & (low > BRIEFEST).all(axis=1) & (low <= high).all(axis=1)
+        self.slack = loose + slope @ self.xi
+
+    def _reached(self, from_: Array) -> Array:
+        """A little more than (1 − |E| T)⁻¹ of bounds; not positive where there is no such bound."""
+        one = np.eye(self.task.unknowns)
+        return np.asarray((1.0 + ROOM) * (inverted(one - self.pull) @ from_))
+
+    def pick(self, which: NDArray[np.bool_]) -> Centre:
+        """Some of the boxes."""
+        own = object.__new__(Centre)
+        for name, value in vars(self).items():
+            setattr(own, name, value if name == "task" else value[which])
+        return own
+
+    def least(self, tau: Array, rows: Rows, weights: Array, places: float) -> Array:
+        """Lower bound of each box's sum of weighted limits and τ (Σ h/total − 1); −inf for none.
+
+        Parameters
+        ----------
+        tau : ndarray, shape (box,)
+        rows : ndarray of int, shape (box, row, 5)
+            Segment, joint, order, sign, place.
+        weights : ndarray, shape (box, row)
+            ≥ 0; a limit of order 1 or more counts as 1 at the centre of its segment.
+        places : float
+            Of a piece.
+        """
+        task, form, n = self.task, self.task.form, self.task.segments
+        segment, joint, order = rows[..., 0], rows[..., 1], rows[..., 2]
+        box = np.arange(len(tau))[:, None]
+        cap = task.cap(rows)
+        here = np.where(weights > 0.0, cap, 1.0)
+        power = np.ones_like(weights)
+        for r in range(1, 4):
+            power = np.where(order >= r, power * self.h[box, segment], power)
+        share = np.where(order > 0, weights / (here * power), weights)
+        shape = task.shapes(rows, places) * share[..., None]
+        against = np.where(order > 0, weights, weights * here)
+        # φ by joint, its constant, and both over absolute values.
+        phi = np.zeros((len(tau), task.joints, task.unknowns))
+        phi_top = np.zeros_like(phi)
+        basis, fixed = form.basis[segment], form.fixed[segment, :, joint]
+        np.add.at(phi, (box, joint), np.einsum("lcp,lcpx->lcx", shape, basis))
+        np.add.at(phi_top, (box, joint), np.einsum("lcp,lcpx->lcx", np.abs(shape), np.abs(basis)))
+        value = (shape * fixed).sum(axis=(1, 2)) - against.sum(axis=1) - tau
+        size = (np.abs(shape * fixed)).sum(axis=(1, 2)) + np.abs(against).sum(axis=1) + np.abs(tau)
+        value += np.einsum("ljx,lxj->l", phi, self.x)
+        size += np.einsum("ljx,lxj->l", phi_top, np.abs(self.x))
+        mu = phi @ self.y
+        size_mu = np.abs(mu)
+        left = np.abs(phi - mu @ self.s_) + ROUND * (phi_top + size_mu @ self.top)
+        error = np.einsum("ljx,lxj->l", left, self.xi)
+        error += np.einsum("ljp,lpj->l", size_mu, self.rest)
+        # δ_g of the page, three times as it comes in.
+        slack = self.slack + self.pull @ (self.slack + self.pull @ self.slack)
+        error += np.einsum("ljp,lp,lpj->l", size_mu, self.t, slack)
+        error += self._tail(mu)
+        one, two, three, rest, big = self._orders(mu)
+        error += rest
+        size += big
+        gradient = one @ task.across
+        bend = task.across.T @ (two + np.swapaxes(two, 1, 2)) @ task.across
+        cubic = three.reshape(len(tau), -1) @ task.spread
+        # Limits W e^{rδ} and the total, which depend on one duration each.
+        each = np.arange(n)
+        lasting = tau[:, None] * self.h / task.total
+        value += lasting.sum(axis=1)
+        parts = [(1, lasting)]
+        for r in range(1, 4):
+            held = np.zeros((len(tau), n))
+            np.add.at(held, (box, segment), np.where(order == r, weights, 0.0))
+            parts.append((r, -held))
+        for r, factor in parts:
+            gradient += r * factor
+            bend[:, each, each] += r * r * factor
+            cubic[:, task.cubes] += r**3 / 6.0 * factor
+            wide = r * self.e
+            top = np.abs(factor)
+            error += (top * wide**4 / 24.0 * np.exp(wide)).sum(axis=1)
+            size += (top * (1.0 + wide + wide**2 + wide**3)).sum(axis=1)
+        error += (np.abs(cubic) * self.e[:, task.thrice].prod(axis=1)).sum(axis=1)
+        # In x = δ/e: x_k x_m ≥ −½(x_k² + x_m²), so that products of two take from the squares.
+        bend = bend * self.e[:, :, None] * self.e[:, None, :]
+        curve = bend[:, each, each]
+        bend[:, each, each] = 0.0
+        curve = curve - np.abs(bend).sum(axis=2)
+        lean = np.abs(gradient) * self.e
+        inside = lean < curve
+        turn = -0.5 * lean * lean / np.where(inside, curve, 1.0)
+        value += np.where(inside, turn, 0.5 * curve - lean).sum(axis=1)
+        found = value - error * (1.0 + 1e-9) - 2.0 * ROUND * size
+        there = np.isfinite(here).all(axis=1) & self.held
+        return np.where(there & np.isfinite(found), found, -np.inf)
+
+    def _tail(self, mu: Array) -> Array:
+        """At most |μᵀ ΘE ΘE ΘE Θ g|, as âᵀw with a = μᵀΘEΘ and w ≥ |(1 + EΘ)⁻¹ EΘEΘ g₀|.
+
+        Orders of one break move together: what they add up to counts.
+        """
+        task, u, t, z = self.task, self.u, self.t, self.z
+        hint = np.abs(self.hint)
+        off = u**3 / 3.0
+        # EΘg₀ by the break of Θ, and what replacing θ by κζ leaves over.
+        slope = self.hint * task.half
+        by = np.stack([slope[:, :, one] @ self.g[:, one] for one in task.groups], axis=2)
+        loose = np.einsum("lsp,lp,lpj->lsj", hint, off, np.abs(self.g))
+        flat = by.reshape(*by.shape[:2], -1)
+        twice = np.stack([slope[:, :, one] @ flat[:, one] for one in task.groups], axis=2)
+        twice = twice.reshape(*twice.shape[:3], *by.shape[2:])
+        twice = 0.5 * (twice + np.swapaxes(twice, 2, 3))
+        top = np.einsum("lscbj,lc,lb->lsj", np.abs(twice), z, z)
+        top += hint @ (off[:, :, None] * np.einsum("lqbj,lb->lqj", np.abs(by), z))
+        top += self.pull @ loose
+        moved = u[:, :, None] * (hint @ (u[:, :, None] * np.abs(self.g)))
+        top += ROUND * (hint @ moved) + self.pull @ (self.pull @ self.slack) + SLIGHT
+        w = self._reached(top)
+        held = (w > (1.0 + ROUND) * (top + self.pull @ w)).all(axis=(1, 2))
+        size = np.abs(mu)
+        moved = mu * task.half
+        first = np.stack([moved[:, :, one] @ self.hint[:, one] for one in task.groups], axis=3)
+        a = np.einsum("ljqb,lb->ljq", np.abs(first), z)
+        a += (size * off[:, None, :]) @ hint + ROUND * ((size * u[:, None, :]) @ hint)
+        tail = np.einsum("ljq,lq,lqj->l", a, t, w)
+        return np.where(held, tail, np.inf)
+
+    def _orders(self, mu: Array) -> tuple[Array, Array, Array, Array, Array]:
+        """Taylor parts in ζ of −μᵀΘg₀ + μᵀΘEΘg₀ − μᵀΘEΘEΘg₀ of orders 1 to 3.
+
+        Also what replacing tanh by its series leaves over, and the sum over absolute values.
+        """
+        task, u, e = self.task, self.u, self.hint
+        at, size_e = task.at, np.abs(self.hint)
+        q = np.einsum("ljp,lqj->lpq", mu, self.g)
+        top = np.einsum("ljp,lqj->lpq", np.abs(mu), np.abs(self.g))
+        half, diagonal = task.half, np.einsum("lpp->lp", q)
+        one = -(diagonal * half) @ at
+        pair = q * e * half[:, None] * half
+        two = at.T @ pair @ at
+        turned = np.swapaxes(e * half[:, None], 1, 2)
+        moved = np.stack([turned[:, :, one] @ q[:, one] for one in task.groups], axis=2)
+        moved = (moved * (e * half)[:, :, None, :]) @ at
+        three = -np.einsum("lqbd,qc->lbcd", moved, at * half[:, None])
+        b = np.arange(task.segments - 1)
+        three[:, b, b, b] += (diagonal * half**3 / 3.0) @ at
+        size = np.abs(q)
+        spot = np.einsum("lpp->lp", size)
+        rest = (spot * u**5).sum(axis=1) * (2.0 / 15.0)
+        cube = u**3
+        rest += np.einsum("lpq,lp,lq->l", size * size_e, cube, u) / 3.0
+        rest += np.einsum("lpq,lp,lq->l", size * size_e, u, cube) / 3.0
+        through = (size_e * u[:, None, :]) @ size_e
+        rest += np.einsum("lps,lp,ls->l", size * through, cube, u) / 3.0
+        rest += np.einsum("lps,lp,ls->l", size * through, u, cube) / 3.0
+        third = (size_e * cube[:, None, :]) @ size_e
+        rest += np.einsum("lps,lp,ls->l", size * third, u, u) / 3.0
+        big = (np.einsum("lpp->lp", top) * (u + cube)).sum(axis=1)
+        big += np.einsum("lpq,lp,lq->l", top * (size_e + through), u, u)
+        return one, two, three, rest, big
+
+
+def inverted(matrices: Array) -> Array:
+    """Hints at inverses; nan for what has none."""
+    try:
+        return np.asarray(np.linalg.inv(matrices))
+    except np.linalg.LinAlgError:
+        found = np.full_like(matrices, np.nan)
+        for at, one in enumerate(matrices):
+            with suppress(np.linalg.LinAlgError):
+                found[at] = np.linalg.inv(one)
+        return found
+
+
+def padded(leaves: Sequence[tuple[Sequence[int], Sequence[float]]]) -> tuple[Rows, Array]:
+    """Numbers of rows and weights as arrays, filled up with weights of 0."""
+    most = max(len(which) for which, _ in leaves)
+    ids, weights = np.zeros((len(leaves), most), np.int64), np.zeros((len(leaves), most))
+    for at, (which, each) in enumerate(leaves):
+        ids[at, : len(which)], weights[at, : len(each)] = which, each
+    return ids, weights
