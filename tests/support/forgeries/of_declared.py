@@ -76,7 +76,7 @@ FORGERIES = [
     *(Forgery(_KIND + "leaf: no way-point is beyond its limit there", "declared",
               {**NO_ANSWER, "problem.position_lower.0": low, "proof.rows": [row],
                "proof.tree": [[".", 0]]})
-      for low, row in (("-0.375", [2, 0, 0, -1, 0]), ("0.5", [1, 0, 0, -1, 2**19]))),
+      for low, row in (("-0.375", [2, 0, 0, -1, 0]), ("-0.25", [2, 0, 0, -1, 5]))),
     Forgery(_KIND + "end: a leaf misses a weight", "declared", {"proof.tree": [[".", 0, 0, 1, 0]]}),
     Forgery(_KIND + "end: a leaf has too many rows", "declared",
             {"proof.tree": [[".", 0, *[0, 1] * 65]]}),
