@@ -165,7 +165,8 @@ class _Above:
     best: str
 
     def __str__(self) -> str:
-        return f"{_named(self)} is {self.least}{self.far} above the {self.name} {self.best}"
+        far = f"{self.least}{self.far} above the {self.name} {self.best}"
+        return f"{_remarked(self.shown, self.remark)} is {far}"
 
 
 @dataclass(frozen=True)
@@ -184,10 +185,6 @@ _EMPTY = (np.inf, -np.inf)
 """Stands for the times of a total that is not printed."""
 _Part = str | _Above | _Agrees | _Unknown
 """What is said of one problem; plain words where a total differs otherwise."""
-
-
-def _named(one: _Above) -> str:
-    return _remarked(one.shown, one.remark)
 
 
 def _remarked(shown: str, remark: str) -> str:
@@ -373,21 +370,16 @@ def _kept_there(study: Study, claim: TimeClaim, pid: str, rid: str) -> str:
     return _REMARKS.get(study.claim_keeping(claim, pid, rid), "")
 
 
-def _apart(study: Study, pid: str, rid: str) -> bool:
-    """Whether the paper plans each of several joints by itself."""
-    return planned_apart(study.problem(pid, rid))
-
-
 def _together_where_apart(study: Study, pid: str, rid: str) -> str:
     """What the optimum is of, where the paper plans each joint by itself: that has another one."""
-    return " of all joints together" if _apart(study, pid, rid) else ""
+    return " of all joints together" if planned_apart(study.problem(pid, rid)) else ""
 
 
 def _joint_by_joint(
     study: Study, claim: TimeClaim, pid: str, rid: str, seconds: float
 ) -> str | None:
     """A total beside what the joints' own optima give, where each is planned by itself."""
-    if not _apart(study, pid, rid) or claim.joint is not None:
+    if not planned_apart(study.problem(pid, rid)) or claim.joint is not None:
         return None
     if claim.coupling is Coupling.SHARED and not isinstance(claim, MaximumClaim):
         return None  # the longest durations of joints that are each planned alone are shared too

@@ -159,7 +159,7 @@ class Solution:
             return Evidence.NONE
         if self.lower_bound is not None and close(self.lower_bound, self.best):
             return Evidence.CERTIFIED
-        ended = self.status in (Status.CONVERGED, Status.NOT_ATTAINED)
+        ended = self.status in (Status.CONVERGED, Status.OPTIMAL, Status.NOT_ATTAINED)
         return Evidence.BEST_KNOWN if ended else Evidence.UNCONVERGED
 
     @property

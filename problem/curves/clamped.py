@@ -25,6 +25,7 @@ from .clamped_knots import (
     outside_support,
 )
 from .compilation import Deferred
+from .condition import counts_in_words
 from .families import piecewise, quintic_spline
 from .kind import Curve, Derivatives, Enclosed, PeakGradients, Shape, as_batch
 from .peak import Extremum
@@ -127,8 +128,9 @@ class ClampedBSpline(StretchedCurve):
                     f"{whole} knots in all determine it, and {len(self.knot_vector)} are given"
                 )
             raise TrajgapError(
-                f"interpolant {self.name}: {word}-determined, {self.conditions} conditions on "
-                f"{self.control_points} control points; {nearest}"
+                f"interpolant {self.name}: {word}-determined, "
+                f"{counts_in_words(self.conditions, self.control_points, 'control points')}; "
+                f"{nearest}"
             )
         for row in self.fractions or ():
             if len(row) != self.waypoints or row[0] != 0.0 or row[-1] != 1.0:

@@ -90,7 +90,7 @@ def clamped_readings(
     --------
     >>> first = clamped_readings(8, degrees=(5,))[0]
     >>> first.words
-    'determined, 12 conditions on 12 control points'
+    'determined, 12 conditions for 12 control points'
     """
     if waypoints < 2:
         raise TrajgapError("interpolant: at least two way-points are needed")

@@ -86,11 +86,11 @@ def test_what_was_judged_on_doubted_way_points_says_so() -> None:
 
 
 def test_rest_at_all_points_may_be_meant_of_the_ends() -> None:
-    """The sentence leaves 18 conditions on 14 coefficients; another one counts 14."""
+    """The sentence leaves 18 conditions, but only 14 coefficients; another one counts 14."""
     (count,) = [c for c in audited("irb460-pso-353").causes if c.rule == "TG107"]
     (meant,) = count.explanations
     assert meant.change == "Section 4.2 may mean rest at the two ends only."
-    assert "14 conditions on 14 coefficients, as section 4.3 counts them" in meant.effect
+    assert "14 conditions for 14 coefficients, as section 4.3 counts them" in meant.effect
 
 
 @pytest.mark.parametrize(("orders", "offered"), [([1], 1), ([1, 2], 0)])
@@ -105,7 +105,7 @@ def test_rest_at_the_ends_is_offered_only_where_the_count_fits(
     (cause,) = judged(*given, claim("rest", "conditions", **keys)).causes
     assert cause.rule == "TG107"
     said = [e.effect for e in cause.explanations]
-    assert said == ["Then there are 8 conditions on 8 coefficients."] * offered
+    assert said == ["Then there are 8 conditions for 8 coefficients."] * offered
 
 
 def test_one_claim_under_many_readings_is_one_error() -> None:

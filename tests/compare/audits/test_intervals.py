@@ -100,7 +100,7 @@ def test_a_given_certificate_counts_once_it_is_proved_again() -> None:
 
 def test_a_search_that_did_not_converge_is_never_called_best_known() -> None:
     problem = stated().problem()
-    best = solve(problem)
+    best = solve(problem, prove=0)
     assert best.evidence is Evidence.BEST_KNOWN
     early = Solution(problem, Status.FEASIBLE, "KKT residual 3e-01", best.durations)
     assert early.evidence is Evidence.UNCONVERGED

@@ -220,8 +220,10 @@ def test_without_waypoints_the_reason_stands_in_place_of_numbers() -> None:
     assert "no way-points are printed" in said
     page = markdown(Page("z1", "t", (side_by_side(one),)))
     assert all(f"| {one.case.labels[reading.id]} |" in page for reading in one.case.readings)
-    assert "over-determined, 12 conditions on 8 control points" in page
-    assert "| 5 | waypoints | determined | determined, 12 conditions on 12 control points |" in page
+    assert "over-determined, 12 conditions, but only 8 control points" in page
+    assert (
+        "| 5 | waypoints | determined | determined, 12 conditions for 12 control points |" in page
+    )
 
 
 def test_a_single_reading_needs_no_comparison() -> None:

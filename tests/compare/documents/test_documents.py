@@ -168,7 +168,7 @@ def solved(*answer: Any) -> Any:
 
 def test_a_shared_solution() -> None:
     problem = problem_with(duration_lower=[0.0, 0.0, 2.5])
-    answer = solve(problem)
+    answer = solve(problem, prove=0)
     assert answer.durations is not None
     path = retime(fit(problem.curve, problem.waypoints, answer.durations), problem.limits)
     result = solved(answer, [path])

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
 from scipy.optimize import minimize
 from support.b_splines import ByScipy, clamped, uniform
-from trajgap.nlp import Status, kkt, random_starts, solve, solve_per_joint
+from trajgap.nlp import Status, kkt, random_starts, solve_per_joint
+from trajgap.nlp.optimum import solve
 from trajgap.problem import (
     Limits,
     Problem,
@@ -197,7 +199,7 @@ def test_bounds_positions_and_impossible_limits(time: str) -> None:
 
 def test_each_joint_by_itself() -> None:
     problem, _ = uniform("timed", 35, count=4, joints=2)
-    answer = solve_per_joint(problem, starts=2)
+    answer = solve_per_joint(problem, solver=partial(solve, starts=2))
     assert answer.status is Status.CONVERGED
     assert not answer.ranges
     assert "piecewise polynomials only" in str(answer.why)

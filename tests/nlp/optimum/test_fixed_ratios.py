@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq
-from trajgap.nlp import Evidence, Status, solve, solve_per_joint, structure_of
+from trajgap.nlp import Evidence, Status, solve_per_joint, structure_of
+from trajgap.nlp.optimum import solve
 from trajgap.problem import (
     Coupling,
     Limits,

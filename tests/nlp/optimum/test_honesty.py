@@ -9,8 +9,8 @@ import pytest
 from scipy.optimize import minimize
 from support.benchmarks import loaded
 from trajgap.compare import audit
-from trajgap.nlp import Solution, Status, solve, solve_per_joint
-from trajgap.nlp.optimum import feasibility, limit_rows
+from trajgap.nlp import Solution, Status, solve_per_joint
+from trajgap.nlp.optimum import feasibility, limit_rows, solve
 from trajgap.nlp.optimum.descent import LogBox, descend, least_point, restored
 from trajgap.nlp.optimum.exact_multistart import box_above, exact_search
 from trajgap.nlp.optimum.limit_rows import exact_rows
@@ -158,7 +158,10 @@ def test_a_known_motion_is_kept_where_the_solver_finds_nothing(
 def test_known_motions_of_each_joint_and_of_free_curves() -> None:
     problem = two_joints()
     own = solve(problem.joint(1))
-    answer = solve_per_joint(problem, slacks=(), known={"2": own.durations})
+    known = {"2": own.durations}
+    answer = solve_per_joint(
+        problem, slacks=(), solver=lambda one: solve(one, known=known.get(one.joints[0]))
+    )
     assert answer.joints[1].best <= own.best * (1 + 1e-9)
     free = replace(problem, curve=piecewise((5, 5, 5), 2))
     best = solve(free)

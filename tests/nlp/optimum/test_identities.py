@@ -11,7 +11,8 @@ from support.long_problems import long_problem
 from support.small_problems import small_problem
 from support.uneven import CURVES as UNEVEN
 from support.uneven import uneven_problem
-from trajgap.nlp import Form, Solution, Status, kkt, solve
+from trajgap.nlp import Form, Solution, Status, kkt
+from trajgap.nlp.optimum import solve
 from trajgap.problem import (
     Curve,
     Interpolant,

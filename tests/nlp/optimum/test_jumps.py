@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq, differential_evolution, fsolve, minimize_scalar
-from trajgap.nlp import Solution, Status, solve
+from trajgap.nlp import Solution, Status
+from trajgap.nlp.optimum import solve
 from trajgap.nlp.optimum.joined import joined
 from trajgap.nlp.optimum.matching import jump_equations, matched
 from trajgap.nlp.optimum.smoother import as_answer, same_motions, smoother
@@ -239,7 +240,7 @@ def test_curves_without_such_ratios_are_left_to_the_search() -> None:
 
 
 DETERMINED = piecewise((3, 3, 3), 1, ((1, 0.0), (2, 0.0)))
-"""Twelve conditions on twelve coefficients; acceleration may jump at both via-points."""
+"""Twelve conditions for twelve coefficients; acceleration may jump at both via-points."""
 ON = np.array([-0.844, 0.002, 0.615, 1.043])
 TURNING_BACK = np.array([0.741, 0.493, 1.137, 1.554])
 V, A, J = 1.1, 2.1, 6.3

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 from support.long_problems import long_curves, long_problem
-from trajgap.nlp import Status, solve
+from trajgap.nlp import Status
 from trajgap.nlp.optimum import long_search as long_search_module
-from trajgap.nlp.optimum import solver
+from trajgap.nlp.optimum import solve, solver
 from trajgap.nlp.optimum.formulation import Form
 from trajgap.nlp.optimum.long_formulation import LongProgram, Rows
 from trajgap.nlp.optimum.long_optimality import along

@@ -7,9 +7,9 @@ import casadi as ca
 import numpy as np
 import pytest
 from support.long_problems import LIMITS, long_curves, long_problem
-from trajgap.nlp import Status, solve
+from trajgap.nlp import Status
 from trajgap.nlp.optimum import long_search as long_search_module
-from trajgap.nlp.optimum import long_windows
+from trajgap.nlp.optimum import long_windows, solve
 from trajgap.nlp.optimum.long_formulation import LongProgram, Rows
 from trajgap.nlp.optimum.long_rows import carried, near_rows, with_loaded
 from trajgap.nlp.optimum.long_search import long_search

@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 from attacks.nasty import answered, nasty, rebuilt
 from scipy.interpolate import CubicSpline
-from trajgap.nlp import Solution, Status, certify, solve
-from trajgap.nlp.optimum import limit_rows, optimality, solver
+from trajgap.nlp import Solution, Status, certify
+from trajgap.nlp.optimum import limit_rows, optimality, solve, solver
 from trajgap.nlp.optimum.decided import decided
 from trajgap.nlp.optimum.limit_rows import exact_rows
 from trajgap.nlp.optimum.optimality import kkt

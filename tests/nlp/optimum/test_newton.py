@@ -9,8 +9,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from support.small_problems import FAMILIES, small_problem
-from trajgap.nlp import Solution, Status, kkt, solve
-from trajgap.nlp.optimum import newton_curve, newton_kernel, newton_program, solver
+from trajgap.nlp import Solution, Status, kkt
+from trajgap.nlp.optimum import newton_curve, newton_kernel, newton_program, solve, solver
 from trajgap.nlp.optimum.descent import least_point
 from trajgap.nlp.optimum.limit_rows import exact_rows
 from trajgap.nlp.optimum.newton import Descents, covered, settled_quickly

@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from support.small_problems import FAMILIES, small_problem
-from trajgap.nlp import Evidence, Status, solve, solve_per_joint
-from trajgap.nlp.optimum import near_newton, near_optimal, stopping_after
+from trajgap.nlp import Evidence, Status, solve_per_joint
+from trajgap.nlp.optimum import near_newton, near_optimal, solve, stopping_after
 from trajgap.nlp.optimum.near_newton import applies, reached
 from trajgap.problem import Array, Limits, Problem, check, load_case, piecewise, rest_to_rest
 

@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from trajgap.nlp import Status, solve
+from trajgap.nlp import Status
+from trajgap.nlp.optimum import solve
 from trajgap.nlp.optimum.short_ways import short_ways, shortened
 from trajgap.problem import (
     Array,

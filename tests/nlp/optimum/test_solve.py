@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 from support import second_route
-from trajgap.nlp import Form, Status, Structure, build, kkt, random_starts, solve, structure_of
+from trajgap.nlp import Form, Status, Structure, build, kkt, random_starts, structure_of
+from trajgap.nlp.optimum import solve
 from trajgap.nlp.optimum.polish import polish
 from trajgap.problem import (
     Limits,

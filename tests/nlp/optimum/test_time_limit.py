@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from trajgap.nlp import Solution, Status, certify, solve
+from trajgap.nlp import Solution, Status, certify
 from trajgap.nlp.optimum import (
     call_cap,
     clock,
@@ -16,6 +16,7 @@ from trajgap.nlp.optimum import (
     ipopt,
     newton,
     newton_kernel,
+    solve,
     solver,
     stopping,
     stopping_after,

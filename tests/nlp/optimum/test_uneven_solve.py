@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from support.uneven import CURVES, LIMITS, WAYPOINTS, sampled_optimum, uneven_problem
 from trajgap.heuristics import PSO, run, run_per_joint
-from trajgap.nlp import Status, certify, problem_seal, solve
+from trajgap.nlp import Status, certify, problem_seal
+from trajgap.nlp.optimum import solve
 from trajgap.nlp.optimum.optimality import kkt
 from trajgap.problem import (
     Interpolant,

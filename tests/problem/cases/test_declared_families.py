@@ -10,7 +10,8 @@ import pytest
 from support.case_texts import case_text
 from support.checkout import ROOT
 from trajgap.heuristics import PSO, run
-from trajgap.nlp import Status, solve
+from trajgap.nlp import Status
+from trajgap.nlp.optimum import solve
 from trajgap.problem import (
     Problem,
     Verdict,
@@ -94,7 +95,7 @@ def test_the_programs_of_the_page_run(capsys: pytest.CaptureFixture[str]) -> Non
     assert len(programs) == 2
     for program in programs:
         exec(program, {})
-    assert "optimal" in capsys.readouterr().out
+    assert re.search("optimal|converged", capsys.readouterr().out)
 
 
 def test_a_straight_line_becomes_a_case_file(tmp_path: Path) -> None:

@@ -67,7 +67,9 @@ def test_counts(
 
 def test_rest_at_every_waypoint_is_over_determined() -> None:
     # "velocity and acceleration 0 at the ends and the intermediate points" for 3-5-3
-    message = "3-5-3: over-determined, 18 conditions on 14 coefficients; raise a degree or drop"
+    message = (
+        "3-5-3: over-determined, 18 conditions, but only 14 coefficients; raise a degree or drop"
+    )
     with pytest.raises(TrajgapError, match=message):
         Interpolant((3, 5, 3), (2, 2), (REST,) * 4, name="3-5-3")
 
@@ -92,9 +94,9 @@ def test_rest_at_every_waypoint_is_over_determined() -> None:
         (((3,), (), (((1, 0.0), (1, 1.0)), ())), r"prescribed\[0\]: orders must be distinct"),
         (((3,), (), ((), ((0, 1.0),))), r"prescribed\[1\]: orders must be distinct and at least 1"),
         (((3,), (), ((), ((1, np.inf),))), r"prescribed\[1\]: values must be finite"),
-        (((3,), (), (REST, REST)), r"over-determined, 6 conditions on 4 coefficients"),
+        (((3,), (), (REST, REST)), r"over-determined, 6 conditions, but only 4 coefficients"),
         # v at the start of a straight line is not free: the two way-points fix it
-        (((1, 5), (0,), (((1, 0.0),), (), ())), r"5 conditions on 8 coefficients contradict each"),
+        (((1, 5), (0,), (((1, 0.0),), (), ())), r"5 conditions for 8 coefficients contradict each"),
     ],
 )
 def test_refusals(arguments: tuple[object, ...], message: str) -> None:
@@ -116,7 +118,7 @@ def test_long_declarations_are_judged_too() -> None:
     start, end = ((1, 0.0),), ((1, 0.0),)
     assert cubic_spline(200).rank == 800
     # As many conditions as coefficients, but the first line has three of them and two coefficients.
-    with pytest.raises(TrajgapError, match="318 conditions on 318 coefficients contradict"):
+    with pytest.raises(TrajgapError, match="318 conditions for 318 coefficients contradict"):
         Interpolant((1, *(3,) * 79), (0, *(2,) * 78), (start, *((),) * 79, end))
 
 

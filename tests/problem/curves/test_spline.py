@@ -170,7 +170,7 @@ LONG = {
 
 
 def test_nodal_values_refused() -> None:
-    message = r"14 conditions on 18 coefficients; give nodal derivatives of shape \(4, 3\)"
+    message = r"14 conditions for 18 coefficients; give nodal derivatives of shape \(4, 3\)"
     for nodal in (None, np.zeros((3, 3)), np.zeros((4, 1))):
         with pytest.raises(TrajgapError, match=message):
             fit(piecewise((5, 5, 5), 2), waypoints(4), [1.0, 1.0, 1.0], nodal)

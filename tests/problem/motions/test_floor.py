@@ -106,8 +106,16 @@ def test_the_floor_lies_below_the_trapezoid_with_braking_of_its_own(speeding, br
 @pytest.mark.parametrize(
     ("v", "limits", "why"),
     [
-        ([[0.5], [0.0]], JointLimits.from_values(("1",), 2.0), "starts moving"),
-        ([[0.0], [0.5]], JointLimits.from_values(("1",), 2.0), "ends moving"),
+        (
+            [[0.5], [0.0]],
+            JointLimits.from_values(("1",), 2.0),
+            "that the motion starts at rest is not shown",
+        ),
+        (
+            [[0.0], [0.5]],
+            JointLimits.from_values(("1",), 2.0),
+            "that the motion ends at rest is not shown",
+        ),
         (
             [[0.0], [0.0]],
             JointLimits.from_values(("1",), position=(-5.0, 5.0)),

@@ -44,7 +44,7 @@ def test_virtual_points_have_no_position_to_pass(count: str, fits: bool) -> None
     ends = at_rest([1, 2], degrees=[3, 3, 3, 3], count=count)
     curve = {"family": "cubic-spline-virtual"}
     found = finding(paper([[0, 60, 0]], ends, curve=curve, velocity=120), "ends", "TG107")
-    assert found.computed == "16 conditions on 16 coefficients"
+    assert found.computed == "16 conditions for 16 coefficients"
     assert found.verdict == ("supported" if fits else "refuted")
 
 
