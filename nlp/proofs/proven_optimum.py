@@ -14,7 +14,7 @@ from ...problem import Array, Problem, TrajgapError, scale
 from ...verify import Refused, Subject, verify_certificate
 from .. import optimum
 from ..optimum import STARTS, Form, Solution, seconds_left
-from .certifiers import allowance, at_once, certify
+from .certifiers import certify, prompt
 from .document import all_shipped, certificate, problem_document, question, suite_documents
 from .evidence import ProvedInterval, interval_in, narrow, proved, with_interval
 from .exact import ExactProblem, exact_problem
@@ -46,8 +46,7 @@ def solve(
     """Shortest total time with shared durations: from an exact NLP, and proved where it can be.
 
     Where a certificate that ships with the package is about this very problem, it is proved again.
-    Else a branch and bound looks for a lower bound, where the curve has one that needs no compiled
-    search (that of C4 quintic splines does: `certify` runs it). What `trajgap.verify`
+    Else a branch and bound looks for a lower bound, where the curve has one. What `trajgap.verify`
     proves stands beside the answer: with it the optimum lies between ``lower_bound`` and the total.
     The answer is *optimal* where both are a millionth apart.
 
@@ -108,10 +107,11 @@ def _searched(
         return None
     try:
         exact = exact or exact_problem(found.problem)
-        if not at_once(exact):
+        kind = prompt(exact)
+        if kind is None:
             return None
-        boxes = max(1.0, round(prove * allowance(exact)))
-        answer = certify(exact, seconds=seconds, boxes=boxes, known=found.durations)
+        boxes = max(1.0, round(prove * kind.boxes))
+        answer = certify(exact, seconds=seconds, boxes=boxes, known=found.durations, certifier=kind)
     except TrajgapError:  # nothing limits the total from below, or no certificate can state it
         return None
     return None if answer.proof is None else interval_in(certificate(answer), answer.verdict)

@@ -6,7 +6,17 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from trajgap.nlp import Evidence, Solution, Status, optimum, printed_problem, solve
+from trajgap.nlp import (
+    Evidence,
+    Solution,
+    Status,
+    certify,
+    exact_problem,
+    optimum,
+    printed_problem,
+    solve,
+)
+from trajgap.nlp.proofs.certifiers import prompt
 from trajgap.problem import (
     Limits,
     Problem,
@@ -101,7 +111,17 @@ def test_a_budget_of_boxes_leaves_the_same_interval_each_time():
     assert {one.total_time for one in answers} == {answers[0].total_time}
 
 
-def test_a_proof_that_is_compiled_first_is_left_to_certify():
+def test_a_short_quintic_is_proved_without_its_compiled_search():
     problem = Problem([[0.0], [0.6], [1.1], [0.8]], Limits(2.0, 6.0, 40.0), quintic_spline(3))
     found = solve(problem)
-    assert (found.status, found.lower_bound) == (Status.CONVERGED, None)
+    assert found.status is Status.OPTIMAL
+    proof = certify(problem, gap=1e-4, seconds=60.0)
+    assert float(proof.lower) <= found.total_time
+    assert found.lower_bound <= float(proof.upper)
+
+
+def test_a_long_spline_has_the_sharper_kind():
+    q = np.random.default_rng(2).normal(size=(10, 1))
+    assert prompt(exact_problem(Problem(q, Limits(2.0, 6.0), cubic_spline(9)))).boxes == 16
+    assert prompt(exact_problem(Problem(q[:4], Limits(2.0, 6.0), cubic_spline(3)))).boxes > 16
+    assert prompt(exact_problem(Problem(q, Limits(2.0, 6.0), quintic_spline(9)))).compiles is False
