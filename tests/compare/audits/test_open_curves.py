@@ -125,7 +125,7 @@ def test_a_broken_limit_is_not_refuted_for_rounded_knots(inner: str, verdict: st
     one = audited_text(text(given(inner, TIMED), "0.20 0.20 0.20"))
     assert verdicts(one)["kept"] == verdict
     (found,) = (f for f in one.findings if f.rule == "TG201" and f.claim == "d")
-    said = "no proof covers all that rounds to them" in found.message
+    said = "no proof covers their rounding" in found.message
     assert said == (inner == "printed")
 
 
@@ -137,7 +137,11 @@ def test_no_table_of_rules_stands_beside_a_printed_vector(
 
 
 @pytest.mark.parametrize(
-    ("first", "verdict"), [("0.86", "not checkable"), ("0.96", "inconsistent")]
+    ("first", "verdict"),
+    [
+        ("0.86", "not checkable"),
+        pytest.param("0.96", "inconsistent", marks=pytest.mark.slow),
+    ],
 )
 def test_stretched_segments_jump_unless_rounding_hides_their_proportions(
     first: str, verdict: str

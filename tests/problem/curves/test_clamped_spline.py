@@ -297,7 +297,10 @@ PRINTED = {"parameters": "given", "time": "stretched"}
             "over-determined, 9 conditions, but only 7 control points",
         ),
         ({"knots": "waypoints", "degree": 7}, "under-determined, 9 conditions for 11 control"),
-        ({"knots": "averaged", "waypoints": 6}, "on 6 control points; continue the averaging"),
+        (
+            {"knots": "averaged", "waypoints": 6},
+            "but only 6 control points; continue the averaging",
+        ),
         ({"knots": "averaged"}, "degree 5 needs at least 6 way-points; lower the"),
         ({"degree": 2}, "interpolant.degree: must lie in 3..7, got 2"),
         ({"degree": 8}, "interpolant.degree: must lie in 3..7, got 8"),
@@ -333,7 +336,10 @@ PRINTED = {"parameters": "given", "time": "stretched"}
         ({"knot_vector": (*[0] * 6, 0.2, 0.2, 0.7, *[1] * 6)}, "the inner knot 0.2 stands 2 times"),
         ({"knot_vector": (*[0] * 6, 0.5, 0.2, 0.7, *[1] * 6)}, "0.5 is followed by 0.2, but knots"),
         ({"knot_vector": (*[0] * 6, 0.2, np.nan, 0.7, *[1] * 6)}, "knots must be finite"),
-        ({"knot_vector": SIX[0]}, "on 8 control points; 15 knots in all determine it, and 14 are"),
+        (
+            {"knot_vector": SIX[0]},
+            "but only 8 control points; 15 knots in all determine it, and 14",
+        ),
         ({"knot_vector": SIX[1]}, "under-determined, 9 conditions for 10 control points; 15 knots"),
         (
             {

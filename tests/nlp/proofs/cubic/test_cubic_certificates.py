@@ -198,7 +198,7 @@ def test_what_is_not_covered_is_said() -> None:
     q = [[0.2], [1.1], [-0.4]]
     with pytest.raises(TrajgapError, match="nothing limits"):
         certify(Problem(q, Limits(np.inf, 2.0), cubic_spline(2, NATURAL)))
-    with pytest.raises(TrajgapError, match="not covered"):
+    with pytest.raises(TrajgapError, match="keeps its duration above 0"):
         certify(Problem(q[:2], Limits(1.0), cubic_spline_virtual(2)))
 
 
