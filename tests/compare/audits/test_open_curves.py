@@ -120,7 +120,10 @@ def test_rounded_knots_hold_nothing_against_what_is_said(slow: dict[str, CaseAud
     assert sum(f.message.endswith(note) for f in slow["printed"].findings) == 2
 
 
-@pytest.mark.parametrize(("inner", "verdict"), [("exact", "refuted"), ("printed", "not checkable")])
+@pytest.mark.parametrize(
+    ("inner", "verdict"),
+    [pytest.param("exact", "refuted", marks=pytest.mark.slow), ("printed", "not checkable")],
+)
 def test_a_broken_limit_is_not_refuted_for_rounded_knots(inner: str, verdict: str) -> None:
     one = audited_text(text(given(inner, TIMED), "0.20 0.20 0.20"))
     assert verdicts(one)["kept"] == verdict
@@ -136,12 +139,9 @@ def test_no_table_of_rules_stands_beside_a_printed_vector(
     assert len(_determined(study_of(text(curve, "1 1 1")).case)) == tables
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
-    ("first", "verdict"),
-    [
-        ("0.86", "not checkable"),
-        pytest.param("0.96", "inconsistent", marks=pytest.mark.slow),
-    ],
+    ("first", "verdict"), [("0.86", "not checkable"), ("0.96", "inconsistent")]
 )
 def test_stretched_segments_jump_unless_rounding_hides_their_proportions(
     first: str, verdict: str
