@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...problem import Array, Problem, TrajgapError, evaluate
-from .formulation import Form
 from .starts import stretching
 
 
@@ -22,7 +21,6 @@ class Ask:
     known: Array
     """Durations that somebody has, and after them the same stretched to be tight, s."""
     known_nodal: Array | None
-    form: Form | None
     lower: float = 0.0
     """A proved lower bound of the total, s."""
 
@@ -34,7 +32,6 @@ def asked(
     initial: ArrayLike | None,
     known: ArrayLike | None,
     known_nodal: ArrayLike | None,
-    form: Form | None,
     lower: float,
 ) -> Ask:
     """The arguments of `solve`, read; a clear refusal of what has the wrong shape."""
@@ -47,7 +44,7 @@ def asked(
         raise TrajgapError(f"known_nodal: expected shape {wanted}, got {nodal.shape}")
     points, nodal = _with_tight(problem, points, nodal)
     first = None if initial is None else vectors(problem, "initial", initial)
-    return Ask(starts, seed, first, points, nodal, form, lower)
+    return Ask(starts, seed, first, points, nodal, lower)
 
 
 def _with_tight(problem: Problem, known: Array, nodal: Array | None) -> tuple[Array, Array | None]:

@@ -7,8 +7,9 @@ from dataclasses import replace
 import numpy as np
 
 from ...problem import QUANTITIES, Array, Check, Problem, Verdict, check, half_range
-from .descent import LogBox, descend
-from .tracking import Local
+from .descent import descend
+from .local import Local
+from .starts import DENSE, LogBox
 
 ROUNDS = 6
 """Stretches that are tried: the bound on rounding errors changes little with each."""
@@ -72,7 +73,8 @@ def decided(problem: Problem, h: Array, nodal: Array | None = None) -> Local | N
     """
     found = stretched(problem, h, nodal)
     # A descent changes each duration by itself, which fixed ratios do not allow.
-    if found is None and not problem.curve.free and problem.ratios is None:
+    descends = not problem.curve.free and problem.ratios is None and problem.segments <= DENSE
+    if found is None and descends:
         found = _narrowed(problem, h) or _lengthened(problem, h)
     if found is None:
         return None

@@ -14,6 +14,7 @@ import numpy as np
 from ...problem import Array, Problem
 from .clock import time_up
 from .limit_rows import ExactRows, exact_rows
+from .starts import LogBox
 
 STEPS = 80
 """Most steps of one descent; with a superlinear end 10 to 30 suffice."""
@@ -33,18 +34,6 @@ GOOD = 0.5
 """Share of the expected gain from which the trust region grows."""
 PULL = 1e-3
 """Weight that keeps a step of restoration short; small beside the excess, whose weight is 1."""
-
-
-@dataclass(frozen=True, eq=False)
-class LogBox:
-    """Bounds on the logarithms of the durations."""
-
-    low: Array
-    high: Array
-
-    def inside(self, z: Array) -> Array:
-        """The nearest point of the box."""
-        return np.asarray(np.clip(z, self.low, self.high))
 
 
 def least_point(

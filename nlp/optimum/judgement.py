@@ -8,10 +8,11 @@ import numpy as np
 
 from ...problem import Array, Problem, Verdict, check
 from .decided import decided, kept
-from .optimality import kkt
+from .local import Local
+from .optimality import UNKNOWN, kkt
 from .polish import polish
-from .solution import Solution, Status
-from .tracking import Local
+from .solution import Route, Solution, Status
+from .starts import DENSE
 
 SAME = 1e-6
 """Relative difference below which two totals count as the same."""
@@ -28,6 +29,8 @@ and floors lie orders of magnitude below durations that any limit asks for."""
 
 def unmet(residual: float) -> str:
     """Why an answer is not called converged, of its KKT residual."""
+    if np.isinf(residual):
+        return "the search ended before it met the conditions of an optimum"
     return f"KKT residual {residual:.1e}, above {KKT_TOLERANCE:g}"
 
 
@@ -36,7 +39,13 @@ def longer_than_tight(beyond: float) -> str:
     return f"longer by {beyond:.1e} (relative) than a tight motion, which rounding errors blur"
 
 
-def judged(problem: Problem, found: list[Local], floor: Array, starts: int) -> Solution:
+def judged(
+    problem: Problem,
+    found: list[Local],
+    floor: Array,
+    starts: int,
+    route: Route = Route.DESCENT,
+) -> Solution:
     """The best answer that the checker passes, with its optimality conditions.
 
     Parameters
@@ -47,6 +56,8 @@ def judged(problem: Problem, found: list[Local], floor: Array, starts: int) -> S
     floor : ndarray, shape (segments,)
         Least durations, s, that the search made up; 0 where the problem itself sets one.
     starts : int
+    route : Route
+        How the ends were found.
 
     Returns
     -------
@@ -64,8 +75,11 @@ def judged(problem: Problem, found: list[Local], floor: Array, starts: int) -> S
         )
     best = min(feasible, key=lambda local: local.total)
     durations, nodal = best.tight or (best.durations, best.nodal)
-    report = kkt(problem, durations, nodal)
-    if report.residual > POLISHED:
+    report = best.report if best.report is not None and best.tight is None else None
+    dense = problem.segments <= DENSE
+    if report is None:
+        report = kkt(problem, durations, nodal) if dense else UNKNOWN
+    if report.residual > POLISHED and dense:
         durations, report = polish(problem, durations, report)
     # Where rounding decides, the conditions hold at the tight motion, and a longer one passes.
     passing, beyond = (durations, nodal), 0.0
@@ -96,11 +110,13 @@ def judged(problem: Problem, found: list[Local], floor: Array, starts: int) -> S
         durations=durations,
         nodal=nodal,
         check=verdict,
-        kkt_residual=report.residual,
+        route=route,
+        kkt_residual=report.residual if np.isfinite(report.residual) else None,
         active=report.active,
         starts=starts,
         starts_at_best=sum(local.total <= best.total * (1 + SAME) for local in feasible),
         iterations=iterations,
+        build_seconds=sum(local.build_seconds for local in found),
         totals=tuple(local.total if local.feasible else float("inf") for local in found),
     )
 

@@ -3,149 +3,104 @@
 from __future__ import annotations
 
 import itertools
-from dataclasses import replace
-from functools import lru_cache
-from typing import Any
 
 import numpy as np
 
 from ...problem import Array, Problem, check, fit
-from .formulation import Formulation, Structure, pack_parameters
-from .ipopt import compiled, structure_of
-from .near_newton import applies, reached
+from .program import Program
+from .rounds import OPTIONS as OPTIONS_OF_ROUNDS
+from .rows import NEAR, near_rows
 from .symbolic import ca
-from .tracking import (
-    Scaled,
-    pack,
-    place_slots,
-    scaled_problem,
-    unpack,
-    variable_bounds,
-)
 
-_PASSES = 12
-"""Solves from one optimum: a bound against endless shrinking of the region."""
-_OPTIONS = {
-    "print_time": False,
-    "show_eval_warnings": False,  # the status says where a function is not defined
-    "ipopt.print_level": 0,
-    "ipopt.sb": "yes",
-    "ipopt.tol": 1e-9,
-    "ipopt.constr_viol_tol": 1e-10,
-    "ipopt.bound_relax_factor": 0.0,
-    "ipopt.mu_init": 1e-4,
-    "ipopt.max_iter": 200,
-}
-"""Options of IPOPT as `ipopt.ipopt_options`, begun near a solution (small barrier)."""
+ROUNDS = 12
+"""Rounds from one optimum: a bound against endless shrinking of the region; two to four suffice."""
+REGION = 0.05
+"""Share by which a first round may change a duration: near an optimum the extrema hardly move."""
+LEFT = 1e-8
+"""Relative change of the durations at which the rounds end."""
+OPTIONS = OPTIONS_OF_ROUNDS | {"ipopt.mu_init": 1e-4, "ipopt.tol": 1e-9}
+"""Options of IPOPT, begun near a solution: with a small barrier."""
 
 
-@lru_cache(maxsize=32)
-def _nlp(structures: tuple[Structure, ...], longest: bool) -> Any:
-    """One NLP over several joints, each within its cap; all numbers are parameters.
+class _Nearby:
+    """One objective over the durations of some joints, each within its cap, by rounds of the NLP.
 
-    Objective: the sum over segments of the longest duration (``longest``), or a weighted sum of
-    the first joint's durations.
+    Without weights it is the sum over segments of the longest duration; with weights that of the
+    one joint's weighted durations.
     """
-    n = structures[0].interpolant.segments
-    top = ca.SX.sym("longest", n)
-    weights = ca.SX.sym("weights", n)
-    caps = ca.SX.sym("caps", len(structures))
-    variables, parameters, equal, below = [top], [weights, caps], [], []
-    for i, structure in enumerate(structures):
-        f = compiled(structure).formulation
-        own = ca.Function("own", [f.variables, f.parameters], [f.equalities, f.inequalities])
-        x = ca.SX.sym(f"x{i}", f.variables.numel())
-        p = ca.SX.sym(f"p{i}", f.parameters.numel())
-        e, g = own(x, p)
-        variables.append(x)
-        parameters.append(p)
-        equal.append(e)
-        below += [g, ca.sum1(x[:n]) - caps[i]]
-        if longest:
-            below.append(x[:n] - top)
-    objective = ca.sum1(top) if longest else ca.dot(weights, variables[1][:n]) + ca.sumsqr(top)
-    e, g = ca.vertcat(*equal), ca.vertcat(*below)
-    nlp = {
-        "x": ca.vertcat(*variables),
-        "p": ca.vertcat(*parameters),
-        "f": objective,
-        "g": ca.vertcat(e, g),
-    }
-    return ca.nlpsol("near", "ipopt", nlp, _OPTIONS), e.numel(), g.numel()
 
+    def __init__(self, problems: list[Problem], unit: float, caps: list[float]) -> None:
+        self._problems, self._unit, self._caps = problems, unit, np.array(caps) / unit
+        none = np.zeros(problems[0].segments)
+        self._programs = [Program(problem, unit, none) for problem in problems]
 
-def _improve(
-    problems: list[Problem],
-    starts: list[Array],
-    caps: list[float],
-    weights: Array | None,
-) -> list[Array]:
-    """Durations of each joint that optimise the objective near ``starts``, slots on extrema."""
-    structures = tuple(structure_of(p) for p in problems)
-    formulations: list[Formulation] = [compiled(s).formulation for s in structures]
-    n = problems[0].segments
-    unit = float(np.mean([h.mean() for h in starts]))
-    scaled: list[Scaled] = [
-        scaled_problem(p, f, unit) for p, f in zip(problems, formulations, strict=True)
-    ]
-    solver, equalities, inequalities = _nlp(structures, weights is None)
-    low_g = np.concatenate([np.zeros(equalities), np.full(inequalities, -np.inf)])
-    h = [start.copy() for start in starts]
-    radius = 0.05
-    for _ in range(_PASSES):
-        top = np.max(h, axis=0) / unit if weights is None else np.zeros(n)
-        x0, low, high = [top], [np.zeros(n)], [np.full(n, np.inf)]
-        p = [np.zeros(n) if weights is None else weights, np.array(caps) / unit]
-        for problem, f, s, own in zip(problems, formulations, scaled, h, strict=True):
-            x = pack(problem, f, s, own, None)
-            wide = variable_bounds(problem, f, unit, 0.0)
-            wide[0][:n] = np.maximum(wide[0][:n], x[:n] * (1 - radius))
-            wide[1][:n] = np.minimum(wide[1][:n], x[:n] * (1 + radius))
-            trajectory = fit(problem.curve, problem.waypoints, own)
-            trajectory = replace(trajectory, scaled=trajectory.scaled / s.angle_unit)
-            places, newton = place_slots(f, trajectory)
-            p.append(pack_parameters(s.values, s.inverse_limits, s.position, places, newton))
-            x0.append(x)
-            low.append(wide[0])
-            high.append(wide[1])
-        result = solver(
-            x0=np.concatenate(x0),
-            p=np.concatenate(p),
-            lbx=np.concatenate(low),
-            ubx=np.concatenate(high),
-            lbg=low_g,
-            ubg=np.zeros(low_g.size),
+    def reached(self, starts: list[Array], weights: Array | None) -> list[Array]:
+        """Durations of each joint at which the objective is least near the starts, s."""
+        h, radius = [start.copy() for start in starts], REGION
+        for _ in range(ROUNDS):
+            new = self._round(h, radius, weights)
+            moved = max(float(np.abs(a / b - 1).max()) for a, b in zip(new, h, strict=True))
+            if all(
+                check(q, d).stretch <= 1 + 1e-4 * radius
+                for q, d in zip(self._problems, new, strict=True)
+            ):
+                h = new
+                if moved < LEFT:
+                    break
+            else:
+                radius *= 0.25
+        return h
+
+    def _round(self, h: list[Array], radius: float, weights: Array | None) -> list[Array]:
+        n = self._problems[0].segments
+        top = ca.MX.sym("longest", n)
+        variables, given, low, high = [top], [np.max(h, axis=0) / self._unit], [], []
+        expressions, least, most = [], [], []
+        for program, own, cap in zip(self._programs, h, self._caps, strict=True):
+            motion = fit(program.problem.curve, program.problem.waypoints, own)
+            rows, ends = near_rows(program, motion, NEAR), program.ends
+            x = program.pack(motion)
+            bounds = program.bounds()
+            low.append(
+                np.maximum(bounds[0], np.where(np.arange(x.size) < n, x * (1 - radius), -np.inf))
+            )
+            high.append(
+                np.minimum(bounds[1], np.where(np.arange(x.size) < n, x * (1 + radius), np.inf))
+            )
+            variables.append(program.variables)
+            given.append(x)
+            room, upper = program.rooms(rows.places, rows.sign), rows.sign > 0
+            expressions += [
+                program.equalities,
+                program.at_places(ends, np.zeros(ends.s.size)),
+                program.at_places(rows.places, rows.weight),
+                ca.sum1(program.durations),
+                program.durations - top,
+            ]
+            zero = np.zeros(program.equalities.numel())
+            edges = [program.rooms(ends, np.full(ends.s.size, sign)) for sign in (-1.0, 1.0)]
+            none = np.full(n, -np.inf)
+            least += [zero, edges[0], np.where(upper, -np.inf, room), [0.0], none]
+            most += [zero, edges[1], np.where(upper, room, np.inf), [cap], np.zeros(n)]
+        first = self._programs[0].durations
+        objective = ca.sum1(top) if weights is None else ca.dot(ca.DM(weights), first)
+        free = np.full(n, np.inf)
+        held = free if weights is None else np.full(n, 10.0 * given[0].max())
+        nlp = {"x": ca.vertcat(*variables), "f": objective, "g": ca.vertcat(*expressions)}
+        result = ca.nlpsol("near", "ipopt", nlp, OPTIONS)(
+            x0=np.concatenate([given[0] if weights is None else held, *given[1:]]),
+            lbx=np.concatenate([np.zeros(n) if weights is None else held, *low]),
+            ubx=np.concatenate([held, *high]),
+            lbg=np.concatenate(least),
+            ubg=np.concatenate(most),
         )
-        answer = np.asarray(result["x"]).ravel()
-        at, moved, new = n, 0.0, []
-        for problem, f, s, own in zip(problems, formulations, scaled, h, strict=True):
-            size = f.sizes["variables"]
-            fresh, _ = unpack(problem, f, s, answer[at : at + size])
-            new.append(np.clip(fresh, problem.duration_lower, problem.duration_upper))
-            moved = max(moved, float(np.abs(fresh / own - 1).max()))
-            at += size
-        if all(
-            check(q, d).stretch <= 1 + 1e-4 * radius for q, d in zip(problems, new, strict=True)
-        ):
-            h = new
-            if moved < 1e-8:
-                break
-        else:
-            radius *= 0.25
-    return h
-
-
-def _moved(
-    problems: list[Problem],
-    starts: list[Array],
-    caps: list[float],
-    weights: Array | None,
-) -> list[Array]:
-    """`_improve` by Newton steps where they settle: some hundred such answers make one range."""
-    found = reached(problems, starts, caps, weights) if applies(problems) else None
-    if found is None:
-        found = _improve(problems, starts, caps, weights)
-    return [_kept(problem, h) for problem, h in zip(problems, found, strict=True)]
+        answer, at, found = np.asarray(result["x"]).ravel(), n, []
+        for program in self._programs:
+            own = answer[at : at + n] * self._unit
+            problem = program.problem
+            found.append(np.clip(own, problem.duration_lower, problem.duration_upper))
+            at += program.variables.numel()
+        return found
 
 
 def _kept(problem: Problem, h: Array) -> Array:
@@ -176,7 +131,13 @@ def longest_per_segment_range(
     """
     caps = [float(h.sum()) + slack for h in optima]
     given = float(np.max(optima, axis=0).sum())
-    least = _moved(problems, optima, caps, None)
+    unit = float(np.mean([h.mean() for h in optima]))
+    least = [
+        _kept(problem, h)
+        for problem, h in zip(
+            problems, _Nearby(problems, unit, caps).reached(optima, None), strict=True
+        )
+    ]
     lowest = given
     if all(h.sum() <= cap * (1 + 1e-8) for h, cap in zip(least, caps, strict=True)):
         lowest = min(given, float(np.max(least, axis=0).sum()))
@@ -186,6 +147,7 @@ def longest_per_segment_range(
     ]
     reach: dict[tuple[int, tuple[int, ...]], float] = {}
     for j, (problem, optimum, cap) in enumerate(zip(problems, optima, caps, strict=True)):
+        alone = _Nearby([problem], unit, [cap])
         for subset in subsets:
             chosen = list(subset)
             reach[j, subset] = float(optimum[chosen].sum())
@@ -194,7 +156,7 @@ def longest_per_segment_range(
                 continue
             weights = np.zeros(n)
             weights[chosen] = -1.0
-            h = _moved([problem], [optimum], [cap], weights)[0]
+            h = _kept(problem, alone.reached([optimum], weights)[0])
             if h.sum() <= cap * (1 + 1e-8):
                 reach[j, subset] = max(reach[j, subset], float(h[chosen].sum()))
     return lowest, max(given, _best_assignment(reach, len(problems), n))

@@ -7,10 +7,9 @@ import math
 import numpy as np
 
 from ...problem import Array, Problem
-from .descent import KEPT, LogBox, restored
-from .exact_multistart import box_above
-from .starts import equal_start
-from .wide_search import APART, basins
+from .basins import APART, basins
+from .descent import KEPT, restored
+from .starts import LogBox, box_above, equal_start
 
 SHORT = 0.02
 """Largest way of a segment, in what each joint covers in all, at which its duration may have two

@@ -14,8 +14,8 @@ import numpy as np
 
 from ...problem import Array, Problem, TrajgapError, check, fit
 from .decided import kept
+from .program import free_values
 from .solution import Solution, Status
-from .tracking import free_values
 
 
 def smoother(problem: Problem) -> Problem | None:

@@ -51,6 +51,17 @@ class Status(StrEnum):
     """The solver failed; nothing is claimed."""
 
 
+class Route(StrEnum):
+    """How an answer was found."""
+
+    NLP = "nlp"
+    """The exact NLP in CasADi, solved by IPOPT: the reference."""
+    DESCENT = "descent"
+    """Descents on the exact extrema, dense and without a solver: the fast route."""
+    CLOSED_FORM = "closed form"
+    """A formula; nothing was searched."""
+
+
 class Evidence(StrEnum):
     """What stands behind a reference value."""
 
@@ -88,6 +99,11 @@ class Solution:
         Free derivatives of an under-determined curve.
     check : Check or None
         The checker's verdict on the durations.
+    route : Route or None
+        How it was found; None without durations.
+    other_total : float or None
+        Total by the other route, s, where it was asked for: of the NLP beside a descent or a
+        formula, of a descent beside the NLP. See `with_other_route`.
     infimum : float or None
         For `not_attained`: the value that the totals found approach, s. It is the infimum where
         `approach_proved` says so, and otherwise the best known estimate of it.
@@ -110,6 +126,8 @@ class Solution:
     durations: Array | None = None
     nodal: Array | None = None
     check: Check | None = None
+    route: Route | None = None
+    other_total: float | None = None
     infimum: float | None = None
     lower_bound: float | None = None
     kkt_residual: float | None = None

@@ -1,4 +1,4 @@
-"""Solve the exact NLP from several starts and judge the answer."""
+"""Solve a problem from several starts and judge the answer."""
 
 from __future__ import annotations
 
@@ -11,50 +11,44 @@ from numpy.typing import ArrayLike
 
 from ...problem import Array, Problem, check
 from .asked import Ask, asked
-from .better import BETTER, better_of, settled
-from .clock import TooLong, stopping_after, time_up
+from .basins import Basin, usual_basins
+from .better import BETTER, better_of
+from .clock import stopping_after, time_up
 from .decided import decided, kept, stretched
-from .descent import restored
-from .exact_multistart import (
-    UNEQUAL,
-    anywhere,
-    box_above,
-    exact_search,
-    exact_starts,
-    made_up,
-    ordinary,
-    searchable,
-    tolerated_search,
-)
 from .feasibility import apart
 from .fixed_ratios import at_ratios
-from .formulation import Form
 from .idle import idle_segments, with_least_idle
-from .ipopt import compiled, structure_of
-from .judgement import judged, stretchable
-from .long_solve import long_enough, solve_long
+from .judgement import judged
+from .local import Local
 from .matching import jump_equations, matched
-from .middle_solve import searched_sparsely
-from .newton import settled_quickly
+from .multistart import exact_search, tolerated_search
+from .search import program_search
 from .short_ways import moving_at_floor, short_ways, shortened
 from .smoother import as_answer, carried_over, smoother
-from .solution import Solution, Status
-from .starts import equal_start, first_nodal, screened_starts
-from .tracked_multistart import eliminating, tracked_multistart, tracked_search
-from .tracking import Local
+from .solution import Route, Solution, Status
+from .starts import (
+    DENSE,
+    anywhere,
+    equal_start,
+    first_nodal,
+    made_up,
+    random_starts,
+    way_start,
+)
 from .unsearched import cut_short, unsearched
-from .wide_search import Basin
 
 STARTS = 4
-"""Equal durations first, then three screened random ones: a second opinion at small cost."""
+"""Basins of the wide search from which descents start."""
 FLOORS = (1e-3, 1e-4)
 """Smallest durations tried, relative to the mean, where the case sets no lower bound."""
 DEEPER = (1e-6, 1e-8, 1e-10)
 """Further floors where way-points nearly coincide: the total may rise again below the others."""
 ROUNDED = 2e-9
 """Relative gain of a known motion that counts: twice what the checker's tolerance gives away."""
-RESTORABLE = 200
-"""Segments up to which the feasibility phase runs: its gradients are dense, (segments)² each."""
+PROVEN = 1e-6
+"""Relative distance from a proved lower bound at which nothing shorter is looked for."""
+SPARSE = 9
+"""Segments from which rounds of the NLP are quicker than dense descents: they come first."""
 ONLY_TOLERANCE = "the limits leave no room: they are kept within the tolerance of the check alone"
 """Beside an answer that exact limits would not let pass."""
 APPROACHED = 1e-6
@@ -72,13 +66,14 @@ def solve(
     initial: ArrayLike | None = None,
     known: ArrayLike | None = None,
     known_nodal: ArrayLike | None = None,
-    form: Form | None = None,
     seconds: float = math.inf,
     lower: float = 0.0,
 ) -> Solution:
-    """Best known total time of a problem with shared durations, from an exact NLP.
+    """Best known total time of a problem with shared durations.
 
-    Where the problem fixes the ratios of its durations, it is a formula, without any start.
+    Up to 24 segments a wide search on exact totals finds basins, and a descent on the exact extrema
+    goes down in each. Beyond, and where the curve leaves derivatives free, rounds of the exact NLP
+    (`build`) answer. Where the problem fixes the ratios of its durations, the total is a formula.
 
     Parameters
     ----------
@@ -86,9 +81,7 @@ def solve(
         Its coupling is not looked at: durations are shared by all joints of the problem. See
         `solve_per_joint` for the other procedure.
     starts : int
-        Number of starts, 1 or more: equal durations first, then screened random ones. Determined
-        splines of 9 segments and more begin with durations after the way of each segment; up to 24
-        segments so many basins of a wide search follow.
+        Number of starts, 1 or more.
     seed : int
         Seed of the random starts.
     initial : array_like, shape (starts, segments), optional
@@ -100,14 +93,12 @@ def solve(
     known_nodal : array_like, shape (motions, free, joints), optional
         Their free derivatives, where the curve leaves some open; without them those motions are
         not determined, and not used.
-    form : Form, optional
-        Reduced or lifted; by default the faster one for the size.
     seconds : float
         Time limit, kept to within a step of the search: the best motion so far is the answer, and
         `why` says that the time ran out. What is found then depends on the machine.
     lower : float
-        A proved lower bound of the total, s. It saves searches, and is no part of the answer: no
-        further descents challenge a total that it leaves no room below.
+        A proved lower bound of the total, s. It saves searches, and is no part of the answer: where
+        a known motion is within a millionth of it, no other basin is looked for.
 
     Returns
     -------
@@ -119,21 +110,24 @@ def solve(
     TrajgapError
         If ``initial`` or ``known`` has the wrong shape, or there is no formula for fixed ratios.
     """
-    ask = asked(problem, starts, seed, initial, known, known_nodal, form, lower)
+    ask = asked(problem, starts, seed, initial, known, known_nodal, lower)
     if problem.ratios is not None:
         return at_ratios(problem)
+    began = time.perf_counter()
     with stopping_after(seconds):
         answer = unsearched(problem)
-        if answer is not None:
-            return answer
-        answer = _solve(problem, ask)
-        return cut_short(answer) if time_up() else answer
+        if answer is None:
+            answer = _solve(problem, ask)
+            answer = cut_short(answer) if time_up() else answer
+    return replace(answer, solve_seconds=time.perf_counter() - began - answer.build_seconds)
 
 
 def _solve(problem: Problem, ask: Ask) -> Solution:
     """`solve` where no elementary argument decides."""
-    if long_enough(problem, ask) and (answer := solve_long(problem, ask)) is not None:
-        return answer
+    if problem.segments > DENSE and _sparse(problem):
+        answer = _programmed(problem, ask)
+        if answer.durations is not None:
+            return answer
     smooth = smoother(problem)
     if smooth is not None:
         found = as_answer(problem, _solve_smoother(problem, smooth, ask))
@@ -143,6 +137,14 @@ def _solve(problem: Problem, ask: Ask) -> Solution:
     if idle:
         return _with_idle(problem, idle, ask)
     return _solve_moving(problem, ask)
+
+
+def _sparse(problem: Problem) -> bool:
+    """Whether rounds of the NLP apply: something moves in each segment, and something is limited."""
+    curve, sides = problem.curve.piecewise, problem.limits.sides
+    moves = np.abs(np.diff(problem.waypoints, axis=0)).max(axis=1) > 0
+    limited = (np.isfinite(sides) & (sides > 0)).any()
+    return curve is not None and not curve.free and bool(moves.all() and limited)
 
 
 def _solve_smoother(problem: Problem, smooth: Problem, ask: Ask) -> Solution:
@@ -159,92 +161,109 @@ def _solve_smoother(problem: Problem, smooth: Problem, ask: Ask) -> Solution:
         initial=ask.initial,
         known=known,
         known_nodal=values,
-        form=ask.form,
     )
 
 
 def _solve_moving(problem: Problem, ask: Ask) -> Solution:
     """`solve` for a problem without idle segments."""
-    began = time.perf_counter()
-    if not searchable(problem):
-        solution = _tracked(problem, ask)
-        if solution.durations is None:
-            solution = _after_restoration(problem, ask, solution)
+    if problem.curve.free:
+        solution = _programmed(problem, ask)
+    elif problem.segments > DENSE:
+        solution = _descended(problem, ask)
+    elif (near := _proved(problem, ask)) is not None:
+        solution = _searched(problem, replace(ask, initial=near[None]))
     elif ask.initial is not None:
-        mean = ask.initial.mean(axis=1, keepdims=True)
-        alike = stretchable(problem) and (ask.initial >= UNEQUAL * mean).all()
-        solution = _tracked(problem, ask) if alike else _searched(problem, ask)
+        solution = _searched(problem, ask)
     else:
-        solution = _shortened(problem, _quickly(problem, ask) or _widely(problem, ask), ask)
-    solution = _with_known(problem, solution, ask)
+        solution = _shortened(problem, _widely(problem, ask), ask)
+    solution = _finished(problem, _with_known(problem, solution, ask))
     if solution.durations is None:
         solution = _without_jumps(problem, solution, ask.seed)
     if solution.durations is None:
         solution = _stretched_start(problem, solution)
-    return replace(solution, solve_seconds=time.perf_counter() - began - solution.build_seconds)
+    return solution
 
 
-def _quickly(problem: Problem, ask: Ask) -> Solution | None:
-    """The answer of Newton descents, where they settle."""
-    if ask.form is not None or time_up():
-        return None
-    return settled_quickly(problem, ask.starts, ask.seed, FLOORS[-1], ask.lower)
+def _finished(problem: Problem, solution: Solution) -> Solution:
+    """The answer, finished by the NLP where the descents stopped short of an optimum's conditions."""
+    short = solution.status is Status.FEASIBLE and solution.route is Route.DESCENT
+    if not (short and _sparse(problem)) or time_up():
+        return solution
+    assert solution.durations is not None
+    floor = np.minimum(made_up(problem, FLOORS[-1]), 0.5 * solution.durations)
+    found = _rounds(problem, solution.durations[None], floor, None)
+    return better_of(solution, judged(problem, found, floor, solution.starts, Route.NLP))
+
+
+def _proved(problem: Problem, ask: Ask) -> Array | None:
+    """A known motion that passes, and below which a proof leaves no room; None without one."""
+    for h in ask.known:
+        if h.sum() <= ask.lower * (1.0 + PROVEN) and kept(problem, check(problem, h)):
+            return np.asarray(h)
+    return None
+
+
+def _programmed(problem: Problem, ask: Ask) -> Solution:
+    """Rounds of the NLP from each start, and from the shortest known motion."""
+    floor = made_up(problem, FLOORS[-1])
+    nodal = first_nodal(problem)
+    if ask.initial is not None:
+        starts = ask.initial
+    elif problem.curve.free:
+        generator = np.random.default_rng(ask.seed)
+        more = random_starts(problem, ask.starts - 1, generator)
+        starts = np.vstack([equal_start(problem), more])
+    else:
+        starts = way_start(problem)[None]
+    found = _rounds(problem, starts, floor, nodal)
+    if not any(local.feasible for local in found) and nodal is not None:
+        usual = equal_start(problem)  # stretched to be tight, with the free derivatives at rest
+        passes = kept(problem, check(problem, usual, nodal))
+        found.append(Local(usual, nodal, float(usual.sum()), False, passes, 0))
+    solution = judged(problem, found, floor, len(starts), Route.NLP)
+    return _with_known(problem, solution, ask)
+
+
+def _rounds(problem: Problem, starts: Array, floor: Array, nodal: Array | None) -> list[Local]:
+    """Ends of the NLP's rounds from each start; later ones are not begun once the time is up."""
+    found: list[Local] = []
+    for start in starts:
+        if found and time_up():
+            break
+        local = program_search(problem, start, floor, nodal)
+        if local is not None:
+            found.append(local)
+    return found
 
 
 def _widely(problem: Problem, ask: Ask) -> Solution:
-    """The answer from the basins of a wide search: of sparse searches, else of the tracked NLP."""
-    wide = exact_starts(problem, ask.starts, ask.seed, made_up(problem, FLOORS[-1]))
-    found, stands = searched_sparsely(problem, ask, wide)
-    if found is not None and stands:
-        return found
-    if ordinary(problem, wide[0]):
-        answer = _challenged(problem, _tracked(problem, ask), wide, ask)
-    else:
-        answer = _searched(problem, ask)
-    return answer if found is None else better_of(answer, found)
-
-
-def _tracked(problem: Problem, ask: Ask) -> Solution:
-    """The tracked NLP from each start; without it, a descent, where building it takes too long."""
-    if problem.limits.uneven and problem.curve.piecewise is None:
-        return _descended(problem, ask)  # the NLP of other curves knows limits of equal sides
-    try:
-        search, build_seconds = tracked_search(problem, ask)
-    except TooLong:
-        return _descended(problem, ask)
-    points = ask.initial
-    if points is None:
-        points = screened_starts(problem, ask.starts, np.random.default_rng(ask.seed))
-    mean = float(equal_start(problem).mean())
-    solution, coarser = None, None
-    for share in FLOORS:
-        floor = share * mean
-        made = np.where(problem.duration_lower == 0, floor, 0.0)
-        found = search(points, floor)
-        solution = judged(problem, found, made, len(points))
-        if solution.status is Status.FEASIBLE and eliminating(problem, ask.form) and not time_up():
-            # Eliminating across very unequal durations loses digits; the lifted form does not.
-            lifted = compiled(structure_of(problem, Form.LIFTED))
-            found += tracked_multistart(problem, lifted, points, floor)
-            solution = judged(problem, found, made, len(points))
-        if solution.status is not Status.NOT_ATTAINED:
-            break
-        if coarser is not None:
-            solution = _approached(problem, coarser, solution, *FLOORS)
-        coarser = solution
-        assert solution.durations is not None
-        points = solution.durations[None]
-    assert solution is not None
-    return replace(solution, build_seconds=build_seconds)
+    """The answer from the basins of a wide search, by rounds of the NLP or by descents."""
+    if problem.segments < SPARSE or not _sparse(problem):
+        return _searched(problem, ask)
+    floor = made_up(problem, FLOORS[-1])
+    wide = usual_basins(problem, ask.starts, ask.seed, floor)
+    points = np.array([way_start(problem), *(basin.durations for basin in wide)])
+    found = judged(problem, _rounds(problem, points, floor, None), floor, len(points), Route.NLP)
+    if found.durations is not None and found.status is not Status.NOT_ATTAINED:
+        shortest = min((basin.total for basin in wide if basin.excess <= 0.0), default=np.inf)
+        if found.status is Status.CONVERGED and shortest >= found.total_time * (1 - BETTER):
+            return found
+        return better_of(_searched(problem, ask, wide=wide), found)
+    return _searched(problem, ask, wide=wide)
 
 
 def _descended(problem: Problem, ask: Ask) -> Solution:
-    """An exact descent from equal durations, or from the first start that was given."""
-    floor = made_up(problem, FLOORS[-1])
+    """The usual durations, or the first start that was given, stretched until they pass.
+
+    For many segments of a curve that the NLP has no rounds for.
+    """
     start = equal_start(problem) if ask.initial is None else ask.initial[0]
-    if problem.segments > RESTORABLE:
+    found = stretched(problem, start, None)
+    floor = made_up(problem, FLOORS[-1])
+    if found is None:
         return judged(problem, [], floor, 0)
-    return judged(problem, exact_search(problem, start[None], floor), floor, 1)
+    h, _ = found
+    return judged(problem, [Local(h, None, float(h.sum()), False, True, 0)], floor, 1)
 
 
 def _searched(
@@ -252,6 +271,7 @@ def _searched(
     ask: Ask,
     durations: Array | None = None,
     shares: tuple[float, ...] = (*FLOORS, *DEEPER),
+    wide: list[Basin] | None = None,
 ) -> Solution:
     """Exact descents from the basins of a wide search, or from the given starts.
 
@@ -263,7 +283,8 @@ def _searched(
     for k, share in enumerate(shares):
         floor = made_up(problem, share)
         if ask.initial is None:
-            wide = exact_starts(problem, ask.starts, ask.seed, floor)
+            if wide is None or k:
+                wide = usual_basins(problem, ask.starts, ask.seed, floor)
             points = np.array([basin.durations for basin in wide])
         else:
             points = ask.initial
@@ -304,26 +325,6 @@ def _searched(
     return coarse
 
 
-def _after_restoration(problem: Problem, ask: Ask, solution: Solution) -> Solution:
-    """The tracked NLP once more, from starts that a feasibility phase has brought to the limits."""
-    if problem.curve.free:
-        usual = equal_start(problem)  # stretched to be tight, with the free derivatives at rest
-        nodal = first_nodal(problem)
-        if not kept(problem, check(problem, usual, nodal)):
-            return solution
-        assert nodal is not None
-        return _with_known(
-            problem, solution, replace(ask, known=usual[None], known_nodal=nodal[None])
-        )
-    if problem.segments > RESTORABLE:
-        return solution
-    floor = made_up(problem, FLOORS[-1])
-    starts = np.vstack([equal_start(problem), anywhere(problem, ask.starts, ask.seed, floor)])
-    box = box_above(problem, floor)
-    ends = [restored(problem, start, box).durations for start in starts]
-    return _tracked(problem, replace(ask, initial=np.array(ends)))
-
-
 def _without_jumps(problem: Problem, solution: Solution, seed: int) -> Solution:
     """Ratios of durations at which a curve that may jump happens not to."""
     found = [Local(h, v, float(h.sum()), True, True, 0) for h, v in matched(problem, seed)]
@@ -345,19 +346,6 @@ def _stretched_start(problem: Problem, solution: Solution) -> Solution:
         return solution
     answer = judged(problem, [found], made_up(problem, FLOORS[-1]), solution.starts)
     return replace(answer, iterations=solution.iterations, build_seconds=solution.build_seconds)
-
-
-def _challenged(problem: Problem, solution: Solution, wide: list[Basin], ask: Ask) -> Solution:
-    """The answer, or a better one from a basin that the tracked NLP did not reach."""
-    if solution.status not in (Status.CONVERGED, Status.FEASIBLE) and not time_up():
-        return better_of(solution, _searched(problem, ask, solution.durations))
-    bar = solution.best * (1 - BETTER) if settled(solution) else np.inf
-    points = np.array([basin.durations for basin in wide if basin.total < bar])
-    if points.size == 0 or time_up():
-        return solution
-    floor = made_up(problem, FLOORS[-1])
-    found = judged(problem, exact_search(problem, points, floor), floor, solution.starts)
-    return better_of(solution, found)
 
 
 def _shortened(problem: Problem, solution: Solution, ask: Ask) -> Solution:
@@ -397,16 +385,13 @@ def _with_known(problem: Problem, solution: Solution, ask: Ask) -> Solution:
     best, values = passed
     incumbent = Local(best, values, float(best.sum()), False, True, 0)
     floor = np.minimum(made_up(problem, FLOORS[-1]), best / 2.0)
-    found = [incumbent]
-    if searchable(problem):
+    found, dense = [incumbent], not problem.curve.free and problem.segments <= DENSE
+    if dense:
         found += exact_search(problem, best[None], floor)
-    else:
-        try:
-            search, _ = tracked_search(problem, ask)
-            found += search(best[None], FLOORS[-1] * float(best.mean()))
-        except TooLong:
-            pass  # the known motion is the answer
-    answer = judged(problem, found, floor, solution.starts)
+    elif problem.curve.piecewise is not None:
+        found += _rounds(problem, best[None], floor, values)
+    route = Route.DESCENT if dense else Route.NLP
+    answer = judged(problem, found, floor, solution.starts, route)
     return answer if answer.best < solution.best else solution
 
 
@@ -434,7 +419,7 @@ def _approached(
     """The infimum by extrapolating the totals at two floors to 0, along one basin."""
     assert finer.durations is not None
     totals = [coarser.total_time]
-    if searchable(problem):
+    if problem.segments <= DENSE:
         again = exact_search(problem, finer.durations[None], made_up(problem, wide))
         totals += [local.total for local in again if local.feasible]
     ratio = narrow / wide

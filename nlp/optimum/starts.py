@@ -1,23 +1,47 @@
-"""Starts for the solver: equal durations, random ones, and a search for basins on exact totals."""
+"""Where searches begin: usual durations, the box that bounds them, and starts drawn over it."""
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
 
-from ...problem import Array, Problem, evaluate
-from .clock import time_up
+from ...problem import Array, Problem, evaluate, fit
+from ...problem.curves import Trajectory, near_extrema
 
-CHAINS, CHAIN_STEPS = 384, 40
-"""Short random descents (shared by the joints' cost) and their number of steps."""
-GRID_POINTS = {2: 400, 3: 2500}
-"""Points of the grid of duration ratios that is searched first where it is affordable."""
-SETTLING_STEPS, OFFSPRING = 30, 16
-"""Steps by which a start is brought near its basin's floor, and random trials of each."""
-SETTLED_SEGMENTS = 24
-"""Random trials gain little in more dimensions than these."""
+DENSE = 24
+"""Segments up to which a wide search and dense descents come first: their gradients have
+(segments)² entries, and beyond this random trials gain little."""
+ROUND = 1e-9
+"""Relative room below a least duration, which rounding may take: the checker's tolerance."""
+LEAST_SHARE, MOST_TIMES = 1e-12, 1e12
+"""Of the usual duration: no search leaves this range, in which float64 has not lost the curve."""
+WIDTH = 3.0
+"""Log durations by which starts anywhere differ from the usual ones: a factor of 20."""
+PASSES = 4
+"""Stretches of single segments of `way_start`; more change little."""
+STEP, DAMPING = (0.8, 3.0), 0.7
+"""Least and largest factor of a stretch, and its power: neighbours are stretched by it too."""
+DWELL = 1.2
+"""Share by which a segment is first given more than its way takes at the velocity limit."""
+TURN = 8.0
+"""Starts have h² = 8|Δq|/A: rest to rest takes 4 at least, a spline's overshoot some more; at 5 the
+first round of quintics takes up to twice as many iterations."""
+LEAST = 0.3
+"""Of the mean duration, the least at the start: neighbours share their accelerations."""
+
+
+@dataclass(frozen=True, eq=False)
+class LogBox:
+    """Bounds on the logarithms of the durations."""
+
+    low: Array
+    high: Array
+
+    def inside(self, z: Array) -> Array:
+        """The nearest point of the box."""
+        return np.asarray(np.clip(z, self.low, self.high))
 
 
 def first_nodal(problem: Problem) -> Array | None:
@@ -51,6 +75,47 @@ def equal_start(problem: Problem) -> Array:
     return np.asarray(np.clip(h[0] * stretch, problem.duration_lower, problem.duration_upper))
 
 
+def way_start(problem: Problem) -> Array:
+    """Durations after the way of each segment, each stretched by what it and its neighbours exceed.
+
+    Not by what the worst of all exceeds: among many segments one is always far worse than most.
+    """
+    way = np.abs(np.diff(problem.waypoints, axis=0))
+    velocity, acceleration = problem.limits.velocity, problem.limits.acceleration
+    with np.errstate(divide="ignore", invalid="ignore"):
+        fast = np.where(way > 0, DWELL * way / velocity, 0.0).max(axis=1)
+        turn = np.sqrt(np.where(way > 0, TURN * way / acceleration, 0.0)).max(axis=1)
+    breaks = np.array(problem.curve.waypoint_breaks)
+    parts = np.diff(breaks)
+    h = np.repeat(np.maximum(fast, turn) / parts, parts)
+    if not (np.isfinite(h).all() and h.mean() > 0):
+        return equal_start(problem)
+    h = np.maximum(h, LEAST * h.mean())
+    for _ in range(PASSES):
+        worst = worst_ratios(problem, fit(problem.curve, problem.waypoints, h))
+        beside = np.maximum(np.append(worst[1:], 0.0), np.append(0.0, worst[:-1]))
+        h = h * np.clip(np.maximum(worst, beside), *STEP) ** DAMPING
+    if not np.isfinite(h).all():
+        return equal_start(problem)
+    return np.asarray(np.clip(h, problem.duration_lower, problem.duration_upper))
+
+
+def worst_ratios(problem: Problem, trajectory: Trajectory) -> Array:
+    """By how much each segment would have to be stretched, were it alone."""
+    worst = np.zeros(len(trajectory.durations))
+    below, above = problem.limits.sides
+    for j, i in np.ndindex(below.shape):
+        sides = below[j, i], above[j, i]
+        if not any(np.isfinite(side) and side > 0 for side in sides):
+            continue
+        k, _, value = near_extrema(trajectory, j, i + 1, 0.0, 0.0)
+        limit = np.where(value > 0.0, sides[1], sides[0])
+        with np.errstate(divide="ignore", invalid="ignore"):
+            ratio = np.where(limit > 0.0, np.abs(value) / limit, 0.0)
+        np.maximum.at(worst, k, ratio ** (1.0 / (i + 1)))
+    return worst
+
+
 def random_starts(problem: Problem, count: int, generator: np.random.Generator) -> Array:
     """Starts log-uniform in [0.1, 10] times the uniformly rescaled equal durations.
 
@@ -69,98 +134,57 @@ def random_starts(problem: Problem, count: int, generator: np.random.Generator) 
     return np.asarray(equal_start(problem) * factors)
 
 
-def screened_starts(problem: Problem, count: int, generator: np.random.Generator) -> Array:
-    """The equal start, then the best mutually distant basins found on the exact repaired total.
+def least_durations(problem: Problem) -> Array:
+    """Durations, s, that no motion within the velocity limits undercuts; 0 where nothing says so.
 
-    Local optima with a small basin are found here, by many cheap batched evaluations, and not by
-    drawing more starts for the solver: on two or three durations by the local minima of a grid of
-    their ratios, otherwise by short random descents.
+    Between two way-points a joint covers |Δq|, which takes |Δq|/V at least.
     """
-    base = equal_start(problem)
-    if count <= 1 or problem.curve.free or problem.segments == 1:
-        return np.vstack([base, random_starts(problem, max(count - 1, 0), generator)])
-    if problem.segments in GRID_POINTS:
-        pool = _grid_minima(problem, base)
-    else:
-        chains = max(48, CHAINS // problem.waypoints.shape[1])
-        pool = random_starts(problem, chains, generator)
-    ends, total = _descents(problem, pool, generator)
-    chosen = [base]
-    for i in np.argsort(total, kind="stable"):
-        if len(chosen) == count:
-            break
-        apart = [np.abs(np.log(ends[i] / np.maximum(c, 1e-12))).max() for c in chosen[1:]]
-        if np.isfinite(total[i]) and min(apart, default=np.inf) > 0.5:
-            chosen.append(ends[i])
-    return np.array(chosen)
+    least = np.array(problem.duration_lower)
+    breaks = problem.curve.waypoint_breaks
+    way = np.diff(problem.waypoints, axis=0)
+    distance, sides = np.abs(way), problem.limits.sides[:, :, 0]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        velocity = np.where(way > 0, sides[1], sides[0])
+        needed = np.where(distance > 0, distance / velocity, 0.0).max(axis=1)
+    for w, seconds in enumerate(needed):
+        if breaks[w + 1] == breaks[w] + 1 and np.isfinite(seconds):
+            least[breaks[w]] = max(least[breaks[w]], (1.0 - ROUND) * seconds)
+    return least
 
 
-def settled(problem: Problem, start: Array) -> Array:
-    """A start, brought near its basin's floor by random steps on the exact repaired total.
+def made_up(problem: Problem, share: float) -> Array:
+    """A least duration of each segment, s, that a search makes up; 0 where a higher one is given.
 
-    A few hundred batched evaluations cost less than one step of the solver from a start far from
-    its optimum. The steps' widths follow their success; the same start settles in the same place.
+    Parameters
+    ----------
+    problem : Problem
+    share : float
+        Of the mean of the usual durations, or of an upper bound where that is shorter: a floor
+        above an upper bound would leave nothing to search.
+
+    Returns
+    -------
+    ndarray, shape (segments,)
+        0 where a bound or a velocity limit is higher.
     """
-    if problem.curve.free or not 1 < problem.segments <= SETTLED_SEGMENTS:
-        return start
-    generator = np.random.default_rng(0)
-    pool, totals = _repaired_total(problem, start[None])
-    point, total, width = pool[0], totals[0], 0.5
-    for _ in range(SETTLING_STEPS):
-        if time_up():
-            break
-        steps = np.exp(width * generator.standard_normal((OFFSPRING, problem.segments)))
-        pool, totals = _repaired_total(problem, point * steps)
-        best = int(np.argmin(totals))
-        if totals[best] < total:
-            point, total, width = pool[best], totals[best], 1.2 * width
-        else:
-            width = 0.6 * width
-    return np.asarray(point if np.isfinite(total) else start)
+    usual = np.minimum(equal_start(problem).mean(), problem.duration_upper)
+    return np.where(least_durations(problem) < share * usual, share * usual, 0.0)
 
 
-def _repaired_total(problem: Problem, h: Array) -> tuple[Array, Array]:
-    """Duration vectors made tight and put within the bounds, and their exact repaired totals."""
-    stretch = evaluate(problem, h).stretch
-    usable = np.isfinite(stretch) & (stretch > 0)
-    tight = np.where(usable[:, None], h * np.where(usable, stretch, 1.0)[:, None], h)
-    inside = np.clip(tight, problem.duration_lower, problem.duration_upper)
-    total = inside.sum(axis=1)
-    moved = (inside != tight).any(axis=1)
-    if moved.any():
-        total[moved] *= np.maximum(1.0, evaluate(problem, inside[moved]).stretch)
-    return inside, np.where(usable, total, np.inf)
+def box_above(problem: Problem, floor: Array) -> LogBox:
+    """Bounds on log durations: the problem's own, the least durations, and the floors."""
+    usual = float(equal_start(problem).mean())
+    least = LEAST_SHARE * np.minimum(usual, problem.duration_upper)
+    low = np.maximum(np.maximum(least_durations(problem), floor), least)
+    # A least duration above an upper bound leaves no motion; the box stays one for the search.
+    high = np.maximum(np.minimum(problem.duration_upper, MOST_TIMES * usual), low)
+    return LogBox(np.log(low), np.log(high))
 
 
-def _grid_minima(problem: Problem, base: Array) -> Array:
-    """Local minima of the repaired total over a grid of log duration ratios."""
-    n = problem.segments
-    side = round(GRID_POINTS[n] ** (1.0 / (n - 1)))
-    axis = np.linspace(-4.5, 4.5, side)
-    ratios = np.stack(np.meshgrid(*[axis] * (n - 1), indexing="ij"), axis=-1)
-    logs = np.concatenate([np.zeros((*ratios.shape[:-1], 1)), ratios], axis=-1).reshape(-1, n)
-    _, total = _repaired_total(problem, base.mean() * np.exp(logs))
-    values = total.reshape(ratios.shape[:-1])
-    lowest = np.ones(values.shape, dtype=bool)
-    padded = np.pad(values, 1, constant_values=np.inf)
-    for shift in np.ndindex(*(3,) * (n - 1)):
-        window = tuple(slice(s, s + side) for s in shift)
-        lowest &= values <= padded[window]
-    keep = np.flatnonzero(lowest.ravel() & np.isfinite(total))
-    keep = keep[np.argsort(total[keep], kind="stable")][:24]
-    if keep.size == 0:
-        return base[None]
-    return np.repeat(base.mean() * np.exp(logs[keep]), 2, axis=0)
-
-
-def _descents(problem: Problem, pool: Array, generator: np.random.Generator) -> tuple[Array, Array]:
-    """Greedy random steps of shrinking width, every member of the pool by itself."""
-    chains, total = _repaired_total(problem, pool)
-    for width in np.geomspace(0.3, 0.02, CHAIN_STEPS):
-        if time_up():
-            break
-        step = np.exp(width * generator.standard_normal(chains.shape))
-        moved, moved_total = _repaired_total(problem, chains * step)
-        better = moved_total < total
-        chains[better], total[better] = moved[better], moved_total[better]
-    return chains, total
+def anywhere(problem: Problem, count: int, seed: int, floor: Array) -> Array:
+    """Starts drawn over the box, up to `WIDTH` to both sides of the usual durations."""
+    box, base = box_above(problem, floor), np.log(equal_start(problem))
+    low = np.maximum(box.low, np.minimum(base, box.high) - WIDTH)
+    high = np.minimum(box.high, np.maximum(base, box.low) + WIDTH)
+    spread = np.random.default_rng(seed).uniform(0.0, 1.0, (count, problem.segments))
+    return np.asarray(np.exp(low + spread * (high - low)))

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from ...problem import Array, Problem, TrajgapError, scale
 from ...verify import Refused, Subject, verify_certificate
 from .. import optimum
-from ..optimum import STARTS, Form, Solution, seconds_left
+from ..optimum import STARTS, Solution, seconds_left
 from .certifiers import certify, prompt
 from .document import all_shipped, certificate, problem_document, question, suite_documents
 from .evidence import ProvedInterval, interval_in, narrow, proved, with_interval
@@ -39,7 +39,6 @@ def solve(
     initial: ArrayLike | None = None,
     known: ArrayLike | None = None,
     known_nodal: ArrayLike | None = None,
-    form: Form | None = None,
     seconds: float = math.inf,
     prove: float = PROVING,
 ) -> Solution:
@@ -58,7 +57,7 @@ def solve(
     exact : ExactProblem, optional
         The same problem in the numbers that are printed. Without it the floats are exact, unless a
         certificate that ships is about the printed numbers that they round.
-    starts, seed, initial, known, known_nodal, form, seconds
+    starts, seed, initial, known, known_nodal, seconds
         As in `trajgap.nlp.optimum.solve`.
     prove : float
         Budget of the branch and bound, as a share of what an audit allows one problem; 0 turns it
@@ -82,6 +81,9 @@ def solve(
         place = _place(problem, *size)
         interval = None if place is None else _proved(*size, place)
     began = time.perf_counter()
+    if interval is not None and interval.durations is not None:
+        proven = np.array([interval.durations], dtype=np.float64)
+        known = proven if known is None else np.vstack([np.atleast_2d(known), proven])
     found = optimum.solve(
         problem,
         starts=starts,
@@ -89,7 +91,6 @@ def solve(
         initial=initial,
         known=known,
         known_nodal=known_nodal,
-        form=form,
         seconds=seconds,
         lower=0.0 if interval is None else float(interval.lower),
     )

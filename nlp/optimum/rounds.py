@@ -1,4 +1,4 @@
-"""One round of IPOPT on a program of many segments, begun where another ended."""
+"""One round of IPOPT on a program and its rows, begun where another ended."""
 
 from __future__ import annotations
 
@@ -10,11 +10,10 @@ from typing import Any
 import numpy as np
 
 from ...problem import Array
-from ...problem.curves import Places, Trajectory
+from ...problem.curves import Places
 from .clock import seconds_left
-from .ipopt import ipopt_options
-from .long_formulation import LongProgram, Rows
-from .long_optimality import Multipliers
+from .program import Program, Rows
+from .sparse_optimality import Multipliers
 from .symbolic import ca
 
 ITERATIONS = 250
@@ -25,40 +24,40 @@ last."""
 BARRIERS = (1e-2, 1e-3, 1e-9)
 """Barriers at which those rounds begin: IPOPT's own 0.1 costs quintics half as many iterations
 again, and the later rows hardly move."""
-ABSOLUTE = ("ipopt.constr_viol_tol", "ipopt.dual_inf_tol", "ipopt.compl_inf_tol")
-"""What IPOPT demands beside its tolerance: eased where that is."""
 SHORTEST = 0.05
 """Seconds that a call of IPOPT has at least: its limit must be positive."""
-SOLVER = {
+OPTIONS = {
+    "print_time": False,
+    "show_eval_warnings": False,  # the status says where a function is not defined
+    "ipopt.print_level": 0,
+    "ipopt.sb": "yes",
+    "ipopt.max_iter": ITERATIONS,
+    "ipopt.bound_relax_factor": 0.0,  # its default moves limits outwards by 1e-8
+    "ipopt.honor_original_bounds": "yes",
+    "ipopt.acceptable_iter": 0,  # "acceptable" answers are none here
+    "ipopt.mu_strategy": "monotone",
+    # MUMPS as it takes a band best: approximate minimum degree, and no scaling. To permute by the
+    # size of values takes longer than to factorise, and grows faster than the number of segments.
     "ipopt.mumps_permuting_scaling": 0,
     "ipopt.mumps_scaling": 0,
     "ipopt.mumps_pivot_order": 0,
 }
-"""MUMPS as it takes a band best: approximate minimum degree, and no scaling. To permute by the size
-of values takes longer than to factorise, and grows faster than the number of segments."""
+"""Options of IPOPT in every round."""
 
 
-def _cap() -> float | None:
-    """What is left of the time, s: each round's solver is its own, so that no cap is shared."""
-    left = seconds_left()
-    return None if left == math.inf else max(left, SHORTEST)
-
-
-def _options(turn: int, cap: float | None) -> dict[str, Any]:
+def _options(turn: int) -> dict[str, Any]:
     stage = min(turn, 2)
     tolerance = TOLERANCES[stage]
-    usual = ipopt_options(warm=False, cap=cap)
-    eased = {key: max(tolerance, usual[key]) for key in ABSOLUTE} if stage < 2 else {}
-    options = (
-        usual
-        | eased
-        | SOLVER
-        | {
-            "ipopt.max_iter": ITERATIONS,
-            "ipopt.mu_init": BARRIERS[stage],
-            "ipopt.tol": tolerance,
-        }
-    )
+    options = OPTIONS | {
+        "ipopt.mu_init": BARRIERS[stage],
+        "ipopt.tol": tolerance,
+        "ipopt.constr_viol_tol": max(tolerance, 1e-10) if stage < 2 else 1e-10,
+        "ipopt.dual_inf_tol": max(tolerance, 1e-8),
+        "ipopt.compl_inf_tol": tolerance,
+    }
+    left = seconds_left()
+    if left < math.inf:  # each round's solver is its own, so that no limit is shared
+        options["ipopt.max_wall_time"] = max(left, SHORTEST)
     if turn == 0:
         return options
     push = 1e-5 if turn == 1 else 1e-9
@@ -80,16 +79,14 @@ class RoundState:
     rows: Array
 
 
-def fresh(program: LongProgram, h: Array, trajectory: Trajectory) -> RoundState:
+def fresh(program: Program, x: Array) -> RoundState:
     """At a motion, with no multipliers yet."""
     given, ends = program.equalities.numel(), program.ends.s.size
-    return RoundState(
-        program.pack(h, trajectory.scaled), None, np.zeros(given), np.zeros(ends), np.zeros(0)
-    )
+    return RoundState(x, None, np.zeros(given), np.zeros(ends), np.zeros(0))
 
 
 def solve_round(
-    program: LongProgram,
+    program: Program,
     rows: Rows,
     state: RoundState,
     turn: int,
@@ -107,20 +104,21 @@ def solve_round(
         program.at_places(rows.places, rows.weight),
     ]
     nlp = {"x": program.variables, "f": ca.sum1(program.durations), "g": ca.vertcat(*expressions)}
-    solver = ca.nlpsol("many", "ipopt", nlp, _options(turn, _cap()))
+    solver = ca.nlpsol("round", "ipopt", nlp, _options(turn))
     build = time.perf_counter() - began
     low, high = program.bounds()
     n = program.segments
     least, most = (np.clip(side / program.unit, low[:n], high[:n]) for side in box)
     low[:n], high[:n] = least, most
+    at_ends = [program.rooms(ends, np.full(ends.s.size, sign)) for sign in (-1.0, 1.0)]
     room, upper = program.rooms(rows.places, rows.sign), rows.sign > 0
-    one, zero = np.ones(ends.s.size), np.zeros(state.equalities.size)
+    zero = np.zeros(state.equalities.size)
     arguments = {
         "x0": np.clip(state.x, low, high),
         "lbx": low,
         "ubx": high,
-        "lbg": np.concatenate([zero, -one, np.where(upper, -np.inf, room)]),
-        "ubg": np.concatenate([zero, one, np.where(upper, room, np.inf)]),
+        "lbg": np.concatenate([zero, at_ends[0], np.where(upper, -np.inf, room)]),
+        "ubg": np.concatenate([zero, at_ends[1], np.where(upper, room, np.inf)]),
     }
     if state.bounds is not None:
         arguments["lam_x0"] = state.bounds
@@ -129,12 +127,12 @@ def solve_round(
     result = solver(**arguments)
     stats = solver.stats()
     state.x, state.bounds = (np.asarray(result[name]).ravel() for name in ("x", "lam_x"))
-    cuts = [zero.size, zero.size + one.size]
+    cuts = [zero.size, zero.size + ends.s.size]
     state.equalities, state.ends, duals_ = np.split(np.asarray(result["lam_g"]).ravel(), cuts)
     return duals_, bool(stats["success"]), int(stats["iter_count"]), build
 
 
-def multipliers(program: LongProgram, rows: Rows, state: RoundState, of_rows: Array) -> Multipliers:
+def multipliers(program: Program, rows: Rows, state: RoundState, of_rows: Array) -> Multipliers:
     """What a round of all segments leaves, in seconds."""
     at_left, number = program.left_places()
     assert state.bounds is not None
@@ -144,7 +142,7 @@ def multipliers(program: LongProgram, rows: Rows, state: RoundState, of_rows: Ar
         for name in ("joint", "segment", "order", "s")
     )
     # A bound on a variable is no share of its limit, as the rows are.
-    shares = program.limits[at_left.joint, np.maximum(at_left.order, 1) - 1]
+    shares = program.sides.scale[at_left.joint, np.maximum(at_left.order, 1) - 1]
     left = state.bounds[number] * np.where(at_left.order == 0, 1.0, shares)
     limits = np.concatenate([left, state.ends, of_rows])
     angle = np.where(order == 0, program.angle[joint], 1.0)

@@ -1,16 +1,17 @@
-"""Rows of a program of many segments: extrema near their limits, and what continues them."""
+"""Rows of a program: extrema near their limits, and what continues them from round to round."""
 
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...problem import Array
-from ...problem.curves import Places, Trajectory, near_extrema
-from .long_formulation import Indices, LongProgram, Rows
-from .long_optimality import along
+from ...problem import Array, Problem, extrema
+from ...problem.curves import ClockedTrajectory, Places, Trajectory, near_extrema
+from .program import Indices, Program, Rows, Sides
+from .sparse_optimality import along
 
 EVERY = 0.0
 """All interior extrema have rows at first: without those below a fifth of their limit, quintics
@@ -28,10 +29,24 @@ POSITION_NEAR = 0.3
 """Distance to a position limit, in the joint's span, from which an extremum has a row."""
 
 
+class Limited(Protocol):
+    """What rows need to know of a program: its problem, its units, and the order of its rows."""
+
+    problem: Problem
+    unit: float
+    angle: Array
+    sides: Sides
+    joints: int
+    top: int
+
+    def order_of_rows(self, places: Places) -> Indices:
+        """The order in which the program's expressions answer."""
+
+
 def _lines(rows: Rows, joints: int) -> Array:
     """Rows as points on a line: places of different limits are more than 1 apart."""
     at = rows.places
-    key = ((at.segment * 4 + at.order) * 2 + (rows.sign > 0)) * joints + at.joint
+    key = ((at.segment * 5 + at.order) * 2 + (rows.sign > 0)) * joints + at.joint
     return 2.0 * key + at.s
 
 
@@ -50,7 +65,7 @@ def carried(before: Rows, duals: Array, rows: Rows) -> Array:
     the nearest to that one too.
     """
     out = np.zeros(rows.sign.size)
-    if not (before.sign.size and rows.sign.size):
+    if before.sign.size < 2 or rows.sign.size < 2:
         return out
     joints = 1 + max(int(these.places.joint.max()) for these in (before, rows))
     old, new = (_lines(these, joints) for these in (before, rows))
@@ -79,9 +94,7 @@ def together(parts: list[Rows]) -> Rows:
     return Rows(Places(joint, segment, order, s), sign, weight)
 
 
-def with_loaded(
-    program: LongProgram, before: Rows, duals: Array, rows: Rows, loaded: float
-) -> Rows:
+def with_loaded(program: Limited, before: Rows, duals: Array, rows: Rows, loaded: float) -> Rows:
     """Rows, and with them the old ones with a multiplier whose extremum is gone, at their places.
 
     Where a derivative is all but constant its extremum jumps through the whole segment. Without
@@ -89,7 +102,7 @@ def with_loaded(
 
     Parameters
     ----------
-    program : LongProgram
+    program : Limited
     before : Rows
         Of a round that is over.
     duals : ndarray
@@ -100,7 +113,7 @@ def with_loaded(
         Multiplier from which a row of that round was active.
     """
     kept = np.flatnonzero(np.abs(duals) > loaded)
-    if kept.size and rows.sign.size:
+    if kept.size and rows.sign.size > 1:
         old, new = (_lines(these, program.joints) for these in (before, rows))
         kept = kept[np.abs(new[_nearest(new, old[kept])] - old[kept]) > AWAY]
     if not kept.size:
@@ -110,37 +123,34 @@ def with_loaded(
     return picked(both, program.order_of_rows(both.places))
 
 
-def near_rows(
-    program: LongProgram, trajectory: Trajectory, near: float, flat: float = FLAT
-) -> Rows:
+def near_rows(program: Program, trajectory: Trajectory, near: float, flat: float = FLAT) -> Rows:
     """Rows at all extrema inside segments that come near their limit, with their weights.
 
     Parameters
     ----------
-    program : LongProgram
+    program : Program
     trajectory : Trajectory
     near : float
         Share of its limit from which an extremum has a row.
     flat : float
         Second derivative, as in `FLAT`, below which a row stays at its place.
     """
-    problem = program.problem
+    rows = extreme_rows(program, trajectory, near)
+    return replace(rows, weight=_newton_weights(program, trajectory, rows.places, flat))
+
+
+def extreme_rows(program: Limited, trajectory: Trajectory, near: float) -> Rows:
+    """Rows at all extrema inside segments that come near their limit, each at its place."""
     found: list[tuple[Array | Indices, ...]] = []
     for j in range(program.joints):
         for r in (0, 1, 2, 3):
-            if r > 0:
-                limit = float(program.limits[j, r - 1]) * program.angle[j] / program.unit**r
-                low, high = (-near * limit, near * limit) if limit < np.inf else (-limit, limit)
-            else:
-                room = POSITION_NEAR * float(np.ptp(problem.waypoints[:, j]))
-                low = float(problem.limits.position_lower[j]) + room
-                high = float(problem.limits.position_upper[j]) - room
+            low, high = _thresholds(program, j, r, near)
             if program.top - r < 2 or not (np.isfinite(low) or np.isfinite(high)):
                 continue
-            k, s, value = near_extrema(trajectory, j, r, low, high)
+            k, s, value = _extrema(trajectory, j, r, low, high)
             inner = (s > 0.0) & (s < 1.0)
             k, s, value = k[inner], s[inner], value[inner]
-            sides = [value >= high, value <= low] if r == 0 else [value > 0.0, value <= 0.0]
+            sides = (value > 0.0, value <= 0.0) if low == high else (value >= high, value <= low)
             for side, which in zip(sides, (1.0, -1.0), strict=True):
                 at = np.flatnonzero(side)
                 whole = (np.full(at.size, j), k[at], np.full(at.size, r))
@@ -152,16 +162,47 @@ def near_rows(
     places = Places(joint, segment, order, place)
     at = program.order_of_rows(places)
     places = Places(joint[at], segment[at], order[at], place[at])
-    return Rows(places, sign[at], _newton_weights(program, trajectory, places, flat))
+    return Rows(places, sign[at], np.zeros(at.size))
 
 
-def _newton_weights(
-    program: LongProgram, trajectory: Trajectory, places: Places, flat: float
-) -> Array:
+def _thresholds(program: Limited, j: int, r: int, near: float) -> tuple[float, float]:
+    """Values from which an extremum has a row on the lower side, and on the upper one."""
+    limits = program.problem.limits
+    if r == 0:
+        room = POSITION_NEAR * float(np.ptp(program.problem.waypoints[:, j]))
+        return float(limits.position_lower[j]) + room, float(limits.position_upper[j]) - room
+    scale = float(program.sides.scale[j, r - 1])
+    if np.isinf(scale):
+        return -np.inf, np.inf
+    size = scale * float(program.angle[j]) / program.unit**r
+    edges = size * program.sides.low[j, r - 1], size * program.sides.high[j, r - 1]
+    found = []
+    for edge, away in zip(edges, (1.0, -1.0), strict=True):
+        if np.isinf(edge):
+            found.append(edge)
+        elif edge == 0.0:  # an extremum counts as near it in shares of the larger side
+            found.append(away * (1.0 - near) * size)
+        else:
+            found.append(near * edge)
+    return float(found[0]), float(found[1])
+
+
+def _extrema(
+    trajectory: Trajectory, j: int, r: int, low: float, high: float
+) -> tuple[Indices, Array, Array]:
+    """Pieces, places and values of the extrema at most at ``low`` or at least at ``high``."""
+    if not isinstance(trajectory, ClockedTrajectory):
+        return near_extrema(trajectory, j, r, low, high)
+    found = [e for e in extrema(trajectory, j, r) if e.value <= low or e.value >= high]
+    segment = np.array([e.segment for e in found], dtype=np.int64)
+    return segment, np.array([e.s for e in found]), np.array([e.value for e in found])
+
+
+def _newton_weights(program: Program, trajectory: Trajectory, places: Places, flat: float) -> Array:
     """1/f″ of f, a derivative in units of order one as a function of s; 0 where f is flat."""
     curvature = along(trajectory, places, 2)
     rate = (program.unit / trajectory.durations[places.segment]) ** places.order
     curvature = curvature * rate / program.angle[places.joint]
-    limits = program.limits[places.joint, np.maximum(places.order, 1) - 1]
+    limits = program.sides.scale[places.joint, np.maximum(places.order, 1) - 1]
     stays = np.abs(curvature) < flat * np.where(places.order == 0, 1.0, limits)
     return np.where(stays, 0.0, 1.0 / np.where(stays, 1.0, curvature))

@@ -1,4 +1,4 @@
-"""Optimality conditions of problems of many segments, from the multipliers of a search."""
+"""Optimality conditions of problems of many segments, from the multipliers of the NLP."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ...problem import QUANTITIES, Array, Problem, fit
 from ...problem.curves import PERM, Adjoint, Places, Trajectory
-from .optimality import MORE, Active
+from .optimality import KKT, MORE, Active
 
 NEWTON_STEPS = 4
 """Steps by which a place inside a segment is brought onto its extremum; it starts very near."""
@@ -42,14 +42,6 @@ class Multipliers:
     walls: Array
 
 
-@dataclass(frozen=True, eq=False)
-class LongKKT:
-    """Scaled residual of the optimality conditions as `optimality.kkt` scales it."""
-
-    residual: float
-    active: tuple[Active, ...]
-
-
 def along(trajectory: Trajectory, places: Places, further: int) -> Array:
     """Derivatives in s of order ``places.order + further`` at places."""
     a = trajectory.scaled[places.segment, :, places.joint]
@@ -74,7 +66,7 @@ def on_extrema(trajectory: Trajectory, places: Places) -> Places:
     return replace(places, s=s)
 
 
-def long_kkt(problem: Problem, durations: Array, found: Multipliers, violation: float) -> LongKKT:
+def sparse_kkt(problem: Problem, durations: Array, found: Multipliers, violation: float) -> KKT:
     """Optimality conditions at given multipliers: nothing is solved but one banded system.
 
     Parameters
@@ -88,7 +80,8 @@ def long_kkt(problem: Problem, durations: Array, found: Multipliers, violation: 
 
     Returns
     -------
-    LongKKT
+    KKT
+        Scaled as `optimality.kkt` scales it.
 
     Notes
     -----
@@ -105,11 +98,17 @@ def long_kkt(problem: Problem, durations: Array, found: Multipliers, violation: 
     side = np.where(found.limits >= 0.0, 1.0, -1.0)
     edge = np.where(side > 0, limits.position_upper[j], limits.position_lower[j])
     edge = np.where(np.isfinite(edge), edge, 0.0)
-    rate = limits.derivatives[j, np.maximum(places.order, 1) - 1]
-    scale = np.where(position, np.maximum(1.0, np.abs(edge)), rate)
+    r = np.maximum(places.order, 1) - 1
+    rate = limits.sides[(side > 0).astype(np.int64), j, r]
+    # Rows are shares of the larger side; a limit of 0 has no other size.
+    larger = np.where(np.isfinite(limits.sides), limits.sides, 0.0).max(axis=0)[j, r]
+    larger = np.where(larger > 0.0, larger, 1.0)
+    rate = np.where(np.isfinite(rate), rate, larger)
+    own = np.where(rate > 0.0, rate, larger)
+    scale = np.where(position, np.maximum(1.0, np.abs(edge)), own)
     values = adjoint.values(places)
     excess = np.where(position, side * (values - edge), side * values - rate) / scale
-    weights = np.abs(found.limits) * np.where(position, scale, 1.0) / total
+    weights = np.abs(found.limits) * np.where(position, scale, own / larger) / total
     walls = np.abs(found.walls) * durations / total
     low, high = problem.duration_lower, problem.duration_upper
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -139,4 +138,4 @@ def long_kkt(problem: Problem, durations: Array, found: Multipliers, violation: 
         w = float(walls[k] * total)
         sign = float(np.sign(found.walls[k]))
         active.append(Active(None, "duration", k, None, w, -sign * MORE * w))
-    return LongKKT(residual, tuple(active))
+    return KKT(residual, tuple(active))

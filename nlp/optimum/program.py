@@ -1,9 +1,13 @@
-"""The NLP of many segments in whole-array operations: durations and derivatives at left ends.
+"""The exact NLP in CasADi: durations, and derivatives at the left ends of segments.
 
 The derivatives q⁽ʳ⁾, r = 1..d, at the left end of a segment determine its polynomial; its Taylor
-series gives the values at the right end. Limits at breaks are then bounds on variables, and only
-extrema inside segments need rows. Every matrix is (segments, joints): no expression is written once
-a segment, so that building takes a tenth of a second at a thousand segments.
+series gives the values at the right end. The declaration's conditions are equalities between them,
+limits at left ends are bounds on variables, and limits inside segments are rows at places that
+follow the extrema. Derivatives are in time and not in the segment's parameter, so that a limit is
+one number whatever the duration.
+
+Every matrix is (segments, joints): no expression is written once a segment, so that building takes
+a tenth of a second at a thousand segments.
 """
 
 from __future__ import annotations
@@ -15,8 +19,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...problem import Array, Problem
-from ...problem.curves import ConditionKind, Layout, Places, Trajectory, layout
+from ...problem import QUANTITIES, Array, Interpolant, Problem
+from ...problem.curves import ConditionKind, Places, Trajectory
 from .symbolic import ca
 
 Indices = NDArray[np.int64]
@@ -24,6 +28,10 @@ Indices = NDArray[np.int64]
 LABELS = 11
 """Quantities of a segment that are told apart: its duration, derivatives up to the ninth, and a
 position that is free."""
+REACH = 0.5
+"""Farthest that a place follows its extremum, in shares of its segment: one of a derivative that is
+all but constant runs to any distance, where the polynomial means nothing. With 0.1 the
+windows of a plateau over 250 segments did not join, with 0.25 one of 150 did not settle."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,19 +52,67 @@ class Rows:
     weight: Array
 
 
-REACH = 0.5
-"""Farthest that a place follows its extremum, in shares of its segment: one of a derivative that is
-all but constant runs to any distance, where the polynomial means nothing. With 0.1 the
-windows of a plateau over 250 segments did not join, with 0.25 one of 150 did not settle."""
+@dataclass(frozen=True, eq=False)
+class Conditions:
+    """What the declaration, or a window of it, states at its breaks, shape (conditions,).
+
+    Attributes
+    ----------
+    kinds, breaks, orders : ndarray of int
+    values : ndarray, shape (conditions, joints)
+        Given derivatives, rad/sᵒʳᵈᵉʳ; 0 for matches and positions.
+    """
+
+    kinds: Indices
+    breaks: Indices
+    orders: Indices
+    values: Array
+
+    @classmethod
+    def of(cls, curve: Interpolant, joints: int) -> Conditions:
+        """The conditions of a declaration; derivatives that it leaves free have none."""
+        table = curve.table
+        values = np.zeros((table.kinds.size, joints))
+        given = [dict(curve.prescribed_at(b)) for b in range(curve.segments + 1)]
+        told = (table.kinds != ConditionKind.MATCH) & (table.orders > 0)
+        for i in np.flatnonzero(told).tolist():
+            values[i] = given[table.breaks[i]][int(table.orders[i])]
+        return cls(table.kinds, table.breaks, table.orders, values)
 
 
-class LongProgram:
-    """A problem of many segments in units of order one, with the expressions of its NLP.
+class Sides:
+    """Limits of derivatives in units of order one, as shares of the larger side.
+
+    Attributes
+    ----------
+    scale : ndarray, shape (joints, 3)
+        The larger side; inf where nothing is limited.
+    low, high : ndarray, shape (joints, 3)
+        Both sides in shares of it: −1 and 1 where they are equal.
+    """
+
+    def __init__(self, problem: Problem, unit: float, angle: Array) -> None:
+        below, above = problem.limits.sides * unit ** np.arange(1, 4) / angle[:, None]
+        positive = [np.where(np.isfinite(side), side, 0.0) for side in (below, above)]
+        scale = np.maximum(*positive)
+        # A joint that must not move to one side, and is free to the other, has no size to take.
+        one_sided = (scale == 0.0) & (np.isinf(below) | np.isinf(above))
+        moves = np.ptp(problem.waypoints, axis=0)[:, None] > 0.0
+        limited = (np.isfinite(below) | np.isfinite(above)) & (scale > 0.0)
+        limited |= one_sided & moves & ((below == 0.0) | (above == 0.0))
+        size = np.where(scale > 0.0, scale, 1.0)
+        self.scale = np.where(limited, size, np.inf)
+        self.low = np.where(limited, -below / size, -np.inf)
+        self.high = np.where(limited, above / size, np.inf)
+
+
+class Program:
+    """The NLP of a declared curve, in units of order one, with its expressions.
 
     Parameters
     ----------
     problem : Problem
-        With a determined piecewise polynomial.
+        With a piecewise polynomial.
     unit : float
         Time unit, s.
     floor : ndarray, shape (segments,)
@@ -76,22 +132,22 @@ class LongProgram:
         span: tuple[int, int] | None = None,
         beyond: Trajectory | None = None,
     ) -> None:
-        whole = layout(problem.piecewise)
+        curve = problem.piecewise
         self.problem, self.unit = problem, unit
         self.span = span or (0, problem.segments)
         self.segments = self.span[1] - self.span[0]
         self._own = slice(*self.span)
         self._floor = floor[self._own]
-        self.degrees, self.joints = whole.degrees[self._own], problem.waypoints.shape[1]
-        self.top = int(self.degrees.max())
+        self.degrees = np.array(curve.degrees, dtype=np.int64)[self._own]
+        self.joints, self.top = problem.waypoints.shape[1], int(self.degrees.max())
         steps = np.abs(np.diff(problem.waypoints, axis=0)).mean(axis=0)
         self.angle = np.where(steps > 0, steps, 1.0)
-        limits = problem.limits.derivatives * unit ** np.arange(1, 4) / self.angle[:, None]
-        self.limits = np.where(limits > 0, limits, np.inf)
-        self._plan = whole if beyond is None else _conditions(whole, self.span, beyond)
+        self.sides = Sides(problem, unit, self.angle)
+        whole = Conditions.of(curve, self.joints)
+        self._plan = whole if beyond is None else _of_window(whole, self.span, beyond)
         self._held = {r: np.flatnonzero(self.degrees >= r) for r in range(1, self.top + 1)}
         self._row = {r: _inverted(k, self.segments) for r, k in self._held.items()}
-        virtual = np.array(problem.piecewise.virtual, dtype=np.int64) - self.span[0]
+        virtual = np.array(curve.virtual, dtype=np.int64) - self.span[0]
         self._virtual = virtual[(virtual > 0) & (virtual < self.segments)]
         self._declare()
         self.equalities = self._equalities()
@@ -99,7 +155,7 @@ class LongProgram:
 
     def _declare(self) -> None:
         n, joints = self.segments, self.joints
-        self._h = ca.MX.sym("h", n)
+        self.durations = ca.MX.sym("h", n)
         self._d = {r: ca.MX.sym(f"d{r}", len(k), joints) for r, k in self._held.items()}
         free = ca.MX.sym("q", self._virtual.size, joints)
         breaks = list(self.problem.curve.waypoint_breaks)
@@ -111,23 +167,39 @@ class LongProgram:
         if self._virtual.size:
             self._q[self._virtual.tolist(), :] = free
         parts = [ca.vec(self._d[r]) for r in range(1, self.top + 1)]
-        self.variables = ca.vertcat(self._h, *parts, ca.vec(free))
+        self.variables = ca.vertcat(self.durations, *parts, ca.vec(free))
         sizes = [n, *(len(k) * joints for k in self._held.values()), self._virtual.size * joints]
         self._offset = np.concatenate([[0], np.cumsum(sizes)])
 
-    @property
-    def durations(self) -> Any:
-        """The expressions of the durations, in units of time."""
-        return self._h
+    def __str__(self) -> str:
+        p, rows = self.problem, self.ends.s.size
+        limited = [
+            q for q, s in zip(QUANTITIES, self.sides.scale.T, strict=True) if s.min() < np.inf
+        ]
+        if p.limits.limits_position:
+            limited.insert(0, "position")
+        free = f", {self._virtual.size * self.joints} positions" if self._virtual.size else ""
+        states = int(self._offset[-2]) - self.segments
+        return (
+            f"minimise the sum of {self.segments} segment durations\n"
+            f"  curve        {p.curve.name}, {self.joints} joint(s)\n"
+            f"  variables    {self.variables.numel()}: {self.segments} durations, "
+            f"{states} derivatives at left ends of segments{free}\n"
+            f"  equalities   {self.equalities.numel()}: the declaration's conditions at right ends"
+            f"{' and the fixed ratios' if p.ratios is not None else ''}\n"
+            f"  limits       on {', '.join(limited) or 'nothing'}: bounds at left ends, {rows} rows "
+            "at right ends,\n"
+            "               and a row at each extremum inside a segment, found anew in each round"
+        )
 
     def _taylor(self, order: int, k: Indices) -> Any:
         """Derivative of some segments of one degree at their ends; of order 0 their way."""
-        h = self._h if k.size == self.segments else self._h[k.tolist()]
+        h = self.durations if k.size == self.segments else self.durations[k.tolist()]
         t = ca.repmat(h, 1, self.joints)
         return self._series(order, int(self.degrees[k[0]]), t, lambda r: self._left(r, k))
 
     def _series(self, order: int, degree: int, t: Any, left: Any) -> Any:
-        value: Any = 0
+        value: Any = ca.MX.zeros(*t.shape)
         for m in range(degree, max(order, 1) - 1, -1):
             value = value * t + left(m) / math.factorial(m - order)
         return value * t if order == 0 else value
@@ -138,7 +210,7 @@ class LongProgram:
         return self._d[r][self._row[r][k].tolist(), :]
 
     def _equalities(self) -> Any:
-        """What the declaration says of right ends: values, and matches with the next segment."""
+        """What the declaration says of right ends, and the fixed ratios of durations."""
         plan, unit = self._plan, self.unit
         rows = np.flatnonzero(plan.kinds != ConditionKind.RIGHT_VALUE)
         keys = np.stack([plan.kinds[rows], plan.orders[rows], self.degrees[plan.breaks[rows] - 1]])
@@ -150,8 +222,7 @@ class LongProgram:
             if r == 0:
                 wanted = self._q[b.tolist(), :] - self._q[(b - 1).tolist(), :]
             elif kind == ConditionKind.LEFT_VALUE:
-                given = plan.prescribed[i] * unit**r / self.angle
-                wanted = ca.DM(given)
+                wanted = ca.DM(plan.values[i] * unit**r / self.angle)
             else:
                 there = self.degrees[b] >= r
                 if there.all():
@@ -162,6 +233,11 @@ class LongProgram:
                         wanted[np.flatnonzero(there).tolist(), :] = self._left(r, b[there])
             found.append(ca.vec(value - wanted))
             labels.append(self._labels(b - 1, r))
+        shares = self.problem.shares
+        if shares is not None:
+            h = self.durations
+            found.append(h[1:] * shares[0] - ca.DM(shares[1:]) * h[0])
+            labels.append(np.full(self.segments - 1, -1))  # windows have free durations
         self.equality_labels = np.concatenate(labels)
         return ca.vertcat(*found)
 
@@ -179,7 +255,7 @@ class LongProgram:
         curve = self.problem.piecewise
         found: list[tuple[int, int, int]] = []
         for r in (1, 2, 3):
-            joints = np.flatnonzero(np.isfinite(self.limits[:, r - 1]))
+            joints = np.flatnonzero(np.isfinite(self.sides.scale[:, r - 1]))
             smooth = np.array([*curve.continuity, -1])[self._own]
             smooth[-1] = -1  # nothing bounds the right end of a window but rows
             open_ = (self.degrees > r) & (smooth < r)
@@ -207,9 +283,9 @@ class LongProgram:
 
     def _some(self, places: Places, weight: Array, i: Indices, r: int, degree: int) -> Any:
         k, j = places.segment[i], places.joint[i]
-        h = self._h[k.tolist()]
+        # One number, taken several times, is a row.
+        h = ca.vec(self.durations[k.tolist()])
         flat = {
-            # One number, taken several times, is a row.
             m: ca.vec(ca.vec(self._d[m])[(self._row[m][k] + self._held[m].size * j).tolist()])
             for m in range(max(r, 1), degree + 1)
         }
@@ -220,8 +296,8 @@ class LongProgram:
             s = s - REACH * ca.tanh(step / REACH)
         value = self._series(r, degree, s * h, flat.__getitem__)
         if r == 0:
-            return value + ca.vec(self._q)[(k + (self.segments + 1) * j).tolist()]
-        return value / ca.DM(self.limits[j, r - 1])
+            return value + ca.vec(ca.vec(self._q)[(k + (self.segments + 1) * j).tolist()])
+        return value / ca.DM(self.sides.scale[j, r - 1])
 
     def bounds(self) -> tuple[Array, Array]:
         """Bounds on the variables: durations, limits at left ends, given derivatives."""
@@ -230,12 +306,14 @@ class LongProgram:
         high = [np.maximum(problem.duration_upper[self._own] / unit, low[0])]
         right = plan.kinds == ConditionKind.RIGHT_VALUE
         for r, held in self._held.items():
-            width = self.limits[:, r - 1] if r <= 3 else np.full(self.joints, np.inf)
-            upper = np.tile(width, (held.size, 1))
-            lower = -upper
+            edges = (np.full(self.joints, -np.inf), np.full(self.joints, np.inf))
+            if r <= 3:
+                size = self.sides.scale[:, r - 1]
+                edges = size * self.sides.low[:, r - 1], size * self.sides.high[:, r - 1]
+            lower, upper = (np.tile(edge, (held.size, 1)) for edge in edges)
             i = np.flatnonzero(right & (plan.orders == r))
             at = self._row[r][plan.breaks[i]]
-            lower[at] = upper[at] = plan.prescribed[i] * unit**r / self.angle
+            lower[at] = upper[at] = plan.values[i] * unit**r / self.angle
             low.append(lower.ravel("F"))
             high.append(upper.ravel("F"))
         first = problem.waypoints[0]
@@ -247,14 +325,16 @@ class LongProgram:
         return np.concatenate(low), np.concatenate(high)
 
     def rooms(self, places: Places, sign: Array) -> Array:
-        """Limits of rows: 1 for derivatives, which are in shares of theirs; positions in angles."""
+        """Limits of rows: derivatives in shares of the larger side, positions in angles."""
         limits, first = self.problem.limits, self.problem.waypoints[0]
-        j = places.joint
+        j, r = places.joint, np.maximum(places.order, 1) - 1
         at = np.where(sign > 0, limits.position_upper[j], limits.position_lower[j])
-        return np.where(places.order == 0, (at - first[j]) / self.angle[j], sign)
+        side = np.where(sign > 0, self.sides.high[j, r], self.sides.low[j, r])
+        return np.where(places.order == 0, (at - first[j]) / self.angle[j], side)
 
-    def pack(self, durations: Array, scaled: Array) -> Array:
-        """Variables at a trajectory with coefficients ``scaled`` in the segments' parameter."""
+    def pack(self, trajectory: Trajectory) -> Array:
+        """Variables at a motion."""
+        scaled, durations = trajectory.scaled, trajectory.durations
         parts = [durations / self.unit]
         for r, held in self._held.items():
             rate = math.factorial(r) / (durations[held] / self.unit) ** r
@@ -276,6 +356,12 @@ class LongProgram:
         scaled[:, 0] += self.problem.waypoints[0]
         return Trajectory(h * self.unit, scaled, tuple(self.degrees.tolist()))
 
+    def motion(self, x: Array) -> tuple[Array, Array | None]:
+        """Durations, s, and free derivatives, where the declaration leaves some."""
+        curve, trajectory = self.problem.piecewise, self.trajectory(x)
+        nodal = free_values(curve, trajectory) if curve.free else None
+        return trajectory.durations, nodal
+
     def labels(self) -> tuple[Indices, Indices, Indices]:
         """Numbers of variables, of equalities and of rows at right ends, the same in every window.
 
@@ -296,7 +382,7 @@ class LongProgram:
         for r, held in self._held.items():
             if r > 3:
                 break
-            j = np.flatnonzero(np.isfinite(self.limits[:, r - 1]))
+            j = np.flatnonzero(np.isfinite(self.sides.scale[:, r - 1]))
             joint, row = np.repeat(j, held.size), np.tile(np.arange(held.size), j.size)
             number = self._offset[r] + joint * held.size + row
             found.append((joint, held[row], np.full(joint.size, r), number))
@@ -314,7 +400,51 @@ class LongProgram:
         return places, np.asarray(number[at])
 
 
-def _conditions(plan: Layout, span: tuple[int, int], beyond: Trajectory) -> Layout:
+def build(problem: Problem) -> Program:
+    """The exact NLP of a problem, not solved: ``print(build(problem))`` says what it consists of.
+
+    Parameters
+    ----------
+    problem : Problem
+        With a declared curve, with or without free derivatives, virtual way-points, fixed ratios.
+
+    Returns
+    -------
+    Program
+        With `variables`, `equalities`, `bounds` and the rows of `at_places`.
+
+    Raises
+    ------
+    TrajgapError
+        If the curve is no piecewise polynomial with breaks at the way-points.
+    """
+    from .starts import equal_start
+
+    return Program(problem, float(equal_start(problem).mean()), np.zeros(problem.segments))
+
+
+def free_values(curve: Interpolant, trajectory: Trajectory) -> Array:
+    """What a trajectory gives the free derivatives of a declaration with the same breaks.
+
+    Parameters
+    ----------
+    curve : Interpolant
+    trajectory : Trajectory
+
+    Returns
+    -------
+    ndarray, shape (free, joints)
+    """
+    n, joints = curve.segments, trajectory.scaled.shape[2]
+    nodal = np.empty((curve.free, joints))
+    for i, (b, order) in enumerate(curve.free_derivatives):
+        for j in range(joints):
+            side = trajectory.derivative(min(b, n - 1), j, order)
+            nodal[i, j] = side[0] if b < n else side.sum()
+    return nodal
+
+
+def _of_window(plan: Conditions, span: tuple[int, int], beyond: Trajectory) -> Conditions:
     """The conditions at and between two breaks, on the sides between them, and those of a cut.
 
     There the lower half of what is continuous is given, which is what a spline has free at an end.
@@ -325,15 +455,15 @@ def _conditions(plan: Layout, span: tuple[int, int], beyond: Trajectory) -> Layo
     own = np.where(right, plan.breaks >= first, plan.breaks > first)
     own &= np.where(left, plan.breaks <= last, plan.breaks < last)
     kinds, orders = plan.kinds[own], plan.orders[own]
-    breaks, given = plan.breaks[own] - first, plan.prescribed[own]
+    breaks, given = plan.breaks[own] - first, plan.values[own]
     for b, kind in ((first, ConditionKind.RIGHT_VALUE), (last, ConditionKind.LEFT_VALUE)):
         smooth = np.sort(plan.orders[match & (plan.breaks == b) & (plan.orders > 0)])
         for r in smooth[: smooth.size // 2].tolist():
             value = beyond.scaled[b, r] * math.factorial(r) / beyond.durations[b] ** r
             kinds, orders = np.append(kinds, kind), np.append(orders, r)
             breaks = np.append(breaks, b - first)
-            given = np.vstack([np.broadcast_to(given, (len(given), value.size)), value])
-    return replace(plan, kinds=kinds, breaks=breaks, orders=orders, prescribed=given)
+            given = np.vstack([given, value])
+    return Conditions(kinds, breaks, orders, given)
 
 
 def _inverted(held: Indices, size: int) -> Indices:

@@ -9,8 +9,7 @@ import numpy as np
 from ...problem import Array, CurveError, Problem, evaluate, fit
 from ...problem.curves import batch_coefficients
 from .clock import seconds_left, time_up
-from .descent import LogBox
-from .starts import stretching
+from .starts import LogBox, box_above, equal_start, stretching
 
 MEMBERS, MOST_MEMBERS = 16, 128
 """Members of a population for each segment, and at most."""
@@ -29,6 +28,11 @@ REPAIRS = 3
 PART = 16
 """Members of a first population after which the clock is looked at: a quarter of a second where 25
 segments of a curve are not evaluated by compiled code yet."""
+GRID = {2: 400, 3: 50}
+"""Points along each axis of log ratios of durations, where so many can be looked at: basins that
+are narrower than the members of a population lie apart are found here."""
+RATIOS = 4.5
+"""Log ratios up to which the grid reaches: a factor of 90."""
 HOPELESS = 10.0
 """Excess of a vector that defines no curve: worse than any that does."""
 
@@ -137,6 +141,12 @@ class Basin:
     total: float
 
 
+def usual_basins(problem: Problem, count: int, seed: int, floor: Array) -> list[Basin]:
+    """`basins` around equal durations, in the problem's whole box above the floors."""
+    generator = np.random.default_rng(seed)
+    return basins(problem, equal_start(problem), box_above(problem, floor), count, generator)
+
+
 def basins(
     problem: Problem, base: Array, box: LogBox, count: int, generator: np.random.Generator
 ) -> list[Basin]:
@@ -168,6 +178,9 @@ def basins(
     spread = generator.uniform(0.0, 1.0, (size, n))
     z[:, narrow] = box.low[narrow] + spread[:, narrow] * (box.high - box.low)[narrow]
     z[0] = np.log(base)
+    if n in GRID:
+        minima = _grid_minima(problem, base, box)[: size // 2]
+        z[1 : 1 + len(minima)] = minima
     z, excess, total = _first(problem, np.exp(z), box)
     size, took = len(z), 0.0
     scale = float(base.sum())
@@ -197,3 +210,21 @@ def basins(
         if all(np.abs(z[i] - z[c]).max() > APART for c in chosen):
             chosen.append(int(i))
     return [Basin(np.exp(z[i]), float(excess[i]), float(total[i])) for i in chosen]
+
+
+def _grid_minima(problem: Problem, base: Array, box: LogBox) -> Array:
+    """Local minima over a grid of log ratios to the first duration, best first, log durations."""
+    n = problem.segments
+    axis = np.linspace(-RATIOS, RATIOS, GRID[n])
+    ratios = np.stack(np.meshgrid(*[axis] * (n - 1), indexing="ij"), axis=-1)
+    logs = np.concatenate([np.zeros((*ratios.shape[:-1], 1)), ratios], axis=-1)
+    logs += np.log(base.sum()) - np.log(np.exp(logs).sum(axis=-1, keepdims=True))
+    z, excess, total = excess_and_total(problem, np.exp(logs.reshape(-1, n)), box)
+    worth = _worth(excess, total, float(base.sum())).reshape(ratios.shape[:-1])
+    padded = np.pad(worth, 1, constant_values=np.inf)
+    lowest = np.ones(worth.shape, dtype=bool)
+    for shift in np.ndindex(*(3,) * (n - 1)):
+        window = tuple(slice(s, s + axis.size) for s in shift)
+        lowest &= worth <= padded[window]
+    at = np.flatnonzero(lowest.ravel())
+    return z[at[np.argsort(worth.ravel()[at], kind="stable")]]

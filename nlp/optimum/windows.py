@@ -17,10 +17,10 @@ import numpy as np
 from ...problem import Array, Problem
 from ...problem.curves import Trajectory
 from .clock import time_up
-from .long_formulation import LABELS, Indices, LongProgram, Rows
-from .long_round import RoundState, fresh, solve_round
-from .long_rows import EVERY, NEAR, carried, near_rows, picked, together
-from .long_start import worst_ratios
+from .program import LABELS, Indices, Program, Rows
+from .rounds import RoundState, fresh, solve_round
+from .rows import EVERY, NEAR, carried, near_rows, picked, together
+from .starts import worst_ratios
 
 FEWEST = 200
 """Segments from which there are windows: cubics of 200 are as quick in one, quintics take twice as
@@ -88,12 +88,12 @@ def _at_waypoints(breaks: Indices, wanted: Array) -> Indices:
     return np.asarray(breaks[np.abs(breaks - np.asarray(wanted)[:, None]).argmin(axis=1)])
 
 
-def joined_windows(program: LongProgram, trajectory: Trajectory, floor: Array) -> Joined | None:
+def joined_windows(program: Program, trajectory: Trajectory, floor: Array) -> Joined | None:
     """Windows solved and put together; None where time is up before, or one is not solved.
 
     Parameters
     ----------
-    program : LongProgram
+    program : Program
         Of all segments.
     trajectory : Trajectory
         Near which windows start.
@@ -104,7 +104,7 @@ def joined_windows(program: LongProgram, trajectory: Trajectory, floor: Array) -
     -------
     Joined or None
     """
-    state = fresh(program, trajectory.durations, trajectory)
+    state = fresh(program, program.pack(trajectory))
     state.bounds = np.zeros(state.x.size)
     worst = worst_ratios(program.problem, trajectory)
     variables, equalities, right_ends = (
@@ -119,8 +119,8 @@ def joined_windows(program: LongProgram, trajectory: Trajectory, floor: Array) -
                 return None
             began = time.perf_counter()
             slower = replace(trajectory, durations=trajectory.durations * keeps * more)
-            part = LongProgram(program.problem, program.unit, floor, span, slower)
-            here = fresh(part, slower.durations[slice(*span)], _cut(slower, span))
+            part = Program(program.problem, program.unit, floor, span, slower)
+            here = fresh(part, part.pack(_cut(slower, span)))
             build += time.perf_counter() - began
             ended = _solved(part, here, slice(own[0] - span[0], own[1] - span[0]))
             iterations, build = iterations + ended.iterations, build + ended.build_seconds
@@ -163,7 +163,7 @@ def _cut(trajectory: Trajectory, span: tuple[int, int]) -> Trajectory:
     return Trajectory(trajectory.durations[own], trajectory.scaled[own], trajectory.degrees[own])
 
 
-def _solved(part: LongProgram, state: RoundState, own: slice) -> _Ended:
+def _solved(part: Program, state: RoundState, own: slice) -> _Ended:
     """Rounds until a window's own segments nearly keep their limits."""
     motion = part.trajectory(state.x)
     rows = near_rows(part, motion, EVERY)

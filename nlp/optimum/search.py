@@ -1,0 +1,184 @@
+"""Local optimum by the NLP: rounds of IPOPT, with rows at the extrema of the motion before.
+
+The first round has rows at all interior extrema of its start, each later one at those of the motion
+before it that come near their limit; an exact search over all pieces says where they are, so that
+no sampled place decides. Where there are very many segments, windows of some dozen are solved
+first and joined.
+"""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+
+from ...problem import Array, CurveError, Problem, check, fit
+from .clock import time_up
+from .decided import kept
+from .judgement import KKT_TOLERANCE
+from .local import Local
+from .optimality import KKT, kkt
+from .program import Program, Rows
+from .rounds import TOLERANCES, RoundState, fresh, multipliers, solve_round
+from .rows import EVERY, FLAT, NEAR, carried, near_rows, with_loaded
+from .sparse_optimality import sparse_kkt
+from .starts import DENSE, worst_ratios
+from .windows import FEWEST, joined_windows
+
+ROUNDS = 12
+"""Most rounds of one attempt; three to six suffice where any number does."""
+JOINED = 2
+"""Round, counted from 0, that joined windows take the place of those before: the first whose
+tolerance and barrier are the last ones."""
+FAILURES = 3
+"""Rounds without success after which a search is given up; each begins again from the best motion
+with rows at all its extrema."""
+CHANGED = 3.0
+"""Factor by which a round changes a duration at most: the extrema of a motion far away are others,
+and without a bound some quintics leave for motions of which the rows say nothing. Its square root
+after each failure."""
+FLATTER, FLATTEST = 10.0, 1e-2
+"""Factor and end of the second derivative below which rows stay, where limits are kept and the
+conditions of an optimum are not met: multipliers of rows that follow a vague extremum are vague."""
+LOADED = 10.0
+"""Multiplier, in tolerances of its round, from which a row was active: the barrier leaves about the
+tolerance on the others."""
+SETTLED = 2e-9
+"""Excess over a limit at which the rounds end: a stretch, which costs as much, repairs it."""
+
+Motion = tuple[Array, Array | None]
+"""Durations, s, and free derivatives, where the declaration leaves some."""
+
+
+def program_search(
+    problem: Problem, start: Array, floor: Array, nodal: Array | None = None
+) -> Local | None:
+    """A local optimum from a start, or how far the rounds came; None where they came nowhere.
+
+    Parameters
+    ----------
+    problem : Problem
+        With a piecewise polynomial.
+    start : ndarray, shape (segments,)
+        s.
+    floor : ndarray, shape (segments,)
+        Least durations, s.
+    nodal : ndarray, shape (free, joints), optional
+        Free derivatives at the start, where the declaration leaves some.
+
+    Returns
+    -------
+    Local or None
+        With its optimality conditions, where the last round kept the limits.
+    """
+    began = time.perf_counter()
+    program = Program(problem, float(start.mean()), floor)
+    trajectory = fit(problem.curve, problem.waypoints, start, nodal)
+    state = fresh(program, program.pack(trajectory))
+    rows = near_rows(program, trajectory, EVERY)
+    build, iterations = time.perf_counter() - began, 0
+    best: tuple[Motion, KKT] | None = None
+    rough: Motion | None = None
+    turn = failures = done = 0
+    flat = FLAT
+    if problem.segments >= FEWEST and problem.shares is None:
+        joined = joined_windows(program, trajectory, floor)
+        if joined is not None:
+            state, turn = joined.state, JOINED
+            iterations, build = joined.iterations, build + joined.build_seconds
+            now = program.motion(state.x)
+            rough = within(problem, now, _excess(problem, now))
+            rows = near_rows(program, fit(problem.curve, problem.waypoints, *now), NEAR)
+            state.rows = carried(joined.rows, joined.duals, rows)
+    while done < ROUNDS:
+        if iterations and time_up():
+            break
+        done += 1
+        before = state.x[: problem.segments] * program.unit
+        factor = CHANGED ** (0.5**failures)
+        box = (before / factor, before * factor)
+        duals, success, count, seconds = solve_round(program, rows, state, turn, box)
+        iterations, build = iterations + count, build + seconds
+        now = program.motion(state.x)
+        excess = _excess(problem, now)
+        if np.isfinite(excess):
+            longer = within(problem, now, excess)
+            rough = longer if rough is None or longer[0].sum() < rough[0].sum() else rough
+        if not (success and np.isfinite(excess)):
+            failures += 1
+            if failures > FAILURES:
+                break
+            turn = done = 0
+            trajectory = fit(problem.curve, problem.waypoints, *(rough or (start, nodal)))
+            state = fresh(program, program.pack(trajectory))
+            rows = near_rows(program, trajectory, EVERY)
+            continue
+        trajectory = fit(problem.curve, problem.waypoints, *now)
+        if turn and excess <= SETTLED:
+            report = _report(program, longer, rows, state, duals)
+            if best is None or report.residual < best[1].residual:
+                best = longer, report
+            # A round with an eased tolerance leaves its barrier's gap: 1.6e-7 of a total was seen.
+            if turn >= len(TOLERANCES) - 1:
+                if report.residual <= KKT_TOLERANCE:
+                    break
+                flat = min(FLATTEST, FLATTER * flat)
+        loaded = LOADED * TOLERANCES[min(turn, len(TOLERANCES) - 1)]
+        extrema = near_rows(program, trajectory, NEAR, flat)
+        following = with_loaded(program, rows, duals, extrema, loaded)
+        state.rows, rows, turn = carried(rows, duals, following), following, turn + 1
+    if best is None and rough is None:
+        return None
+    motion, found = best if best is not None else (rough, None)
+    assert motion is not None
+    h, values = motion
+    passes = kept(problem, check(problem, h, values))
+    settled = found is not None and found.residual <= KKT_TOLERANCE
+    total = float(h.sum())
+    return Local(h, values, total, settled, passes, iterations, None, found, build)
+
+
+def _report(program: Program, motion: Motion, rows: Rows, state: RoundState, duals: Array) -> KKT:
+    """Optimality conditions: at the multipliers of the round, or dense ones of few segments."""
+    problem, (h, nodal) = program.problem, motion
+    if problem.curve.free or problem.segments <= DENSE:
+        return kkt(problem, h, nodal)
+    violation = check(problem, h).max_violation
+    return sparse_kkt(problem, h, multipliers(program, rows, state, duals), violation)
+
+
+def _excess(problem: Problem, motion: Motion) -> float:
+    """Relative excess over the limits of derivatives, as a stretch; inf where there is no curve."""
+    h, nodal = motion
+    if not (np.isfinite(h).all() and (h > 0).all()):
+        return np.inf
+    try:
+        trajectory = fit(problem.curve, problem.waypoints, h, nodal)
+    except CurveError:
+        return np.inf
+    return float(worst_ratios(problem, trajectory).max()) - 1.0
+
+
+def within(problem: Problem, motion: Motion, excess: float) -> Motion:
+    """A motion stretched by what it exceeds its limits, where a stretch repairs that.
+
+    Parameters
+    ----------
+    problem : Problem
+    motion : (durations, free derivatives)
+    excess : float
+        Relative, as a stretch.
+
+    Returns
+    -------
+    (durations, free derivatives)
+    """
+    h, nodal = motion
+    if not (problem.curve.homogeneous and excess > 0.0):
+        return motion
+    factor = 1.0 + excess
+    longer = np.clip(h * factor, problem.duration_lower, problem.duration_upper)
+    if nodal is not None:
+        orders = np.array([r for _, r in problem.piecewise.free_derivatives])[:, None]
+        nodal = nodal / factor**orders
+    return longer, nodal
