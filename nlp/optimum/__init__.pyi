@@ -4,7 +4,8 @@ from .judgement import KKT_TOLERANCE, SAME
 from .optimality import KKT, Active, kkt
 from .other_route import with_other_route
 from .per_joint import OPTIMUM_SLACK, PerJointSolution, Range, solve_per_joint
-from .program import Program, build, free_values
+from .program import Program, free_values
+from .search import build
 from .solution import Evidence, Route, Solution, Status, close, weakest
 from .solver import STARTS, solve
 from .starts import random_starts

@@ -59,7 +59,7 @@ class _Nearby:
         for program, own, cap in zip(self._programs, h, self._caps, strict=True):
             motion = fit(program.problem.curve, program.problem.waypoints, own)
             rows, ends = near_rows(program, motion, NEAR), program.ends
-            x = program.pack(motion)
+            x = program.pack(motion, own)
             bounds = program.bounds()
             low.append(
                 np.maximum(bounds[0], np.where(np.arange(x.size) < n, x * (1 - radius), -np.inf))

@@ -34,8 +34,7 @@ def with_other_route(solution: Solution) -> Solution:
     Solution
         With `other_total`, where the other route knows the curve and ends within the limits.
     """
-    h, problem = solution.durations, solution.problem
-    if h is None or solution.infimum is not None:
+    if solution.durations is None or solution.infimum is not None:
         return solution
     total = _descended(solution) if solution.route is Route.NLP else _programmed(solution)
     return solution if total is None else replace(solution, other_total=total)
@@ -44,8 +43,6 @@ def with_other_route(solution: Solution) -> Solution:
 def _programmed(solution: Solution) -> float | None:
     problem, h = solution.problem, solution.durations
     assert h is not None
-    if problem.curve.piecewise is None:
-        return None
     start = np.clip(LONGER * h, problem.duration_lower, problem.duration_upper)
     floor = np.minimum(made_up(problem, FLOOR), 0.5 * h)
     local = program_search(problem, start, floor, solution.nodal)

@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 
 from ...problem import QUANTITIES, Array, Interpolant, Problem
 from ...problem.curves import ConditionKind, Places, Trajectory
+from .sparse_optimality import along
 from .symbolic import ca
 
 Indices = NDArray[np.int64]
@@ -95,11 +96,9 @@ class Sides:
         below, above = problem.limits.sides * unit ** np.arange(1, 4) / angle[:, None]
         positive = [np.where(np.isfinite(side), side, 0.0) for side in (below, above)]
         scale = np.maximum(*positive)
-        # A joint that must not move to one side, and is free to the other, has no size to take.
-        one_sided = (scale == 0.0) & (np.isinf(below) | np.isinf(above))
+        # A derivative that must not leave 0 to a side has no size to take; standing still keeps it.
         moves = np.ptp(problem.waypoints, axis=0)[:, None] > 0.0
-        limited = (np.isfinite(below) | np.isfinite(above)) & (scale > 0.0)
-        limited |= one_sided & moves & ((below == 0.0) | (above == 0.0))
+        limited = (scale > 0.0) | (moves & ((below == 0.0) | (above == 0.0)))
         size = np.where(scale > 0.0, scale, 1.0)
         self.scale = np.where(limited, size, np.inf)
         self.low = np.where(limited, -below / size, -np.inf)
@@ -187,9 +186,9 @@ class Program:
             f"{states} derivatives at left ends of segments{free}\n"
             f"  equalities   {self.equalities.numel()}: the declaration's conditions at right ends"
             f"{' and the fixed ratios' if p.ratios is not None else ''}\n"
-            f"  limits       on {', '.join(limited) or 'nothing'}: bounds at left ends, {rows} rows "
-            "at right ends,\n"
-            "               and a row at each extremum inside a segment, found anew in each round"
+            f"  limits       on {', '.join(limited) or 'nothing'}: bounds at left ends,\n"
+            f"               {rows} rows at right ends, and a row at each extremum inside a\n"
+            "               segment, found anew in each round"
         )
 
     def _taylor(self, order: int, k: Indices) -> Any:
@@ -299,6 +298,18 @@ class Program:
             return value + ca.vec(ca.vec(self._q)[(k + (self.segments + 1) * j).tolist()])
         return value / ca.DM(self.sides.scale[j, r - 1])
 
+    def rows_at(self, trajectory: Trajectory, places: Places, sign: Array, flat: float) -> Rows:
+        """Rows at extrema of a motion; the weight is 1/f″, 0 where f″ is below ``flat``.
+
+        f is a derivative in units of order one as a function of s.
+        """
+        curvature = along(trajectory, places, 2)
+        rate = (self.unit / trajectory.durations[places.segment]) ** places.order
+        curvature = curvature * rate / self.angle[places.joint]
+        limits = self.sides.scale[places.joint, np.maximum(places.order, 1) - 1]
+        stays = np.abs(curvature) < flat * np.where(places.order == 0, 1.0, limits)
+        return Rows(places, sign, np.where(stays, 0.0, 1.0 / np.where(stays, 1.0, curvature)))
+
     def bounds(self) -> tuple[Array, Array]:
         """Bounds on the variables: durations, limits at left ends, given derivatives."""
         problem, plan, unit = self.problem, self._plan, self.unit
@@ -332,9 +343,9 @@ class Program:
         side = np.where(sign > 0, self.sides.high[j, r], self.sides.low[j, r])
         return np.where(places.order == 0, (at - first[j]) / self.angle[j], side)
 
-    def pack(self, trajectory: Trajectory) -> Array:
-        """Variables at a motion."""
-        scaled, durations = trajectory.scaled, trajectory.durations
+    def pack(self, trajectory: Trajectory, durations: Array) -> Array:
+        """Variables at a motion with these durations."""
+        scaled = trajectory.scaled
         parts = [durations / self.unit]
         for r, held in self._held.items():
             rate = math.factorial(r) / (durations[held] / self.unit) ** r
@@ -398,29 +409,6 @@ class Program:
         at = np.flatnonzero(low[number] < high[number])  # what is given is no limit
         places = Places(joint[at], segment[at], order[at], np.zeros(at.size))
         return places, np.asarray(number[at])
-
-
-def build(problem: Problem) -> Program:
-    """The exact NLP of a problem, not solved: ``print(build(problem))`` says what it consists of.
-
-    Parameters
-    ----------
-    problem : Problem
-        With a declared curve, with or without free derivatives, virtual way-points, fixed ratios.
-
-    Returns
-    -------
-    Program
-        With `variables`, `equalities`, `bounds` and the rows of `at_places`.
-
-    Raises
-    ------
-    TrajgapError
-        If the curve is no piecewise polynomial with breaks at the way-points.
-    """
-    from .starts import equal_start
-
-    return Program(problem, float(equal_start(problem).mean()), np.zeros(problem.segments))
 
 
 def free_values(curve: Interpolant, trajectory: Trajectory) -> Array:

@@ -13,6 +13,7 @@ from ...problem import Array
 from ...problem.curves import Places
 from .clock import seconds_left
 from .program import Program, Rows
+from .rows import AnyProgram
 from .sparse_optimality import Multipliers
 from .symbolic import ca
 
@@ -79,14 +80,14 @@ class RoundState:
     rows: Array
 
 
-def fresh(program: Program, x: Array) -> RoundState:
+def fresh(program: AnyProgram, x: Array) -> RoundState:
     """At a motion, with no multipliers yet."""
     given, ends = program.equalities.numel(), program.ends.s.size
     return RoundState(x, None, np.zeros(given), np.zeros(ends), np.zeros(0))
 
 
 def solve_round(
-    program: Program,
+    program: AnyProgram,
     rows: Rows,
     state: RoundState,
     turn: int,

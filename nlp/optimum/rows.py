@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...problem import Array, Problem, extrema
+from ...problem import Array, extrema
 from ...problem.curves import ClockedTrajectory, Places, Trajectory, near_extrema
-from .program import Indices, Program, Rows, Sides
-from .sparse_optimality import along
+from .program import Indices, Program, Rows
+from .spline_program import SplineProgram
 
 EVERY = 0.0
 """All interior extrema have rows at first: without those below a fifth of their limit, quintics
@@ -29,18 +28,8 @@ POSITION_NEAR = 0.3
 """Distance to a position limit, in the joint's span, from which an extremum has a row."""
 
 
-class Limited(Protocol):
-    """What rows need to know of a program: its problem, its units, and the order of its rows."""
-
-    problem: Problem
-    unit: float
-    angle: Array
-    sides: Sides
-    joints: int
-    top: int
-
-    def order_of_rows(self, places: Places) -> Indices:
-        """The order in which the program's expressions answer."""
+AnyProgram = Program | SplineProgram
+"""The NLP of a declared curve, or of a B-spline."""
 
 
 def _lines(rows: Rows, joints: int) -> Array:
@@ -94,7 +83,7 @@ def together(parts: list[Rows]) -> Rows:
     return Rows(Places(joint, segment, order, s), sign, weight)
 
 
-def with_loaded(program: Limited, before: Rows, duals: Array, rows: Rows, loaded: float) -> Rows:
+def with_loaded(program: AnyProgram, before: Rows, duals: Array, rows: Rows, loaded: float) -> Rows:
     """Rows, and with them the old ones with a multiplier whose extremum is gone, at their places.
 
     Where a derivative is all but constant its extremum jumps through the whole segment. Without
@@ -102,7 +91,7 @@ def with_loaded(program: Limited, before: Rows, duals: Array, rows: Rows, loaded
 
     Parameters
     ----------
-    program : Limited
+    program : Program or SplineProgram
     before : Rows
         Of a round that is over.
     duals : ndarray
@@ -123,24 +112,18 @@ def with_loaded(program: Limited, before: Rows, duals: Array, rows: Rows, loaded
     return picked(both, program.order_of_rows(both.places))
 
 
-def near_rows(program: Program, trajectory: Trajectory, near: float, flat: float = FLAT) -> Rows:
+def near_rows(program: AnyProgram, trajectory: Trajectory, near: float, flat: float = FLAT) -> Rows:
     """Rows at all extrema inside segments that come near their limit, with their weights.
 
     Parameters
     ----------
-    program : Program
+    program : Program or SplineProgram
     trajectory : Trajectory
     near : float
         Share of its limit from which an extremum has a row.
     flat : float
         Second derivative, as in `FLAT`, below which a row stays at its place.
     """
-    rows = extreme_rows(program, trajectory, near)
-    return replace(rows, weight=_newton_weights(program, trajectory, rows.places, flat))
-
-
-def extreme_rows(program: Limited, trajectory: Trajectory, near: float) -> Rows:
-    """Rows at all extrema inside segments that come near their limit, each at its place."""
     found: list[tuple[Array | Indices, ...]] = []
     for j in range(program.joints):
         for r in (0, 1, 2, 3):
@@ -159,13 +142,12 @@ def extreme_rows(program: Limited, trajectory: Trajectory, near: float) -> Rows:
         none = np.zeros(0, dtype=np.int64)
         return Rows(Places(none, none, none, np.zeros(0)), np.zeros(0), np.zeros(0))
     joint, segment, order, place, sign = (np.concatenate([f[i] for f in found]) for i in range(5))
-    places = Places(joint, segment, order, place)
-    at = program.order_of_rows(places)
+    at = program.order_of_rows(Places(joint, segment, order, place))
     places = Places(joint[at], segment[at], order[at], place[at])
-    return Rows(places, sign[at], np.zeros(at.size))
+    return program.rows_at(trajectory, places, sign[at], flat)
 
 
-def _thresholds(program: Limited, j: int, r: int, near: float) -> tuple[float, float]:
+def _thresholds(program: AnyProgram, j: int, r: int, near: float) -> tuple[float, float]:
     """Values from which an extremum has a row on the lower side, and on the upper one."""
     limits = program.problem.limits
     if r == 0:
@@ -196,13 +178,3 @@ def _extrema(
     found = [e for e in extrema(trajectory, j, r) if e.value <= low or e.value >= high]
     segment = np.array([e.segment for e in found], dtype=np.int64)
     return segment, np.array([e.s for e in found]), np.array([e.value for e in found])
-
-
-def _newton_weights(program: Program, trajectory: Trajectory, places: Places, flat: float) -> Array:
-    """1/f″ of f, a derivative in units of order one as a function of s; 0 where f is flat."""
-    curvature = along(trajectory, places, 2)
-    rate = (program.unit / trajectory.durations[places.segment]) ** places.order
-    curvature = curvature * rate / program.angle[places.joint]
-    limits = program.sides.scale[places.joint, np.maximum(places.order, 1) - 1]
-    stays = np.abs(curvature) < flat * np.where(places.order == 0, 1.0, limits)
-    return np.where(stays, 0.0, 1.0 / np.where(stays, 1.0, curvature))

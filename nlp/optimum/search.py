@@ -12,7 +12,7 @@ import time
 
 import numpy as np
 
-from ...problem import Array, CurveError, Problem, check, fit
+from ...problem import Array, CurveError, Problem, check, evaluate, fit
 from .clock import time_up
 from .decided import kept
 from .judgement import KKT_TOLERANCE
@@ -20,9 +20,10 @@ from .local import Local
 from .optimality import KKT, kkt
 from .program import Program, Rows
 from .rounds import TOLERANCES, RoundState, fresh, multipliers, solve_round
-from .rows import EVERY, FLAT, NEAR, carried, near_rows, with_loaded
+from .rows import EVERY, FLAT, NEAR, AnyProgram, carried, near_rows, with_loaded
 from .sparse_optimality import sparse_kkt
-from .starts import DENSE, worst_ratios
+from .spline_program import SplineProgram
+from .starts import DENSE, equal_start, stretching, worst_ratios
 from .windows import FEWEST, joined_windows
 
 ROUNDS = 12
@@ -50,6 +51,32 @@ Motion = tuple[Array, Array | None]
 """Durations, s, and free derivatives, where the declaration leaves some."""
 
 
+def build(problem: Problem) -> AnyProgram:
+    """The exact NLP of a problem, not solved: ``print(build(problem))`` says what it consists of.
+
+    Parameters
+    ----------
+    problem : Problem
+
+    Returns
+    -------
+    Program or SplineProgram
+        With its `variables`, `equalities`, `bounds` and the rows of `at_places`.
+
+    Raises
+    ------
+    TrajgapError
+        If no NLP is known for the kind of curve.
+    """
+    return program_of(problem, float(equal_start(problem).mean()), np.zeros(problem.segments))
+
+
+def program_of(problem: Problem, unit: float, floor: Array) -> AnyProgram:
+    """The program of a problem in a time unit, s, with least durations, s."""
+    made = SplineProgram if problem.curve.piecewise is None else Program
+    return made(problem, unit, floor)
+
+
 def program_search(
     problem: Problem, start: Array, floor: Array, nodal: Array | None = None
 ) -> Local | None:
@@ -58,7 +85,7 @@ def program_search(
     Parameters
     ----------
     problem : Problem
-        With a piecewise polynomial.
+        With any kind of curve that an NLP is known for.
     start : ndarray, shape (segments,)
         s.
     floor : ndarray, shape (segments,)
@@ -72,16 +99,16 @@ def program_search(
         With its optimality conditions, where the last round kept the limits.
     """
     began = time.perf_counter()
-    program = Program(problem, float(start.mean()), floor)
+    program = program_of(problem, float(start.mean()), floor)
     trajectory = fit(problem.curve, problem.waypoints, start, nodal)
-    state = fresh(program, program.pack(trajectory))
+    state = fresh(program, program.pack(trajectory, start))
     rows = near_rows(program, trajectory, EVERY)
     build, iterations = time.perf_counter() - began, 0
     best: tuple[Motion, KKT] | None = None
     rough: Motion | None = None
     turn = failures = done = 0
     flat = FLAT
-    if problem.segments >= FEWEST and problem.shares is None:
+    if isinstance(program, Program) and problem.segments >= FEWEST and problem.shares is None:
         joined = joined_windows(program, trajectory, floor)
         if joined is not None:
             state, turn = joined.state, JOINED
@@ -109,8 +136,9 @@ def program_search(
             if failures > FAILURES:
                 break
             turn = done = 0
-            trajectory = fit(problem.curve, problem.waypoints, *(rough or (start, nodal)))
-            state = fresh(program, program.pack(trajectory))
+            back = rough or (start, nodal)
+            trajectory = fit(problem.curve, problem.waypoints, *back)
+            state = fresh(program, program.pack(trajectory, back[0]))
             rows = near_rows(program, trajectory, EVERY)
             continue
         trajectory = fit(problem.curve, problem.waypoints, *now)
@@ -141,7 +169,8 @@ def program_search(
 def _report(program: Program, motion: Motion, rows: Rows, state: RoundState, duals: Array) -> KKT:
     """Optimality conditions: at the multipliers of the round, or dense ones of few segments."""
     problem, (h, nodal) = program.problem, motion
-    if problem.curve.free or problem.segments <= DENSE:
+    sparse = isinstance(program, Program) and not problem.curve.free
+    if not sparse or problem.segments <= DENSE:
         return kkt(problem, h, nodal)
     violation = check(problem, h).max_violation
     return sparse_kkt(problem, h, multipliers(program, rows, state, duals), violation)
@@ -152,6 +181,8 @@ def _excess(problem: Problem, motion: Motion) -> float:
     h, nodal = motion
     if not (np.isfinite(h).all() and (h > 0).all()):
         return np.inf
+    if problem.curve.piecewise is None:
+        return float(evaluate(stretching(problem), h[None]).stretch[0]) - 1.0
     try:
         trajectory = fit(problem.curve, problem.waypoints, h, nodal)
     except CurveError:

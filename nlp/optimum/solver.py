@@ -140,7 +140,7 @@ def _solve(problem: Problem, ask: Ask) -> Solution:
 
 
 def _sparse(problem: Problem) -> bool:
-    """Whether rounds of the NLP apply: something moves in each segment, and something is limited."""
+    """Whether rounds of the NLP apply: each segment moves, and something is limited."""
     curve, sides = problem.curve.piecewise, problem.limits.sides
     moves = np.abs(np.diff(problem.waypoints, axis=0)).max(axis=1) > 0
     limited = (np.isfinite(sides) & (sides > 0)).any()
@@ -185,7 +185,7 @@ def _solve_moving(problem: Problem, ask: Ask) -> Solution:
 
 
 def _finished(problem: Problem, solution: Solution) -> Solution:
-    """The answer, finished by the NLP where the descents stopped short of an optimum's conditions."""
+    """The answer, finished by the NLP where descents stopped short of an optimum."""
     short = solution.status is Status.FEASIBLE and solution.route is Route.DESCENT
     if not (short and _sparse(problem)) or time_up():
         return solution

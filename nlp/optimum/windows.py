@@ -104,7 +104,7 @@ def joined_windows(program: Program, trajectory: Trajectory, floor: Array) -> Jo
     -------
     Joined or None
     """
-    state = fresh(program, program.pack(trajectory))
+    state = fresh(program, program.pack(trajectory, trajectory.durations))
     state.bounds = np.zeros(state.x.size)
     worst = worst_ratios(program.problem, trajectory)
     variables, equalities, right_ends = (
@@ -120,7 +120,7 @@ def joined_windows(program: Program, trajectory: Trajectory, floor: Array) -> Jo
             began = time.perf_counter()
             slower = replace(trajectory, durations=trajectory.durations * keeps * more)
             part = Program(program.problem, program.unit, floor, span, slower)
-            here = fresh(part, part.pack(_cut(slower, span)))
+            here = fresh(part, part.pack(_cut(slower, span), slower.durations[slice(*span)]))
             build += time.perf_counter() - began
             ended = _solved(part, here, slice(own[0] - span[0], own[1] - span[0]))
             iterations, build = iterations + ended.iterations, build + ended.build_seconds

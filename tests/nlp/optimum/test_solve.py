@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from support import second_route
-from trajgap.nlp import Form, Status, Structure, build, kkt, random_starts, structure_of
+from trajgap.nlp import Status, kkt, random_starts
 from trajgap.nlp.optimum import solve
 from trajgap.nlp.optimum.polish import polish
 from trajgap.problem import (
@@ -25,11 +25,10 @@ def puma(reading: str = "durations-at-least-0.3") -> Problem:
     return load_case(PUMA).problem(reading_id=reading)
 
 
-@pytest.mark.parametrize("form", list(Form))
-def test_every_one_of_20_random_starts_reaches_the_shared_puma_optimum(form: Form) -> None:
+def test_every_one_of_20_random_starts_reaches_the_shared_puma_optimum() -> None:
     problem = puma()
     starts = random_starts(problem, 20, np.random.default_rng(20260101))
-    solution = solve(problem, initial=starts, form=form)
+    solution = solve(problem, initial=starts)
     best = min(solution.totals)
     assert solution.status is Status.CONVERGED
     assert all(total <= best * (1 + 1e-6) for total in solution.totals)
@@ -256,17 +255,3 @@ def test_free_derivatives_enter_the_conditions() -> None:
     assert solution.kkt_residual <= 1e-8
     shifted = solution.nodal + np.array([[0.05], [0.0], [0.0], [0.0]])
     assert kkt(problem, solution.durations, shifted).residual > 1e-3
-
-
-@pytest.mark.parametrize("form", list(Form))
-def test_a_formulation_prints_its_sizes_and_is_built_once_per_shape(form: Form) -> None:
-    problem = load_case("puma560-mnam-pso-353").problem()
-    structure = structure_of(problem, form)
-    built = build(structure)
-    sizes = built.sizes
-    assert sizes["variables"] == (3 if form is Form.REDUCED else 3 + 6 * 3 * 6)
-    assert sizes["equalities"] == (0 if form is Form.REDUCED else 6 * 14)
-    assert f"{sizes['inequalities']} inequalities" in str(built)
-    other = Problem(problem.waypoints * 0.7, Limits(5.0, 9.0, joints=6), problem.curve)
-    assert structure_of(other, form) == structure
-    assert structure == Structure(problem.curve, 6, (1, 2), form)

@@ -4,16 +4,12 @@ import numpy as np
 import pytest
 from support.long_problems import long_curves, long_problem
 from trajgap.nlp import Status
-from trajgap.nlp.optimum import long_search as long_search_module
+from trajgap.nlp.optimum import search as search_module
 from trajgap.nlp.optimum import solve, solver
-from trajgap.nlp.optimum.formulation import Form
-from trajgap.nlp.optimum.long_formulation import LongProgram, Rows
-from trajgap.nlp.optimum.long_optimality import along
-from trajgap.nlp.optimum.long_rows import near_rows
-from trajgap.nlp.optimum.long_search import long_search
-from trajgap.nlp.optimum.long_solve import long_enough
-from trajgap.nlp.optimum.long_start import way_start
 from trajgap.nlp.optimum.optimality import kkt
+from trajgap.nlp.optimum.program import Program, Rows
+from trajgap.nlp.optimum.search import program_search
+from trajgap.nlp.optimum.starts import way_start
 from trajgap.nlp.optimum.unsearched import CUT_SHORT
 from trajgap.problem import (
     Interpolant,
@@ -24,10 +20,8 @@ from trajgap.problem import (
     cubic_spline,
     extrema,
     fit,
-    piecewise,
     quintic_spline,
 )
-from trajgap.problem.curves import Places
 
 SEGMENTS = 26
 
@@ -59,7 +53,7 @@ def test_sensitivities_of_position_limits_are_differences_of_totals(
     monkeypatch: pytest.MonkeyPatch, shift: float, sparsely: bool
 ) -> None:
     if not sparsely:
-        monkeypatch.setattr(solver, "searched_sparsely", lambda *_: (None, False))
+        monkeypatch.setattr(solver, "SPARSE", 25)
     q = np.array([[0.0], [1.0], [0.95], [0.2], [0.25], [1.0], [0.9], [0.0], [0.1], [0.7]]) + shift
     low, high = np.array([shift - 0.003]), np.array([shift + 1.003])
     limits = Limits(3.0, 5.0, position_lower=low, position_upper=high)
@@ -106,21 +100,12 @@ def test_a_plateau_at_the_velocity_limit_keeps_no_search_from_its_end(
     curve: Interpolant, seed: int
 ) -> None:
     problem = one_joint(curve, seed)
-    answer = long_search(problem, way_start(problem), np.full(curve.segments, 1e-5))
-    assert answer.kkt.residual <= 1e-8
+    answer = program_search(problem, way_start(problem), np.full(curve.segments, 1e-5))
+    assert answer.report.residual <= 1e-8
     assert check(problem, answer.durations).verdict is Verdict.PASS
     mirrored = Problem(problem.waypoints[::-1], problem.limits, curve)
     total = solve(mirrored).total_time
     assert total == pytest.approx(float(answer.durations.sum()), rel=1e-7)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", ["cubic", "quintic"])
-@pytest.mark.parametrize("seed", [1, 2])
-def test_the_tracked_formulation_ends_at_the_same_total(name: str, seed: int) -> None:
-    problem = long_problem(CURVES[name], seed)
-    tracked = solve(problem, form=Form.LIFTED)
-    assert solve(problem).total_time == pytest.approx(tracked.total_time, rel=1e-8)
 
 
 def test_bounds_on_durations_and_positions_are_kept_and_priced() -> None:
@@ -174,87 +159,19 @@ def test_a_round_that_fails_begins_again_from_the_best_motion(
 ) -> None:
     problem = long_problem(CURVES["cubic"])
     total = solve(problem).total_time
-    round_ = long_search_module.solve_round
+    round_ = search_module.solve_round
     calls: list[int] = []
 
     def failing(
-        program: LongProgram, rows: Rows, state: object, turn: int, within: object
+        program: Program, rows: Rows, state: object, turn: int, within: object
     ) -> tuple[np.ndarray, bool, int, float]:
         duals, success, count, seconds = round_(program, rows, state, turn, within)  # type: ignore[arg-type]
         calls.append(turn)
         return duals, success and len(calls) != 2, count, seconds
 
-    monkeypatch.setattr(long_search_module, "solve_round", failing)
+    monkeypatch.setattr(search_module, "solve_round", failing)
     again = solve(problem)
     assert calls[:4] == [0, 1, 0, 1]
     assert again.status is Status.CONVERGED
     # From another start it may end at a neighbouring optimum: these two are 1.6e-7 apart.
     assert again.total_time == pytest.approx(total, rel=1e-6)
-
-
-@pytest.mark.slow
-def test_what_does_not_settle_is_searched_as_before() -> None:
-    q = long_problem(CURVES["cubic"]).waypoints.copy()
-    q[14] = q[13] + 1e-9
-    problem = Problem(q, Limits([1.5, 3.0], [np.inf, np.inf]), CURVES["cubic"])
-    answer = solve(problem)
-    tracked = solve(problem, form=Form.LIFTED)
-    assert answer.total_time == pytest.approx(tracked.total_time, rel=1e-6)
-    assert answer.check.verdict is Verdict.PASS
-
-
-def test_what_is_not_searched_here(monkeypatch: pytest.MonkeyPatch) -> None:
-    seen: list[Problem] = []
-    standing = np.repeat(long_problem(CURVES["cubic"]).waypoints[:9], 3, axis=0)
-    monkeypatch.setattr(solver, "solve_long", lambda problem, _: seen.append(problem))
-    for problem in (
-        long_problem(cubic_spline(24)),
-        long_problem(piecewise((5,) * 26, 2)),
-        Problem(standing, Limits(1.0, 5.0, joints=2), CURVES["cubic"]),
-    ):
-        ask = solver.Ask(4, 0, None, np.empty((0, 0)), None, None, np.inf)
-        assert not long_enough(problem, ask)
-    solve(long_problem(cubic_spline(24)), starts=1)
-    assert seen == []
-
-
-@pytest.mark.parametrize("name", CURVES)
-def test_expressions_are_those_of_the_fitted_curve(name: str) -> None:
-    import casadi as ca
-
-    problem = long_problem(CURVES[name])
-    h = way_start(problem) * np.random.default_rng(1).uniform(0.7, 1.4, SEGMENTS)
-    program = LongProgram(problem, float(h.mean()), np.zeros(SEGMENTS))
-    trajectory = fit(problem.curve, problem.waypoints, h)
-    rows: Rows = near_rows(program, trajectory, 0.1)
-    x = program.pack(h, trajectory.scaled)
-    values = program.at_places(rows.places, rows.weight)
-    ends = program.at_places(program.ends, np.zeros(program.ends.s.size))
-    evaluated = ca.Function("f", [program.variables], [program.equalities, values, ends])
-    equal, inside, last = (np.asarray(v).ravel() for v in evaluated(x))
-    np.testing.assert_allclose(equal, 0.0, atol=1e-9)
-    for places, found in ((rows.places, inside), (program.ends, last)):
-        rate = h[places.segment] ** places.order
-        limit = problem.limits.derivatives[places.joint, places.order - 1]
-        truth = along(trajectory, places, 0) / rate / limit
-        np.testing.assert_allclose(found, truth, rtol=1e-7, atol=1e-9)
-    assert rows.places.s.size > 10
-    local = long_search(problem, way_start(problem), np.full(SEGMENTS, 1e-4))
-    assert check(problem, local.durations).max_violation <= 1e-9
-
-
-def test_several_places_in_the_one_segment_of_a_higher_degree() -> None:
-    import casadi as ca
-
-    rest = ((1, 0.0), (2, 0.0))
-    problem = one_joint(piecewise((4, *(3,) * 8), 2, ends=rest, finish=rest[:1]), 4)
-    h = way_start(problem)
-    program = LongProgram(problem, float(h.mean()), np.zeros(h.size))
-    trajectory = fit(problem.curve, problem.waypoints, h)
-    zero = np.zeros(3, dtype=np.int64)
-    places = Places(zero, zero, zero + 1, np.array([0.2, 0.5, 0.9]))
-    values = program.at_places(places, np.zeros(3))
-    evaluated = ca.Function("f", [program.variables], [values])
-    found = np.asarray(evaluated(program.pack(h, trajectory.scaled))).ravel()
-    truth = along(trajectory, places, 0) / h[0] / problem.limits.derivatives[0, 0]
-    np.testing.assert_allclose(found, truth, rtol=1e-9)
