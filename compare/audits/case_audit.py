@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import Any
 
 from ...heuristics import kept_processes
-from ...nlp.optimum import kept_calls
 from ...problem import Case, CaseError, ProcessError, TrajgapError, load_case, published_ids
 from ...problem.cases import AnyClaim
 from ..documents import (
@@ -86,8 +85,7 @@ class CaseAudit:
         """Where the time goes, for each problem and reading."""
         if self.made_waterfalls is not None:
             return self.made_waterfalls
-        with kept_calls():
-            return waterfalls(self.study) if self.study.has_problems else ()
+        return waterfalls(self.study) if self.study.has_problems else ()
 
     @cached_property
     def readings(self) -> ReadingsSummary | None:
@@ -116,7 +114,7 @@ class CaseAudit:
             found = audit_case(study)
             return found.findings, found.judgements
 
-        with kept_processes(), kept_calls():
+        with kept_processes():
             return revise(self.study, (self.findings, self.judgements), again)
 
     @property
@@ -257,7 +255,7 @@ def audit(
         for algorithm in study.case.algorithms:
             # Settings that are wrong end the audit, before anything is computed.
             study.algorithm(algorithm.id)
-    with kept_processes(), kept_calls():
+    with kept_processes():
         return AuditReport(tuple(replace(audit_case(study), draft=draft) for study in studies))
 
 

@@ -1,4 +1,4 @@
-from .clock import seconds_left, stopping_after, time_up
+from .clock import call_cap, seconds_left, stopping_after, time_up
 from .feasibility import apart
 from .judgement import KKT_TOLERANCE, SAME
 from .optimality import KKT, Active, kkt
@@ -28,6 +28,7 @@ __all__ = [
     "apart",
     "build",
     "ca",
+    "call_cap",
     "close",
     "free_values",
     "kkt",

@@ -22,10 +22,6 @@ CAPS = (0.25, 2.0, 16.0, 128.0)
 A factor of 8 apart, so that a long run compiles few; below the first, a call ends anyway."""
 
 
-class TooLong(Exception):
-    """A stage that cannot be stopped was not begun, or not gone on with: it would end too late."""
-
-
 @contextmanager
 def stopping_after(seconds: float) -> Iterator[None]:
     """Let every local search within end after so many seconds, at its next step.
@@ -63,16 +59,3 @@ def call_cap() -> float | None:
     if left == math.inf:
         return None
     return max((cap for cap in CAPS if cap <= left), default=CAPS[0])
-
-
-def look_ahead(seconds: float = 0.0) -> None:
-    """Raise `TooLong` unless so much time is left.
-
-    Parameters
-    ----------
-    seconds : float
-        What a stage without steps is estimated to take.
-    """
-    left = seconds_left()
-    if left < seconds or left <= 0.0:
-        raise TooLong

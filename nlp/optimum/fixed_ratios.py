@@ -12,7 +12,7 @@ from ...verify import shown_bound
 from .decided import decided, kept
 from .judgement import BLURRED, KKT_TOLERANCE, longer_than_tight, unmet
 from .optimality import kkt
-from .solution import Solution, Status
+from .solution import Route, Solution, Status
 
 FORMULA = "at fixed ratios the total is the one unknown, in closed form"
 """Beside every optimum at fixed ratios: no search stands behind it."""
@@ -122,6 +122,7 @@ def _judged(problem: Problem, h: Array) -> Solution:
         "; ".join(notes),
         durations=passing,
         check=check(problem, passing),
+        route=Route.CLOSED_FORM,
         kkt_residual=report.residual,
         active=report.active,
         totals=(float(passing.sum()),),

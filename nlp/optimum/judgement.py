@@ -20,6 +20,8 @@ KKT_TOLERANCE = 1e-8
 """Scaled KKT residual up to which an answer is called converged: IPOPT's own usual tolerance."""
 POLISHED = 1e-11
 """KKT residual above which an answer is sharpened by Newton steps on its active set."""
+ROUNDED = 2e-9
+"""Relative difference of totals that the checker's tolerance makes: of both ends at most."""
 BLURRED = 1e-6
 """Relative length by which rounding may set an optimum apart from the tight motion beside it."""
 _ON_FLOOR = 1.01
@@ -73,7 +75,10 @@ def judged(
             starts=starts,
             iterations=iterations,
         )
-    best = min(feasible, key=lambda local: local.total)
+    shortest = min(local.total for local in feasible)
+    # Of ends that are the same to rounding, one that met its conditions.
+    alike = [local for local in feasible if local.total <= shortest * (1 + ROUNDED)]
+    best = min(alike, key=lambda local: (not local.converged, local.total))
     durations, nodal = best.tight or (best.durations, best.nodal)
     report = best.report if best.report is not None and best.tight is None else None
     dense = problem.segments <= DENSE

@@ -22,7 +22,7 @@ OPTIONS = OPTIONS_OF_ROUNDS | {"ipopt.mu_init": 1e-4, "ipopt.tol": 1e-9}
 """Options of IPOPT, begun near a solution: with a small barrier."""
 
 
-class _Nearby:
+class Nearby:
     """One objective over the durations of some joints, each within its cap, by rounds of the NLP.
 
     Without weights it is the sum over segments of the longest duration; with weights that of the
@@ -135,7 +135,7 @@ def longest_per_segment_range(
     least = [
         _kept(problem, h)
         for problem, h in zip(
-            problems, _Nearby(problems, unit, caps).reached(optima, None), strict=True
+            problems, Nearby(problems, unit, caps).reached(optima, None), strict=True
         )
     ]
     lowest = given
@@ -147,7 +147,7 @@ def longest_per_segment_range(
     ]
     reach: dict[tuple[int, tuple[int, ...]], float] = {}
     for j, (problem, optimum, cap) in enumerate(zip(problems, optima, caps, strict=True)):
-        alone = _Nearby([problem], unit, [cap])
+        alone = Nearby([problem], unit, [cap])
         for subset in subsets:
             chosen = list(subset)
             reach[j, subset] = float(optimum[chosen].sum())

@@ -28,9 +28,10 @@ from .windows import FEWEST, joined_windows
 
 ROUNDS = 12
 """Most rounds of one attempt; three to six suffice where any number does."""
-JOINED = 2
-"""Round, counted from 0, that joined windows take the place of those before: the first whose
-tolerance and barrier are the last ones."""
+LAST = 2
+"""Round, counted from 0, from which the answer is judged: its tolerance is that of an answer."""
+JOINED = LAST
+"""Round that joined windows take the place of those before."""
 FAILURES = 3
 """Rounds without success after which a search is given up; each begins again from the best motion
 with rows at all its extrema."""
@@ -131,6 +132,8 @@ def program_search(
         if np.isfinite(excess):
             longer = within(problem, now, excess)
             rough = longer if rough is None or longer[0].sum() < rough[0].sum() else rough
+        if not success and turn > LAST:
+            break  # rounding allows no more
         if not (success and np.isfinite(excess)):
             failures += 1
             if failures > FAILURES:
@@ -147,11 +150,11 @@ def program_search(
             if best is None or report.residual < best[1].residual:
                 best = longer, report
             # A round with an eased tolerance leaves its barrier's gap: 1.6e-7 of a total was seen.
-            if turn >= len(TOLERANCES) - 1:
+            if turn >= LAST:
                 if report.residual <= KKT_TOLERANCE:
                     break
                 flat = min(FLATTEST, FLATTER * flat)
-        loaded = LOADED * TOLERANCES[min(turn, len(TOLERANCES) - 1)]
+        loaded = LOADED * TOLERANCES[min(turn, LAST)]
         extrema = near_rows(program, trajectory, NEAR, flat)
         following = with_loaded(program, rows, duals, extrema, loaded)
         state.rows, rows, turn = carried(rows, duals, following), following, turn + 1

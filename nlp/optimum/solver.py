@@ -18,7 +18,7 @@ from .decided import decided, kept, stretched
 from .feasibility import apart
 from .fixed_ratios import at_ratios
 from .idle import idle_segments, with_least_idle
-from .judgement import judged
+from .judgement import ROUNDED, judged
 from .local import Local
 from .matching import jump_equations, matched
 from .multistart import exact_search, tolerated_search
@@ -43,8 +43,6 @@ FLOORS = (1e-3, 1e-4)
 """Smallest durations tried, relative to the mean, where the case sets no lower bound."""
 DEEPER = (1e-6, 1e-8, 1e-10)
 """Further floors where way-points nearly coincide: the total may rise again below the others."""
-ROUNDED = 2e-9
-"""Relative gain of a known motion that counts: twice what the checker's tolerance gives away."""
 PROVEN = 1e-6
 """Relative distance from a proved lower bound at which nothing shorter is looked for."""
 SPARSE = 9

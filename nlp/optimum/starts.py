@@ -81,7 +81,7 @@ def way_start(problem: Problem) -> Array:
     Not by what the worst of all exceeds: among many segments one is always far worse than most.
     """
     way = np.abs(np.diff(problem.waypoints, axis=0))
-    velocity, acceleration = problem.limits.velocity, problem.limits.acceleration
+    velocity, acceleration, _ = problem.limits.sides.min(axis=0).T  # the smaller sides
     with np.errstate(divide="ignore", invalid="ignore"):
         fast = np.where(way > 0, DWELL * way / velocity, 0.0).max(axis=1)
         turn = np.sqrt(np.where(way > 0, TURN * way / acceleration, 0.0)).max(axis=1)

@@ -8,7 +8,7 @@ from ...problem import Problem, check
 from .decided import decided
 from .feasibility import impossible
 from .joined import joined
-from .solution import Solution, Status
+from .solution import Route, Solution, Status
 from .straight import straight_durations
 
 CUT_SHORT = "the time ran out: what was not searched may hold a shorter motion"
@@ -39,6 +39,7 @@ def unsearched(problem: Problem) -> Solution | None:
             "the least durations without a jump, in closed form",
             durations=answer.durations,
             check=check(problem, answer.durations),
+            route=Route.CLOSED_FORM,
         )
     straight = straight_durations(problem)
     if straight is not None:
@@ -49,6 +50,7 @@ def unsearched(problem: Problem) -> Solution | None:
             "limited: the total falls to 0",
             durations=straight,
             check=check(problem, straight),
+            route=Route.CLOSED_FORM,
             infimum=0.0,
         )
     return None

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...optimum import ca, call_cap, solved_before
+from ...optimum import ca, call_cap
 from .reach import reachable
 
 QUICK_SIZE = 16
@@ -130,12 +130,7 @@ def local_optimum(
             [np.maximum(question.upper / time_unit, low), v_high.ravel("F"), tall, tall]
         ),
     }
-
-    def called() -> tuple[NDArray[np.float64], bool]:
-        found = solver(**given, lbg=0.0, ubg=np.inf)
-        return np.asarray(found["x"]).ravel(), bool(solver.stats()["success"])
-
-    x, _ = solved_before(solver, tuple(given.values()), called, lambda answer: answer[1])
+    x = np.asarray(solver(**given, lbg=0.0, ubg=np.inf)["x"]).ravel()
     if not np.isfinite(x).all():
         return None
     velocities = x[n : n + (n + 1) * joints].reshape((n + 1, joints), order="F")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import sys
 from collections import Counter
-from dataclasses import replace
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -16,15 +15,12 @@ from support.benchmarks import loaded
 from support.checkout import ROOT
 from trajgap.nlp import Status, random_starts
 from trajgap.nlp.optimum import solve
-from trajgap.nlp.optimum.starts import SETTLED_SEGMENTS, equal_start, settled
+from trajgap.nlp.optimum.starts import equal_start
 from trajgap.problem import (
-    Limits,
     Problem,
     Verdict,
-    cubic_spline,
     evaluate,
     load_case,
-    piecewise,
     quintic_spline,
 )
 
@@ -243,38 +239,3 @@ def test_of_20_starts_at_least_15_reach_the_best(number: int) -> None:
     assert (totals <= best * (1 + 1e-6)).sum() >= 15
     assert usual <= best * (1 + 1e-6)
     assert shorter == 0
-
-
-def repaired(problem: Problem, start: np.ndarray) -> float:
-    return float(start.sum() * evaluate(problem, start[None]).stretch[0])
-
-
-@pytest.mark.parametrize("number", [0, 7, 14])
-def test_a_settled_start_is_shorter_tight_and_always_the_same(number: int) -> None:
-    problem = INSTANCES[number]
-    for start in random_starts(problem, 5, np.random.default_rng(number)):
-        near = settled(problem, start)
-        assert near.sum() < repaired(problem, start)
-        assert evaluate(problem, near[None]).stretch[0] == pytest.approx(1.0, rel=1e-9)
-        np.testing.assert_array_equal(settled(problem, start), near)
-
-
-def test_a_settled_start_keeps_the_bounds() -> None:
-    base = equal_start(INSTANCES[4])
-    low, high = 0.7 * base, 1.6 * base
-    problem = replace(INSTANCES[4], duration_lower=low, duration_upper=high)
-    for start in random_starts(problem, 3, np.random.default_rng(1)):
-        near = settled(problem, start)
-        assert (low <= near).all()
-        assert (near <= high).all()
-
-
-def test_starts_that_trials_cannot_settle_stay_as_they_are() -> None:
-    many = SETTLED_SEGMENTS + 1
-    q = np.cumsum(np.random.default_rng(2).uniform(-1, 1, (many + 1, 2)), axis=0)
-    large = Problem(q, Limits(1.0, 2.0), cubic_spline(many))
-    free = Problem(q[:4], Limits(1.0, 2.0), piecewise((5, 5, 5), 2))
-    single = Problem(q[:2], Limits(1.0, 2.0), cubic_spline(1))
-    for problem in (large, free, single):
-        start = np.linspace(0.5, 1.5, problem.segments)
-        np.testing.assert_array_equal(settled(problem, start), start)

@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq
-from trajgap.nlp import Evidence, Status, solve_per_joint, structure_of
+from trajgap.nlp import Evidence, Route, Status, solve_per_joint, with_other_route
 from trajgap.nlp.optimum import solve
 from trajgap.problem import (
     Coupling,
+    Interpolant,
     Limits,
     Problem,
     TrajgapError,
@@ -188,9 +189,11 @@ def test_no_formula_is_one_line(curve, said: str) -> None:
     assert "leave the ratios out" in str(error.value)
 
 
-def test_the_nlp_knows_free_durations_alone() -> None:
-    with pytest.raises(TrajgapError, match="ratios: the NLP frees each duration"):
-        structure_of(Problem(Q, LIMITS, cubic_spline(3), ratios="equal"))
+@pytest.mark.parametrize("curve", [cubic_spline(3), quintic_spline(3)])
+def test_the_nlp_with_fixed_ratios_ends_at_the_formula(curve: Interpolant) -> None:
+    found = with_other_route(solve(Problem(Q, LIMITS, curve, ratios=(1.0, 0.7, 1.9))))
+    assert found.route is Route.CLOSED_FORM
+    assert found.other_total == pytest.approx(found.total_time, rel=1e-8)
 
 
 def test_a_short_segment_beside_a_long_one_passes_the_check() -> None:

@@ -11,10 +11,11 @@ from support.benchmarks import loaded
 from trajgap.compare import audit
 from trajgap.nlp import Solution, Status, solve_per_joint
 from trajgap.nlp.optimum import feasibility, limit_rows, solve
-from trajgap.nlp.optimum.descent import LogBox, descend, least_point, restored
-from trajgap.nlp.optimum.exact_multistart import box_above, exact_search
+from trajgap.nlp.optimum.descent import descend, least_point, restored
 from trajgap.nlp.optimum.limit_rows import exact_rows
+from trajgap.nlp.optimum.multistart import exact_search
 from trajgap.nlp.optimum.optimality import kkt
+from trajgap.nlp.optimum.starts import LogBox, box_above
 from trajgap.problem import (
     Limits,
     Problem,
@@ -144,10 +145,7 @@ def test_a_known_motion_is_kept_where_the_solver_finds_nothing(
     def lost(one: Problem, *_: object) -> Solution:
         return Solution(one, Status.NONE_FOUND, "lost")
 
-    monkeypatch.setattr(solver, "settled_quickly", lambda *_: None)
-    monkeypatch.setattr(solver, "_tracked", lost)
-    monkeypatch.setattr(solver, "_searched", lost)
-    monkeypatch.setattr(solver, "_challenged", lambda one, *_: lost(one))
+    monkeypatch.setattr(solver, "_searched", lambda one, *_, **__: lost(one))
     monkeypatch.setattr(solver, "_stretched_start", lambda one, *_: lost(one))
     assert solve(problem).status is Status.NONE_FOUND
     found = solve(problem, known=known)

@@ -236,10 +236,8 @@ def test_where_a_stretch_gives_a_feasible_motion_it_is_the_answer(
     def lost(one: Problem, *_: object) -> Solution:
         return Solution(one, Status.FAILED, "lost")
 
-    monkeypatch.setattr(solver, "_tracked", lost)
-    monkeypatch.setattr(solver, "_searched", lost)
-    monkeypatch.setattr(solver, "_challenged", lambda one, *_: lost(one))
-    monkeypatch.setattr(solver, "_after_restoration", lambda one, *_: lost(one))
+    monkeypatch.setattr(solver, "_searched", lambda one, *_, **__: lost(one))
+    monkeypatch.setattr(solver, "_programmed", lambda one, *_: lost(one))
     problem = Problem(np.array([[0.3], [1.1], [0.2]]), Limits(1.0, 2.0, joints=1), curve)
     solution = solve(problem)
     assert solution.status is not Status.FAILED
