@@ -32,7 +32,7 @@ from suite_written import Written
 from trajgap.compare.gaps import Store, plan_bench, run_bench
 from trajgap.nlp import Certified, Progress, certify, printed_problem, solve
 from trajgap.nlp.optimum.descent import descend
-from trajgap.nlp.optimum.exact_multistart import box_above
+from trajgap.nlp.optimum.starts import box_above
 from trajgap.nlp.proofs import certificate_text, covered
 from trajgap.nlp.proofs.answer import prove_feasible
 from trajgap.problem import (

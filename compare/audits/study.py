@@ -19,7 +19,7 @@ from ...nlp import (
     solve_per_joint,
     with_interval,
 )
-from ...nlp.optimum import OPTIMUM_SLACK, free_values, solve
+from ...nlp.optimum import OPTIMUM_SLACK, free_values, solve, with_other_route
 from ...problem import (
     Array,
     CaseError,
@@ -77,7 +77,7 @@ class Study(ReplayedCase):
                 found = solve(one, known=self.known_motions(pid, rid, joint), lower=lower)
             except TrajgapError as error:
                 return Solution(one, Status.FAILED, str(error))
-            return with_interval(found, interval)
+            return with_interval(with_other_route(found), interval)
 
         if joint is not None and len(self.problem(pid, rid).joints) == 1:
             joint = None

@@ -13,6 +13,7 @@ from ...nlp import (
     printed_problem_or_none,
     solve,
     solve_per_joint,
+    with_other_route,
 )
 from ...nlp.optimum import OPTIMUM_SLACK, stopping_after
 from ...nlp.retiming import Retiming, retime
@@ -87,7 +88,8 @@ def _solved(
         alone = len(question.joints) < len(one.problem.joints)
         joint = one.problem.joints.index(question.joints[0]) if alone else None
         exact = printed_problem_or_none(statement, joint)
-        return solve(question, exact=exact, starts=starts, seed=seed, prove=prove)
+        answer = solve(question, exact=exact, starts=starts, seed=seed, prove=prove)
+        return with_other_route(answer)
 
     if one.problem.coupling is Coupling.PER_JOINT:
         halves = Study(case).half_digits(one.problem_id, one.reading_id)

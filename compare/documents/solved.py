@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ...nlp import Evidence, PerJointSolution, Solution, Status
+from ...nlp import Evidence, PerJointSolution, Route, Solution, Status
 from ...nlp.optimum import Active
 from ...nlp.retiming import Retiming
 from ...problem import Coupling, Verdict
@@ -13,6 +13,8 @@ from .finding import UNCERTIFIED
 from .motion_checked import WrittenMotion
 from .vocabulary import Limited
 
+NO_OTHER_ROUTE = "no second route knows this curve and this many durations"
+"""Why a total stands by itself: descents take few durations, all of them determined."""
 NOT_ASKED = "not asked for"
 """Why a path is not retimed, where nobody wanted it."""
 
@@ -73,6 +75,11 @@ class Answer(Entry):
     """Largest relative excess over a limit, 0 if none."""
     kkt_residual: OrWhy[float]
     """Scaled, of the reduced problem, every active peak found again."""
+    route: OrWhy[Route]
+    """How the answer was found."""
+    other_route_total: OrWhy[float]
+    """What the other route ends at from a motion ten per cent longer, s: the NLP beside a descent
+    or a formula, a descent beside the NLP."""
     active: tuple[ActiveLimit, ...]
     starts: Count
     starts_at_best: Count
@@ -198,6 +205,10 @@ def _solution(answer: Solution, path: Retiming | str = NOT_ASKED) -> Answer:
         evidence=answer.evidence if there else Evidence.NONE,
         max_violation=answer.check.max_violation if there and answer.check else Why(none),
         kkt_residual=known(answer.kkt_residual if there else None, none),
+        route=known(answer.route if there else None, none),
+        other_route_total=known(
+            answer.other_total if there else None, NO_OTHER_ROUTE if there else none
+        ),
         active=tuple(_active(a) for a in answer.active),
         starts=answer.starts,
         starts_at_best=answer.starts_at_best,
@@ -225,6 +236,8 @@ def _procedure(answer: PerJointSolution) -> Answer:
         evidence=answer.evidence,
         max_violation=answer.check.max_violation if answer.check else Why(none),
         kkt_residual=max(residuals) if len(residuals) == len(joints) else Why(none),
+        route=Why("each joint has a route of its own, see joints"),
+        other_route_total=Why("each joint has a route of its own, see joints"),
         active=tuple(_active(a) for s in joints for a in s.active),
         starts=sum(s.starts for s in joints),
         starts_at_best=sum(s.starts_at_best for s in joints),

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from itertools import pairwise
 
-from ...nlp import Evidence, Outcome, Status
+from ...nlp import Evidence, Outcome, Route, Status
 from ...problem import Coupling, Verdict
 from ...problem.motions import Interpolation, MotionForm
 from ...verify import Subject
@@ -283,6 +283,7 @@ class Words:
 
 VOCABULARY = (
     Words("`status`", (Status,)),
+    Words("`route`", (Route,)),
     Words("`coupling`", (Coupling,)),
     Words("`verdict` of a check", (Verdict,)),
     Words("`keeping`", (Keeping,)),

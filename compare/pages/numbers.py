@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from ...nlp import Evidence, PerJointSolution, Solution
+from ...nlp import Evidence, PerJointSolution, Route, Solution
 from ...problem import Case, Coupling, file_name
 from ...problem.cases import DurationsClaim
 from ...verify import shown_bound
@@ -184,14 +184,31 @@ NINE = 9
 """Nine decimals of a proved bound, as the certificates' tables have them."""
 _KEPT = ("keeps", "consistent")
 """Verdicts over the rounding box under which durations may keep the limits."""
-_ANSWER = ("status", "total", "evidence", "durations, s", "check", "KKT residual")
+_ANSWER = ("status", "total", "by", "evidence", "durations, s", "check", "KKT residual")
 """Columns that say how a solve ended."""
+_FOUND = {
+    Route.NLP: "the NLP (IPOPT)",
+    Route.DESCENT: "descents",
+    Route.CLOSED_FORM: "a formula",
+}
+"""Words for what found a total."""
 
 
 def _durations(values: list[float]) -> str:
     """Durations, a few on each line."""
     lines = [listed(values[i : i + _ON_A_LINE]) for i in range(0, len(values), _ON_A_LINE)]
     return ",\n".join(lines)
+
+
+def _routes(solution: Solution) -> str | None:
+    """What found the total, and by how much the other route's differs."""
+    if solution.route is None:
+        return None
+    if solution.other_total is None:
+        return _FOUND[solution.route]
+    other = Route.DESCENT if solution.route is Route.NLP else Route.NLP
+    apart = abs(solution.other_total / solution.total_time - 1.0)
+    return f"{_FOUND[solution.route]};\n{_FOUND[other]}: {apart:.0e} away"
 
 
 def _answer(solution: Solution) -> tuple[Cell, ...]:
@@ -209,6 +226,7 @@ def _answer(solution: Solution) -> tuple[Cell, ...]:
     return (
         text(solution.status + (f"\n{solution.why}" if solution.why else "")),
         number(total),
+        text(_routes(solution)),
         word(solution.evidence),
         number(None if solution.durations is None else _durations(list(solution.durations))),
         word(check.verdict) if check is not None else text(None),

@@ -169,7 +169,7 @@ def program_search(
     return Local(h, values, total, settled, passes, iterations, None, found, build)
 
 
-def _report(program: Program, motion: Motion, rows: Rows, state: RoundState, duals: Array) -> KKT:
+def _report(program: AnyProgram, motion: Motion, rows: Rows, state: RoundState, duals: Array) -> KKT:
     """Optimality conditions: at the multipliers of the round, or dense ones of few segments."""
     problem, (h, nodal) = program.problem, motion
     sparse = isinstance(program, Program) and not problem.curve.free

@@ -98,10 +98,10 @@ def sparse_kkt(problem: Problem, durations: Array, found: Multipliers, violation
     side = np.where(found.limits >= 0.0, 1.0, -1.0)
     edge = np.where(side > 0, limits.position_upper[j], limits.position_lower[j])
     edge = np.where(np.isfinite(edge), edge, 0.0)
-    r = np.maximum(places.order, 1) - 1
-    rate = limits.sides[(side > 0).astype(np.int64), j, r]
+    column = np.maximum(places.order, 1) - 1
+    rate = limits.sides[(side > 0).astype(np.int64), j, column]
     # Rows are shares of the larger side; a limit of 0 has no other size.
-    larger = np.where(np.isfinite(limits.sides), limits.sides, 0.0).max(axis=0)[j, r]
+    larger = np.where(np.isfinite(limits.sides), limits.sides, 0.0).max(axis=0)[j, column]
     larger = np.where(larger > 0.0, larger, 1.0)
     rate = np.where(np.isfinite(rate), rate, larger)
     own = np.where(rate > 0.0, rate, larger)

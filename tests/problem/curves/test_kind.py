@@ -6,8 +6,7 @@ import sys
 import numpy as np
 import pytest
 from trajgap.heuristics import PSO, run
-from trajgap.nlp import Status, solve
-from trajgap.nlp.optimum.curve_symbols import symbols
+from trajgap.nlp import Status, build, solve
 from trajgap.problem import Array, Limits, Problem, TrajgapError, Verdict, check, fit
 from trajgap.problem.curves import MAX_COEFFICIENTS, quintic_spline, solve_in_closed_form
 from trajgap.problem.curves.kind import Shape
@@ -84,6 +83,6 @@ class Unsolved(Chords):
 
 def test_a_kind_without_expressions_is_refused_by_name() -> None:
     with pytest.raises(TrajgapError, match="curve: no NLP is known for chords; use another curve"):
-        symbols(Unsolved(), 1, 2, ())
+        build(Problem(np.array([[0.1], [0.9], [-0.3], [0.4]]), Limits(1.0), Unsolved()))
     with pytest.raises(TrajgapError, match="not stretched"):
         fit(Unsolved(), np.array([[0.1], [0.9], [-0.3], [0.4]]), [1.0, 1.0, 1.0])
