@@ -8,7 +8,7 @@ import numpy as np
 
 from ...problem import QUANTITIES, Array, Check, Problem, Verdict, check, half_range
 from .descent import descend
-from .local import Local
+from .optimality import Local
 from .starts import DENSE, LogBox
 
 ROUNDS = 6

@@ -21,7 +21,8 @@ from numpy.typing import NDArray
 
 from ...problem import QUANTITIES, Array, Interpolant, Problem
 from ...problem.curves import ConditionKind, Places, Trajectory
-from .sparse_optimality import along
+from .limit_rows import REACH, Rows, Sides
+from .optimality import along
 from .symbolic import ca
 
 Indices = NDArray[np.int64]
@@ -29,28 +30,6 @@ Indices = NDArray[np.int64]
 LABELS = 11
 """Quantities of a segment that are told apart: its duration, derivatives up to the ninth, and a
 position that is free."""
-REACH = 0.5
-"""Farthest that a place follows its extremum, in shares of its segment: one of a derivative that is
-all but constant runs to any distance, where the polynomial means nothing. With 0.1 the
-windows of a plateau over 250 segments did not join, with 0.25 one of 150 did not settle."""
-
-
-@dataclass(frozen=True, eq=False)
-class Rows:
-    """Limits inside segments: one side of one derivative of one joint at a place that moves.
-
-    Attributes
-    ----------
-    places : Places
-    sign : ndarray
-        Side of the limit.
-    weight : ndarray
-        Newton weight: the place moves by −w f′, f the derivative as a function of s, up to `REACH`.
-    """
-
-    places: Places
-    sign: Array
-    weight: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,30 +58,6 @@ class Conditions:
         for i in np.flatnonzero(told).tolist():
             values[i] = given[table.breaks[i]][int(table.orders[i])]
         return cls(table.kinds, table.breaks, table.orders, values)
-
-
-class Sides:
-    """Limits of derivatives in units of order one, as shares of the larger side.
-
-    Attributes
-    ----------
-    scale : ndarray, shape (joints, 3)
-        The larger side; inf where nothing is limited.
-    low, high : ndarray, shape (joints, 3)
-        Both sides in shares of it: −1 and 1 where they are equal.
-    """
-
-    def __init__(self, problem: Problem, unit: float, angle: Array) -> None:
-        below, above = problem.limits.sides * unit ** np.arange(1, 4) / angle[:, None]
-        positive = [np.where(np.isfinite(side), side, 0.0) for side in (below, above)]
-        scale = np.maximum(*positive)
-        # A derivative that must not leave 0 to a side has no size to take; standing still keeps it.
-        moves = np.ptp(problem.waypoints, axis=0)[:, None] > 0.0
-        limited = (scale > 0.0) | (moves & ((below == 0.0) | (above == 0.0)))
-        size = np.where(scale > 0.0, scale, 1.0)
-        self.scale = np.where(limited, size, np.inf)
-        self.low = np.where(limited, -below / size, -np.inf)
-        self.high = np.where(limited, above / size, np.inf)
 
 
 class Program:
@@ -341,7 +296,7 @@ class Program:
         j, r = places.joint, np.maximum(places.order, 1) - 1
         at = np.where(sign > 0, limits.position_upper[j], limits.position_lower[j])
         side = np.where(sign > 0, self.sides.high[j, r], self.sides.low[j, r])
-        return np.where(places.order == 0, (at - first[j]) / self.angle[j], side)
+        return np.asarray(np.where(places.order == 0, (at - first[j]) / self.angle[j], side))
 
     def pack(self, trajectory: Trajectory, durations: Array) -> Array:
         """Variables at a motion with these durations."""

@@ -12,9 +12,10 @@ import numpy as np
 from ...problem import Array
 from ...problem.curves import Places
 from .clock import seconds_left
-from .program import Program, Rows
-from .rows import AnyProgram
-from .sparse_optimality import Multipliers
+from .limit_rows import Rows
+from .optimality import Multipliers
+from .program import Program
+from .rows import AnyProgram, constraints
 from .symbolic import ca
 
 ITERATIONS = 250
@@ -99,28 +100,20 @@ def solve_round(
     No duration leaves the ``box`` (s): rows say nothing of motions far from theirs.
     """
     began = time.perf_counter()
-    ends = program.ends
-    expressions = [
-        program.equalities,
-        program.at_places(ends, np.zeros(ends.s.size)),
-        program.at_places(rows.places, rows.weight),
-    ]
-    nlp = {"x": program.variables, "f": ca.sum1(program.durations), "g": ca.vertcat(*expressions)}
+    stated = constraints(program, rows)
+    nlp = {"x": program.variables, "f": ca.sum1(program.durations), "g": stated.expressions}
     solver = ca.nlpsol("round", "ipopt", nlp, _options(turn))
     build = time.perf_counter() - began
     low, high = program.bounds()
     n = program.segments
     least, most = (np.clip(side / program.unit, low[:n], high[:n]) for side in box)
     low[:n], high[:n] = least, most
-    at_ends = [program.rooms(ends, np.full(ends.s.size, sign)) for sign in (-1.0, 1.0)]
-    room, upper = program.rooms(rows.places, rows.sign), rows.sign > 0
-    zero = np.zeros(state.equalities.size)
     arguments = {
         "x0": np.clip(state.x, low, high),
         "lbx": low,
         "ubx": high,
-        "lbg": np.concatenate([zero, at_ends[0], np.where(upper, -np.inf, room)]),
-        "ubg": np.concatenate([zero, at_ends[1], np.where(upper, room, np.inf)]),
+        "lbg": stated.low,
+        "ubg": stated.high,
     }
     if state.bounds is not None:
         arguments["lam_x0"] = state.bounds
@@ -129,8 +122,9 @@ def solve_round(
     result = solver(**arguments)
     stats = solver.stats()
     state.x, state.bounds = (np.asarray(result[name]).ravel() for name in ("x", "lam_x"))
-    cuts = [zero.size, zero.size + ends.s.size]
-    state.equalities, state.ends, duals_ = np.split(np.asarray(result["lam_g"]).ravel(), cuts)
+    state.equalities, state.ends, duals_ = np.split(
+        np.asarray(result["lam_g"]).ravel(), stated.cuts
+    )
     return duals_, bool(stats["success"]), int(stats["iter_count"]), build
 
 

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...problem import Array, extrema
-from ...problem.curves import ClockedTrajectory, Places, Trajectory, near_extrema
-from .program import Indices, Program, Rows
+from ...problem.curves import Places, Trajectory, near_extrema
+from .limit_rows import Rows
+from .program import Indices, Program
 from .spline_program import SplineProgram
+from .symbolic import ca
 
 EVERY = 0.0
 """All interior extrema have rows at first: without those below a fifth of their limit, quintics
@@ -30,6 +33,39 @@ POSITION_NEAR = 0.3
 
 AnyProgram = Program | SplineProgram
 """The NLP of a declared curve, or of a B-spline."""
+
+
+@dataclass(frozen=True, eq=False)
+class Constraints:
+    """What a program states: expressions, and the bounds that they lie between.
+
+    In this order: the equalities, the rows at right ends, and the rows that follow extrema.
+    """
+
+    expressions: Any
+    low: Array
+    high: Array
+    cuts: tuple[int, int]
+    """Numbers of the first row at an end, and of the first that follows an extremum."""
+
+
+def constraints(program: AnyProgram, rows: Rows) -> Constraints:
+    """The equalities and limits of a program with its rows."""
+    ends, upper = program.ends, rows.sign > 0
+    at_ends = [program.rooms(ends, np.full(ends.s.size, sign)) for sign in (-1.0, 1.0)]
+    room = program.rooms(rows.places, rows.sign)
+    zero = np.zeros(program.equalities.numel())
+    expressions = [
+        program.equalities,
+        program.at_places(ends, np.zeros(ends.s.size)),
+        program.at_places(rows.places, rows.weight),
+    ]
+    return Constraints(
+        ca.vertcat(*expressions),
+        np.concatenate([zero, at_ends[0], np.where(upper, -np.inf, room)]),
+        np.concatenate([zero, at_ends[1], np.where(upper, room, np.inf)]),
+        (zero.size, zero.size + ends.s.size),
+    )
 
 
 def _lines(rows: Rows, joints: int) -> Array:
@@ -173,7 +209,7 @@ def _extrema(
     trajectory: Trajectory, j: int, r: int, low: float, high: float
 ) -> tuple[Indices, Array, Array]:
     """Pieces, places and values of the extrema at most at ``low`` or at least at ``high``."""
-    if not isinstance(trajectory, ClockedTrajectory):
+    if trajectory.polynomial_in_time:
         return near_extrema(trajectory, j, r, low, high)
     found = [e for e in extrema(trajectory, j, r) if e.value <= low or e.value >= high]
     segment = np.array([e.segment for e in found], dtype=np.int64)

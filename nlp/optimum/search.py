@@ -16,12 +16,11 @@ from ...problem import Array, CurveError, Problem, check, evaluate, fit
 from .clock import time_up
 from .decided import kept
 from .judgement import KKT_TOLERANCE
-from .local import Local
-from .optimality import KKT, kkt
-from .program import Program, Rows
+from .limit_rows import Rows
+from .optimality import KKT, Local, kkt, sparse_kkt
+from .program import Program
 from .rounds import TOLERANCES, RoundState, fresh, multipliers, solve_round
 from .rows import EVERY, FLAT, NEAR, AnyProgram, carried, near_rows, with_loaded
-from .sparse_optimality import sparse_kkt
 from .spline_program import SplineProgram
 from .starts import DENSE, equal_start, stretching, worst_ratios
 from .windows import FEWEST, joined_windows
@@ -169,11 +168,13 @@ def program_search(
     return Local(h, values, total, settled, passes, iterations, None, found, build)
 
 
-def _report(program: AnyProgram, motion: Motion, rows: Rows, state: RoundState, duals: Array) -> KKT:
+def _report(
+    program: AnyProgram, motion: Motion, rows: Rows, state: RoundState, duals: Array
+) -> KKT:
     """Optimality conditions: at the multipliers of the round, or dense ones of few segments."""
     problem, (h, nodal) = program.problem, motion
-    sparse = isinstance(program, Program) and not problem.curve.free
-    if not sparse or problem.segments <= DENSE:
+    few = problem.curve.free or problem.segments <= DENSE
+    if few or not isinstance(program, Program):
         return kkt(problem, h, nodal)
     violation = check(problem, h).max_violation
     return sparse_kkt(problem, h, multipliers(program, rows, state, duals), violation)

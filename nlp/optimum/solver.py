@@ -11,20 +11,25 @@ from numpy.typing import ArrayLike
 
 from ...problem import Array, Problem, check
 from .asked import Ask, asked
-from .basins import Basin, usual_basins
-from .better import BETTER, better_of
+from .basins import (
+    Basin,
+    exact_search,
+    moving_at_floor,
+    short_ways,
+    shortened,
+    tolerated_search,
+    usual_basins,
+)
 from .clock import stopping_after, time_up
+from .closed_forms import cut_short, unsearched
 from .decided import decided, kept, stretched
 from .feasibility import apart
 from .fixed_ratios import at_ratios
 from .idle import idle_segments, with_least_idle
-from .judgement import ROUNDED, judged
-from .local import Local
-from .matching import jump_equations, matched
-from .multistart import exact_search, tolerated_search
+from .judgement import BETTER, ROUNDED, better_of, judged
+from .jumps import as_answer, carried_over, jump_equations, matched, smoother
+from .optimality import Local
 from .search import program_search
-from .short_ways import moving_at_floor, short_ways, shortened
-from .smoother import as_answer, carried_over, smoother
 from .solution import Route, Solution, Status
 from .starts import (
     DENSE,
@@ -35,7 +40,6 @@ from .starts import (
     random_starts,
     way_start,
 )
-from .unsearched import cut_short, unsearched
 
 STARTS = 4
 """Basins of the wide search from which descents start."""

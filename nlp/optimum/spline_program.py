@@ -28,8 +28,9 @@ from ...problem.curves import (
     numerators,
     shape_matrix,
 )
-from .program import REACH, Indices, Rows, Sides
-from .sparse_optimality import along
+from .limit_rows import REACH, Rows, Sides
+from .optimality import along
+from .program import Indices
 from .symbolic import ca
 
 Polynomial = list[Any]

@@ -17,7 +17,8 @@ import numpy as np
 from ...problem import Array, Problem
 from ...problem.curves import Trajectory
 from .clock import time_up
-from .program import LABELS, Indices, Program, Rows
+from .limit_rows import Rows
+from .program import LABELS, Indices, Program
 from .rounds import RoundState, fresh, solve_round
 from .rows import EVERY, NEAR, carried, near_rows, picked, together
 from .starts import worst_ratios

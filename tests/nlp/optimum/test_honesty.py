@@ -11,9 +11,8 @@ from support.benchmarks import loaded
 from trajgap.compare import audit
 from trajgap.nlp import Solution, Status, solve_per_joint
 from trajgap.nlp.optimum import feasibility, limit_rows, solve
-from trajgap.nlp.optimum.descent import descend, least_point, restored
+from trajgap.nlp.optimum.descent import descend, exact_search, least_point, restored
 from trajgap.nlp.optimum.limit_rows import exact_rows
-from trajgap.nlp.optimum.multistart import exact_search
 from trajgap.nlp.optimum.optimality import kkt
 from trajgap.nlp.optimum.starts import LogBox, box_above
 from trajgap.problem import (

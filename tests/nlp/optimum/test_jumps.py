@@ -11,9 +11,8 @@ from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq, differential_evolution, fsolve, minimize_scalar
 from trajgap.nlp import Solution, Status
 from trajgap.nlp.optimum import solve
-from trajgap.nlp.optimum.joined import joined
-from trajgap.nlp.optimum.matching import jump_equations, matched
-from trajgap.nlp.optimum.smoother import as_answer, same_motions, smoother
+from trajgap.nlp.optimum.closed_forms import joined
+from trajgap.nlp.optimum.jumps import as_answer, jump_equations, matched, same_motions, smoother
 from trajgap.problem import (
     Array,
     Interpolant,

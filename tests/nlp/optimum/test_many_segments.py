@@ -6,11 +6,12 @@ from support.long_problems import long_curves, long_problem
 from trajgap.nlp import Status
 from trajgap.nlp.optimum import search as search_module
 from trajgap.nlp.optimum import solve, solver
+from trajgap.nlp.optimum.closed_forms import CUT_SHORT
+from trajgap.nlp.optimum.limit_rows import Rows
 from trajgap.nlp.optimum.optimality import kkt
-from trajgap.nlp.optimum.program import Program, Rows
+from trajgap.nlp.optimum.program import Program
 from trajgap.nlp.optimum.search import program_search
 from trajgap.nlp.optimum.starts import way_start
-from trajgap.nlp.optimum.unsearched import CUT_SHORT
 from trajgap.problem import (
     Interpolant,
     Limits,

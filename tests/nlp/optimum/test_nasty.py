@@ -15,10 +15,10 @@ from attacks.nasty import answered, nasty, rebuilt
 from scipy.interpolate import CubicSpline
 from trajgap.nlp import Solution, Status, certify
 from trajgap.nlp.optimum import limit_rows, optimality, solve, solver
+from trajgap.nlp.optimum.closed_forms import straight_durations
 from trajgap.nlp.optimum.decided import decided
 from trajgap.nlp.optimum.limit_rows import exact_rows
 from trajgap.nlp.optimum.optimality import kkt
-from trajgap.nlp.optimum.straight import straight_durations
 from trajgap.nlp.proofs import exact_problem
 from trajgap.problem import (
     Interpolant,

@@ -11,7 +11,7 @@ from support.small_problems import FAMILIES, small_problem
 from trajgap.nlp import Evidence, Status, solve_per_joint
 from trajgap.nlp.optimum import solve, stopping_after
 from trajgap.nlp.optimum.limit_rows import exact_rows
-from trajgap.nlp.optimum.near_optimal import Nearby
+from trajgap.nlp.optimum.per_joint import Nearby
 from trajgap.problem import Array, Limits, Problem, check, load_case, piecewise, rest_to_rest
 
 

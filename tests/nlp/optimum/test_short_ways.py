@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from trajgap.nlp import Status
 from trajgap.nlp.optimum import solve
-from trajgap.nlp.optimum.short_ways import short_ways, shortened
+from trajgap.nlp.optimum.basins import short_ways, shortened
 from trajgap.problem import (
     Array,
     Interpolant,

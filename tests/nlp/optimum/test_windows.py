@@ -10,7 +10,8 @@ from support.long_problems import LIMITS, long_curves, long_problem
 from trajgap.nlp import Status
 from trajgap.nlp.optimum import search as search_module
 from trajgap.nlp.optimum import solve, windows
-from trajgap.nlp.optimum.program import Program, Rows
+from trajgap.nlp.optimum.limit_rows import Rows
+from trajgap.nlp.optimum.program import Program
 from trajgap.nlp.optimum.rows import carried, near_rows, with_loaded
 from trajgap.nlp.optimum.search import program_search
 from trajgap.nlp.optimum.starts import way_start, worst_ratios

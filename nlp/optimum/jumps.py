@@ -1,22 +1,128 @@
-"""Curves that may jump: ratios of durations at which they happen not to.
+"""Curves that may jump where the limits forbid it: the smoother curve, or ratios without a jump.
 
-Where a limit forbids a jump that the declaration allows, and too little is free for a declaration
-that allows none, the jumps are equations for the ratios of the durations. A uniform stretch keeps
-them: what is found is stretched until it is tight. Where fewer equations than ratios are left, the
-shortest of a whole set of motions is looked for.
+A motion that passes is smooth in velocity, and in acceleration where jerk is limited. Among the
+curves of a declaration with less continuity, and derivatives that are free, those that pass are
+therefore curves of the declaration with more of it. Where too little is free for that, the jumps
+are equations for the ratios of the durations. A uniform stretch keeps them: what is found is
+stretched until it is tight. Where fewer equations than ratios are left, the shortest of a whole set
+of motions is looked for.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
-from ...problem import Array, CurveError, Problem, check, fit
+from ...problem import Array, CurveError, Problem, TrajgapError, check, fit
 from .clock import time_up
 from .decided import decided, kept
 from .feasibility import apart
-from .smoother import smoother
+from .program import free_values
+from .solution import Solution, Status
+
+
+def smoother(problem: Problem) -> Problem | None:
+    """The problem on the declaration with the continuity that the limits ask for of some joint.
+
+    Parameters
+    ----------
+    problem : Problem
+
+    Returns
+    -------
+    Problem or None
+        None where nothing is to be raised, or no curve is left or its freedom is not nodal.
+    """
+    curve = problem.curve.piecewise
+    if curve is None or not curve.free:
+        return None
+    order = 2 if _jerk_limited(problem).any() else 1
+    raised = tuple(max(c, order) for c in curve.continuity)
+    if raised == curve.continuity:
+        return None
+    try:
+        declared = replace(curve, continuity=raised)
+        if declared.free:
+            declared.completed()
+    except TrajgapError:
+        return None
+    return replace(problem, curve=declared)
+
+
+def _jerk_limited(problem: Problem) -> Array:
+    """Joints that move and whose jerk is limited."""
+    moving = np.ptp(problem.waypoints, axis=0) > 0
+    return np.asarray(problem.limits.limited[:, 2] & moving)
+
+
+def same_motions(problem: Problem) -> bool:
+    """Whether every motion that passes is one of the smoother problem's.
+
+    A joint without a limit of its jerk may jump in acceleration, and be faster for it.
+    """
+    limited = _jerk_limited(problem)
+    still = np.ptp(problem.waypoints, axis=0) == 0
+    return bool((limited | still).all()) or not limited.any()
+
+
+def carried_over(problem: Problem, values: Array, durations: Array, to: Problem) -> Array | None:
+    """Free derivatives of the same motions in another declaration, shape (motions, free, joints).
+
+    Parameters
+    ----------
+    problem : Problem
+        The motions are its.
+    values : ndarray, shape (motions, free, joints)
+    durations : ndarray, shape (motions, segments)
+        s.
+    to : Problem
+
+    Returns
+    -------
+    ndarray or None
+        None where the other declaration leaves nothing free.
+    """
+    if not to.curve.free:
+        return None
+    found = [
+        free_values(to.piecewise, fit(problem.curve, problem.waypoints, h, v))
+        for h, v in zip(durations, values, strict=True)
+    ]
+    return np.array(found).reshape(len(durations), to.curve.free, len(problem.joints))
+
+
+def as_answer(problem: Problem, found: Solution) -> Solution | None:
+    """The answer of the smoother problem as one of the problem; None where it is none.
+
+    Parameters
+    ----------
+    problem : Problem
+    found : Solution
+        Of `smoother`.
+
+    Returns
+    -------
+    Solution or None
+    """
+    if found.durations is None:
+        proved = found.status is Status.INFEASIBLE
+        return replace(found, problem=problem) if proved and same_motions(problem) else None
+    none = np.zeros((0, len(problem.joints)))
+    own = none if found.nodal is None else found.nodal
+    values = carried_over(found.problem, own[None], found.durations[None], problem)
+    assert values is not None
+    verdict = check(problem, found.durations, values[0])
+    if not kept(problem, verdict):
+        return None
+    answer = replace(found, problem=problem, nodal=values[0], check=verdict)
+    if same_motions(problem):
+        return answer
+    note = "the joints without a limit of their jerk are held as smooth as the others"
+    why = note if found.why is None else f"{found.why}; {note}"
+    return replace(answer, status=Status.FEASIBLE, why=why)
+
 
 TRIES = 24
 """Random ratios from which the equations are solved: a problem with an answer has one or two, and

@@ -1,20 +1,77 @@
-"""Motions that are smooth at the way-points for some ratios of durations only, in closed form.
+"""Answers that need no search: a proof that there is none, a closed form, an infimum of 0.
 
-Where each segment depends on its own duration alone, a derivative of order r is a number of the
-path over hʳ on each side of a break. That the two agree bounds the ratio of the two durations, and
-every limit bounds one duration from below. Of all logarithms of durations that keep such bounds on
-differences the least in every component is one of them: it is the optimum.
+Straight motions at constant speed take no time where no velocity is limited. Segments that are
+stretched by themselves have their least durations, or ratios of them at which nothing jumps.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from itertools import pairwise
 
 import numpy as np
 
-from ...problem import Array, Problem, extrema
+from ...problem import Array, Problem, check, extrema
 from ...verify import shown_bound
-from .feasibility import SURE, apart
+from .decided import decided, kept
+from .feasibility import SURE, apart, impossible
+from .solution import Route, Solution, Status
+from .starts import equal_start
+
+HALVINGS = 60
+"""Times that the total is halved while `check` still sees that nothing exceeds its limit."""
+
+
+def straight_durations(problem: Problem) -> Array | None:
+    """Durations in proportion to the way, s, if a total of any length keeps every limit; or None.
+
+    The decision is exact. Joints that nothing limits but their position are left out, and so is a
+    problem with a positive lower bound on a duration.
+
+    Parameters
+    ----------
+    problem : Problem
+
+    Returns
+    -------
+    ndarray, shape (segments,), or None
+        The shortest halving that the checker passes.
+    """
+    curve = problem.curve.piecewise
+    if curve is None or curve.free or curve.virtual or problem.duration_lower.any():
+        return None
+    given = [entry for b in range(curve.segments + 1) for entry in curve.prescribed_at(b)]
+    if any(order < 2 or value != 0.0 for order, value in given):
+        return None
+    moving = np.ptp(problem.waypoints, axis=0) > 0
+    limited = problem.limits.limited
+    bound = limited.any(axis=1)
+    if (moving & limited[:, 0]).any() or not (moving & bound).any():
+        return None
+    ways = [
+        [Fraction(float(b)) - Fraction(float(a)) for a, b in pairwise(q)]
+        for q in problem.waypoints.T[moving & bound]
+    ]
+    first = ways[0]
+    forth = all(way * first[0] > 0 for way in first)
+    if not forth or any(w[k] * first[0] != w[0] * first[k] for w in ways for k in range(len(w))):
+        return None
+    share = np.array([float(way / sum(first)) for way in first])
+    return _shortest(problem, share)
+
+
+def _shortest(problem: Problem, share: Array) -> Array | None:
+    """The shortest total that the checker passes, by halving; None if it passes none."""
+    with np.errstate(divide="ignore"):
+        room = float((problem.duration_upper / share).min())
+    total, best = min(float(equal_start(problem).sum()), room), None
+    for _ in range(HALVINGS):
+        if not kept(problem, check(problem, total * share)):
+            break
+        best, total = total * share, 0.5 * total
+    return best
+
 
 AGREE = 1e-9
 """Share of their terms by which the checker lets two sides of a break differ."""
@@ -158,3 +215,66 @@ def _least(low: Array, ratios: _Ratios) -> Array:
     for k in range(z.size - 1):
         z[k + 1] = max(z[k + 1], z[k] + ratios.low[k])
     return z
+
+
+CUT_SHORT = "the time ran out: what was not searched may hold a shorter motion"
+"""Beside the answer of a search that its time limit ended."""
+OUT_OF_TIME = "the time ran out, which says nothing about whether there are any"
+"""Beside the word that nothing was found, by a search that its time limit ended."""
+
+
+def unsearched(problem: Problem) -> Solution | None:
+    """The answer of a problem that elementary arguments decide, or None.
+
+    Parameters
+    ----------
+    problem : Problem
+
+    Returns
+    -------
+    Solution or None
+    """
+    reason = impossible(problem)
+    smooth = joined(problem) if reason is None else reason
+    if isinstance(smooth, str):
+        return Solution(problem, Status.INFEASIBLE, smooth)
+    if smooth is not None and (answer := decided(problem, smooth)) is not None:
+        return Solution(
+            problem,
+            Status.CONVERGED,
+            "the least durations without a jump, in closed form",
+            durations=answer.durations,
+            check=check(problem, answer.durations),
+            route=Route.CLOSED_FORM,
+        )
+    straight = straight_durations(problem)
+    if straight is not None:
+        return Solution(
+            problem,
+            Status.NOT_ATTAINED,
+            "at durations in proportion to the way nothing accelerates, and no velocity is "
+            "limited: the total falls to 0",
+            durations=straight,
+            check=check(problem, straight),
+            route=Route.CLOSED_FORM,
+            infimum=0.0,
+        )
+    return None
+
+
+def cut_short(answer: Solution) -> Solution:
+    """The answer of a search whose time ran out, with a word that says so.
+
+    Parameters
+    ----------
+    answer : Solution
+
+    Returns
+    -------
+    Solution
+        Proofs need no search: *infeasible* stays as it is.
+    """
+    if answer.status is Status.INFEASIBLE:
+        return answer
+    said = OUT_OF_TIME if answer.durations is None else CUT_SHORT
+    return replace(answer, why=said if answer.why is None else f"{answer.why}; {said}")
