@@ -1,0 +1,85 @@
+"""The descent and the NLP, which share no search and no derivative, end at the same totals."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+from trajgap.nlp import Status, with_other_route
+from trajgap.nlp.optimum import solve
+from trajgap.problem import (
+    Limits,
+    Problem,
+    cubic_spline,
+    load_case,
+    piecewise,
+    published_ids,
+    quintic_spline,
+    rest_to_rest,
+    septic_spline,
+    three_five_three,
+)
+from trajgap.problem.suite import list_instances, load_instance
+
+SAME = 1e-8
+"""Relative difference of the two totals: both are a local optimum to some 1e-10."""
+
+
+def random_problem(number: int) -> Problem:
+    """Up to three joints through a random walk of up to four segments, some within bounds."""
+    generator = np.random.default_rng(1000 + number)
+    n = int(generator.integers(2, 5))
+    curve = (
+        three_five_three(),
+        piecewise((4, 3, 4)),
+        cubic_spline(n),
+        quintic_spline(n),
+        septic_spline(max(n, 3)),
+        rest_to_rest(n, 5),
+    )[number % 6]
+    joints = int(generator.integers(1, 4))
+    q = np.cumsum(generator.normal(size=(curve.segments + 1, joints)), axis=0)
+    jerk = generator.uniform(5.0, 60.0, joints) if number % 3 == 0 else np.inf
+    limits = Limits(generator.uniform(1, 6, joints), generator.uniform(1, 8, joints), jerk)
+    bounds = (0.01, float(generator.uniform(2.0, 6.0))) if number % 5 == 1 else (0.0, np.inf)
+    return Problem(q, limits, curve, *bounds)
+
+
+def published() -> Iterator[Problem]:
+    """Every problem of every published case under its default reading."""
+    for name in published_ids():
+        case = load_case(name)
+        main = case.default_reading.id
+        yield from (case.problem(p, r) for p, r in case.selections() if r == main)
+
+
+def assert_same(problem: Problem) -> bool:
+    """Whether there was a total to set beside another."""
+    found = with_other_route(solve(problem))
+    if found.durations is None or found.status is Status.NOT_ATTAINED:
+        return False
+    assert found.other_total is not None, problem.name
+    assert found.other_total == pytest.approx(found.total_time, rel=SAME, abs=0.0), problem.name
+    return True
+
+
+def test_random_problems() -> None:
+    assert sum(assert_same(random_problem(number)) for number in range(24)) >= 22
+
+
+def test_the_suite() -> None:
+    names = [one.name for one in list_instances()]
+    assert sum(assert_same(load_instance(name).problem()) for name in names[::9]) >= 10
+
+
+@pytest.mark.slow
+def test_two_thousand_random_problems() -> None:
+    assert sum(assert_same(random_problem(number)) for number in range(2000)) >= 1900
+
+
+@pytest.mark.slow
+def test_the_whole_suite_and_every_published_problem() -> None:
+    names = [one.name for one in list_instances()]
+    assert sum(assert_same(load_instance(name).problem()) for name in names) >= 120
+    assert sum(map(assert_same, published())) >= 20
