@@ -127,7 +127,7 @@ def solve(
 def _solve(problem: Problem, ask: Ask) -> Solution:
     """`solve` where no elementary argument decides."""
     if problem.segments > DENSE and _sparse(problem):
-        answer = _programmed(problem, ask)
+        answer = _with_known(problem, _programmed(problem, ask), ask)
         if answer.durations is not None:
             return answer
     smooth = smoother(problem)
@@ -168,10 +168,8 @@ def _solve_smoother(problem: Problem, smooth: Problem, ask: Ask) -> Solution:
 
 def _solve_moving(problem: Problem, ask: Ask) -> Solution:
     """`solve` for a problem without idle segments."""
-    if problem.curve.free:
+    if problem.curve.free or problem.segments > DENSE:
         solution = _programmed(problem, ask)
-    elif problem.segments > DENSE:
-        solution = _descended(problem, ask)
     elif (near := _proved(problem, ask)) is not None:
         solution = _searched(problem, replace(ask, initial=near[None]))
     elif ask.initial is not None:
@@ -206,7 +204,7 @@ def _proved(problem: Problem, ask: Ask) -> Array | None:
 
 
 def _programmed(problem: Problem, ask: Ask) -> Solution:
-    """Rounds of the NLP from each start, and from the shortest known motion."""
+    """Rounds of the NLP from each start."""
     floor = made_up(problem, FLOORS[-1])
     nodal = first_nodal(problem)
     if ask.initial is not None:
@@ -215,6 +213,8 @@ def _programmed(problem: Problem, ask: Ask) -> Solution:
         generator = np.random.default_rng(ask.seed)
         more = random_starts(problem, ask.starts - 1, generator)
         starts = np.vstack([equal_start(problem), more])
+    elif problem.curve.piecewise is None:
+        starts = equal_start(problem)[None]
     else:
         starts = way_start(problem)[None]
     found = _rounds(problem, starts, floor, nodal)
@@ -222,8 +222,7 @@ def _programmed(problem: Problem, ask: Ask) -> Solution:
         usual = equal_start(problem)  # stretched to be tight, with the free derivatives at rest
         passes = kept(problem, check(problem, usual, nodal))
         found.append(Local(usual, nodal, float(usual.sum()), False, passes, 0))
-    solution = judged(problem, found, floor, len(starts), Route.NLP)
-    return _with_known(problem, solution, ask)
+    return judged(problem, found, floor, len(starts), Route.NLP)
 
 
 def _rounds(problem: Problem, starts: Array, floor: Array, nodal: Array | None) -> list[Local]:
@@ -252,20 +251,6 @@ def _widely(problem: Problem, ask: Ask) -> Solution:
             return found
         return better_of(_searched(problem, ask, wide=wide), found)
     return _searched(problem, ask, wide=wide)
-
-
-def _descended(problem: Problem, ask: Ask) -> Solution:
-    """The usual durations, or the first start that was given, stretched until they pass.
-
-    For many segments of a curve that the NLP has no rounds for.
-    """
-    start = equal_start(problem) if ask.initial is None else ask.initial[0]
-    found = stretched(problem, start, None)
-    floor = made_up(problem, FLOORS[-1])
-    if found is None:
-        return judged(problem, [], floor, 0)
-    h, _ = found
-    return judged(problem, [Local(h, None, float(h.sum()), False, True, 0)], floor, 1)
 
 
 def _searched(
