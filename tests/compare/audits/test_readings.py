@@ -189,7 +189,9 @@ def test_the_terminal_says_once_what_many_readings_say() -> None:
     said = {"says": "Not shortest: 0.5 s. More of it.", "readings": ("timed", "tight", "both")}
     causes = (
         Cause(severity=Severity.ERROR, rule="TG302", claim="d", **said, **nothing),
-        Cause(severity=Severity.WARNING, rule="TG106", claim=None, says="m", readings=(), **nothing),
+        Cause(
+            severity=Severity.WARNING, rule="TG106", claim=None, says="m", readings=(), **nothing
+        ),
     )
     held, mixed = (v.model_copy(update={"claim": "d"}) for v in case.verdicts[:2])
     for verdict, beside in ((held, " all "), (mixed, "supported 1 of 5")):
