@@ -25,7 +25,6 @@ from trajgap.problem import (
     evaluate,
     fit,
     piecewise,
-    quintic_spline,
     three_five_three,
     uniform_cubic_b_spline,
 )
@@ -137,14 +136,6 @@ def test_nothing_limited_is_kept_by_every_duration():
     assert judge_rounding(free, below).verdict is Rounding.BREAKS
     around = judge_rounding(free, RoundingBox(h, np.array([0.48, 0.59]), np.array([0.51, 0.61])))
     assert around.verdict in (Rounding.CONSISTENT, Rounding.UNDECIDED)
-
-
-def test_same_input_same_answer():
-    problem, h = rounded_problem(5, quintic_spline(3))
-    h = h * check(problem, h).stretch * 0.9995
-    one, two = (judge_rounding(problem, *boxes(h, 5e-4, problem.waypoints, 5e-5)) for _ in "ab")
-    assert one.lower_bound_of_worst == two.lower_bound_of_worst
-    assert one.verdict is two.verdict
 
 
 def test_bisection_tightens():

@@ -20,7 +20,6 @@ from trajgap.compare.audits.instances.result import (
     MIDDLE,
     InstancesResult,
     distribution,
-    reproduced,
 )
 from trajgap.compare.audits.rules.on_instances import judge_instances
 from trajgap.compare.audits.study import Study
@@ -30,7 +29,7 @@ from trajgap.compare.pages.writer import case_page
 from trajgap.compare.pictures.drawing import svg
 from trajgap.compare.pictures.instances import instances_picture
 from trajgap.compare.sphinx import Results
-from trajgap.problem import CaseError, load_case, parse_case
+from trajgap.problem import CaseError, load_case
 
 
 def test_findings_inform_and_decide_nothing() -> None:
@@ -134,36 +133,6 @@ def test_the_picture_shows_every_pair(result: InstancesResult) -> None:
 # --- a user finds the way-points ------------------------------------------------------------------
 
 
-@pytest.mark.slow
-def test_way_points_dropped_into_the_file_get_the_full_audit() -> None:
-    text = (ROOT / "problem" / "published" / f"{WHALE}.toml").read_text(encoding="utf-8")
-    start, end = text.index("not_printed = "), text.index("[limits]")
-    angles = [
-        [f"{0.31 * (j + 1) * (-1) ** k - 0.17 * j * k:.4f}" for k in range(4)] for j in range(6)
-    ]
-    table = "joint_rows = [\n" + ",\n".join(f"  {json.dumps(row)}" for row in angles) + "\n]\n\n"
-    # Fewer way-points and moves than the paper's, for speed; nothing else is touched.
-    text = (text[:start] + table + text[end:]).replace("iterations = 500", "iterations = 15")
-    text = text.replace("steps = [0.1, 0.2, 0.3]\ninstances = 3", "steps = [0.2]\ninstances = 1")
-    report = audit(
-        parse_case(text, "found.toml"), seeds=2, reading="v-deg-a-deg", certify_seconds=0
-    )
-    (one,) = report.cases
-    assert one.study.problems == ("b-spline", "quintic")
-    rules = {(f.rule, f.claim) for f in one.findings}
-    for claim in ("b-spline-total", "quintic-total"):
-        assert {("TG302", claim), ("TG402", claim)} <= rules
-        assert ("TG501", claim) not in rules
-    assert {("TG103", "improvement"), ("TG403", "convergence"), ("TG404", "improvement")} <= rules
-    assert [w.problem for w in one.waterfalls] == ["b-spline", "quintic"]
-    assert all(w.steps[0].name for w in one.waterfalls)
-    for pid in one.study.problems:
-        assert one.study.optimum(pid, "v-deg-a-deg").check is not None
-    (limits,) = (j for j in one.judgements if j.claim == "limits-kept")
-    assert "and no durations: whether its motion keeps the limits" in limits.why
-    assert [s.id for s in case_page(one).sections].count("families") == 1
-
-
 def documented() -> str:
     """The page about families, as far as it shows an audit's own instances."""
     page = ROOT / "docs" / "measurements" / "families.md"
@@ -206,25 +175,6 @@ def test_the_documented_medians_are_keys_of_their_reading_effect_and_objective()
         assert [(one["effect"], one["objective"]) for one in found[:4]] == effects
         assert found[4]["effect"] == "curve alone"
         assert {one["step"] for one in found} == {None}
-
-
-@pytest.mark.slow
-def test_the_documented_medians_are_those_of_the_shipped_family() -> None:
-    study = Study(load_case(WHALE), seeds=2, certify_seconds=0)
-    found = study.instances(study.instance_blocks[0])
-    columns = [(e, at) for e in (Effect.BOTH, Effect.ALGORITHM) for at in (0, 1)]
-    columns.append((Effect.CURVE, 0))
-    page = documented()
-    rows = DOCUMENTED.findall(page)
-    assert [reading for reading, _ in rows] == list(found.readings)
-    for reading, row in rows:
-        printed = [100 * shown(f"{key}.median") for key in KEYS.findall(row)]
-        computed = [100 * distribution(found.reductions(reading, *c)).median for c in columns]
-        assert printed == pytest.approx(computed, abs=0.0501)
-        assert abs(computed[3]) < 3
-    missed = [r for r in found.readings if not reproduced(found, r)]
-    assert missed == ["v-deg-a-deg", "v-rad-a-deg"]
-    assert all(f"`{reading}`" in page.split("\n\n")[-1] for reading in missed)
 
 
 # --- what is refused ------------------------------------------------------------------------------
