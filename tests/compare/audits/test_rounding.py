@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from support.rounding_boxes import MOVING_ENDS, rounded_problem
-from support.rounding_samples import boxes, contradiction, sampled_worst
+from support.rounding_boxes import MOVING_ENDS, boxes, contradiction, rounded_problem, sampled_worst
 from trajgap.compare.audits.rounding import Place, Point, RoundingBox, judge_rounding
 from trajgap.compare.documents import Rounding
 from trajgap.problem import (

@@ -8,8 +8,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from support.b_splines import NATURAL, uniform
-from support.rounding_boxes import rounded_problem
-from support.rounding_samples import boxes, contradiction
+from support.rounding_boxes import boxes, contradiction, rounded_problem
 from trajgap.compare.audits.rounding import Place, Point, RoundingBox, judge_rounding
 from trajgap.compare.documents import Rounding
 from trajgap.nlp.enclosure import box_bound

@@ -9,7 +9,6 @@ import pytest
 from support.checkout import ROOT
 from support.hostile import ID, IMAGE
 from support.page_tree import Tree
-from support.studies import audited
 from trajgap.compare import AuditReport
 from trajgap.compare.documents import (
     CARD_WORDS,
@@ -21,10 +20,9 @@ from trajgap.compare.documents import (
     qualified,
 )
 from trajgap.compare.pages.blocks import Claimed, Page, slug
-from trajgap.compare.pages.markdown_text import markdown, plain
+from trajgap.compare.pages.markdown_text import plain
 from trajgap.compare.pages.writer import case_page
 from trajgap.nlp import Evidence
-from trajgap.problem import file_name
 
 
 def flat(text: str) -> str:
@@ -234,19 +232,3 @@ def test_the_audit_can_be_cited_and_made_again(page: Tree, report: AuditReport) 
         assert text in page.words
     for one in made.certificates:
         assert one.sha256 in page.words
-
-
-@pytest.mark.slow
-def test_a_shipped_case_shows_each_joint_by_itself() -> None:
-    one = audited("puma560-mnam-pso-353")
-    page = case_page(one)
-    names = [p.name for p in page.pictures]
-    assert [n for n in names if "-joint-" in n] == [
-        file_name("landscape", "six-joints", "joint", str(j)) for j in range(1, 7)
-    ]
-    assert file_name("motion", "six-joints", "joints", "table-2") in names
-    text = markdown(page)
-    for joint in "123456":
-        total = one.study.optimum("six-joints", one.study.main_reading, joint).total_time
-        assert f"{total:.6f} s" in text
-    assert "3.298 s (Table 2, row 1; Table 3, row 1)" in text

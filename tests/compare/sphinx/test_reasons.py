@@ -59,17 +59,6 @@ def test_of_many_reasons_the_default_stands_first_and_the_others_are_folded() ->
     assert closing.astext() == "</details>"
 
 
-def test_what_differs_in_numbers_is_shown_once_and_every_number_is_folded() -> None:
-    found = [finding("a", "3 s too long."), finding("b", "4 s too long.")]
-    lead, _, folded, _ = reasons({"readings": {"default": "b"}, "findings": found}, VERDICT)
-    said = "Refuted under “b” and “a” (numbers of the first): 4 s too long."
-    assert lead.astext() == said
-    assert [one.astext() for one in folded.findall(nodes.paragraph)] == [
-        "Refuted under “b”: 4 s too long.",
-        "Refuted under “a”: 3 s too long.",
-    ]
-
-
 @pytest.mark.parametrize("name", ["irb1600-ga-cubic-bspline", "irb460-pso-353"])
 def test_a_place_that_every_row_shares_is_said_once(name):
     case = Results(ROOT / "docs" / "results").case(name)
