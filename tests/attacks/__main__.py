@@ -62,10 +62,8 @@ def main() -> int:
         _say(f"{account.attack.name}: {account.seconds:.0f} s, {_outcomes(account)}")
     if given.failures is not None:
         _keep(given.failures, accounts, given.seed)
-    tried_, broken = (
-        sum(x) for x in zip(*((a.tried, len(a.broken)) for a in accounts), strict=True)
-    )
-    print(f"{tried_:,} trials, {broken} failures\n\n{table(accounts, given.trials is not None)}")
+    trials, broken = sum(a.tried for a in accounts), sum(len(a.broken) for a in accounts)
+    print(f"{trials:,} trials, {broken} failures\n\n{table(accounts, given.trials is not None)}")
     return int(broken > 0)
 
 
