@@ -247,22 +247,6 @@ def test_a_study_survives_fifty_kills(tmp_path: Path) -> None:
     assert "row for row" in lines[-1]
 
 
-@pytest.mark.slow
-def test_two_sessions_on_one_store_end_with_the_same_rows(tmp_path: Path) -> None:
-    study = written(tmp_path, STUDY)
-    with session(study, tmp_path / "one.sqlite") as alone:
-        alone.communicate()
-    both = [session(study, tmp_path / "two.sqlite") for _ in range(2)]
-    for one in both:
-        with one:
-            one.communicate()
-    assert [one.returncode for one in (alone, *both)] == [0, 0, 0]
-    plan = load_study(study)
-    wanted = texts(plan, tmp_path / "one.sqlite")
-    assert len(wanted) == len(plan)
-    assert texts(plan, tmp_path / "two.sqlite") == wanted
-
-
 ROOM = 2_000_000
 """Bytes that a session may grow by: a tenth of 10,000 rows, each of some 2,000 bytes."""
 

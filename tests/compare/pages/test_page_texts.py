@@ -162,20 +162,6 @@ def test_what_is_open_about_limits_is_called_as_the_claim_is() -> None:
     assert len(set(KEPT.values())) == len(KEPT) == len(Keeping)
 
 
-@pytest.mark.slow
-def test_what_decides_nothing_has_one_word() -> None:
-    """Under three readings the velocity jumps: card, table and claim say the same of them."""
-    one = audited_alone("irb1600-ga-cubic-bspline")
-    assert "not checkable under 3" in one.card.limits
-    (kept,) = (j for j in one.judgements if j.claim == "limits-kept")
-    assert sum(str(word) == "not checkable" for word in kept.readings.values()) == 3
-    text = markdown(page_alone("irb1600-ga-cubic-bspline"))
-    assert text.count("| not checkable<br>48 velocity jumps |") == 3
-    shown = text.partition("## What was audited")[0]
-    assert "undecided" not in shown
-    assert "discontinuous" not in shown
-
-
 FIGURE_5 = Claimed(
     text="It is better.",
     where="Figure 5",

@@ -9,10 +9,9 @@ from support.findings import judged
 from support.studies import SEEDS, audited, changed, hurried
 from trajgap.compare.audits.case_audit import audit
 from trajgap.compare.audits.rules.condition_count import count_conditions, judge_counts
-from trajgap.compare.audits.rules.distances import judge_distances
 from trajgap.compare.audits.rules.replays import judge_replays
 from trajgap.compare.audits.study import Study
-from trajgap.compare.documents import ClaimVerdict, Finding, Gap, Severity
+from trajgap.compare.documents import ClaimVerdict, Finding, Severity
 from trajgap.nlp import Evidence
 from trajgap.problem import TrajgapError, load_case
 
@@ -119,19 +118,6 @@ def test_optimal_is_refuted_by_a_shorter_checked_motion_and_supported_by_its_dig
     found = of(changed(IRB, *swaps), "TG302", "time-optimal")
     (one,) = [f for f in found if f.reading == "waypoints-rad"]
     assert (one.verdict, one.evidence) == (verdict, evidence)
-
-
-@pytest.mark.slow
-def test_a_claim_stands_beside_its_own_optimum_the_shared_one_and_the_procedure() -> None:
-    study = changed(PUMA)
-    found = [f for f in judge_distances(study) if f.reading == "durations-at-least-0.3"]
-    (shared,) = on(found, "TG303", "mnam-longest")
-    assert isinstance(shared.gap, Gap)
-    assert shared.gap.lowest == pytest.approx(3.5275 / shared.gap.reference.upper - 1, rel=1e-6)
-    assert any("longest per segment" in f.message for f in on(found, "TG302", "mnam-longest"))
-    (below,) = on(found, "TG302", "mnam-joint-5")
-    assert below.severity is Severity.INFO
-    assert not any(f.decides for f in found if f.claim != "time-optimal")
 
 
 @pytest.mark.parametrize(
