@@ -28,15 +28,6 @@ VERDICT = {
 }
 
 
-def texts(case: dict) -> list[str]:
-    return [node.astext() for node in reasons(case, VERDICT)]
-
-
-def test_few_reasons_are_shown_as_they_are() -> None:
-    case = {"readings": None, "findings": [finding("a", "one."), finding("b", "two.")]}
-    assert texts(case) == ["all of it"]
-
-
 def test_of_many_reasons_the_default_stands_first_and_the_others_are_folded() -> None:
     found = [
         finding("d", "kept.", "supported"),
