@@ -141,7 +141,7 @@ def holds(said: str, true: float) -> bool:
 
 
 @pytest.mark.parametrize("kind", HONEST)
-@pytest.mark.parametrize("seed", [0, 1, *slow(range(2, 14))])
+@pytest.mark.parametrize("seed", range(14))
 def test_honest_rows_are_accused_of_nothing(kind: str, seed: int) -> None:
     """No accusation, and no sentence on the card that is false of what the paper computed."""
     paper = row_paper(kind, seed)
@@ -157,7 +157,7 @@ def test_honest_rows_are_accused_of_nothing(kind: str, seed: int) -> None:
 
 
 @pytest.mark.parametrize("kind", FAULTY)
-@pytest.mark.parametrize("seed", [0, *slow(range(1, 8))])
+@pytest.mark.parametrize("seed", range(8))
 def test_the_fault_of_a_row_is_named(kind: str, seed: int) -> None:
     """The fault is found, and its rule and row are named."""
     paper = row_paper(kind, seed)

@@ -1,13 +1,15 @@
-"""Genetic algorithms: edges of wheel and fitness, and (13)–(15) of irb1600-ga-cubic-bspline.
+"""Genetic algorithms: edges of wheel and fitness, and (12)–(15) of irb1600-ga-cubic-bspline.
 
 Every step beside its equations: test_one_by_one.
 """
+
+from fractions import Fraction
 
 import numpy as np
 import pytest
 from trajgap.heuristics import GA, ImprovedGA
 from trajgap.heuristics.algorithms.genes import FitnessRule, fitness_values, roulette
-from trajgap.heuristics.algorithms.improved_ga import concentration, schedule
+from trajgap.heuristics.algorithms.improved_ga import concentration, rank_chances, schedule
 from trajgap.heuristics.hazards import rate_branches
 from trajgap.problem import TrajgapError
 
@@ -40,6 +42,17 @@ def test_bits_for_a_resolution(span: tuple[float, float], resolution: float, bit
 
 
 # --- improved -------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("q", [0.01, 0.2, 0.9])
+@pytest.mark.parametrize("count", [2, 50])
+def test_equation_12_is_a_distribution(q: float, count: int) -> None:
+    """Σ p_a = 1 identically: the geometric sum is what Q divides by."""
+    exact = Fraction(q)
+    top = exact / (1 - (1 - exact) ** count)
+    chances = [top * (1 - exact) ** (a - 1) for a in range(1, count + 1)]
+    assert sum(chances) == 1
+    np.testing.assert_allclose(rank_chances(q, count), [float(p) for p in chances], rtol=1e-12)
 
 
 def test_one_iteration_has_the_first_value_of_13() -> None:
