@@ -17,7 +17,6 @@ from trajgap.compare.pictures.jumps import jump_picture, velocity_jumps
 from trajgap.compare.pictures.labels import place_labels
 from trajgap.compare.pictures.polygon import polygon_picture
 from trajgap.compare.pictures.tent import TentScatter, tent_picture, tent_scatter
-from trajgap.heuristics.algorithms.tent import TentRule
 from trajgap.problem import Limits, Printed, Problem, TrajgapError, file_name, three_five_three
 from trajgap.problem.curves import control_vertices, uniform_cubic_b_spline
 from trajgap.problem.printed import Interval
@@ -119,18 +118,6 @@ def test_the_collapse_is_where_the_powers_of_two_end(scatter: TentScatter) -> No
     assert scatter.at_zero == 30 - whole
     assert (scatter.doubles[whole:] == 0).all()
     assert (scatter.exact[whole:] > 0).all()
-
-
-def test_only_one_long_orbit_collapses(scatter: TentScatter) -> None:
-    partly = (scatter.doubles == 0).any(axis=1).sum()
-    assert scatter.collapsed == {
-        TentRule.COORDINATE: 0,
-        TentRule.MEMBER: 0,
-        TentRule.SINGLE: partly,
-    }
-    # 29 doublings of an error of half a unit in the last place of a start below 1.
-    assert 0 < scatter.difference <= 5 * 2.0**29 * 2.0**-54
-    assert scatter.apart_exact.shape == (30, 7)
 
 
 # --- labels ---------------------------------------------------------------------------------------
