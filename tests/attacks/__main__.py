@@ -1,6 +1,6 @@
 """The long run.
 
-``python tests/attacks --seconds 3600 --seed 1 --write docs/measurements/attacks.csv``.
+``python tests/attacks --seconds 3600 --seed 1 | python docs/tables.py attacks``.
 """
 
 from __future__ import annotations
@@ -8,6 +8,7 @@ from __future__ import annotations
 import argparse
 import os
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 
 # One thread a process: children are forked, and the machine has other work.
@@ -20,19 +21,10 @@ sys.path[:] = [str(_HERE.parent), *(x for x in sys.path if Path(x or ".").resolv
 from attacks.registry import ATTACKS  # noqa: E402
 from attacks.run import Account, run, run_each, tried, warm  # noqa: E402
 from attacks.sandbox import available  # noqa: E402
-from attacks.table import (  # noqa: E402
-    PAGE,
-    SIGNALS,
-    csv_text,
-    each_table,
-    page_with,
-    rows_of,
-    table,
-)
 
 
 def main() -> int:
-    """Run, say what broke, write the table; 1 if anything broke."""
+    """Run, say what broke, print the table; 1 if anything broke."""
     parser = argparse.ArgumentParser(prog="python tests/attacks", description=__doc__)
     parser.add_argument("--seconds", type=float, default=60.0, help="how long, on the clock")
     parser.add_argument("--seed", type=int, default=1)
@@ -43,7 +35,6 @@ def main() -> int:
     parser.add_argument(
         "--trials", type=int, metavar="N", help="N trials of each attack, of each of its commands"
     )
-    parser.add_argument("--write", type=Path, metavar="CSV", help="write rows and the table")
     parser.add_argument(
         "--failures", type=Path, metavar="FOLDER", help="keep the input of what broke"
     )
@@ -67,24 +58,40 @@ def main() -> int:
         accounts = run_each(chosen, given.seed, given.trials, _say)
     else:
         accounts = run(chosen, given.seed, given.seconds, _say)
-    rows = rows_of(accounts, given.seed)
-    for row in rows:
-        _say(f"{row.attack}: {row.trials} trials, {row.failures} failures ({row.outcomes})")
+    for account in accounts:
+        _say(f"{account.attack.name}: {account.seconds:.0f} s, {_outcomes(account)}")
     if given.failures is not None:
         _keep(given.failures, accounts, given.seed)
-    if given.write is not None:
-        given.write.write_text(csv_text(rows), encoding="utf-8")
-        page = PAGE.read_text("utf-8")
-        if given.trials is None:
-            page = page_with(page, table(rows, ATTACKS))
+    trials, broken = sum(a.tried for a in accounts), sum(len(a.broken) for a in accounts)
+    print(f"{trials:,} trials, {broken} failures\n\n{table(accounts, given.trials is not None)}")
+    return int(broken > 0)
+
+
+def table(accounts: Sequence[Account], apart: bool) -> str:
+    """What was tried and held, as `docs/tables.py` takes it; each command by itself or not."""
+    what = ("command",) if apart else ("what is tried", "what must hold")
+    seen = ("what was seen",) if apart else ()
+    head = ("attack", *what, "trials", "held", "not judged", "failures", *seen)
+    lines = [head, ("---",) * len(head)]
+    for a in accounts:
+        counts = (f"{n:,}" for n in (a.tried, a.held, a.undecided, len(a.broken)))
+        name, _, part = a.attack.name.partition(": ")
+        if apart:
+            own = _outcomes(a).replace(f"{part}: ", "")
+            lines.append((name, f"`{part}`", *counts, own))
         else:
-            page = page_with(page, each_table(rows), SIGNALS)
-        PAGE.write_text(page, "utf-8")
-    return 1 if any(row.failures for row in rows) else 0
+            lines.append((name, a.attack.tries, a.attack.holds, *counts))
+    return "\n".join(f"| {' | '.join(line)} |" for line in lines)
+
+
+def _outcomes(account: Account) -> str:
+    """How often each word was seen."""
+    return "; ".join(f"{word} {n}" for word, n in account.words.most_common())
 
 
 def _say(text: str) -> None:
-    print("".join(c if c.isprintable() or c == "\n" else "?" for c in text), flush=True)
+    shown = "".join(c if c.isprintable() or c == "\n" else "?" for c in text)
+    print(shown, file=sys.stderr, flush=True)
 
 
 def _keep(folder: Path, accounts: list[Account], seed: int) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import shutil
 import signal
 import tempfile
 import tomllib
@@ -58,10 +57,6 @@ _DRAFTS = (".trajgap", ".tmp", ".old")
 """How names of drafts begin or end."""
 _SECONDS = 120.0
 """Processor time of a command here."""
-_WORKER_SECONDS = 2.0
-"""Up to when a worker is killed, from when it is there: a little longer than it usually is."""
-_SOON = 0.2
-"""A worker that is not there so long after it was seen is killed when it is seen."""
 
 
 @dataclass(frozen=True)
@@ -302,29 +297,6 @@ def together(rng: Rng, folder: Path) -> str | None:
     return f"{name}: {len(done)} of {len(runs)}"
 
 
-def dead_worker(rng: Rng, folder: Path) -> str | None:
-    """A worker of an audit killed: its work is done again, or one line says what happened."""
-    work = Work((*_AUDIT, "--workers", "2"), _pages)
-    after = float(rng.uniform(0.0, _WORKER_SECONDS))
-    ran = _worker_killed(work, folder, after)
-    while not ran.signalled:
-        # How long a worker is there depends on what else the machine does: sooner, then.
-        demand(after > 0.0, "the audit starts no worker that can be killed")
-        after = after / 2 if after > _SOON else 0.0
-        ran = _worker_killed(work, folder, after)
-    well_ended(ran, (0, 2), "audit, a worker killed")
-    demand(work.whole(folder), "audit, a worker killed: a file is not whole")
-    demand(not _drafts(folder), f"drafts are left: {_drafts(folder)}")
-    return "done again" if ran.code == 0 else "one line"
-
-
-def _worker_killed(work: Work, folder: Path, after: float) -> Ended:
-    """A command in an empty folder; its worker is killed so long after one is seen."""
-    shutil.rmtree(folder / "pages", ignore_errors=True)
-    _prepared(work, folder)
-    return _run(work, folder, Plan(signal=signal.SIGKILL, after=after, to_worker=True))
-
-
 def closed_pipe(rng: Rng, folder: Path) -> str | None:
     """Nobody reads standard output."""
     _prepared(WORKS["new"], folder)
@@ -393,14 +365,6 @@ ATTACKS = (
         together,
         1.0,
         2,
-    ),
-    Attack(
-        "dead worker",
-        "SIGKILL to a worker of `audit --workers 2`",
-        "a whole report, or one line; no hang",
-        dead_worker,
-        1.0,
-        1,
     ),
     Attack(
         "closed pipe",

@@ -13,7 +13,7 @@ from attacks.attack import Attack, demand, keep
 from attacks.cases import Drawn, NoCurve, Rng, near_limits, problem_of
 from attacks.grammar import FACTORS, draw_case
 from attacks.mutations import damaged
-from attacks.sandbox import Ended, Plan, command
+from attacks.sandbox import Ended, command
 
 _LINE = re.compile(r"trajgap: (?P<file>.+?): (?P<rest>.+)")
 """The one line of bad input: the file, then the field or, for the whole file, what is wrong."""
@@ -202,52 +202,6 @@ def hold_together(pages: Path) -> None:
             demand(not steering, f"control characters in the {what}: {steering}")
 
 
-def odd_paths(rng: Rng, folder: Path) -> str:
-    """Paths that are no readable file, for every command that reads one."""
-    import os
-
-    kind = str(rng.choice(["absent", "folder", "fifo", "device", "denied", "bytes", "link"]))
-    path = b"case.toml"
-    if kind == "folder":
-        (folder / "case.toml").mkdir()
-    elif kind == "fifo":
-        os.mkfifo(folder / "case.toml")
-    elif kind == "device":
-        path = b"/dev/zero"
-    elif kind == "denied":
-        (folder / "case.toml").write_text("x")
-        (folder / "case.toml").chmod(0)
-    elif kind == "bytes":
-        path = b"\xff\xfe\x80.toml"
-        if rng.random() < 0.5:
-            with open(os.path.join(os.fsencode(folder), path), "wb") as file:
-                file.write(draw_case(rng).text.encode())
-    elif kind == "link":
-        (folder / "case.toml").symlink_to("case.toml")
-    name = os.fsdecode(path)
-    certify = ["solve", "case", "--certify", "--resume", name]
-    every = [
-        ["show", name],
-        ["check", name, "--durations", "1,1,1"],
-        ["solve", name],
-        ["audit", name, "--seeds", "2", "--certify-seconds", "1", "--json"],
-        ["verify", name],
-        ["new", "out.toml", "--from", name, "--position-unit", "rad"],
-        ["solve", "puma560-mnam-pso-353", *certify[2:]],
-    ]
-    arguments = every[rng.integers(len(every))]
-    folder.chmod(0o777)
-    plan = Plan(without_rights=kind == "denied")
-    ran = command(arguments, folder, 5.0, plan=plan)
-    keep(folder, arguments=f"{kind}: {arguments}")
-    codes = (0, 2) if kind == "bytes" else (1, 2) if arguments[0] == "verify" else (2,)
-    if ran.code == 1:
-        demand("refused" in ran.out, f"{kind}: verify says {ran.out[:200]!r}")
-        return "refused in one line"
-    well_ended(ran, codes, f"{kind} {arguments[0]}")
-    return "refused in one line" if ran.code else "answered"
-
-
 ATTACKS = (
     Attack(
         "damaged case files",
@@ -272,15 +226,6 @@ ATTACKS = (
         "the same",
         raw_bytes,
         quick=20,
-    ),
-    Attack(
-        "paths that are no file",
-        "folders, FIFOs, devices, links to themselves, unreadable files, names that are not UTF-8; "
-        "every command",
-        "exit code 2 and one line, at once",
-        odd_paths,
-        share=0.3,
-        quick=10,
     ),
     Attack(
         "valid case files",

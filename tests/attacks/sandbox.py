@@ -6,6 +6,7 @@ seconds that Python takes to start. Signals, pipes and limits are those of a pro
 
 from __future__ import annotations
 
+import contextlib
 import ctypes
 import io
 import os
@@ -31,8 +32,6 @@ _WALL = 8.0
 """Seconds on the clock for each second of processor time, before it counts as hanging."""
 _GRACE = 5.0
 """Seconds that processes started by a child may outlive it: they notice by a closed pipe."""
-_LOOK = 0.02
-"""Seconds between two looks for a worker: one takes several times as long to import anything."""
 _PASS_MODES = 0b1110
 """CAP_DAC_OVERRIDE, CAP_DAC_READ_SEARCH and CAP_FOWNER as bits."""
 _FAILED = 99
@@ -43,15 +42,12 @@ _FAILED = 99
 class Plan:
     """What is done to a child while it runs.
 
-    ``signal`` is sent ``after`` seconds from the start; with ``to_worker`` it goes to a process
-    that the child has started, so many seconds after the first of them is seen. ``largest_file``
-    limits every file that it writes, in bytes, and ``without_rights`` takes its rights to write
-    what it does not own.
+    ``signal`` is sent ``after`` seconds from the start. ``largest_file`` limits every file that it
+    writes, in bytes, and ``without_rights`` takes its rights to write what it does not own.
     """
 
     signal: int | None = None
     after: float = 0.0
-    to_worker: bool = False
     largest_file: int | None = None
     without_rights: bool = False
     close_output: bool = False
@@ -71,7 +67,6 @@ class Ended:
     seconds: float
     processor: float
     late: bool
-    signalled: bool
     leftover: bool
     """Whether processes that it had started outlived it."""
 
@@ -229,21 +224,16 @@ def _drop_rights() -> None:
 
 def _watched(pid: int, pipes: list[int], began: float, plan: Plan, wall: float) -> Ended:
     seen: dict[int, list[bytes]] = {fd: [] for fd in pipes}
-    awaited = plan.to_worker
-    due = [] if plan.signal is None else [began + (0.0 if awaited else plan.after)]
-    late = signalled = False
+    due = None if plan.signal is None else began + plan.after
+    late = False
     with selectors.DefaultSelector() as ready:
         for fd in pipes[plan.close_output :]:
             ready.register(fd, selectors.EVENT_READ)
         while ready.get_map():
             now = time.monotonic()
-            if due and now >= due[0] and awaited:
-                awaited = not _workers(pid)
-                due = [now + (_LOOK if awaited else plan.after)]
-            if due and now >= due[0] and not awaited:
-                signalled = _send(pid, plan)
-                # Between two pieces of work there may be none.
-                due = [] if signalled or not plan.to_worker else [now + _LOOK]
+            if plan.signal is not None and due is not None and now >= due:
+                _send(pid, plan.signal)
+                due = None
             if now - began > wall:
                 late = True
                 _sweep(pid)
@@ -257,7 +247,7 @@ def _watched(pid: int, pipes: list[int], began: float, plan: Plan, wall: float) 
                 if not ready.select(0.0):
                     break
                 continue
-            next_due = min([0.2, *(max(0.0, x - now) for x in due)])
+            next_due = 0.2 if due is None else min(0.2, max(0.0, due - now))
             for key, _ in ready.select(next_due):
                 chunk = os.read(key.fd, 1 << 20)
                 seen[key.fd].append(chunk)
@@ -278,33 +268,13 @@ def _watched(pid: int, pipes: list[int], began: float, plan: Plan, wall: float) 
         seconds,
         usage.ru_utime + usage.ru_stime,
         late,
-        signalled,
         leftover,
     )
 
 
-def _send(pid: int, plan: Plan) -> bool:
-    assert plan.signal is not None
-    target: int | None = pid
-    if plan.to_worker:
-        target = next(iter(_workers(pid)), None)
-    if target is None:
-        return False
-    try:
-        os.kill(target, plan.signal)
-    except ProcessLookupError:
-        return False
-    return True
-
-
-def _workers(pid: int) -> list[int]:
-    """Processes that a child computes in; the one that keeps account of semaphores is none."""
-    try:
-        children = Path(f"/proc/{pid}/task/{pid}/children").read_text().split()
-        lines = {c: Path(f"/proc/{c}/cmdline").read_bytes() for c in children}
-    except OSError:
-        return []
-    return [int(c) for c, line in lines.items() if b"spawn_main" in line]
+def _send(pid: int, number: int) -> None:
+    with contextlib.suppress(ProcessLookupError):
+        os.kill(pid, number)
 
 
 def _gone(pid: int) -> bool:

@@ -5,12 +5,10 @@ import pytest
 from support.two_joints import WITH_JERK, two_joints
 from trajgap.heuristics import (
     PSO,
-    WOA,
     Counted,
     DeathPenalty,
     Stretch,
     run,
-    run_many,
     run_per_joint,
     uniform_rescaling,
 )
@@ -24,7 +22,6 @@ from trajgap.problem import (
     cubic_spline,
     evaluate,
     piecewise,
-    quintic_spline,
     three_five_three,
 )
 from trajgap.problem.checker import TOLERANCE
@@ -80,14 +77,6 @@ def test_bounds_themselves_are_feasible_and_zero_is_not() -> None:
     still = Problem(np.zeros((4, 1)), Limits(1.0), three_five_three())
     batch = np.array([[0.0, 1.0, 1.0], [1e-3, 1.0, 1.0]])
     np.testing.assert_array_equal(DeathPenalty(still)(batch), [np.inf, 2.001])
-
-
-def test_a_batch_is_its_members() -> None:
-    objective = DeathPenalty(problem_with())
-    batch = np.random.default_rng(8).uniform(-0.2, 2.2, (40, 3))
-    alone = np.array([objective(row[None])[0] for row in batch])
-    np.testing.assert_array_equal(objective(batch), alone)
-    assert 0 < np.isfinite(alone).sum() < 40
 
 
 @pytest.mark.parametrize("judge", [DeathPenalty, Stretch])
@@ -197,15 +186,3 @@ def test_handlings_by_name() -> None:
     assert isinstance(judge_of(wide(), np.inf, "death-penalty"), DeathPenalty)
     with pytest.raises(TrajgapError, match=r"^objective: 'streched' is unknown; .*'stretch'"):
         run(PSO(), wide(), 0, 1, objective="streched")
-
-
-def test_its_effect_on_the_kind_of_problem_of_the_whale_paper() -> None:
-    """Eight way-points, six joints: every seed ends shorter than any does under the penalty."""
-    way = np.random.default_rng(0).uniform(-2, 2, (8, 6))
-    problem = Problem(way, Limits(2.0, 5.0), quintic_spline(7), 0.0, 5.0)
-    penal, stretched = (
-        [r.reported_time for r in run_many(WOA(), problem, range(6), objective=handling)]
-        for handling in ("death-penalty", "stretch")
-    )
-    assert np.median(stretched) < np.median(penal)
-    assert max(stretched) < np.median(penal)

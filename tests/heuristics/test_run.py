@@ -139,18 +139,6 @@ def test_same_bits_for_any_number_of_workers(algorithm: PSO, handling: str) -> N
         assert not any(x.flags.writeable for x in (b.durations, b.trace, b.position))
 
 
-@pytest.mark.slow
-def test_same_bits_per_joint_for_any_number_of_workers() -> None:
-    one = run_many_per_joint(PSO(), PROBLEM, range(3), iterations=10)
-    three = run_many_per_joint(PSO(), PROBLEM, range(3), workers=3, iterations=10)
-    for a, b in zip(one, three, strict=True):
-        assert a.durations.tobytes() == b.durations.tobytes()
-        assert (a.seed, a.reported_time, a.feasible) == (b.seed, b.reported_time, b.feasible)
-        assert not b.durations.flags.writeable
-        for left, right in zip(a.runs, b.runs, strict=True):
-            same_bits(left, right)
-
-
 def test_the_random_stream_is_pinned() -> None:
     """Seed and generator fix the first swarm; a change here changes every stored result."""
     first = run(PSO(), PROBLEM, 2024, 0)

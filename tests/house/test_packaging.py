@@ -194,22 +194,11 @@ def test_no_file_names_a_machine_or_a_registry() -> None:
         for match in MACHINE.finditer(path.read_bytes())
     ]
     assert found == []
-
-
-SEEN = (
-    "see /" + "home/someone/file",
-    '"/' + 'tmp"',
-    "C:" + r"\Users\someone",
-    "https://" + "pypi." + "example/simple",
-    "PIP_INDEX" + "_URL=",
-    "http://" + "10.0.0.7:" + "3141",
-)
-PASSED = ("rad/s", "and/or/work", "./tmp", "doi 10.12677/mos.2024.136535")
-
-
-@pytest.mark.parametrize("text", SEEN + PASSED)
-def test_what_the_machine_pattern_sees(text: str) -> None:
-    assert bool(MACHINE.search(text.encode())) == (text in SEEN)
+    for seen in ('"/' + 'tmp"', "C:" + r"\Users\someone", "https://" + "pypi." + "example/simple",
+                 "PIP_INDEX" + "_URL=", "http://" + "10.0.0.7:" + "3141"):  # fmt: skip
+        assert MACHINE.search(seen.encode())
+    for passed in ("rad/s", "and/or/work", "./tmp", "doi 10.12677/mos.2024.136535"):
+        assert not MACHINE.search(passed.encode())
 
 
 MOST_LINES = 450

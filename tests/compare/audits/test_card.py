@@ -38,66 +38,28 @@ def test_a_card_has_at_most_eighty_words_and_no_ids(case_id: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("case_id", "improvement", "errors", "said"),
+    ("case_id", "errors", "said"),
     [
-        (
-            # The durations under 80 °/s keep their limit under both readings; both lines rest on
-            # way-points that repeat digits. 1.869/1.817473 and 1.6041/1.321799 are 2.8 and 21.4 %
-            # at the printed digits; the second is no time of a motion within limits.
-            PALLET,
-            Why("no improvement is claimed"),
-            2,
-            (
-                "On doubted way-points, limits in Table 4, column 110 °/s are broken under "
-                "“way-points in radians”, kept under the implausible “way-points in degrees”.",
-                "1.8690 s and 1.6041 s (breaks a limit) are at least 2.6 % and 21.1 % above the "
-                "proven optima 1.8175 s and 1.3218 s.",
-                "18 conditions, but only 14 coefficients.",
-                "times scale inversely",
-            ),
-        ),
-        (
-            # Five rows exceed a limit by less than their rounding. Each joint is planned alone:
-            # 3.528/3.4128 and 3.528/3.3324, of what their own optima add up to. Joint 3 takes
-            # 3.172 s beside 3.126941 s. What refutes the percentage stands with the two tables.
-            PUMA,
-            Why("an error says it"),
-            2,
-            (
-                "The printed durations keep the limits within rounding.",
-                "3.528 s is 3.4 to 5.9 % above 3.3324 to 3.4128 s, found at the joints' own",
-                "joint 3 takes at least 1.4 % longer than a motion within the limits.",
-                "Tables 2 and 3 agree in all 28 numbers, so the claimed 10.9 % cannot follow",
-                "table may have been printed twice by mistake.",
-            ),
-        ),
-        pytest.param(
-            # 13 readings break a limit, of which 5 lie a tenth or ten times from it; 3 have
-            # velocities that jump. 6.81/4.038082 by hand.
-            POLISH,
-            "The printed totals give the claimed 2.19 s.",
-            1,
-            (
-                "kept under 3 of 19 readings, broken under 13 (5 implausible), not checkable "
-                "under 3.",
-                "6.81 s, which breaks a limit, is 68.6 % above the best known total 4.0381 s.",
-                "every reading allows a faster motion or finds limits broken.",
-                "durations 1 and 2 may have been exchanged in print. Then the default reading "
-                "keeps every limit within rounding and one is reached.",
-            ),
-            marks=pytest.mark.slow,
-        ),
-        ("z1-woa-bspline", None, 0, ("not checkable", "the text that was read has no way-points")),
+        # 1.869/1.817473 and 1.6041/1.321799 are 2.8 and 21.4 % at the printed digits; the second
+        # is no time of a motion within limits, and both rest on way-points that repeat digits.
+        (PALLET, 2, "1.8690 s and 1.6041 s (breaks a limit) are at least 2.6 % and 21.1 % above"),
+        # Each joint is planned alone: 3.528/3.4128 and 3.528/3.3324, of what their own optima add
+        # up to. Joint 3 takes 3.172 s beside 3.126941 s; what refutes the percentage stands there.
+        (PUMA, 2, "3.528 s is 3.4 to 5.9 % above 3.3324 to 3.4128 s, found at the joints' own"),
+        # 6.81/4.038082 by hand; five of the readings that break a limit are implausible.
+        pytest.param(POLISH, 1, "6.81 s, which breaks a limit, is 68.6 % above the best known",
+                     marks=pytest.mark.slow),
+        ("z1-woa-bspline", 0, "the text that was read has no way-points"),
     ],
-)
-def test_the_card_of_a_shipped_case(
-    case_id: str, improvement: str | Why | None, errors: int, said: tuple[str, ...]
-) -> None:
+)  # fmt: skip
+def test_the_card_of_a_shipped_case(case_id: str, errors: int, said: str) -> None:
     card = audited_alone(case_id).card
-    whole = " ".join(card.sentences)
-    assert [one for one in said if one not in whole] == []
+    assert said in " ".join(card.sentences)
     assert (len(card.errors), card.more) == (errors, 0)
-    assert improvement is None or card.improvement == improvement
+    if case_id == PUMA:
+        assert card.improvement == Why("an error says it")
+        assert any("so the claimed 10.9 % cannot follow" in one for one in card.errors)
+        assert "joint 3 takes at least 1.4 % longer" in " ".join(card.errors)
 
 
 def card_of(*parts: str, **limits: str) -> VerdictCard:
@@ -132,22 +94,6 @@ def test_a_total_that_is_too_short_is_not_called_longer() -> None:
     assert card.errors == ("The total in Table 2 is shorter than any motion within the limits.",)
 
 
-def test_the_card_of_a_generated_case_with_many_claims_stays_short() -> None:
-    where = "a section with a very long name that goes on and on, " * 6
-    text = "many words " * 30
-    card = card_of(
-        *(
-            row(f"row-{k}", "0.10 0.20 0.30", total=f"{k}.99", where=f"{where} row {k}", text=text)
-            for k in range(1, 9)
-        ),
-        velocity="1.0",
-    )
-    assert len(card.errors) + card.more == 8
-    assert card.words <= CARD_WORDS
-    assert card.limits.startswith("The printed durations break a limit")
-    assert card.more > 0
-
-
 # --- causes made by hand --------------------------------------------------------------------------
 
 SWAPPED = Explanation(change="Two columns may be swapped.", effect="Then all is well.")
@@ -167,23 +113,16 @@ def made(row: object, *explanations: Explanation) -> Cause:
 
 
 def test_many_errors_are_counted_where_the_words_end() -> None:
-    one = audited_alone(PALLET)
+    """An improvement is left out only where an error on the card says it."""
+    one = audited_alone(PUMA)
     many = [made(k, SWAPPED) for k in range(40)]
-    card = verdict_card(one.study, one.judgements, many, one.waterfalls)
+    card = verdict_card(one.study, one.judgements, [*many, *one.causes], one.waterfalls)
     assert card.words <= CARD_WORDS
     assert card.errors[0] == SAYS.format(0)
-    assert len(card.errors) + card.more == 40
+    assert len(card.errors) + card.more == 40 + len(one.causes)
     assert f"{card.more} more errors stand below." in card.sentences
-
-
-def test_an_improvement_is_left_out_only_where_an_error_on_the_card_says_it() -> None:
-    """Ten errors before the one of the two tables leave no room for it: then the line stays."""
-    one = audited_alone(PUMA)
-    many = [made(k) for k in range(9)]
-    crowded = verdict_card(one.study, one.judgements, [*many, *one.causes], one.waterfalls)
-    assert "10.9 %" in str(crowded.improvement)
-    assert crowded.words <= CARD_WORDS
-    assert not any("10.9 %" in said for said in crowded.errors)
+    assert "10.9 %" in str(card.improvement)
+    assert not any("10.9 %" in said for said in card.errors)
 
 
 def test_the_explanation_of_an_error_is_called_one() -> None:

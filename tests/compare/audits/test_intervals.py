@@ -6,7 +6,6 @@ from dataclasses import replace
 from datetime import date
 from pathlib import Path
 
-import numpy as np
 import pytest
 from support.made_up import paper, row, sentence
 from trajgap.compare import audit
@@ -18,7 +17,7 @@ from trajgap.compare.audits.waterfall import waterfalls
 from trajgap.compare.cli.auditing import audited
 from trajgap.compare.documents import AuditDocument, Why, facts
 from trajgap.compare.pages.verdicts import problems_audited
-from trajgap.nlp import Evidence, Solution, Status, certificate, certify, printed_problem, solve
+from trajgap.nlp import Evidence, Solution, Status, certificate, certify, printed_problem
 from trajgap.problem import Case, parse_case
 
 TEXT = paper(
@@ -98,14 +97,6 @@ def test_a_given_certificate_counts_once_it_is_proved_again() -> None:
     assert distance_of(one) is Evidence.BEST_KNOWN
 
 
-def test_a_search_that_did_not_converge_is_never_called_best_known() -> None:
-    problem = stated().problem()
-    best = solve(problem, prove=0)
-    assert best.evidence is Evidence.BEST_KNOWN
-    early = Solution(problem, Status.FEASIBLE, "KKT residual 3e-01", best.durations)
-    assert early.evidence is Evidence.UNCONVERGED
-
-
 def test_an_unconverged_search_is_no_step_of_a_waterfall(monkeypatch) -> None:
     study = Study(stated(), seeds=2, certify_seconds=0)
     found = study.relaxed("main", "as-printed")
@@ -116,11 +107,3 @@ def test_an_unconverged_search_is_no_step_of_a_waterfall(monkeypatch) -> None:
     assert isinstance(shown.time, Why)
     assert "did not converge (KKT residual 3e-01)" in shown.note
     assert isinstance(steps["TOPPRA on the path of the relaxed family"].time, Why)
-
-
-def test_a_solve_without_time_still_answers() -> None:
-    problem = stated().problem()
-    quick, whole = solve(problem, seconds=0.0), solve(problem)
-    assert quick.durations is not None
-    assert quick.best >= whole.best * (1 - 1e-9)
-    assert np.isfinite(quick.best)

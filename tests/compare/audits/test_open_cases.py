@@ -74,18 +74,16 @@ def test_a_largest_value_that_is_another_is_shown_with_both(name: str) -> None:
     assert computed == pytest.approx(truth, rel=1e-4)
 
 
-def test_a_total_rounded_to_below_its_optimum_is_shown_without_a_minus_sign() -> None:
-    shown = distance_of(json.loads(json_text(examined("robotics1-2016-04-01").document)))
-    assert shown == ("3.6926", "3.6926", "0.0%", "certified")
-
-
-def test_a_total_of_joints_planned_alone_is_listed_beside_their_own_optima() -> None:
-    """3.528/3.4128 and 3.528/3.3324; the optimum of all joints together is another question's."""
-    shown = distance_of(json.loads(json_text(audited("puma560-mnam-pso-353").document)))
-    assert shown == ("3.528", "3.3324 to 3.4128", "3.4% to 5.9%", "best known")
-
-
-def test_a_listed_distance_says_that_its_durations_break_a_limit() -> None:
+def test_what_a_table_of_papers_lists() -> None:
+    """A total that rounds to below its optimum without a minus sign; 3.528/3.4128 and 3.528/3.3324
+    of joints planned alone, since the optimum of all together is another question's."""
+    below = examined("robotics1-2016-04-01").document
+    alone = audited("puma560-mnam-pso-353").document
+    for document, shown in (
+        (below, ("3.6926", "3.6926", "0.0%", "certified")),
+        (alone, ("3.528", "3.3324 to 3.4128", "3.4% to 5.9%", "best known")),
+    ):
+        assert distance_of(json.loads(json_text(document))) == shown
     polishing = json.loads((ROOT / "docs/results/irb1600-ga-cubic-bspline.json").read_text("utf-8"))
     assert distance_of(polishing["cases"][0])[2] == "68.6%, but breaks a limit"
 

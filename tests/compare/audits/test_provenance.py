@@ -78,7 +78,7 @@ def test_the_commit_is_one_or_says_why_not():
     assert isinstance(found, Why) or re.fullmatch(r"[0-9a-f]{40,64}(\+changes)?", found)
 
 
-def test_claims_are_called_by_their_places():
+def test_messages_call_things_by_their_names_and_places():
     case = load_case(ID)
     said = spoken(case, "durations-80 (limit-80) and durations-110; not my-durations-110-too")
     assert said == ("Table 4, column 80 °/s and Table 4, column 110 °/s; not my-durations-110-too")
@@ -88,6 +88,12 @@ def test_claims_are_called_by_their_places():
     assert spoken(polish, "after (nine-segments) all, after that") == (
         "Table 4, row after optimisation all, after that"
     )
+    algorithm, problem = case.algorithms[0], case.problems[0]
+    said = spoken(case, f"{algorithm.id} beats durations-80 ({problem.id}).")
+    assert said == f"The {algorithm.name} beats {place(case.claim('durations-80'))}."
+    assert spoken(case, "A time-optimal motion.") == "A time-optimal motion."
+    assert spoken(case, f"x ({problem.id})") == f"X ({problem.title})"
+    assert not any(one.id in claim_text(case, c) for c in case.claims for one in case.algorithms)
 
 
 READINGS = ("one", "two")
@@ -177,14 +183,3 @@ def test_who_typed_the_numbers_stands_with_the_source() -> None:
     bare = text[0] + "[robot]" + text[1].split("[robot]", 1)[1]
     unsaid = stated_source(parse_case(bare, "bare.toml")).model_dump()
     assert unsaid["transcribed_by_why"] == "not said in the case file"
-
-
-def test_messages_call_things_by_their_names() -> None:
-    case = parse_case(source(ID), f"{ID}.toml")
-    algorithm, problem = case.algorithms[0], case.problems[0]
-    claim = case.claim("durations-80")
-    said = spoken(case, f"{algorithm.id} beats durations-80 ({problem.id}).")
-    assert said == f"The {algorithm.name} beats {place(claim)}."
-    assert spoken(case, "A time-optimal motion.") == "A time-optimal motion."
-    assert spoken(case, f"x ({problem.id})") == f"X ({problem.title})"
-    assert not any(one.id in claim_text(case, c) for c in case.claims for one in case.algorithms)

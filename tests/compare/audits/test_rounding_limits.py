@@ -8,8 +8,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from support.b_splines import NATURAL, uniform
-from support.rounding_boxes import rounded_problem
-from support.rounding_samples import boxes, contradiction
+from support.rounding_boxes import boxes, contradiction, rounded_problem
 from trajgap.compare.audits.rounding import Place, Point, RoundingBox, judge_rounding
 from trajgap.compare.documents import Rounding
 from trajgap.nlp.enclosure import box_bound
@@ -25,7 +24,6 @@ from trajgap.problem import (
     evaluate,
     fit,
     piecewise,
-    quintic_spline,
     three_five_three,
     uniform_cubic_b_spline,
 )
@@ -137,14 +135,6 @@ def test_nothing_limited_is_kept_by_every_duration():
     assert judge_rounding(free, below).verdict is Rounding.BREAKS
     around = judge_rounding(free, RoundingBox(h, np.array([0.48, 0.59]), np.array([0.51, 0.61])))
     assert around.verdict in (Rounding.CONSISTENT, Rounding.UNDECIDED)
-
-
-def test_same_input_same_answer():
-    problem, h = rounded_problem(5, quintic_spline(3))
-    h = h * check(problem, h).stretch * 0.9995
-    one, two = (judge_rounding(problem, *boxes(h, 5e-4, problem.waypoints, 5e-5)) for _ in "ab")
-    assert one.lower_bound_of_worst == two.lower_bound_of_worst
-    assert one.verdict is two.verdict
 
 
 def test_bisection_tightens():

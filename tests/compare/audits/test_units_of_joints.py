@@ -11,7 +11,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from support.findings import verdicts
 from support.made_up import claim
 from support.scara import SCARA, scara
 from trajgap.compare.audits import claim_text, digits_of
@@ -28,7 +27,7 @@ from trajgap.compare.audits.rules.printed_joints import judge_joints
 from trajgap.compare.audits.rules.printed_vertices import judge_vertices
 from trajgap.compare.audits.study import Study
 from trajgap.compare.documents import Finding
-from trajgap.compare.pages.units import both_units, paper_units
+from trajgap.compare.pages.units import paper_units
 from trajgap.compare.pages.writer import case_page, page_text
 from trajgap.compare.pictures import jump_picture, motion_picture
 from trajgap.nlp import solve
@@ -226,20 +225,6 @@ def test_minutes_and_seconds_are_the_same_durations() -> None:
     assert said[0] == said[1]
 
 
-def test_a_slide_a_thousand_times_as_long_takes_as_long() -> None:
-    """Way-points and limits of the slide times 1000: every ratio and the shortest time stay."""
-    long = scara(
-        *slide(Decimal(1000)),
-        ("velocity = [30, 150, 120]", "velocity = [30, 150, 120000]"),
-        ("acceleration = [400, 380, 0.5]", "acceleration = [400, 380, 500]"),
-    )
-    one, two = scara().problem(), long.problem()
-    assert two.waypoints[:, 2] == pytest.approx(1000 * one.waypoints[:, 2], rel=1e-15)
-    stretch = check(one, [0.9, 0.7, 1.4]).stretch
-    assert check(two, [0.9, 0.7, 1.4]).stretch == pytest.approx(stretch, rel=1e-12)
-    assert solve(two).total_time == pytest.approx(solve(one).total_time, rel=1e-8)
-
-
 # --- what is shown --------------------------------------------------------------------------------
 
 
@@ -260,14 +245,6 @@ def test_limits_whose_sides_differ_are_in_the_unit_of_their_joint() -> None:
     assert case.problem().limits.sides[:, 2, 0] == pytest.approx([0.06, 0.12])
     stated = problem_document(printed_problem(case.statement()))
     assert stated["limits"][2][0] == ["-60", "120"]
-
-
-def test_each_limit_is_shown_in_both_units() -> None:
-    statement = scara().statement()
-    shown = both_units(statement, "velocity", [np.pi, np.radians(150), 0.12], ".6g")
-    assert shown == "30 rpm (3.14159 rad/s), 150 °/s (2.61799 rad/s), 120 mm/s (0.12 m/s)"
-    assert both_units(statement, "acceleration", [0.5], ".6g", [2]) == "0.5 m/s²"
-    assert both_units(statement, "jerk", [0.5], ".6g", [2]) == "0.5 m/s³"
 
 
 def test_pictures_have_the_unit_of_each_joint_on_its_axes() -> None:
@@ -358,27 +335,3 @@ def test_a_slide_needs_metres_per_second_squared() -> None:
     assert "needs an acceleration of 8 m/s² near way-point 1" in str(solve(problem).why)
     with pytest.raises(TrajgapError, match="linear: 2 entries for 1 joints"):
         replace(problem, linear=(True, False))
-
-
-@cache
-def audited() -> CaseAudit:
-    return audit_case(study())
-
-
-@pytest.mark.slow
-def test_a_whole_page_names_no_radian_at_the_slide() -> None:
-    plain = plain_page(audited())
-    assert not re.findall(r"joint d3[^.;:|]*(?:rad|°|rpm)/?", plain)
-    assert f"velocity {LIMITS}" in plain
-    assert "in brackets rad, m and s where the paper has other units" in plain
-
-
-@pytest.mark.slow
-def test_the_whole_audit_is_the_same_in_metres() -> None:
-    one, two = audited(), audit_case(study(*METRES))
-    assert verdicts(one) == verdicts(two)
-    assert not [f.rule for f in one.document.findings if f.rule == "TG502"]
-    totals = [[s.time for w in a.document.waterfalls for s in w.steps] for a in (one, two)]
-    for mine, its in zip(*totals, strict=True):
-        if isinstance(mine, float):
-            assert its == pytest.approx(mine, rel=1e-4)

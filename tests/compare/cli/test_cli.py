@@ -268,12 +268,3 @@ def test_audit_json_writes_only_where_asked(run: Run) -> None:
 def test_strict_turns_an_error_into_exit_code_1(run: Run) -> None:
     assert run("audit", IRB, "--strict", "--out", "one")[0] == 1
     assert run("audit", IRB, "--out", "two")[0] == 0
-
-
-@pytest.mark.slow
-def test_audit_in_earnest(run: Run) -> None:
-    code, out, err = run("audit", IRB, "--seeds", "2", "--workers", "1", "--json", "--out", "x")
-    assert (code, err) == (0, "")
-    assert_valid(strict(out), "audit")
-    assert strict(Path("x/audit.json").read_text("utf-8")) == strict(out)
-    assert Path("x", f"{IRB}.html").is_file()

@@ -276,17 +276,6 @@ def test_verify_compares_with_a_case_number_by_number(run: Run, document: dict[s
     assert (code, one["in_case_why"]) == (1, "no problem of the case is this one")
 
 
-def test_verify_compares_each_joint_and_any_curve(run: Run) -> None:
-    folder = shipped_folder()
-    for case, ending in (("puma560-mnam-pso-353", ".joint-3"), (IRB, ".any-curve")):
-        for path in sorted(folder.glob(f"{case}*{ending}.json")):
-            code, out, _ = run("verify", str(path), "--case", case, "--json")
-            assert code == 0
-            (one,) = strict(out)["verified"]
-            wanted = one["question"] | {"case_sha256": one["in_case"]["case_sha256"]}
-            assert one["in_case"] == wanted
-
-
 def test_a_certificate_of_the_old_format_is_made_again(run: Run) -> None:
     path = Path(f"trajgap-certificates/{NAME}.json")
     path.parent.mkdir()

@@ -276,6 +276,9 @@ def test_what_is_no_file_is_never_read(run: Run, arguments: tuple[str, ...]) -> 
     refused(run, arguments, "pipe", "pipe: is not a regular file")
     refused(run, arguments, "/dev/zero", "/dev/zero: is not a regular file")
     refused(run, arguments, "../" + Path.cwd().name, "is a directory")
+    Path("loop").symlink_to("loop")
+    if arguments[0] != "verify":  # which says of each file what it is worth
+        refused(run, arguments, "loop", "loop: ")
 
 
 @pytest.mark.usefixtures("no_computing")

@@ -5,17 +5,14 @@ from __future__ import annotations
 import csv
 import os
 import re
-import signal
-import sqlite3
-import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 from support.checkout import ROOT
-from support.command_line import START, Run, on_terminal, strict
+from support.command_line import Run, on_terminal, strict
 from support.documents import assert_valid
-from support.small_studies import HEAD, STUDY
+from support.small_studies import HEAD
 from trajgap.problem import load_case
 from trajgap.problem.suite import load_instance
 
@@ -222,41 +219,6 @@ def test_the_command_that_goes_on_still_exports(
     assert not (folder / "few.ioh").exists()
     _, _, err = run("study", "few.toml", "--store", "kept.sqlite", "--workers", "1")
     assert "`trajgap study few.toml --store kept.sqlite` goes on from there" in err
-
-
-@pytest.mark.slow
-def test_ctrl_c_keeps_what_is_finished_and_says_how_to_go_on(study: Path) -> None:
-    study.write_text(
-        STUDY.replace("support.optimizers:raises", "support.optimizers:sleeps"), encoding="utf-8"
-    )
-    paths = os.pathsep.join(filter(None, sys.path))
-    process = subprocess.Popen(
-        [sys.executable, "-c", START, "study", "few.toml", "--workers", "1"],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        env={**os.environ, "PYTHONPATH": paths},
-    )
-    while stored() < 24:
-        assert process.poll() is None
-        signal.sigtimedwait([], 0.1)
-    process.send_signal(signal.SIGINT)
-    out, err = process.communicate(timeout=120)
-    assert (process.returncode, out) == (130, "")
-    assert err.strip() == (
-        "trajgap: interrupted; 24 of 32 runs are stored, `trajgap study few.toml` goes on from "
-        "there"
-    )
-    assert stored() == 24
-
-
-def stored() -> int:
-    try:
-        with sqlite3.connect("file:few.sqlite?mode=ro", uri=True) as data:
-            (found,) = data.execute("SELECT count(*) FROM runs").fetchone()
-            return int(found)
-    except sqlite3.Error:
-        return 0
 
 
 @pytest.mark.slow

@@ -196,35 +196,6 @@ def test_interrupted() -> None:
     assert sorted(p.name for p in Path().iterdir()) == ["mine.toml"]
 
 
-@pytest.mark.slow
-def test_interrupted_while_pages_are_written() -> None:
-    # What a finalizer raises is printed and lost: an exception cannot end the program there.
-    started = (
-        "import os, signal, sys\n"
-        "from trajgap.compare.cli import main\n"
-        "import trajgap.compare.pages.writer as w\n"
-        "class Gone:\n"
-        "    def __del__(self):\n"
-        "        os.kill(os.getpid(), signal.SIGINT)\n"
-        "        for _ in range(1000): pass\n"
-        "class Files(dict):\n"
-        "    def items(self):\n"
-        "        for item in super().items():\n"
-        "            yield item\n"
-        "            Gone()\n"
-        "replace = w.replace_folder\n"
-        "w.replace_folder = lambda out, files: replace(out, Files(files))\n"
-        "sys.exit(main())"
-    )
-    arguments = ["audit", "mine.toml", "--seeds", "2", "--reading", "plain", "--out", "pages"]
-    arguments += ["--certify-seconds", "0"]
-    done = subprocess.run(
-        [sys.executable, "-c", started, *arguments], capture_output=True, text=True
-    )
-    assert (done.returncode, done.stdout, done.stderr) == (130, "", "trajgap: interrupted\n")
-    assert sorted(p.name for p in Path().iterdir()) == ["mine.toml"]
-
-
 def test_interrupted_inside_a_library(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     def stop(*_: object, **__: object) -> None:
         raise KeyboardInterrupt

@@ -38,8 +38,7 @@ from trajgap.compare.gaps import (
 )
 from trajgap.compare.gaps.pairs import compare_pair, corrected
 from trajgap.compare.gaps.targets import hit, running_time_interval, success_interval
-from trajgap.compare.pages import bench_picture, ends_picture, write_bench
-from trajgap.compare.pictures.drawing import SERIES
+from trajgap.compare.pages import bench_picture, write_bench
 from trajgap.heuristics import search_box
 from trajgap.nlp import solve
 from trajgap.problem import CaseError, Limits, Problem, TrajgapError, rest_to_rest
@@ -324,22 +323,6 @@ def test_failing_is_not_cheap() -> None:
 
 
 # --- what is written ------------------------------------------------------------------------------
-
-
-def test_pictures_follow_the_order_in_which_optimisers_were_named() -> None:
-    """Colours, so that two pictures can be compared: who is first by its gaps may differ."""
-    runs = bench(TOY, ["random", "pso"], seeds=2, budget=60, name="toy", baselines=False)
-    by_time = {one.optimizer: one for one in measure_gaps(runs, float(EXACT.sum())).standings}
-    for order in (["random", "pso"], ["pso", "random"]):
-        result = measure_gaps(runs, float(EXACT.sum())).model_copy(
-            update={"standings": tuple(by_time[name] for name in order)}
-        )
-        for drawn in (bench_picture(result, runs), ends_picture(result, runs)):
-            (legend,) = drawn.legends
-            words = [one.get_text().partition(",")[0] for one in legend.get_texts()]
-            assert words[:2] == ["random", "pso"]
-            colours = [line.get_color() for line in legend.get_lines()[:2]]
-            assert colours == [colour for colour, _ in SERIES[:2]]
 
 
 def test_the_page_the_picture_and_the_rows(runs: Runs, tmp_path: Path) -> None:

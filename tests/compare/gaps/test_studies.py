@@ -12,7 +12,6 @@ from trajgap.compare.gaps import (
     Store,
     StudyPlan,
     StudySession,
-    export_rows,
     load_study,
     on_this_machine,
     parse_study,
@@ -124,28 +123,6 @@ def test_a_longer_study_runs_only_what_is_new(
     with Store(path) as store:
         session = run_study(longer, store, engine)
     assert (session.resumed, session.run) == (RUNS, len(longer) - RUNS)
-
-
-def exported(plan: StudyPlan, store: Path, folder: Path) -> dict[str, bytes]:
-    """Bytes of every file of every export."""
-    pytest.importorskip("pyarrow")
-    folder.mkdir()
-    with Store(store) as kept:
-        for name in ("rows.csv", "rows.parquet", "rows.ioh"):
-            export_rows(study_rows(plan, kept), folder / name)
-    files = (path for path in folder.rglob("*") if path.is_file())
-    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in files}
-
-
-@pytest.mark.slow
-def test_exports_are_the_same_bytes_on_one_process_and_three(
-    plan: StudyPlan, whole: Path, tmp_path: Path
-) -> None:
-    wanted = exported(plan, whole, tmp_path / "one")
-    assert len(wanted) > 8
-    with on_this_machine(3) as engine, Store(tmp_path / "three.sqlite") as store:
-        run_study(plan, store, engine)
-    assert exported(plan, tmp_path / "three.sqlite", tmp_path / "three") == wanted
 
 
 def test_each_joint_is_a_problem_where_the_case_says_so(tmp_path: Path) -> None:

@@ -86,12 +86,7 @@ def test_what_does_no_harm_changes_nothing(name: str, tmp_path: Path) -> None:
     ("name", "message"),
     [
         ("support.optimizers:raises", "ZeroDivisionError: one over nothing!!!"),
-        ("support.faulty:exits", "SystemExit: 3"),
-        ("support.faulty:returns_nan", "returned NaN"),
-        ("support.faulty:asks_nan", "asked for the fitness of NaN"),
-        ("support.faulty:leaves_bounds", "outside its bounds"),
         ("support.faulty:swallows", "went on after its budget of 200 evaluations was spent"),
-        ("support.faulty:judges_nothing", "judged no position"),
         ("support.optimizers:moves_bounds", "asked for the fitness of 7 s for duration 1, outside"),
         ("support.optimizers:raises_unprintable", "ValueError: half of a pair: <U+DC80>, a cursor"),
         ("support.optimizers:raises_mute", "Mute"),

@@ -23,66 +23,39 @@ from trajgap.compare.pages.writer import case_page
 from trajgap.nlp import Evidence
 from trajgap.problem import load_case
 
-MOST_PICTURE = 300_000
-"""Bytes of one picture: more points than a screen shows."""
 
-
-@pytest.fixture(scope="module", params=EVERY)
-def page(request: pytest.FixtureRequest) -> tuple[str, Tree]:
-    """A page of a paper, its pictures apart, and its elements."""
-    shown = page_alone(request.param)
-    sizes = [len(picture.document.encode()) for picture in shown.pictures]
-    assert max(sizes, default=0) <= MOST_PICTURE
-    text = environment().get_template("case.html").render(page=shown, style=style())
-    return text, Tree(text)
-
-
-def test_ids_are_unique_and_every_link_within_the_page_leads_somewhere(
-    page: tuple[str, Tree],
-) -> None:
-    _, tree = page
-    ids = [one["id"] for one in tree.found if one.get("id")]
-    assert len(ids) == len(set(ids))
-    within = [a["href"][1:] for a in tree.every("a") if a.get("href", "").startswith("#")]
-    assert set(within) <= set(ids)
-    labelled = [one["aria-labelledby"] for one in tree.found if "aria-labelledby" in one]
-    assert {name for names in labelled for name in names.split()} <= set(ids)
-
-
-def test_every_picture_has_words_for_those_who_cannot_see_it(page: tuple[str, Tree]) -> None:
-    _, tree = page
-    for image in tree.every("img"):
+def test_every_picture_has_words_for_those_who_cannot_see_it(page: Tree) -> None:
+    for image in page.every("img"):
         assert len(image["alt"].split()) >= 6, image
         assert int(image["width"]) > 0
         assert int(image["height"]) > 0
         assert image["loading"] == "lazy"
-    drawn = tree.every("svg")
+    drawn = page.every("svg")
     assert all(one["role"] == "img" for one in drawn)
-    descriptions = [one["text"] for one in tree.every("desc")]
+    descriptions = [one["text"] for one in page.every("desc")]
     assert len(descriptions) == len(drawn)
     assert all(len(text.split()) >= 6 for text in descriptions)
 
 
-def test_what_is_wider_than_a_phone_scrolls_and_can_be_reached_by_keyboard(
-    page: tuple[str, Tree],
-) -> None:
-    _, tree = page
-    for wide in tree.every("table", "img", "svg", "pre"):
+def test_what_is_wider_than_a_phone_scrolls_and_can_be_reached_by_keyboard(page: Tree) -> None:
+    for wide in page.every("table", "img", "svg", "pre"):
         boxes = f"{wide['classes']} {wide.get('class', '')}"
         assert "scroll" in boxes, wide["tag"]
-    scrolling = [one for one in tree.found if "scroll" in one.get("class", "").split()]
+    scrolling = [one for one in page.found if "scroll" in one.get("class", "").split()]
     assert all(one.get("tabindex") == "0" for one in scrolling)
-    assert all(one["above"].endswith("details") for one in tree.every("summary"))
-    cells = tree.every("td")
+    assert all(one["above"].endswith("details") for one in page.every("summary"))
+    cells = page.every("td")
     assert all(one.get("data-label") for one in cells)
 
 
-def test_no_section_is_empty_and_each_has_a_heading(page: tuple[str, Tree]) -> None:
-    _, tree = page
-    for section in tree.every("section"):
+def test_no_section_is_empty_and_each_has_a_heading(page: Tree) -> None:
+    for section in page.every("section"):
         assert len(section["text"].split()) > 3, section
-    assert all(one["text"].strip() for one in tree.every("h1", "h2", "h3", "summary"))
-    assert len(tree.every("h1")) == 1
+    assert all(one["text"].strip() for one in page.every("h1", "h2", "h3", "summary"))
+    assert len(page.every("h1")) == 1
+    labelled = [one["aria-labelledby"] for one in page.found if "aria-labelledby" in one]
+    ids = {one["id"] for one in page.found if one.get("id")}
+    assert {name for names in labelled for name in names.split()} <= ids
 
 
 def test_the_focus_is_seen_and_the_card_scrolls_its_picture_on_a_phone() -> None:
@@ -154,30 +127,22 @@ MOST_WORDS = 1_000
 """Of one page before anything is unfolded."""
 
 
-def test_what_is_folded_is_not_counted() -> None:
-    page = "<p>one two</p><details><summary>three</summary>four<details><summary>five</summary>"
-    page += "six</details></details>seven"
-    assert Tree(page).unfolded == ["one", "two", "three", "seven"]
-
-
-def test_pages_of_the_papers_are_short_before_anything_is_unfolded(page: tuple[str, Tree]) -> None:
-    text, tree = page
-    assert len(text.encode()) <= MOST_BYTES
-    assert 150 < len(tree.unfolded) <= MOST_WORDS
-    assert "None." not in tree.unfolded
-    assert not re.search(r"<tbody>\s*</tbody>", text)
-    # Pictures are fetched when they are unfolded: one alone stands in the page.
-    assert text.count("<svg ") <= 1
-
-
 # Words of the field that are ids of some case too.
-WORDS = {"time-optimal", "b-spline"}
+WORDS_THAT_ARE_IDS = {"time-optimal", "b-spline"}
 
 
 @pytest.mark.parametrize("case_id", EVERY)
-def test_no_id_stands_for_a_name_folded_or_not(case_id: str) -> None:
-    case = audited_alone(case_id).case
-    text = markdown(page_alone(case_id))
+def test_pages_of_the_papers_are_short_and_no_id_stands_for_a_name(case_id: str) -> None:
+    shown = page_alone(case_id)
+    text = environment().get_template("case.html").render(page=shown, style=style())
+    unfolded = Tree(text).unfolded
+    assert len(text.encode()) <= MOST_BYTES
+    assert 150 < len(unfolded) <= MOST_WORDS
+    assert "None." not in unfolded
+    assert not re.search(r"<tbody>\s*</tbody>", text)
+    # Pictures are fetched when they are unfolded: one alone stands in the page.
+    assert text.count("<svg ") <= 1
+    case, text = audited_alone(case_id).case, markdown(shown)
     assert text.count("Its id: ") == (len(case.readings) if len(case.readings) > 1 else 0)
     # What a reading is called on the command line, files of pictures and of certificates.
     text = re.sub(r"Its id: \S+|\]\([^)]*\)|\*\*\S+\.json\*\*", "", text)
@@ -185,7 +150,7 @@ def test_no_id_stands_for_a_name_folded_or_not(case_id: str) -> None:
         "claims readings algorithms problems tables assumptions cartesian columns clues instances"
     )
     named = [getattr(case, kind) for kind in kinds.split()]
-    ids = {one.id for group in named for one in group if "-" in one.id} - WORDS
+    ids = {one.id for group in named for one in group if "-" in one.id} - WORDS_THAT_ARE_IDS
     assert ids
     found = [i for i in ids if re.search(rf"(?<![\w./-]){re.escape(i)}(?![\w-])", text)]
     assert found == []
@@ -195,20 +160,6 @@ def test_what_is_open_about_limits_is_called_as_the_claim_is() -> None:
     open_words = {k: KEPT[k] for k in (Keeping.DISCONTINUOUS, Keeping.UNDECIDED)}
     assert all(said.startswith(str(ClaimVerdict.NOT_CHECKABLE)) for said in open_words.values())
     assert len(set(KEPT.values())) == len(KEPT) == len(Keeping)
-
-
-@pytest.mark.slow
-def test_what_decides_nothing_has_one_word() -> None:
-    """Under three readings the velocity jumps: card, table and claim say the same of them."""
-    one = audited_alone("irb1600-ga-cubic-bspline")
-    assert "not checkable under 3" in one.card.limits
-    (kept,) = (j for j in one.judgements if j.claim == "limits-kept")
-    assert sum(str(word) == "not checkable" for word in kept.readings.values()) == 3
-    text = markdown(page_alone("irb1600-ga-cubic-bspline"))
-    assert text.count("| not checkable<br>48 velocity jumps |") == 3
-    shown = text.partition("## What was audited")[0]
-    assert "undecided" not in shown
-    assert "discontinuous" not in shown
 
 
 FIGURE_5 = Claimed(

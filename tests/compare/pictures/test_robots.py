@@ -45,18 +45,6 @@ def test_the_end_of_the_arm_meets_the_way_points() -> None:
             assert points(data["arms"][k][frame])[-1] == pytest.approx(mark, abs=0.11)
 
 
-def test_the_base_stands_still_and_the_fast_arm_waits_at_its_end() -> None:
-    _, data = drawn([motion("slow", 2.0), motion("fast", 1.0)])
-    fast, clock = data["arms"][1], np.array(data["clock"])
-    waiting = {fast[k] for k in np.flatnonzero(clock >= 1.0)}
-    assert len(waiting) == 1
-    assert len(set(data["arms"][0])) > 60
-    assert data["totals"] == [2.0, 1.0]
-    # The base link does not move; the shadow stands on the floor below it.
-    bases = {one.split()[0] for one in (*fast, *data["floors"][1])}
-    assert len(bases) == 1
-
-
 def test_a_picture_needs_nothing_from_outside_and_words_are_no_markup() -> None:
     page, _ = drawn([motion("<b>slow</b> & safe", 2.0)], title="<script>")
     assert "<b>" not in page
@@ -106,25 +94,9 @@ def test_three_views_of_the_same_points():
     assert figure.title == "Workspace of PUMA 560"
 
 
-def test_numbers_are_of_all_samples_though_fewer_are_drawn(monkeypatch):
-    from trajgap.compare.pictures import workspace as module
-
-    monkeypatch.setattr(module, "_LARGEST_CLOUD", 50)
-    figure = workspace_picture(CLOUD, title="cloud")
-    assert len(dots(figure.axes[0])) == 50
-    assert "500 positions, seed 7, the first 50 drawn;" in figure.description
-    assert "way-points" not in figure.description
-    assert figure.title == "cloud"
-
-
 def test_every_dot_reaches_the_svg_and_no_raster_does():
     document = sound(lambda: workspace_picture(CLOUD, waypoints=PATH))
     assert max(path.count("h0") for path in re.findall(r'\bd="([^"]*)"', document)) == 500
-
-
-def test_a_flat_workspace_has_no_minus_zero():
-    flat = sample_workspace(load_robot("irb460"), 200, 1)
-    assert "y 0.000 to 0.000" in workspace_picture(flat).description
 
 
 @pytest.mark.parametrize(

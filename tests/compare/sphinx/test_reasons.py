@@ -28,15 +28,6 @@ VERDICT = {
 }
 
 
-def texts(case: dict) -> list[str]:
-    return [node.astext() for node in reasons(case, VERDICT)]
-
-
-def test_few_reasons_are_shown_as_they_are() -> None:
-    case = {"readings": None, "findings": [finding("a", "one."), finding("b", "two.")]}
-    assert texts(case) == ["all of it"]
-
-
 def test_of_many_reasons_the_default_stands_first_and_the_others_are_folded() -> None:
     found = [
         finding("d", "kept.", "supported"),
@@ -57,17 +48,6 @@ def test_of_many_reasons_the_default_stands_first_and_the_others_are_folded() ->
         "Supported under “d”: kept.",
     ]
     assert closing.astext() == "</details>"
-
-
-def test_what_differs_in_numbers_is_shown_once_and_every_number_is_folded() -> None:
-    found = [finding("a", "3 s too long."), finding("b", "4 s too long.")]
-    lead, _, folded, _ = reasons({"readings": {"default": "b"}, "findings": found}, VERDICT)
-    said = "Refuted under “b” and “a” (numbers of the first): 4 s too long."
-    assert lead.astext() == said
-    assert [one.astext() for one in folded.findall(nodes.paragraph)] == [
-        "Refuted under “b”: 4 s too long.",
-        "Refuted under “a”: 3 s too long.",
-    ]
 
 
 @pytest.mark.parametrize("name", ["irb1600-ga-cubic-bspline", "irb460-pso-353"])

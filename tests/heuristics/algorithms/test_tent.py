@@ -22,14 +22,6 @@ def test_equation_23_by_hand() -> None:
     )
 
 
-def test_orbits_side_by_side() -> None:
-    points = orbit(np.array([0.1, 0.8]), 3, 0.25)
-    np.testing.assert_allclose(points[:, 0], [0.1, 0.4, 0.8, 0.8 / 3], rtol=1e-14)
-    np.testing.assert_allclose(
-        points[:, 1], [0.8, 0.8 / 3, 2.2 / 2.25, 0.05 / 2.25 / 0.75], rtol=1e-14
-    )
-
-
 @given(st.integers(0, 2**53 - 1))
 def test_every_random_start_ends_on_zero_within_54_steps(k: int) -> None:
     """Generators return k·2⁻⁵³; with β = 0.5 no step rounds, so the end is exact, not noise."""
@@ -89,13 +81,3 @@ def test_one_orbit_through_everything_leaves_most_whales_at_zero(rule: str, at_z
         problem = Problem(way, Limits(50.0, joints=2), quintic_spline(7), 0.0, 5.0)
         fitness = DeathPenalty(problem)(positions)
         assert np.isinf(fitness[zero]).all()
-
-
-def test_thirty_points_in_the_square_spread() -> None:
-    """Fig. 1 of the paper: 30 points in [0, 5]², one orbit for each coordinate."""
-    positions = ImprovedWOA().scatter(np.random.default_rng(4), 2)
-    assert positions.shape == (30, 2)
-    assert ((positions >= 0) & (positions <= 5)).all()
-    for coordinate in positions.T:
-        counts = np.histogram(coordinate, bins=3, range=(0, 5))[0]
-        assert counts.min() >= 5

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
-from support.findings import audited_text, finding, said_of, study_of
+from support.findings import audited_text, said_of, study_of
 from support.made_up import algorithms, entry, gain, paper, row, sentence, total
 from support.one_joint import one_joint
 from trajgap.compare.audits import study as study_module
@@ -66,9 +66,9 @@ def test_no_total_is_excluded_that_a_motion_takes() -> None:
     """Three pieces under a velocity limit: the proof holds well below the optimum, never at it."""
     limits = Limits(velocity=1.7, joints=1)
     problem = Problem([[0.1], [0.9], [-0.3], [0.5]], limits, three_five_three())
-    best = solve(problem).total_time
+    best = solve(problem, prove=0).total_time
     assert excludes_total(problem, 0.4 * best) is True
-    assert not excludes_total(problem, best)
+    assert not excludes_total(problem, best, boxes=100)
     wide = RoundingBox(problem.waypoints, problem.waypoints - 0.05, problem.waypoints + 0.05)
     assert excludes_total(problem, 0.3 * best, wide)
     # A proof that would need more boxes says nothing.
@@ -97,47 +97,6 @@ def test_a_total_that_a_known_motion_takes_is_never_tried(monkeypatch: pytest.Mo
     assert found.verdict == "not checkable"
 
 
-@pytest.mark.parametrize(
-    ("value", "keys", "verdict", "severity"),
-    [
-        ("0.990", {}, ClaimVerdict.SUPPORTED, Severity.INFO),
-        ("0.909", {}, ClaimVerdict.INCONSISTENT, Severity.WARNING),
-        ("0.909", {"of": "d"}, ClaimVerdict.INCONSISTENT, Severity.ERROR),
-    ],
-)
-def test_a_total_that_differs_from_the_table_is_noticed(
-    value: str, keys: dict[str, str], verdict: ClaimVerdict, severity: Severity
-) -> None:
-    text = one_joint("0, 1", "1.9", "0.990", "optimal", total("t", value, **keys))
-    found = finding(text, "t", "TG105")
-    assert (found.verdict, found.severity) == (verdict, severity)
-    assert "0.990 s (sum of its durations)" in found.message
-
-
-def test_a_total_that_may_be_either_of_two_is_not_accused() -> None:
-    rows = row("d", "0.99", algorithm="x") + row("e", "0.8", algorithm="x")
-    text = paper([[0, 1]], rows, total("t", "0.5", algorithm="x"), algorithms("x"), velocity=1.9)
-    found = finding(text, "t", "TG105")
-    assert (found.verdict, found.severity) == (ClaimVerdict.NOT_CHECKABLE, Severity.INFO)
-
-
-def test_a_mean_and_a_best_total_contradict_nothing() -> None:
-    keys = {"problem": "main", "algorithm": "x"}
-    text = paper(
-        [[0, 1]],
-        row("d", "0.990", problem="other"),
-        total("best", "0.990", **keys),
-        total("mean", "1.052", where="Table 6, mean of 30 runs", **keys),
-        algorithms("x"),
-        entry("problems", id="main"),
-        entry("problems", id="other"),
-        velocity=1.9,
-    )
-    for name in ("best", "mean"):
-        found = finding(text, name, "TG105")
-        assert (found.verdict, found.severity) == (ClaimVerdict.NOT_CHECKABLE, Severity.INFO)
-
-
 TABLES = algorithms("new", "old") + "".join(
     entry("tables", id=f"table-{k}", where=f"Table {k}", title="an experiment") for k in (2, 6)
 )
@@ -164,6 +123,9 @@ STRAIGHT = {"other_curve": "straight lines"}
         (NEW | {"table": "table-2"}, NEW | {"table": "table-6"}, "", None),
         ({"state": "before"}, {}, "", None),
         ({"coupling": "per-joint"}, {"coupling": "shared"}, "", None),
+        # It may be the total of either row, or the mean of many runs.
+        (NEW, NEW, row("e", "0.8", algorithm="new"), None),
+        ({}, NEW, total("best", "0.990", algorithm="new"), None),
     ],
 )
 def test_two_totals_that_the_file_keeps_apart_contradict_nothing(
@@ -174,6 +136,7 @@ def test_two_totals_that_the_file_keeps_apart_contradict_nothing(
     against = [f for f in found if f.severity is not Severity.INFO]
     assert [f.severity for f in against] == ([severity] if severity else [])
     assert all((f.verdict is ClaimVerdict.INCONSISTENT) == (f in against) for f in found)
+    assert all("0.990 s (sum of its durations)" in f.message for f in against)
 
 
 def test_a_total_is_set_beside_the_place_that_prints_the_other() -> None:
@@ -183,10 +146,3 @@ def test_a_total_is_set_beside_the_place_that_prints_the_other() -> None:
     (cause,) = (c for c in found.causes if c.rule == "TG105")
     said = "Figure 9 prints 1.31 s for a total that Figure 3 gives as 0.990 s"
     assert said in plainly(found.case, cause)
-
-
-def test_a_wrong_count_of_durations_is_no_proof() -> None:
-    found = audited_text(one_joint("0, 1", "1.9", '0.5", "0.4', "within_limits"))
-    (cause,) = (c for c in found.causes if c.rule == "TG109")
-    said = "Table 2 prints 2 durations, and the curve has 1 segment."
-    assert plainly(found.case, cause, brief=True) == said

@@ -17,7 +17,7 @@ from trajgap.compare.audits.comparisons import (
     all_comparisons,
 )
 from trajgap.compare.audits.replay_settings import DESIGN, LISTED, spread_settings
-from trajgap.compare.audits.rules.compared_before import cite_comparisons, comparison_words
+from trajgap.compare.audits.rules.compared_before import cite_comparisons
 from trajgap.compare.audits.rules.replays import _typical, interval_words, judge_replays
 from trajgap.compare.audits.study import Study
 from trajgap.compare.documents import ClaimVerdict, Severity
@@ -53,11 +53,6 @@ def test_no_setting_is_lost_because_a_population_cannot_be_paired(algorithm: obj
     assert len(found) == 1 + DESIGN
     assert {one.population % 4 for one in found.values()} == {0}
     assert len({one.population for one in found.values()}) > DESIGN // 2
-
-
-def test_nothing_open_leaves_the_listed_settings() -> None:
-    printed = set(PSO.__dataclass_fields__)
-    assert list(spread_settings(PSO(), printed)) == [LISTED]
 
 
 def test_the_interval_of_a_probability_is_that_of_independent_runs() -> None:
@@ -181,36 +176,6 @@ def test_a_study_is_cited_with_every_number_and_decides_nothing(
         "than itself without niches 90 % (it helps), mutation 50 %.",
     ):
         assert said in found.message
-
-
-def test_what_was_searched_is_called_by_words() -> None:
-    """The study writes problems as ids, with what was searched of their joints."""
-
-    def said(case: str, *problems: str) -> str:
-        lists = {
-            name: tuple(
-                one.model_copy(update={"problem": problem})
-                for problem in problems
-                for one in getattr(MADE_UP, name)
-            )
-            for name in ("ablated", "designed")
-        }
-        return " ".join(comparison_words(MADE_UP.model_copy(update=lists), load_case(case)))
-
-    apart = said(PUMA, "six-joints, each joint by itself", "six-joints")
-    assert "six-joints" not in apart
-    settings = "in 12 of 256 pairs of settings"
-    assert f"{settings} (each joint by itself) and {settings} (all joints together)," in apart
-    shares = "in which the whole algorithm is shorter than itself without niches 90 %"
-    assert f"Share of pairs (each joint by itself) {shares}" in apart
-    assert f"Share of pairs (all joints together) {shares}" in apart
-    both = said("irb460-pso-353", "limit-80", "limit-110")
-    title = "Shortest time of joint 5 under"
-    assert f"{settings} ({title} 80 °/s) and {settings} ({title} 110 °/s)," in both
-    assert "limit-" not in both
-    alone = said(PUMA, "six-joints, each joint by itself")
-    assert f"{settings}, most often" in alone
-    assert f"Share of pairs {shares}" in alone
 
 
 @pytest.mark.parametrize("one", all_comparisons(), ids=lambda one: one.case)
