@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -12,13 +12,15 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import Array
 from ..errors import TrajgapError
-from .peak import Extremum, extrema
-from .spline import PERM, as_durations
+from .peak import Extremum, furthest
+from .polynomials import PERM
 from .trajectory import Trajectory
 
 if TYPE_CHECKING:
     from .interpolant import Interpolant
 
+_LONGEST = 1e30
+"""Durations, s, beyond which, or below whose reciprocal, ninth powers leave float64's range."""
 Derivatives = tuple[tuple[int, float | tuple[float, ...]], ...]
 """Derivatives ``(order, value)`` prescribed at one break, rad/sᵒʳᵈᵉʳ: one value for all joints, or
 one for each where they differ."""
@@ -177,48 +179,6 @@ class Curve(ABC):
             rad/s, rad/s², rad/s³.
         """
 
-    def decided_peaks(
-        self, values: Array, durations: Array, wanted: NDArray[np.bool_], ceilings: Array
-    ) -> Array:
-        """Peaks that are on the same side of the ceilings as the true ones.
-
-        A curve that knows bounds answers sooner than `batch_peaks`; this is that.
-
-        Parameters
-        ----------
-        values, durations, wanted : ndarray
-            As `batch_peaks` takes them.
-        ceilings : ndarray, shape (joints, 3)
-            rad/s, rad/s², rad/s³.
-
-        Returns
-        -------
-        ndarray, shape (batch, joints, 3)
-            Where one exceeds its ceiling, others of that vector may be infinite.
-        """
-        return self.batch_peaks(values, durations, wanted)
-
-    def leading_peaks(
-        self, values: Array, durations: Array, wanted: NDArray[np.bool_], limits: Array
-    ) -> Array:
-        """Peaks that demand the same stretch of all durations as the true ones.
-
-        A curve that knows bounds answers sooner than `batch_peaks`; this is that.
-
-        Parameters
-        ----------
-        values, durations, wanted : ndarray
-            As `batch_peaks` takes them.
-        limits : ndarray, shape (joints, 3)
-            rad/s, rad/s², rad/s³.
-
-        Returns
-        -------
-        ndarray, shape (batch, joints, 3)
-            Those that demand less than another one of that vector may be too small.
-        """
-        return self.batch_peaks(values, durations, wanted)
-
     def batch_sides(
         self,
         waypoints: Array,
@@ -243,20 +203,28 @@ class Curve(ABC):
         ndarray, shape (2, batch, joints, 3)
             Sizes, rad/s, rad/s², rad/s³: of the furthest value below 0, and above; 0 for none.
         """
-        h, q = as_batch(self, durations), waypoints - waypoints[0]
-        found = np.zeros((2, len(h), q.shape[1], 3))
-        for v, one in enumerate(h):
-            try:
-                trajectory = self.fitted(q, as_durations(one, self.segments), nodal)
-            except TrajgapError:
-                found[:, v] = np.inf
-                continue
-            for j, r in np.argwhere(wanted.any(axis=0)).tolist():
-                values = np.array([e.value for e in extrema(trajectory, j, r + 1)])
-                top = np.maximum(np.array([-values, values]).max(axis=1), 0.0)
-                found[:, v, j, r] = np.where(np.isnan(top), np.inf, top)
+        found = np.zeros((2, len(durations), *wanted.shape[1:]))
+        orders = np.flatnonzero(wanted.any(axis=(0, 1))) + 1
+        for v, sides in enumerate(self._reached(waypoints, durations, orders.tolist(), nodal)):
+            found[:, v, :, orders - 1] = np.maximum(sides, 0.0)
         found[~np.broadcast_to(wanted[:, None], found.shape) & np.isfinite(found)] = 0.0
         return found
+
+    def _reached(
+        self, waypoints: Array, durations: Array, orders: list[int], nodal: Array | None = None
+    ) -> Iterator[Array]:
+        """How far derivatives go below and above 0, (orders, 2, joints); inf without a curve."""
+        for one in as_batch(self, durations):
+            try:
+                found = self.fitted(
+                    waypoints - waypoints[0], as_durations(one, self.segments), nodal
+                )
+            except TrajgapError:
+                yield np.full((len(orders), 2, waypoints.shape[1]), np.inf)
+                continue
+            exact = np.zeros((len(found.durations), found.joints))
+            sides = [furthest(found, r, exact).values * [[-1.0], [1.0]] for r in orders]
+            yield np.where(np.isnan(sides), np.inf, sides)
 
     def range_values(self, waypoints: Array, nodal: Array | None = None) -> Array:
         """What `batch_ranges` needs to know of the way-points."""
@@ -279,18 +247,9 @@ class Curve(ABC):
         ndarray, shape (batch, joints, 2)
             rad, counted from the first way-point; −inf and inf for vectors that define no curve.
         """
-        h = as_batch(self, durations)
-        found = np.zeros((len(h), wanted.size, 2))
-        for v, one in enumerate(h):
-            try:
-                trajectory = self.fitted(values, as_durations(one, self.segments))
-            except TrajgapError:
-                found[v] = -np.inf, np.inf
-                continue
-            for j in np.flatnonzero(wanted).tolist():
-                q = np.array([e.value for e in extrema(trajectory, j, 0)])
-                found[v, j] = (q.min(), q.max()) if np.isfinite(q).all() else (-np.inf, np.inf)
-        return found
+        sides = np.array([one[0].T for one in self._reached(values, durations, [0])])
+        sides = sides.reshape(-1, wanted.size, 2) * [-1.0, 1.0]
+        return np.asarray(np.where(wanted[:, None], sides, 0.0))
 
     @abstractmethod
     def value_gradients(
@@ -389,6 +348,32 @@ def as_waypoints(curve: Curve, waypoints: ArrayLike) -> Array:
     return q
 
 
+def as_durations(durations: ArrayLike, segments: int) -> Array:
+    """Duration vector as a clean float64 array, or a clear refusal.
+
+    Raises
+    ------
+    TrajgapError
+        On a wrong length, NaN, infinite, zero or negative entries, or such that powers overflow.
+    """
+    try:
+        h = np.ascontiguousarray(durations, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise TrajgapError("durations: not numbers; give seconds, one per segment") from None
+    if h.shape != (segments,):
+        raise TrajgapError(
+            f"durations: expected {segments} (one per segment), got {h.size if h.ndim else 1}"
+            + (f" in shape {h.shape}" if h.ndim > 1 else "")
+        )
+    if not np.isfinite(h).all() or (h <= 0).any():
+        raise TrajgapError(f"durations: {h.tolist()} s must all be positive and finite")
+    if h.min() < 1 / _LONGEST or h.max() > _LONGEST:
+        raise TrajgapError(
+            f"durations: {h.tolist()} s must all lie between {1 / _LONGEST:g} and {_LONGEST:g} s"
+        )
+    return h
+
+
 def as_batch(curve: Curve, durations: ArrayLike) -> Array:
     """Duration vectors of a batch as a float64 array, or a clear refusal."""
     h = np.ascontiguousarray(durations, dtype=np.float64)
@@ -412,19 +397,3 @@ def value_errors(trajectory: Trajectory, coefficient_error: Array) -> Array:
     # One power after another: those of a table of exponents differ in the last bit.
     powers = np.stack([trajectory.durations**r for r in range(4)], axis=1)
     return np.asarray((own + place) / powers[:, :, None])
-
-
-def derivative_rows(s: Array, order: NDArray[np.int64]) -> Array:
-    """`derivative_row` of many places, shape (places, 10)."""
-    powers = np.arange(PERM.shape[0])
-    left = powers - order[:, None]
-    return np.asarray(
-        np.where(left >= 0, s[:, None] ** np.maximum(left, 0), 0.0) * PERM[:, order].T
-    )
-
-
-def derivative_row(s: float, order: int) -> Array:
-    """Weights of the scaled coefficients in d^order/ds^order at ``s``."""
-    powers = np.arange(PERM.shape[0])
-    row = np.where(powers >= order, s ** np.maximum(powers - order, 0), 0.0)
-    return np.asarray(PERM[:, order] * row)

@@ -17,10 +17,10 @@ from .kind import (
     Shape,
     as_batch,
     as_waypoints,
-    derivative_row,
     value_errors,
 )
-from .peak import Extremum, critical_points
+from .peak import Extremum, rows_at
+from .polynomials import derived, tops
 from .trajectory import Trajectory
 
 
@@ -81,15 +81,11 @@ def segment_sides(curve: Curve, waypoints: ArrayLike) -> Array:
     q = as_waypoints(curve, waypoints)
     form = shape_of(curve, q - q[0])
     peaks = np.zeros((2, curve.segments, q.shape[1], 3))
-    for p, k in enumerate(form.segment):
-        for j in range(q.shape[1]):
-            a = form.scaled[p, : form.degree + 1, j]
-            for r in range(min(3, form.degree)):
-                a = a[1:] * np.arange(1, a.size) / form.share[p]
-                places = np.concatenate([[0.0], critical_points(a), [1.0]])
-                values = np.polynomial.polynomial.polyval(places, a)
-                peaks[0, k, j, r] = max(peaks[0, k, j, r], float((-values).max()))
-                peaks[1, k, j, r] = max(peaks[1, k, j, r], float(values.max()))
+    a = form.scaled[:, : form.degree + 1].transpose(1, 0, 2)[:, :, None]
+    for r in range(1, min(3, form.degree) + 1):
+        part = derived(a, r) / form.share[:, None, None] ** r
+        for side, sign in ((0, -1.0), (1, 1.0)):
+            np.maximum.at(peaks[side, :, :, r - 1], form.segment, tops(part, sign))
     return peaks
 
 
@@ -217,10 +213,9 @@ class StretchedCurve(Curve):
         form = shape_of(self, waypoints)
         by_duration = np.zeros((len(points), self.segments))
         by_waypoint = np.empty((len(points), waypoints.shape[0]))
-        for i, e in enumerate(points):
+        for i, (e, row) in enumerate(zip(points, rows_at(points), strict=True)):
             k = form.segment[e.segment]
             scale = (durations[k] * form.share[e.segment]) ** e.order
             by_duration[i, k] = -e.order * e.value / durations[k]
-            row = derivative_row(e.s, e.order) / scale
-            by_waypoint[i] = row @ form.by_waypoint[e.joint, e.segment]
+            by_waypoint[i] = row / scale @ form.by_waypoint[e.joint, e.segment]
         return PeakGradients(by_duration, by_waypoint, np.empty((len(points), 0)))

@@ -1,0 +1,83 @@
+"""True peaks of declared curves for whole populations, by the compiled kernel."""
+
+from __future__ import annotations
+
+import os
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..arrays import Array
+from . import kernel
+from .condition import Layout
+from .polynomials import PERM
+
+_THREAD_WORK = 4000
+"""Polynomials (vectors times joints) below which starting threads costs more than it saves."""
+
+
+def batch_peaks(
+    layout: Layout,
+    values: Array,
+    durations: Array,
+    wanted: NDArray[np.bool_],
+    sides: Array,
+    least: int = 1,
+) -> Array:
+    """True peaks for a batch of duration vectors.
+
+    Parameters
+    ----------
+    layout : Layout
+    values : ndarray, shape (rows, joints)
+        What the conditions give, positions counted from the first way-point.
+    durations : ndarray, shape (batch, segments)
+        Durations, s; vectors that are not positive and finite give infinite peaks.
+    wanted : ndarray of bool, shape (joints, orders)
+        Which peaks are needed; the others are returned as 0.
+    sides : ndarray
+        0 for sizes; 1 for the furthest values above 0, −1 for those below, as sizes.
+    least : int
+        Derivative that the first column of ``wanted`` speaks of.
+
+    Returns
+    -------
+    ndarray, shape (batch, sides, joints, orders)
+        rad/sᵒʳᵈᵉʳ; the same bits whatever the order, the size or the threads.
+    """
+    vectors, joints = len(durations), values.shape[1]
+    peaks = np.empty((vectors, sides.size, *wanted.shape))
+    rows = layout.rows
+
+    def run(first: int, last: int) -> None:
+        part = durations[first:last], values, *rows, PERM, wanted, least, sides
+        kernel.batch_peaks(*part, peaks[first:last])
+
+    work = vectors * joints
+    if work < _THREAD_WORK:
+        run(0, vectors)
+        return peaks
+    workers = os.cpu_count() or 1
+    cuts = np.linspace(0, vectors, min(2 * workers, work // 1000) + 1).astype(int).tolist()
+    with ThreadPoolExecutor(workers) as pool:
+        list(pool.map(run, cuts[:-1], cuts[1:]))
+    return peaks
+
+
+def batch_coefficients(layout: Layout, values: Array, durations: Array) -> Array:
+    """Coefficients of many duration vectors, shape (vectors, segments, 10, joints).
+
+    Not finite where the system is singular.
+    """
+    vectors, joints = len(durations), values.shape[1]
+    flat = np.empty((int(layout.first[-1]), joints * vectors))
+    system = np.empty((layout.unknowns, 2 * layout.lower + layout.upper + 1, vectors))
+    right = np.empty((layout.unknowns, joints * vectors))
+    # Durations that may be written into: compiled for them alone.
+    h = np.array(durations.T, order="C")
+    kernel.fit_coefficients(h, vectors, values, *layout.rows, system, right, flat)
+    out = np.zeros((vectors, layout.segments, PERM.shape[0], joints))
+    segment, power = layout.places
+    out[:, segment, power] = flat.reshape(-1, joints, vectors).transpose(2, 0, 1)
+    return out
