@@ -170,5 +170,3 @@ def compile_judge(problem: Problem, handling: str = Handling.DEATH_PENALTY) -> N
     """
     ones = np.ones((2, problem.segments))
     judge_of(problem, np.inf, handling)(ones)
-    if problem.limits.limits_position:
-        _ = evaluate(problem, ones).positions  # a penalty asks only within other limits

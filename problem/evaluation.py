@@ -148,7 +148,7 @@ class _PositionsAsked:
     Attributes
     ----------
     values : ndarray
-        From `Curve.range_values`.
+        From `Curve.motion_values`.
     wanted : ndarray of bool, shape (joints,)
     room, half : ndarray, shape (joints, 2)
         Way from the first way-point to the lower and the upper limit, and what an excess beyond
@@ -168,7 +168,7 @@ def _asked_of(problem: Problem, nodal: Array | None) -> _PositionsAsked | None:
     ends = np.stack([limits.position_lower, limits.position_upper], axis=1)
     half = [[half_range(low, high, limit) for limit in (low, high)] for low, high in ends]
     return _PositionsAsked(
-        values=problem.curve.range_values(q, nodal),
+        values=problem.curve.motion_values(q, nodal),
         wanted=np.asarray(np.isfinite(ends).any(axis=1)),
         room=ends - q[0][:, None],
         half=np.array(half),

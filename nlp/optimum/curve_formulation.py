@@ -12,10 +12,7 @@ from typing import Any
 import numpy as np
 
 from ...problem import Array, Curve, Problem
-from ...problem.curves import (
-    MAX_COEFFICIENTS,
-    unit_roots,
-)
+from ...problem.curves import MAX_COEFFICIENTS, roots_in_unit
 from .clock import look_ahead, seconds_left
 from .curve_symbols import Symbols, derived, evaluated, numbers, shape_key, symbols
 from .ipopt import ipopt_options
@@ -322,10 +319,8 @@ def _put(a: Array, turning: Array, places: Array, weights: Array) -> None:
     degree = int(np.max(np.flatnonzero(np.abs(turning) > 1e-14 * size), initial=0))
     if degree < 1:
         return
-    roots = np.empty(MAX_COEFFICIENTS)
-    work = np.empty((MAX_COEFFICIENTS, MAX_COEFFICIENTS))
-    count = unit_roots(np.ascontiguousarray(turning), degree, work, roots)
-    zeros = roots[:count]
+    zeros = roots_in_unit(turning[: degree + 1])
+    zeros = zeros[~np.isnan(zeros)]
     slope = polynomial.polyval(zeros, polynomial.polyder(turning))
     free = list(range(places.size))
     for i in np.argsort(-np.abs(polynomial.polyval(zeros, a)), kind="stable"):

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...problem import QUANTITIES, Array, Problem, fit
-from ...problem.curves import PERM, Adjoint, Places, Trajectory
+from ...problem.curves import PERM, Places, Trajectory
 from .optimality import MORE, Active
 
 NEWTON_STEPS = 4
@@ -100,7 +100,7 @@ def long_kkt(problem: Problem, durations: Array, found: Multipliers, violation: 
     trajectory = fit(problem.curve, problem.waypoints, durations)
     moved = on_extrema(trajectory, found.places)
     places = replace(moved, s=np.where(found.follows, moved.s, found.places.s))
-    adjoint = Adjoint(problem.piecewise, problem.waypoints, durations)
+    adjoint = problem.piecewise.adjoint(problem.waypoints, durations)
     limits, j, position = problem.limits, places.joint, places.order == 0
     side = np.where(found.limits >= 0.0, 1.0, -1.0)
     edge = np.where(side > 0, limits.position_upper[j], limits.position_lower[j])

@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 
 from ...problem import Array, Problem
-from ...problem.curves import Deferred
 from . import newton_curve as kernel
 from .descent import KEPT, least_point
 from .newton import Descents, covered
@@ -30,11 +29,11 @@ GOOD = 0.4
 """Share of the expected gain from which the trust region grows: as in `newton_kernel`."""
 BEND = 0.05
 """Least curvature of the quadratic programs: less would not be felt inside the trust region."""
-_curve_at = Deferred(kernel.curve_at, 3.0)
+_curve_at = kernel.curve_at
 """The curve of one vector; compiling it takes some seconds."""
-_rows_at = Deferred(kernel.rows_at, 3.0)
+_rows_at = kernel.rows_at
 """Its extrema; compiling it takes some seconds."""
-_add_curvature = Deferred(kernel.add_curvature, 3.0)
+_add_curvature = kernel.add_curvature
 """The curvature of one of them; compiling it takes some seconds."""
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...problem import Array, Interpolant, Problem, Verdict, check
-from ...problem.curves import PERM, Deferred, layout, motion_values
+from ...problem.curves import PERM, layout
 from . import newton_kernel as kernel
 from .clock import seconds_left
 from .exact_multistart import LEAST_SHARE, least_durations
@@ -49,7 +49,7 @@ LIMIT = 1e-8
 """KKT residual up to which an answer is taken: that of `judgement.KKT_TOLERANCE`."""
 DESCENT = 20.0
 """Places that a descent costs: measured 9 to 22. Where so much is not left, none is begun."""
-_descents = Deferred(kernel.descents, 10.0)
+_descents = kernel.descents
 """The descents; compiling them takes ten seconds, interpreting them a tenth to a half of one."""
 
 
@@ -116,7 +116,7 @@ class Descents:
         size, most = n + 1, 4 * joints * n * powers
         walls = most + 2 * n + 1
         self.arrays = (
-            motion_values(curve, problem.waypoints),
+            curve.motion_values(problem.waypoints),
             *plan.rows,
             plan.smooth,
             inverse,
@@ -151,7 +151,7 @@ class Descents:
             if (stop > 0 and left <= 0.0) or left < longest:
                 break
             # Interpreted, a place costs milliseconds, and the clock is looked at after each.
-            slow = steps > 0 or (limited and not _descents.compiled)
+            slow = steps > 0 or limited
             begin, stop = stop, min(stop + (1 if slow else PART), len(starts))
             _descents(starts, begin, stop, steps, low, high, *self.arrays, ends, found)
             if limited and steps > 0:

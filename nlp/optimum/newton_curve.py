@@ -5,25 +5,83 @@ Signs and signs of indices are written out, since a compiled loop costs less tha
 
 from __future__ import annotations
 
-import inspect
 import math
 from pathlib import Path
 
 import numpy as np
 
-from ...problem.curves import by_elements, compiler, roots_in_unit
+from ...problem.curves import compiler
 
 NEAR = 0.3
 """Extrema below this share of their limit are left out: no step of a trust region reaches it."""
 KERNELS = ("newton_curve.py", "newton_kernel.py", "newton_program.py")
 """Every file of compiled functions here: they call each other, so they share a stamp."""
-ROOTS = Path(inspect.getfile(inspect.unwrap(roots_in_unit)))
-"""Where the root finder stands that they call; compiled with them, it is part of the stamp."""
-compiled = compiler(*(Path(__file__).with_name(name) for name in KERNELS), ROOTS)
+compiled = compiler(*(Path(__file__).with_name(name) for name in KERNELS))
 """Compiles a function of one of these files."""
 
 
-@by_elements("inverse", "x", "slopes")
+@compiled
+def _bracketed_root(a, degree, low, high, value_low):  # type: ignore[no-untyped-def]
+    """Root of a monotone piece: Newton steps, bisection where they leave the bracket."""
+    s = 0.5 * (low + high)
+    for _ in range(100):
+        value = a[degree]
+        slope = 0.0
+        for i in range(degree - 1, -1, -1):
+            slope = slope * s + value
+            value = value * s + a[i]
+        if value == 0.0:
+            return s
+        if (value > 0.0) == (value_low > 0.0):
+            low = s
+        else:
+            high = s
+        step = s - value / slope  # infinite or NaN where flat: then outside the bracket
+        if not low < step < high:
+            step = 0.5 * (low + high)
+        if abs(step - s) <= 1e-16 or step in (low, high):
+            return step
+        s = step
+    return s
+
+
+@compiled
+def roots_in_unit(a, degree, work, roots):  # type: ignore[no-untyped-def]
+    """Sign changes of a polynomial in the open unit interval, ascending; returns their number.
+
+    The roots of each derivative cut the interval into pieces on which the next lower one is
+    monotone, from the linear one upwards. ``work`` has room for the derivatives, ``(10, 10)``.
+    """
+    while degree > 0 and a[degree] == 0.0:
+        degree -= 1
+    for i in range(degree + 1):
+        work[degree, i] = a[i]
+    for d in range(degree, 1, -1):
+        for i in range(d):
+            work[d - 1, i] = (i + 1) * work[d, i + 1]
+    count = 0
+    for d in range(1, degree + 1):
+        p = work[d]
+        found, low, value_low = 0, 0.0, p[0]
+        # roots[k] is read before roots[found], found <= k, is written: no break is lost.
+        for k in range(count + 1):
+            high = roots[k] if k < count else 1.0
+            value_high = p[d]
+            for i in range(d - 1, -1, -1):
+                value_high = value_high * high + p[i]
+            if value_low == 0.0:
+                if low > 0.0:
+                    roots[found] = low
+                    found += 1
+            elif value_high != 0.0 and (value_low > 0.0) != (value_high > 0.0):
+                roots[found] = _bracketed_root(p, d, low, high, value_low)
+                found += 1
+            low = high
+            value_low = value_high
+        count = found
+    return count
+
+
 @compiled
 def curve_at(  # type: ignore[no-untyped-def]
     z, values, kinds, breaks, orders, degrees, column, perm, inverse, x, slopes, sloped, a, right
@@ -135,7 +193,6 @@ def curve_at(  # type: ignore[no-untyped-def]
     return True
 
 
-@by_elements("excess", "gradient", "place", "s_of")
 @compiled
 def rows_at(  # type: ignore[no-untyped-def]
     z, degrees, smooth, inverse_limits, ranges, span, perm, x, slopes, sloped,
@@ -207,7 +264,6 @@ def rows_at(  # type: ignore[no-untyped-def]
     return count, worst, outside
 
 
-@by_elements("hessian")
 @compiled
 def add_curvature(  # type: ignore[no-untyped-def]
     z, j, r, k, side, inside, s, weight, values, kinds, breaks, orders, degrees, column, perm,

@@ -11,7 +11,6 @@ import math
 
 import numpy as np
 
-from ...problem.curves import by_elements
 from .newton_curve import NEAR, add_curvature, compiled, curve_at, rows_at
 from .newton_program import filled, inverted, least_step
 
@@ -29,7 +28,6 @@ CONVERGED, STALLED, ABANDONED = 1, 0, 2
 """How a descent ends: at a least total, anywhere else, or on its way to a known end."""
 
 
-@by_elements("slope")
 @compiled
 def _shares(z, slope):  # type: ignore[no-untyped-def]
     """Log of the total, and each duration's share of it."""
@@ -44,7 +42,6 @@ def _shares(z, slope):  # type: ignore[no-untyped-def]
     return top + math.log(total)
 
 
-@by_elements()
 @compiled
 def _known(z, length, ends, found, count):  # type: ignore[no-untyped-def]
     """Whether an earlier descent has converged near a place, with the same total."""

@@ -9,11 +9,9 @@ import math
 
 import numpy as np
 
-from ...problem.curves import by_elements
 from .newton_curve import compiled
 
 
-@by_elements("out")
 @compiled
 def inverted(hessian, factor, out):  # type: ignore[no-untyped-def]
     """Inverse of a positive definite matrix by Cholesky; false if it is not clearly one."""
@@ -46,7 +44,6 @@ def inverted(hessian, factor, out):  # type: ignore[no-untyped-def]
     return True
 
 
-@by_elements("step", "weights")
 @compiled
 def least_step(  # type: ignore[no-untyped-def]
     inverse, slope, rows, room, count, step, weights, active, held, image, turned, gram, dual, move
@@ -142,7 +139,6 @@ def least_step(  # type: ignore[no-untyped-def]
     return False
 
 
-@by_elements("rows", "room")
 @compiled
 def filled(z, low, high, radius, count, excess, gradient, rows, room):  # type: ignore[no-untyped-def]
     """Rows of the quadratic program: limits less the elastic part, box and trust region."""

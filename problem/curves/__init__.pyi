@@ -1,8 +1,7 @@
 from .adjoint import Adjoint, Places, places_of
-from .clamped import ClampedBSpline
+from .clamped import ClampedBSpline, clamped_control_points
 from .clamped_counts import ClampedReading, Count, clamped_readings
 from .clamped_declaration import average_matrix, fractions_of
-from .clamped_fit import clamped_control_points
 from .clamped_knots import Knots, Parameters
 from .compilation import at_hand, compiler
 from .condition import Condition, ConditionKind, Conditions, Layout, counts_in_words

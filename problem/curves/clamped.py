@@ -5,14 +5,29 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import Array
 from .clamped_declaration import ClampedDeclaration, fractions_of
-from .clamped_fit import clamped_enclosed, clamped_gradients, clamped_reach, clamped_shape
+from .clamped_fit import (
+    clamped_enclosed,
+    clamped_gradients,
+    clamped_reach,
+    clamped_shape,
+    splines_of,
+)
 from .clamped_knots import Knots, Parameters
 from .families import piecewise, quintic_spline
-from .kind import Curve, Derivatives, Enclosed, PeakGradients, Shape, as_batch
+from .kind import (
+    Curve,
+    Derivatives,
+    Enclosed,
+    PeakGradients,
+    Shape,
+    as_batch,
+    as_durations,
+    as_waypoints,
+)
 from .peak import Extremum
 from .stretched import StretchedCurve
 
@@ -113,47 +128,18 @@ class ClampedBSpline(ClampedDeclaration, StretchedCurve):
         """The way-points themselves, unless stretched."""
         return super().motion_values(waypoints) if self.stretched else waypoints
 
-    def batch_peaks(self, values: Array, durations: Array, wanted: NDArray[np.bool_]) -> Array:
-        """True peaks of all pieces at once."""
-        if self.stretched:
-            return super().batch_peaks(values, durations, wanted)
-        return self._reach(values, durations, wanted, (0.0,))[0]
-
-    def batch_sides(
+    def batch_reach(
         self,
-        waypoints: Array,
-        durations: Array,
-        wanted: NDArray[np.bool_],
-        nodal: Array | None = None,
-    ) -> Array:
-        """True peaks to each side of all pieces at once."""
-        if self.stretched:
-            return super().batch_sides(waypoints, durations, wanted)
-        found = self._reach(waypoints, durations, wanted.any(axis=0), (-1.0, 1.0))
-        found[~np.broadcast_to(wanted[:, None], found.shape) & np.isfinite(found)] = 0.0
-        return found
-
-    def range_values(self, waypoints: Array, nodal: Array | None = None) -> Array:
-        """The way-points themselves, unless stretched."""
-        return super().range_values(waypoints) if self.stretched else waypoints
-
-    def batch_ranges(self, values: Array, durations: Array, wanted: NDArray[np.bool_]) -> Array:
-        """Least and largest positions of all pieces at once."""
-        if self.stretched:
-            return super().batch_ranges(values, durations, wanted)
-        sides = self._reach(values, durations, wanted[:, None], (-1.0, 1.0), least=0)
-        found = np.moveaxis(sides[..., 0], 0, -1) * [-1.0, 1.0]
-        return np.where(wanted[:, None], found, 0.0)
-
-    def _reach(
-        self,
-        waypoints: Array,
+        values: Array,
         durations: Array,
         wanted: NDArray[np.bool_],
         sides: tuple[float, ...],
         least: int = 1,
     ) -> Array:
-        return clamped_reach(self, waypoints, as_batch(self, durations), wanted, sides, least)
+        """Of all pieces at once."""
+        if self.stretched:
+            return super().batch_reach(values, durations, wanted, sides, least)
+        return clamped_reach(self, values, as_batch(self, durations), wanted, sides, least)
 
     def value_gradients(
         self,
@@ -166,3 +152,41 @@ class ClampedBSpline(ClampedDeclaration, StretchedCurve):
         if self.stretched:
             return super().value_gradients(waypoints, durations, points)
         return clamped_gradients(self, waypoints, durations, points)
+
+
+def clamped_control_points(
+    curve: ClampedBSpline, waypoints: ArrayLike, durations: ArrayLike
+) -> tuple[Array, Array]:
+    """Control points of each joint, and the knots they belong to.
+
+    Parameters
+    ----------
+    curve : ClampedBSpline
+        With time "timed".
+    waypoints : array_like, shape (way-points, joints)
+        rad.
+    durations : array_like, shape (segments,)
+        s.
+
+    Returns
+    -------
+    control : ndarray, shape (control points, joints)
+        rad.
+    knots : ndarray, shape (control points + degree + 1, joints)
+        s.
+
+    Raises
+    ------
+    TrajgapError
+        If shapes disagree, a duration is not positive, or no such curve passes the way-points.
+    """
+    q = as_waypoints(curve, waypoints)
+    h = as_durations(durations, curve.segments)
+    splines = splines_of(curve, q, h)
+    p = curve.degree
+    columns = [
+        np.concatenate([np.zeros(p), s.knots, np.full(p, s.knots[-1])])
+        for s in splines
+        for _ in range(s.scaled.shape[2])
+    ]
+    return np.concatenate([s.control for s in splines], axis=1), np.stack(columns, axis=1)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from math import comb
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from ..arrays import Array
 from .clamped_declaration import ClampedDeclaration, average_matrix, fractions_of
@@ -22,7 +22,7 @@ from .clamped_system import (
     places_on,
     span_bases,
 )
-from .kind import Enclosed, PeakGradients, Shape, as_durations, as_waypoints, value_errors
+from .kind import Enclosed, PeakGradients, Shape, are_durations, masked, value_errors
 from .peak import Extremum, rows_at
 from .polynomials import MAX_COEFFICIENTS, derived, tops
 from .trajectory import Trajectory
@@ -39,7 +39,7 @@ def _times(durations: Numbers) -> Numbers:
     return np.concatenate([np.zeros(1, dtype=durations.dtype), np.cumsum(durations)])
 
 
-def _splines(curve: ClampedDeclaration, waypoints: Numbers, durations: Numbers) -> list[Spline]:
+def splines_of(curve: ClampedDeclaration, waypoints: Numbers, durations: Numbers) -> list[Spline]:
     """Splines of the joints in time: one for all, or one for each."""
     times = _times(durations)
     average = average_matrix(curve)
@@ -52,44 +52,6 @@ def _splines(curve: ClampedDeclaration, waypoints: Numbers, durations: Numbers) 
     return [
         interpolated(curve, times, inner, waypoints[:, j : j + 1]) for j, inner in enumerate(rows)
     ]
-
-
-def clamped_control_points(
-    curve: ClampedDeclaration, waypoints: ArrayLike, durations: ArrayLike
-) -> tuple[Array, Array]:
-    """Control points of each joint, and the knots they belong to.
-
-    Parameters
-    ----------
-    curve : ClampedBSpline
-        With time "timed".
-    waypoints : array_like, shape (way-points, joints)
-        rad.
-    durations : array_like, shape (segments,)
-        s.
-
-    Returns
-    -------
-    control : ndarray, shape (control points, joints)
-        rad.
-    knots : ndarray, shape (control points + degree + 1, joints)
-        s.
-
-    Raises
-    ------
-    TrajgapError
-        If shapes disagree, a duration is not positive, or no such curve passes the way-points.
-    """
-    q = as_waypoints(curve, waypoints)
-    h = as_durations(durations, curve.segments)
-    splines = _splines(curve, q, h)
-    p = curve.degree
-    columns = [
-        np.concatenate([np.zeros(p), s.knots, np.full(p, s.knots[-1])])
-        for s in splines
-        for _ in range(s.scaled.shape[2])
-    ]
-    return np.concatenate([s.control for s in splines], axis=1), np.stack(columns, axis=1)
 
 
 def _cut(spline: Spline, breaks: Numbers) -> tuple[Numbers, Array, Numbers]:
@@ -169,7 +131,7 @@ def _joined(splines: list[Spline], joints: int, cuts: Numbers | None = None) -> 
 
 
 def _pieces(curve: ClampedDeclaration, waypoints: Array, durations: Numbers) -> Pieces:
-    return _joined(_splines(curve, waypoints, durations), waypoints.shape[1])
+    return _joined(splines_of(curve, waypoints, durations), waypoints.shape[1])
 
 
 def clamped_shape(curve: ClampedDeclaration, waypoints: Array) -> Shape:
@@ -210,7 +172,7 @@ def _on_axis(spline: Spline, sites: Array) -> Spline:
 def clamped_enclosed(curve: ClampedDeclaration, waypoints: Array, durations: Array) -> Enclosed:
     """Trajectory with pieces between knots, and a bound on the error of every extremum."""
     wide = waypoints.astype(np.longdouble)
-    found = _joined(_splines(curve, wide, durations.astype(np.longdouble)), waypoints.shape[1])
+    found = _joined(splines_of(curve, wide, durations.astype(np.longdouble)), waypoints.shape[1])
     lengths = np.diff(np.asarray(found.breaks, dtype=np.float64))
     scaled = np.asarray(found.scaled, dtype=np.float64)
     trajectory = Trajectory(lengths, scaled, (curve.degree,) * lengths.size)
@@ -249,23 +211,9 @@ def clamped_reach(
     sides: tuple[float, ...],
     least: int,
 ) -> Array:
-    """How far derivatives go for many duration vectors, shape (sides, batch, joints, orders).
-
-    Parameters
-    ----------
-    curve : ClampedDeclaration
-        With time "timed".
-    waypoints : ndarray, shape (way-points, joints)
-        rad; positions are counted from the first.
-    durations : ndarray, shape (batch, segments)
-        s; infinite where they define no curve.
-    wanted : ndarray of bool, shape (joints, orders)
-        What is needed, of order ``least`` first; 0 for the rest.
-    sides : tuple of float
-        0 for sizes; 1 for the furthest values above 0, −1 for those below, as sizes.
-    """
-    found = np.zeros((len(sides), len(durations), *wanted.shape))
-    valid = (np.isfinite(durations) & (durations > 0.0)).all(axis=1)
+    """`Curve.batch_reach` of a curve whose time is not stretched, for these way-points."""
+    found = np.zeros((len(durations), len(sides), *wanted.shape))
+    valid = are_durations(durations)
     h = np.where(valid[:, None], durations, 1.0)
     times = np.concatenate([np.zeros((len(h), 1)), np.cumsum(h, axis=1)], axis=1)
     average, fractions = average_matrix(curve), fractions_of(curve, waypoints)
@@ -284,11 +232,8 @@ def clamped_reach(
         for i in np.flatnonzero(wanted[own].any(axis=0)).tolist():
             part = derived(a, least + i) / widths[:, :, None] ** (least + i)
             for side, sign in enumerate(sides):
-                reach = np.maximum(tops(part, sign), 0.0)
-                found[side, at[regular, None], own, i] = np.where(np.isnan(reach), np.inf, reach)
-    found[:, :, ~wanted] = 0.0
-    found[:, ~valid] = np.inf
-    return found
+                found[at[regular, None], side, own, i] = tops(part, sign)
+    return masked(found, wanted, valid)
 
 
 def _polynomials(
@@ -304,7 +249,7 @@ def _polynomials(
     matrix = conditions_at(bases, *places_on(knots, p, times), curve.end_orders)
     right = np.zeros((matrix.shape[-1], waypoints.shape[1]))
     right[: len(waypoints)] = waypoints
-    regular = np.linalg.slogdet(matrix)[0] != 0.0
+    regular = np.asarray(np.linalg.slogdet(matrix)[0] != 0.0)
     control = np.linalg.solve(matrix[regular], right[None])
     held = np.abs(control).max(axis=(1, 2)) <= _RESOLVED * np.abs(waypoints).max()
     regular[regular] = held

@@ -80,7 +80,7 @@ class Conditions:
     @cached_property
     def segment(self) -> Indices:
         """Segment in whose unit of time each condition is written."""
-        return self.breaks - (self.kinds != ConditionKind.RIGHT_VALUE)
+        return np.where(self.kinds == ConditionKind.RIGHT_VALUE, self.breaks, self.breaks - 1)
 
     @cached_property
     def powers(self) -> Indices:

@@ -25,7 +25,7 @@ from .kind import (
 )
 from .peak import Extremum
 from .polynomials import MAX_COEFFICIENTS
-from .population import batch_coefficients, batch_peaks
+from .population import batch_coefficients, batch_reach
 from .refined import refined_coefficients
 from .system import coefficients, system
 from .trajectory import Trajectory
@@ -35,8 +35,6 @@ MOST_OPEN = 600
 the declaration takes a dense decomposition for each, some seconds in all."""
 _DENSE = 300
 """Coefficients above which the rank is judged by a banded factorisation: a dense one is cubic."""
-_SIZE, _SIDES = np.array([0.0]), np.array([-1.0, 1.0])
-"""Sides of 0 that peaks are asked for: both together, or below and above."""
 
 
 @dataclass(frozen=True)
@@ -218,39 +216,16 @@ class Interpolant(Curve):
         values[(layout.orders == 0) & (layout.kinds != ConditionKind.MATCH)] -= waypoints[0]
         return values
 
-    def batch_peaks(self, values: Array, durations: Array, wanted: NDArray[np.bool_]) -> Array:
-        """True peaks by the compiled kernel, on several threads where that pays."""
-        return batch_peaks(self.layout, values, as_batch(self, durations), wanted, _SIZE)[:, 0]
-
-    def batch_sides(
+    def batch_reach(
         self,
-        waypoints: Array,
+        values: Array,
         durations: Array,
         wanted: NDArray[np.bool_],
-        nodal: Array | None = None,
+        sides: tuple[float, ...],
+        least: int = 1,
     ) -> Array:
-        """True peaks to each side by the compiled kernel."""
-        values, h = self.motion_values(waypoints, nodal), as_batch(self, durations)
-        found = batch_peaks(self.layout, values, h, wanted.any(axis=0), _SIDES).swapaxes(0, 1)
-        found[~np.broadcast_to(wanted[:, None], found.shape) & np.isfinite(found)] = 0.0
-        return found
-
-    def range_values(self, waypoints: Array, nodal: Array | None = None) -> Array:
-        """Right-hand sides, as for peaks."""
-        return self.motion_values(waypoints, nodal)
-
-    def batch_ranges(self, values: Array, durations: Array, wanted: NDArray[np.bool_]) -> Array:
-        """Least and largest positions by the compiled kernel, of the joints that are asked for.
-
-        The first way-point is 0 and among them.
-        """
-        found = np.zeros((len(durations), wanted.size, 2))
-        asked = np.ascontiguousarray(values[:, wanted])
-        if asked.size:
-            every, h = np.ones((asked.shape[1], 1), dtype=bool), as_batch(self, durations)
-            reach = batch_peaks(self.layout, asked, h, every, _SIDES, least=0)[..., 0]
-            found[:, wanted] = reach.swapaxes(1, 2) * _SIDES
-        return found
+        """By the compiled kernel, on several threads where that pays."""
+        return batch_reach(self.layout, values, as_batch(self, durations), wanted, sides, least)
 
     def value_gradients(
         self,
@@ -335,7 +310,8 @@ class Interpolant(Curve):
                     shared = b in (0, self.segments) or order <= self.continuity[b - 1]
                     if (b, order) in chosen or not shared:
                         continue
-                    one = Conditions(*np.array([[kind], [b], [order]]), self.table.degrees)
+                    kinds, breaks, orders = np.array([[kind], [b], [order]])
+                    one = Conditions(kinds, breaks, orders, self.table.degrees)
                     extended = np.vstack([matrix, _unit_matrix(one)])
                     if np.linalg.matrix_rank(extended) > rank:
                         matrix, rank = extended, rank + 1

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import Array
 from ..errors import TrajgapError
-from .peak import Extremum, furthest
+from .peak import Extremum
 from .polynomials import PERM
 from .trajectory import Trajectory
 
@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 _LONGEST = 1e30
 """Durations, s, beyond which, or below whose reciprocal, ninth powers leave float64's range."""
+_SIDES = (-1.0, 1.0)
+"""Below 0, and above."""
 Derivatives = tuple[tuple[int, float | tuple[float, ...]], ...]
 """Derivatives ``(order, value)`` prescribed at one break, rad/sᵒʳᵈᵉʳ: one value for all joints, or
 one for each where they differ."""
@@ -158,26 +160,42 @@ class Curve(ABC):
 
     @abstractmethod
     def motion_values(self, waypoints: Array, nodal: Array | None = None) -> Array:
-        """What `batch_peaks` needs to know of the way-points; its last axis is the joint."""
+        """What `batch_reach` needs to know of the way-points; its last axis is the joint."""
 
     @abstractmethod
-    def batch_peaks(self, values: Array, durations: Array, wanted: NDArray[np.bool_]) -> Array:
-        """True peaks of |v|, |a|, |j| for a batch of duration vectors.
+    def batch_reach(
+        self,
+        values: Array,
+        durations: Array,
+        wanted: NDArray[np.bool_],
+        sides: tuple[float, ...],
+        least: int = 1,
+    ) -> Array:
+        """How far derivatives go, for all t, for a batch of duration vectors.
 
         Parameters
         ----------
         values : ndarray
             From `motion_values`.
         durations : ndarray, shape (batch, segments)
-            s; vectors that define no curve give infinite peaks.
-        wanted : ndarray of bool, shape (joints, 3)
-            Which peaks are needed; the others are returned as 0.
+            s; infinite for vectors that define no curve.
+        wanted : ndarray of bool, shape (joints, orders)
+            What is needed, of order ``least`` first; the others are returned as 0.
+        sides : tuple of float
+            0 for the largest size; 1 for the furthest value above 0, −1 for that below, as sizes,
+            and 0 where there is none.
+        least : int
+            0 for positions, counted from the first way-point.
 
         Returns
         -------
-        ndarray, shape (batch, joints, 3)
-            rad/s, rad/s², rad/s³.
+        ndarray, shape (batch, sides, joints, orders)
+            rad/sᵒʳᵈᵉʳ.
         """
+
+    def batch_peaks(self, values: Array, durations: Array, wanted: NDArray[np.bool_]) -> Array:
+        """True peaks of |v|, |a|, |j|, as `batch_reach`; shape (batch, joints, 3)."""
+        return np.asarray(self.batch_reach(values, durations, wanted, (0.0,))[:, 0])
 
     def batch_sides(
         self,
@@ -186,7 +204,7 @@ class Curve(ABC):
         wanted: NDArray[np.bool_],
         nodal: Array | None = None,
     ) -> Array:
-        """True peaks to each side, one vector after the other unless a kind has a quicker way.
+        """True peaks to each side.
 
         Parameters
         ----------
@@ -203,40 +221,19 @@ class Curve(ABC):
         ndarray, shape (2, batch, joints, 3)
             Sizes, rad/s, rad/s², rad/s³: of the furthest value below 0, and above; 0 for none.
         """
-        found = np.zeros((2, len(durations), *wanted.shape[1:]))
-        orders = np.flatnonzero(wanted.any(axis=(0, 1))) + 1
-        for v, sides in enumerate(self._reached(waypoints, durations, orders.tolist(), nodal)):
-            found[:, v, :, orders - 1] = np.maximum(sides, 0.0)
+        values = self.motion_values(waypoints, nodal)
+        either = np.logical_or(*wanted)
+        found = self.batch_reach(values, durations, either, _SIDES).swapaxes(0, 1)
         found[~np.broadcast_to(wanted[:, None], found.shape) & np.isfinite(found)] = 0.0
         return found
 
-    def _reached(
-        self, waypoints: Array, durations: Array, orders: list[int], nodal: Array | None = None
-    ) -> Iterator[Array]:
-        """How far derivatives go below and above 0, (orders, 2, joints); inf without a curve."""
-        for one in as_batch(self, durations):
-            try:
-                found = self.fitted(
-                    waypoints - waypoints[0], as_durations(one, self.segments), nodal
-                )
-            except TrajgapError:
-                yield np.full((len(orders), 2, waypoints.shape[1]), np.inf)
-                continue
-            exact = np.zeros((len(found.durations), found.joints))
-            sides = [furthest(found, r, exact).values * [[-1.0], [1.0]] for r in orders]
-            yield np.where(np.isnan(sides), np.inf, sides)
-
-    def range_values(self, waypoints: Array, nodal: Array | None = None) -> Array:
-        """What `batch_ranges` needs to know of the way-points."""
-        return np.asarray(waypoints - waypoints[0])
-
     def batch_ranges(self, values: Array, durations: Array, wanted: NDArray[np.bool_]) -> Array:
-        """Least and largest positions, one vector after the other unless a kind has a quicker way.
+        """Least and largest positions.
 
         Parameters
         ----------
         values : ndarray
-            From `range_values`.
+            From `motion_values`.
         durations : ndarray, shape (batch, segments)
             s.
         wanted : ndarray of bool, shape (joints,)
@@ -245,11 +242,11 @@ class Curve(ABC):
         Returns
         -------
         ndarray, shape (batch, joints, 2)
-            rad, counted from the first way-point; −inf and inf for vectors that define no curve.
+            rad, counted from the first way-point, which is 0 and among them; −inf and inf for
+            vectors that define no curve.
         """
-        sides = np.array([one[0].T for one in self._reached(values, durations, [0])])
-        sides = sides.reshape(-1, wanted.size, 2) * [-1.0, 1.0]
-        return np.asarray(np.where(wanted[:, None], sides, 0.0))
+        reach = self.batch_reach(values, durations, wanted[:, None], _SIDES, least=0)[..., 0]
+        return np.asarray(reach.swapaxes(1, 2) * _SIDES)
 
     @abstractmethod
     def value_gradients(
@@ -372,6 +369,24 @@ def as_durations(durations: ArrayLike, segments: int) -> Array:
             f"durations: {h.tolist()} s must all lie between {1 / _LONGEST:g} and {_LONGEST:g} s"
         )
     return h
+
+
+def are_durations(h: Array) -> NDArray[np.bool_]:
+    """Which vectors of a batch are positive and finite throughout, shape (batch,)."""
+    return np.asarray((np.isfinite(h) & (h > 0)).all(axis=1))
+
+
+def masked(reach: Array, wanted: NDArray[np.bool_], valid: NDArray[np.bool_]) -> Array:
+    """What `Curve.batch_reach` returns, from the numbers that were found, in place.
+
+    Nothing lies on a side of 0 that no value is on; what is no number, or of vectors that define no
+    curve, is infinite.
+    """
+    np.maximum(reach, 0.0, out=reach)
+    reach[np.isnan(reach)] = np.inf
+    reach[:, :, ~wanted] = 0.0
+    reach[~valid] = np.inf
+    return reach
 
 
 def as_batch(curve: Curve, durations: ArrayLike) -> Array:

@@ -13,33 +13,28 @@ from . import kernel
 from .condition import Layout
 from .polynomials import PERM
 
-_THREAD_WORK = 4000
-"""Polynomials (vectors times joints) below which starting threads costs more than it saves."""
+_PART = 1000
+"""Polynomials (vectors times joints) of a thread's part: starting threads for fewer than four parts
+costs more than it saves."""
 
 
-def batch_peaks(
+def batch_reach(
     layout: Layout,
     values: Array,
     durations: Array,
     wanted: NDArray[np.bool_],
-    sides: Array,
-    least: int = 1,
+    sides: tuple[float, ...],
+    least: int,
 ) -> Array:
-    """True peaks for a batch of duration vectors.
+    """`Curve.batch_reach` of a declared curve.
 
     Parameters
     ----------
     layout : Layout
     values : ndarray, shape (rows, joints)
         What the conditions give, positions counted from the first way-point.
-    durations : ndarray, shape (batch, segments)
-        Durations, s; vectors that are not positive and finite give infinite peaks.
-    wanted : ndarray of bool, shape (joints, orders)
-        Which peaks are needed; the others are returned as 0.
-    sides : ndarray
-        0 for sizes; 1 for the furthest values above 0, −1 for those below, as sizes.
-    least : int
-        Derivative that the first column of ``wanted`` speaks of.
+    durations, wanted, sides, least
+        As `Curve.batch_reach` takes them.
 
     Returns
     -------
@@ -47,19 +42,19 @@ def batch_peaks(
         rad/sᵒʳᵈᵉʳ; the same bits whatever the order, the size or the threads.
     """
     vectors, joints = len(durations), values.shape[1]
-    peaks = np.empty((vectors, sides.size, *wanted.shape))
+    peaks = np.empty((vectors, len(sides), *wanted.shape))
     rows = layout.rows
 
     def run(first: int, last: int) -> None:
-        part = durations[first:last], values, *rows, PERM, wanted, least, sides
+        part = durations[first:last], values, *rows, PERM, wanted, least, np.array(sides)
         kernel.batch_peaks(*part, peaks[first:last])
 
-    work = vectors * joints
-    if work < _THREAD_WORK:
+    workers = os.cpu_count() or 1
+    parts = vectors * joints // _PART
+    if parts < 4:
         run(0, vectors)
         return peaks
-    workers = os.cpu_count() or 1
-    cuts = np.linspace(0, vectors, min(2 * workers, work // 1000) + 1).astype(int).tolist()
+    cuts = np.linspace(0, vectors, min(2 * workers, parts) + 1).astype(int).tolist()
     with ThreadPoolExecutor(workers) as pool:
         list(pool.map(run, cuts[:-1], cuts[1:]))
     return peaks

@@ -11,9 +11,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import Array
 from ..errors import CurveError, TrajgapError
-from .kind import Enclosed
+from .kind import Enclosed, are_durations
 from .peak import Extremum
-from .polynomials import LOOSE, MAX_COEFFICIENTS, bernstein, roots_in_unit
+from .polynomials import LOOSE, MAX_COEFFICIENTS, bernstein, roots_in_unit, tops
 from .trajectory import Trajectory
 
 if TYPE_CHECKING:
@@ -84,7 +84,7 @@ def _turns(following: Array) -> Array:
     return roots_in_unit(np.moveaxis(following, -1, 0))
 
 
-def least_speed(speed: Array) -> tuple[Array, Array]:
+def least_speed(speed: Numbers) -> tuple[Array, Array]:
     """Smallest value on [0, 1] of quadratics, ascending along the last axis, and its place."""
     with np.errstate(divide="ignore", invalid="ignore"):
         turn = -0.5 * speed[..., 1] / speed[..., 2]
@@ -92,7 +92,8 @@ def least_speed(speed: Array) -> tuple[Array, Array]:
     places = np.stack([np.zeros(turn.shape), np.ones(turn.shape), turn])
     values = _valued(speed, places)
     at = values.argmin(axis=0)[None]
-    return tuple(np.take_along_axis(one, at, axis=0)[0] for one in (values, places))
+    least, place = (np.take_along_axis(one, at, axis=0)[0] for one in (values, places))
+    return np.asarray(least, dtype=np.float64), np.asarray(place, dtype=np.float64)
 
 
 @dataclass(frozen=True, eq=False)
@@ -326,14 +327,17 @@ def runs_forwards(nodes: Array, durations: Array) -> tuple[Array, NDArray[np.boo
     clocks : ndarray, shape (batch, pieces, 4)
     valid : ndarray of bool, shape (batch,)
     """
-    valid = (np.isfinite(durations) & (durations > 0.0)).all(axis=1)
+    valid = are_durations(durations)
     h = np.where(valid[:, None], durations, 1.0)
     clocks = np.einsum("vs,kps->vkp", h, nodes)  # the same bits for any number of vectors
-    return clocks, valid & (least_speed(_derived(clocks))[0] > 0.0).all(axis=1)
+    least = least_speed(_derived(clocks))[0].min(axis=1)
+    return clocks, np.asarray(valid & (least > 0.0))
 
 
-def batch_peaks(q: Array, clocks: Array, wanted: NDArray[np.bool_]) -> Array:
-    """True peaks of v, a, j for many clocks that run forwards, shape (batch, joints, 3).
+def clocked_reach(
+    q: Array, clocks: Array, wanted: NDArray[np.bool_], sides: tuple[float, ...], least: int
+) -> Array:
+    """How far derivatives in time go under many clocks that run forwards.
 
     On a piece Bernstein coefficients bound N_r, its least value t′; where that stays below what
     another piece has at one of its ends it is not looked at further.
@@ -344,27 +348,46 @@ def batch_peaks(q: Array, clocks: Array, wanted: NDArray[np.bool_]) -> Array:
         Coefficients of q(e).
     clocks : ndarray, shape (batch, pieces, 4)
         Of t(e).
-    wanted : ndarray of bool, shape (joints, 3)
+    wanted, sides, least
+        As `Curve.batch_reach` takes them.
+
+    Returns
+    -------
+    ndarray, shape (batch, sides, joints, orders)
     """
-    peaks = np.zeros((len(clocks), *wanted.shape))
+    found = np.zeros((len(clocks), len(sides), *wanted.shape))
+    orders = (np.flatnonzero(wanted.any(axis=0)) + least).tolist()
     t = clocks[:, :, None, :]
-    speed = _derived(t)
+    speed = np.asarray(_derived(t), dtype=np.float64)
     slowest = least_speed(speed)[0]
-    highest = int(np.argwhere(wanted)[:, 1].max(initial=0)) + 1
-    found = numerators(q.transpose(0, 2, 1), t, highest + 1)
-    for r in (np.flatnonzero(wanted.any(axis=0)) + 1).tolist():
-        a = np.broadcast_to(found[r - 1], (*found[1].shape[:-1], found[r - 1].shape[-1]))
-        edges = np.stack([np.zeros(a.shape[:-1]), np.ones(a.shape[:-1])])
-        ends = np.abs(_in_time(a, speed, r, edges)).max(axis=0)
-        peak = ends.max(axis=1)
-        bound = np.abs(bernstein(np.moveaxis(a, -1, 0))).max(axis=0)
-        bound += LOOSE * np.abs(a).sum(axis=-1)
-        open_ = wanted[:, r - 1] & ~(bound / slowest ** (2 * r - 1) < peak[:, None])
-        places = _turns(found[r][open_])
-        rate = np.broadcast_to(speed, (*a.shape[:-1], 3))[open_]
-        inner = np.abs(_in_time(a[open_], rate, r, places))
-        vector, _, joint = np.nonzero(open_)
-        inner = np.where(np.isnan(places), 0.0, inner).max(axis=0, initial=0.0)
-        np.maximum.at(peak, (vector, joint), inner)
-        peaks[:, :, r - 1] = np.where(wanted[:, r - 1], peak, 0.0)
-    return np.where(np.isnan(peaks), np.inf, peaks)
+    known = numerators(q.transpose(0, 2, 1), t, max(orders) + 1) if max(orders) else []
+    for r in orders:
+        for side, sign in enumerate(sides):
+            if r == 0:
+                top = tops(q.transpose(1, 0, 2)[:, None], sign)
+            else:
+                top = _tops_in_time(known[r - 1 : r + 1], speed, slowest ** (2 * r - 1), r, sign)
+            found[:, side, :, r - least] = top
+    return found
+
+
+def _tops_in_time(
+    known: list[Numbers], speed: Array, slowest: Array, order: int, side: float
+) -> Array:
+    """`tops` of N_r/t′²ʳ⁻¹, from N_r, N_{r+1} and the least denominators."""
+
+    def sized(value: Array) -> Array:
+        return np.abs(value) if side == 0.0 else side * value
+
+    shape = (*known[1].shape[:-1], known[0].shape[-1])
+    a = np.asarray(np.broadcast_to(known[0], shape), dtype=np.float64)
+    edges = np.stack([np.zeros(shape[:-1]), np.ones(shape[:-1])])
+    found = sized(_in_time(a, speed, order, edges)).max(axis=(0, 2))
+    bound = sized(bernstein(np.moveaxis(a, -1, 0))).max(axis=0) + LOOSE * np.abs(a).sum(axis=-1)
+    open_ = ~(bound < (found[:, None] * slowest)) | ~(found[:, None] >= 0.0)
+    places = _turns(known[1][open_])
+    rate = np.broadcast_to(speed, (*shape[:-1], 3))[open_]
+    inner = np.where(np.isnan(places), -np.inf, sized(_in_time(a[open_], rate, order, places)))
+    vector, _, joint = np.nonzero(open_)
+    np.maximum.at(found, (vector, joint), inner.max(axis=0, initial=-np.inf))
+    return np.asarray(found)

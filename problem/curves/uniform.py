@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 
 from ..arrays import Array
 from ..errors import TrajgapError
-from .kind import Curve, Enclosed, PeakGradients, Shape, as_batch
+from .kind import Curve, Enclosed, PeakGradients, Shape, as_batch, masked
 from .peak import Extremum
 from .polynomials import MAX_COEFFICIENTS
-from .stretched import StretchedCurve, Timing, path_ranges, ranges_where
-from .timed import batch_peaks, enclosed_with_clock, runs_forwards, value_at
+from .stretched import StretchedCurve, Timing
+from .timed import clocked_reach, enclosed_with_clock, runs_forwards, value_at
 from .uniform_matrices import clock_matrix, shape_matrix
 
 _STEP = 1e-30
@@ -135,24 +135,21 @@ class TimedUniformBSpline(UniformBSpline):
         matrix = shape_matrix(self.waypoints)
         return np.asarray(matrix @ (waypoints - waypoints[0]), dtype=np.float64)
 
-    def batch_peaks(self, values: Array, durations: Array, wanted: NDArray[np.bool_]) -> Array:
-        """True peaks of all pieces at once."""
-        clocks, valid = self._clocks(durations)
-        peaks = np.full((len(clocks), *wanted.shape), np.inf)
-        peaks[valid] = batch_peaks(values, clocks[valid], wanted)
-        return peaks
-
-    def _clocks(self, durations: Array) -> tuple[Array, NDArray[np.bool_]]:
-        """Clocks of many duration vectors, and which of them run forwards."""
-        return runs_forwards(_nodes(self.waypoints, self.natural_clock), as_batch(self, durations))
-
-    def range_values(self, waypoints: Array, nodal: Array | None = None) -> Array:
-        """Least and largest q(e), which no duration moves; shape (joints, 2)."""
-        return path_ranges(self, waypoints)
-
-    def batch_ranges(self, values: Array, durations: Array, wanted: NDArray[np.bool_]) -> Array:
-        """The path's own for every vector by which time runs forwards."""
-        return ranges_where(self._clocks(durations)[1], values, wanted)
+    def batch_reach(
+        self,
+        values: Array,
+        durations: Array,
+        wanted: NDArray[np.bool_],
+        sides: tuple[float, ...],
+        least: int = 1,
+    ) -> Array:
+        """Of all pieces at once."""
+        nodes = _nodes(self.waypoints, self.natural_clock)
+        clocks, valid = runs_forwards(nodes, as_batch(self, durations))
+        found = np.zeros((len(clocks), len(sides), *wanted.shape))
+        if wanted.any():
+            found[valid] = clocked_reach(values, clocks[valid], wanted, sides, least)
+        return masked(found, wanted, valid)
 
     def value_gradients(
         self,
