@@ -66,33 +66,38 @@ def fit_coefficients(  # type: ignore[no-untyped-def]
     system[:] = 0.0
     e = 0
     for row in range(kinds.size):
-        kind, b = kinds[row], breaks[row]
+        kind, b, c = kinds[row], breaks[row], columns[row, 0]
         k = b if kind == 1 else b - 1
-        for v in range(vectors):
-            weight[v], power[v] = 1.0, 1.0
+        weight[:] = 1.0
+        power[:] = 1.0
         for _ in range(orders[row]):
-            for v in range(vectors):
-                power[v] *= min(1.0, h[k, v] / h[b, v]) if kind == 2 else h[k, v]
-                weight[v] *= min(1.0, h[b, v] / h[k, v]) if kind == 2 else 1.0
+            if kind == 2:
+                for v in range(vectors):
+                    weight[v] *= min(1.0, h[b, v] / h[k, v])
+                    power[v] *= min(1.0, h[k, v] / h[b, v])
+            else:
+                for v in range(vectors):
+                    power[v] *= h[k, v]
         for j in range(joints):
             for v in range(vectors):
                 given = values[row, j] * power[v]
                 if kind == 1:
-                    out[columns[row, 0], j * vectors + v] = given / factors[row, 0]
+                    out[c, j * vectors + v] = given / factors[row, 0]
                 else:
                     right[e, j * vectors + v] = given
-        for m in range(columns.shape[1] if kind != 1 else 0):
+        if kind == 1:
+            continue
+        for m in range(columns.shape[1]):
             c, factor = columns[row, m], factors[row, m]
-            across = kind == 2 and c >= first[b]
+            scale = power if kind == 2 and c >= first[b] else weight
             if factor == 0.0:
                 continue
             for v in range(vectors if unknown[c] >= 0 else 0):
-                system[e, unknown[c] - e + lower, v] = factor * (power[v] if across else weight[v])
+                system[e, unknown[c] - e + lower, v] = factor * scale[v]
             for j in range(joints if unknown[c] < 0 else 0):
                 for v in range(vectors):
-                    x = j * vectors + v
-                    right[e, x] -= factor * (power[v] if across else weight[v]) * out[c, x]
-        e += 0 if kind == 1 else 1
+                    right[e, j * vectors + v] -= factor * scale[v] * out[c, j * vectors + v]
+        e += 1
     for c in range(unknowns):
         last = min(c + lower, unknowns - 1)
         width = min(c + lower + upper, unknowns - 1)
@@ -161,8 +166,7 @@ def _lane_level(a, order, degree, perm, lanes, count, cuts, state):  # type: ign
     lane has ``count + 1`` cuts then. Newton from the chord's zero, bisection where it leaves the
     bracket; a lane rests once Newton's next error drowns in the polynomial's rounding.
     """
-    s, low, high, start = state[0], state[1], state[2], state[3]
-    end, moved, value, slope = state[4], state[5], state[6], state[7]
+    s, low, high, start, end, moved, value, slope = state
     for x in range(lanes):
         low[x] = 0.0
         start[x] = perm[order, order] * a[order, x]
@@ -200,8 +204,15 @@ def _lane_level(a, order, degree, perm, lanes, count, cuts, state):  # type: ign
 
 
 @compiled
-def _lane_cuts(a, degree, perm, lanes, cuts, state):  # type: ignore[no-untyped-def]
-    """Where the polynomials ``a[power, lane]`` turn on [0, 1]: ``degree − 1`` places a lane."""
+def _lane_reach(a, degree, perm, lanes, cuts, state, least, most):  # type: ignore[no-untyped-def]
+    """Least and largest value of the polynomials ``a[power, lane]`` on [0, 1]."""
+    value, slope = state[6], state[7]
+    for x in range(lanes):
+        end = 0.0
+        for i in range(degree + 1):
+            end += a[i, x]
+        least[x] = a[0, x] if a[0, x] <= end else end
+        most[x] = a[0, x] if a[0, x] >= end else end
     if degree == 2:
         for x in range(lanes):
             turn = -0.5 * a[1, x] / a[2, x]
@@ -210,19 +221,11 @@ def _lane_cuts(a, degree, perm, lanes, cuts, state):  # type: ignore[no-untyped-
         _lane_turns(a, degree - 2, perm, lanes, cuts)
     for order in range(degree - 3, 0, -1):
         _lane_level(a, order, degree, perm, lanes, degree - 1 - order, cuts, state)
-
-
-@compiled
-def _lane_tops(a, degree, perm, lanes, cuts, state, side, peak):  # type: ignore[no-untyped-def]
-    """Largest absolute value at both ends and the cuts; with a side ±1 the largest on that side."""
-    s, value, slope = state[0], state[6], state[7]
-    for piece in range(-2, degree - 1):
+    for piece in range(degree - 1):
+        _lane_horner(a, 0, degree, perm, lanes, cuts[piece], value, slope)
         for x in range(lanes):
-            s[x] = cuts[piece, x] if piece >= 0 else piece + 2.0
-        _lane_horner(a, 0, degree, perm, lanes, s, value, slope)
-        for x in range(lanes):
-            here = abs(value[x]) if side == 0.0 else side * value[x]
-            peak[x] = here if piece == -2 or here > peak[x] else peak[x]
+            least[x] = value[x] if value[x] < least[x] else least[x]
+            most[x] = value[x] if value[x] > most[x] else most[x]
 
 
 @compiled
@@ -245,10 +248,13 @@ def batch_peaks(  # type: ignore[no-untyped-def]
     scaled = np.empty((first[n], joints * block))
     a = np.empty((MAX_COEFFICIENTS, joints * block))
     cuts = np.empty((MAX_COEFFICIENTS, joints * block))
-    peak = np.empty(joints * block)
-    state = np.empty((8, joints * block))
+    low, high, rate = np.empty(joints * block), np.empty(joints * block), np.empty(block)
+    best = np.empty((2, joints * block))
+    room = np.empty((8, joints * block))
+    state = (room[0], room[1], room[2], room[3], room[4], room[5], room[6], room[7])
     for start in range(0, durations.shape[0], max(1, block)):
         vectors = min(block, durations.shape[0] - start)
+        lanes = joints * vectors
         for v in range(vectors):
             valid = True
             for k in range(n):
@@ -262,21 +268,35 @@ def batch_peaks(  # type: ignore[no-untyped-def]
         )  # fmt: skip
         for i in range(wanted.shape[1]):
             r = least + i
-            for k in range(n if wanted[:, i].any() else 0):
+            if not wanted[:, i].any():
+                continue
+            best[:] = 0.0
+            for k in range(n):
                 degree = first[k + 1] - first[k] - 1 - r
                 if degree < 0:
                     continue
                 for p in range(degree + 1):
-                    for x in range(joints * vectors):
+                    for x in range(lanes):
                         a[p, x] = perm[p + r, r] * scaled[first[k] + p + r, x]
-                _lane_cuts(a, degree, perm, joints * vectors, cuts, state)
-                for side in range(sides.size):
-                    _lane_tops(a, degree, perm, joints * vectors, cuts, state, sides[side], peak)
+                for v in range(vectors):
+                    rate[v] = 1.0
+                for _ in range(r):
                     for v in range(vectors):
-                        rate = 1.0
-                        for _ in range(r):
-                            rate *= 1.0 / h[k, v]
-                        for j in range(joints):
-                            top = peak[j * vectors + v] * rate
-                            if wanted[j, i] and not top <= peaks[start + v, side, j, i]:
-                                peaks[start + v, side, j, i] = top if top == top else np.inf
+                        rate[v] *= 1.0 / h[k, v]
+                _lane_reach(a, degree, perm, lanes, cuts, state, low, high)
+                for j in range(joints):
+                    for v in range(vectors):
+                        x = j * vectors + v
+                        one, other = -low[x] * rate[v], high[x] * rate[v]
+                        one = one if one == one else np.inf
+                        other = other if other == other else np.inf
+                        best[0, x] = one if one > best[0, x] else best[0, x]
+                        best[1, x] = other if other > best[1, x] else best[1, x]
+            for v in range(vectors):
+                for j in range(joints):
+                    one, other = best[0, j * vectors + v], best[1, j * vectors + v]
+                    for side in range(sides.size):
+                        top = max(one, other) if sides[side] == 0.0 else one
+                        top = other if sides[side] > 0.0 else top
+                        if wanted[j, i] and top > peaks[start + v, side, j, i]:
+                            peaks[start + v, side, j, i] = top

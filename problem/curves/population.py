@@ -49,11 +49,11 @@ def batch_reach(
         part = durations[first:last], values, *rows, PERM, wanted, least, np.array(sides)
         kernel.batch_peaks(*part, peaks[first:last])
 
-    workers = os.cpu_count() or 1
     parts = vectors * joints // _PART
     if parts < 4:
         run(0, vectors)
         return peaks
+    workers = os.cpu_count() or 1
     cuts = np.linspace(0, vectors, min(2 * workers, parts) + 1).astype(int).tolist()
     with ThreadPoolExecutor(workers) as pool:
         list(pool.map(run, cuts[:-1], cuts[1:]))

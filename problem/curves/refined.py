@@ -80,7 +80,7 @@ def refined_coefficients(layout: Layout, values: Array, durations: Array) -> tup
 
 def _refined(rows: System, values: Array, solve: Callable[[Array], Array]) -> NDArray[np.floating]:
     """Coefficients after a solution and two steps of refinement, in extended precision."""
-    flat = np.zeros((len(rows.values), values.shape[1]), dtype=np.longdouble)
+    flat = rows.begun(values)
     for _ in range(3):
         residual = np.concatenate(
             [(part.right(values[at]) - part.times(flat)) for at, part in rows.parts()]

@@ -52,6 +52,16 @@ class System:
         """Right-hand sides from the rows' values."""
         return np.asarray(self.factor[:, None] * values.astype(self.factor.dtype))
 
+    def begun(self, values: Array) -> NDArray[np.floating]:
+        """Coefficients that a row of one entry gives at once; 0 for the others.
+
+        What is solved for from here is exactly 0 for a joint that stands still.
+        """
+        flat = np.zeros((len(self.values), values.shape[1]), dtype=self.factor.dtype)
+        alone = np.count_nonzero(self.values, axis=1) == 1
+        flat[self.columns[alone, 0]] = self.right(values)[alone] / self.values[alone, :1]
+        return flat
+
     def parts(self) -> Iterator[tuple[slice, System]]:
         """The rows in parts, so that extended precision takes little memory."""
         for start in range(0, len(self.values), _PART):
@@ -119,12 +129,14 @@ def coefficients(layout: Layout, values: Array, durations: Array) -> Array:
     SingularError
     """
     rows = system(layout, durations)
+    flat = rows.begun(values)
+    residual = rows.right(values) - rows.times(flat)
     with np.errstate(all="ignore"):
         if rows.in_band:
-            flat = rows.factors.solve(rows.right(values))
+            flat = flat + rows.factors.solve(residual)
         else:
             try:
-                flat = np.linalg.solve(rows.dense, rows.right(values))
+                flat = flat + np.linalg.solve(rows.dense, residual)
             except np.linalg.LinAlgError:
                 raise singular(layout, durations) from None
     if not np.isfinite(flat).all():
