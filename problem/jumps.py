@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .arrays import Array
-from .curves import Trajectory, step_sizes
+from .curves import Trajectory
 from .problem import Problem
 
 
@@ -51,7 +51,8 @@ def jumps_of(problem: Problem, trajectory: Trajectory, error: Array) -> list[Jum
     """
     found = []
     for order in range(3):
-        size, scale = step_sizes(trajectory, order)
+        left, right, scale = trajectory.steps(order)
+        size = right - left
         bound = error[:-1, order] + error[1:, order] + 1e-9 * scale
         found += [(b, j, order, size[b, j]) for b, j in np.argwhere(np.abs(size) > bound).tolist()]
     return [

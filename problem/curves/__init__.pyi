@@ -31,7 +31,6 @@ from .peak import (
     extrema,
     furthest,
     near_extrema,
-    step_sizes,
 )
 from .polynomials import MAX_COEFFICIENTS, PERM, bernstein, derived, roots_in_unit, valued
 from .stretched import Timing, segment_peaks, shape_of, solve_in_closed_form
@@ -102,7 +101,6 @@ __all__ = [
     "shape_matrix",
     "shape_of",
     "solve_in_closed_form",
-    "step_sizes",
     "three_five_three",
     "uniform_cubic_b_spline",
     "valued",

@@ -197,9 +197,3 @@ def _reaching(a: Array, errors: Array) -> NDArray[np.int64]:
         for blur in (0.0, -errors, errors):
             counts |= ~(bound + blur < (top + blur).max(axis=0)).all(axis=1)
     return np.flatnonzero(counts)
-
-
-def step_sizes(trajectory: Trajectory, order: int) -> tuple[Array, Array]:
-    """Steps of a derivative at the inner breaks, and the sizes of their terms, (breaks, joints)."""
-    left, right, scale = trajectory.steps(order)
-    return right - left, scale

@@ -141,7 +141,7 @@ def coefficients(layout: Layout, values: Array, durations: Array) -> Array:
                 raise singular(layout, durations) from None
     if not np.isfinite(flat).all():
         raise singular(layout, durations)
-    return layout.unflat(flat)
+    return layout.unflat(np.asarray(flat, dtype=np.float64))
 
 
 def singular(layout: Layout, durations: Array) -> SingularError:

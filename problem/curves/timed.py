@@ -86,14 +86,14 @@ def _turns(following: Array) -> Array:
 
 def least_speed(speed: Numbers) -> tuple[Array, Array]:
     """Smallest value on [0, 1] of quadratics, ascending along the last axis, and its place."""
+    b, c = np.asarray(speed[..., 1], np.float64), np.asarray(speed[..., 2], np.float64)
     with np.errstate(divide="ignore", invalid="ignore"):
-        turn = -0.5 * speed[..., 1] / speed[..., 2]
-    turn = np.where((speed[..., 2] > 0.0) & (turn > 0.0) & (turn < 1.0), turn, 0.0)
+        turn = -0.5 * b / c
+    turn = np.where((c > 0.0) & (turn > 0.0) & (turn < 1.0), turn, 0.0)
     places = np.stack([np.zeros(turn.shape), np.ones(turn.shape), turn])
-    values = _valued(speed, places)
+    values = np.asarray(_valued(speed, places), dtype=np.float64)
     at = values.argmin(axis=0)[None]
-    least, place = (np.take_along_axis(one, at, axis=0)[0] for one in (values, places))
-    return np.asarray(least, dtype=np.float64), np.asarray(place, dtype=np.float64)
+    return np.take_along_axis(values, at, 0)[0], np.take_along_axis(places, at, 0)[0]
 
 
 @dataclass(frozen=True, eq=False)
@@ -215,7 +215,7 @@ class ClockedTrajectory(Trajectory):
         q = self.scaled[:, :4].transpose(0, 2, 1)
         edges = np.stack([np.zeros(q.shape[:2]), np.ones(q.shape[:2])])
         if order == 0:
-            values, sizes = _valued(q, edges), _valued(np.abs(q), edges)
+            values, sizes = (np.asarray(_valued(one, edges), np.float64) for one in (q, np.abs(q)))
         else:
             clock = self.clock[:, None, :]
             terms = numerators(np.abs(q), np.abs(clock), order, 1)[-1]

@@ -10,7 +10,7 @@ from support.checkout import ROOT
 
 STAMPED = {
     "trajgap.problem.curves.kernel": (),
-    "trajgap.nlp.optimum.newton_curve": ("problem/curves/kernel.py",),
+    "trajgap.nlp.optimum.newton_curve": (),
     "trajgap.nlp.proofs.quintic.nodal": (),
 }
 """Modules that name a room's kernels, and the files elsewhere whose functions those call."""

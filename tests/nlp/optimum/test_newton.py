@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from support.small_problems import FAMILIES, small_problem
 from trajgap.nlp import Solution, Status, kkt
-from trajgap.nlp.optimum import newton_curve, newton_kernel, newton_program, solve, solver
+from trajgap.nlp.optimum import newton_curve, newton_program, solve, solver
 from trajgap.nlp.optimum.descent import least_point
 from trajgap.nlp.optimum.limit_rows import exact_rows
 from trajgap.nlp.optimum.newton import Descents, covered, settled_quickly
@@ -24,7 +24,6 @@ from trajgap.problem import (
     load_case,
     piecewise,
 )
-from trajgap.problem.curves import Deferred, interpreted
 
 FLOOR = 1e-4
 """Floor of the durations, relative to the usual ones, as `solve` asks for it."""
@@ -57,11 +56,11 @@ def _total(problem: Problem, z: Array) -> tuple[float, Array, Array, Array]:
     x, slopes, inverse, excess, gradient, s_of, place = places
     n = z.size
     with np.errstate(all="ignore"):
-        assert interpreted(newton_curve.curve_at)(
+        assert newton_curve.curve_at(
             z, values, kinds, breaks, orders, degrees, column, perm, inverse, x, slopes, True,
             system, right,
         )  # fmt: skip
-        count, _, _ = interpreted(newton_curve.rows_at)(
+        count, _, _ = newton_curve.rows_at(
             z, degrees, smooth, inverse_limits, ranges, span, perm, x, slopes, True,
             excess, gradient, place, s_of, 0.3, work,
         )  # fmt: skip
@@ -70,7 +69,7 @@ def _total(problem: Problem, z: Array) -> tuple[float, Array, Array, Array]:
         weights = np.where(real, 1.0 + 0.1 * place[:count, 2] + 0.3 * place[:count, 1], 0.0)
         hessian = np.zeros((n, n))
         for i in range(count):
-            interpreted(newton_curve.add_curvature)(
+            newton_curve.add_curvature(
                 z, *place[i], s_of[i], weights[i], values, kinds, breaks, orders, degrees, column,
                 perm, span, inverse, x, slopes, hessian, np.zeros(inverse.shape[0]), np.zeros(10),
                 np.zeros(n), np.zeros(n), np.zeros((n, n)),
@@ -116,7 +115,7 @@ def test_the_quadratic_program_is_that_of_non_negative_least_squares() -> None:
             wanted = least_point(hessian, slope, rows, room)
             step, weights = np.empty(size), np.empty(3 * size)
             line = [np.empty(size) for _ in range(4)]
-            found = interpreted(newton_program.least_step)(
+            found = newton_program.least_step(
                 np.linalg.inv(hessian), slope, rows, room, 3 * size, step, weights,
                 np.empty(size, dtype=np.int64), line[0], np.empty((size, size)), line[1],
                 np.empty((size, size + 1)), line[2], line[3],
@@ -206,31 +205,6 @@ def test_what_does_not_settle_goes_to_the_other_ways() -> None:
             Status.INFEASIBLE,
             Status.NONE_FOUND,
         )
-
-
-def test_the_answer_does_not_depend_on_whether_it_was_compiled() -> None:
-    function = Deferred(newton_kernel._shares, 1e9)
-    z, slope, again = np.array([0.3, -0.2, 1.0]), np.empty(3), np.empty(3)
-    assert function(z, slope) == newton_kernel._shares(z, again)
-    assert (slope == again).all()
-
-
-def test_a_kernel_is_compiled_once_that_is_worth_the_wait() -> None:
-    calls = []
-
-    class Fake:
-        signatures: tuple[object, ...] = ()
-
-        def __call__(self, x: float) -> float:
-            calls.append(x)
-            return x
-
-    waiting = Deferred(newton_kernel._shares, 1e9)
-    waiting._ready, waiting._function = True, Fake()
-    assert waiting(2.0) == 2.0
-    spent = Deferred(newton_kernel._shares, 0.0)
-    assert spent(np.zeros(2), np.empty(2)) == pytest.approx(np.log(2.0))
-    assert calls == [2.0]
 
 
 SMALL = """

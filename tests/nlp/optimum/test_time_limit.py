@@ -44,7 +44,6 @@ from trajgap.problem import (
     three_five_three,
     uniform_cubic_b_spline,
 )
-from trajgap.problem.curves import Deferred, compilation
 
 
 @dataclass
@@ -367,20 +366,3 @@ def test_no_descent_is_begun_that_would_end_too_late(monkeypatch: pytest.MonkeyP
     # The third would end 5 s after the limit, as the first two tell.
     assert calls == [0, newton_kernel.STEPS, newton_kernel.STEPS]
     assert np.isinf(found[2:, 1]).all()
-
-
-def test_what_would_be_compiled_beyond_the_limit_is_interpreted(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    monkeypatch.setattr(compilation, "at_hand", lambda _: False)
-    function = Deferred(newton_kernel._shares, 6.0)
-    z, slope, again = np.array([0.3, -0.2, 1.0]), np.empty(3), np.empty(3)
-    function._spent = 7.0
-    with stopping_after(6.0 * compilation.BUSY - 1.0), stopping_after(1000.0):
-        early = function(z, slope)
-    assert not function.compiled
-    function._spent = 9.0
-    with stopping_after(1000.0):
-        assert function(z, again) == early
-    assert function.compiled
-    assert (slope == again).all()

@@ -15,7 +15,7 @@ from trajgap.problem import (
     quintic_spline,
     rest_to_rest,
 )
-from trajgap.problem.curves import furthest, near_extrema, peak, step_sizes
+from trajgap.problem.curves import furthest, near_extrema, peak
 
 NAMES = ("3-5-3", "cubic", "quintic", "rest 7", "4-2-3", "lines", "uneven")
 
@@ -63,16 +63,19 @@ def test_near_extrema_are_those_beyond_the_two_values(name: str) -> None:
         assert near_extrema(curve, 1, r, -np.inf, -np.inf)[0].size == len(points)
 
 
-def test_step_sizes_are_those_of_the_two_sides() -> None:
+def test_steps_are_those_of_the_pieces_on_both_sides() -> None:
     problem, h = sample_problem(DECLARATIONS["uneven"], 13)
     curve = fit(problem.curve, problem.waypoints, h)
     for order in range(4):
-        size, scale = step_sizes(curve, order)
+        left, right, scale = curve.steps(order)
         for b in range(1, 3):
             for j in range(3):
-                left, right, terms = curve.sides(b, j, order)
-                assert size[b - 1, j] == pytest.approx(right - left, abs=1e-14 * terms)
+                before, after = (curve.derivative(b - i, j, order) for i in (1, 0))
+                terms = np.abs(before).sum() + np.abs(after).sum()
+                assert left[b - 1, j] == pytest.approx(before.sum(), abs=1e-14 * terms)
+                assert right[b - 1, j] == after[0]
                 assert scale[b - 1, j] == pytest.approx(terms, rel=1e-14)
+                assert curve.sides(b, j, order) == (left[b - 1, j], after[0], scale[b - 1, j])
 
 
 def long_problem(kind: str, segments: int, seed: int = 4) -> tuple[Problem, np.ndarray]:
