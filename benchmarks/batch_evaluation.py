@@ -18,7 +18,6 @@ import author_code
 import numpy as np
 from scipy.interpolate import make_interp_spline
 from trajgap.problem import Limits, Problem, evaluate, quintic_spline, three_five_three
-from trajgap.problem.curves import compiling_at_once
 
 WAYPOINTS = np.array(
     [
@@ -116,8 +115,7 @@ def row(name, usual, problem, population, repeats):
 
 
 def main():
-    with compiling_at_once():
-        measure()
+    measure()
 
 
 def measure():

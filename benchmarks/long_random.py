@@ -18,7 +18,6 @@ import time
 import numpy as np
 from trajgap.nlp import Solution, Status, solve
 from trajgap.problem import Limits, Problem, cubic_spline, quintic_spline
-from trajgap.problem.curves import compiling_at_once
 
 CURVES = {"C2 cubic": cubic_spline, "C4 quintic": quintic_spline}
 SIZES = ((25, 60), (60, 200), (200, 400))
@@ -60,9 +59,8 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--count", type=int, default=40, help="problems of each row")
     count = parser.parse_args().count
-    with compiling_at_once():
-        for curve in CURVES:
-            solve(random_problem(curve, SIZES[0], 0))
+    for curve in CURVES:
+        solve(random_problem(curve, SIZES[0], 0))
     print("| spline | segments | problems | converged | median s | longest s |")
     print("|---|---|---|---|---|---|")
     for curve in CURVES:

@@ -252,13 +252,7 @@ def measure(question, code, curve, joints, segments):
     """One row in this process: seconds, peak memory, answer."""
     make = CODES[question, code]
     small = {"check": 130, "check FILE": 130, "solve": 26}[question] if code == "ours" else 4
-    if code in ("ours", SLSQP):
-        from trajgap.problem.curves import compiling_at_once
-
-        with compiling_at_once():
-            make(curve, 2, small)()  # loads compiled kernels, or compiles them
-    else:
-        make(curve, 2, small)()  # imports
+    make(curve, 2, small)()  # imports, and loads compiled kernels, or compiles them
     run = make(curve, joints, segments)
     began = time.process_time()
     answer = run()

@@ -36,7 +36,7 @@ from trajgap.problem import (
     rest_to_rest,
     three_five_three,
 )
-from trajgap.problem.curves import batch_coefficients
+from trajgap.problem.curves import coefficients_of_many
 
 IMPROVABLE = 1e-4
 """Relative gain of brute force from which an answer counts as improvable."""
@@ -124,7 +124,7 @@ def _outside(problem: Problem, h: NDArray[np.float64], places: int) -> NDArray[n
     assert isinstance(curve, Interpolant)
     span = np.ptp(problem.waypoints, axis=0)
     span = np.where(span > 0, span, 1.0)
-    c = batch_coefficients(curve, problem.waypoints, h)
+    c = coefficients_of_many(curve, problem.waypoints, h)
     s = np.linspace(0.0, 1.0, places)[1:-1, None] ** np.arange(c.shape[2])
     q = s @ c
     over = np.maximum((q - limits.position_upper) / span, (limits.position_lower - q) / span)

@@ -9,8 +9,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ..problem import TOLERANCE, Array, Problem, TrajgapError, evaluate, evaluate_leading
-from ..problem.curves import compiling_at_once
+from ..problem import TOLERANCE, Array, Problem, TrajgapError, evaluate
 from .objective import DeathPenalty
 from .settings import checked
 
@@ -82,7 +81,7 @@ class Stretch:
 
     def _stretched(self, durations: Array) -> tuple[Array, NDArray[np.bool_]]:
         """Stretched vectors, and whether each is admissible."""
-        found = evaluate_leading(self.problem, durations)
+        found = evaluate(self.problem, durations)
         factor = found.stretch
         if not self.shorten:
             factor = np.maximum(factor, 1.0)
@@ -170,7 +169,4 @@ def compile_judge(problem: Problem, handling: str = Handling.DEATH_PENALTY) -> N
         As `judge_of`.
     """
     ones = np.ones((2, problem.segments))
-    with compiling_at_once():
-        judge_of(problem, np.inf, handling)(ones)
-        if problem.limits.limits_position:
-            _ = evaluate(problem, ones).positions  # a penalty asks only within other limits
+    judge_of(problem, np.inf, handling)(ones)

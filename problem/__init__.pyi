@@ -54,7 +54,7 @@ from .errors import (
     SingularError,
     TrajgapError,
 )
-from .evaluation import Evaluation, evaluate, evaluate_leading, keeps_limits, reachable_total
+from .evaluation import Evaluation, evaluate, keeps_limits, reachable_total
 from .fields import LimitPair, Strict
 from .file_names import LONGEST_NAME, file_name
 from .files import (
@@ -162,7 +162,6 @@ __all__ = [
     "down",
     "escaped",
     "evaluate",
-    "evaluate_leading",
     "extrema",
     "file_name",
     "fit",

@@ -6,20 +6,12 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from .arrays import Array
-from .curves import (
-    Extremum,
-    Trajectory,
-    as_durations,
-    extrema,
-    largest,
-    largest_of_each,
-    tops,
-)
+from .curves import Extremum, Trajectory, as_durations, furthest
 from .errors import CurveError, SingularError
-from .jumps import Jump, jumps_of, of_many
+from .jumps import Jump, jumps_of
 from .limits import QUANTITIES, half_range
 from .problem import Problem
 from .uneven_peaks import uneven_peaks
@@ -164,38 +156,6 @@ def _ratio(value: float, limit: float, error: float) -> float:
     return abs(value) / limit
 
 
-def _largest_of_each(
-    trajectory: Trajectory, error: Array, wanted: NDArray[np.bool_]
-) -> list[tuple[Extremum, float]]:
-    """`_largest` of each wanted derivative; plain polynomials, of few pieces, by one call."""
-    if trajectory.polynomial_in_time and not of_many(trajectory):
-        return largest_of_each(trajectory, error, wanted)
-    return [_largest(trajectory, error, j, r + 1) for j, r in np.argwhere(wanted).tolist()]
-
-
-def _largest(trajectory: Trajectory, error: Array, j: int, r: int) -> tuple[Extremum, float]:
-    """The extremum of the largest size, and the bound on the error of the peak.
-
-    The true peak is at least its own extremum less that one's error, and at most the largest sum of
-    an extremum and its error: a short segment, whose error is large but whose values are small,
-    does not blur the peak of another.
-    """
-    if of_many(trajectory):
-        found = tops(trajectory, error, j, r)
-        own = float(error[found.size.segment, r, j])
-        return found.size, max(own, found.reach - abs(found.size.value))
-    return largest(trajectory, j, r, error[:, r, j])
-
-
-def _outermost(trajectory: Trajectory, error: Array, j: int) -> tuple[Extremum, Extremum]:
-    """Where a joint's position is least, and where it is largest."""
-    if of_many(trajectory):
-        found = tops(trajectory, error, j, 0)
-        return found.lowest, found.highest
-    points = extrema(trajectory, j, 0)
-    return max(points, key=lambda e: -e.value), max(points, key=lambda e: e.value)
-
-
 def _derivative_peaks(
     problem: Problem,
     h: Array,
@@ -211,8 +171,12 @@ def _derivative_peaks(
         sided = uneven_peaks(problem.limits, trajectory, error)
         return [peak(p.extremum, p.size, p.ratio, p.error) for p in sided]
     limits, peaks = problem.limits.derivatives, []
-    for top, bound in _largest_of_each(trajectory, error, np.isfinite(limits)):
-        limit = float(limits[top.joint, top.order - 1])
+    wanted = np.isfinite(limits)
+    orders = np.flatnonzero(wanted.any(axis=0)).tolist()
+    reach = {r: furthest(trajectory, r + 1, error[:, r + 1]) for r in orders}
+    for j, r in np.argwhere(wanted).tolist():
+        top, bound = reach[r].largest(trajectory, j, error[:, r + 1])
+        limit = float(limits[j, r])
         peaks.append(peak(top, limit, _ratio(top.value, limit, bound), bound))
     return peaks
 
@@ -223,15 +187,18 @@ def _position_peaks(
     trajectory: Trajectory,
     error: Array,
 ) -> list[Peak]:
-    peaks = []
+    peaks: list[Peak] = []
+    if not problem.limits.limits_position:
+        return peaks
+    reach = furthest(trajectory, 0, error[:, 0])
     for j, label in enumerate(problem.joints):
         low, high = problem.limits.position_lower[j], problem.limits.position_upper[j]
         if not (np.isfinite(low) or np.isfinite(high)):
             continue
-        ends = _outermost(trajectory, error, j)
-        for limit, sign, top in ((low, -1.0, ends[0]), (high, 1.0, ends[1])):
+        for limit, sign, side in ((low, -1.0, 0), (high, 1.0, 1)):
             if not np.isfinite(limit):
                 continue
+            top = reach.at(trajectory, side, j)
             excess = sign * (top.value - limit)
             half = half_range(low, high, limit)
             bound = float(error[:, 0, j].max())

@@ -57,30 +57,6 @@ class Evaluation:
         return stretch
 
 
-def evaluate_leading(problem: Problem, durations: Array) -> Evaluation:
-    """Evaluate many duration vectors as far as their `stretch` and their positions need it.
-
-    Parameters
-    ----------
-    problem : Problem
-    durations : ndarray, shape (batch, segments)
-        s.
-
-    Returns
-    -------
-    Evaluation
-        Sooner than `evaluate`, where bounds decide: ratios that ask for a smaller stretch than
-        another one of their vector may come out too small.
-    """
-    if problem.limits.uneven:
-        return evaluate(problem, durations)
-    values, limits, wanted, plain = _fixed_question(problem)
-    peaks = problem.curve.leading_peaks(values, durations, wanted, limits)
-    asked = _positions_asked(problem)
-    reach = None if asked is None else partial(_reached, problem, asked, durations.copy())
-    return Evaluation(_over(peaks, limits, plain), reach)
-
-
 def _over(peaks: Array, limits: Array, plain: bool) -> Array:
     """Peaks by their limits."""
     if plain:
@@ -141,37 +117,16 @@ def keeps_limits(problem: Problem, durations: Array, tolerance: float) -> NDArra
     Returns
     -------
     ndarray of bool, shape (batch,)
-        Sooner than all ratios, where bounds decide: what a death penalty asks.
-    """
-    asked = _asked_to_keep(problem, tolerance)
-    if asked is None:
-        sided = np.asarray((_uneven_ratios(problem, durations) <= 1 + tolerance).all(axis=(1, 2)))
-        return _within_positions(problem, durations, sided, tolerance)
-    (values, divisors, wanted, plain), ceilings = asked
-    peaks = problem.curve.decided_peaks(values, durations, wanted, ceilings)
-    if plain:
-        within = peaks / divisors <= 1 + tolerance
-    else:
-        with np.errstate(invalid="ignore", divide="ignore"):
-            ratios = peaks / divisors
-        # 0/0 keeps a limit of 0, inf/inf keeps nothing.
-        within = (ratios <= 1 + tolerance) | (peaks == 0.0)
-    # One axis is gone through far quicker than two.
-    kept = np.asarray(within.reshape(len(within), divisors.size).all(axis=1))
-    return _within_positions(problem, durations, kept, tolerance)
-
-
-@lru_cache(maxsize=64)
-def _asked_to_keep(problem: Problem, tolerance: float) -> tuple[_Question, Array] | None:
-    """What a curve is asked, and the largest peaks that are kept; None where sides differ.
-
-    Keyed by the problem's identity, as `_fixed_question`.
+        What a death penalty asks.
     """
     if problem.limits.uneven:
-        return None
-    question = _fixed_question(problem)
-    _, divisors, wanted, _ = question
-    return question, np.where(wanted, divisors, np.inf) * (1 + tolerance)
+        ratios = _uneven_ratios(problem, durations)
+    else:
+        values, limits, wanted, plain = _fixed_question(problem)
+        ratios = _over(problem.curve.batch_peaks(values, durations, wanted), limits, plain)
+    # One axis is gone through far quicker than two.
+    kept = np.asarray((ratios <= 1 + tolerance).reshape(len(ratios), -1).all(axis=1))
+    return _within_positions(problem, durations, kept, tolerance)
 
 
 def _within_positions(
@@ -193,7 +148,7 @@ class _PositionsAsked:
     Attributes
     ----------
     values : ndarray
-        From `Curve.range_values`.
+        From `Curve.motion_values`.
     wanted : ndarray of bool, shape (joints,)
     room, half : ndarray, shape (joints, 2)
         Way from the first way-point to the lower and the upper limit, and what an excess beyond
@@ -213,7 +168,7 @@ def _asked_of(problem: Problem, nodal: Array | None) -> _PositionsAsked | None:
     ends = np.stack([limits.position_lower, limits.position_upper], axis=1)
     half = [[half_range(low, high, limit) for limit in (low, high)] for low, high in ends]
     return _PositionsAsked(
-        values=problem.curve.range_values(q, nodal),
+        values=problem.curve.motion_values(q, nodal),
         wanted=np.asarray(np.isfinite(ends).any(axis=1)),
         room=ends - q[0][:, None],
         half=np.array(half),

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .arrays import Array
-from .curves import Extremum, Trajectory, extrema
+from .curves import Extremum, Furthest, Trajectory, furthest
 from .limits import Limits
 
 
@@ -50,11 +50,12 @@ def uneven_peaks(limits: Limits, trajectory: Trajectory, error: Array) -> list[S
     sides = limits.sides
     limited = np.isfinite(sides)
     peaks = []
+    orders = np.flatnonzero(limited.any(axis=(0, 1))).tolist()
+    reach = {r: furthest(trajectory, r + 1, error[:, r + 1]) for r in orders}
     for j, r in np.argwhere(limited.any(axis=0)).tolist():
-        points = extrema(trajectory, j, r + 1)
         found = [
-            _of_side(points, sign, float(sides[side, j, r]), error[:, r + 1, j])
-            for side, sign in ((0, -1.0), (1, 1.0))
+            _of_side(trajectory, reach[r], side, j, float(sides[side, j, r]), error[:, r + 1])
+            for side in (0, 1)
             if limited[side, j, r]
         ]
         # What is not a number decides, as the checker cannot.
@@ -65,15 +66,13 @@ def uneven_peaks(limits: Limits, trajectory: Trajectory, error: Array) -> list[S
     return peaks
 
 
-def _of_side(points: list[Extremum], sign: float, size: float, errors: Array) -> SidePeak:
+def _of_side(
+    trajectory: Trajectory, reach: Furthest, side: int, j: int, size: float, errors: Array
+) -> SidePeak:
     """The furthest extremum to one side, with the bound on where the true one lies."""
-    best, top, reach = points[0], -np.inf, -np.inf
-    for point in points:
-        here = sign * point.value
-        if top == top and not here <= top:
-            best, top = point, here
-        reach = float(np.maximum(reach, here + errors[point.segment]))
-    bound = max(float(errors[best.segment]), reach - top)
+    best, sign = reach.at(trajectory, side, j), (-1.0, 1.0)[side]
+    top = sign * best.value
+    bound = max(float(errors[best.segment, j]), sign * float(reach.outer[side, j]) - top)
     if size == 0.0:
         return SidePeak(best, size, 0.0 if top <= bound else np.inf, bound)
     return SidePeak(best, size, float(np.maximum(0.0, top)) / size, bound)

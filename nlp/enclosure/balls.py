@@ -210,28 +210,19 @@ def enclose_spline(
     plan = layout(interpolant)
     n, joints = interpolant.segments, waypoints.mid.shape[1]
     size = plan.kinds.size
-    first = np.concatenate([[0], np.cumsum(plan.degrees + 1)])
-    entries = Ball.exact(np.zeros((size, size)))
-    for i in range(size):
-        b, r = plan.breaks[i], plan.orders[i]
-        if plan.kinds[i] == ConditionKind.RIGHT_VALUE:
-            entries.mid[i, first[b] + r] = PERM[r, r]
-        else:
-            powers = np.arange(r, plan.degrees[b - 1] + 1)
-            entries.mid[i, first[b - 1] + powers] = PERM[powers, r]
-    match = np.flatnonzero(plan.kinds == ConditionKind.MATCH)
-    match = match[plan.orders[match] <= plan.degrees[plan.breaks[match]]]
-    after, order = plan.breaks[match], plan.orders[match]
-    column = first[after] + order
+    columns, factors = plan.entries
+    entries = Ball.exact(plan.dense(factors.astype(float)))
+    match, slot = plan.links
+    after, order, column = plan.breaks[match], plan.orders[match], columns[match, slot]
     link = quotient_power(durations[after - 1], durations[after], order)
-    link = link * Ball.exact(-PERM[order, order])
+    link = link * Ball.exact(factors[match, slot].astype(float))
     entries.mid[match, column], entries.rad[match, column] = link.mid, link.rad
     system = _system(entries)
     if system is None:
         return None
 
     rows = np.flatnonzero(plan.kinds != ConditionKind.MATCH)
-    own = plan.breaks[rows] - (plan.kinds[rows] == ConditionKind.LEFT_VALUE)
+    own = plan.segment[rows]
     values = Ball.exact(right_hand_sides(interpolant, waypoints.mid, None))
     at = plan.waypoint >= 0
     values.rad[at] = waypoints.rad[plan.waypoint[at]]

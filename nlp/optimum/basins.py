@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...problem import Array, CurveError, Problem, TrajgapError, check, evaluate, fit
-from ...problem.curves import batch_coefficients
+from ...problem.curves import coefficients_of_many
 from .clock import seconds_left, time_up
 from .decided import kept, tolerated
 from .descent import KEPT, Descent, descend, restored
@@ -49,7 +49,7 @@ def _scaled(problem: Problem, h: Array) -> Array:
     """Coefficients of all vectors, shape (vectors, pieces, powers, joints); NaN without a curve."""
     curve = problem.curve
     if curve.piecewise is not None:
-        return batch_coefficients(curve.piecewise, problem.waypoints, h)
+        return coefficients_of_many(curve.piecewise, problem.waypoints, h)
     found: list[Array | None] = []
     for one in h:
         try:

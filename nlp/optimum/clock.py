@@ -13,8 +13,6 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 
-from ...problem.curves import compiling_until
-
 _END: ContextVar[float] = ContextVar("end", default=math.inf)
 """Reading of the clock at which the searches of this thread end: none without `stopping_after`."""
 CAPS = (0.25, 2.0, 16.0, 128.0)
@@ -36,8 +34,7 @@ def stopping_after(seconds: float) -> Iterator[None]:
     end = min(_END.get(), time.perf_counter() + seconds)
     token = _END.set(end)
     try:
-        with compiling_until(end):
-            yield
+        yield
     finally:
         _END.reset(token)
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...problem import Array, Problem, check, fit
-from ...problem.curves import coefficient_gradient, segment_peaks
+from ...problem.curves import segment_peaks
 from .decided import kept
 from .judgement import KKT_TOLERANCE
 from .optimality import kkt
@@ -33,10 +33,11 @@ def idle_segments(problem: Problem) -> list[int]:
         return []
     h = equal_start(problem)
     trajectory = fit(problem.curve, problem.waypoints, h)
-    gradient = coefficient_gradient(polynomials, problem.waypoints, h).durations
+    adjoint = polynomials.adjoint(problem.waypoints, h)
+    moved = [np.abs(adjoint.coefficients_by_duration(k)).max() for k in range(problem.segments)]
     size = 1e-12 * max(1.0, float(np.abs(trajectory.scaled).max()))
     still = np.abs(trajectory.scaled[:, 1:]).max(axis=(1, 2)) <= size
-    apart = np.abs(gradient * h[:, None, None, None]).max(axis=(1, 2, 3)) <= size
+    apart = np.array(moved) * h <= size
     return np.flatnonzero(still & apart).tolist()
 
 

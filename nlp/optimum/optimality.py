@@ -21,7 +21,7 @@ from ...problem import (
     fit,
     peak_gradients,
 )
-from ...problem.curves import PERM, Adjoint, Places, Trajectory
+from ...problem.curves import PERM, Places, Trajectory
 from .limit_rows import beyond_nothing
 
 ACTIVE = 1e-7
@@ -310,7 +310,7 @@ def sparse_kkt(problem: Problem, durations: Array, found: Multipliers, violation
     trajectory = fit(problem.curve, problem.waypoints, durations)
     moved = on_extrema(trajectory, found.places)
     places = replace(moved, s=np.where(found.follows, moved.s, found.places.s))
-    adjoint = Adjoint(problem.piecewise, problem.waypoints, durations)
+    adjoint = problem.piecewise.adjoint(problem.waypoints, durations)
     limits, j, position = problem.limits, places.joint, places.order == 0
     side = np.where(found.limits >= 0.0, 1.0, -1.0)
     edge = np.where(side > 0, limits.position_upper[j], limits.position_lower[j])

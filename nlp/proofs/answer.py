@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...problem import Interpolant, Limits, Problem
-from ...problem.curves import ConditionKind, StretchedUniformBSpline, vertex_matrix
+from ...problem.curves import StretchedUniformBSpline, layout, vertex_matrix
 from .exact import ExactProblem, Real
 
 _STRETCHES = tuple(Fraction(1, 10**k) for k in (13, 12, 11, 10, 9, 8, 7))
@@ -101,34 +101,19 @@ def exact_coefficients(
     clock: Callable[[], None] = _unlimited,
 ) -> list[list[list[Fraction]]] | None:
     """Coefficients [joint][segment][power] in s = (t − t_k)/h_k; None if not determined."""
-    first = [0]
-    for degree in interpolant.degrees:
-        first.append(first[-1] + degree + 1)
-    joints = len(waypoints[0])
-    at = {b: waypoints[i] for i, b in enumerate(interpolant.waypoint_breaks)}
-    matrix, right = [], []
-    for row in interpolant.rows:
-        line, values = [Fraction(0)] * first[-1], [Fraction(0)] * joints
-        if row.kind != ConditionKind.RIGHT_VALUE:
-            k = row.at - 1
-            for p in range(row.order, interpolant.degrees[k] + 1):
-                line[first[k] + p] = math.perm(p, row.order) / durations[k] ** row.order
-        if row.kind != ConditionKind.LEFT_VALUE and row.order <= interpolant.degrees[row.at]:
-            sign = 1 if row.kind == ConditionKind.RIGHT_VALUE else -1
-            value = sign * math.factorial(row.order) / durations[row.at] ** row.order
-            line[first[row.at] + row.order] = value
-        if row.kind != ConditionKind.MATCH:
-            given = dict(interpolant.prescribed[row.at])
-            held = given[row.order] if row.order else 0.0
-            own = held if isinstance(held, tuple) else (held,) * joints
-            values = [Fraction(x) for x in own] if row.order else list(at[row.at])
-        matrix.append(line)
-        right.append(values)
-    if len(matrix) != first[-1]:
+    if interpolant.free:
         return None
+    plan, joints = layout(interpolant), len(waypoints[0])
+    h = np.array(durations, dtype=object)
+    rows, given = plan.dense(plan.matrix(h)).tolist(), plan.prescribed.tolist()
+    matrix, right = [[Fraction(x) for x in row] for row in rows], []
+    for rate, point, own in zip(plan.rates(h), plan.waypoint, given, strict=True):
+        held = own * joints if len(own) == 1 else own
+        right.append([rate * Fraction(x) for x in (held if point < 0 else waypoints[point])])
     solved = solve_exactly(matrix, right, clock)
     if solved is None:
         return None
+    first = plan.first
     return [
         [[solved[i][j] for i in range(first[k], first[k + 1])] for k in range(interpolant.segments)]
         for j in range(joints)

@@ -1,27 +1,24 @@
-"""Gradients of values on long splines: a banded solve for each value, or one for a weighted sum.
+"""Gradients of values on splines: one solve for each value, or one for a weighted sum.
 
 With Ac = b for the coefficients c of a joint, a value wᵀc changes with a parameter by yᵀ(b′ − A′c),
-Aᵀy = w: rows of the inverse are never formed.
+Aᵀy = w: of long splines rows of the inverse are never formed. The durations stand in A and b as the
+powers that `Conditions` states: an entry (h_{b−1}/h_b)ʳ changes by r/h_{b−1} and −r/h_b of itself,
+a right-hand side h_kʳ by r/h_k.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array
-from . import refined
-from .banded import Factors
-from .condition import ConditionKind
-from .kind import PeakGradients, derivative_rows
+from .condition import Layout
+from .kind import PeakGradients
 from .peak import Extremum
-from .spline import coefficients, layout, right_hand_sides
-
-if TYPE_CHECKING:
-    from .interpolant import Interpolant
+from .polynomials import derivative_rows
+from .system import coefficients, inverse, system
 
 CHUNK = 10_000_000
 """Entries of the multipliers y that are held at once, some hundred megabytes with all they need."""
@@ -55,37 +52,31 @@ class Adjoint:
 
     Parameters
     ----------
-    interpolant : Interpolant
-    waypoints : ndarray, shape (way-points, joints)
+    layout : Layout
+    values : ndarray, shape (rows, joints)
+        What the conditions give.
     durations : ndarray, shape (segments,)
-    nodal : ndarray, shape (free, joints), optional
+        s.
+
+    Raises
+    ------
+    SingularError
     """
 
-    def __init__(
-        self,
-        interpolant: Interpolant,
-        waypoints: Array,
-        durations: Array,
-        nodal: Array | None = None,
-    ) -> None:
-        plan, rows = layout(interpolant), refined.system(interpolant, durations)
-        pattern = refined.pattern_of(interpolant)
-        self._factors: Factors = rows.factorised()
-        self._durations, self._rows, self._plan = durations, rows, plan
-        self._scaled = coefficients(interpolant, waypoints, durations, nodal)
-        flat = self._scaled[refined.places(interpolant)]
-        # A row that matches two segments holds (h_{b−1}/h_b)ʳ.
-        self._jumps, self._after = pattern.jumps, plan.breaks[pattern.jumps]
-        own = rows.values[pattern.jumps, pattern.slots]
-        column = rows.columns[pattern.jumps, pattern.slots]
-        self._slope = (plan.orders[pattern.jumps] * own)[:, None] * flat[column]
-        # The right-hand side of a given derivative holds hʳ.
-        self._prescribed = np.flatnonzero((plan.kinds != ConditionKind.MATCH) & (plan.orders > 0))
-        self._at = pattern.segment[self._prescribed]
-        values = right_hand_sides(interpolant, waypoints, nodal)[self._prescribed]
-        rate = plan.orders[self._prescribed] * rows.factor[self._prescribed] / durations[self._at]
-        self._rate = rate[:, None] * values
-        self._sizes = (waypoints.shape[0], interpolant.free)
+    def __init__(self, layout: Layout, values: Array, durations: Array) -> None:
+        rows = system(layout, durations)
+        self._layout, self._rows, self._durations = layout, rows, durations
+        self._inverse = None if rows.in_band else inverse(rows, layout, durations)
+        self._scaled = coefficients(layout, values, durations)
+        flat = layout.flat(self._scaled)
+        self._links, slots = layout.links
+        self._after, orders = layout.breaks[self._links], layout.orders[self._links]
+        own, column = (of[self._links, slots] for of in (rows.values, rows.columns))
+        self._slope = (orders * own)[:, None] * flat[column]
+        self._given = np.flatnonzero(layout.powers)
+        self._at = layout.segment[self._given]
+        rate = layout.powers[self._given] * rows.factor[self._given] / durations[self._at]
+        self._rate = rate[:, None] * values[self._given]
 
     def values(self, places: Places) -> Array:
         """The derivatives in time at some places."""
@@ -97,17 +88,16 @@ class Adjoint:
         load = np.zeros((len(self._rows.values), self._scaled.shape[2]))
         column, basis = self._loads(places)
         np.add.at(load, (column, places.joint[:, None]), basis * weights[:, None])
-        y = self._factors.solve(load, transposed=True)
-        found = self._by_durations(y, slice(None)).sum(axis=1)
+        found = self._by_durations(self._solved(load), slice(None)).sum(axis=1)
         np.add.at(found, places.segment, weights * self._own(places))
         return np.asarray(found)
 
     def gradients(self, places: Places) -> PeakGradients:
         """Gradients of the values at places, each by all durations, way-points and nodal values."""
         count, size = places.s.size, len(self._rows.values)
-        points, free = self._sizes
+        numbers = (self._layout.waypoint, self._layout.nodal)
+        given = [np.zeros((count, int(number.max(initial=-1)) + 1)) for number in numbers]
         by_duration = np.empty((count, self._durations.size))
-        by_waypoint, by_nodal = np.zeros((count, points)), np.zeros((count, free))
         column, basis = self._loads(places)
         own = self._own(places)
         step = max(1, CHUNK // size)
@@ -116,15 +106,29 @@ class Adjoint:
             v = np.arange(at.stop - start)
             load = np.zeros((size, v.size))
             np.add.at(load, (column[at], v[:, None]), basis[at])
-            y = self._factors.solve(load, transposed=True)
+            y = self._solved(load)
             by_duration[at] = self._by_durations(y, places.joint[at]).T
             by_duration[at][v, places.segment[at]] += own[at]
-            for out, number in ((by_waypoint, self._plan.waypoint), (by_nodal, self._plan.nodal)):
+            for out, number in zip(given, numbers, strict=True):
                 i = np.flatnonzero(number >= 0)
                 part = np.zeros((out.shape[1], v.size))
                 np.add.at(part, number[i], self._rows.factor[i, None] * y[i])
                 out[at] = part.T
-        return PeakGradients(by_duration, by_waypoint, by_nodal)
+        return PeakGradients(by_duration, *given)
+
+    def coefficients_by_duration(self, segment: int) -> Array:
+        """Derivatives of all coefficients by one duration, shape (coefficients, joints)."""
+        right, h = np.zeros((len(self._rows.values), self._scaled.shape[2])), self._durations
+        for side, sign in ((-1, -1.0), (0, 1.0)):
+            own = self._after + side == segment
+            right[self._links[own]] += sign * self._slope[own] / h[segment]
+        right[self._given[self._at == segment]] += self._rate[self._at == segment]
+        return self._solved(right, transposed=False)
+
+    def _solved(self, right: Array, transposed: bool = True) -> Array:
+        if self._inverse is None:
+            return self._rows.factors.solve(right, transposed)
+        return np.asarray((self._inverse.T if transposed else self._inverse) @ right)
 
     def _basis(self, places: Places) -> Array:
         rate = self._durations[places.segment] ** places.order
@@ -132,7 +136,7 @@ class Adjoint:
 
     def _loads(self, places: Places) -> tuple[NDArray[np.int64], Array]:
         """Columns and weights of the coefficients in each value; padded weights are 0."""
-        first = self._rows.first
+        first = self._layout.first
         basis = self._basis(places)
         power = np.arange(basis.shape[1])
         last = first[places.segment + 1] - 1
@@ -146,8 +150,8 @@ class Adjoint:
 
     def _by_durations(self, y: Array, joint: NDArray[np.int64] | slice) -> Array:
         out, h, b = np.zeros((self._durations.size, y.shape[1])), self._durations, self._after
-        change = y[self._jumps] * self._slope[:, joint]
+        change = y[self._links] * self._slope[:, joint]
         np.add.at(out, b - 1, -change / h[b - 1, None])
         np.add.at(out, b, change / h[b, None])
-        np.add.at(out, self._at, y[self._prescribed] * self._rate[:, joint])
+        np.add.at(out, self._at, y[self._given] * self._rate[:, joint])
         return out

@@ -53,7 +53,7 @@ class Factors:
         """The pivots."""
         return np.asarray(self.packed[:, self.lower + self.upper])
 
-    def solve(self, right: Array, transposed: bool = False) -> Array:
+    def solve(self, right: NDArray[np.floating], transposed: bool = False) -> Array:
         """Solution of Ax = b, or of Aᵀx = b, for right-hand sides of shape (size, vectors)."""
         from scipy.linalg.lapack import dgbtrs  # a quarter of a second, and few need it
 

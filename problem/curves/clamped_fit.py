@@ -4,25 +4,33 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import comb
-from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import NDArray
 
 from ..arrays import Array
-from . import kernel
-from .clamped_knots import average_matrix, fractions_of
-from .clamped_system import EPS, Numbers, Spline, interpolated
-from .kind import Enclosed, PeakGradients, Shape, as_waypoints, derivative_row, value_errors
-from .peak import Extremum
-from .spline import as_durations
+from .clamped_declaration import ClampedDeclaration, average_matrix, fractions_of
+from .clamped_knots import inside_support
+from .clamped_system import (
+    EPS,
+    Numbers,
+    Spline,
+    all_sites,
+    conditions_at,
+    interpolated,
+    knot_vector,
+    places_on,
+    span_bases,
+)
+from .kind import Enclosed, PeakGradients, Shape, are_durations, masked, value_errors
+from .peak import Extremum, rows_at
+from .polynomials import MAX_COEFFICIENTS, derived, tops
 from .trajectory import Trajectory
-
-if TYPE_CHECKING:
-    from .clamped import ClampedBSpline
 
 _SLIVER = 1e-12
 """Breaks nearer than this share of the whole differ by rounding alone."""
+_RESOLVED = 1e13
+"""Growth of control points over way-points beyond which float64 resolves nothing of them."""
 _STEP = 1e-30
 """Complex step of the gradients, s: its square is lost in any double, so nothing is truncated."""
 
@@ -31,7 +39,7 @@ def _times(durations: Numbers) -> Numbers:
     return np.concatenate([np.zeros(1, dtype=durations.dtype), np.cumsum(durations)])
 
 
-def _splines(curve: ClampedBSpline, waypoints: Numbers, durations: Numbers) -> list[Spline]:
+def splines_of(curve: ClampedDeclaration, waypoints: Numbers, durations: Numbers) -> list[Spline]:
     """Splines of the joints in time: one for all, or one for each."""
     times = _times(durations)
     average = average_matrix(curve)
@@ -44,44 +52,6 @@ def _splines(curve: ClampedBSpline, waypoints: Numbers, durations: Numbers) -> l
     return [
         interpolated(curve, times, inner, waypoints[:, j : j + 1]) for j, inner in enumerate(rows)
     ]
-
-
-def clamped_control_points(
-    curve: ClampedBSpline, waypoints: ArrayLike, durations: ArrayLike
-) -> tuple[Array, Array]:
-    """Control points of each joint, and the knots they belong to.
-
-    Parameters
-    ----------
-    curve : ClampedBSpline
-        With time "timed".
-    waypoints : array_like, shape (way-points, joints)
-        rad.
-    durations : array_like, shape (segments,)
-        s.
-
-    Returns
-    -------
-    control : ndarray, shape (control points, joints)
-        rad.
-    knots : ndarray, shape (control points + degree + 1, joints)
-        s.
-
-    Raises
-    ------
-    TrajgapError
-        If shapes disagree, a duration is not positive, or no such curve passes the way-points.
-    """
-    q = as_waypoints(curve, waypoints)
-    h = as_durations(durations, curve.segments)
-    splines = _splines(curve, q, h)
-    p = curve.degree
-    columns = [
-        np.concatenate([np.zeros(p), s.knots, np.full(p, s.knots[-1])])
-        for s in splines
-        for _ in range(s.scaled.shape[2])
-    ]
-    return np.concatenate([s.control for s in splines], axis=1), np.stack(columns, axis=1)
 
 
 def _cut(spline: Spline, breaks: Numbers) -> tuple[Numbers, Array, Numbers]:
@@ -147,24 +117,24 @@ def _joined(splines: list[Spline], joints: int, cuts: Numbers | None = None) -> 
         breaks = _union(parts)
         cut = [_cut(s, breaks) for s in splines]
     pieces, size = breaks.size - 1, cut[0][0].shape[1]
-    scaled = np.zeros((pieces, kernel.MAX_COEFFICIENTS, joints), dtype=cut[0][0].dtype)
+    scaled = np.zeros((pieces, MAX_COEFFICIENTS, joints), dtype=cut[0][0].dtype)
     scaled[:, :size] = np.concatenate([c[0] for c in cut], axis=2)
     if np.iscomplexobj(scaled):
         return Pieces(breaks, scaled, np.empty(0), np.empty(0))
     error = np.zeros(scaled.shape)
     error[:, :size] = np.concatenate([c[1] for c in cut], axis=2)
     waypoints = cut[0][2].shape[2]
-    by_waypoint = np.zeros((len(cut), pieces, kernel.MAX_COEFFICIENTS, waypoints))
+    by_waypoint = np.zeros((len(cut), pieces, MAX_COEFFICIENTS, waypoints))
     by_waypoint[:, :, :size] = np.array([c[2] for c in cut])
     by_waypoint = np.broadcast_to(by_waypoint, (joints, *by_waypoint.shape[1:]))
     return Pieces(breaks, scaled, error, by_waypoint)
 
 
-def _pieces(curve: ClampedBSpline, waypoints: Array, durations: Numbers) -> Pieces:
-    return _joined(_splines(curve, waypoints, durations), waypoints.shape[1])
+def _pieces(curve: ClampedDeclaration, waypoints: Array, durations: Numbers) -> Pieces:
+    return _joined(splines_of(curve, waypoints, durations), waypoints.shape[1])
 
 
-def clamped_shape(curve: ClampedBSpline, waypoints: Array) -> Shape:
+def clamped_shape(curve: ClampedDeclaration, waypoints: Array) -> Shape:
     """The curve in its parameter, every segment on an axis of its own."""
     fractions = fractions_of(curve, waypoints)
     assert fractions is not None
@@ -199,10 +169,10 @@ def _on_axis(spline: Spline, sites: Array) -> Spline:
     return Spline(mapped, scaled, error, by_waypoint, spline.control)
 
 
-def clamped_enclosed(curve: ClampedBSpline, waypoints: Array, durations: Array) -> Enclosed:
+def clamped_enclosed(curve: ClampedDeclaration, waypoints: Array, durations: Array) -> Enclosed:
     """Trajectory with pieces between knots, and a bound on the error of every extremum."""
     wide = waypoints.astype(np.longdouble)
-    found = _joined(_splines(curve, wide, durations.astype(np.longdouble)), waypoints.shape[1])
+    found = _joined(splines_of(curve, wide, durations.astype(np.longdouble)), waypoints.shape[1])
     lengths = np.diff(np.asarray(found.breaks, dtype=np.float64))
     scaled = np.asarray(found.scaled, dtype=np.float64)
     trajectory = Trajectory(lengths, scaled, (curve.degree,) * lengths.size)
@@ -210,7 +180,7 @@ def clamped_enclosed(curve: ClampedBSpline, waypoints: Array, durations: Array) 
 
 
 def clamped_gradients(
-    curve: ClampedBSpline, waypoints: Array, durations: Array, points: list[Extremum]
+    curve: ClampedDeclaration, waypoints: Array, durations: Array, points: list[Extremum]
 ) -> PeakGradients:
     """Gradients of the values at fixed places: by complex steps in the durations."""
     found = _pieces(curve, waypoints, durations)
@@ -218,7 +188,7 @@ def clamped_gradients(
     n = curve.segments
     by_duration = np.empty((len(points), n))
     by_waypoint = np.empty((len(points), curve.waypoints))
-    rows = [derivative_row(e.s, e.order) for e in points]
+    rows = rows_at(points)
     for k in range(n):
         step = durations.astype(np.complex128)
         step[k] += 1j * _STEP
@@ -231,3 +201,58 @@ def clamped_gradients(
     for i, (e, row) in enumerate(zip(points, rows, strict=True)):
         by_waypoint[i] = row @ found.by_waypoint[e.joint, e.segment] / lengths[e.segment] ** e.order
     return PeakGradients(by_duration, by_waypoint, np.empty((len(points), 0)))
+
+
+def clamped_reach(
+    curve: ClampedDeclaration,
+    waypoints: Array,
+    durations: Array,
+    wanted: NDArray[np.bool_],
+    sides: tuple[float, ...],
+    least: int,
+) -> Array:
+    """`Curve.batch_reach` of a curve whose time is not stretched, for these way-points."""
+    found = np.zeros((len(durations), len(sides), *wanted.shape))
+    valid = are_durations(durations)
+    h = np.where(valid[:, None], durations, 1.0)
+    times = np.concatenate([np.zeros((len(h), 1)), np.cumsum(h, axis=1)], axis=1)
+    average, fractions = average_matrix(curve), fractions_of(curve, waypoints)
+    inner = [np.einsum("vw,iw->vi", times, average)]  # the same bits for any number of vectors
+    if fractions is not None:
+        inner = [times[:, -1:] * (average @ np.array(row)) for row in fractions]
+    for own, place in zip(np.array_split(np.arange(len(wanted)), len(inner)), inner, strict=True):
+        knots = knot_vector(place, times[:, -1:], curve.degree)
+        asked = all_sites(times, curve.end_orders)
+        valid &= inside_support(knots, asked, curve.degree).all(axis=1)
+        valid &= (np.diff(knots[:, curve.degree : -curve.degree], axis=1) > 0.0).all(axis=1)
+        at = np.flatnonzero(valid)
+        q = waypoints[:, own] - waypoints[0, own]
+        a, widths, regular = _polynomials(curve, q, times[at], knots[at])
+        valid[at] = regular
+        for i in np.flatnonzero(wanted[own].any(axis=0)).tolist():
+            part = derived(a, least + i) / widths[:, :, None] ** (least + i)
+            for side, sign in enumerate(sides):
+                found[at[regular, None], side, own, i] = tops(part, sign)
+    return masked(found, wanted, valid)
+
+
+def _polynomials(
+    curve: ClampedDeclaration, waypoints: Array, times: Array, knots: Array
+) -> tuple[Array, Array, NDArray[np.bool_]]:
+    """Coefficients (powers, vectors, pieces, joints) and widths of pieces where there is a curve.
+
+    Beside them which of the vectors have one: a system whose solution is larger than its data by
+    what float64 resolves has none.
+    """
+    p = curve.degree
+    bases = span_bases(knots, p)
+    matrix = conditions_at(bases, *places_on(knots, p, times), curve.end_orders)
+    right = np.zeros((matrix.shape[-1], waypoints.shape[1]))
+    right[: len(waypoints)] = waypoints
+    regular = np.asarray(np.linalg.slogdet(matrix)[0] != 0.0)
+    control = np.linalg.solve(matrix[regular], right[None])
+    held = np.abs(control).max(axis=(1, 2)) <= _RESOLVED * np.abs(waypoints).max()
+    regular[regular] = held
+    window = np.arange(bases.shape[1])[:, None] + np.arange(p + 1)
+    a = np.einsum("vpam,vpaj->mvpj", bases[regular], control[held][:, window])
+    return a, np.diff(knots[regular, p : knots.shape[1] - p], axis=1), regular

@@ -6,16 +6,11 @@ from collections.abc import Sequence
 from enum import StrEnum
 from itertools import pairwise
 from math import isfinite
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arrays import Array
 from ..errors import TrajgapError
-
-if TYPE_CHECKING:
-    from .clamped import ClampedBSpline
 
 
 class Knots(StrEnum):
@@ -99,26 +94,27 @@ def inner_fractions(vector: Sequence[float], degree: int) -> tuple[float, ...]:
     return tuple((u - knots[0]) / (knots[-1] - knots[0]) for u in knots[ends : len(knots) - ends])
 
 
-def outside_support(
+def inside_support(
     knots: NDArray[np.float64], sites: NDArray[np.float64], degree: int
-) -> int | None:
-    """First site that leaves the support of its basis function (Schoenberg and Whitney), or None.
+) -> NDArray[np.bool_]:
+    """Which sites lie in the support of their basis function (Schoenberg and Whitney).
 
     Parameters
     ----------
-    knots : ndarray, shape (sites + degree + 1,)
-    sites : ndarray, shape (sites,)
+    knots : ndarray, shape (..., sites + degree + 1)
+    sites : ndarray, shape (..., sites)
         Those of end conditions included: an end as often as something is asked there.
     degree : int
 
     Returns
     -------
-    int or None
+    ndarray of bool, shape (..., sites)
     """
-    low, high = knots[: sites.size], knots[degree + 1 : degree + 1 + sites.size]
-    inside = (low < sites) & (sites < high)
-    inside |= (sites == sites[0]) & (low == sites[0]) | (sites == sites[-1]) & (high == sites[-1])
-    return None if inside.all() else int(np.argmin(inside))
+    count = sites.shape[-1]
+    low, high = knots[..., :count], knots[..., degree + 1 : degree + 1 + count]
+    start, end = sites[..., :1], sites[..., -1:]
+    at_ends = (sites == start) & (low == start) | (sites == end) & (high == end)
+    return np.asarray((low < sites) & (sites < high) | at_ends)
 
 
 def count_inner_knots(
@@ -164,28 +160,3 @@ def chord_fractions(waypoints: NDArray[np.generic]) -> Fractions:
     along = np.concatenate([[0.0], np.cumsum(chords)])
     along /= along[-1]
     return (tuple(map(float, along)),)
-
-
-def fractions_of(curve: ClampedBSpline, waypoints: Array) -> Fractions | None:
-    """Parameters that are no times; None where they are."""
-    if curve.fractions is not None or curve.parameters is Parameters.TIMES:
-        return curve.fractions
-    if curve.parameters is Parameters.CHORD:
-        return chord_fractions(waypoints)
-    return tuple(chord_fractions(q[:, None])[0] for q in waypoints.T)
-
-
-def average_matrix(curve: ClampedBSpline) -> Array:
-    """Inner knots as combinations of the way-points' parameters, shape (inner knots, W)."""
-    w, p = curve.waypoints, curve.degree
-    if curve.knots is Knots.GIVEN:
-        # Parameters start at 0, so that a fraction of the last one is a fraction of the whole.
-        return np.outer(inner_fractions(curve.knot_vector, p), np.eye(w)[-1])
-    if curve.knots is Knots.WAYPOINTS:
-        return np.eye(w)[1:-1]
-    repeats = len(curve.end_orders) if curve.knots is Knots.CONTINUED else 0
-    sites = np.concatenate([np.zeros(repeats, int), np.arange(w), np.full(repeats, w - 1)])
-    matrix = np.zeros((curve.inner_knots, w))
-    for row, j in enumerate(range(1, curve.inner_knots + 1)):
-        np.add.at(matrix[row], sites[j : j + p], 1.0 / p)
-    return matrix

@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import perm
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array
 from ..errors import CurveError
-from .clamped_knots import outside_support
-
-if TYPE_CHECKING:
-    from .clamped import ClampedBSpline
+from .clamped_declaration import ClampedDeclaration
+from .clamped_knots import inside_support
+from .polynomials import PERM
 
 Numbers = NDArray[Any]
 EPS = np.finfo(np.float64).eps
@@ -22,55 +20,71 @@ EPS = np.finfo(np.float64).eps
 
 
 def span_bases(knots: Numbers, degree: int, sign: int = -1) -> Numbers:
-    """Powers of the basis functions on every span, shape (pieces, functions, powers).
+    """Powers of the basis functions on every span, shape (..., pieces, functions, powers).
 
-    Cox–de Boor (2) on polynomials in the span's own 0..1, for all spans at once and any kind of
-    number. With ``sign`` + the terms are added instead, which bounds their sizes.
+    Cox–de Boor (2) on polynomials in the span's own 0..1, for all spans and knot vectors (last
+    axis) at once and any kind of number. With ``sign`` + the terms are added instead, which bounds
+    their sizes.
     """
     p = degree
-    pieces = knots.size - 2 * p - 1
+    pieces = knots.shape[-1] - 2 * p - 1
     at = p + np.arange(pieces)
-    start, width = knots[at], knots[at + 1] - knots[at]
-    bases = np.zeros((pieces, p + 1, p + 1), dtype=knots.dtype)
-    bases[:, 0, 0] = 1
+    start = knots[..., at]
+    width = (knots[..., at + 1] - start)[..., None]
+    bases = np.zeros((*knots.shape[:-1], pieces, p + 1, p + 1), dtype=knots.dtype)
+    bases[..., 0, 0] = 1
     for q in range(1, p + 1):
         raised = np.zeros_like(bases)
         for a in range(q):
-            left, right = knots[at - q + 1 + a], knots[at + 1 + a]
-            c = bases[:, a, :q] / (right - left)[:, None]
-            raised[:, a + 1, :q] += (start - left)[:, None] * c
-            raised[:, a + 1, 1 : q + 1] += width[:, None] * c
-            raised[:, a, :q] += (right - start)[:, None] * c
-            raised[:, a, 1 : q + 1] += sign * width[:, None] * c
+            left, right = knots[..., at - q + 1 + a], knots[..., at + 1 + a]
+            c = bases[..., a, :q] / (right - left)[..., None]
+            raised[..., a + 1, :q] += (start - left)[..., None] * c
+            raised[..., a + 1, 1 : q + 1] += width * c
+            raised[..., a, :q] += (right - start)[..., None] * c
+            raised[..., a, 1 : q + 1] += sign * width * c
         bases = raised
     return bases
 
 
-def _places(knots: Numbers, degree: int, sites: Numbers) -> tuple[NDArray[np.int64], Numbers]:
-    """Span of each site, and where in it."""
+def places_on(knots: Numbers, degree: int, sites: Numbers) -> tuple[NDArray[np.int64], Numbers]:
+    """Span of each site, and where in it; both along the last axis."""
     p = degree
-    inner = np.asarray(knots.real[p : knots.size - p], dtype=np.float64)
-    span = np.searchsorted(inner, np.asarray(sites.real, dtype=np.float64), side="right") - 1
-    span = np.clip(span, 0, inner.size - 2)
-    low, high = knots[p + span], knots[p + span + 1]
+    inner = np.asarray(knots.real[..., p : knots.shape[-1] - p], dtype=np.float64)
+    passed = inner[..., None, :] <= np.asarray(sites.real, dtype=np.float64)[..., None]
+    span = np.clip(passed.sum(axis=-1) - 1, 0, inner.shape[-1] - 2)
+    low, high = (np.take_along_axis(knots, p + span + i, axis=-1) for i in (0, 1))
     return span, np.asarray((sites - low) / (high - low))
 
 
-def _system(
+def conditions_at(
     bases: Numbers, span: NDArray[np.int64], place: Numbers, end_orders: tuple[int, ...]
 ) -> Numbers:
     """Conditions (3) at the sites and of the ends on the control points, one row each."""
-    pieces, functions, _ = bases.shape
-    matrix = np.zeros((span.size + 2 * len(end_orders), pieces + functions - 1), bases.dtype)
-    for w, (k, s) in enumerate(zip(span, place, strict=True)):
-        matrix[w, k : k + functions] = bases[k] @ s ** np.arange(functions)
+    (*lead, pieces, functions, _), sites = bases.shape, span.shape[-1]
+    size = (*lead, sites + 2 * len(end_orders), pieces + functions - 1)
+    matrix, every = np.zeros(size, bases.dtype), np.arange(functions)
+    own = np.take_along_axis(bases, span[..., None, None], axis=-3)
+    values = (own @ (place[..., None] ** every)[..., None])[..., 0]
+    np.put_along_axis(matrix[..., :sites, :], span[..., None] + every, values, axis=-1)
     for i, r in enumerate(end_orders):
-        row = span.size + 2 * i
+        row = sites + 2 * i
         # Scaled by the span's width to the order, which does not matter for a derivative of 0.
-        matrix[row, :functions] = bases[0, :, r]
-        falling = np.array([perm(m, r) for m in range(functions)])
-        matrix[row + 1, pieces - 1 :] = bases[-1] @ falling
+        matrix[..., row, :functions] = bases[..., 0, :, r]
+        matrix[..., row + 1, pieces - 1 :] = bases[..., -1, :, :] @ PERM[:functions, r]
     return matrix
+
+
+def knot_vector(inner: Numbers, end: Numbers, degree: int) -> Numbers:
+    """All knots, from the inner ones and the last, (..., 1), along the last axis."""
+    repeats = [1] * (inner.ndim - 1) + [degree + 1]
+    return np.concatenate([0 * np.tile(end, repeats), inner, np.tile(end, repeats)], axis=-1)
+
+
+def all_sites(sites: Array, end_orders: tuple[int, ...]) -> Array:
+    """Sites with both ends as often as something is asked there, along the last axis."""
+    repeats = [1] * (sites.ndim - 1) + [len(end_orders)]
+    start, end = np.tile(sites[..., :1], repeats), np.tile(sites[..., -1:], repeats)
+    return np.concatenate([start, sites, end], axis=-1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,13 +109,8 @@ class Spline:
     control: Numbers
 
 
-def _knot_vector(inner: Numbers, end: Numbers, degree: int) -> Numbers:
-    zero = np.zeros(degree + 1, dtype=inner.dtype)
-    return np.concatenate([zero, inner, np.repeat(end, degree + 1)])
-
-
 def interpolated(
-    curve: ClampedBSpline, sites: Numbers, inner: Numbers, waypoints: Numbers
+    curve: ClampedDeclaration, sites: Numbers, inner: Numbers, waypoints: Numbers
 ) -> Spline:
     """Solve for the control points of the B-spline through the way-points at the sites.
 
@@ -114,10 +123,10 @@ def interpolated(
         If a site leaves the support of its basis function (Schoenberg and Whitney).
     """
     p = curve.degree
-    knots = _knot_vector(inner, sites[-1:], p)
+    knots = knot_vector(inner, sites[-1:], p)
     bases = span_bases(knots, p)
-    span, place = _places(knots, p, sites)
-    matrix = _system(bases, span, place, curve.end_orders)
+    span, place = places_on(knots, p, sites)
+    matrix = conditions_at(bases, span, place, curve.end_orders)
     _schoenberg_whitney(curve, knots, sites)
     right = np.zeros((matrix.shape[0], waypoints.shape[1]), dtype=matrix.dtype)
     right[: sites.size] = waypoints
@@ -145,7 +154,7 @@ def interpolated(
     for _ in range(2):
         control = control + inverse @ (right - matrix @ control).astype(np.float64)
     sizes = span_bases(knots, p, 1)
-    absolute = np.abs(_system(sizes, span, np.abs(place), curve.end_orders))
+    absolute = np.abs(conditions_at(sizes, span, np.abs(place), curve.end_orders))
     gap = float(np.diff(knots[p : knots.size - p]).min() / sites[-1])
     # Knots carry a rounding of their own, which counts against the smallest gap between them.
     rounding = float(np.finfo(matrix.dtype).eps) * (4 * p + 12 + matrix.shape[0]) * (1 + 2 / gap)
@@ -172,17 +181,14 @@ def interpolated(
     )
 
 
-def _schoenberg_whitney(curve: ClampedBSpline, knots: Numbers, sites: Numbers) -> None:
-    p, repeats = curve.degree, len(curve.end_orders)
-    u = np.asarray(knots.real, dtype=np.float64)
-    x = np.asarray(sites.real, dtype=np.float64)
-    x = np.concatenate([np.repeat(x[:1], repeats), x, np.repeat(x[-1:], repeats)])
-    outside = outside_support(u, x, p)
-    if outside is not None:
-        raise _not_passing(curve, sites, outside - repeats)
+def _schoenberg_whitney(curve: ClampedDeclaration, knots: Numbers, sites: Numbers) -> None:
+    u, x = (np.asarray(of.real, dtype=np.float64) for of in (knots, sites))
+    inside = inside_support(u, all_sites(x, curve.end_orders), curve.degree)
+    if not inside.all():
+        raise _not_passing(curve, sites, int(np.argmin(inside)) - len(curve.end_orders))
 
 
-def _not_passing(curve: ClampedBSpline, sites: Numbers, waypoint: int) -> CurveError:
+def _not_passing(curve: ClampedDeclaration, sites: Numbers, waypoint: int) -> CurveError:
     k = min(max(waypoint, 0), curve.segments - 1)
     return CurveError(
         f"durations: no {curve.name} passes the way-points at these times (way-point {waypoint} "

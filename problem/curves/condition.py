@@ -1,13 +1,31 @@
-"""The linear conditions on the coefficients of a piecewise polynomial, one by one or as arrays."""
+"""The linear conditions on the coefficients of a piecewise polynomial, stated once as numbers.
+
+A condition on derivative r at break b is an equation of one segment k, the one that ends at b, or
+starts there where only that side is meant. Its unit of time is h_k, so that its entries are
+
+    Σ_p p!/(p − r)! c[k, p]                 at the end of the segment,  r! c[k, r]  at its start,
+    − r! (h_k/h_b)ʳ c[b, r]                 where both sides match,
+    = h_kʳ · value                          where one is given.
+
+Rows, columns, whole factors and powers of h stand in `Conditions`; whoever needs the system takes
+them from there, over any kind of number that can be divided and multiplied.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import IntEnum
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from ..arrays import Array
+from .polynomials import MAX_COEFFICIENTS, PERM
+
+Indices = NDArray[np.int64]
 
 
 class ConditionKind(IntEnum):
@@ -31,21 +49,182 @@ class Condition:
 
 
 @dataclass(frozen=True, eq=False)
-class ConditionTable:
-    """The conditions of a declaration in order, as arrays of shape (conditions,)."""
+class Conditions:
+    """Conditions in order, ordered by break, so that their linear system is banded.
 
-    kinds: NDArray[np.int64]
-    breaks: NDArray[np.int64]
-    orders: NDArray[np.int64]
+    Attributes
+    ----------
+    kinds, breaks, orders : ndarray of int, shape (conditions,)
+    degrees : ndarray of int, shape (segments,)
+    """
+
+    kinds: Indices
+    breaks: Indices
+    orders: Indices
+    degrees: Indices
 
     @property
-    def conditions(self) -> tuple[Condition, ...]:
-        """The same, one by one."""
+    def one_by_one(self) -> tuple[Condition, ...]:
+        """The same as objects."""
         columns = (self.kinds.tolist(), self.breaks.tolist(), self.orders.tolist())
         return tuple(
             Condition(ConditionKind(kind), at, order)
             for kind, at, order in zip(*columns, strict=True)
         )
+
+    @cached_property
+    def first(self) -> Indices:
+        """Column of each segment's constant coefficient, and their number; (segments + 1,)."""
+        return np.concatenate([[0], np.cumsum(self.degrees + 1)])
+
+    @cached_property
+    def segment(self) -> Indices:
+        """Segment in whose unit of time each condition is written."""
+        return np.where(self.kinds == ConditionKind.RIGHT_VALUE, self.breaks, self.breaks - 1)
+
+    @cached_property
+    def powers(self) -> Indices:
+        """Power of that segment's duration on the right-hand side; 0 where nothing is given."""
+        return np.where(self.kinds == ConditionKind.MATCH, 0, self.orders)
+
+    @cached_property
+    def entries(self) -> tuple[Indices, Indices]:
+        """Columns and whole factors, each (conditions, widest); a factor of 0 fills up a row."""
+        right, r = self.kinds == ConditionKind.RIGHT_VALUE, self.orders
+        degree = self.degrees[self.segment]
+        columns = np.zeros((r.size, int(self.degrees.max()) + 2), dtype=np.int64)
+        factors = np.zeros(columns.shape, dtype=np.int64)
+        for m in range(columns.shape[1] - 1):
+            power = np.minimum(r + m, MAX_COEFFICIENTS - 1)
+            there = (r + m <= degree) & (~right | (m == 0))
+            columns[there, m] = (self.first[self.segment] + power)[there]
+            factors[there, m] = PERM[power, np.minimum(r, MAX_COEFFICIENTS - 1)][there]
+        i, slot = self.links
+        b = self.breaks[i]
+        columns[i, slot] = self.first[b] + r[i]
+        factors[i, slot] = -PERM[r[i], r[i]]
+        return columns, factors
+
+    @cached_property
+    def links(self) -> tuple[Indices, Indices]:
+        """Where the entries across a break stand: they alone hold durations, (h_{b−1}/h_b)ʳ."""
+        i = np.flatnonzero(self.kinds == ConditionKind.MATCH)
+        i = i[self.orders[i] <= self.degrees[self.breaks[i]]]
+        return i, np.maximum(self.degrees[self.segment[i]] - self.orders[i] + 1, 0)
+
+    def matrix(self, durations: NDArray[Any]) -> NDArray[Any]:
+        """Entries of all rows, shape (conditions, widest), over the durations' kind of number.
+
+        Parameters
+        ----------
+        durations : ndarray, shape (segments,)
+            Floats of any precision, or objects: fractions, symbols.
+        """
+        values = self.entries[1].astype(durations.dtype)
+        i, slot = self.links
+        b = self.breaks[i]
+        values[i, slot] = values[i, slot] * (durations[b - 1] / durations[b]) ** self.orders[i]
+        return values
+
+    def rates(self, durations: NDArray[Any]) -> NDArray[Any]:
+        """What multiplies the given values, h_kʳ, shape (conditions,)."""
+        return np.asarray(durations[self.segment] ** self.powers)
+
+    def dense(self, values: NDArray[Any]) -> NDArray[Any]:
+        """Entries, as from `matrix`, in a full matrix of shape (conditions, coefficients)."""
+        out = np.zeros((self.kinds.size, int(self.first[-1])), dtype=values.dtype)
+        columns, factors = self.entries
+        row, slot = np.nonzero(factors)
+        out[row, columns[row, slot]] = values[row, slot]
+        return out
+
+
+@dataclass(frozen=True, eq=False)
+class Layout(Conditions):
+    """The conditions of a determined declaration, what they give, and the unknowns' numbers.
+
+    Attributes
+    ----------
+    name : str
+        The declaration's, for messages.
+    prescribed : ndarray, shape (conditions, joints or 1)
+        Given derivatives, rad/sᵒʳᵈᵉʳ.
+    waypoint, nodal : ndarray of int, shape (conditions,)
+        Way-point, or free derivative, that a condition gives; −1 for none.
+    """
+
+    name: str
+    prescribed: Array
+    waypoint: Indices
+    nodal: Indices
+
+    @property
+    def segments(self) -> int:
+        """Number of segments."""
+        return self.degrees.size
+
+    @cached_property
+    def places(self) -> tuple[Indices, Indices]:
+        """Segment and power of each coefficient."""
+        segment = np.repeat(np.arange(self.segments), np.diff(self.first))
+        return segment, np.arange(self.first[-1]) - self.first[segment]
+
+    @cached_property
+    def unknown(self) -> Indices:
+        """Number of each coefficient among those that no condition gives at once; else −1."""
+        open_ = np.ones(self.first[-1], dtype=bool)
+        right = self.kinds == ConditionKind.RIGHT_VALUE
+        open_[self.first[self.breaks[right]] + self.orders[right]] = False
+        return np.where(open_, np.cumsum(open_) - 1, -1)
+
+    @cached_property
+    def column(self) -> Indices:
+        """`unknown` by segment and power, shape (segments, 10)."""
+        out = np.full((self.segments, MAX_COEFFICIENTS), -1)
+        out[self.places] = self.unknown
+        return out
+
+    @property
+    def unknowns(self) -> int:
+        """How many."""
+        return int(self.unknown.max()) + 1
+
+    @cached_property
+    def bandwidths(self) -> tuple[int, int]:
+        """Of the system of the unknowns: below and above the diagonal."""
+        columns, factors = self.entries
+        equations = self.kinds != ConditionKind.RIGHT_VALUE
+        at = np.where(factors != 0, self.unknown[columns], -1)[equations]
+        away = at - np.arange(len(at))[:, None]
+        used = at >= 0
+        return int((-away)[used].max(initial=0)), int(away[used].max(initial=0))
+
+    @property
+    def lower(self) -> int:
+        """The bandwidth below."""
+        return self.bandwidths[0]
+
+    @property
+    def upper(self) -> int:
+        """The bandwidth above."""
+        return self.bandwidths[1]
+
+    @cached_property
+    def rows(self) -> tuple[Any, ...]:
+        """What the kernel takes of it, in its order."""
+        columns, factors = self.entries
+        shared = (self.kinds, self.breaks, self.orders, columns, factors.astype(np.float64))
+        return (*shared, self.unknown, self.first, self.lower, self.upper)
+
+    def flat(self, scaled: Array) -> Array:
+        """Coefficients in one axis, from those by segment and power."""
+        return np.asarray(scaled[self.places])
+
+    def unflat(self, flat: Array) -> Array:
+        """Coefficients by segment and power, shape (segments, 10, joints)."""
+        out = np.zeros((self.segments, MAX_COEFFICIENTS, flat.shape[-1]))
+        out[self.places] = flat
+        return out
 
 
 def counts_in_words(conditions: int, unknowns: int, of: str = "coefficients") -> str:
@@ -54,7 +233,9 @@ def counts_in_words(conditions: int, unknowns: int, of: str = "coefficients") ->
     return f"{conditions} conditions{but} {unknowns} {of}"
 
 
-def condition_table(given: Sequence[frozenset[int]], continuity: Sequence[int]) -> ConditionTable:
+def conditions_of(
+    given: Sequence[frozenset[int]], continuity: Sequence[int], degrees: Sequence[int]
+) -> Conditions:
     """The conditions of a declaration, ordered by break: left values, right values, matches.
 
     Breaks that state the same share one template, so that long declarations take no loop over
@@ -65,10 +246,11 @@ def condition_table(given: Sequence[frozenset[int]], continuity: Sequence[int]) 
     given : sequence of frozenset of int, one per break
         Orders whose values are given there; 0 is the position.
     continuity : sequence of int, one per interior break
+    degrees : sequence of int, one per segment
 
     Returns
     -------
-    ConditionTable
+    Conditions
     """
     last = len(given) - 1
     templates: dict[tuple[frozenset[int], int], int] = {}
@@ -100,4 +282,5 @@ def condition_table(given: Sequence[frozenset[int]], continuity: Sequence[int]) 
         np.concatenate([part[i] for part in parts]).astype(np.int64) for i in range(4)
     )
     order = np.lexsort((rank, breaks))
-    return ConditionTable(kinds_[order], breaks[order], orders_[order])
+    whole = np.array(degrees, dtype=np.int64)
+    return Conditions(kinds_[order], breaks[order], orders_[order], whole)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -13,26 +12,27 @@ from numpy.typing import NDArray
 
 from ..arrays import Array
 from ..errors import TrajgapError
-from . import kernel, refined, spline
-from .condition import Condition, ConditionKind, ConditionTable, condition_table, counts_in_words
+from .adjoint import Adjoint, places_of
+from .condition import Condition, ConditionKind, Conditions, Layout, conditions_of, counts_in_words
 from .kind import (
     Curve,
     Derivatives,
     Enclosed,
     PeakGradients,
     as_batch,
-    derivative_row,
     merged_values,
     value_errors,
 )
 from .peak import Extremum
+from .polynomials import MAX_COEFFICIENTS
+from .population import batch_coefficients, batch_reach
+from .refined import refined_coefficients
+from .system import coefficients, system
 from .trajectory import Trajectory
 
 MOST_OPEN = 600
 """Coefficients up to which a case file may leave some free: finding the derivatives that complete
 the declaration takes a dense decomposition for each, some seconds in all."""
-_UNDECIDED = 1e-9
-"""Relative distance from a ceiling within which peaks are computed: bounds know them to 1e-12."""
 _DENSE = 300
 """Coefficients above which the rank is judged by a banded factorisation: a dense one is cubic."""
 
@@ -195,61 +195,37 @@ class Interpolant(Curve):
         return self.continuity[break_index - 1]
 
     def fitted(self, waypoints: Array, durations: Array, nodal: Array | None = None) -> Trajectory:
-        """`fit` by one banded elimination."""
-        scaled = spline.coefficients(self, waypoints, durations, nodal)
-        return Trajectory(durations, scaled, self.degrees)
+        """`fit` by one elimination."""
+        values = right_hand_sides(self, waypoints, nodal)
+        return Trajectory(durations, coefficients(self.layout, values, durations), self.degrees)
 
     def enclosed(self, waypoints: Array, durations: Array, nodal: Array | None = None) -> Enclosed:
         """`fit` refined in extended precision, with the bound of `refined_coefficients`."""
-        scaled, error = refined.refined_coefficients(self, waypoints, durations, nodal)
+        values = right_hand_sides(self, waypoints, nodal)
+        scaled, error = refined_coefficients(self.layout, values, durations)
         trajectory = Trajectory(durations, scaled, self.degrees)
         return Enclosed(trajectory, value_errors(trajectory, error))
 
     def motion_values(self, waypoints: Array, nodal: Array | None = None) -> Array:
-        """Right-hand sides of the conditions, positions counted from the first way-point."""
-        return spline.motion_values(self, waypoints, nodal)
+        """Right-hand sides of the conditions, positions counted from the first way-point.
 
-    def batch_peaks(self, values: Array, durations: Array, wanted: NDArray[np.bool_]) -> Array:
-        """True peaks by the compiled kernel, on several threads where that pays."""
-        return spline.batch_peaks(self, values, as_batch(self, durations), wanted)
+        Derivatives do not depend on that shift; a joint that stands still gets exact zeros by it.
+        """
+        values = right_hand_sides(self, waypoints, nodal)
+        layout = self.layout
+        values[(layout.orders == 0) & (layout.kinds != ConditionKind.MATCH)] -= waypoints[0]
+        return values
 
-    def decided_peaks(
-        self, values: Array, durations: Array, wanted: NDArray[np.bool_], ceilings: Array
-    ) -> Array:
-        """Peaks of pieces that bounds alone do not decide."""
-        h = as_batch(self, durations)
-        return spline.leading_peaks(self, values, h, wanted, ceilings, 1.0 - _UNDECIDED)
-
-    def leading_peaks(
-        self, values: Array, durations: Array, wanted: NDArray[np.bool_], limits: Array
-    ) -> Array:
-        """Peaks of pieces whose bounds leave open whether they demand the largest stretch."""
-        return spline.leading_peaks(self, values, as_batch(self, durations), wanted, limits, 0.0)
-
-    def batch_sides(
+    def batch_reach(
         self,
-        waypoints: Array,
+        values: Array,
         durations: Array,
         wanted: NDArray[np.bool_],
-        nodal: Array | None = None,
+        sides: tuple[float, ...],
+        least: int = 1,
     ) -> Array:
-        """True peaks to each side by the compiled kernel."""
-        values, h = self.motion_values(waypoints, nodal), as_batch(self, durations)
-        sides = zip(wanted, (-1.0, 1.0), strict=True)
-        return np.stack([spline.batch_peaks(self, values, h, part, sign) for part, sign in sides])
-
-    def range_values(self, waypoints: Array, nodal: Array | None = None) -> Array:
-        """Right-hand sides, as for peaks."""
-        return self.motion_values(waypoints, nodal)
-
-    def batch_ranges(self, values: Array, durations: Array, wanted: NDArray[np.bool_]) -> Array:
-        """Least and largest positions by the compiled kernel, of the joints that are asked for."""
-        h = as_batch(self, durations)
-        found = np.zeros((len(h), wanted.size, 2))
-        asked = np.ascontiguousarray(values[:, wanted])
-        if asked.size:
-            found[:, wanted] = spline.batch_ranges(self, asked, h)
-        return found
+        """By the compiled kernel, on several threads where that pays."""
+        return batch_reach(self.layout, values, as_batch(self, durations), wanted, sides, least)
 
     def value_gradients(
         self,
@@ -259,44 +235,60 @@ class Interpolant(Curve):
         nodal: Array | None = None,
     ) -> PeakGradients:
         """Gradients by implicit differentiation of the linear system."""
-        if self.coefficients > _DENSE:
-            # The module builds on this one's neighbours, and few problems need it.
-            from .adjoint import Adjoint, places_of
+        return self.adjoint(waypoints, durations, nodal).gradients(places_of(points))
 
-            return Adjoint(self, waypoints, durations, nodal).gradients(places_of(points))
-        g = refined.coefficient_gradient(self, waypoints, durations, nodal)
-        by_duration = np.empty((len(points), self.segments))
-        by_waypoint = np.empty((len(points), waypoints.shape[0]))
-        by_nodal = np.empty((len(points), self.free))
-        for i, e in enumerate(points):
-            basis = derivative_row(e.s, e.order) / durations[e.segment] ** e.order
-            by_duration[i] = g.durations[:, e.segment, :, e.joint] @ basis
-            by_duration[i, e.segment] -= e.order * e.value / durations[e.segment]
-            by_waypoint[i] = g.waypoints[:, e.segment] @ basis
-            by_nodal[i] = g.nodal[:, e.segment] @ basis
-        return PeakGradients(by_duration, by_waypoint, by_nodal)
+    def adjoint(self, waypoints: Array, durations: Array, nodal: Array | None = None) -> Adjoint:
+        """The curve at one duration vector, ready for gradients."""
+        return Adjoint(self.layout, right_hand_sides(self, waypoints, nodal), durations)
 
     @cached_property
-    def table(self) -> ConditionTable:
+    def table(self) -> Conditions:
         """The conditions as arrays, ordered by break, so that the linear system is banded."""
         virtual = set(self.virtual)
         given = [
             frozenset([*(order for order, _ in entries), *([] if b in virtual else [0])])
             for b, entries in enumerate(self.prescribed)
         ]
-        return condition_table(given, self.continuity)
+        return conditions_of(given, self.continuity, self.degrees)
 
     @cached_property
     def rows(self) -> tuple[Condition, ...]:
         """The conditions one by one."""
-        return self.table.conditions
+        return self.table.one_by_one
+
+    @cached_property
+    def layout(self) -> Layout:
+        """The determined system; free derivatives, if any, become prescribed rows."""
+        full = self.completed() if self.free else self
+        table, n = full.table, full.segments
+        values = np.zeros((n + 1, MAX_COEFFICIENTS + 1, full.prescribed_joints or 1))
+        for b, entries in enumerate(full.prescribed):
+            for order, value in entries:
+                if order < values.shape[1]:
+                    values[b, order] = value
+        free = np.full(values.shape[:2], -1, dtype=np.int64)
+        for i, (b, order) in enumerate(self.free_derivatives):
+            free[b, order] = i
+        waypoint = np.full(n + 1, -1, dtype=np.int64)
+        waypoint[list(self.waypoint_breaks)] = np.arange(len(self.waypoint_breaks))
+        match, orders = table.kinds == ConditionKind.MATCH, table.orders
+        return Layout(
+            kinds=table.kinds,
+            breaks=table.breaks,
+            orders=orders,
+            degrees=table.degrees,
+            name=self.name,
+            prescribed=np.where(match[:, None], 0.0, values[table.breaks, orders]),
+            waypoint=np.where((orders == 0) & ~match, waypoint[table.breaks], -1),
+            nodal=np.where(match, -1, free[table.breaks, orders]),
+        )
 
     @cached_property
     def rank(self) -> int:
         """Rank of the conditions for equal durations."""
         if self.conditions == self.coefficients > _DENSE:
             return self.conditions if self._banded_regular() else self.conditions - 1
-        return int(np.linalg.matrix_rank(self._unit_matrix(self.rows)))
+        return int(np.linalg.matrix_rank(_unit_matrix(self.table)))
 
     @cached_property
     def free_derivatives(self) -> tuple[tuple[int, int], ...]:
@@ -306,22 +298,24 @@ class Interpolant(Curve):
         """
         if self.free == 0:
             return ()
-        rows = list(self.rows)
+        rows = set(self.rows)
         chosen: list[tuple[int, int]] = []
-        matrix, rank = self._unit_matrix(rows), self.rank
+        matrix, rank = _unit_matrix(self.table), self.rank
         for order in range(max(self.degrees) + 1):
             for b in range(self.segments + 1):
-                for kind, there in _SIDES:
+                for kind, there in _ENDS:
                     row = Condition(kind, b, order)
                     if rank == self.coefficients or row in rows or not there(b, self.segments):
                         continue
                     shared = b in (0, self.segments) or order <= self.continuity[b - 1]
                     if (b, order) in chosen or not shared:
                         continue
-                    extended = np.vstack([matrix, self._unit_matrix([row])])
+                    kinds, breaks, orders = np.array([[kind], [b], [order]])
+                    one = Conditions(kinds, breaks, orders, self.table.degrees)
+                    extended = np.vstack([matrix, _unit_matrix(one)])
                     if np.linalg.matrix_rank(extended) > rank:
                         matrix, rank = extended, rank + 1
-                        rows.append(row)
+                        rows.add(row)
                         chosen.append((b, order))
         return tuple(chosen)
 
@@ -353,37 +347,63 @@ class Interpolant(Curve):
 
     def _banded_regular(self) -> bool:
         """Whether a long, determined declaration has a regular system for equal durations."""
-        if self.table.orders.max() >= kernel.MAX_COEFFICIENTS:
+        if self.table.orders.max() >= MAX_COEFFICIENTS:
             return False  # a derivative beyond every degree: 0 whatever the coefficients
         right = self.table.kinds == ConditionKind.RIGHT_VALUE
         if (self.table.orders > np.array([*self.degrees, 0])[self.table.breaks])[right].any():
             return False
-        pivots = np.abs(refined.system(self, np.ones(self.segments)).factorised().diagonal)
+        pivots = np.abs(system(self.layout, np.ones(self.segments)).factors.diagonal)
         return bool(pivots.min() > 1e-13 * pivots.max())
 
-    def _entries(self, row: Condition) -> list[tuple[int, float]]:
-        """Columns and values of one row for equal durations."""
-        entries: list[tuple[int, float]] = []
-        if row.kind != ConditionKind.RIGHT_VALUE:
-            k = row.at - 1
-            powers = range(row.order, self.degrees[k] + 1)
-            entries += [(self._first[k] + p, float(math.perm(p, row.order))) for p in powers]
-        if row.kind != ConditionKind.LEFT_VALUE and row.order <= self.degrees[row.at]:
-            sign = 1.0 if row.kind == ConditionKind.RIGHT_VALUE else -1.0
-            entries.append((self._first[row.at] + row.order, sign * math.factorial(row.order)))
-        return entries
 
-    @cached_property
-    def _first(self) -> tuple[int, ...]:
-        """Column of each segment's constant coefficient."""
-        return tuple(itertools.accumulate((d + 1 for d in self.degrees), initial=0))
+def layout(interpolant: Interpolant) -> Layout:
+    """`Interpolant.layout`, which all numbers of a declared curve come from."""
+    return interpolant.layout
 
-    def _unit_matrix(self, rows: tuple[Condition, ...] | list[Condition]) -> Array:
-        matrix = np.zeros((len(rows), self.coefficients))
-        for i, row in enumerate(rows):
-            for column, value in self._entries(row):
-                matrix[i, column] = value
-        return matrix
+
+def right_hand_sides(interpolant: Interpolant, waypoints: Array, nodal: Array | None) -> Array:
+    """Values of the rows, shape (rows, joints): way-points, prescribed and free derivatives."""
+    plan = interpolant.layout
+    joints = waypoints.shape[1]
+    if waypoints.shape[0] != len(interpolant.waypoint_breaks):
+        raise TrajgapError(
+            f"waypoints: {interpolant.name} with {interpolant.segments} segments needs "
+            f"{len(interpolant.waypoint_breaks)}, got {waypoints.shape[0]}"
+        )
+    if interpolant.free and (nodal is None or nodal.shape != (interpolant.free, joints)):
+        raise TrajgapError(
+            f"interpolant {interpolant.name}: "
+            f"{counts_in_words(interpolant.conditions, interpolant.coefficients)}; give nodal "
+            f"derivatives of shape ({interpolant.free}, {joints}) or add conditions"
+        )
+    if interpolant.prescribed_joints not in (None, joints):
+        raise TrajgapError(
+            f"interpolant {interpolant.name}: prescribes derivatives for "
+            f"{interpolant.prescribed_joints} joints, the way-points have {joints}"
+        )
+    values = np.array(np.broadcast_to(plan.prescribed, (plan.kinds.size, joints)))
+    rows = plan.waypoint >= 0
+    values[rows] = waypoints[plan.waypoint[rows]]
+    if interpolant.free and nodal is not None:
+        rows = plan.nodal >= 0
+        values[rows] = nodal[plan.nodal[rows]]
+    return values
+
+
+def coefficients_of_many(
+    interpolant: Interpolant, waypoints: Array, durations: Array, nodal: Array | None = None
+) -> Array:
+    """Scaled coefficients of many duration vectors, shape (vectors, segments, 10, joints).
+
+    Not finite where the system is singular.
+    """
+    values = right_hand_sides(interpolant, waypoints, nodal)
+    return batch_coefficients(interpolant.layout, values, durations)
+
+
+def _unit_matrix(conditions: Conditions) -> Array:
+    """The conditions for equal durations, as a full matrix."""
+    return conditions.dense(conditions.matrix(np.ones(conditions.degrees.size)))
 
 
 def _values(entries: Derivatives) -> list[float]:
@@ -391,7 +411,7 @@ def _values(entries: Derivatives) -> list[float]:
     return [x for _, v in entries for x in (v if isinstance(v, tuple) else (v,))]
 
 
-_SIDES: tuple[tuple[ConditionKind, Callable[[int, int], bool]], ...] = (
+_ENDS: tuple[tuple[ConditionKind, Callable[[int, int], bool]], ...] = (
     (ConditionKind.LEFT_VALUE, lambda b, n: b > 0),
     (ConditionKind.RIGHT_VALUE, lambda b, n: b < n),
 )

@@ -12,13 +12,17 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import Array
 from ..errors import TrajgapError
-from .peak import Extremum, extrema
-from .spline import PERM, as_durations
+from .peak import Extremum
+from .polynomials import PERM
 from .trajectory import Trajectory
 
 if TYPE_CHECKING:
     from .interpolant import Interpolant
 
+_LONGEST = 1e30
+"""Durations, s, beyond which, or below whose reciprocal, ninth powers leave float64's range."""
+_SIDES = (-1.0, 1.0)
+"""Below 0, and above."""
 Derivatives = tuple[tuple[int, float | tuple[float, ...]], ...]
 """Derivatives ``(order, value)`` prescribed at one break, rad/sᵒʳᵈᵉʳ: one value for all joints, or
 one for each where they differ."""
@@ -156,68 +160,42 @@ class Curve(ABC):
 
     @abstractmethod
     def motion_values(self, waypoints: Array, nodal: Array | None = None) -> Array:
-        """What `batch_peaks` needs to know of the way-points; its last axis is the joint."""
+        """What `batch_reach` needs to know of the way-points; its last axis is the joint."""
 
     @abstractmethod
-    def batch_peaks(self, values: Array, durations: Array, wanted: NDArray[np.bool_]) -> Array:
-        """True peaks of |v|, |a|, |j| for a batch of duration vectors.
+    def batch_reach(
+        self,
+        values: Array,
+        durations: Array,
+        wanted: NDArray[np.bool_],
+        sides: tuple[float, ...],
+        least: int = 1,
+    ) -> Array:
+        """How far derivatives go, for all t, for a batch of duration vectors.
 
         Parameters
         ----------
         values : ndarray
             From `motion_values`.
         durations : ndarray, shape (batch, segments)
-            s; vectors that define no curve give infinite peaks.
-        wanted : ndarray of bool, shape (joints, 3)
-            Which peaks are needed; the others are returned as 0.
+            s; infinite for vectors that define no curve.
+        wanted : ndarray of bool, shape (joints, orders)
+            What is needed, of order ``least`` first; the others are returned as 0.
+        sides : tuple of float
+            0 for the largest size; 1 for the furthest value above 0, −1 for that below, as sizes,
+            and 0 where there is none.
+        least : int
+            0 for positions, counted from the first way-point.
 
         Returns
         -------
-        ndarray, shape (batch, joints, 3)
-            rad/s, rad/s², rad/s³.
+        ndarray, shape (batch, sides, joints, orders)
+            rad/sᵒʳᵈᵉʳ.
         """
 
-    def decided_peaks(
-        self, values: Array, durations: Array, wanted: NDArray[np.bool_], ceilings: Array
-    ) -> Array:
-        """Peaks that are on the same side of the ceilings as the true ones.
-
-        A curve that knows bounds answers sooner than `batch_peaks`; this is that.
-
-        Parameters
-        ----------
-        values, durations, wanted : ndarray
-            As `batch_peaks` takes them.
-        ceilings : ndarray, shape (joints, 3)
-            rad/s, rad/s², rad/s³.
-
-        Returns
-        -------
-        ndarray, shape (batch, joints, 3)
-            Where one exceeds its ceiling, others of that vector may be infinite.
-        """
-        return self.batch_peaks(values, durations, wanted)
-
-    def leading_peaks(
-        self, values: Array, durations: Array, wanted: NDArray[np.bool_], limits: Array
-    ) -> Array:
-        """Peaks that demand the same stretch of all durations as the true ones.
-
-        A curve that knows bounds answers sooner than `batch_peaks`; this is that.
-
-        Parameters
-        ----------
-        values, durations, wanted : ndarray
-            As `batch_peaks` takes them.
-        limits : ndarray, shape (joints, 3)
-            rad/s, rad/s², rad/s³.
-
-        Returns
-        -------
-        ndarray, shape (batch, joints, 3)
-            Those that demand less than another one of that vector may be too small.
-        """
-        return self.batch_peaks(values, durations, wanted)
+    def batch_peaks(self, values: Array, durations: Array, wanted: NDArray[np.bool_]) -> Array:
+        """True peaks of |v|, |a|, |j|, as `batch_reach`; shape (batch, joints, 3)."""
+        return np.asarray(self.batch_reach(values, durations, wanted, (0.0,))[:, 0])
 
     def batch_sides(
         self,
@@ -226,7 +204,7 @@ class Curve(ABC):
         wanted: NDArray[np.bool_],
         nodal: Array | None = None,
     ) -> Array:
-        """True peaks to each side, one vector after the other unless a kind has a quicker way.
+        """True peaks to each side.
 
         Parameters
         ----------
@@ -243,32 +221,19 @@ class Curve(ABC):
         ndarray, shape (2, batch, joints, 3)
             Sizes, rad/s, rad/s², rad/s³: of the furthest value below 0, and above; 0 for none.
         """
-        h, q = as_batch(self, durations), waypoints - waypoints[0]
-        found = np.zeros((2, len(h), q.shape[1], 3))
-        for v, one in enumerate(h):
-            try:
-                trajectory = self.fitted(q, as_durations(one, self.segments), nodal)
-            except TrajgapError:
-                found[:, v] = np.inf
-                continue
-            for j, r in np.argwhere(wanted.any(axis=0)).tolist():
-                values = np.array([e.value for e in extrema(trajectory, j, r + 1)])
-                top = np.maximum(np.array([-values, values]).max(axis=1), 0.0)
-                found[:, v, j, r] = np.where(np.isnan(top), np.inf, top)
+        values = self.motion_values(waypoints, nodal)
+        either = np.logical_or(*wanted)
+        found = self.batch_reach(values, durations, either, _SIDES).swapaxes(0, 1)
         found[~np.broadcast_to(wanted[:, None], found.shape) & np.isfinite(found)] = 0.0
         return found
 
-    def range_values(self, waypoints: Array, nodal: Array | None = None) -> Array:
-        """What `batch_ranges` needs to know of the way-points."""
-        return np.asarray(waypoints - waypoints[0])
-
     def batch_ranges(self, values: Array, durations: Array, wanted: NDArray[np.bool_]) -> Array:
-        """Least and largest positions, one vector after the other unless a kind has a quicker way.
+        """Least and largest positions.
 
         Parameters
         ----------
         values : ndarray
-            From `range_values`.
+            From `motion_values`.
         durations : ndarray, shape (batch, segments)
             s.
         wanted : ndarray of bool, shape (joints,)
@@ -277,20 +242,11 @@ class Curve(ABC):
         Returns
         -------
         ndarray, shape (batch, joints, 2)
-            rad, counted from the first way-point; −inf and inf for vectors that define no curve.
+            rad, counted from the first way-point, which is 0 and among them; −inf and inf for
+            vectors that define no curve.
         """
-        h = as_batch(self, durations)
-        found = np.zeros((len(h), wanted.size, 2))
-        for v, one in enumerate(h):
-            try:
-                trajectory = self.fitted(values, as_durations(one, self.segments))
-            except TrajgapError:
-                found[v] = -np.inf, np.inf
-                continue
-            for j in np.flatnonzero(wanted).tolist():
-                q = np.array([e.value for e in extrema(trajectory, j, 0)])
-                found[v, j] = (q.min(), q.max()) if np.isfinite(q).all() else (-np.inf, np.inf)
-        return found
+        reach = self.batch_reach(values, durations, wanted[:, None], _SIDES, least=0)[..., 0]
+        return np.asarray(reach.swapaxes(1, 2) * _SIDES)
 
     @abstractmethod
     def value_gradients(
@@ -389,6 +345,50 @@ def as_waypoints(curve: Curve, waypoints: ArrayLike) -> Array:
     return q
 
 
+def as_durations(durations: ArrayLike, segments: int) -> Array:
+    """Duration vector as a clean float64 array, or a clear refusal.
+
+    Raises
+    ------
+    TrajgapError
+        On a wrong length, NaN, infinite, zero or negative entries, or such that powers overflow.
+    """
+    try:
+        h = np.ascontiguousarray(durations, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise TrajgapError("durations: not numbers; give seconds, one per segment") from None
+    if h.shape != (segments,):
+        raise TrajgapError(
+            f"durations: expected {segments} (one per segment), got {h.size if h.ndim else 1}"
+            + (f" in shape {h.shape}" if h.ndim > 1 else "")
+        )
+    if not np.isfinite(h).all() or (h <= 0).any():
+        raise TrajgapError(f"durations: {h.tolist()} s must all be positive and finite")
+    if h.min() < 1 / _LONGEST or h.max() > _LONGEST:
+        raise TrajgapError(
+            f"durations: {h.tolist()} s must all lie between {1 / _LONGEST:g} and {_LONGEST:g} s"
+        )
+    return h
+
+
+def are_durations(h: Array) -> NDArray[np.bool_]:
+    """Which vectors of a batch are positive and finite throughout, shape (batch,)."""
+    return np.asarray((np.isfinite(h) & (h > 0)).all(axis=1))
+
+
+def masked(reach: Array, wanted: NDArray[np.bool_], valid: NDArray[np.bool_]) -> Array:
+    """What `Curve.batch_reach` returns, from the numbers that were found, in place.
+
+    Nothing lies on a side of 0 that no value is on; what is no number, or of vectors that define no
+    curve, is infinite.
+    """
+    np.maximum(reach, 0.0, out=reach)
+    reach[np.isnan(reach)] = np.inf
+    reach[:, :, ~wanted] = 0.0
+    reach[~valid] = np.inf
+    return reach
+
+
 def as_batch(curve: Curve, durations: ArrayLike) -> Array:
     """Duration vectors of a batch as a float64 array, or a clear refusal."""
     h = np.ascontiguousarray(durations, dtype=np.float64)
@@ -412,19 +412,3 @@ def value_errors(trajectory: Trajectory, coefficient_error: Array) -> Array:
     # One power after another: those of a table of exponents differ in the last bit.
     powers = np.stack([trajectory.durations**r for r in range(4)], axis=1)
     return np.asarray((own + place) / powers[:, :, None])
-
-
-def derivative_rows(s: Array, order: NDArray[np.int64]) -> Array:
-    """`derivative_row` of many places, shape (places, 10)."""
-    powers = np.arange(PERM.shape[0])
-    left = powers - order[:, None]
-    return np.asarray(
-        np.where(left >= 0, s[:, None] ** np.maximum(left, 0), 0.0) * PERM[:, order].T
-    )
-
-
-def derivative_row(s: float, order: int) -> Array:
-    """Weights of the scaled coefficients in d^order/ds^order at ``s``."""
-    powers = np.arange(PERM.shape[0])
-    row = np.where(powers >= order, s ** np.maximum(powers - order, 0), 0.0)
-    return np.asarray(PERM[:, order] * row)

@@ -3,20 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..arrays import Array
-from . import kernel
-from .compilation import Deferred
-
-if TYPE_CHECKING:
-    from .trajectory import Trajectory
-
-
-unit_roots = Deferred(kernel.roots_in_unit, 1.0)
-"""The root finder; compiling it takes about a second."""
+from .polynomials import LOOSE, bernstein, derivative_rows, derived, roots_in_unit
+from .trajectory import Trajectory
 
 
 @dataclass(frozen=True)
@@ -46,47 +39,16 @@ class Extremum:
     value: float
 
 
+def rows_at(points: list[Extremum]) -> Array:
+    """Weights of ten coefficients in derivatives by s at some places, shape (places, 10)."""
+    orders = np.array([e.order for e in points], dtype=np.int64)
+    return derivative_rows(np.array([e.s for e in points]), orders)
+
+
 def critical_points(a: Array) -> Array:
-    """Places in (0, 1) where the polynomial with ascending coefficients ``a`` turns.
-
-    The derivative's sign changes are found on monotone pieces (roots of the next derivative cut
-    them), to the last bits of float64; nothing is sampled.
-    """
-    degree = a.size - 1
-    if degree < 2:
-        return np.empty(0)
-    derivative = a[1:] * np.arange(1, degree + 1)
-    roots = np.empty(kernel.MAX_COEFFICIENTS)
-    work = np.empty((kernel.MAX_COEFFICIENTS, kernel.MAX_COEFFICIENTS))
-    count = unit_roots(np.ascontiguousarray(derivative), degree - 1, work, roots)
-    return roots[:count].copy()
-
-
-def polynomial_extrema(
-    coefficients: list[float], joint: int, piece: int, order: int, begin: float, duration: float
-) -> list[Extremum]:
-    """`extrema` of one polynomial, without an array where a list of ten numbers will do.
-
-    Parameters
-    ----------
-    coefficients : list of float
-        Of the derivative in time, ascending in the piece's own 0..1.
-    joint, piece, order : int
-    begin, duration : float
-        s.
-
-    Returns
-    -------
-    list of Extremum
-    """
-    inner = critical_points(np.array(coefficients)).tolist() if len(coefficients) > 2 else []
-    found = []
-    for s in (0.0, *inner, 1.0):
-        value = coefficients[-1]
-        for c in coefficients[-2::-1]:
-            value = c + value * s
-        found.append(Extremum(joint, piece, order, s, begin + s * duration, value))
-    return found
+    """Places in (0, 1) where the polynomial with ascending coefficients ``a`` turns."""
+    places = roots_in_unit(derived(a, 1))
+    return places[~np.isnan(places)]
 
 
 def extrema(trajectory: Trajectory, joint: int, order: int) -> list[Extremum]:
@@ -105,49 +67,133 @@ def extrema(trajectory: Trajectory, joint: int, order: int) -> list[Extremum]:
     list of Extremum
         The largest absolute value over all t is among them.
     """
-    own = trajectory.quick_extrema(joint, order)
-    if own is not None:
-        return own
-    found: list[Extremum] = []
-    for k in range(len(trajectory.durations)):
-        places = np.concatenate([[0.0], trajectory.turning(k, joint, order), [1.0]])
-        times, values = trajectory.times(k, places), trajectory.values(k, joint, order, places)
-        found += [
-            Extremum(joint, k, order, s, time, value)
-            for s, time, value in zip(places.tolist(), times.tolist(), values.tolist(), strict=True)
-        ]
-    return found
+    pieces, places, values = near_extrema(trajectory, joint, order, np.inf, -np.inf)
+    times = trajectory.times_of(pieces, places).tolist()
+    rows = zip(pieces.tolist(), places.tolist(), times, values.tolist(), strict=True)
+    return [Extremum(joint, k, order, s, time, value) for k, s, time, value in rows]
 
 
-def largest(
-    trajectory: Trajectory, joint: int, order: int, errors: Array
-) -> tuple[Extremum, float]:
-    """The largest of `extrema` in size, the first of equal ones, and a bound on its error.
+def near_extrema(
+    trajectory: Trajectory, joint: int, order: int, low: float, high: float
+) -> tuple[NDArray[np.int64], Array, Array]:
+    """Pieces, places and values of the extrema that lie at most at ``low`` or at least at ``high``.
 
     Parameters
     ----------
     trajectory : Trajectory
     joint, order : int
-    errors : ndarray, shape (pieces,)
-        Bound on the error of each extremum, by its piece.
+    low, high : float
+        rad/sᵒʳᵈᵉʳ; what is not a number lies beyond both.
 
     Returns
     -------
-    Extremum, float
-        The true peak is at least its own extremum less that one's error, and at most the largest
-        sum of an extremum and its error: a short segment, whose error is large but whose values are
-        small, does not blur the peak of another.
+    pieces, places, values : ndarray, shape (extrema,)
+        In order of time.
     """
-    piece, place, value, size, reach = 0, 0.0, 0.0, -1.0, -np.inf
-    for k in range(len(trajectory.durations)):
-        places = np.concatenate([[0.0], trajectory.turning(k, joint, order), [1.0]])
-        values = trajectory.values(k, joint, order, places)
-        i = int(np.abs(values).argmax())
-        here = abs(float(values[i]))
-        # What is not a number is the largest, and the first such stays.
-        if size == size and not here <= size:
-            piece, place, value, size = k, float(places[i]), float(values[i]), here
-        reach = float(np.maximum(reach, here + errors[k]))
-    time = float(trajectory.times(piece, np.array([place]))[0])
-    bound = max(float(errors[piece]), reach - size)
-    return Extremum(joint, piece, order, place, time, value), bound
+    places, values = (found[:, :, joint].T for found in trajectory.turns(order))
+    wanted = ~np.isnan(places) & ~((values > low) & (values < high))
+    return np.nonzero(wanted)[0], places[wanted], values[wanted]
+
+
+@dataclass(frozen=True, eq=False)
+class Furthest:
+    """The least and the largest value of one derivative of every joint.
+
+    Attributes
+    ----------
+    order : int
+    pieces, places, values : ndarray, shape (2, joints)
+        Of the least and of the largest value; the first in time where several are equal. What is
+        not a number is both.
+    inner : ndarray, shape (2, joints)
+        What some value surely reaches, errors included.
+    outer : ndarray, shape (2, joints)
+        What no value is beyond.
+    """
+
+    order: int
+    pieces: NDArray[np.int64]
+    places: Array
+    values: Array
+    inner: Array
+    outer: Array
+
+    def at(self, trajectory: Trajectory, side: int, joint: int) -> Extremum:
+        """The least value, side 0, or the largest, side 1, of a joint."""
+        k, s = int(self.pieces[side, joint]), float(self.places[side, joint])
+        time = float(trajectory.times(k, np.array(s)))
+        return Extremum(joint, k, self.order, s, time, float(self.values[side, joint]))
+
+    def largest(self, trajectory: Trajectory, joint: int, errors: Array) -> tuple[Extremum, float]:
+        """The largest size of a joint, the first of equal ones, and a bound on its error.
+
+        Parameters
+        ----------
+        trajectory : Trajectory
+        joint : int
+        errors : ndarray, shape (pieces, joints)
+            As `furthest` has got them.
+
+        Returns
+        -------
+        Extremum, float
+            The true peak is at least its own extremum less that one's error, and at most the
+            largest sum of an extremum and its error: a short segment, whose error is large but
+            whose values are small, does not blur the peak of another.
+        """
+        sizes = np.abs(self.values[:, joint])
+        where = [(self.pieces[side, joint], self.places[side, joint]) for side in (0, 1)]
+        first = int(where[1] < where[0])
+        side = 1 - first if sizes[1 - first] > sizes[first] else first
+        top = self.at(trajectory, side, joint)
+        reach = float(np.maximum(self.outer[1, joint], -self.outer[0, joint]))
+        return top, max(float(errors[top.segment, joint]), reach - abs(top.value))
+
+
+def furthest(trajectory: Trajectory, order: int, errors: Array) -> Furthest:
+    """How far a derivative goes to both sides, for all t.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+    order : int
+    errors : ndarray, shape (pieces, joints)
+        Bound on the error of any extremum on a piece.
+
+    Returns
+    -------
+    Furthest
+    """
+    pieces = np.arange(len(trajectory.durations))
+    if trajectory.polynomial_in_time:
+        pieces = _reaching(trajectory.derivatives(order), errors)
+    places, values = trajectory.turns(order, pieces)
+    none, near = np.isnan(places), errors[pieces]
+    # By time: pieces first, places of one after another.
+    shape = (places.shape[0] * pieces.size, trajectory.joints)
+    places = places.transpose(1, 0, 2).reshape(shape)
+    joint, found = np.arange(trajectory.joints), []
+    for sign in (-1.0, 1.0):
+        sized = [np.where(none, -np.inf, sign * values + blur) for blur in (0.0, -near, near)]
+        at = sized[0].transpose(1, 0, 2).reshape(shape).argmax(axis=0)
+        piece, place = at // len(values), at % len(values)
+        ends = [sign * one.max(axis=(0, 1)) for one in sized[1:]]
+        found.append((pieces[piece], places[at, joint], values[place, piece, joint], *ends))
+    return Furthest(order, *(np.array(part) for part in zip(*found, strict=True)))
+
+
+def _reaching(a: Array, errors: Array) -> NDArray[np.int64]:
+    """Pieces that may have the least or largest value of a joint, or one that counts with errors.
+
+    Bernstein coefficients bound a polynomial; a piece that stays within what the ends of others
+    have is left out.
+    """
+    hull = bernstein(a)
+    room = LOOSE * np.abs(a).sum(axis=0)
+    counts = np.zeros(a.shape[1], dtype=bool)
+    for sign in (-1.0, 1.0):
+        bound = (sign * hull).max(axis=0) + room
+        top = (sign * hull[[0, -1]]).max(axis=0) - room
+        for blur in (0.0, -errors, errors):
+            counts |= ~(bound + blur < (top + blur).max(axis=0)).all(axis=1)
+    return np.flatnonzero(counts)

@@ -15,12 +15,14 @@ from .kind import (
     Enclosed,
     PeakGradients,
     Shape,
+    are_durations,
     as_batch,
     as_waypoints,
-    derivative_row,
+    masked,
     value_errors,
 )
-from .peak import Extremum, critical_points
+from .peak import Extremum, rows_at
+from .polynomials import derived, tops
 from .trajectory import Trajectory
 
 
@@ -65,32 +67,20 @@ def segment_peaks(curve: Curve, waypoints: ArrayLike) -> Array:
     -------
     ndarray, shape (segments, joints, 3)
     """
-    return np.asarray(segment_sides(curve, waypoints).max(axis=0))
+    sides = _segment_sides(curve, as_waypoints(curve, waypoints))[:, :, 1:]
+    return np.asarray(sides.max(axis=1).transpose(0, 2, 1))
 
 
-def segment_sides(curve: Curve, waypoints: ArrayLike) -> Array:
-    """`segment_peaks` below 0 and above, shape (2, segments, joints, 3); 0 for none.
-
-    Parameters
-    ----------
-    curve : Curve
-        One whose segments are stretched.
-    waypoints : array_like, shape (way-points, joints)
-        rad.
-    """
-    q = as_waypoints(curve, waypoints)
-    form = shape_of(curve, q - q[0])
-    peaks = np.zeros((2, curve.segments, q.shape[1], 3))
-    for p, k in enumerate(form.segment):
-        for j in range(q.shape[1]):
-            a = form.scaled[p, : form.degree + 1, j]
-            for r in range(min(3, form.degree)):
-                a = a[1:] * np.arange(1, a.size) / form.share[p]
-                places = np.concatenate([[0.0], critical_points(a), [1.0]])
-                values = np.polynomial.polynomial.polyval(places, a)
-                peaks[0, k, j, r] = max(peaks[0, k, j, r], float((-values).max()))
-                peaks[1, k, j, r] = max(peaks[1, k, j, r], float(values.max()))
-    return peaks
+def _segment_sides(curve: Curve, waypoints: Array) -> Array:
+    """How far q and its derivatives go below 0 and above, shape (segments, 2, 4, joints)."""
+    form = shape_of(curve, waypoints - waypoints[0])
+    found = np.zeros((curve.segments, 2, 4, waypoints.shape[1]))
+    a = form.scaled[:, : form.degree + 1].transpose(1, 0, 2)[:, :, None]
+    for r in range(4):
+        part = derived(a, r) / form.share[:, None, None] ** r
+        for side, sign in enumerate((-1.0, 1.0)):
+            np.maximum.at(found[:, side, r], form.segment, tops(part, sign))
+    return found
 
 
 def solve_in_closed_form(curve: Curve, waypoints: ArrayLike, limits: ArrayLike) -> Array:
@@ -123,36 +113,6 @@ def solve_in_closed_form(curve: Curve, waypoints: ArrayLike, limits: ArrayLike) 
     return np.asarray((ratios ** (1.0 / np.arange(1, len(QUANTITIES) + 1))).max(axis=(1, 2)))
 
 
-def path_ranges(curve: Curve, waypoints: Array) -> Array:
-    """Least and largest positions of a curve whose path no duration moves, shape (joints, 2).
-
-    Parameters
-    ----------
-    curve : Curve
-    waypoints : ndarray, shape (way-points, joints)
-        rad; positions are counted from the first.
-    """
-    every = np.ones(waypoints.shape[1], dtype=bool)
-    unit = np.ones((1, curve.segments))
-    return np.asarray(Curve.batch_ranges(curve, waypoints - waypoints[0], unit, every)[0])
-
-
-def ranges_where(valid: NDArray[np.bool_], ranges: Array, wanted: NDArray[np.bool_]) -> Array:
-    """The same ranges for every valid vector, as `Curve.batch_ranges` returns them.
-
-    Parameters
-    ----------
-    valid : ndarray of bool, shape (batch,)
-        Whether a vector defines a curve.
-    ranges : ndarray, shape (joints, 2)
-        From `path_ranges`.
-    wanted : ndarray of bool, shape (joints,)
-    """
-    asked = np.where(wanted[:, None], ranges, 0.0)
-    nowhere = np.broadcast_to([-np.inf, np.inf], asked.shape)
-    return np.where(valid[:, None, None], asked, nowhere)
-
-
 class StretchedCurve(Curve):
     """A curve that is known by its `Curve.shape`: a subclass provides that, and these follow."""
 
@@ -164,47 +124,31 @@ class StretchedCurve(Curve):
         return Enclosed(found, value_errors(found, form.error))
 
     def motion_values(self, waypoints: Array, nodal: Array | None = None) -> Array:
-        """`segment_peaks`, which is all that a batch needs; shape (segments, 3, joints)."""
-        return segment_peaks(self, waypoints).transpose(0, 2, 1)
+        """How far each segment goes when its duration is 1 s, which is all that a batch needs."""
+        return _segment_sides(self, waypoints)
 
-    def batch_peaks(self, values: Array, durations: Array, wanted: NDArray[np.bool_]) -> Array:
-        """True peaks by one division a segment."""
-        return self._stretched_peaks(values, as_batch(self, durations), wanted)
-
-    def batch_sides(
+    def batch_reach(
         self,
-        waypoints: Array,
+        values: Array,
         durations: Array,
         wanted: NDArray[np.bool_],
-        nodal: Array | None = None,
+        sides: tuple[float, ...],
+        least: int = 1,
     ) -> Array:
-        """True peaks to each side by one division a segment."""
+        """By one division a segment."""
         h = as_batch(self, durations)
-        sides = zip(segment_sides(self, waypoints).transpose(0, 1, 3, 2), wanted, strict=True)
-        return np.stack([self._stretched_peaks(values, h, part) for values, part in sides])
-
-    def _stretched_peaks(self, values: Array, h: Array, wanted: NDArray[np.bool_]) -> Array:
-        valid = np.asarray((np.isfinite(h) & (h > 0)).all(axis=1))
+        valid = are_durations(h)
         rate = 1.0 / np.where(valid[:, None], h, 1.0)
-        peaks = np.zeros((h.shape[0], values.shape[2], 3))
+        found = np.zeros((len(h), len(sides), *wanted.shape))
+        own = {-1.0: values[:, 0], 1.0: values[:, 1], 0.0: values.max(axis=1)}
         with np.errstate(over="ignore", invalid="ignore"):
             for k in range(self.segments):
-                for r in range(3):
-                    scale = rate[:, k] ** (r + 1)
-                    np.fmax(peaks[:, :, r], scale[:, None] * values[k, r], out=peaks[:, :, r])
-        peaks[:, ~wanted] = 0.0
-        peaks[~valid] = np.inf
-        return peaks
-
-    def range_values(self, waypoints: Array, nodal: Array | None = None) -> Array:
-        """`path_ranges`, which is all that a batch needs."""
-        return path_ranges(self, waypoints)
-
-    def batch_ranges(self, values: Array, durations: Array, wanted: NDArray[np.bool_]) -> Array:
-        """The path's own for every vector that is positive and finite."""
-        h = as_batch(self, durations)
-        valid = np.asarray((np.isfinite(h) & (h > 0)).all(axis=1))
-        return ranges_where(valid, values, wanted)
+                for i in range(wanted.shape[1]):
+                    scale = rate[:, k, None] ** (least + i)
+                    for side, sign in enumerate(sides):
+                        top = scale * own[sign][k, least + i]
+                        np.fmax(found[:, side, :, i], top, out=found[:, side, :, i])
+        return masked(found, wanted, valid)
 
     def value_gradients(
         self,
@@ -217,10 +161,9 @@ class StretchedCurve(Curve):
         form = shape_of(self, waypoints)
         by_duration = np.zeros((len(points), self.segments))
         by_waypoint = np.empty((len(points), waypoints.shape[0]))
-        for i, e in enumerate(points):
+        for i, (e, row) in enumerate(zip(points, rows_at(points), strict=True)):
             k = form.segment[e.segment]
             scale = (durations[k] * form.share[e.segment]) ** e.order
             by_duration[i, k] = -e.order * e.value / durations[k]
-            row = derivative_row(e.s, e.order) / scale
-            by_waypoint[i] = row @ form.by_waypoint[e.joint, e.segment]
+            by_waypoint[i] = row / scale @ form.by_waypoint[e.joint, e.segment]
         return PeakGradients(by_duration, by_waypoint, np.empty((len(points), 0)))

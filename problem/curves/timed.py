@@ -11,11 +11,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import Array
 from ..errors import CurveError, TrajgapError
-from . import timed_kernel
-from .compilation import Deferred
-from .kernel import MAX_COEFFICIENTS
-from .kind import Enclosed
-from .peak import Extremum, critical_points, unit_roots
+from .kind import Enclosed, are_durations
+from .peak import Extremum
+from .polynomials import LOOSE, MAX_COEFFICIENTS, bernstein, roots_in_unit, tops
 from .trajectory import Trajectory
 
 if TYPE_CHECKING:
@@ -23,8 +21,6 @@ if TYPE_CHECKING:
 
 Numbers = NDArray[np.inexact]
 """Real or complex, of any precision: gradients are taken by complex steps."""
-_least_speed = Deferred(timed_kernel.least_speed, 0.5)
-"""Smallest value of t′ on a piece; compiling it takes half a second."""
 
 
 def _derived(a: Numbers) -> Numbers:
@@ -77,6 +73,29 @@ def numerators(q: Numbers, t: Numbers, highest: int, sign: int = -1) -> list[Num
     return found
 
 
+def _in_time(numerator: Numbers, speed: Numbers, order: int, places: Array) -> Array:
+    """Derivative in time, N_r/t′²ʳ⁻¹, at places; powers along the last axis, places lead."""
+    rate = _valued(speed, places) ** (2 * order - 1)
+    return np.asarray(_valued(numerator, places) / rate)
+
+
+def _turns(following: Array) -> Array:
+    """Places where a derivative turns: roots of the next one's numerator; NaN for none."""
+    return roots_in_unit(np.moveaxis(following, -1, 0))
+
+
+def least_speed(speed: Numbers) -> tuple[Array, Array]:
+    """Smallest value on [0, 1] of quadratics, ascending along the last axis, and its place."""
+    b, c = np.asarray(speed[..., 1], np.float64), np.asarray(speed[..., 2], np.float64)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        turn = -0.5 * b / c
+    turn = np.where((c > 0.0) & (turn > 0.0) & (turn < 1.0), turn, 0.0)
+    places = np.stack([np.zeros(turn.shape), np.ones(turn.shape), turn])
+    values = np.asarray(_valued(speed, places), dtype=np.float64)
+    at = values.argmin(axis=0)[None]
+    return np.take_along_axis(values, at, 0)[0], np.take_along_axis(places, at, 0)[0]
+
+
 @dataclass(frozen=True, eq=False)
 class ClockedTrajectory(Trajectory):
     """Joint angles over a parameter e whose time grows with it.
@@ -112,13 +131,6 @@ class ClockedTrajectory(Trajectory):
         found = numerators(q, self.clock[:, None, :], 4)
         return [np.ascontiguousarray(a, dtype=np.float64) for a in found]
 
-    @cached_property
-    def _terms(self) -> list[Array]:
-        """Sums of the absolute terms of q and N_1, N_2 at both ends of the pieces."""
-        q = np.abs(self.scaled[:, :4]).transpose(0, 2, 1)
-        found = [q, *numerators(q, np.abs(self.clock)[:, None, :], 2, 1)]
-        return [np.stack([a[..., 0], a.sum(axis=-1)]).astype(np.float64) for a in found]
-
     def __call__(self, time: ArrayLike, order: int = 0) -> Array:
         """Derivative ``order`` in time at ``time`` (s), by inverting t(e)."""
         t = np.asarray(time, dtype=np.float64)
@@ -127,8 +139,8 @@ class ClockedTrajectory(Trajectory):
         piece = np.clip(np.searchsorted(self.breaks, flat, side="right") - 1, 0, last)
         values = np.empty((flat.size, self.joints))
         for i, (k, target) in enumerate(zip(piece, flat, strict=True)):
-            e = self.place(int(k), float(target))
-            values[i] = [self.value(int(k), j, order, e) for j in range(self.joints)]
+            e = np.array(self.place(int(k), float(target)))
+            values[i] = [self.values(int(k), j, order, e) for j in range(self.joints)]
         return values.reshape(*t.shape, self.joints)
 
     def place(self, piece: int, time: float) -> float:
@@ -147,24 +159,16 @@ class ClockedTrajectory(Trajectory):
             e = step
         return e
 
-    def value(self, piece: int, joint: int, order: int, e: float) -> float:
-        """Derivative in time, up to order 4, at the parameter ``e`` of a piece."""
+    def turns(self, order: int, pieces: NDArray[np.int64] | None = None) -> tuple[Array, Array]:
+        """As `Trajectory.turns`, of derivatives that are no polynomials."""
         if order == 0:
-            return float(_valued(self.scaled[piece, :4, joint], e))
-        speed = float(_valued(_derived(self.clock[piece]), e))
-        return float(_valued(self._numerators[order - 1][piece, joint], e)) / speed ** (
-            2 * order - 1
-        )
-
-    def turning(self, piece: int, joint: int, order: int) -> Array:
-        """Places in (0, 1) where a derivative turns: roots of the next one's numerator."""
-        if order == 0:
-            return critical_points(np.ascontiguousarray(self.scaled[piece, :4, joint]))
-        following = self._numerators[order][piece, joint]
-        roots = np.empty(timed_kernel.ROOM)
-        work = np.empty((timed_kernel.ROOM, timed_kernel.ROOM))
-        count = unit_roots(following, following.size - 1, work, roots)
-        return roots[:count].copy()
+            return super().turns(0, pieces)
+        own = slice(None) if pieces is None else pieces
+        inner = _turns(self._numerators[order][own])
+        edge = np.zeros((1, *inner.shape[1:]))
+        places = np.concatenate([edge, inner, edge + 1.0])
+        speed = _derived(self.clock[own])[:, None, :]
+        return places, _in_time(self._numerators[order - 1][own], speed, order, places)
 
     def derivative(self, segment: int, joint: int, order: int) -> Array:
         """Refuse: a derivative in time is no polynomial.
@@ -184,12 +188,19 @@ class ClockedTrajectory(Trajectory):
         return False
 
     def values(self, piece: int, joint: int, order: int, places: Array) -> Array:
-        """Derivative in time at places of a piece."""
-        return np.array([self.value(piece, joint, order, float(e)) for e in places])
+        """Derivative in time, up to order 4, at places of a piece."""
+        if order == 0:
+            return np.asarray(_valued(self.scaled[piece, :4, joint], places))
+        numerator, speed = self._numerators[order - 1][piece, joint], _derived(self.clock[piece])
+        return _in_time(numerator, speed, order, places)
 
     def times(self, piece: int, places: Array) -> Array:
         """Times of places of a piece, s."""
         return np.asarray(_valued(self.clock[piece], places))
+
+    def times_of(self, pieces: NDArray[np.int64], places: Array) -> Array:
+        """Times of places, each on a piece of its own, s."""
+        return np.asarray(_valued(self.clock[pieces], places))
 
     def level(self, piece: int, joint: int, order: int, value: float) -> Array:
         """N_r − value·t′²ʳ⁻¹, as t′ > 0."""
@@ -199,15 +210,19 @@ class ClockedTrajectory(Trajectory):
         found = self._numerators[order - 1][piece, joint]
         return np.asarray(np.polynomial.polynomial.polysub(found, value * speed))
 
-    def sides(self, break_index: int, joint: int, order: int) -> tuple[float, float, float]:
-        """Derivative, up to order 2, at both sides of an inner break, and the size of its terms."""
-        before, after = (break_index - 1, 1.0), (break_index, 0.0)
-        left, right = (self.value(k, joint, order, e) for k, e in (before, after))
-        scale = 0.0
-        for k, e in (before, after):
-            speed = float(_valued(_derived(self.clock[k]), e)) if order else 1.0
-            scale += float(self._terms[order][int(e), k, joint]) / speed ** max(0, 2 * order - 1)
-        return left, right, scale
+    def steps(self, order: int) -> tuple[Array, Array, Array]:
+        """Derivative, up to order 2, before and after each inner break, and its terms' size."""
+        q = self.scaled[:, :4].transpose(0, 2, 1)
+        edges = np.stack([np.zeros(q.shape[:2]), np.ones(q.shape[:2])])
+        if order == 0:
+            values, sizes = (np.asarray(_valued(one, edges), np.float64) for one in (q, np.abs(q)))
+        else:
+            clock = self.clock[:, None, :]
+            terms = numerators(np.abs(q), np.abs(clock), order, 1)[-1]
+            speed = _derived(clock)
+            values = _in_time(self._numerators[order - 1], speed, order, edges)
+            sizes = _in_time(terms, speed, order, edges)
+        return values[1, :-1], values[0, 1:], sizes[1, :-1] + sizes[0, 1:]
 
 
 def _checked_clock(clock: Array) -> None:
@@ -217,15 +232,15 @@ def _checked_clock(clock: Array) -> None:
     ------
     CurveError
     """
-    worst = [_least_speed(_derived(a)) for a in clock]
-    k = int(np.argmin([value for value, _ in worst]))
-    value, e = worst[k]
+    values, places = least_speed(_derived(clock))
+    k = int(values.argmin())
+    value, e = float(values[k]), float(places[k])
     if not value > 0:
         raise CurveError(
             f"durations: time would not increase along the curve, dt/de = {value:.6g} s at "
             f"e = {e:.4g} of segment {k + 1}; make neighbouring durations less unequal",
             k,
-            float(value),
+            value,
         )
 
 
@@ -273,7 +288,7 @@ def _errors(found: ClockedTrajectory, error: Array, clock_error: Array) -> Array
     t = np.abs(found.clock)[:, None, :]
     dq = error[:, :4].transpose(0, 2, 1) + epsilon * q
     dt = clock_error[:, None, :] + epsilon * t
-    least = np.array([_least_speed(_derived(a))[0] for a in found.clock])[:, None]
+    least = least_speed(_derived(found.clock))[0][:, None]
     slow = _derived(dt).sum(axis=-1) / least
     bounds = np.empty((len(found.clock), 4, found.joints))
     bounds[:, 0] = 2.0 * dq.sum(axis=-1)
@@ -295,3 +310,84 @@ def value_at(q: Numbers, t: Numbers, e: Extremum) -> Numbers:
         return _valued(q, e.s)
     n = numerators(q, t, e.order)[-1]
     return np.asarray(_valued(n, e.s) / _valued(_derived(t), e.s) ** (2 * e.order - 1))
+
+
+def runs_forwards(nodes: Array, durations: Array) -> tuple[Array, NDArray[np.bool_]]:
+    """Clocks of many duration vectors, and which of them run forwards everywhere.
+
+    Parameters
+    ----------
+    nodes : ndarray, shape (pieces, 4, segments)
+        Coefficients in e of t, as combinations of the durations.
+    durations : ndarray, shape (batch, segments)
+        s.
+
+    Returns
+    -------
+    clocks : ndarray, shape (batch, pieces, 4)
+    valid : ndarray of bool, shape (batch,)
+    """
+    valid = are_durations(durations)
+    h = np.where(valid[:, None], durations, 1.0)
+    clocks = np.einsum("vs,kps->vkp", h, nodes)  # the same bits for any number of vectors
+    least = least_speed(_derived(clocks))[0].min(axis=1)
+    return clocks, np.asarray(valid & (least > 0.0))
+
+
+def clocked_reach(
+    q: Array, clocks: Array, wanted: NDArray[np.bool_], sides: tuple[float, ...], least: int
+) -> Array:
+    """How far derivatives in time go under many clocks that run forwards.
+
+    On a piece Bernstein coefficients bound N_r, its least value t′; where that stays below what
+    another piece has at one of its ends it is not looked at further.
+
+    Parameters
+    ----------
+    q : ndarray, shape (pieces, 4, joints)
+        Coefficients of q(e).
+    clocks : ndarray, shape (batch, pieces, 4)
+        Of t(e).
+    wanted, sides, least
+        As `Curve.batch_reach` takes them.
+
+    Returns
+    -------
+    ndarray, shape (batch, sides, joints, orders)
+    """
+    found = np.zeros((len(clocks), len(sides), *wanted.shape))
+    orders = (np.flatnonzero(wanted.any(axis=0)) + least).tolist()
+    t = clocks[:, :, None, :]
+    speed = np.asarray(_derived(t), dtype=np.float64)
+    slowest = least_speed(speed)[0]
+    known = numerators(q.transpose(0, 2, 1), t, max(orders) + 1) if max(orders) else []
+    for r in orders:
+        for side, sign in enumerate(sides):
+            if r == 0:
+                top = tops(q.transpose(1, 0, 2)[:, None], sign)
+            else:
+                top = _tops_in_time(known[r - 1 : r + 1], speed, slowest ** (2 * r - 1), r, sign)
+            found[:, side, :, r - least] = top
+    return found
+
+
+def _tops_in_time(
+    known: list[Numbers], speed: Array, slowest: Array, order: int, side: float
+) -> Array:
+    """`tops` of N_r/t′²ʳ⁻¹, from N_r, N_{r+1} and the least denominators."""
+
+    def sized(value: Array) -> Array:
+        return np.abs(value) if side == 0.0 else side * value
+
+    shape = (*known[1].shape[:-1], known[0].shape[-1])
+    a = np.asarray(np.broadcast_to(known[0], shape), dtype=np.float64)
+    edges = np.stack([np.zeros(shape[:-1]), np.ones(shape[:-1])])
+    found = sized(_in_time(a, speed, order, edges)).max(axis=(0, 2))
+    bound = sized(bernstein(np.moveaxis(a, -1, 0))).max(axis=0) + LOOSE * np.abs(a).sum(axis=-1)
+    open_ = ~(bound < (found[:, None] * slowest)) | ~(found[:, None] >= 0.0)
+    places = _turns(known[1][open_])
+    rate = np.broadcast_to(speed, (*shape[:-1], 3))[open_]
+    inner = np.where(np.isnan(places), -np.inf, sized(_in_time(a[open_], rate, order, places)))
+    vector, _, joint = np.nonzero(open_)
+    np.maximum.at(found, (vector, joint), inner.max(axis=0, initial=-np.inf))
+    return np.asarray(found)

@@ -7,10 +7,10 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import Array
-from .peak import Extremum, critical_points, polynomial_extrema
+from .polynomials import derived, roots_in_unit, valued
 
 if TYPE_CHECKING:
     from scipy.interpolate import PPoly
@@ -67,57 +67,66 @@ class Trajectory:
         """Number of joints."""
         return int(self.scaled.shape[2])
 
-    def derivative(self, segment: int, joint: int, order: int) -> Array:
-        """Ascending coefficients in s of a time derivative on one piece; not to be written to."""
-        known = self._derivatives.get((segment, order))
-        if known is None:
-            d = self.degrees[segment]
-            a = self.scaled[segment, : d + 1].T.copy()
-            for _ in range(order):
-                size = a.shape[1]
-                a = a[:, 1:] * np.arange(1, size) if size > 1 else np.zeros((len(a), 1))
-            known = np.asarray(a / self.durations[segment] ** order, dtype=np.float64)
-            known.setflags(write=False)
-            self._derivatives[segment, order] = known
-        one: Array = known[joint]
-        return one
-
     @cached_property
-    def _derivatives(self) -> dict[tuple[int, int], Array]:
-        """Of every joint, by piece and order: the checker asks for each several times."""
+    def _known(self) -> dict[int, Array]:
+        """Derivatives by order: the checker asks for each several times."""
         return {}
 
-    def turning(self, piece: int, joint: int, order: int) -> Array:
-        """Places in (0, 1) of a piece where a derivative in time turns."""
-        return critical_points(self.derivative(piece, joint, order))
+    def derivatives(self, order: int) -> Array:
+        """Coefficients in s of a time derivative, (powers, pieces, joints); not to be written to.
+
+        As many powers as the highest degree leaves, at least one.
+        """
+        if order not in self._known:
+            powers = self.scaled[:, : max(self.degrees) + 1].transpose(1, 0, 2)
+            rates = self.durations[:, None] ** order
+            self._known[order] = np.ascontiguousarray(derived(powers, order) / rates)
+            self._known[order].setflags(write=False)
+        return self._known[order]
+
+    def derivative(self, segment: int, joint: int, order: int) -> Array:
+        """Ascending coefficients in s of a time derivative on one piece; not to be written to."""
+        size = max(1, self.degrees[segment] + 1 - order)
+        return self.derivatives(order)[:size, segment, joint]
+
+    def turns(self, order: int, pieces: NDArray[np.int64] | None = None) -> tuple[Array, Array]:
+        """Ends and turning points of a derivative, and its values there.
+
+        Parameters
+        ----------
+        order : int
+        pieces : ndarray of int, optional
+            Those that are asked for; all by default.
+
+        Returns
+        -------
+        places, values : ndarray, shape (places, pieces, joints)
+            Places in the pieces' own 0..1, ascending; NaN where there are fewer.
+        """
+        a = self.derivatives(order)
+        degrees = np.array(self.degrees)
+        if pieces is not None:
+            a, degrees = a[:, pieces], degrees[pieces]
+        places = np.full((max(2, len(a)), *a.shape[1:]), np.nan)
+        places[0], places[-1] = 0.0, 1.0
+        for degree in np.unique(degrees).tolist():
+            size = degree + 1 - order
+            if size > 2:
+                own = slice(None) if (degrees == degree).all() else degrees == degree
+                places[1 : size - 1, own] = roots_in_unit(derived(a[:size, own], 1))
+        return places, valued(a[:, None], places)
 
     def values(self, piece: int, joint: int, order: int, places: Array) -> Array:
         """Derivative in time at places, 0..1, of a piece."""
-        a = self.derivative(piece, joint, order)
-        found: Array = a[-1] + places * 0.0
-        for coefficient in a[-2::-1]:
-            found = coefficient + found * places
-        return found
-
-    def quick_extrema(self, joint: int, order: int) -> list[Extremum] | None:
-        """`extrema` of one derivative where plain polynomials allow a shorter way, else None."""
-        if type(self) is not Trajectory:
-            return None
-        rows = self.scaled[:, :, joint].tolist()
-        begins, durations = self.breaks.tolist(), self.durations.tolist()
-        found: list[Extremum] = []
-        for k, degree in enumerate(self.degrees):
-            row = rows[k][: degree + 1]
-            for _ in range(order):
-                row = [c * p for p, c in enumerate(row)][1:] or [0.0]
-            rate = durations[k] ** order
-            row = [c / rate for c in row]
-            found += polynomial_extrema(row, joint, k, order, begins[k], durations[k])
-        return found
+        return valued(self.derivative(piece, joint, order), places)
 
     def times(self, piece: int, places: Array) -> Array:
         """Times of places of a piece, s."""
         return np.asarray(self.breaks[piece] + places * self.durations[piece])
+
+    def times_of(self, pieces: NDArray[np.int64], places: Array) -> Array:
+        """Times of places, each on a piece of its own, s."""
+        return np.asarray(self.breaks[pieces] + places * self.durations[pieces])
 
     def level(self, piece: int, joint: int, order: int, value: float) -> Array:
         """Ascending polynomial on a piece that vanishes where a derivative has the value."""
@@ -125,9 +134,16 @@ class Trajectory:
         found[0] -= value
         return found
 
+    def steps(self, order: int) -> tuple[Array, Array, Array]:
+        """Derivative before and after each inner break, and the size of their terms.
+
+        Each of shape (breaks, joints).
+        """
+        a = self.derivatives(order)
+        sizes = np.abs(a).sum(axis=0)
+        return a.sum(axis=0)[:-1], a[0, 1:], sizes[:-1] + sizes[1:]
+
     def sides(self, break_index: int, joint: int, order: int) -> tuple[float, float, float]:
-        """Derivative just before and just after an inner break, and the size of their terms."""
-        left = self.derivative(break_index - 1, joint, order)
-        right = self.derivative(break_index, joint, order)
-        scale = float(np.abs(left).sum() + np.abs(right).sum())
-        return float(left.sum()), float(right[0]), scale
+        """`steps` at one inner break, counted from 1, of one joint."""
+        left, right, scale = (float(one[break_index - 1, joint]) for one in self.steps(order))
+        return left, right, scale

@@ -11,28 +11,21 @@ from numpy.typing import NDArray
 
 from ..arrays import Array
 from ..errors import TrajgapError
-from . import timed_kernel
-from .compilation import Deferred
-from .kernel import MAX_COEFFICIENTS
-from .kind import Curve, Enclosed, PeakGradients, Shape, as_batch
+from .kind import Curve, Enclosed, PeakGradients, Shape, as_batch, masked
 from .peak import Extremum
-from .stretched import StretchedCurve, Timing, path_ranges, ranges_where
-from .timed import enclosed_with_clock, value_at
+from .polynomials import MAX_COEFFICIENTS
+from .stretched import StretchedCurve, Timing
+from .timed import clocked_reach, enclosed_with_clock, runs_forwards, value_at
 from .uniform_matrices import clock_matrix, shape_matrix
 
 _STEP = 1e-30
 """Complex step of the gradients, s: its square is lost in any double, so nothing is truncated."""
 
-_UNDECIDED = 1e-9
-"""Relative distance from a ceiling within which peaks are computed: bounds know them to 1e-12."""
-_peaks_of_many = Deferred(timed_kernel.batch_peaks, 6.0)
-"""True peaks of a batch; compiling it takes five to six seconds."""
-
 
 @lru_cache(maxsize=16)
 def _nodes(waypoints: int, natural: bool) -> Array:
-    """The clock's matrix as the kernel takes it."""
-    return np.ascontiguousarray(clock_matrix(waypoints, natural), dtype=np.float64)
+    """The clock's matrix in float64."""
+    return np.asarray(clock_matrix(waypoints, natural), dtype=np.float64)
 
 
 @dataclass(frozen=True)
@@ -142,41 +135,21 @@ class TimedUniformBSpline(UniformBSpline):
         matrix = shape_matrix(self.waypoints)
         return np.asarray(matrix @ (waypoints - waypoints[0]), dtype=np.float64)
 
-    def batch_peaks(self, values: Array, durations: Array, wanted: NDArray[np.bool_]) -> Array:
-        """True peaks by the compiled kernel."""
-        return self._peaks(values, durations, wanted, np.zeros(wanted.shape), np.inf)
-
-    def decided_peaks(
-        self, values: Array, durations: Array, wanted: NDArray[np.bool_], ceilings: Array
-    ) -> Array:
-        """Peaks of pieces that bounds alone do not decide."""
-        low = np.where(np.isfinite(ceilings), ceilings, 0.0) * (1 - _UNDECIDED)
-        return self._peaks(values, durations, wanted, low, ceilings * (1 + _UNDECIDED))
-
-    def _peaks(
+    def batch_reach(
         self,
         values: Array,
         durations: Array,
         wanted: NDArray[np.bool_],
-        low: Array,
-        high: Array | float,
+        sides: tuple[float, ...],
+        least: int = 1,
     ) -> Array:
-        h = as_batch(self, durations)
-        peaks = np.empty((h.shape[0], values.shape[2], 3))
-        above = np.broadcast_to(np.asarray(high, dtype=np.float64), low.shape).copy()
+        """Of all pieces at once."""
         nodes = _nodes(self.waypoints, self.natural_clock)
-        _peaks_of_many(h, values, nodes, wanted, low, above, peaks)
-        return peaks
-
-    def range_values(self, waypoints: Array, nodal: Array | None = None) -> Array:
-        """Least and largest q(e), which no duration moves; shape (joints, 2)."""
-        return path_ranges(self, waypoints)
-
-    def batch_ranges(self, values: Array, durations: Array, wanted: NDArray[np.bool_]) -> Array:
-        """The path's own for every vector by which time runs forwards."""
-        still, nothing = np.zeros((self.segments, 4, 1)), np.zeros((1, 3), dtype=bool)
-        found = self.batch_peaks(still, durations, nothing)
-        return ranges_where(np.isfinite(found[:, 0, 0]), values, wanted)
+        clocks, valid = runs_forwards(nodes, as_batch(self, durations))
+        found = np.zeros((len(clocks), len(sides), *wanted.shape))
+        if wanted.any():
+            found[valid] = clocked_reach(values, clocks[valid], wanted, sides, least)
+        return masked(found, wanted, valid)
 
     def value_gradients(
         self,

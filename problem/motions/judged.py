@@ -10,12 +10,13 @@ import numpy as np
 
 from ..arrays import Array
 from ..checker import Verdict
-from ..curves import PERM, one_sided_extreme, piece_extremes
+from ..curves import Trajectory, furthest
 from ..errors import TrajgapError
 from ..limits import half_range
 from .floor import Floor, least_time
 from .joint_limits import BRAKING, ORDERS, JointLimits, unstated_words
 from .motion import Motion, derivative_terms
+from .one_sided import one_sided_extreme
 
 MOTION_TOLERANCE = 1e-6
 """Relative excess over a limit that still counts as keeping it: files carry printed digits."""
@@ -23,6 +24,9 @@ _STANDING = 1e-9
 """Share of a joint's largest speed below which it stands: rounding of planners is below it."""
 _JUMP = 1e-9
 """Relative to the terms of a derivative: what differs less at a break is rounding."""
+_ROUNDING = 32 * 2.0**-52
+"""Relative to the sum of a polynomial's absolute terms: Horner's rounding for ten coefficients is
+20 · 2⁻⁵³, and that of the place of an extremum is of second order."""
 _BLURRED = "What rounding may change is as large as what is left to a limit."
 """Why a motion is not decided whose numbers are taken exactly."""
 _EPS = 2.0**-52
@@ -300,35 +304,43 @@ def slow_down(peaks: Sequence[MotionPeak], tolerance: float) -> tuple[float, str
 
 def _peaks(motion: Motion, limits: JointLimits) -> tuple[tuple[MotionPeak, ...], Array]:
     """Peaks of all joints, and the speed below which each stands."""
-    count = len(motion.joints)
-    found, inner, outer = (np.zeros((count, 4, 2)) for _ in range(3))
-    place = np.zeros((count, 4, 2, 2))
-    data = (motion.scaled, motion.durations, motion.error, PERM)
-    piece_extremes(*data, found, place, inner, outer)
-    standing = _STANDING * np.abs(found[:, 1]).max(axis=1)
+    pieces, powers, _ = motion.scaled.shape
+    trajectory = Trajectory(motion.durations, motion.scaled, (powers - 1,) * pieces)
+    errors = motion.error + _ROUNDING * derivative_terms(motion.scaled, motion.durations)
+    reach = [furthest(trajectory, r, errors[:, r]) for r in range(4)]
+    standing = _STANDING * np.abs(reach[1].values).max(axis=0)
     peaks: list[MotionPeak] = []
-    for j in range(count):
+    for j in range(len(motion.joints)):
         for r in range(4):
             if r == 2 and np.isfinite(limits.deceleration[j]):
-                peaks += _one_sided(motion, limits, j, standing[j])
+                peaks += _one_sided(motion, trajectory, errors, limits, j, standing[j])
                 continue
             sides = []
             for side, limit in ((0, limits.lower[j, r]), (1, limits.upper[j, r])):
                 if not np.isfinite(limit):
                     continue
-                k, s = place[j, r, side]
-                time = float(motion.breaks[int(k)] + s * motion.durations[int(k)])
+                k, s = int(reach[r].pieces[side, j]), float(reach[r].places[side, j])
+                time = float(motion.breaks[k] + s * motion.durations[k])
                 half = half_range(limits.lower[j, 0], limits.upper[j, 0], limit) if r == 0 else None
-                values = (found[j, r, side], inner[j, r, side], outer[j, r, side])
-                sides.append(peak(limits, j, ORDERS[r], time, values, limit, side, half))
+                of = (reach[r].values, reach[r].inner, reach[r].outer)
+                value, inner, outer = (float(one[side, j]) for one in of)
+                sides.append(
+                    peak(limits, j, ORDERS[r], time, (value, inner, outer), limit, side, half)
+                )
             if sides:
                 peaks.append(joined(sides))
     return tuple(peaks), standing
 
 
-def _one_sided(motion: Motion, limits: JointLimits, j: int, standing: float) -> list[MotionPeak]:
+def _one_sided(
+    motion: Motion,
+    trajectory: Trajectory,
+    errors: Array,
+    limits: JointLimits,
+    j: int,
+    standing: float,
+) -> list[MotionPeak]:
     """Acceleration while the speed grows, deceleration while it falls."""
-    data = (motion.scaled, motion.durations, motion.error, PERM)
     peaks = []
     for sign, quantity, limit in (
         (1.0, "acceleration", limits.upper[j, 2]),
@@ -336,12 +348,12 @@ def _one_sided(motion: Motion, limits: JointLimits, j: int, standing: float) -> 
     ):
         if not np.isfinite(limit):
             continue
-        place = np.zeros(3)
-        best, sure, most = one_sided_extreme(*data, j, sign, standing, place)
-        time = float(motion.breaks[int(place[0])] + place[1] * motion.durations[int(place[0])])
-        values = (best, sure, max(best, most))
+        found = one_sided_extreme(trajectory, errors, j, sign, standing)
+        time = float(motion.breaks[found.piece] + found.s * motion.durations[found.piece])
+        best = abs(found.value)
+        values = (best, found.sure, max(best, found.most))
         one = peak(limits, j, quantity, time, values, limit, 1, None)
-        sign_of = -1.0 if place[2] < 0 else 1.0
+        sign_of = -1.0 if found.value < 0 else 1.0
         peaks.append(replace(one, value=sign_of * one.value, limit=sign_of * one.limit))
     return peaks
 

@@ -30,7 +30,7 @@ from trajgap.problem import (
     cubic_spline,
     evaluate,
 )
-from trajgap.problem.curves import Deferred, compilation, leading_kernel, range_kernel, spline
+from trajgap.problem.curves import kernel
 
 SWARM = PSO(particles=20, iterations=60, position_initial=(0.2, 4.0))
 
@@ -126,14 +126,9 @@ def test_equal_durations_that_swing_too_far_are_no_baseline() -> None:
 def test_processes_find_every_kernel_compiled() -> None:
     """Ones break a limit of velocity here: a penalty alone would not look at positions."""
     problem = limited(cubic_spline(3), 0.3, Limits(0.1, joints=3))
-    asked = (leading_kernel.leading_peaks, range_kernel.batch_ranges)
-    peaks, ranges = (Deferred(one, 1e9) for one in asked)
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(compilation, "at_hand", lambda _: False)
-        patch.setattr(spline, "_leading_of_many", peaks)
-        patch.setattr(spline, "_ranges_of_many", ranges)
-        DeathPenalty(problem)(np.ones((2, 3)))
-        assert not peaks.compiled
-        compile_judge(problem)
-    assert peaks.compiled
-    assert ranges.compiled
+    compile_judge(problem)
+    before = list(kernel.batch_peaks.signatures)
+    assert before
+    DeathPenalty(problem)(np.ones((2, 3)))
+    _ = evaluate(problem, np.ones((2, 3))).positions
+    assert kernel.batch_peaks.signatures == before

@@ -32,7 +32,7 @@ from trajgap.problem import (
     three_five_three,
     uniform_cubic_b_spline,
 )
-from trajgap.problem.curves import spline as spline_module
+from trajgap.problem.curves import population
 
 
 def test_rest_to_rest_cubic_has_its_textbook_peaks() -> None:
@@ -97,7 +97,7 @@ def test_same_bits_in_any_company(name: str, monkeypatch: pytest.MonkeyPatch) ->
     np.testing.assert_array_equal(odd.ratios, together.ratios[3:34])
     for threads in (1, 2, 5):
         monkeypatch.setattr(os, "cpu_count", lambda threads=threads: threads)
-        monkeypatch.setattr(spline_module, "_THREAD_WORK", 100)
+        monkeypatch.setattr(population, "_PART", 20)
         threaded = evaluate(problem, batch)
         np.testing.assert_array_equal(threaded.ratios, together.ratios)
         np.testing.assert_array_equal(threaded.stretch, together.stretch)

@@ -27,7 +27,8 @@ from trajgap.problem import (
     quintic_spline,
     solve_in_closed_form,
 )
-from trajgap.problem.curves.clamped_knots import average_matrix, chord_fractions
+from trajgap.problem.curves import average_matrix
+from trajgap.problem.curves.clamped_knots import chord_fractions
 
 KINDS = [
     (degree, knots, parameters, time)

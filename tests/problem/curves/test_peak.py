@@ -15,6 +15,7 @@ from numpy.polynomial import Chebyshev
 from numpy.polynomial import Polynomial as Power
 from support import exact_route
 from trajgap.problem import (
+    Extremum,
     Interpolant,
     Limits,
     Problem,
@@ -23,7 +24,7 @@ from trajgap.problem import (
     fit,
     rest_to_rest,
 )
-from trajgap.problem.curves.peak import critical_points, largest
+from trajgap.problem.curves.peak import critical_points, furthest
 
 
 def as_problem(velocity: np.ndarray) -> Problem:
@@ -167,11 +168,17 @@ def test_no_turning_point_outside_or_without_sign_change() -> None:
 def test_another_piece_that_may_be_larger_blurs_the_peak() -> None:
     # Speeds of the two cubics peak at 1.5 and 1.2; the second is known to 0.5 only.
     curve = fit(rest_to_rest(2, 3), np.array([[0.2], [1.2], [2.0]]), [1.0, 1.0])
-    top, bound = largest(curve, 0, 1, np.array([1e-9, 0.5]))
-    assert (top.segment, top.time) == (0, 0.5)
+
+    def largest(*errors: float) -> tuple[Extremum, float]:
+        column = np.array(errors)[:, None]
+        return furthest(curve, 1, column).largest(curve, 0, column)
+
+    top, bound = largest(1e-9, 0.5)
+    assert top.segment == 0
+    assert top.time == pytest.approx(0.5)
     assert top.value == pytest.approx(1.5)
     assert bound == pytest.approx(0.2)
-    assert largest(curve, 0, 1, np.array([0.25, 0.5]))[1] == 0.25
+    assert largest(0.25, 0.5)[1] == 0.25
 
 
 def test_exact_route_knows_a_simple_peak() -> None:

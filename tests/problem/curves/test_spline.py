@@ -26,10 +26,9 @@ from trajgap.problem import (
     septic_spline,
     three_five_three,
 )
-from trajgap.problem.curves import Adjoint, places_of, refined
-from trajgap.problem.curves import interpolant as interpolant_module
-from trajgap.problem.curves.refined import coefficient_gradient, refined_coefficients
-from trajgap.problem.curves.spline import batch_peaks, coefficients, motion_values
+from trajgap.problem.curves import adjoint as adjoint_module
+from trajgap.problem.curves import places_of, refined, right_hand_sides, system
+from trajgap.problem.curves.banded import Factors
 
 STEPS = (0.7, 0.5, 1.4, 0.3, 1.5, 0.7, 1.6)
 FIRST, LAST, BENT = (0.5, -0.2, 0.0), (-0.3, 0.4, 0.7), (0.0, 1.1, -0.6)
@@ -129,6 +128,18 @@ def test_353_peaks_are_the_author_codes() -> None:
             assert (coarse <= exact[j] * (1 + 1e-12)).all()
 
 
+def coefficients(
+    curve: Interpolant, q: np.ndarray, h: np.ndarray, nodal: np.ndarray | None = None
+) -> np.ndarray:
+    return curve.fitted(q, h, nodal).scaled
+
+
+def refined_coefficients(
+    curve: Interpolant, q: np.ndarray, h: np.ndarray, nodal: np.ndarray | None = None
+) -> tuple[np.ndarray, np.ndarray]:
+    return refined.refined_coefficients(curve.layout, right_hand_sides(curve, q, nodal), h)
+
+
 def bounded(found: np.ndarray, error: np.ndarray, exact: list[list[Fraction]], j: int = 0) -> None:
     """Every coefficient of a joint is off by no more than its bound."""
     for s, piece in enumerate(exact):
@@ -189,8 +200,8 @@ def test_singular_durations_never_give_a_quiet_answer() -> None:
     interpolant = singular_at_two_to_three()
     q = waypoints(3)
     assert np.isfinite(coefficients(interpolant, q, np.array([1.0, 1.0]))).all()
-    values = motion_values(interpolant, q)
-    peaks = batch_peaks(interpolant, values, np.array([[2.0, 3.0]]), np.ones((3, 3), bool))
+    values = interpolant.motion_values(q)
+    peaks = interpolant.batch_peaks(values, np.array([[2.0, 3.0]]), np.ones((3, 3), bool))
     assert (peaks > 1e9).all()
     try:
         found = coefficients(interpolant, q, np.array([2.0, 3.0]))
@@ -199,13 +210,15 @@ def test_singular_durations_never_give_a_quiet_answer() -> None:
     assert np.abs(found).max() > 1e9
 
 
-def test_singular_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
-    from trajgap.problem.curves import spline
+@pytest.mark.parametrize("banded", [False, True])
+def test_singular_is_said(banded: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    def fails(*_: object) -> None:
+        raise np.linalg.LinAlgError
 
-    def leave_nan(*arguments: object) -> None:
-        arguments[-1][:] = np.nan  # type: ignore[index]
-
-    monkeypatch.setattr(spline, "_fit_one", leave_nan)
+    if banded:
+        monkeypatch.setattr(system, "DENSE_UNKNOWNS", 0)
+        monkeypatch.setattr(Factors, "solve", lambda self, right: np.nan * right)
+    monkeypatch.setattr(np.linalg, "solve", fails)
     with pytest.raises(
         TrajgapError, match=r"3-5-3 polynomials: singular for durations \[1. 1. 1.\]"
     ):
@@ -216,11 +229,11 @@ def test_motion_values_count_from_the_first_waypoint() -> None:
     interpolant = cubic_spline_virtual(4)
     q = waypoints(4)
     np.testing.assert_array_equal(
-        motion_values(interpolant, q + 0.0), motion_values(interpolant, q - q[0])
+        interpolant.motion_values(q + 0.0), interpolant.motion_values(q - q[0])
     )
     h = np.array([[0.4, 0.9, 1.3, 0.2, 0.8]])
     still = np.full((4, 1), 61.7)
-    peaks = batch_peaks(interpolant, motion_values(interpolant, still), h, np.ones((1, 3), bool))
+    peaks = interpolant.batch_peaks(interpolant.motion_values(still), h, np.ones((1, 3), bool))
     assert not peaks.any()
 
 
@@ -248,8 +261,6 @@ def test_error_bound_near_a_singular_system() -> None:
     for h in (np.array([2.0, 3.0]), np.array([2.0, 3.0 * (1 + 1e-15)])):
         with pytest.raises(TrajgapError, match=r"two quartics: singular for durations \[2. 3.\] s"):
             refined_coefficients(interpolant, q, h)
-    with pytest.raises(TrajgapError, match=r"two quartics: singular for durations \[2. 3.\] s"):
-        coefficient_gradient(interpolant, q, np.array([2.0, 3.0]))
 
 
 @pytest.mark.parametrize("banded", [False, True])
@@ -258,7 +269,7 @@ def test_error_bound_at_extreme_durations(
     name: str, banded: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     if banded:
-        monkeypatch.setattr(refined, "DENSE_UNKNOWNS", 0)
+        monkeypatch.setattr(system, "DENSE_UNKNOWNS", 0)
     interpolant = DECLARATIONS[name]
     problem, h = sample_problem(interpolant, 3, joints=1)
     for k, extreme in ((0, 1e-12), (1, 1e-12), (0, 1e9), (1, 1e9)):
@@ -276,9 +287,9 @@ def test_rows_of_the_banded_inverse_bound_the_error_like_all_of_it(
     problem, h = sample_problem(interpolant, 5, joints=1)
     _, whole = refined_coefficients(interpolant, problem.waypoints, h)
     exact = exact_scaled(interpolant, problem, h, 0, None)
-    monkeypatch.setattr(refined, "DENSE_UNKNOWNS", 0)
+    monkeypatch.setattr(system, "DENSE_UNKNOWNS", 0)
     monkeypatch.setattr(refined, "SHARES", (share,))
-    monkeypatch.setattr(refined, "_inverse", refuse_inverse)
+    monkeypatch.setattr(refined, "inverse", refuse_inverse)
     found, error = refined_coefficients(interpolant, problem.waypoints, h)
     bounded(found, error, exact)
     if share < 1e-2:  # rows cut so early leave out too much for a bound as close as the dense one
@@ -292,7 +303,7 @@ def refuse_inverse(*_: object) -> None:
 
 def test_a_banded_bound_that_leaves_out_too_much_is_none(monkeypatch: pytest.MonkeyPatch) -> None:
     problem, h = sample_problem(quintic_spline(14), 5, joints=1)
-    monkeypatch.setattr(refined, "DENSE_UNKNOWNS", 0)
+    monkeypatch.setattr(system, "DENSE_UNKNOWNS", 0)
     monkeypatch.setattr(refined, "DENSE_AFTER_ALL", 0)
     monkeypatch.setattr(refined, "SHARES", (0.9,))
     with pytest.raises(TrajgapError, match="singular for durations"):
@@ -300,7 +311,7 @@ def test_a_banded_bound_that_leaves_out_too_much_is_none(monkeypatch: pytest.Mon
 
 
 def test_a_spline_of_1000_segments_needs_no_dense_inverse(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(refined, "_inverse", refuse_inverse)
+    monkeypatch.setattr(refined, "inverse", refuse_inverse)
     q = np.cumsum(waypoints(1001), axis=0)
     h = np.random.default_rng(8).uniform(0.3, 3.0, 1000)
     times = np.concatenate([[0.0], np.cumsum(h)])
@@ -313,13 +324,17 @@ def test_a_spline_of_1000_segments_needs_no_dense_inverse(monkeypatch: pytest.Mo
 
 
 @pytest.mark.parametrize("name", LONG)
-def test_adjoint_gradients_are_those_of_the_dense_system(name: str) -> None:
+def test_gradients_by_bands_are_those_of_the_dense_system(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     interpolant = LONG[name]
     problem, h = sample_problem(interpolant, 7, joints=3)
     curve = fit(interpolant, problem.waypoints, h)
     points = [e for j in range(3) for r in range(4) for e in extrema(curve, j, r)]
-    dense = interpolant.value_gradients(problem.waypoints, h, points)
-    adjoint, places = Adjoint(interpolant, problem.waypoints, h), places_of(points)
+    dense, places = interpolant.value_gradients(problem.waypoints, h, points), places_of(points)
+    monkeypatch.setattr(system, "DENSE_UNKNOWNS", 0)
+    monkeypatch.setattr(adjoint_module, "inverse", refuse_inverse)
+    adjoint = interpolant.adjoint(problem.waypoints, h)
     found = adjoint.gradients(places)
     for kind in ("durations", "waypoints"):
         one, other = getattr(found, kind), getattr(dense, kind)
@@ -334,14 +349,18 @@ def test_adjoint_gradients_are_those_of_the_dense_system(name: str) -> None:
     )
 
 
-def test_long_splines_take_their_gradients_from_the_adjoint(
-    monkeypatch: pytest.MonkeyPatch,
+@pytest.mark.parametrize("banded", [False, True])
+def test_coefficients_change_with_each_duration_as_differences_say(
+    banded: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    interpolant = quintic_spline(60)
-    problem, h = sample_problem(interpolant, 2, joints=2)
-    curve = fit(interpolant, problem.waypoints, h)
-    points = extrema(curve, 0, 2)[40:60] + extrema(curve, 1, 3)[90:100]
-    found = interpolant.value_gradients(problem.waypoints, h, points)
-    monkeypatch.setattr(interpolant_module, "_DENSE", 10**6)
-    dense = interpolant.value_gradients(problem.waypoints, h, points)
-    np.testing.assert_allclose(found.durations, dense.durations, rtol=1e-9, atol=1e-9)
+    if banded:
+        monkeypatch.setattr(system, "DENSE_UNKNOWNS", 0)
+    interpolant = DECLARATIONS["uneven"]
+    problem, h = sample_problem(interpolant, 7)
+    adjoint = interpolant.adjoint(problem.waypoints, h)
+    for k in range(interpolant.segments):
+        step = 1e-6 * np.eye(interpolant.segments)[k]
+        ends = [coefficients(interpolant, problem.waypoints, h + s * step) for s in (1, -1)]
+        slope = interpolant.layout.flat(ends[0] - ends[1]) / 2e-6
+        found = adjoint.coefficients_by_duration(k)
+        np.testing.assert_allclose(found, slope, atol=1e-7 * np.abs(slope).max())

@@ -1,0 +1,173 @@
+"""Many polynomials on [0, 1] at once: their derivatives, values and sign changes."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..arrays import Array
+
+MAX_COEFFICIENTS = 10
+"""Coefficients of degree 9, the highest that a declaration may have."""
+PERM = np.array(
+    [[float(math.perm(p, r)) for r in range(MAX_COEFFICIENTS)] for p in range(MAX_COEFFICIENTS)]
+)
+"""PERM[p, r] = p!/(p − r)!: the factor of sᵖ⁻ʳ in the r-th derivative of sᵖ."""
+LOOSE = 1e-12
+"""Share of a polynomial's terms that is added to a bound: far above the rounding of ten of them, so
+that what is left out by it would not have changed one bit."""
+_SETTLED = 2.0**-52
+"""Step after which a root in the unit interval is known to the last bit: the spacing at 1."""
+
+
+def derived(a: Array, order: int) -> Array:
+    """Coefficients of a derivative by s; ascending powers lead, and one at least is left."""
+    if order >= len(a):
+        return np.zeros((1, *a.shape[1:]))
+    factor = PERM[order : len(a), order]
+    return np.asarray(factor.reshape(-1, *[1] * (a.ndim - 1)) * a[order:])
+
+
+def derivative_rows(s: Array, order: NDArray[np.int64]) -> Array:
+    """Weights of ten coefficients in derivatives by s at many places, shape (places, 10)."""
+    left = np.arange(MAX_COEFFICIENTS) - order[:, None]
+    powers = np.where(left >= 0, s[:, None] ** np.maximum(left, 0), 0.0)
+    return np.asarray(powers * PERM[:, order].T)
+
+
+def valued(a: Array, s: Array) -> Array:
+    """Values at places, by Horner's scheme; powers lead, the other axes are broadcast."""
+    value = a[-1] + 0.0 * s
+    for coefficient in a[-2::-1]:
+        value = value * s + coefficient
+    return np.asarray(value)
+
+
+def bernstein(a: Array) -> Array:
+    """Bernstein coefficients on [0, 1]: the values lie between the least and the largest of them.
+
+    The first and the last are the values at both ends. Ascending powers lead.
+    """
+    degree = len(a) - 1
+    share = [[math.comb(j, i) / math.comb(degree, i) for i in range(len(a))] for j in range(len(a))]
+    return np.tensordot(np.array(share), a, axes=1)
+
+
+def tops(a: Array, side: float) -> Array:
+    """Largest values on [0, 1] over several pieces, found where bounds leave them open.
+
+    Parameters
+    ----------
+    a : ndarray, shape (powers, batch, pieces, joints)
+        Ascending coefficients.
+    side : float
+        0 for sizes; 1 for values above 0, −1 for those below, as sizes.
+
+    Returns
+    -------
+    ndarray, shape (batch, joints)
+    """
+
+    def sized(value: Array) -> Array:
+        return np.abs(value) if side == 0.0 else side * value
+
+    ends = sized(np.stack([a[0], a.sum(axis=0)])).max(axis=0)
+    found = np.asarray(ends.max(axis=1))
+    if len(a) > 2:
+        bound = sized(bernstein(a)).max(axis=0) + LOOSE * np.abs(a).sum(axis=0)
+        open_ = ~(bound < found[:, None])
+        part = a[:, open_]
+        places = roots_in_unit(derived(part, 1))
+        values = np.where(np.isnan(places), -np.inf, sized(valued(part[:, None], places)))
+        vector, _, joint = np.nonzero(open_)
+        np.maximum.at(found, (vector, joint), values.max(axis=0))
+    return found
+
+
+def roots_in_unit(a: Array) -> Array:
+    """Places in (0, 1) at which polynomials change their sign.
+
+    The roots of each derivative cut the interval into pieces on which the next lower one is
+    monotone, from the quadratic one upwards. On such a piece a root is bracketed, and found to the
+    last bits of float64: Newton's steps, bisection where they leave the bracket. Nothing is
+    sampled.
+
+    Parameters
+    ----------
+    a : ndarray, shape (powers, ...)
+        Ascending coefficients.
+
+    Returns
+    -------
+    ndarray, shape (powers − 1, ...)
+        Ascending along the first axis; NaN where there are fewer.
+    """
+    degree, flat = len(a) - 1, a.reshape(len(a), -1)
+    with np.errstate(all="ignore"):
+        if degree < 2:
+            places = -flat[:degree] / flat[degree]
+            known = (places > 0.0) & (places < 1.0)
+        else:
+            places, known = _turns(derived(flat, degree - 2))
+        for order in range(degree - 3, -1, -1):
+            places, known = _next_level(derived(flat, order), places)
+    return np.where(known, places, np.nan).reshape(degree, *a.shape[1:])
+
+
+def _turns(a: Array) -> tuple[Array, NDArray[np.bool_]]:
+    """Both roots of quadratics, ascending, and which of them are sign changes in (0, 1).
+
+    0 stands for one outside, and is a cut that does no harm.
+    """
+    c, b, q = a[0], 0.5 * a[1], a[2]
+    square = b * b - q * c
+    root = np.sqrt(np.maximum(square, 0.0))
+    z = -(b + np.where(b >= 0.0, root, -root))  # no cancellation
+    both = np.stack([z / q, c / z])
+    both = np.sort(np.where((both > 0.0) & (both < 1.0), both, 0.0), axis=0)
+    return both, (both > 0.0) & (square > 0.0)
+
+
+def _next_level(a: Array, cuts: Array) -> tuple[Array, NDArray[np.bool_]]:
+    """Roots of polynomials that are monotone between ascending cuts, one more than cuts.
+
+    Where a piece has none its lower end stands for it, and is no sign change.
+    """
+    edge = np.zeros((1, cuts.shape[1]))
+    ends = np.concatenate([edge, cuts, edge + 1.0])
+    values = valued(a[:, None], ends)
+    low, high, start, end = ends[:-1], ends[1:], values[:-1], values[1:]
+    crosses = ((start < 0.0) != (end < 0.0)) & (start != 0.0) & (end != 0.0)
+    # A root that is a cut too, to the last bit; equal cuts count once.
+    touches = (start == 0.0) & (low > 0.0) & (low < high)
+    places = low.copy()
+    if crosses.any():
+        chord = low + (high - low) * (start / (start - end))
+        lane = np.nonzero(crosses)[1]
+        bracket = (low[crosses], high[crosses], chord[crosses], start[crosses] < 0.0)
+        places[crosses] = _bracketed(a[:, lane], *bracket)
+    return places, crosses | touches
+
+
+def _bracketed(a: Array, low: Array, high: Array, s: Array, rising: NDArray[np.bool_]) -> Array:
+    """The root of each polynomial in its bracket, begun at ``s``."""
+    found, active = s.copy(), np.arange(s.size)
+    for _ in range(100):
+        value, slope = a[-1], np.zeros(s.size)
+        for coefficient in a[-2::-1]:
+            slope = slope * s + value
+            value = value * s + coefficient
+        before = (value < 0.0) == rising
+        low, high = np.where(before, s, low), np.where(before, high, s)
+        step = s - value / slope  # infinite or NaN where flat: then outside the bracket
+        step = np.where((low < step) & (step < high), step, 0.5 * (low + high))
+        step = np.where(value == 0.0, s, step)
+        found[active] = step
+        busy = np.abs(step - s) > _SETTLED
+        if not busy.any():
+            break
+        a, active = a[:, busy], active[busy]
+        low, high, s, rising = low[busy], high[busy], step[busy], rising[busy]
+    return found

@@ -1,0 +1,78 @@
+"""True peaks of declared curves for whole populations, by the compiled kernel."""
+
+from __future__ import annotations
+
+import os
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..arrays import Array
+from . import kernel
+from .condition import Layout
+from .polynomials import PERM
+
+_PART = 1000
+"""Polynomials (vectors times joints) of a thread's part: starting threads for fewer than four parts
+costs more than it saves."""
+
+
+def batch_reach(
+    layout: Layout,
+    values: Array,
+    durations: Array,
+    wanted: NDArray[np.bool_],
+    sides: tuple[float, ...],
+    least: int,
+) -> Array:
+    """`Curve.batch_reach` of a declared curve.
+
+    Parameters
+    ----------
+    layout : Layout
+    values : ndarray, shape (rows, joints)
+        What the conditions give, positions counted from the first way-point.
+    durations, wanted, sides, least
+        As `Curve.batch_reach` takes them.
+
+    Returns
+    -------
+    ndarray, shape (batch, sides, joints, orders)
+        rad/sᵒʳᵈᵉʳ; the same bits whatever the order, the size or the threads.
+    """
+    vectors, joints = len(durations), values.shape[1]
+    peaks = np.empty((vectors, len(sides), *wanted.shape))
+    rows = layout.rows
+
+    def run(first: int, last: int) -> None:
+        part = durations[first:last], values, *rows, PERM, wanted, least, np.array(sides)
+        kernel.batch_peaks(*part, peaks[first:last])
+
+    parts = vectors * joints // _PART
+    if parts < 4:
+        run(0, vectors)
+        return peaks
+    workers = os.cpu_count() or 1
+    cuts = np.linspace(0, vectors, min(2 * workers, parts) + 1).astype(int).tolist()
+    with ThreadPoolExecutor(workers) as pool:
+        list(pool.map(run, cuts[:-1], cuts[1:]))
+    return peaks
+
+
+def batch_coefficients(layout: Layout, values: Array, durations: Array) -> Array:
+    """Coefficients of many duration vectors, shape (vectors, segments, 10, joints).
+
+    Not finite where the system is singular.
+    """
+    vectors, joints = len(durations), values.shape[1]
+    flat = np.empty((int(layout.first[-1]), joints * vectors))
+    system = np.empty((layout.unknowns, 2 * layout.lower + layout.upper + 1, vectors))
+    right = np.empty((layout.unknowns, joints * vectors))
+    # Durations that may be written into: compiled for them alone.
+    h = np.array(durations.T, order="C")
+    kernel.fit_coefficients(h, vectors, values, *layout.rows, system, right, flat)
+    out = np.zeros((vectors, layout.segments, PERM.shape[0], joints))
+    segment, power = layout.places
+    out[:, segment, power] = flat.reshape(-1, joints, vectors).transpose(2, 0, 1)
+    return out

@@ -1,0 +1,150 @@
+"""A declaration's linear system at given durations, in any precision, and its solution."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..arrays import Array
+from ..errors import SingularError
+from .banded import Factors, factorise
+from .condition import Layout
+
+DENSE_UNKNOWNS = 400
+"""Up to this many coefficients one dense inverse takes a few milliseconds; a band gains nothing."""
+_PART = 32768
+"""Rows that are handled together in extended precision: some ten megabytes for seven joints."""
+
+
+@dataclass(frozen=True, eq=False)
+class System:
+    """Rows over all coefficients, each divided by its largest entry.
+
+    Attributes
+    ----------
+    columns : ndarray of int, shape (rows, widest row)
+        Of the entries; padded entries are 0.
+    values : ndarray, shape (rows, widest row)
+    factor : ndarray, shape (rows,)
+        What multiplies each right-hand side: hʳ over the row's scale.
+    """
+
+    columns: NDArray[np.int64]
+    values: NDArray[np.floating]
+    factor: NDArray[np.floating]
+
+    def times(self, flat: NDArray[np.floating]) -> NDArray[np.floating]:
+        """The rows times coefficients of shape (coefficients, joints)."""
+        if len(self.values) <= DENSE_UNKNOWNS:
+            # The same sums in the same order, column after column, without a call for each.
+            terms = np.multiply(self.values.T[:, :, None], flat[self.columns.T], order="C")
+            return np.asarray(np.add.reduce(terms, axis=0))
+        out = self.values[:, 0, None] * flat[self.columns[:, 0]]
+        for m in range(1, self.columns.shape[1]):
+            out += self.values[:, m, None] * flat[self.columns[:, m]]
+        return out
+
+    def right(self, values: Array) -> NDArray[np.floating]:
+        """Right-hand sides from the rows' values."""
+        return np.asarray(self.factor[:, None] * values.astype(self.factor.dtype))
+
+    def begun(self, values: Array) -> NDArray[np.floating]:
+        """Coefficients that a row of one entry gives at once; 0 for the others.
+
+        What is solved for from here is exactly 0 for a joint that stands still.
+        """
+        flat = np.zeros((len(self.values), values.shape[1]), dtype=self.factor.dtype)
+        alone = np.count_nonzero(self.values, axis=1) == 1
+        flat[self.columns[alone, 0]] = self.right(values)[alone] / self.values[alone, :1]
+        return flat
+
+    def parts(self) -> Iterator[tuple[slice, System]]:
+        """The rows in parts, so that extended precision takes little memory."""
+        for start in range(0, len(self.values), _PART):
+            at = slice(start, start + _PART)
+            yield at, System(self.columns[at], self.values[at], self.factor[at])
+
+    @cached_property
+    def dense(self) -> Array:
+        """The rows as a full matrix."""
+        out = np.zeros((len(self.values), len(self.values)))
+        row, slot = np.nonzero(self.values)
+        out[row, self.columns[row, slot]] = self.values[row, slot]
+        return out
+
+    @cached_property
+    def factors(self) -> Factors:
+        """The rows as a band matrix, with its factors: as many rows as coefficients are needed."""
+        row, slot = np.nonzero(self.values)
+        away = self.columns[row, slot] - row
+        lower, upper = int(-away.min()), int(away.max())
+        band = np.zeros((len(self.values), lower + upper + 1))
+        band[row, away + lower] = self.values[row, slot]
+        return factorise(band, lower, upper)
+
+    @property
+    def in_band(self) -> bool:
+        """Whether the band's factors serve, and not a dense inverse."""
+        return len(self.values) > DENSE_UNKNOWNS
+
+
+def system(layout: Layout, durations: NDArray[np.floating]) -> System:
+    """The rows for given durations, in the precision of ``durations``."""
+    values = layout.matrix(durations)
+    scale = np.abs(values).max(axis=1)
+    rates = layout.rates(durations) / scale
+    return System(layout.entries[0], values / scale[:, None], rates)
+
+
+def inverse(rows: System, layout: Layout, durations: Array) -> Array:
+    """The dense inverse.
+
+    Raises
+    ------
+    SingularError
+    """
+    try:
+        return np.asarray(np.linalg.inv(rows.dense), dtype=np.float64)
+    except np.linalg.LinAlgError:
+        raise singular(layout, durations) from None
+
+
+def coefficients(layout: Layout, values: Array, durations: Array) -> Array:
+    """Coefficients in the segments' own parameter s in [0, 1], shape (segments, 10, joints).
+
+    Parameters
+    ----------
+    layout : Layout
+    values : ndarray, shape (rows, joints)
+        What the conditions give.
+    durations : ndarray, shape (segments,)
+        s.
+
+    Raises
+    ------
+    SingularError
+    """
+    rows = system(layout, durations)
+    flat = rows.begun(values)
+    residual = rows.right(values) - rows.times(flat)
+    with np.errstate(all="ignore"):
+        if rows.in_band:
+            flat = flat + rows.factors.solve(residual)
+        else:
+            try:
+                flat = flat + np.linalg.solve(rows.dense, residual)
+            except np.linalg.LinAlgError:
+                raise singular(layout, durations) from None
+    if not np.isfinite(flat).all():
+        raise singular(layout, durations)
+    return layout.unflat(np.asarray(flat, dtype=np.float64))
+
+
+def singular(layout: Layout, durations: Array) -> SingularError:
+    """The error of a system that these durations make singular."""
+    why = f"interpolant {layout.name}: singular for durations {durations} s"
+    return SingularError(why, int(np.argmin(durations)))

@@ -1,0 +1,160 @@
+"""Kernels of populations: no other bits in other company, and one form of each on disk."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numba
+import numpy as np
+import pytest
+from support.samples import DECLARATIONS, FREE
+from trajgap.problem import (
+    Array,
+    ClampedBSpline,
+    Curve,
+    Interpolant,
+    Limits,
+    Problem,
+    check,
+    cubic_spline,
+    evaluate,
+    fit,
+    rest_to_rest,
+    uniform_cubic_b_spline,
+)
+from trajgap.problem.curves import (
+    PERM,
+    at_hand,
+    coefficients_of_many,
+    compilation,
+    kernel,
+    population,
+)
+
+JOINTS = 3
+CURVES: dict[str, Curve] = {
+    **DECLARATIONS,
+    **FREE,
+    "uniform": uniform_cubic_b_spline(5, "timed"),
+    "clamped": ClampedBSpline(5, 5, "averaged-continued"),
+    "clamped, chord": ClampedBSpline(5, 4, "averaged-continued", "joint-chord"),
+}
+
+
+def drawn(curve: Curve, seed: int) -> tuple[Array, Array, Array]:
+    """Way-points, durations with some that are none, and free derivatives."""
+    rng = np.random.default_rng(seed)
+    count = len(curve.waypoint_breaks) if isinstance(curve, Interpolant) else curve.segments + 1
+    q = np.cumsum(rng.normal(size=(count, JOINTS)), axis=0) + 7.0
+    if "each joint" not in curve.name:
+        q[:, 1] = q[0, 1]  # a joint that stands still
+    h = np.exp(2.0 * rng.normal(size=(40, curve.segments)))
+    odd = [0.0, np.nan, np.inf, -1.0, 1e-300, 1e250, 1e-9, 1e9]
+    h[: len(odd), -1] = odd
+    free = curve.free if isinstance(curve, Interpolant) else 0
+    return q, h, rng.normal(size=(free, JOINTS))
+
+
+@pytest.mark.parametrize("name", CURVES)
+def test_no_vector_looks_at_another(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    curve = CURVES[name]
+    q, h, free = drawn(curve, 3)
+    values = curve.motion_values(q, free if name in FREE else None)
+    wanted = np.ones((JOINTS, 4), dtype=bool)
+    wanted[2, 1] = False
+    asked = (wanted, (0.0, -1.0, 1.0), 0)
+    found = curve.batch_reach(values, h, *asked)
+    assert np.isfinite(found).any()
+    assert not found[0, ..., 2, 1].any() or np.isinf(found[0]).all()
+    alone = [curve.batch_reach(values, one[None], *asked)[0] for one in h]
+    np.testing.assert_array_equal(found, alone)
+    np.testing.assert_array_equal(curve.batch_reach(values, h[::-1].copy(), *asked), found[::-1])
+    # Sizes are those of the larger side.
+    np.testing.assert_array_equal(found[:, 0], found[:, 1:].max(axis=1))
+    monkeypatch.setattr(population, "_PART", 20)
+    np.testing.assert_array_equal(curve.batch_reach(values, h, *asked), found)
+
+
+@pytest.mark.parametrize("name", [*DECLARATIONS, *FREE])
+def test_many_fits_are_those_of_one(name: str) -> None:
+    curve = CURVES[name]
+    q, _, free = drawn(curve, 4)
+    h = np.exp(np.random.default_rng(1).normal(size=(20, curve.segments)))
+    nodal = free if name in FREE else None
+    found = coefficients_of_many(curve, q, h, nodal)
+    one_by_one = np.array([fit(curve, q, one, nodal).scaled for one in h])
+    sizes = np.abs(one_by_one).max(axis=(1, 2, 3), keepdims=True)
+    np.testing.assert_allclose(found / sizes, one_by_one / sizes, atol=1e-11)
+
+
+def test_minimum_jerk_has_the_peaks_of_its_closed_form() -> None:
+    limits = Limits([2.0], [3.0], [5.0])
+    h = np.array([[0.7], [1.3]])
+    found = evaluate(Problem(np.array([[0.4], [-0.9]]), limits, rest_to_rest(1, 5)), h).ratios
+    # |v| = 15/8 d/T, |a| = 10/√3 d/T², |j| = 60 d/T³
+    peaks = 1.3 * np.array([15 / 8, 10 / np.sqrt(3), 60]) / h ** np.array([1, 2, 3])
+    np.testing.assert_allclose(found[:, 0], peaks / np.array([2.0, 3.0, 5.0]), rtol=1e-12)
+
+
+# --- what may not be written into -----------------------------------------------------------------
+
+
+Q = np.array([[0.15, -1.0], [0.9, -0.55], [0.2, 0.35], [-0.45, 0.1]])
+
+
+def frozen(array: Array) -> Array:
+    array = array.copy()
+    array.flags.writeable = False
+    return array
+
+
+def test_no_question_compiles_the_kernel_again() -> None:
+    """Not what may not be written into, other sides, positions, one vector or many."""
+    curve = cubic_spline(3)
+    h = np.array([[0.8, 1.3, 0.6], [1.1, 0.7, 0.9]])
+    limits = Limits([2.0, 1.5], [9.0, 8.0])
+    problem = Problem(Q.copy(), limits, curve)
+    own = evaluate(problem, h.copy()).ratios
+    check(problem, h[0].copy())
+    again = Problem(frozen(Q), limits, curve)
+    assert (evaluate(again, frozen(h)).ratios == own).all()
+    check(again, frozen(h[0]))
+    beyond = Limits([2.0, 1.5], [9.0, 8.0], position_upper=[4.0, 5.0])
+    uneven = beyond.with_sides([beyond.derivatives, 2.0 * beyond.derivatives])
+    assert evaluate(Problem(Q, uneven, curve), h[:1]).positions.shape == (1, 2)
+    evaluate(Problem(Q, limits, curve), np.tile(h, (3000, 1)))
+    assert len(kernel.batch_peaks.signatures) == 1
+
+
+# --- numba is imported late, and its cache is looked for ------------------------------------------
+
+
+QUESTION = """
+import sys
+from trajgap.problem import Limits, Problem, check, three_five_three
+problem = Problem([[0.0], [0.5], [1.0], [0.2]], Limits(1.0, 2.0), three_five_three())
+assert check(problem, [1.0, 1.2, 1.1]).stretch > 0
+print("numba" in sys.modules)
+"""
+
+
+def test_a_check_does_without() -> None:
+    run = subprocess.run([sys.executable, "-c", QUESTION], capture_output=True, text=True)
+    assert run.stdout == "False\n", run.stderr
+
+
+def test_a_kernel_is_what_numba_makes_of_it(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path))
+    function = compilation.Kernel(kernel._lane_turns.py_func)
+    assert not at_hand(function)
+    assert function.signatures == []
+    a, cuts = np.array([[-1.0], [0.0], [16.0]]), np.empty((2, 1))
+    function(a, 0, PERM, 1, cuts)  # −1 + 16 s²
+    assert cuts.ravel().tolist() == [0.0, 0.25]
+    assert len(function.signatures) == 1
+    assert at_hand(function)
+    assert at_hand(compilation.Kernel(kernel._lane_turns.py_func))
