@@ -72,6 +72,11 @@ class Trajectory:
         """Derivatives by order: the checker asks for each several times."""
         return {}
 
+    @cached_property
+    def _turned(self) -> dict[int, tuple[Array, Array]]:
+        """`turns` of all pieces by order: extrema are asked for joint by joint."""
+        return {}
+
     def derivatives(self, order: int) -> Array:
         """Coefficients in s of a time derivative, (powers, pieces, joints); not to be written to.
 
@@ -103,6 +108,8 @@ class Trajectory:
         places, values : ndarray, shape (places, pieces, joints)
             Places in the pieces' own 0..1, ascending; NaN where there are fewer.
         """
+        if pieces is None and order in self._turned:
+            return self._turned[order]
         a = self.derivatives(order)
         degrees = np.array(self.degrees)
         if pieces is not None:
@@ -114,7 +121,10 @@ class Trajectory:
             if size > 2:
                 own = slice(None) if (degrees == degree).all() else degrees == degree
                 places[1 : size - 1, own] = roots_in_unit(derived(a[:size, own], 1))
-        return places, valued(a[:, None], places)
+        found = places, valued(a[:, None], places)
+        if pieces is None:
+            self._turned[order] = found
+        return found
 
     def values(self, piece: int, joint: int, order: int, places: Array) -> Array:
         """Derivative in time at places, 0..1, of a piece."""
