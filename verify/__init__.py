@@ -7,7 +7,6 @@ docs/explanation/certificates.md.
 """
 
 from .bounds import shown_bound
-from .floors import least_durations
 from .problem import CHORD, read_problem
 from .ranges import (
     MIX_DIGITS,
@@ -64,7 +63,6 @@ __all__ = [
     "OutOfTime",
     "Refused",
     "Subject",
-    "least_durations",
     "number",
     "proof_kind",
     "read_document",

@@ -1,4 +1,4 @@
-"""Proof of a lower bound for any declared curve at rest: boxes of durations and weighted limits.
+"""Proof of a lower bound for any declared curve: boxes of durations and weighted limits.
 
 The argument is that of docs/explanation/certificates-declared.md.
 """
@@ -6,8 +6,9 @@ The argument is that of docs/explanation/certificates-declared.md.
 from __future__ import annotations
 
 from copy import copy
+from dataclasses import replace
 from fractions import Fraction
-from math import inf, nextafter, sqrt
+from math import inf, nan, nextafter, sqrt
 from typing import Any
 
 import numpy as np
@@ -45,9 +46,9 @@ Sides = tuple[list[float], list[float]]
 class DeclaredCurve(ProofKind[Sides]):
     """Boxes that hold every feasible answer of the total, or of a smaller one.
 
-    Without upper bounds of the durations, an answer with a smaller total is stretched to this one,
-    which keeps every limit: boxes are then those of the simplex of durations whose sum is the
-    total, and τ may have either sign.
+    Without upper bounds of the durations, and at rest wherever derivatives are prescribed, an answer
+    with a smaller total is stretched to this one, which keeps every limit: boxes are then those of
+    the simplex of durations whose sum is the total, and τ may have either sign.
     """
 
     keys = ("rows",)
@@ -60,9 +61,11 @@ class DeclaredCurve(ProofKind[Sides]):
         declared = covered(problem)
         need(total > 0, "the total is not positive")
         self.second = Fraction(2) ** _power(total)
-        self._stretches = not any(x is not None for x in problem.longest)
-        self.least = [x / self.second for x in least_durations(problem, total)]
+        self._stretches = declared.at_rest and not any(x is not None for x in problem.longest)
         self.task = self._task(declared)
+        exact = [x / self.second for x in least_durations(problem, total)]
+        there = [nextafter(float(x), 0.0) for x in exact]
+        self.least = [max(*x) for x in zip(there, self._returning(declared), strict=True)]
         need(self.task.unknowns <= MOST_DECLARED_UNKNOWNS, "the curve has too many unknowns")
         stated = listed(proof["rows"], "rows", MOST_ROWS)
         rows = [self._row(entry) for entry in clock.each(stated)]
@@ -85,8 +88,18 @@ class DeclaredCurve(ProofKind[Sides]):
         start = problem.waypoints[0]
         moved = [[q - a for q, a in zip(row, start, strict=True)] for row in problem.waypoints]
         units = [Fraction(2) ** _power(max(map(abs, way))) for way in zip(*moved, strict=True)]
+        prescribed = [
+            {
+                r: [x * self.second**r / u for x, u in zip(row, units, strict=True)]
+                for r, row in at.items()
+            }
+            for at in declared.prescribed
+        ]
+        sizes = [abs(x) for at in prescribed for row in at.values() for x in row if x]
+        usual = all(SMALLEST_CAP < x < 1 / SMALLEST_CAP for x in sizes)
+        need(usual, "a prescribed derivative is of unusual size")
         form = linear_form(
-            declared,
+            replace(declared, prescribed=prescribed),
             [[q / unit for q, unit in zip(row, units, strict=True)] for row in moved],
             self.clock,
         )
@@ -99,6 +112,42 @@ class DeclaredCurve(ProofKind[Sides]):
                 for r, size in enumerate(problem.sides[s][j], 1):
                     caps[s, j, r] = _cap(size, self.second**r / unit)
         return Task(form, caps, float(self.total / self.second))
+
+    def _returning(self, declared: Declaration) -> list[float]:
+        """Least durations of segments at whose end a joint is where it was at the start.
+
+        Its velocity is 0 somewhere inside: a velocity u at an end, which the neighbour alone
+        determines, takes |u|/A to fall. Where there is no A, and an acceleration towards the same
+        side is determined too, the way |u|h is to be made good by J h³/6.
+        """
+        task, form, n = self.task, self.task.form, self.problem.segments
+        rows, caps = iter(self.problem.waypoints), task.caps.max(axis=0)
+        at = [None if b in declared.virtual else next(rows) for b in range(n + 1)]
+        least = [0.0] * n
+        known = {}
+        for p, (b, order) in enumerate(zip(form.breaks, form.orders, strict=True)):
+            before, behind = form.sides[b].tolist()
+            # Seen from the segment, time runs away from the neighbour.
+            for own, other, free, value, turn in (
+                (behind, before, form.ends[p], form.end[p], 1.0),
+                (before, behind, form.starts[p], form.start[p], (-1.0) ** order),
+            ):
+                if own < n and not free.any():
+                    longest = task.total * (1.0 + SLACK) if other < n else 1.0
+                    known[own, other, int(order)] = value * turn / longest**order
+        for (own, other, order), speeds in known.items():
+            start, finish = at[own], at[own + 1]
+            if order != 1 or start is None or finish is None:
+                continue
+            bend = known.get((own, other, 2), np.full(task.joints, nan))
+            for j, speed in enumerate(speeds):
+                if start[j] != finish[j]:
+                    continue
+                found = abs(speed) / caps[j, 2]
+                if speed * bend[j] >= 0.0:
+                    found = max(found, sqrt(6.0 * abs(speed) / caps[j, 3]))
+                least[own] = max(least[own], found * (1.0 - SLACK))
+        return least
 
     def _row(self, entry: Any) -> list[int]:
         """[segment, joint, order, sign, place]."""
@@ -114,7 +163,7 @@ class DeclaredCurve(ProofKind[Sides]):
     def _batch(self) -> int:
         """Leaves that are judged together: long curves fewer."""
         task = self.task
-        m, breaks = task.unknowns, task.segments - 1
+        m, breaks = task.unknowns, task.breaks
         most = max(1, m * breaks * max(m, breaks * task.joints))
         return int(max(1, min(_LEAVES, _NUMBERS // most)))
 
@@ -126,7 +175,7 @@ class DeclaredCurve(ProofKind[Sides]):
             self.task.total * (1.0 + SLACK) if x is None else nextafter(float(x / self.second), inf)
             for x in self.problem.longest
         ]
-        return self._shrunk([nextafter(float(x), 0.0) for x in self.least], high)
+        return self._shrunk(self.least, high)
 
     def _shrunk(self, low: list[float], high: list[float]) -> Sides:
         """Part of a box whose durations can add up to the total, with something to spare."""
@@ -220,9 +269,8 @@ def covered(problem: StatedProblem) -> Declaration:
     declared = problem.declaration
     need(declared is not None, "declaration not covered: no declared piecewise polynomial")
     assert declared is not None
-    need(declared.at_rest, "declaration not covered: a derivative other than 0 is prescribed")
     n = problem.segments
-    need(n > 1, "one segment alone has no inner break")
+    need(n > 1 or not declared.at_rest, "one segment alone has no inner break")
     need(n <= MOST_DECLARED_SEGMENTS, f"more than {MOST_DECLARED_SEGMENTS} segments")
     return declared
 

@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from contextlib import suppress
 from itertools import combinations_with_replacement, pairwise, product
+from math import prod
 
 import numpy as np
 from numpy.typing import NDArray
@@ -52,23 +53,28 @@ class Task:
         n, half = self.segments, 0.5 * form.orders
         self.half = half
         """κ = r/2 of each derivative that is to agree."""
-        self.at = np.zeros((self.unknowns, n - 1))
+        self.breaks = len(form.sides)
+        self.at = np.zeros((self.unknowns, self.breaks))
         self.at[np.arange(self.unknowns), form.breaks] = 1.0
-        ends = np.searchsorted(form.breaks, np.arange(n))
+        ends = np.searchsorted(form.breaks, np.arange(self.breaks + 1))
         self.groups = [slice(int(a), int(b)) for a, b in pairwise(ends)]
-        """What is to agree at each inner break."""
-        self.across = np.diff(np.eye(n), axis=0)
-        """ζ of the inner breaks from δ of the segments."""
+        """What is to agree at each break."""
+        before, behind = form.sides.T
+        # Neighbours beyond an end are the last row, which does not move.
+        segments = np.eye(n + 1, n)
+        self.across = segments[behind] - segments[before]
+        """ζ of the breaks from δ of the segments."""
         every = list(combinations_with_replacement(range(n), 3))
         place = {one: at for at, one in enumerate(every)}
         self.thrice = np.array(every).T
         self.cubes = np.array([place[k, k, k] for k in range(n)])
-        # A product of three ζ is eight products of three δ.
-        self.spread = np.zeros(((n - 1) ** 3, len(every)))
-        for at, breaks in enumerate(product(range(n - 1), repeat=3)):
-            for sides in product((0, 1), repeat=3):
-                one = tuple(sorted(b + s for b, s in zip(breaks, sides, strict=True)))
-                self.spread[at, place[one]] += (-1.0) ** (3 - sum(sides))  # type: ignore[index]
+        # A product of three ζ is a sum of products of three δ.
+        terms = [[(k, sign) for k, sign in enumerate(row) if sign] for row in self.across.tolist()]
+        self.spread = np.zeros((self.breaks**3, len(every)))
+        for at, three in enumerate(product(terms, repeat=3)):
+            for one in product(*three):
+                which = tuple(sorted(k for k, _ in one))
+                self.spread[at, place[which]] += prod(sign for _, sign in one)  # type: ignore[index]
         powers = np.arange(self.powers)
         self.factors = np.ones((4, self.powers))
         for order in range(1, 4):
@@ -104,10 +110,12 @@ class Centre:
         self.h, self.low = h, low
         # Logarithm and quotient are near to their last digits.
         self.e = np.log(np.maximum(high / h, h / low)) * (1.0 + ROUND) + ROUND
-        self.z = self.e[:, :-1] + self.e[:, 1:]
+        self.z = self.e @ np.abs(task.across).T
         self.u = task.half * self.z[:, form.breaks]
         self.t = np.tanh(self.u) * (1.0 + ROUND)
-        ratio = np.sqrt(h[:, 1:] / h[:, :-1])[:, form.breaks]
+        before, behind = form.sides[form.breaks].T
+        wide = np.concatenate([h, np.ones((len(h), 1))], axis=1)
+        ratio = np.sqrt(wide[:, behind] / wide[:, before])
         gain = np.ones_like(ratio)
         for order in range(1, int(form.orders.max(initial=0)) + 1):
             gain = np.where(form.orders >= order, gain * ratio, gain)
@@ -284,7 +292,7 @@ class Centre:
         moved = np.stack([turned[:, :, one] @ q[:, one] for one in task.groups], axis=2)
         moved = (moved * (e * half)[:, :, None, :]) @ at
         three = -np.einsum("lqbd,qc->lbcd", moved, at * half[:, None])
-        b = np.arange(task.segments - 1)
+        b = np.arange(task.breaks)
         three[:, b, b, b] += (diagonal * half**3 / 3.0) @ at
         size = np.abs(q)
         spot = np.einsum("lpp->lp", size)

@@ -1,8 +1,10 @@
 """A declared curve as a linear function of few unknowns, solved exactly once for all durations.
 
-In s = (t − t_k)/h_k every condition but the continuity of derivatives is free of the durations:
-way-points, derivatives that are 0, and positions that agree at a virtual way-point. They are solved
-in rationals: c = c₀ + N x with as many unknowns x as there are derivatives that are to agree.
+In s = (t − t_k)/h_k every condition is free of the durations but the continuity of derivatives, and
+derivatives prescribed other than 0: way-points, derivatives that are 0, and positions that agree at
+a virtual way-point. They are solved in rationals: c = c₀ + N x with as many unknowns x as there are
+derivatives that are to agree. A derivative p ≠ 0 of order r agrees with that of a neighbour beyond
+the end of the piece, which takes 1 in the proof's unit of time and whose scaled derivative is p.
 """
 
 from __future__ import annotations
@@ -35,11 +37,13 @@ class Form:
         c₀.
     ends, starts : ndarray, shape (p, unknowns)
         α N and β N: the scaled derivative at the end of the segment before, and at the start of the
-        one behind, by unknown.
+        one behind, by unknown; 0 where that is a neighbour beyond an end.
     end, start : ndarray, shape (p, joints)
-        What c₀ adds to them.
+        What c₀ adds to them, or the derivative that is prescribed.
     breaks, orders : ndarray of int, shape (p,)
-        Break b lies between the segments b and b + 1.
+    sides : ndarray of int, shape (breaks, 2)
+        Segments before and behind each break; as many as there are segments stands for a neighbour
+        that takes 1.
     """
 
     basis: Array
@@ -50,6 +54,7 @@ class Form:
     start: Array
     breaks: NDArray[np.int64]
     orders: NDArray[np.int64]
+    sides: NDArray[np.int64]
 
 
 def linear_form(
@@ -60,8 +65,8 @@ def linear_form(
     Parameters
     ----------
     declared : Declaration
-        With derivatives of 0 alone prescribed.
     waypoints : sequence of sequence of Fraction
+        In the unit of the prescribed derivatives.
     clock : Clock
 
     Returns
@@ -81,10 +86,12 @@ def linear_form(
         return {first[segment] + p: Fraction(perm(p, order)) for p in powers if place or p == order}
 
     conditions: list[tuple[Sparse, list[Fraction]]] = []
-    agreeing: list[tuple[int, int]] = []
-    angles, none = iter(waypoints), [Fraction(0)] * joints
+    none = [Fraction(0)] * joints
+    agreeing: list[tuple[int, int, int, list[Fraction]]] = []
+    angles = iter(waypoints)
     for b in range(n + 1):
-        held = dict.fromkeys(declared.prescribed[b], none)
+        held = {r: x for r, x in declared.prescribed[b].items() if not any(x)}
+        moving = sorted(set(declared.prescribed[b]) - set(held))
         if b not in declared.virtual:
             held[0] = list(next(angles))
         for order, values in held.items():
@@ -92,12 +99,16 @@ def linear_form(
                 conditions.append((side(b - 1, 1, order), list(values)))
             if b < n:
                 conditions.append((side(b, 0, order), list(values)))
+        if b > 0:
+            agreeing += [(b - 1, n, order, declared.prescribed[b][order]) for order in moving]
         if 0 < b < n:
             if 0 not in held:
                 both = {**side(b - 1, 1, 0), first[b]: Fraction(-1)}
                 conditions.append((both, list(none)))
-            free = set(range(1, declared.continuity[b - 1] + 1)) - set(held)
-            agreeing += [(b, order) for order in sorted(free)]
+            free = set(range(1, declared.continuity[b - 1] + 1)) - set(held) - set(moving)
+            agreeing += [(b - 1, b, order, none) for order in sorted(free)]
+        if b < n:
+            agreeing += [(n, b, order, declared.prescribed[b][order]) for order in moving]
     pivots = _eliminated(conditions, clock)
     unknowns = [column for column in range(first[n]) if column not in pivots]
     need(len(unknowns) == len(agreeing), "the conditions do not determine the curve")
@@ -122,8 +133,14 @@ def linear_form(
             value = [a + x * c for a, c in zip(value, coefficients[column][1], strict=True)]
         return row, value
 
-    ends = [combined(side(b - 1, 1, order)) for b, order in clock.each(agreeing)]
-    starts = [combined(side(b, 0, order)) for b, order in clock.each(agreeing)]
+    def scaled(segment: int, place: int, order: int, values: list[Fraction]) -> Any:
+        if segment == n:
+            return [Fraction(0)] * len(unknowns), values
+        return combined(side(segment, place, order))
+
+    ends = [scaled(k, 1, order, x) for k, _, order, x in clock.each(agreeing)]
+    starts = [scaled(k, 0, order, x) for _, k, order, x in clock.each(agreeing)]
+    between = list(dict.fromkeys((left, right) for left, right, _, _ in agreeing))
     most, p = max(declared.degrees) + 1, len(agreeing)
     basis, fixed = np.zeros((n, most, p)), np.zeros((n, most, joints))
     for k in range(n):
@@ -137,8 +154,9 @@ def linear_form(
         _floats([value for _, value in ends]).reshape(p, joints),
         _floats([row for row, _ in starts]).reshape(p, p),
         _floats([value for _, value in starts]).reshape(p, joints),
-        np.array([b - 1 for b, _ in agreeing], np.int64),
-        np.array([order for _, order in agreeing], np.int64),
+        np.array([between.index((left, right)) for left, right, _, _ in agreeing], np.int64),
+        np.array([order for _, _, order, _ in agreeing], np.int64),
+        np.array(between, np.int64).reshape(-1, 2),
     )
 
 

@@ -52,8 +52,13 @@ def certifiers(subject: Subject) -> tuple[Certifier, ...]:
     return tuple(certifier for certifier in every if certifier.subject is subject)
 
 
+def _able(problem: ExactProblem, subject: Subject) -> list[Certifier]:
+    rest = problem.curve.homogeneous
+    return [c for c in certifiers(subject) if c.declares(problem) and (rest or c.moving)]
+
+
 def _certifier(problem: ExactProblem, subject: Subject) -> Certifier | None:
-    return next((c for c in certifiers(subject) if c.declares(problem)), None)
+    return next(iter(_able(problem, subject)), None)
 
 
 def covered(problem: ExactProblem, subject: Subject = Subject.DECLARED) -> str | None:
@@ -69,11 +74,11 @@ def covered(problem: ExactProblem, subject: Subject = Subject.DECLARED) -> str |
     -------
     str or None
     """
-    if subject is Subject.DECLARED and not problem.curve.homogeneous:
-        return f"{problem.curve.name} {MOVING}"
     certifier = _certifier(problem, subject)
     if certifier is not None:
         return why_too_large(problem) or certifier.missing(problem)
+    if not problem.curve.homogeneous:
+        return f"{problem.curve.name} {MOVING}"
     families = ", ".join(certifier.family for certifier in certifiers(subject))
     return f"{problem.curve.name}: not covered; covered are {families}"
 
@@ -92,9 +97,7 @@ def prompt(problem: ExactProblem) -> Certifier | None:
     if covered(problem) is not None:
         return None
     able = [
-        c
-        for c in certifiers(Subject.DECLARED)
-        if c.declares(problem) and not c.compiles and c.missing(problem) is None
+        c for c in _able(problem, Subject.DECLARED) if not c.compiles and c.missing(problem) is None
     ]
     if not able or able[0].instant or problem.segments > _FEW:
         return able[0] if able else None
