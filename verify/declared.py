@@ -46,9 +46,9 @@ Sides = tuple[list[float], list[float]]
 class DeclaredCurve(ProofKind[Sides]):
     """Boxes that hold every feasible answer of the total, or of a smaller one.
 
-    Without upper bounds of the durations, and at rest wherever derivatives are prescribed, an answer
-    with a smaller total is stretched to this one, which keeps every limit: boxes are then those of
-    the simplex of durations whose sum is the total, and τ may have either sign.
+    Without upper bounds of the durations, and if no derivative is prescribed but 0, an answer with
+    a smaller total is stretched to this one, which keeps every limit: boxes are then those of the
+    simplex of durations whose sum is the total, and τ may have either sign.
     """
 
     keys = ("rows",)
@@ -64,9 +64,8 @@ class DeclaredCurve(ProofKind[Sides]):
         self._stretches = declared.at_rest and not any(x is not None for x in problem.longest)
         self.task = self._task(declared)
         exact = [x / self.second for x in least_durations(problem, total)]
-        there = [nextafter(float(x), 0.0) for x in exact]
-        self.least = [max(*x) for x in zip(there, self._returning(declared), strict=True)]
-        need(self.task.unknowns <= MOST_DECLARED_UNKNOWNS, "the curve has too many unknowns")
+        both = zip(exact, self._returning(declared), strict=True)
+        self.least = [max(nextafter(float(x), 0.0), y) for x, y in both]
         stated = listed(proof["rows"], "rows", MOST_ROWS)
         rows = [self._row(entry) for entry in clock.each(stated)]
         self._rows = np.array(rows, np.int64).reshape(-1, 5)
@@ -103,6 +102,7 @@ class DeclaredCurve(ProofKind[Sides]):
             [[q / unit for q, unit in zip(row, units, strict=True)] for row in moved],
             self.clock,
         )
+        need(len(form.orders) <= MOST_DECLARED_UNKNOWNS, "the curve has too many unknowns")
         caps = np.full((2, joints, 4), inf)
         for j, unit in enumerate(units):
             for s, sign in enumerate((-1, 1)):
@@ -124,7 +124,7 @@ class DeclaredCurve(ProofKind[Sides]):
         rows, caps = iter(self.problem.waypoints), task.caps.max(axis=0)
         at = [None if b in declared.virtual else next(rows) for b in range(n + 1)]
         least = [0.0] * n
-        known = {}
+        known: dict[tuple[int, int, int], Array] = {}
         for p, (b, order) in enumerate(zip(form.breaks, form.orders, strict=True)):
             before, behind = form.sides[b].tolist()
             # Seen from the segment, time runs away from the neighbour.

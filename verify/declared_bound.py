@@ -12,7 +12,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from contextlib import suppress
 from itertools import combinations_with_replacement, pairwise, product
-from math import prod
 
 import numpy as np
 from numpy.typing import NDArray
@@ -68,13 +67,10 @@ class Task:
         place = {one: at for at, one in enumerate(every)}
         self.thrice = np.array(every).T
         self.cubes = np.array([place[k, k, k] for k in range(n)])
-        # A product of three ζ is a sum of products of three δ.
-        terms = [[(k, sign) for k, sign in enumerate(row) if sign] for row in self.across.tolist()]
-        self.spread = np.zeros((self.breaks**3, len(every)))
-        for at, three in enumerate(product(terms, repeat=3)):
-            for one in product(*three):
-                which = tuple(sorted(k for k, _ in one))
-                self.spread[at, place[which]] += prod(sign for _, sign in one)  # type: ignore[index]
+        self.fold = np.zeros((n**3, len(every)))
+        """Products of three δ from the same ones in every order."""
+        for at, one in enumerate(product(range(n), repeat=3)):
+            self.fold[at, place[tuple(sorted(one))]] = 1.0  # type: ignore[index]
         powers = np.arange(self.powers)
         self.factors = np.ones((4, self.powers))
         for order in range(1, 4):
@@ -212,7 +208,9 @@ class Centre:
         size += big
         gradient = one @ task.across
         bend = task.across.T @ (two + np.swapaxes(two, 1, 2)) @ task.across
-        cubic = three.reshape(len(tau), -1) @ task.spread
+        for _ in range(3):  # from breaks to segments, one place after the other
+            three = np.tensordot(three, task.across, (1, 0))
+        cubic = three.reshape(len(tau), -1) @ task.fold
         # Limits W e^{rδ} and the total, which depend on one duration each.
         each = np.arange(n)
         lasting = tau[:, None] * self.h / task.total

@@ -49,7 +49,7 @@ def _size(n: int, degree: int = 3, smooth: int = 2) -> Callable[[Document], None
 FORGERIES = [
     Forgery(_KIND + "__init__: the total is not positive", "declared",
             {"proof.total": "0", "claim.lower": "0"}),
-    Forgery(_KIND + "__init__: the curve has too many unknowns", "declared", _size(12, 9, 8)),
+    Forgery(_KIND + "_task: the curve has too many unknowns", "declared", _size(12, 9, 8)),
     *(Forgery(NOT_THERE, "declared", {**NO_ANSWER, **changes}) for changes in (
         {"proof.rows.0": [0, 0, 3, 1, 0]}, {"proof.rows.0": [0, 0, 0, 1, 0]},
         {"proof.rows.0": [0, 1, 0, -1, 0]}, {"problem.limits.0.0": "0"},
@@ -90,6 +90,10 @@ FORGERIES = [
         ("declared-free", {**NO_ANSWER, "problem.limits.0.1": "2.1"}),
         ("declared-free", {**NO_ANSWER, "problem.limits.0.1": ["-2", "2.1"]}),
         ("declared-free", {**NO_ANSWER, "problem.waypoints.1.0": "0.99"}),
+        # Ends in motion make the curve faster.
+        ("declared", {**NO_ANSWER, "problem.prescribed.0": [[1, "0.5"], [2, "0"]]}),
+        ("declared", {**NO_ANSWER, "problem.prescribed.3": [[1, ["0.5", "-0.25"]], [2, "0"]]}),
+        ("declared", {**NO_ANSWER, "problem.prescribed.0": [[1, "0"], [2, ["1", "0.5"]]]}),
         # With an upper bound no answer is stretched to the total: nothing is cut off below it.
         ("declared-free", {**NO_ANSWER, "problem.duration_upper": ["5", "5", "5"],
                            "proof.tree": [[".", 1, 0, 1]]}),
@@ -100,9 +104,9 @@ FORGERIES = [
     Forgery(_COVERED + "declaration not covered: no declared piecewise polynomial", "stretched",
             lambda data: data.update(proof={"kind": "declared", "total": data["proof"]["total"],
                                             "rows": [], "tree": [["."]]})),
-    *(Forgery(_COVERED + "declaration not covered: a derivative other than 0 is prescribed",
-              "declared", {**NO_ANSWER, f"problem.prescribed.{end}": value})
-      for end in (0, 3) for value in ([[1, "0.1"], [2, "0"]], [[1, ["0", "-1"]], [2, "0"]])),
+    *(Forgery(_KIND + "_task: a prescribed derivative is of unusual size", "declared",
+              {**NO_ANSWER, f"problem.prescribed.{end}": [[1, value], [2, "0"]]})
+      for end in (0, 3) for value in ("1e16", ["0", "-1e-17"])),
     Forgery(_COVERED + "one segment alone has no inner break", "declared", _size(1)),
     Forgery(_COVERED + "more than {MOST_DECLARED_SEGMENTS} segments", "declared", _size(13)),
     *(Forgery(UNDETERMINED, "declared", {**NO_ANSWER, path: value}) for path, value in (
