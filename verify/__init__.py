@@ -20,7 +20,6 @@ from .ranges import (
     SHORTEST_TOTAL,
     SMALLEST,
     TICKS,
-    USUAL_WEIGHT,
 )
 from .reading import Clock, OutOfTime, Refused, number, read_document, shown
 from .tree import CUT, LEAF, OPEN, Subject
@@ -56,7 +55,6 @@ __all__ = [
     "SMALLEST",
     "STATE_FORMAT",
     "TICKS",
-    "USUAL_WEIGHT",
     "CertificateVerdict",
     "CertifiedQuestion",
     "Clock",

@@ -9,17 +9,14 @@ products with fewer than 8000 roundings on any path, 9e-13 of the same sum over 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from contextlib import suppress
 from itertools import combinations_with_replacement, pairwise, product
 
 import numpy as np
 from numpy.typing import NDArray
 
+from .boxes import Array, Rows, least_of_quadratic
 from .declared_form import Form
-
-Array = NDArray[np.float64]
-Rows = NDArray[np.int64]
 
 ROUND = 1e-12
 """Of a sum over absolute values: more than its roundings can amount to."""
@@ -229,15 +226,7 @@ class Centre:
             error += (top * wide**4 / 24.0 * np.exp(wide)).sum(axis=1)
             size += (top * (1.0 + wide + wide**2 + wide**3)).sum(axis=1)
         error += (np.abs(cubic) * self.e[:, task.thrice].prod(axis=1)).sum(axis=1)
-        # In x = δ/e: x_k x_m ≥ −½(x_k² + x_m²), so that products of two take from the squares.
-        bend = bend * self.e[:, :, None] * self.e[:, None, :]
-        curve = bend[:, each, each]
-        bend[:, each, each] = 0.0
-        curve = curve - np.abs(bend).sum(axis=2)
-        lean = np.abs(gradient) * self.e
-        inside = lean < curve
-        turn = -0.5 * lean * lean / np.where(inside, curve, 1.0)
-        value += np.where(inside, turn, 0.5 * curve - lean).sum(axis=1)
+        value += least_of_quadratic(gradient, bend, self.e)
         found = value - error * (1.0 + 1e-9) - 2.0 * ROUND * size
         there = np.isfinite(here).all(axis=1) & self.held
         return np.where(there & np.isfinite(found), found, -np.inf)
@@ -318,12 +307,3 @@ def inverted(matrices: Array) -> Array:
             with suppress(np.linalg.LinAlgError):
                 found[at] = np.linalg.inv(one)
         return found
-
-
-def padded(leaves: Sequence[tuple[Sequence[int], Sequence[float]]]) -> tuple[Rows, Array]:
-    """Numbers of rows and weights as arrays, filled up with weights of 0."""
-    most = max(len(which) for which, _ in leaves)
-    ids, weights = np.zeros((len(leaves), most), np.int64), np.zeros((len(leaves), most))
-    for at, (which, each) in enumerate(leaves):
-        ids[at, : len(which)], weights[at, : len(each)] = which, each
-    return ids, weights

@@ -154,7 +154,7 @@ def _rising(session: Session) -> Iterator[Fraction]:
     for _ in range(_ROUNDS):
         # Least durations shrink as the total grows.
         kind = _kind(session.exact, total)
-        total = Fraction(math.sqrt(float(total) * sum(kind.least) * float(kind.second)))
+        total = Fraction(math.sqrt(float(total) * sum(kind.shortest) * float(kind.second)))
     for _ in range(_DOUBLINGS):
         total *= 2
         yield total

@@ -7,8 +7,8 @@ from typing import Any
 
 from support.forgeries.forgery import GONE, NO_ANSWER, Document, Forgery
 
-_KIND, _COVERED = "declared.DeclaredCurve.", "declared.covered: "
-NOT_PROVED = _KIND + "end: a leaf with limits is not proved"
+_KIND, _COVERED, _BOXES = "declared.DeclaredCurve.", "declared.covered: ", "boxes.Boxes."
+NOT_PROVED = _BOXES + "end: a leaf with limits is not proved"
 UNDETERMINED = "declared_form.linear_form: the conditions do not determine the curve"
 WHOLE = "reading.whole: malformed: no integer in {low}..{high}: {shown(repr(value))}"
 NOT_THERE = _KIND + "__init__: a row leans on a limit that is not there"
@@ -64,9 +64,9 @@ FORGERIES = [
           {"problem.degrees": [3, 3, 3], "problem.virtual": [1],
            "problem.waypoints": [["0"] * 2, ["1"] * 2, ["0.5"] * 2],
            "problem.prescribed.3": [[1, "0"]]})),
-    *(Forgery(_KIND + "cut: the place of a cut is not stated in this kind of proof",
+    *(Forgery(_BOXES + "cut: the place of a cut is not stated in this kind of proof",
               "declared", {"proof.tree": [["/", 0, place], ["."], ["."]]}) for place in ("1", 0)),
-    *(Forgery(_KIND + "leaf: it is not empty", "declared", {"proof.tree": tree})
+    *(Forgery(_BOXES + "leaf: it is not empty", "declared", {"proof.tree": tree})
       for tree in ([["."]], [0, ["."], ["."]])),
     *(Forgery(_KIND + "leaf: no way-point is beyond its limit there", "declared",
               {**NO_ANSWER, "proof.rows": [row], "proof.tree": [[".", 0]]})
@@ -77,8 +77,8 @@ FORGERIES = [
               {**NO_ANSWER, "problem.position_lower.0": low, "proof.rows": [row],
                "proof.tree": [[".", 0]]})
       for low, row in (("-0.375", [2, 0, 0, -1, 0]), ("-0.25", [2, 0, 0, -1, 5]))),
-    Forgery(_KIND + "end: a leaf misses a weight", "declared", {"proof.tree": [[".", 0, 0, 1, 0]]}),
-    Forgery(_KIND + "end: a leaf has too many rows", "declared",
+    Forgery(_BOXES + "end: a leaf misses a weight", "declared", {"proof.tree": [[".", 0, 0, 1, 0]]}),
+    Forgery(_BOXES + "end: a leaf has too many rows", "declared",
             {"proof.tree": [[".", 0, *[0, 1] * 65]]}),
     *(Forgery(NOT_PROVED, kind, changes) for kind, changes in (
         ("declared", {"proof.tree": [[".", 0, 0, 1]]}),
@@ -127,6 +127,10 @@ FORGERIES = [
         ("proof.tree", [[".", "1", 0, 1]]), ("proof.tree", [[".", 2**52 + 1, 0, 1]]),
         ("proof.tree", [[".", 0, 0, 2**52 + 1]]))),
     Forgery(WHOLE, "declared-free", {"proof.tree": [[".", -(2**52) - 1, 0, 1]]}),
+    # Where ends move, no answer may be stretched to the total either.
+    Forgery(WHOLE, "declared-free", {
+        **NO_ANSWER, "problem.prescribed.0": [[1, "0.1"], [2, "0"]],
+        "proof.tree": [[".", -1, 0, 1]]}),
     Forgery("reading.fields: malformed: {what}: {', '.join(missing)}: missing", "declared",
             {"proof.rows": GONE}),
 ]  # fmt: skip
