@@ -77,7 +77,8 @@ FORGERIES = [
               {**NO_ANSWER, "problem.position_lower.0": low, "proof.rows": [row],
                "proof.tree": [[".", 0]]})
       for low, row in (("-0.375", [2, 0, 0, -1, 0]), ("-0.25", [2, 0, 0, -1, 5]))),
-    Forgery(_BOXES + "end: a leaf misses a weight", "declared", {"proof.tree": [[".", 0, 0, 1, 0]]}),
+    Forgery(_BOXES + "end: a leaf misses a weight", "declared",
+            {"proof.tree": [[".", 0, 0, 1, 0]]}),
     Forgery(_BOXES + "end: a leaf has too many rows", "declared",
             {"proof.tree": [[".", 0, *[0, 1] * 65]]}),
     *(Forgery(NOT_PROVED, kind, changes) for kind, changes in (

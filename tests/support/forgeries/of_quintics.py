@@ -114,7 +114,8 @@ FORGERIES = [
     *(Forgery(WHOLE, "quintic-spline", {path: value}) for path, value in (
         ("proof.rows.0.0", 3), ("proof.rows.0.0", -1), ("proof.rows.0.1", 2),
         ("proof.rows.0.1", -1), ("proof.rows.0.2", 0), ("proof.rows.0.2", 4),
-        ("proof.rows.0.4", 1025), ("proof.rows.0.4", -1), ("proof.powers.0", 61), ("proof.powers.0", -61),
+        ("proof.rows.0.4", 1025), ("proof.rows.0.4", -1),
+        ("proof.powers.0", 61), ("proof.powers.0", -61),
         ("proof.second", 61), ("proof.second", -61), ("proof.tree", [[".", 0, "1"]]),
         ("proof.tree", [3]), ("proof.windows", [[2, *[0] * 7]]),
         ("proof.windows", [[0, 2**20 + 1, *[0] * 6]]),
