@@ -41,7 +41,8 @@ CLOSED = [
     Forgery(_LEAF + "the total is not proved", "stretched", {"proof.total": "7.17341390665123"}),
     Forgery(APART, "stretched", {**NO_ANSWER, "problem.curve": "another"}),
     *(Forgery(APART, "by hand", changes) for changes in (
-        {"problem.continuity": [3]}, {"problem.prescribed.1": [[2, "0"]], "problem.continuity": [1]},
+        {"problem.continuity": [3]},
+        {"problem.prescribed.1": [[2, "0"]], "problem.continuity": [1]},
         {"problem.prescribed.1": [[1, "0.1"]]}, {"problem.prescribed.0": [[1, "-0.1"]]},
         {"problem.virtual": [1], "problem.waypoints": [["0"], ["1"]]})),
     # What determines no curve in a segment alone.
