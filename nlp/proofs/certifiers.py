@@ -30,6 +30,7 @@ CERTIFIERS: tuple[str, ...] = (
     "closed_form.FIXED_RATIOS",
     "closed_form.REST_TO_REST",
     "closed_form.STRETCHED",
+    "declared.FEW_SEGMENTS",
     "cubic.CUBIC",
     "quintic.QUINTIC",
     "declared.DECLARED",
@@ -79,7 +80,7 @@ def covered(problem: ExactProblem, subject: Subject = Subject.DECLARED) -> str |
         return why_too_large(problem) or certifier.missing(problem)
     if not problem.curve.homogeneous:
         return f"{problem.curve.name} {MOVING}"
-    families = ", ".join(certifier.family for certifier in certifiers(subject))
+    families = ", ".join(dict.fromkeys(c.family for c in certifiers(subject)))
     return f"{problem.curve.name}: not covered; covered are {families}"
 
 

@@ -48,6 +48,9 @@ _ABOVE = 1 + Fraction(1, 2**40)
 """Factor on the sum of all upper bounds that makes a total exceed every admissible one."""
 _DOUBLINGS = 20
 """Of the total below which an answer is looked for: beyond, no joint moves at a limit."""
+_FEW = 5
+"""Segments up to which these boxes close every committed cubic and quintic spline to its gap, in a
+tenth to a half of the seconds of their own kinds; with six, certificates are ten times as long."""
 _ROUNDS = 40
 """Halvings of the distance, in logarithms, to a total that equals its own least durations."""
 
@@ -199,3 +202,15 @@ DECLARED = Certifier(
     moving=True,
 )
 """Of any degrees, continuity and rest: 3-5-3, 4-3-4, septic splines and the like."""
+
+FEW_SEGMENTS = replace(
+    DECLARED,
+    declares=lambda problem: (
+        _declares(problem)
+        and problem.segments <= _FEW
+        and not problem.piecewise.virtual
+        and _missing(problem) is None
+    ),
+)
+"""Stands in front of the kinds for cubic and quintic splines, and leaves them what they alone do:
+virtual way-points near the others, and segments in which nothing moves."""
