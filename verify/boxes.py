@@ -5,6 +5,7 @@ from __future__ import annotations
 from abc import abstractmethod
 from copy import copy
 from fractions import Fraction
+from itertools import permutations
 from typing import Any, Self
 
 import numpy as np
@@ -166,3 +167,9 @@ def least_of_quadratic(gradient: Array, bend: Array, e: Array) -> Array:
     inside = lean < own
     turn = -0.5 * lean * lean / np.where(inside, own, 1.0)
     return np.asarray(np.where(inside, turn, 0.5 * own - lean).sum(axis=1))
+
+
+def most_of_cubes(cubes: Array) -> Array:
+    """At least |Σ c_kmp x_k x_m x_p| for all |x| ≤ 1: what one product has in all its orders."""
+    alike = sum(np.transpose(cubes, (0, *order)) for order in permutations((1, 2, 3)))
+    return np.asarray(np.abs(alike).sum(axis=(1, 2, 3)) / 6.0)

@@ -10,12 +10,12 @@ products with fewer than 8000 roundings on any path, 9e-13 of the same sum over 
 from __future__ import annotations
 
 from contextlib import suppress
-from itertools import combinations_with_replacement, pairwise, product
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .boxes import Array, Rows, least_of_quadratic
+from .boxes import Array, Rows, least_of_quadratic, most_of_cubes
 from .declared_form import Form
 
 ROUND = 1e-12
@@ -60,14 +60,6 @@ class Task:
         segments = np.eye(n + 1, n)
         self.across = segments[behind] - segments[before]
         """ζ of the breaks from δ of the segments."""
-        every = list(combinations_with_replacement(range(n), 3))
-        place = {one: at for at, one in enumerate(every)}
-        self.thrice = np.array(every).T
-        self.cubes = np.array([place[k, k, k] for k in range(n)])
-        self.fold = np.zeros((n**3, len(every)))
-        """Products of three δ from the same ones in every order."""
-        for at, one in enumerate(product(range(n), repeat=3)):
-            self.fold[at, place[tuple(sorted(one))]] = 1.0  # type: ignore[index]
         powers = np.arange(self.powers)
         self.factors = np.ones((4, self.powers))
         for order in range(1, 4):
@@ -207,7 +199,6 @@ class Centre:
         bend = task.across.T @ (two + np.swapaxes(two, 1, 2)) @ task.across
         for _ in range(3):  # from breaks to segments, one place after the other
             three = np.tensordot(three, task.across, (1, 0))
-        cubic = three.reshape(len(tau), -1) @ task.fold
         # Limits W e^{rδ} and the total, which depend on one duration each.
         each = np.arange(n)
         lasting = tau[:, None] * self.h / task.total
@@ -220,13 +211,15 @@ class Centre:
         for r, factor in parts:
             gradient += r * factor
             bend[:, each, each] += r * r * factor
-            cubic[:, task.cubes] += r**3 / 6.0 * factor
+            three[:, each, each, each] += r**3 / 6.0 * factor
             wide = r * self.e
             top = np.abs(factor)
             error += (top * wide**4 / 24.0 * np.exp(wide)).sum(axis=1)
             size += (top * (1.0 + wide + wide**2 + wide**3)).sum(axis=1)
-        error += (np.abs(cubic) * self.e[:, task.thrice].prod(axis=1)).sum(axis=1)
-        value += least_of_quadratic(gradient, bend, self.e)
+        e = self.e
+        three *= e[:, :, None, None] * e[:, None, :, None] * e[:, None, None]
+        error += most_of_cubes(three)
+        value += least_of_quadratic(gradient, bend, e)
         found = value - error * (1.0 + 1e-9) - 2.0 * ROUND * size
         there = np.isfinite(here).all(axis=1) & self.held
         return np.where(there & np.isfinite(found), found, -np.inf)

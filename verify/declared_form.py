@@ -10,19 +10,17 @@ the end of the piece, which takes 1 in the proof's unit of time and whose scaled
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
-from math import perm
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from .curve import at_end, conditions, eliminated, first_columns
 from .problem import Declaration
 from .reading import Clock, need
 
 Array = NDArray[np.float64]
-Sparse = dict[int, Fraction]
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,38 +76,22 @@ def linear_form(
     Refused
         If the conditions contradict each other, or do not determine the curve.
     """
-    n, joints = len(declared.degrees), len(waypoints[0])
-    first = [sum(d + 1 for d in declared.degrees[:k]) for k in range(n + 1)]
-
-    def side(segment: int, place: int, order: int) -> Sparse:
-        powers = range(order, declared.degrees[segment] + 1)
-        return {first[segment] + p: Fraction(perm(p, order)) for p in powers if place or p == order}
-
-    conditions: list[tuple[Sparse, list[Fraction]]] = []
-    none = [Fraction(0)] * joints
+    n, joints, first = len(declared.degrees), len(waypoints[0]), first_columns(declared)
+    one, none = Fraction(1), [Fraction(0)] * joints
     agreeing: list[tuple[int, int, int, list[Fraction]]] = []
-    angles = iter(waypoints)
-    for b in range(n + 1):
-        held = {r: x for r, x in declared.prescribed[b].items() if not any(x)}
-        moving = sorted(set(declared.prescribed[b]) - set(held))
-        if b not in declared.virtual:
-            held[0] = list(next(angles))
-        for order, values in held.items():
-            if b > 0:
-                conditions.append((side(b - 1, 1, order), list(values)))
-            if b < n:
-                conditions.append((side(b, 0, order), list(values)))
+    still: list[dict[int, list[Fraction]]] = []
+    for b, held in enumerate(declared.prescribed):
+        still.append({order: values for order, values in held.items() if not any(values)})
+        moving = sorted(set(held) - set(still[b]))
         if b > 0:
-            agreeing += [(b - 1, n, order, declared.prescribed[b][order]) for order in moving]
+            agreeing += [(b - 1, n, order, held[order]) for order in moving]
         if 0 < b < n:
-            if 0 not in held:
-                both = {**side(b - 1, 1, 0), first[b]: Fraction(-1)}
-                conditions.append((both, list(none)))
-            free = set(range(1, declared.continuity[b - 1] + 1)) - set(held) - set(moving)
+            free = set(range(1, declared.continuity[b - 1] + 1)) - set(held)
             agreeing += [(b - 1, b, order, none) for order in sorted(free)]
         if b < n:
-            agreeing += [(n, b, order, declared.prescribed[b][order]) for order in moving]
-    pivots = _eliminated(conditions, clock)
+            agreeing += [(n, b, order, held[order]) for order in moving]
+    fixed_part = replace(declared, prescribed=still, continuity=[0] * (n - 1))
+    pivots = eliminated(conditions(fixed_part, waypoints, [one] * n), clock)
     unknowns = [column for column in range(first[n]) if column not in pivots]
     need(len(unknowns) == len(agreeing), "the conditions do not determine the curve")
     place = {column: at for at, column in enumerate(unknowns)}
@@ -126,20 +108,20 @@ def linear_form(
                 row[place[other]] = -x
         coefficients.append((row, values))
 
-    def combined(terms: Sparse) -> tuple[list[Fraction], list[Fraction]]:
+    def scaled(
+        segment: int, t: Fraction, order: int, values: list[Fraction]
+    ) -> tuple[list[Fraction], list[Fraction]]:
         row, value = [Fraction(0)] * len(unknowns), list(none)
-        for column, x in terms.items():
-            row = [a + x * c for a, c in zip(row, coefficients[column][0], strict=True)]
-            value = [a + x * c for a, c in zip(value, coefficients[column][1], strict=True)]
+        if segment == n:
+            return row, values
+        for power, x in at_end(declared, segment, t, order).items():
+            own = coefficients[first[segment] + power]
+            row = [a + x * c for a, c in zip(row, own[0], strict=True)]
+            value = [a + x * c for a, c in zip(value, own[1], strict=True)]
         return row, value
 
-    def scaled(segment: int, place: int, order: int, values: list[Fraction]) -> Any:
-        if segment == n:
-            return [Fraction(0)] * len(unknowns), values
-        return combined(side(segment, place, order))
-
-    ends = [scaled(k, 1, order, x) for k, _, order, x in clock.each(agreeing)]
-    starts = [scaled(k, 0, order, x) for _, k, order, x in clock.each(agreeing)]
+    ends = [scaled(k, one, order, x) for k, _, order, x in clock.each(agreeing)]
+    starts = [scaled(k, 0 * one, order, x) for _, k, order, x in clock.each(agreeing)]
     between = list(dict.fromkeys((left, right) for left, right, _, _ in agreeing))
     most, p = max(declared.degrees) + 1, len(agreeing)
     basis, fixed = np.zeros((n, most, p)), np.zeros((n, most, joints))
@@ -162,38 +144,3 @@ def linear_form(
 
 def _floats(rows: Sequence[Sequence[Fraction]]) -> Array:
     return np.array([[float(x) for x in row] for row in rows], np.float64)
-
-
-def _eliminated(conditions: list[tuple[Sparse, list[Fraction]]], clock: Clock) -> dict[int, Any]:
-    """Solve for one column of each condition: its row, without other such columns, and values."""
-    order: list[int] = []
-    pivots: dict[int, tuple[Sparse, list[Fraction]]] = {}
-
-    def without(row: Sparse, values: list[Fraction], columns: Sequence[int]) -> None:
-        for column in columns:
-            factor = row.get(column)
-            if not factor:
-                continue
-            terms, right = pivots[column]
-            for key, x in terms.items():
-                rest = row.get(key, Fraction(0)) - factor * x
-                if rest:
-                    row[key] = rest
-                else:
-                    row.pop(key, None)
-            values[:] = [a - factor * b for a, b in zip(values, right, strict=True)]
-
-    for row, values in clock.each(conditions):
-        without(row, values, order)
-        if not row:
-            need(not any(values), "the conditions contradict each other")
-            continue
-        column = min(row)
-        scale = row[column]
-        pivots[column] = ({key: x / scale for key, x in row.items()}, [x / scale for x in values])
-        order.append(column)
-    for at in range(len(order) - 1, -1, -1):
-        clock.check()
-        row, values = pivots[order[at]]
-        without(row, values, order[at + 1 :])
-    return pivots

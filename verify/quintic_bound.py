@@ -15,8 +15,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .boxes import SLACK, Array, Rows, least_of_quadratic
-from .quintic_parts import ROUND, Cubic, Part, norms
+from .boxes import SLACK, Array, Rows, least_of_quadratic, most_of_cubes
+from .quintic_parts import ROUND, Part, norms
 from .ranges import QUINTIC_PLACES
 from .reading import Refused, need
 
@@ -240,8 +240,8 @@ class Bound:
         # πᵀM⁻¹ρ = ½(c + s)·(Rπ)ᵀ(Rρ) + what is at most ½(c − s)·‖Rπ‖‖Rρ‖.
         small, large = self._spectrum()
         middle, spread = 0.5 * (large + small), 0.5 * (large - small) + ROUND * large
-        thrice = Cubic(n)
-        cubic = np.zeros((self.size, thrice.size))
+        same, above = np.arange(n), np.triu_indices(n, 1)
+        cubes = np.zeros((self.size, n, n, n))
         for joint in range(self.joints):
             mine = j == joint
             if not mine.any():
@@ -263,21 +263,20 @@ class Bound:
             size[leaf] += found["size"]
             adjoint, residual = found["adjoint"], found["residual"]
             both = adjoint.leading @ np.swapaxes(residual.leading, 1, 2) * middle[leaf, None, None]
-            part = np.zeros((own.size, thrice.size))
-            for one, where in enumerate(thrice.products):
-                part[:, where] += both[:, one]
-            for one, where in enumerate(thrice.squares):
-                part[:, where] += found["squared"][:, one] * own.e[:, one, None] ** 2 * own.e
-            cubic[leaf] += part
+            # Residuals lead with squares, then products of two.
+            part = np.zeros((own.size, n, n, n))
+            part[:, :, same, same], part[:, :, *above] = both[:, :, :n], both[:, :, n:]
+            wide = own.e[:, :, None] ** 2 * own.e[:, None]
+            part[:, same, same] += found["squared"] * wide
+            cubes[leaf] += part
             rounding = ROUND * norms(adjoint.leading) * norms(residual.leading)
             error[leaf] += middle[leaf] * (rounding + adjoint.beyond(residual))
             error[leaf] += spread[leaf] * adjoint.most * residual.most + found["quartic"]
         value += alone[0].sum(axis=1)
         first += alone[1]
-        cubic[:, thrice.cubes] += alone[3] * e**3
-        error += (np.abs(alone[4]) * e**4).sum(axis=1) + np.abs(cubic).sum(axis=1)
-        each = np.arange(n)
-        second[:, each, each] += 2.0 * alone[2]
+        cubes[:, same, same, same] += alone[3] * e**3
+        error += (np.abs(alone[4]) * e**4).sum(axis=1) + most_of_cubes(cubes)
+        second[:, same, same] += 2.0 * alone[2]
         value += least_of_quadratic(first, second, e)
         return np.asarray(value - error * (1.0 + 1e-9) - 10.0 * ROUND * size)
 

@@ -114,7 +114,7 @@ FORGERIES = [
         ("problem.degrees.0", 4), ("problem.degrees.1", 3), ("problem.continuity.0", 1),
         ("problem.prescribed.0", [[1, "0"]]))),
     # A straight line is not at rest at its end, nor a cubic with two such conditions before it.
-    *(Forgery("declared_form._eliminated: the conditions contradict each other", "declared",
+    *(Forgery("curve.eliminated: the conditions contradict each other", "declared",
               {**NO_ANSWER, path: value})
       for path, value in (("problem.degrees.0", 1), ("problem.prescribed.1", [[1, "0"]]))),
     *(Forgery(WHOLE, "declared", {path: value}) for path, value in (
