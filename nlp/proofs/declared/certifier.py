@@ -48,9 +48,9 @@ _ABOVE = 1 + Fraction(1, 2**40)
 """Factor on the sum of all upper bounds that makes a total exceed every admissible one."""
 _DOUBLINGS = 20
 """Of the total below which an answer is looked for: beyond, no joint moves at a limit."""
-_FEW = 5
-"""Segments up to which these boxes close every committed cubic and quintic spline to its gap, in a
-tenth to a half of the seconds of their own kinds; with six, certificates are ten times as long."""
+_FEW = {3: 5, 5: 3}
+"""Segments of cubic and quintic splines up to which these boxes close every committed one to its
+gap, in a tenth to a half of the seconds of their own kinds; beyond, certificates are longer."""
 _ROUNDS = 40
 """Halvings of the distance, in logarithms, to a total that equals its own least durations."""
 
@@ -207,7 +207,7 @@ FEW_SEGMENTS = replace(
     DECLARED,
     declares=lambda problem: (
         _declares(problem)
-        and problem.segments <= _FEW
+        and problem.segments <= _FEW.get(max(problem.piecewise.degrees), 0)
         and not problem.piecewise.virtual
         and _missing(problem) is None
     ),
