@@ -121,12 +121,12 @@ class DeclaredCurve(Boxes):
             ):
                 if own < n and not free.any():
                     longest = task.total * (1.0 + SLACK) if other < n else 1.0
-                    known[own, other, int(order)] = value * turn / longest**order
-        for (own, other, order), speeds in known.items():
+                    known[own, int(b), int(order)] = value * turn / longest**order
+        for (own, b, order), speeds in known.items():
             start, finish = at[own], at[own + 1]
             if order != 1 or start is None or finish is None:
                 continue
-            bend = known.get((own, other, 2), np.full(task.joints, nan))
+            bend = known.get((own, b, 2), np.full(task.joints, nan))
             for j, speed in enumerate(speeds):
                 if start[j] != finish[j]:
                     continue

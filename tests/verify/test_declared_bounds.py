@@ -13,7 +13,7 @@ from support.declared_curves import CURVES, drawn
 from trajgap.nlp import solve
 from trajgap.nlp.proofs.document import problem_document
 from trajgap.nlp.proofs.exact import exact_problem
-from trajgap.problem import Limits, Problem, piecewise, three_five_three
+from trajgap.problem import Interpolant, Limits, Problem, piecewise, three_five_three
 from trajgap.verify import PLACES, Clock, proof_kind, read_problem
 from trajgap.verify.curve import derivative, pieces, value_at
 
@@ -124,6 +124,20 @@ def test_a_joint_that_comes_back_takes_its_time(orders: tuple[int, ...]) -> None
             assert least[1] > 0.0
             # It is worth something, too.
             assert trial % 2 or least[1] > 1e-2 * h[1]
+
+
+@pytest.mark.parametrize("acceleration", [1.0, -1.0])
+def test_velocity_and_acceleration_of_two_ends_are_no_pair(acceleration: float) -> None:
+    """At its end the acceleration is free: nothing says that it carries the velocity on."""
+    start, finish = ((1, 0.0), (2, acceleration), (3, 0.0)), ((1, 0.5),)
+    curve = Interpolant((5,), (), (start, finish), name="unlike ends")
+    limits = Limits([inf], inf, 40.0)
+    assert kind_of(Problem([[0.0], [0.0]], limits, curve), Fraction(2)).shortest == [0.0]
+    # Where it is prescribed, a joint that comes back needs that time.
+    finish = ((1, 0.5), (2, -0.25))
+    curve = Interpolant((5,), (), (((1, 0.0), (2, acceleration)), finish), name="alike")
+    found = kind_of(Problem([[0.0], [0.0]], limits, curve), Fraction(2))
+    assert found.shortest[0] * float(found.second) == pytest.approx((6 * 0.5 / 40) ** 0.5)
 
 
 def held(problem: Problem, h: Any) -> list[float]:

@@ -13,7 +13,7 @@ from trajgap.nlp.proofs.cubic import CUBIC
 from trajgap.problem import Limits, Problem, cubic_spline, piecewise, rest_to_rest
 from trajgap.verify import Subject, verify_certificate
 
-SIDED = ("rest-to-rest", "stretched", "3-5-3")
+SIDED = ("rest-to-rest", "stretched", "3-5-3", "cubic")
 """Kinds of curve whose proofs know each side."""
 
 
