@@ -50,7 +50,7 @@ _DOUBLINGS = 20
 """Of the total below which an answer is looked for: beyond, no joint moves at a limit."""
 _FEW = {3: 5, 5: 3}
 """Segments of cubic and quintic splines up to which these boxes close every committed one to its
-gap, in a tenth to a half of the seconds of their own kinds; beyond, certificates are longer."""
+gap in no more seconds than its own kind takes; beyond, some last, and certificates are longer."""
 _ROUNDS = 40
 """Halvings of the distance, in logarithms, to a total that equals its own least durations."""
 
