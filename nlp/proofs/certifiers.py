@@ -41,8 +41,8 @@ CERTIFIERS: tuple[str, ...] = (
 A rest-to-rest cubic is a C2 cubic spline too: closed forms stand in front. Fixed ratios are another
 question of any curve, which the kinds behind know nothing of: they stand before all."""
 _FEW = 7
-"""Segments up to which boxes of durations may close in a second: of the suite's six cubic splines of
-six and seven two do, and the kind of their own takes one to ten seconds."""
+"""Segments up to which boxes of durations may close in a second: of the six cubic splines of six
+and seven in the suite two do, and the kind of their own takes one to ten seconds."""
 
 
 @functools.cache
