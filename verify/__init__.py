@@ -7,7 +7,6 @@ docs/explanation/certificates.md.
 """
 
 from .bounds import shown_bound
-from .floors import least_durations
 from .problem import CHORD, read_problem
 from .ranges import (
     MIX_DIGITS,
@@ -21,7 +20,6 @@ from .ranges import (
     SHORTEST_TOTAL,
     SMALLEST,
     TICKS,
-    USUAL_WEIGHT,
 )
 from .reading import Clock, OutOfTime, Refused, number, read_document, shown
 from .tree import CUT, LEAF, OPEN, Subject
@@ -57,14 +55,12 @@ __all__ = [
     "SMALLEST",
     "STATE_FORMAT",
     "TICKS",
-    "USUAL_WEIGHT",
     "CertificateVerdict",
     "CertifiedQuestion",
     "Clock",
     "OutOfTime",
     "Refused",
     "Subject",
-    "least_durations",
     "number",
     "proof_kind",
     "read_document",

@@ -1,16 +1,15 @@
-"""Proofs in closed form, in which each segment stands alone.
+"""Proofs in closed form: curves that the durations do not change but by stretching each segment.
 
-Their tree is one leaf: a least duration for each segment.
+Their tree is one leaf.
 """
 
 from __future__ import annotations
 
 from abc import abstractmethod
 from fractions import Fraction
-from math import comb
 from typing import Any, NoReturn
 
-from .curve import UNIFORM, derivative, uniform_pieces, value_at
+from .curve import UNIFORM, Pieces, derivative, pieces, uniform_pieces, value_at
 from .problem import StatedProblem
 from .ranges import PLACES
 from .reading import Clock, Refused, listed, need, number, required, whole
@@ -18,17 +17,19 @@ from .tree import ProofKind
 
 
 class ClosedForm(ProofKind[None]):
-    """What both kinds have in common."""
+    """What all of them have in common: pieces, each in a time of its own from 0 to 1."""
 
     def __init__(
         self, problem: StatedProblem, proof: dict[str, Any], total: Fraction, clock: Clock
     ) -> None:
         super().__init__(problem, proof, total, clock)
+        uniform = problem.curve == UNIFORM
+        self._pieces = uniform_pieces(problem, clock) if uniform else self.pieces()
         self._late = False
 
     @abstractmethod
-    def value(self, joint: int, segment: int, order: int, place: Fraction) -> Fraction:
-        """Derivative at a place if the segment takes 1 s."""
+    def pieces(self) -> Pieces:
+        """Of a declared piecewise polynomial."""
 
     def root(self) -> None:
         """All durations."""
@@ -38,10 +39,45 @@ class ClosedForm(ProofKind[None]):
         """No box is cut."""
         raise Refused("a proof in closed form has one leaf")
 
-    def leaf(self, box: None, data: list[Any]) -> None:
-        """[joint, order, place, least duration] of every segment: limit·hʳ ≥ |derivative|.
+    def at(self, joint: int, segment: int, order: Any, place: Any) -> tuple[int, Fraction]:
+        """A derivative's order, and the r-th power of the least duration that it needs.
 
-        The limit is that on the side of the derivative.
+        limit·hʳ ≥ |derivative in the piece's own time|, with the limit on the side of the latter.
+        """
+        r = whole(order, 1, 3)
+        poly = derivative(self._pieces[joint][segment], r)
+        value = value_at(poly, Fraction(whole(place, 0, PLACES), PLACES))
+        side = self.problem.sides[1 if value > 0 else 0]
+        bound = required(side[joint][r - 1], "a limit that is not there")
+        need(bound[1] > 0, "a limit that is not there")
+        return r, abs(value) / bound[1]
+
+    @property
+    def infeasible(self) -> bool:
+        """Whether a segment needs more than its upper bound."""
+        return self._late
+
+
+class EachAlone(ClosedForm):
+    """Curves whose segments have nothing to do with each other.
+
+    Polynomials at rest at every way-point, with all derivatives that are to agree 0 there; or
+    uniform cubic B-splines, each segment stretched in time. The limits of these are those inside
+    the segments: where neighbours differ in duration, the velocity jumps.
+    """
+
+    def pieces(self) -> Pieces:
+        """For durations of 1."""
+        declared, n = self.problem.declaration, self.problem.segments
+        apart = declared is not None and declared.at_rest and not declared.virtual
+        if declared is not None:
+            inner = zip(declared.continuity, declared.prescribed[1:-1], strict=True)
+            apart &= all(set(range(1, order + 1)) <= set(held) for order, held in inner)
+        need(apart, "declaration not covered: no curve whose segments stand alone")
+        return pieces(self.problem, [Fraction(1)] * n, self.clock)
+
+    def leaf(self, box: None, data: list[Any]) -> None:
+        """[joint, order, place, least duration] of every segment.
 
         Joint −1 stands for the duration's own lower bound.
         """
@@ -54,81 +90,50 @@ class ClosedForm(ProofKind[None]):
             if whole(joint, -1, problem.joints - 1) == -1:
                 need(x <= problem.shortest[k], f"segment {k + 1}: above its lower bound")
             else:
-                r = whole(order, 1, 3)
-                value = self.value(joint, k, r, Fraction(whole(place, 0, PLACES), PLACES))
-                side = problem.sides[1 if value > 0 else 0]
-                bound = required(side[joint][r - 1], "a limit that is not there")
-                need(bound[1] > 0, "a limit that is not there")
-                proved = bound[1] * x**r <= abs(value)
-                need(proved, f"segment {k + 1}: its least duration is not proved")
+                r, power = self.at(joint, k, order, place)
+                need(x**r <= power, f"segment {k + 1}: its least duration is not proved")
             least.append(x)
         reached = sum(self.clock.each(least), Fraction(0))
         need(self.total <= reached, "the total is not proved")
         both = zip(least, problem.longest, strict=True)
         self._late = any(top is not None and x > top for x, top in both)
 
-    @property
-    def infeasible(self) -> bool:
-        """Whether a segment needs more than its upper bound."""
-        return self._late
 
-
-class RestToRest(ClosedForm):
-    """Polynomials of one odd degree, at rest at every way-point."""
+class FixedRatios(ClosedForm):
+    """Fixed ratios of the durations, where the total is the one unknown."""
 
     def __init__(
         self, problem: StatedProblem, proof: dict[str, Any], total: Fraction, clock: Clock
     ) -> None:
+        self._shares = required(
+            problem.shares, "the problem fixes no ratios that are rational numbers"
+        )
         super().__init__(problem, proof, total, clock)
-        self._shape = _from_rest(_degree(problem))
+        both = zip(self._shares, problem.longest, strict=True)
+        self._late = any(top is not None and total * share > top for share, top in both)
 
-    def value(self, joint: int, segment: int, order: int, place: Fraction) -> Fraction:
-        """Of q_k + Δq·φ."""
-        q = self.problem.waypoints
-        way = q[segment + 1][joint] - q[segment][joint]
-        return way * value_at(derivative(self._shape, order), place)
+    def pieces(self) -> Pieces:
+        """For a total of 1."""
+        declared = self.problem.declaration
+        # A derivative prescribed other than 0 does not fall with the total.
+        known = declared is not None and declared.at_rest
+        need(known, "declaration not covered: no curve that may be stretched in time")
+        return [
+            [
+                [c * share**p for p, c in enumerate(piece)]
+                for piece, share in zip(curve, self._shares, strict=True)
+            ]
+            for curve in pieces(self.problem, self._shares, self.clock)
+        ]
 
-
-class Stretched(ClosedForm):
-    """Uniform cubic B-splines, each segment stretched in time.
-
-    A segment's duration h divides the derivatives in its own time by h, h², h³, and enters no
-    other segment. The limits are those inside the segments: where neighbours differ in duration,
-    the velocity jumps.
-    """
-
-    def __init__(
-        self, problem: StatedProblem, proof: dict[str, Any], total: Fraction, clock: Clock
-    ) -> None:
-        super().__init__(problem, proof, total, clock)
-        stretched = problem.curve == UNIFORM
-        need(stretched, "declaration not covered: no stretched uniform cubic B-spline")
-        self._curves = uniform_pieces(problem, clock)
-
-    def value(self, joint: int, segment: int, order: int, place: Fraction) -> Fraction:
-        """In the time of the segment."""
-        return value_at(derivative(self._curves[joint][segment], order), place)
-
-
-def _degree(problem: StatedProblem) -> int:
-    declared = required(problem.declaration, "declaration not covered: no rest-to-rest polynomials")
-    degree, n = declared.degrees[0], len(declared.degrees)
-    still = [Fraction(0)] * problem.joints
-    rest = dict.fromkeys(range(1, (degree + 1) // 2), still)
-    need(
-        declared.degrees == [2 * len(rest) + 1] * n
-        and bool(rest)
-        and declared.continuity == [0] * (n - 1)
-        and declared.prescribed == [rest] * (n + 1)
-        and not declared.virtual,
-        "declaration not covered: no rest-to-rest polynomials",
-    )
-    return degree
-
-
-def _from_rest(degree: int) -> list[Fraction]:
-    """From 0 to 1 with half of the derivatives 0 at both ends: the integral of (s(1 − s))ᵐ."""
-    m = degree // 2
-    inside = [Fraction(0)] * m + [Fraction((-1) ** k * comb(m, k)) for k in range(m + 1)]
-    total = sum(c / (p + 1) for p, c in enumerate(inside))
-    return [Fraction(0)] + [c / (p + 1) / total for p, c in enumerate(inside)]
+    def leaf(self, box: None, data: list[Any]) -> None:
+        """[joint, order, segment, place]; joint −1 stands for the segment's own lower bound."""
+        problem = self.problem
+        joint, order, segment, place = listed(data, "a place", 4, 4)
+        k = whole(segment, 0, problem.segments - 1)
+        own = self.total * self._shares[k]
+        if whole(joint, -1, problem.joints - 1) == -1:
+            need(own <= problem.shortest[k], "above its lower bound")
+            return
+        r, power = self.at(joint, k, order, place)
+        need(own**r <= power, "the total is not proved")

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from fractions import Fraction
-from itertools import pairwise
+from itertools import accumulate, pairwise
 from math import comb, lcm, perm
 
-from .problem import StatedProblem
+from .problem import Declaration, StatedProblem
 from .reading import Clock, need, required
 
 Pieces = list[list[list[Fraction]]]
 """Coefficients [joint][segment][power] in the time since the start of the segment."""
+
+Sparse = dict[int, Fraction]
+Condition = tuple[Sparse, list[Fraction]]
+"""Factors by coefficient, and a right-hand side for each joint."""
 
 UNIFORM = "uniform cubic B-spline, segments stretched in time"
 """Name of the curve whose pieces have a time of their own."""
@@ -21,7 +25,7 @@ _HALVINGS = 60
 
 
 def pieces(problem: StatedProblem, h: Sequence[Fraction], clock: Clock) -> Pieces:
-    """The curve of a declared piecewise polynomial, from its conditions by Gauss elimination.
+    """The curve of a declared piecewise polynomial, from its conditions by elimination.
 
     Parameters
     ----------
@@ -38,75 +42,112 @@ def pieces(problem: StatedProblem, h: Sequence[Fraction], clock: Clock) -> Piece
     Raises
     ------
     Refused
-        If the conditions do not determine the curve.
+        If the conditions do not determine the curve, or contradict each other.
     """
     declared = required(problem.declaration, "the curve is no declared piecewise polynomial")
-    n, joints = len(declared.degrees), problem.joints
-    first = [sum(d + 1 for d in declared.degrees[:k]) for k in range(n + 1)]
-    rows: list[tuple[dict[int, Fraction], list[Fraction]]] = []
-
-    def side(segment: int, t: Fraction, order: int, sign: int) -> dict[int, Fraction]:
-        powers = range(order, declared.degrees[segment] + 1)
-        terms = {first[segment] + p: sign * perm(p, order) * t ** (p - order) for p in powers}
-        return {column: x for column, x in terms.items() if x}
-
-    angles = iter(problem.waypoints)
-    for b in range(n + 1):
-        held = dict(declared.prescribed[b])
-        if b not in declared.virtual:
-            held[0] = next(angles)
-        for order, values in held.items():
-            if b > 0:
-                rows.append((side(b - 1, h[b - 1], order, 1), list(values)))
-            if b < n:
-                rows.append((side(b, Fraction(0), order, 1), list(values)))
-        if 0 < b < n:
-            for order in set(range(declared.continuity[b - 1] + 1)) - set(held):
-                left = side(b - 1, h[b - 1], order, 1)
-                both = {**left, **side(b, Fraction(0), order, -1)}
-                rows.append((both, [Fraction(0)] * joints))
-    need(len(rows) == first[n], "the conditions do not determine the curve")
-    solved = _solve(rows, clock)
+    rows = conditions(declared, problem.waypoints, h)
+    first = first_columns(declared)
+    need(len(rows) == first[-1], "the conditions do not determine the curve")
+    solved = eliminated(rows, clock)
+    need(len(solved) == first[-1], "the conditions do not determine the curve")
     return [
-        [[solved[c][j] for c in range(first[k], first[k + 1])] for k in range(n)]
-        for j in range(joints)
+        [[solved[c][1][j] for c in range(a, b)] for a, b in pairwise(first)]
+        for j in range(problem.joints)
     ]
 
 
-def _solve(
-    rows: list[tuple[dict[int, Fraction], list[Fraction]]], clock: Clock
-) -> list[list[Fraction]]:
-    """Solve a square sparse system; the shortest row with an entry in a column is its pivot."""
-    left, done = list(rows), []
-    for column in range(len(rows)):
-        clock.check()
-        holding = [i for i, (row, _) in enumerate(left) if column in row]
-        need(bool(holding), "the conditions do not determine the curve")
-        row, right = left.pop(min(holding, key=lambda i: len(left[i][0])))
-        for other, values in left:
-            if column not in other:
+def first_columns(declared: Declaration) -> list[int]:
+    """Number of the first coefficient of each piece, and of all of them."""
+    return list(accumulate((d + 1 for d in declared.degrees), initial=0))
+
+
+def at_end(declared: Declaration, segment: int, t: Fraction, order: int) -> Sparse:
+    """A derivative of a piece by its coefficients, counted from 0 in the piece."""
+    powers = range(order, declared.degrees[segment] + 1)
+    terms = {p: perm(p, order) * t ** (p - order) for p in powers}
+    return {p: x for p, x in terms.items() if x}
+
+
+def conditions(
+    declared: Declaration, waypoints: Sequence[Sequence[Fraction]], h: Sequence[Fraction]
+) -> list[Condition]:
+    """Equations of the coefficients of all pieces, for given durations.
+
+    Parameters
+    ----------
+    declared : Declaration
+    waypoints : sequence of sequence of Fraction
+    h : sequence of Fraction
+
+    Returns
+    -------
+    list of (dict, list)
+        Factors by coefficient, and a right-hand side for each joint.
+    """
+    n, first = len(declared.degrees), first_columns(declared)
+    rows: list[Condition] = []
+
+    def side(segment: int, t: Fraction, order: int, sign: int = 1) -> Sparse:
+        own = at_end(declared, segment, t, order)
+        return {first[segment] + p: sign * x for p, x in own.items()}
+
+    angles, none = iter(waypoints), [Fraction(0)] * len(waypoints[0])
+    for b in range(n + 1):
+        held = dict(declared.prescribed[b])
+        if b not in declared.virtual:
+            held[0] = list(next(angles))
+        for order, values in held.items():
+            if b > 0:
+                rows.append((side(b - 1, h[b - 1], order), list(values)))
+            if b < n:
+                rows.append((side(b, Fraction(0), order), list(values)))
+        if 0 < b < n:
+            for order in set(range(declared.continuity[b - 1] + 1)) - set(held):
+                both = side(b - 1, h[b - 1], order) | side(b, Fraction(0), order, -1)
+                rows.append((both, list(none)))
+    return rows
+
+
+def eliminated(rows: Sequence[Condition], clock: Clock) -> dict[int, Condition]:
+    """Solve for one column of each row: by column that row, without other such columns, and values.
+
+    Raises
+    ------
+    Refused
+        If rows contradict each other.
+    """
+    order: list[int] = []
+    pivots: dict[int, Condition] = {}
+
+    def without(row: Sparse, values: list[Fraction], columns: Iterable[int]) -> None:
+        for column in columns:
+            factor = row.get(column)
+            if not factor:
                 continue
             clock.check()
-            factor = other[column] / row[column]
-            for key, x in row.items():
-                rest = other.get(key, Fraction(0)) - factor * x
+            terms, right = pivots[column]
+            for key, x in terms.items():
+                rest = row.get(key, Fraction(0)) - factor * x
                 if rest:
-                    other[key] = rest
+                    row[key] = rest
                 else:
-                    other.pop(key, None)
-            both = zip(values, right, strict=True)
-            values[:] = [x - factor * y for x, y in clock.each(both)]
-        done.append((column, row, right))
-    solved: list[list[Fraction]] = [[] for _ in rows]
-    for column, row, right in reversed(done):
+                    row.pop(key, None)
+            values[:] = [a - factor * b for a, b in zip(values, right, strict=True)]
+
+    for row, values in clock.each(rows):
+        without(row, values, order)
+        if not row:
+            need(not any(values), "the conditions contradict each other")
+            continue
+        column = min(row)
+        scale = row[column]
+        pivots[column] = ({key: x / scale for key, x in row.items()}, [x / scale for x in values])
+        order.append(column)
+    for at in range(len(order) - 1, -1, -1):
         clock.check()
-        known = list(right)
-        for key, x in row.items():
-            if key != column:
-                both = zip(known, solved[key], strict=True)
-                known = [r - x * y for r, y in clock.each(both)]
-        solved[column] = [r / row[column] for r in clock.each(known)]
-    return solved
+        row, values = pivots[order[at]]
+        without(row, values, order[at + 1 :])
+    return pivots
 
 
 def uniform_pieces(problem: StatedProblem, clock: Clock) -> Pieces:

@@ -9,17 +9,14 @@ products with fewer than 8000 roundings on any path, 9e-13 of the same sum over 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from contextlib import suppress
-from itertools import combinations_with_replacement, pairwise, product
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
+from .boxes import Array, Rows, least_of_quadratic, most_of_cubes
 from .declared_form import Form
-
-Array = NDArray[np.float64]
-Rows = NDArray[np.int64]
 
 ROUND = 1e-12
 """Of a sum over absolute values: more than its roundings can amount to."""
@@ -52,23 +49,17 @@ class Task:
         n, half = self.segments, 0.5 * form.orders
         self.half = half
         """κ = r/2 of each derivative that is to agree."""
-        self.at = np.zeros((self.unknowns, n - 1))
+        self.breaks = len(form.sides)
+        self.at = np.zeros((self.unknowns, self.breaks))
         self.at[np.arange(self.unknowns), form.breaks] = 1.0
-        ends = np.searchsorted(form.breaks, np.arange(n))
+        ends = np.searchsorted(form.breaks, np.arange(self.breaks + 1))
         self.groups = [slice(int(a), int(b)) for a, b in pairwise(ends)]
-        """What is to agree at each inner break."""
-        self.across = np.diff(np.eye(n), axis=0)
-        """ζ of the inner breaks from δ of the segments."""
-        every = list(combinations_with_replacement(range(n), 3))
-        place = {one: at for at, one in enumerate(every)}
-        self.thrice = np.array(every).T
-        self.cubes = np.array([place[k, k, k] for k in range(n)])
-        # A product of three ζ is eight products of three δ.
-        self.spread = np.zeros(((n - 1) ** 3, len(every)))
-        for at, breaks in enumerate(product(range(n - 1), repeat=3)):
-            for sides in product((0, 1), repeat=3):
-                one = tuple(sorted(b + s for b, s in zip(breaks, sides, strict=True)))
-                self.spread[at, place[one]] += (-1.0) ** (3 - sum(sides))  # type: ignore[index]
+        """What is to agree at each break."""
+        before, behind = form.sides.T
+        # Neighbours beyond an end are the last row, which does not move.
+        segments = np.eye(n + 1, n)
+        self.across = segments[behind] - segments[before]
+        """ζ of the breaks from δ of the segments."""
         powers = np.arange(self.powers)
         self.factors = np.ones((4, self.powers))
         for order in range(1, 4):
@@ -104,10 +95,12 @@ class Centre:
         self.h, self.low = h, low
         # Logarithm and quotient are near to their last digits.
         self.e = np.log(np.maximum(high / h, h / low)) * (1.0 + ROUND) + ROUND
-        self.z = self.e[:, :-1] + self.e[:, 1:]
+        self.z = self.e @ np.abs(task.across).T
         self.u = task.half * self.z[:, form.breaks]
         self.t = np.tanh(self.u) * (1.0 + ROUND)
-        ratio = np.sqrt(h[:, 1:] / h[:, :-1])[:, form.breaks]
+        before, behind = form.sides[form.breaks].T
+        wide = np.concatenate([h, np.ones((len(h), 1))], axis=1)
+        ratio = np.sqrt(wide[:, behind] / wide[:, before])
         gain = np.ones_like(ratio)
         for order in range(1, int(form.orders.max(initial=0)) + 1):
             gain = np.where(form.orders >= order, gain * ratio, gain)
@@ -204,7 +197,8 @@ class Centre:
         size += big
         gradient = one @ task.across
         bend = task.across.T @ (two + np.swapaxes(two, 1, 2)) @ task.across
-        cubic = three.reshape(len(tau), -1) @ task.spread
+        for _ in range(3):  # from breaks to segments, one place after the other
+            three = np.tensordot(three, task.across, (1, 0))
         # Limits W e^{rδ} and the total, which depend on one duration each.
         each = np.arange(n)
         lasting = tau[:, None] * self.h / task.total
@@ -217,21 +211,15 @@ class Centre:
         for r, factor in parts:
             gradient += r * factor
             bend[:, each, each] += r * r * factor
-            cubic[:, task.cubes] += r**3 / 6.0 * factor
+            three[:, each, each, each] += r**3 / 6.0 * factor
             wide = r * self.e
             top = np.abs(factor)
             error += (top * wide**4 / 24.0 * np.exp(wide)).sum(axis=1)
             size += (top * (1.0 + wide + wide**2 + wide**3)).sum(axis=1)
-        error += (np.abs(cubic) * self.e[:, task.thrice].prod(axis=1)).sum(axis=1)
-        # In x = δ/e: x_k x_m ≥ −½(x_k² + x_m²), so that products of two take from the squares.
-        bend = bend * self.e[:, :, None] * self.e[:, None, :]
-        curve = bend[:, each, each]
-        bend[:, each, each] = 0.0
-        curve = curve - np.abs(bend).sum(axis=2)
-        lean = np.abs(gradient) * self.e
-        inside = lean < curve
-        turn = -0.5 * lean * lean / np.where(inside, curve, 1.0)
-        value += np.where(inside, turn, 0.5 * curve - lean).sum(axis=1)
+        e = self.e
+        three *= e[:, :, None, None] * e[:, None, :, None] * e[:, None, None]
+        error += most_of_cubes(three)
+        value += least_of_quadratic(gradient, bend, e)
         found = value - error * (1.0 + 1e-9) - 2.0 * ROUND * size
         there = np.isfinite(here).all(axis=1) & self.held
         return np.where(there & np.isfinite(found), found, -np.inf)
@@ -284,7 +272,7 @@ class Centre:
         moved = np.stack([turned[:, :, one] @ q[:, one] for one in task.groups], axis=2)
         moved = (moved * (e * half)[:, :, None, :]) @ at
         three = -np.einsum("lqbd,qc->lbcd", moved, at * half[:, None])
-        b = np.arange(task.segments - 1)
+        b = np.arange(task.breaks)
         three[:, b, b, b] += (diagonal * half**3 / 3.0) @ at
         size = np.abs(q)
         spot = np.einsum("lpp->lp", size)
@@ -312,12 +300,3 @@ def inverted(matrices: Array) -> Array:
             with suppress(np.linalg.LinAlgError):
                 found[at] = np.linalg.inv(one)
         return found
-
-
-def padded(leaves: Sequence[tuple[Sequence[int], Sequence[float]]]) -> tuple[Rows, Array]:
-    """Numbers of rows and weights as arrays, filled up with weights of 0."""
-    most = max(len(which) for which, _ in leaves)
-    ids, weights = np.zeros((len(leaves), most), np.int64), np.zeros((len(leaves), most))
-    for at, (which, each) in enumerate(leaves):
-        ids[at, : len(which)], weights[at, : len(each)] = which, each
-    return ids, weights

@@ -1,26 +1,26 @@
 """A declared curve as a linear function of few unknowns, solved exactly once for all durations.
 
-In s = (t − t_k)/h_k every condition but the continuity of derivatives is free of the durations:
-way-points, derivatives that are 0, and positions that agree at a virtual way-point. They are solved
-in rationals: c = c₀ + N x with as many unknowns x as there are derivatives that are to agree.
+In s = (t − t_k)/h_k every condition is free of the durations but the continuity of derivatives, and
+derivatives prescribed other than 0: way-points, derivatives that are 0, and positions that agree at
+a virtual way-point. They are solved in rationals: c = c₀ + N x with as many unknowns x as there are
+derivatives that are to agree. A derivative p ≠ 0 of order r agrees with that of a neighbour beyond
+the end of the piece, which takes 1 in the proof's unit of time and whose scaled derivative is p.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
-from math import perm
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from .curve import at_end, conditions, eliminated, first_columns
 from .problem import Declaration
 from .reading import Clock, need
 
 Array = NDArray[np.float64]
-Sparse = dict[int, Fraction]
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,11 +35,13 @@ class Form:
         c₀.
     ends, starts : ndarray, shape (p, unknowns)
         α N and β N: the scaled derivative at the end of the segment before, and at the start of the
-        one behind, by unknown.
+        one behind, by unknown; 0 where that is a neighbour beyond an end.
     end, start : ndarray, shape (p, joints)
-        What c₀ adds to them.
+        What c₀ adds to them, or the derivative that is prescribed.
     breaks, orders : ndarray of int, shape (p,)
-        Break b lies between the segments b and b + 1.
+    sides : ndarray of int, shape (breaks, 2)
+        Segments before and behind each break; as many as there are segments stands for a neighbour
+        that takes 1.
     """
 
     basis: Array
@@ -50,6 +52,7 @@ class Form:
     start: Array
     breaks: NDArray[np.int64]
     orders: NDArray[np.int64]
+    sides: NDArray[np.int64]
 
 
 def linear_form(
@@ -60,8 +63,8 @@ def linear_form(
     Parameters
     ----------
     declared : Declaration
-        With derivatives of 0 alone prescribed.
     waypoints : sequence of sequence of Fraction
+        In the unit of the prescribed derivatives.
     clock : Clock
 
     Returns
@@ -73,32 +76,22 @@ def linear_form(
     Refused
         If the conditions contradict each other, or do not determine the curve.
     """
-    n, joints = len(declared.degrees), len(waypoints[0])
-    first = [sum(d + 1 for d in declared.degrees[:k]) for k in range(n + 1)]
-
-    def side(segment: int, place: int, order: int) -> Sparse:
-        powers = range(order, declared.degrees[segment] + 1)
-        return {first[segment] + p: Fraction(perm(p, order)) for p in powers if place or p == order}
-
-    conditions: list[tuple[Sparse, list[Fraction]]] = []
-    agreeing: list[tuple[int, int]] = []
-    angles, none = iter(waypoints), [Fraction(0)] * joints
-    for b in range(n + 1):
-        held = dict.fromkeys(declared.prescribed[b], none)
-        if b not in declared.virtual:
-            held[0] = list(next(angles))
-        for order, values in held.items():
-            if b > 0:
-                conditions.append((side(b - 1, 1, order), list(values)))
-            if b < n:
-                conditions.append((side(b, 0, order), list(values)))
+    n, joints, first = len(declared.degrees), len(waypoints[0]), first_columns(declared)
+    one, none = Fraction(1), [Fraction(0)] * joints
+    agreeing: list[tuple[int, int, int, list[Fraction]]] = []
+    still: list[dict[int, list[Fraction]]] = []
+    for b, held in enumerate(declared.prescribed):
+        still.append({order: values for order, values in held.items() if not any(values)})
+        moving = sorted(set(held) - set(still[b]))
+        if b > 0:
+            agreeing += [(b - 1, n, order, held[order]) for order in moving]
         if 0 < b < n:
-            if 0 not in held:
-                both = {**side(b - 1, 1, 0), first[b]: Fraction(-1)}
-                conditions.append((both, list(none)))
             free = set(range(1, declared.continuity[b - 1] + 1)) - set(held)
-            agreeing += [(b, order) for order in sorted(free)]
-    pivots = _eliminated(conditions, clock)
+            agreeing += [(b - 1, b, order, none) for order in sorted(free)]
+        if b < n:
+            agreeing += [(n, b, order, held[order]) for order in moving]
+    fixed_part = replace(declared, prescribed=still, continuity=[0] * (n - 1))
+    pivots = eliminated(conditions(fixed_part, waypoints, [one] * n), clock)
     unknowns = [column for column in range(first[n]) if column not in pivots]
     need(len(unknowns) == len(agreeing), "the conditions do not determine the curve")
     place = {column: at for at, column in enumerate(unknowns)}
@@ -115,15 +108,21 @@ def linear_form(
                 row[place[other]] = -x
         coefficients.append((row, values))
 
-    def combined(terms: Sparse) -> tuple[list[Fraction], list[Fraction]]:
+    def scaled(
+        segment: int, t: Fraction, order: int, values: list[Fraction]
+    ) -> tuple[list[Fraction], list[Fraction]]:
         row, value = [Fraction(0)] * len(unknowns), list(none)
-        for column, x in terms.items():
-            row = [a + x * c for a, c in zip(row, coefficients[column][0], strict=True)]
-            value = [a + x * c for a, c in zip(value, coefficients[column][1], strict=True)]
+        if segment == n:
+            return row, values
+        for power, x in at_end(declared, segment, t, order).items():
+            own = coefficients[first[segment] + power]
+            row = [a + x * c for a, c in zip(row, own[0], strict=True)]
+            value = [a + x * c for a, c in zip(value, own[1], strict=True)]
         return row, value
 
-    ends = [combined(side(b - 1, 1, order)) for b, order in clock.each(agreeing)]
-    starts = [combined(side(b, 0, order)) for b, order in clock.each(agreeing)]
+    ends = [scaled(k, one, order, x) for k, _, order, x in clock.each(agreeing)]
+    starts = [scaled(k, 0 * one, order, x) for _, k, order, x in clock.each(agreeing)]
+    between = list(dict.fromkeys((left, right) for left, right, _, _ in agreeing))
     most, p = max(declared.degrees) + 1, len(agreeing)
     basis, fixed = np.zeros((n, most, p)), np.zeros((n, most, joints))
     for k in range(n):
@@ -137,45 +136,11 @@ def linear_form(
         _floats([value for _, value in ends]).reshape(p, joints),
         _floats([row for row, _ in starts]).reshape(p, p),
         _floats([value for _, value in starts]).reshape(p, joints),
-        np.array([b - 1 for b, _ in agreeing], np.int64),
-        np.array([order for _, order in agreeing], np.int64),
+        np.array([between.index((left, right)) for left, right, _, _ in agreeing], np.int64),
+        np.array([order for _, _, order, _ in agreeing], np.int64),
+        np.array(between, np.int64).reshape(-1, 2),
     )
 
 
 def _floats(rows: Sequence[Sequence[Fraction]]) -> Array:
     return np.array([[float(x) for x in row] for row in rows], np.float64)
-
-
-def _eliminated(conditions: list[tuple[Sparse, list[Fraction]]], clock: Clock) -> dict[int, Any]:
-    """Solve for one column of each condition: its row, without other such columns, and values."""
-    order: list[int] = []
-    pivots: dict[int, tuple[Sparse, list[Fraction]]] = {}
-
-    def without(row: Sparse, values: list[Fraction], columns: Sequence[int]) -> None:
-        for column in columns:
-            factor = row.get(column)
-            if not factor:
-                continue
-            terms, right = pivots[column]
-            for key, x in terms.items():
-                rest = row.get(key, Fraction(0)) - factor * x
-                if rest:
-                    row[key] = rest
-                else:
-                    row.pop(key, None)
-            values[:] = [a - factor * b for a, b in zip(values, right, strict=True)]
-
-    for row, values in clock.each(conditions):
-        without(row, values, order)
-        if not row:
-            need(not any(values), "the conditions contradict each other")
-            continue
-        column = min(row)
-        scale = row[column]
-        pivots[column] = ({key: x / scale for key, x in row.items()}, [x / scale for x in values])
-        order.append(column)
-    for at in range(len(order) - 1, -1, -1):
-        clock.check()
-        row, values = pivots[order[at]]
-        without(row, values, order[at + 1 :])
-    return pivots

@@ -14,15 +14,16 @@ _DIGITS = 10**12
 def least_durations(problem: StatedProblem, total: Fraction) -> list[Fraction]:
     """Least durations of any feasible answer of at most this total, s; 0 where none is proved.
 
-    A segment between two way-points takes at least |Δq|/V. Where the velocity is continuous and 0
-    at both ends, |a| ≤ A keeps it below A·total/2, so that V is at most that; and where the
-    acceleration is so too, |j| ≤ J keeps the velocity below J·total²/8. A segment that begins or
-    ends at rest, with the derivatives below order r at 0, takes at least (r!·|Δq|/limit)^(1/r).
+    A segment between two way-points takes at least |Δq|/V. Where the velocity is continuous, and
+    u and w at the ends, |a| ≤ A keeps it below (|u| + |w| + A·total)/2, so that V is at most that;
+    and where it and the acceleration are continuous and 0 at the ends, |j| ≤ J keeps the velocity
+    below J·total²/8. A segment that begins or ends at rest, with the derivatives below order r at
+    0, takes at least (r!·|Δq|/limit)^(1/r).
 
     Parameters
     ----------
     problem : StatedProblem
-        With a declaration that prescribes no derivative but 0.
+        With a declaration.
     total : Fraction
         s.
 
@@ -32,25 +33,25 @@ def least_durations(problem: StatedProblem, total: Fraction) -> list[Fraction]:
     """
     declared = problem.declaration
     assert declared is not None
-    n, still = problem.segments, declared.prescribed
+    n, held = problem.segments, declared.prescribed
     virtual, rows = set(declared.virtual), iter(problem.waypoints)
     at = [None if b in virtual else next(rows) for b in range(n + 1)]
     found = list(problem.shortest)
     for j, sizes in enumerate(problem.limits):
         caps = [None if x is None or x[1] <= 0 else x[1] for x in sizes]
-        speeds = _speeds(declared, caps, total)
+        speeds = _speeds(declared, j, caps, total)
         for k in range(n):
             start, finish = at[k], at[k + 1]
             if start is None or finish is None or start[j] == finish[j]:
                 continue
             way = finish[j] - start[j]
-            own = _size(problem.sides[1 if way > 0 else 0][j][0])
-            found[k] = max([found[k], *(abs(way) / v for v in (*speeds, own) if v is not None)])
-            for end in (still[k], still[k + 1]):
+            for end in (held[k], held[k + 1]):
                 for r in (2, 3):
                     cap = caps[r - 1]
-                    if cap is not None and all(order in end for order in range(1, r)):
+                    if cap is not None and all(x in end and end[x][j] == 0 for x in range(1, r)):
                         found[k] = max(found[k], _root(factorial(r) * abs(way) / cap, r))
+            own = _size(problem.sides[1 if way > 0 else 0][j][0])
+            found[k] = max([found[k], *(abs(way) / v for v in (*speeds, own) if v is not None)])
     return found
 
 
@@ -59,20 +60,19 @@ def _size(limit: Bounds) -> Fraction | None:
 
 
 def _speeds(
-    declared: Declaration, caps: list[Fraction | None], total: Fraction
+    declared: Declaration, joint: int, caps: list[Fraction | None], total: Fraction
 ) -> list[Fraction | None]:
     """Upper bounds of the speed that follow from limits of acceleration and jerk."""
-    inner, still = range(1, len(declared.degrees)), declared.prescribed
-    smooth, rest = [], []
-    for r in (1, 2):
-        smooth.append(all(r in still[b] or declared.continuity[b - 1] >= r for b in inner))
-        rest.append(r in still[0] and r in still[-1])
+    inner, held = range(1, len(declared.degrees)), declared.prescribed
+    smooth = [all(r in held[b] or declared.continuity[b - 1] >= r for b in inner) for r in (1, 2)]
+    ends = [[end[r][joint] if r in end else None for end in (held[0], held[-1])] for r in (1, 2)]
     _, acceleration, jerk = caps
     found: list[Fraction | None] = []
-    if smooth[0] and rest[0]:
+    velocities = [abs(x) for x in ends[0] if x is not None]
+    if smooth[0] and len(velocities) == 2:
         if acceleration is not None:
-            found.append(acceleration * total / 2)
-        if smooth[1] and rest[1] and jerk is not None:
+            found.append((sum(velocities) + acceleration * total) / 2)
+        if smooth[1] and ends == [[0, 0], [0, 0]] and jerk is not None:
             found.append(jerk * total * total / 8)
     return found
 

@@ -5,50 +5,40 @@ The argument is that of docs/explanation/certificates-quintic.md.
 
 from __future__ import annotations
 
-from copy import copy
 from fractions import Fraction
 from math import sqrt
 from typing import Any
 
 import numpy as np
 
+from .boxes import Array, Boxes, Rows, Sides
 from .problem import StatedProblem
-from .quintic_bound import SLACK, Array, Bound, Task
+from .quintic_bound import Bound, Task
 from .quintic_parts import ROUND
-from .quintic_tree import read_tree
 from .ranges import (
     LEAST_TAU,
     MOST_POWER,
     MOST_QUINTIC_JOINTS,
     MOST_QUINTIC_SEGMENTS,
-    MOST_ROWS,
     MOST_WINDOW,
     MOST_WINDOWS,
+    QUINTIC_PLACES,
     SHORTEST_TOTAL,
     SMALLEST,
     WINDOW_UNIT,
 )
 from .reading import Clock, listed, need, number, whole
-from .tree import ProofKind
 
 _LEAVES = 256
 """In a batch: from there on numpy's own work outweighs the calls."""
 _NUMBERS = 4_000_000
 """In the largest array of a batch: 32 MB; long splines have smaller batches."""
 
-Sides = tuple[list[float], list[float]]
-"""Least and largest durations."""
 
-
-class QuinticSpline(ProofKind[Sides]):
-    """Boxes in the simplex of durations whose sum is the total.
-
-    A feasible answer with a smaller total, stretched to this one, keeps the limits strictly, and
-    lies in one of the boxes: so a box is proved if no such answer is in it.
-    """
+class QuinticSpline(Boxes):
+    """Boxes in the simplex of durations whose sum is the total; windows beside weighted limits."""
 
     keys = ("powers", "second", "low", "windows", "rows")
-    apart = True
 
     def __init__(
         self, problem: StatedProblem, proof: dict[str, Any], total: Fraction, clock: Clock
@@ -80,12 +70,12 @@ class QuinticSpline(ProofKind[Sides]):
         need(all(SMALLEST < x < 1 / SMALLEST for x in sizes), "a number is of unusual size")
         stated_windows = listed(proof["windows"], "windows", MOST_WINDOWS)
         self._windows = [_window(w, n, joints) for w in clock.each(stated_windows)]
+        self.rows, self.most = self.read_rows(proof["rows"], 1, QUINTIC_PLACES), float(own)
         self._task = Task(
             np.array([[float(x) for x in row] for row in steps]),
             np.array([[np.inf if x is None else float(x) for x in row] for row in limits]),
-            float(own),
-            listed(proof["rows"], "rows", MOST_ROWS),
-            clock,
+            self.most,
+            self.rows,
         )
         self._low = []
         for k, stated_low in enumerate(listed(proof["low"], "low", n, n)):
@@ -100,72 +90,33 @@ class QuinticSpline(ProofKind[Sides]):
                 f"segment {k + 1}: its least duration is not proved",
             )
             self._low.append(float(x / second))
-        self._batch = max(1, min(_LEAVES, _NUMBERS // (16 * n**3)))
-        self._waiting: list[tuple[Sides, list[Any]]] = []
-
-    def nodes(self, tree: Any) -> Any:
-        """A text, which has half the length, or the list that it stands for."""
-        return read_tree(tree, self.clock) if type(tree) is str else tree
+        self.batch = max(1, min(_LEAVES, _NUMBERS // (16 * n**3)))
 
     def root(self) -> Sides:
         """From the least durations, which are proved, to the total."""
-        return self._shrunk(self._low, [self._task.total] * len(self._low))
+        return self.shrunk(self._low, [self.most] * len(self._low))
 
-    def _shrunk(self, low: list[float], high: list[float]) -> Sides:
-        """Part of a box whose durations can add up to the total, with something to spare."""
-        total = self._task.total
-        below, above = sum(low), sum(high)
-        slack = SLACK * (above + total)
-        least = [max(a, total - (above - b) - slack) for a, b in zip(low, high, strict=True)]
-        most = [min(b, total - (below - a) + slack) for a, b in zip(low, high, strict=True)]
-        return least, most
-
-    def cut(self, box: Sides, coordinate: int, place: Any) -> tuple[Sides, Sides]:
-        """At the geometric mean of a side, or nearer to 0 where it may begin there."""
-        need(place is None, "the place of a cut is not stated in this kind of proof")
-        least, most = box
-        k = whole(coordinate, 0, len(least) - 1)
-        a, b = least[k], most[k]
-        middle = sqrt(a * b) if 0.0 < 0.1 * b < a else 0.3 * b
-        # Where the parts overlap or leave the box they still cover it.
-        return (
-            self._shrunk(least, [*most[:k], middle, *most[k + 1 :]]),
-            self._shrunk([*least[:k], middle, *least[k + 1 :]], most),
-        )
+    @staticmethod
+    def middle(low: float, high: float) -> float:
+        """The geometric mean, or nearer to 0 where the side may begin there."""
+        return sqrt(low * high) if 0.0 < 0.1 * high < low else 0.3 * high
 
     def leaf(self, box: Sides, data: list[Any]) -> None:
-        """Nothing, if the box is empty; [window, τ]; or [τ, row, weight, row, weight, …]."""
-        if not data:
-            low, high = box
-            need(any(a > b for a, b in zip(low, high, strict=True)), "it is not empty")
-        elif len(data) == 2:
-            window = self._windows[whole(data[0], 0, len(self._windows) - 1)]
-            exact = number(data[1])
-            usual = exact == 0 or LEAST_TAU < abs(exact) < 1 / LEAST_TAU
-            need(usual, "a window's tau is of unusual size")
-            with np.errstate(all="ignore"):  # what is not finite fails every comparison
-                least = self._over_window(window, float(exact), *map(np.array, box))
-            need(least > 0.0, "it is not proved by its window")
-        else:
-            self._waiting.append((box, data))
-            if len(self._waiting) == self._batch:
-                self.end()
-
-    def alone(self) -> QuinticSpline:
-        """Its leaves wait for nobody else's."""
-        own = copy(self)
-        own._waiting = []
-        return own
-
-    def end(self) -> None:
-        """Judge the leaves with limits that wait."""
-        waiting, self._waiting = self._waiting, []
-        if not waiting:
+        """[window, τ], or as any kind has it."""
+        if len(data) != 2:
+            super().leaf(box, data)
             return
-        sides = np.array([box for box, _ in waiting])
+        window = self._windows[whole(data[0], 0, len(self._windows) - 1)]
+        exact = number(data[1])
+        usual = exact == 0 or LEAST_TAU < abs(exact) < 1 / LEAST_TAU
+        need(usual, "a window's tau is of unusual size")
         with np.errstate(all="ignore"):  # what is not finite fails every comparison
-            bound = Bound(self._task, sides[:, 0], sides[:, 1], [data for _, data in waiting])
-            need(bool((bound.least() > 0.0).all()), "a leaf with limits is not proved")
+            least = self._over_window(window, float(exact), *map(np.array, box))
+        need(least > 0.0, "it is not proved by its window")
+
+    def least(self, sides: Array, tau: Array, ids: Rows, weights: Array) -> Array:
+        """Of the splines in each box."""
+        return Bound(self._task, sides[:, 0], sides[:, 1], tau, ids, weights).least()
 
     def _over_window(self, window: list[int], tau: float, low: Array, high: Array) -> float:
         """Least of Σ cΔ/h − A Σ m h − V Σ|c + ψ' h| + tau (Σ h − total) over a box."""

@@ -8,7 +8,6 @@ on any path, 2.3e-13 of the same sum over absolute values: `ROUND` of that sum i
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from copy import copy
 from math import comb
 from typing import Any
@@ -16,14 +15,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .quintic_parts import ROUND, Cubic, Part, norms
-from .ranges import MOST_LIMITS, MOST_WEIGHT, QUINTIC_PLACES
-from .reading import Clock, Refused, listed, need, whole
+from .boxes import SLACK, Array, Rows, least_of_quadratic, most_of_cubes
+from .quintic_parts import ROUND, Part, norms
+from .ranges import QUINTIC_PLACES
+from .reading import Refused, need
 
-Array = NDArray[np.float64]
-
-SLACK = 1e-12
-"""Of the sides of a box: far more than the rounding of the sums that shrink it."""
 BRIEFEST = 1e-40
 """Durations in a leaf with limits are above it, so that nothing underflows."""
 
@@ -56,29 +52,12 @@ class Task:
     limits : ndarray, shape (joints, 3)
         inf where there is none.
     total : float
-    rows : list
-        ``proof.rows`` of the file.
-    clock : Clock
+    rows : ndarray of int, shape (row, 5)
+        Segment, joint, order, sign, place.
     """
 
-    def __init__(
-        self, steps: Array, limits: Array, total: float, rows: list[Any], clock: Clock
-    ) -> None:
-        self.steps, self.limits, self.total = steps, limits, total
-        n, joints = steps.shape
-        tops = (n - 1, joints - 1, 3, 1, QUINTIC_PLACES)
-        bottoms = (0, 0, 1, -1, 0)
-        self.rows = np.array(
-            [
-                [
-                    whole(x, a, b)
-                    for x, a, b in zip(listed(row, "a row", 5, 5), bottoms, tops, strict=True)
-                ]
-                for row in clock.each(rows)
-            ],
-            np.int64,
-        ).reshape(-1, 5)
-        need(bool((self.rows[:, 3] != 0).all()), "rows: sign")
+    def __init__(self, steps: Array, limits: Array, total: float, rows: Rows) -> None:
+        self.steps, self.limits, self.total, self.rows = steps, limits, total, rows
         self.caps = limits[self.rows[:, 1], self.rows[:, 2] - 1]
         need(bool(np.isfinite(self.caps).all()), "a row leans on a limit that is not there")
         # Derivative of (step, v0, v1, a0, a1) at the place.
@@ -101,32 +80,27 @@ class Bound:
     ----------
     task : Task
     low, high : ndarray, shape (leaf, segments)
-    leaves : sequence of list
-        τ, row, weight, row, weight, …
+    tau : ndarray, shape (leaf,)
+    ids : ndarray of int, shape (leaf, row)
+        In the table of rows.
+    weights : ndarray, shape (leaf, row)
     """
 
-    def __init__(self, task: Task, low: Array, high: Array, leaves: Sequence[list[Any]]) -> None:
+    def __init__(
+        self, task: Task, low: Array, high: Array, tau: Array, ids: Rows, weights: Array
+    ) -> None:
         need(
             bool((low > BRIEFEST).all() and (low <= high).all()),
             "a leaf that is too wide is not proved",
         )
-        self.task, self.size = task, len(leaves)
+        self.task, self.size = task, len(tau)
         self.n, self.joints = task.steps.shape
         ends = 1.0 / high, 1.0 / low
         self.r = 0.5 * (ends[0] + ends[1])
         self.e = 0.5 * (ends[1] - ends[0]) + 4.0 * SLACK * ends[1]
         need(bool((self.e < 0.6 * self.r).all()), "a leaf that is too wide is not proved")
-        at, row, weight, tau = [], [], [], []
-        for i, leaf in enumerate(leaves):
-            tau.append(whole(leaf[0], -MOST_WEIGHT, MOST_WEIGHT))
-            need(len(leaf) % 2 == 1, "a leaf misses a weight")
-            need(len(leaf) <= 2 * MOST_LIMITS + 1, "a leaf has too many rows")
-            for which, share in zip(leaf[1::2], leaf[2::2], strict=True):
-                at.append(i)
-                row.append(whole(which, 0, len(task.rows) - 1))
-                weight.append(whole(share, 1, MOST_WEIGHT))
-        self.at, self.row = np.array(at), np.array(row)
-        self.weight, self.tau = np.array(weight, float), np.array(tau, float)
+        self.at, place = np.nonzero(weights)
+        self.row, self.weight, self.tau = ids[self.at, place], weights[self.at, place], tau
         self._parts()
 
     def _parts(self) -> None:
@@ -266,8 +240,8 @@ class Bound:
         # πᵀM⁻¹ρ = ½(c + s)·(Rπ)ᵀ(Rρ) + what is at most ½(c − s)·‖Rπ‖‖Rρ‖.
         small, large = self._spectrum()
         middle, spread = 0.5 * (large + small), 0.5 * (large - small) + ROUND * large
-        thrice = Cubic(n)
-        cubic = np.zeros((self.size, thrice.size))
+        same, above = np.arange(n), np.triu_indices(n, 1)
+        cubes = np.zeros((self.size, n, n, n))
         for joint in range(self.joints):
             mine = j == joint
             if not mine.any():
@@ -289,29 +263,21 @@ class Bound:
             size[leaf] += found["size"]
             adjoint, residual = found["adjoint"], found["residual"]
             both = adjoint.leading @ np.swapaxes(residual.leading, 1, 2) * middle[leaf, None, None]
-            part = np.zeros((own.size, thrice.size))
-            for one, where in enumerate(thrice.products):
-                part[:, where] += both[:, one]
-            for one, where in enumerate(thrice.squares):
-                part[:, where] += found["squared"][:, one] * own.e[:, one, None] ** 2 * own.e
-            cubic[leaf] += part
+            # Residuals lead with squares, then products of two.
+            part = np.zeros((own.size, n, n, n))
+            part[:, :, same, same], part[:, :, *above] = both[:, :, :n], both[:, :, n:]
+            wide = own.e[:, :, None] ** 2 * own.e[:, None]
+            part[:, same, same] += found["squared"] * wide
+            cubes[leaf] += part
             rounding = ROUND * norms(adjoint.leading) * norms(residual.leading)
             error[leaf] += middle[leaf] * (rounding + adjoint.beyond(residual))
             error[leaf] += spread[leaf] * adjoint.most * residual.most + found["quartic"]
         value += alone[0].sum(axis=1)
         first += alone[1]
-        cubic[:, thrice.cubes] += alone[3] * e**3
-        error += (np.abs(alone[4]) * e**4).sum(axis=1) + np.abs(cubic).sum(axis=1)
-        # In x = δ/e: x_k x_m ≥ −½(x_k² + x_m²), so that products of two take from the squares.
-        each = np.arange(n)
-        second *= e[:, :, None] * e[:, None, :]
-        bend = second[:, each, each] + 2.0 * alone[2] * e**2
-        second[:, each, each] = 0.0
-        bend -= np.abs(second).sum(axis=2)
-        lean = np.abs(first) * e
-        inside = lean < bend
-        turn = -0.5 * lean * lean / np.where(inside, bend, 1.0)
-        value += np.where(inside, turn, 0.5 * bend - lean).sum(axis=1)
+        cubes[:, same, same, same] += alone[3] * e**3
+        error += (np.abs(alone[4]) * e**4).sum(axis=1) + most_of_cubes(cubes)
+        second[:, same, same] += 2.0 * alone[2]
+        value += least_of_quadratic(first, second, e)
         return np.asarray(value - error * (1.0 + 1e-9) - 10.0 * ROUND * size)
 
     def _joint(self, step: Array, phi: Array) -> dict[str, Any]:

@@ -1,12 +1,10 @@
-"""What moves over the boxes of a batch: sums of vectors, their norms and products, and cubic terms.
+"""What moves over the boxes of a batch: sums of vectors, their norms and products.
 
 Arrays lead with the leaf. A sum Σ x_i v_i with |x_i| ≤ 1 is held by its vectors, so that products
 of theirs count: where vectors point to different sides, that is far less than their norms say.
 """
 
 from __future__ import annotations
-
-from itertools import combinations, combinations_with_replacement
 
 import numpy as np
 from numpy.typing import NDArray
@@ -55,29 +53,3 @@ def products(these: Array, those: Array) -> Array:
     """Bound of |(Σ x_i v_i)ᵀ(Σ y_j w_j)| for all |x_i|, |y_j| ≤ 1."""
     found = np.abs(these @ np.swapaxes(those, 1, 2)).sum(axis=(1, 2))
     return np.asarray(found + ROUND * norms(these) * norms(those))
-
-
-class Cubic:
-    """Products of three variables: one number for each, whatever the order of its factors.
-
-    Parameters
-    ----------
-    n : int
-        Variables.
-    """
-
-    def __init__(self, n: int) -> None:
-        every = list(combinations_with_replacement(range(n), 3))
-        place = {one: at for at, one in enumerate(every)}
-        pairs = [(k, k) for k in range(n)] + list(combinations(range(n), 2))
-        self.size = len(every)
-        self.cubes = np.array([place[k, k, k] for k in range(n)])
-        """Of x_k³."""
-        self.squares = np.array(
-            [[place[min(k, m), k, max(k, m)] for m in range(n)] for k in range(n)]
-        )
-        """Of x_k²·x_m."""
-        self.products = np.array(
-            [[place[tuple(sorted((a, *pair)))] for pair in pairs] for a in range(n)]  # type: ignore[index]
-        )
-        """Of x_a times the squares x_k², then the pairs x_k·x_m of k < m."""

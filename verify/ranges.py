@@ -83,8 +83,6 @@ SHORTEST_TOTAL = Fraction(1, 10**9)
 """The total, in the unit of time of the proof, lies between it and its inverse."""
 LEAST_TAU = Fraction(1, 10**60)
 """A window's multiplier τ is 0 or between it and its inverse, for the same reason."""
-USUAL_WEIGHT = 2**13
-"""Of a row of a quintic leaf that is written without: the largest weight of a leaf, as a rule."""
 MOST_WEIGHT = 2**52
 """Of a leaf's τ and weights, which are integers: floats hold them exactly."""
 QUINTIC_PLACES = 1024

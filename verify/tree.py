@@ -71,10 +71,6 @@ class ProofKind(ABC, Generic[B]):
     ) -> None:
         self.problem, self.total, self.clock = problem, total, clock
 
-    def nodes(self, tree: Any) -> Any:
-        """The list of nodes that a tree stands for, where its kind has a shorter form."""
-        return tree
-
     @abstractmethod
     def root(self) -> B:
         """The box that holds every feasible answer with a total below ``total``."""
@@ -124,7 +120,7 @@ def walk(kind: ProofKind[B], tree: Any, clock: Clock, spread: Spread | None = No
     Refused
         At a node that is not proved; the first one, unless parts are walked elsewhere.
     """
-    nodes = listed(kind.nodes(tree), "tree", MOST_NODES, 1)
+    nodes = listed(tree, "tree", MOST_NODES, 1)
     if spread is not None and kind.apart:
         sizes = _sizes(nodes)
         if sizes is not None:

@@ -51,9 +51,9 @@ _PROOF = ("kind", "total", "tree")
 
 
 KINDS = {
-    "rest-to-rest": "closed_form.RestToRest",
-    "stretched": "closed_form.Stretched",
-    "fixed-ratios": "fixed_ratios.FixedRatios",
+    "rest-to-rest": "closed_form.EachAlone",
+    "stretched": "closed_form.EachAlone",
+    "fixed-ratios": "closed_form.FixedRatios",
     "any-curve": "any_curve.AnyCurve",
     "cubic": "cubic.CubicSpline",
     "quintic-spline": "quintic.QuinticSpline",

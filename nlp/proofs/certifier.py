@@ -44,6 +44,8 @@ class Certifier:
     sided : bool
         Whether its bounds know lower and upper limits that differ in size. If not, they are proved
         within the larger of both, which is sound and wider.
+    moving : bool
+        Whether derivatives may be prescribed other than 0.
     """
 
     family: str
@@ -55,6 +57,7 @@ class Certifier:
     boxes: int = 1
     compiles: bool = False
     sided: bool = False
+    moving: bool = False
 
     def run(self, exact: ExactProblem, request: Request) -> Certified:
         """Prove an interval of the optimum; the time limit and Ctrl-C end it with what is proved.

@@ -30,6 +30,7 @@ CERTIFIERS: tuple[str, ...] = (
     "closed_form.FIXED_RATIOS",
     "closed_form.REST_TO_REST",
     "closed_form.STRETCHED",
+    "declared.FEW_SEGMENTS",
     "cubic.CUBIC",
     "quintic.QUINTIC",
     "declared.DECLARED",
@@ -40,8 +41,8 @@ CERTIFIERS: tuple[str, ...] = (
 A rest-to-rest cubic is a C2 cubic spline too: closed forms stand in front. Fixed ratios are another
 question of any curve, which the kinds behind know nothing of: they stand before all."""
 _FEW = 7
-"""Segments up to which boxes of durations are few: clamped cubics of seven close in two thousand,
-and of nine in forty thousand."""
+"""Segments up to which boxes of durations may close in a second: of the six cubic splines of six
+and seven in the suite two do, and the kind of their own takes one to ten seconds."""
 
 
 @functools.cache
@@ -52,8 +53,13 @@ def certifiers(subject: Subject) -> tuple[Certifier, ...]:
     return tuple(certifier for certifier in every if certifier.subject is subject)
 
 
+def _able(problem: ExactProblem, subject: Subject) -> list[Certifier]:
+    rest = problem.curve.homogeneous
+    return [c for c in certifiers(subject) if c.declares(problem) and (rest or c.moving)]
+
+
 def _certifier(problem: ExactProblem, subject: Subject) -> Certifier | None:
-    return next((c for c in certifiers(subject) if c.declares(problem)), None)
+    return next(iter(_able(problem, subject)), None)
 
 
 def covered(problem: ExactProblem, subject: Subject = Subject.DECLARED) -> str | None:
@@ -69,12 +75,12 @@ def covered(problem: ExactProblem, subject: Subject = Subject.DECLARED) -> str |
     -------
     str or None
     """
-    if subject is Subject.DECLARED and not problem.curve.homogeneous:
-        return f"{problem.curve.name} {MOVING}"
     certifier = _certifier(problem, subject)
     if certifier is not None:
         return why_too_large(problem) or certifier.missing(problem)
-    families = ", ".join(certifier.family for certifier in certifiers(subject))
+    if not problem.curve.homogeneous:
+        return f"{problem.curve.name} {MOVING}"
+    families = ", ".join(dict.fromkeys(c.family for c in certifiers(subject)))
     return f"{problem.curve.name}: not covered; covered are {families}"
 
 
@@ -92,9 +98,7 @@ def prompt(problem: ExactProblem) -> Certifier | None:
     if covered(problem) is not None:
         return None
     able = [
-        c
-        for c in certifiers(Subject.DECLARED)
-        if c.declares(problem) and not c.compiles and c.missing(problem) is None
+        c for c in _able(problem, Subject.DECLARED) if not c.compiles and c.missing(problem) is None
     ]
     if not able or able[0].instant or problem.segments > _FEW:
         return able[0] if able else None

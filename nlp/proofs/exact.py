@@ -26,10 +26,11 @@ from ...problem.curves import Derivatives
 from .shares import exact_shares, printed_shares
 
 MOVING = (
-    "prescribes derivatives other than 0, and no proof covers such a curve yet; what --any-curve "
-    "proves over any curve is a lower bound for it"
+    "prescribes derivatives other than 0, which the proof for its kind of problem does not cover; "
+    "what --any-curve proves over any curve is a lower bound for it"
 )
-"""Why there is no proof of a declared curve, and what still holds."""
+"""Why there is no proof of a curve at fixed ratios, of a B-spline, or in units of a proof for cubic
+and quintic splines; and what still holds."""
 _PI = Scale(Fraction(1), 1).bounds
 """Rational bounds of π, the same as for printed numbers."""
 

@@ -36,6 +36,19 @@ CURVES = {
         ),
         5,
     ),
+    "4-3-4, moving": (piecewise((4, 3, 4), ends=((1, -0.25), (2, 0.5))), 4),
+    "clamped cubic, moving": (cubic_spline(4, ((1, 0.5),), ((1, -0.25),)), 5),
+    "quintic, moving": (quintic_spline(2, ((1, 0.0), (2, -0.5)), ((1, 0.375), (2, 0.0))), 3),
+    "one piece, moving": (piecewise((5,), ends=((1, 0.25), (2, -0.5))), 2),
+    "moving inside": (
+        Interpolant(
+            (5, 4, 4),
+            (2, 2),
+            (((1, 0.0), (2, 0.5)), ((1, 0.625),), ((2, -0.25),), ((1, 0.0), (2, 0.0))),
+            name="mixed degrees with a pass at speed",
+        ),
+        4,
+    ),
 }
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from fractions import Fraction
 from itertools import pairwise
 
@@ -10,19 +9,15 @@ import numpy as np
 import pytest
 from scipy.interpolate import make_interp_spline
 from scipy.optimize import minimize
-from support.certificate_kinds import text
-from support.forgeries.forgery import NO_ANSWER, altered, document
+from support.forgeries.forgery import NO_ANSWER, altered
 from trajgap.verify import (
-    MOST_QUINTIC_SEGMENTS,
-    USUAL_WEIGHT,
     read_problem,
-    verify_certificate,
 )
+from trajgap.verify.boxes import most_of_cubes
 from trajgap.verify.quintic import QuinticSpline
 from trajgap.verify.quintic_bound import Bound, Task
-from trajgap.verify.quintic_parts import Cubic, Part
-from trajgap.verify.quintic_tree import read_tree
-from trajgap.verify.reading import Clock, OutOfTime, Refused
+from trajgap.verify.quintic_parts import Part
+from trajgap.verify.reading import Clock
 
 CLOCK = Clock(1e9)
 SPLINE_ENDS = [(1, 0.0), (2, 0.0)]
@@ -50,10 +45,10 @@ def test_a_leaf_is_below_every_sampled_quintic(seed: int) -> None:
             found += w * (reached - limits[j, order - 1]) * h[k] ** (order - 2)
         return float(found)
 
-    task = Task(np.diff(q, axis=0), limits, total, rows, CLOCK)
-    leaf = [tau, *(x for pair in enumerate(weights) for x in pair)]
+    task = Task(np.diff(q, axis=0), limits, total, np.array(rows))
+    leaf = np.array([tau]), np.arange(count)[None], np.array([weights], float)
     low, high = h0 * np.exp(-width), h0 * np.exp(width)
-    proved = float(Bound(task, low[None], high[None], [leaf]).least()[0])
+    proved = float(Bound(task, low[None], high[None], *leaf).least()[0])
     spread = [np.exp(width * rng.uniform(-1, 1, n)) for _ in range(25)]
     corners = (np.ones(n), np.exp([-width] * n), np.exp([width] * n))
     found = [h0 * x for x in (*corners, *spread)]
@@ -129,57 +124,11 @@ def test_products_of_parts_hold_for_all_factors(seed: int) -> None:
 
 
 @pytest.mark.parametrize("n", [1, 2, 4])
-def test_products_of_three_variables_have_one_number_each(n: int) -> None:
-    thrice, x = Cubic(n), np.random.default_rng(n).normal(size=n)
-    value = np.full(thrice.size, np.nan)
-    pairs = [x[k] ** 2 for k in range(n)]
-    pairs += [x[k] * x[m] for k in range(n) for m in range(k + 1, n)]
-    for a, row in enumerate(thrice.products):
-        for at, pair in zip(row, pairs, strict=True):
-            assert np.isnan(value[at]) or value[at] == pytest.approx(x[a] * pair)
-            value[at] = x[a] * pair
-    assert np.isfinite(value).all()
-    for k in range(n):
-        assert value[thrice.cubes[k]] == pytest.approx(x[k] ** 3)
-        for m in range(n):
-            assert value[thrice.squares[k, m]] == pytest.approx(x[k] ** 2 * x[m])
-
-
-KIND = "quintic-spline"
-
-
-def test_the_nodes_of_a_text() -> None:
-    words = "caz.#7#0(-2.5e-3).-12 0.1302 2932 934:193"
-    assert read_tree(words, Clock(9.0)) == [
-        2,
-        0,
-        MOST_QUINTIC_SEGMENTS - 1,
-        ["."],
-        [".", 7, "0"],
-        [".", 0, "-2.5e-3"],
-        [".", -12, 0, USUAL_WEIGHT],
-        [".", 1302, 2932, USUAL_WEIGHT, 934, 193],
-    ]
-
-
-@pytest.mark.parametrize(("words", "at"), [("a b", 1), ("#1()", 2), (".1.5 2", 1)])
-def test_the_place_of_a_wrong_character_is_said(words: str, at: int) -> None:
-    with pytest.raises(Refused, match=f"the tree at character {at}$"):
-        read_tree(words, Clock(9.0))
-
-
-def test_reading_ends_with_the_time() -> None:
-    with pytest.raises(OutOfTime):
-        read_tree("ab..", Clock(-1.0))
-
-
-def test_a_text_proves_what_its_nodes_prove() -> None:
-    written = document(KIND)
-    listed = json.loads(text(KIND))
-    assert isinstance(written["proof"]["tree"], str)
-    assert isinstance(listed["proof"]["tree"], list)
-    found = verify_certificate(written)
-    assert found.proves
-    assert not found.altered
-    assert found.lower == verify_certificate(listed).lower
-    assert len(json.dumps(written)) < len(json.dumps(listed))
+def test_a_product_of_three_variables_counts_once(n: int) -> None:
+    cubes = np.random.default_rng(n).normal(size=(2, n, n, n))
+    for box, found in zip(cubes, most_of_cubes(cubes), strict=True):
+        sums: dict[tuple[int, ...], float] = {}
+        for at in np.ndindex(n, n, n):
+            one = tuple(sorted(at))
+            sums[one] = sums.get(one, 0.0) + box[at]
+        assert found == pytest.approx(sum(map(abs, sums.values())))

@@ -107,7 +107,9 @@ def _close(session: Session, search: Search, root: Node, motion: Motion | None) 
     session.report(sum(leaf.lower < wanted for leaf in root.leaves), search.nodes)
 
 
-ANY_CURVE = Certifier("every C1 motion", lambda _: True, missing, _prove, subject=Subject.ANY)
+ANY_CURVE = Certifier(
+    "every C1 motion", lambda _: True, missing, _prove, subject=Subject.ANY, moving=True
+)
 """Takes every curve, since of a curve only the velocities at its two ends count."""
 
 

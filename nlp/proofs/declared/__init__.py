@@ -1,4 +1,4 @@
-"""Proofs for any declared curve at rest: weighted limits over boxes of durations."""
+"""Proofs for any declared curve: weighted limits over boxes of durations."""
 
 import lazy_loader
 

@@ -1,4 +1,4 @@
-"""Certified interval of the least total of a declared curve at rest, by stages of rising totals."""
+"""Certified interval of the least total of a declared curve, by stages of rising totals."""
 
 from __future__ import annotations
 
@@ -14,7 +14,6 @@ from ....verify import (
     PLACES,
     Clock,
     Refused,
-    least_durations,
     proof_kind,
     read_problem,
 )
@@ -49,6 +48,9 @@ _ABOVE = 1 + Fraction(1, 2**40)
 """Factor on the sum of all upper bounds that makes a total exceed every admissible one."""
 _DOUBLINGS = 20
 """Of the total below which an answer is looked for: beyond, no joint moves at a limit."""
+_FEW = {3: 5, 5: 3}
+"""Segments of cubic and quintic splines up to which these boxes close every committed one to its
+gap in no more seconds than its own kind takes; beyond, some last, and certificates are longer."""
 _ROUNDS = 40
 """Halvings of the distance, in logarithms, to a total that equals its own least durations."""
 
@@ -73,7 +75,8 @@ def _kind(problem: ExactProblem, total: Fraction) -> Any:
 
 
 def _declares(problem: ExactProblem) -> bool:
-    return isinstance(problem.curve, Interpolant)
+    free = problem.shares is None and not problem.chord
+    return isinstance(problem.curve, Interpolant) and free
 
 
 def _missing(problem: ExactProblem) -> str | None:
@@ -98,7 +101,8 @@ class _Stages:
         """Prove that no total is below ``target``."""
         session = self.session
         kind, before = _kind(session.exact, target), session.nodes
-        signed = all(x is None for x in session.exact.duration_upper)
+        rest = session.exact.curve.homogeneous
+        signed = rest and all(x is None for x in session.exact.duration_upper)
         second = float(kind.second)
 
         def watch(left: int, done: int) -> None:
@@ -116,13 +120,14 @@ class _Stages:
         if not len(durations):
             return
         floats = self.session.floats
-        tried = self.session.stretched(durations)
+        rest = floats.curve.homogeneous
+        tried = self.session.stretched(durations) if rest else durations
         totals = tried.sum(axis=1)
         totals[(tried > floats.duration_upper).any(axis=1)] = math.inf
         for best in totals.argsort()[:_LOOKS]:
             if not totals[best] < float(target) * (1 - _SLIGHT):
                 break
-            # The stretch knows nothing of positions.
+            # The stretch knows nothing of positions, and there is none for ends in motion.
             if check(floats, tried[best]).verdict is Verdict.PASS:
                 raise Shorter(tried[best])
 
@@ -148,11 +153,11 @@ def _rising(session: Session) -> Iterator[Fraction]:
     if len(longest) == session.exact.segments:
         yield sum(longest, Fraction(0)) * _ABOVE
         return
-    stated, total = read_problem(problem_document(session.exact)), Fraction(1)
+    total = Fraction(1)
     for _ in range(_ROUNDS):
         # Least durations shrink as the total grows.
-        least = sum(least_durations(stated, total), Fraction(0))
-        total = Fraction(math.sqrt(float(total) * float(least)))
+        kind = _kind(session.exact, total)
+        total = Fraction(math.sqrt(float(total) * sum(kind.shortest) * float(kind.second)))
     for _ in range(_DOUBLINGS):
         total *= 2
         yield total
@@ -188,11 +193,24 @@ def _prove(session: Session) -> bool:
 
 
 DECLARED = Certifier(
-    "declared piecewise polynomials at rest, each segment with a least duration",
+    "declared piecewise polynomials, each segment with a least duration",
     _declares,
     _missing,
     _prove,
     boxes=20_000,
     sided=True,
+    moving=True,
 )
 """Of any degrees, continuity and rest: 3-5-3, 4-3-4, septic splines and the like."""
+
+FEW_SEGMENTS = replace(
+    DECLARED,
+    declares=lambda problem: (
+        _declares(problem)
+        and problem.segments <= _FEW.get(max(problem.piecewise.degrees), 0)
+        and not problem.piecewise.virtual
+        and _missing(problem) is None
+    ),
+)
+"""Stands in front of the kinds for cubic and quintic splines, and leaves them what they alone do:
+virtual way-points near the others, and segments in which nothing moves."""

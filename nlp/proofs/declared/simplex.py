@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ....problem import Array
 
@@ -91,8 +90,3 @@ def best_weights(
     found = np.zeros((boxes, wide))
     np.put_along_axis(found, done_basis, done_table[:, : n + 1, wide], axis=1)
     return most, np.maximum(found[:, :count], 0.0), found[:, count] - found[:, count + 1]
-
-
-def whole_numbers(values: Array, scale: float) -> NDArray[np.float64]:
-    """Rounded multiples, as a certificate states them."""
-    return np.rint(values * scale)

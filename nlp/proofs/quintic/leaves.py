@@ -11,14 +11,12 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ....verify import USUAL_WEIGHT
+from ....verify import LEAF
 from .search import EMPTY, WINDOW
 from .windows import UNIT, Windows
 
 T = TypeVar("T")
 
-_CUTS = " abcdefghijklmnopqrstuvwxyz"
-"""Letter k + 1 of the search as the document has it."""
 _ROOM = (1 << 12, 1 << 12, 1 << 13)
 """Letters, leaves and rows of the first arrays: 0.3 MB, and doubled when full."""
 
@@ -104,7 +102,7 @@ class Leaves:
         )
 
     def document(self, windows: Windows) -> dict[str, Any]:
-        """Tables of windows and rows that are used, and the tree as a text.
+        """Tables of windows and rows that are used, and the tree.
 
         What is used most stands first in its table, so that its number is short.
         """
@@ -121,19 +119,16 @@ class Leaves:
             if kind not in (WINDOW, EMPTY)
             for row in ids[a:b]
         )
-        found = []
+        found: list[list[Any]] = []
         for (a, b), kind, tau in zip(parts, kinds, self.tau.tolist(), strict=True):
-            if kind == EMPTY:
-                found.append(".")
-            elif kind == WINDOW:
-                found.append(f"#{of_windows[ids[a][0]]}" + (f"({tau!r})" if tau else ""))
-            else:
-                rows = zip(ids[a:b], share[a:b], strict=True)
-                weighted = (
-                    f" {of_rows[row]}" + ("" if weight == USUAL_WEIGHT else f":{int(weight)}")
-                    for row, weight in rows
-                )
-                found.append(f".{int(tau)}" + "".join(weighted))
+            leaf: list[Any] = [LEAF]
+            if kind == WINDOW:
+                leaf += [of_windows[ids[a][0]], repr(tau) if tau else "0"]
+            elif kind != EMPTY:
+                leaf.append(int(tau))
+                for row, weight in zip(ids[a:b], share[a:b], strict=True):
+                    leaf += [of_rows[row], int(weight)]
+            found.append(leaf)
         leaf_by_leaf = iter(found)
         letters = self.tree[: int(self.sizes[0])].tolist()
         return {
@@ -146,7 +141,7 @@ class Leaves:
                 for w in of_windows
             ],
             "rows": [list(row) for row in of_rows],
-            "tree": "".join(_CUTS[k] if k else next(leaf_by_leaf) for k in letters),
+            "tree": [k - 1 if k else next(leaf_by_leaf) for k in letters],
         }
 
 

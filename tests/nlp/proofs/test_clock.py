@@ -292,7 +292,8 @@ def test_a_search_is_not_compiled_where_that_takes_longer_than_is_left(
     with monkeypatch.context() as patch:
         patch.setattr(certifier, "at_hand", lambda _: False)
         patch.setattr(certifier, "search", never)
-        found = certify(QUINTIC, gap=0.5, seconds=0.9 * certifier.COMPILING)
+        own, seconds = certifier.QUINTIC, 0.9 * certifier.COMPILING
+        found = certify(QUINTIC, gap=0.5, seconds=seconds, certifier=own)
     assert (found.outcome, found.nodes) == (Outcome.INTERVAL, 0)
     assert found.left_out == certifier.UNCOMPILED
     assert found.upper is not None

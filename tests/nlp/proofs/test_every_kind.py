@@ -15,6 +15,7 @@ from support.cubic_problems import base_problem
 from support.cubic_problems import dense_best as dense_of_cubics
 from support.cubic_problems import random_problem as random_cubic
 from support.intervals import judged
+from support.own_kinds import own_kinds as own_kinds
 from support.unjudged import unjudged
 from support.unlucky import answering
 from trajgap.nlp import solve

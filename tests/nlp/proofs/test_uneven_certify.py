@@ -9,10 +9,11 @@ from support.small_certificates import sealed
 from support.uneven import LIMITS, WAYPOINTS, mirrored, uneven_problem
 from trajgap.nlp import Outcome, certify, solve
 from trajgap.nlp.proofs import certificate
+from trajgap.nlp.proofs.cubic import CUBIC
 from trajgap.problem import Limits, Problem, cubic_spline, piecewise, rest_to_rest
 from trajgap.verify import Subject, verify_certificate
 
-SIDED = ("rest-to-rest", "stretched", "3-5-3")
+SIDED = ("rest-to-rest", "stretched", "3-5-3", "cubic")
 """Kinds of curve whose proofs know each side."""
 
 
@@ -84,7 +85,7 @@ def test_a_missing_side_is_no_limit() -> None:
 def test_other_kinds_prove_within_the_larger_size() -> None:
     limits = Limits([[-0.9, 1.0], [-2, 1.9]], [[-3, 2.9], [-6, 5.9]], [[-40, 39], [-59, 60]])
     problem = Problem(WAYPOINTS, limits, cubic_spline(3))
-    found = certify(problem, seconds=60.0)
+    found = certify(problem, seconds=60.0, certifier=CUBIC)
     assert found.outcome is Outcome.INTERVAL
     assert found.widened
     total, hull = solve(problem).total_time, solve(problem.hull).total_time

@@ -7,11 +7,12 @@ from support.forgeries.forgery import B_SPLINE_AT_RATIOS, NO_ANSWER, Document, F
 ONE_LEAF = "a proof in closed form has one leaf"
 CUTS = ([0, ["."], ["."]], [["/", 0, "1"], ["."], ["."]])
 MISSING = "a limit that is not there"
-REST_ONLY = "declaration not covered: no rest-to-rest polynomials"
+APART = "closed_form.EachAlone.pieces: declaration not covered: no curve whose segments stand alone"
+_RATIOS = "closed_form.FixedRatios."
 BEND_FREE = {"problem.limits.0": ["1.6", None, None]}
 """Without a limit of joint 1's acceleration."""
 
-_LEAF = "closed_form.ClosedForm.leaf: "
+_LEAF, _AT = "closed_form.EachAlone.leaf: ", "closed_form.ClosedForm.at: "
 CLOSED = [
     *(Forgery(f"closed_form.ClosedForm.cut: {ONE_LEAF}", "by hand", {"proof.tree": cut})
       for cut in CUTS),
@@ -21,11 +22,11 @@ CLOSED = [
             "by hand", {"proof.tree.0.1": [-1, 0, 0, "0.1"]}),
     Forgery(_LEAF + "segment {k + 1}: above its lower bound",
             "stretched", {"proof.tree.0.2.3": "4.0001"}),
-    Forgery(_LEAF + MISSING, "by hand", {"proof.tree.0.1.1": 2}),
+    Forgery(_AT + MISSING, "by hand", {"proof.tree.0.1.1": 2}),
     # Only the other side is limited: the first segment goes up, the second down.
-    Forgery(_LEAF + MISSING, "by hand", {**NO_ANSWER, "problem.limits.0.0": ["-1", None]}),
-    Forgery(_LEAF + MISSING, "by hand", {**NO_ANSWER, "problem.limits.0.0": [None, "1"]}),
-    Forgery(_LEAF + MISSING + " (2)", "by hand", {**NO_ANSWER, "problem.limits.0.0": "0"}),
+    Forgery(_AT + MISSING, "by hand", {**NO_ANSWER, "problem.limits.0.0": ["-1", None]}),
+    Forgery(_AT + MISSING, "by hand", {**NO_ANSWER, "problem.limits.0.0": [None, "1"]}),
+    Forgery(_AT + MISSING + " (2)", "by hand", {**NO_ANSWER, "problem.limits.0.0": "0"}),
     *(Forgery(_LEAF + "segment {k + 1}: its least duration is not proved", base, changes)
       for base, changes in (
           ("by hand", {"proof.tree.0.1.3": "1.8750001"}),
@@ -38,32 +39,32 @@ CLOSED = [
           ("stretched", {"proof.tree.0.3.3": "1.6014781118883"}))),
     Forgery(_LEAF + "the total is not proved", "by hand", {"proof.tree.0.1.3": "1.8749999"}),
     Forgery(_LEAF + "the total is not proved", "stretched", {"proof.total": "7.17341390665123"}),
-    Forgery("closed_form.Stretched.__init__: declaration not covered: no stretched uniform cubic "
-            "B-spline", "by hand", {"proof.kind": "stretched"}),
-    Forgery("closed_form.Stretched.__init__: declaration not covered: no stretched uniform cubic "
-            "B-spline", "stretched", {**NO_ANSWER, "problem.curve": "another"}),
-    Forgery(f"closed_form._degree: {REST_ONLY}", "stretched", {"proof.kind": "rest-to-rest"}),
-    *(Forgery(f"closed_form._degree: {REST_ONLY} (2)", "by hand", changes) for changes in (
-        {"problem.degrees": [5, 3]}, {"problem.degrees": [4, 4]}, {"problem.continuity": [1]},
-        {"problem.prescribed.1": [[1, "0"]]}, {"problem.prescribed.1": [[1, "0"], [2, "0.1"]]},
-        {"problem.degrees": [1, 1], "problem.prescribed": [[], [], []]},
+    Forgery(APART, "stretched", {**NO_ANSWER, "problem.curve": "another"}),
+    *(Forgery(APART, "by hand", changes) for changes in (
+        {"problem.continuity": [3]},
+        {"problem.prescribed.1": [[2, "0"]], "problem.continuity": [1]},
+        {"problem.prescribed.1": [[1, "0.1"]]}, {"problem.prescribed.0": [[1, "-0.1"]]},
         {"problem.virtual": [1], "problem.waypoints": [["0"], ["1"]]})),
-    *(Forgery(f"fixed_ratios.FixedRatios.cut: {ONE_LEAF}", "fixed-ratios", {"proof.tree": cut})
-      for cut in CUTS),
-    Forgery("fixed_ratios.FixedRatios.__init__: the problem fixes no ratios that are rational "
-            "numbers", "fixed-ratios", {**NO_ANSWER, "problem.ratios": "chord"}),
-    *(Forgery("fixed_ratios.FixedRatios.__init__: declaration not covered: no curve that may be "
-              "stretched in time", "fixed-ratios",
+    # What determines no curve in a segment alone.
+    *(Forgery("curve.pieces: the conditions do not determine the curve", "by hand", changes)
+      for changes in (
+          {"problem.degrees": [5, 3]}, {"problem.degrees": [4, 4]},
+          {"problem.prescribed.1": [[1, "0"]]}, {"problem.prescribed.1": []})),
+    Forgery(f"closed_form.ClosedForm.cut: {ONE_LEAF}", "fixed-ratios", {"proof.tree": CUTS[0]}),
+    Forgery(_RATIOS + "__init__: the problem fixes no ratios that are rational numbers",
+            "fixed-ratios", {**NO_ANSWER, "problem.ratios": "chord"}),
+    *(Forgery(_RATIOS + "pieces: declaration not covered: no curve that may be stretched in time",
+              "fixed-ratios",
               {f"problem.prescribed.{end}": [[1, ["0", "0.1"]], [2, "0"]]}) for end in (0, 3)),
-    Forgery("fixed_ratios.FixedRatios.leaf: the total is not proved", "stretched",
+    Forgery(_RATIOS + "leaf: the total is not proved", "stretched",
             {**B_SPLINE_AT_RATIOS, "proof.total": "5.12472996"}),
-    Forgery("fixed_ratios.FixedRatios.leaf: above its lower bound",
+    Forgery(_RATIOS + "leaf: above its lower bound",
             "fixed-ratios", {"proof.tree": [[".", -1, 0, 0, 0]]}),
-    Forgery(f"fixed_ratios.FixedRatios.leaf: {MISSING}",
+    Forgery(_AT + MISSING,
             "fixed-ratios", {"proof.tree": [[".", 0, 3, 1, 562965]]}),
-    Forgery(f"fixed_ratios.FixedRatios.leaf: {MISSING} (2)",
+    Forgery(_AT + MISSING + " (2)",
             "fixed-ratios", {**NO_ANSWER, "problem.limits.0.0": "0"}),
-    *(Forgery("fixed_ratios.FixedRatios.leaf: the total is not proved", "fixed-ratios", changes)
+    *(Forgery(_RATIOS + "leaf: the total is not proved", "fixed-ratios", changes)
       for changes in (
           {"proof.total": "6.417801888546"}, {"proof.tree": [[".", 0, 1, 1, 560000]]},
           {"proof.tree": [[".", 1, 3, 1, 2]]}, {"proof.tree": [[".", 0, 2, 2, 0]]},

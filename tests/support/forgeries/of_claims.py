@@ -118,7 +118,7 @@ ANSWERS = [
     Forgery("curve.pieces: the conditions do not determine the curve",
             "state", {"problem.prescribed.1": [[1, "0"], [2, "0"], [3, "0"]]}),
     # The third derivative of a cubic is one number.
-    Forgery("curve._solve: the conditions do not determine the curve",
+    Forgery("curve.pieces: the conditions do not determine the curve (2)",
             "state", {"problem.degrees": [3], "problem.continuity": [],
                       "problem.prescribed": [[[3, "0"]]] * 2,
                       "problem.waypoints": [["0"], ["1"]], "problem.duration_lower": ["0"],

@@ -7,8 +7,8 @@ from typing import Any
 
 from support.forgeries.forgery import GONE, NO_ANSWER, Document, Forgery
 
-_KIND, _COVERED = "declared.DeclaredCurve.", "declared.covered: "
-NOT_PROVED = _KIND + "end: a leaf with limits is not proved"
+_KIND, _COVERED, _BOXES = "declared.DeclaredCurve.", "declared.covered: ", "boxes.Boxes."
+NOT_PROVED = _BOXES + "end: a leaf with limits is not proved"
 UNDETERMINED = "declared_form.linear_form: the conditions do not determine the curve"
 WHOLE = "reading.whole: malformed: no integer in {low}..{high}: {shown(repr(value))}"
 NOT_THERE = _KIND + "__init__: a row leans on a limit that is not there"
@@ -49,7 +49,7 @@ def _size(n: int, degree: int = 3, smooth: int = 2) -> Callable[[Document], None
 FORGERIES = [
     Forgery(_KIND + "__init__: the total is not positive", "declared",
             {"proof.total": "0", "claim.lower": "0"}),
-    Forgery(_KIND + "__init__: the curve has too many unknowns", "declared", _size(12, 9, 8)),
+    Forgery(_KIND + "_task: the curve has too many unknowns", "declared", _size(12, 9, 8)),
     *(Forgery(NOT_THERE, "declared", {**NO_ANSWER, **changes}) for changes in (
         {"proof.rows.0": [0, 0, 3, 1, 0]}, {"proof.rows.0": [0, 0, 0, 1, 0]},
         {"proof.rows.0": [0, 1, 0, -1, 0]}, {"problem.limits.0.0": "0"},
@@ -64,9 +64,9 @@ FORGERIES = [
           {"problem.degrees": [3, 3, 3], "problem.virtual": [1],
            "problem.waypoints": [["0"] * 2, ["1"] * 2, ["0.5"] * 2],
            "problem.prescribed.3": [[1, "0"]]})),
-    *(Forgery(_KIND + "cut: the place of a cut is not stated in this kind of proof",
+    *(Forgery(_BOXES + "cut: the place of a cut is not stated in this kind of proof",
               "declared", {"proof.tree": [["/", 0, place], ["."], ["."]]}) for place in ("1", 0)),
-    *(Forgery(_KIND + "leaf: it is not empty", "declared", {"proof.tree": tree})
+    *(Forgery(_BOXES + "leaf: it is not empty", "declared", {"proof.tree": tree})
       for tree in ([["."]], [0, ["."], ["."]])),
     *(Forgery(_KIND + "leaf: no way-point is beyond its limit there", "declared",
               {**NO_ANSWER, "proof.rows": [row], "proof.tree": [[".", 0]]})
@@ -77,8 +77,9 @@ FORGERIES = [
               {**NO_ANSWER, "problem.position_lower.0": low, "proof.rows": [row],
                "proof.tree": [[".", 0]]})
       for low, row in (("-0.375", [2, 0, 0, -1, 0]), ("-0.25", [2, 0, 0, -1, 5]))),
-    Forgery(_KIND + "end: a leaf misses a weight", "declared", {"proof.tree": [[".", 0, 0, 1, 0]]}),
-    Forgery(_KIND + "end: a leaf has too many rows", "declared",
+    Forgery(_BOXES + "end: a leaf misses a weight", "declared",
+            {"proof.tree": [[".", 0, 0, 1, 0]]}),
+    Forgery(_BOXES + "end: a leaf has too many rows", "declared",
             {"proof.tree": [[".", 0, *[0, 1] * 65]]}),
     *(Forgery(NOT_PROVED, kind, changes) for kind, changes in (
         ("declared", {"proof.tree": [[".", 0, 0, 1]]}),
@@ -90,6 +91,10 @@ FORGERIES = [
         ("declared-free", {**NO_ANSWER, "problem.limits.0.1": "2.1"}),
         ("declared-free", {**NO_ANSWER, "problem.limits.0.1": ["-2", "2.1"]}),
         ("declared-free", {**NO_ANSWER, "problem.waypoints.1.0": "0.99"}),
+        # Ends in motion make the curve faster.
+        ("declared", {**NO_ANSWER, "problem.prescribed.0": [[1, "0.5"], [2, "0"]]}),
+        ("declared", {**NO_ANSWER, "problem.prescribed.3": [[1, ["0.5", "-0.25"]], [2, "0"]]}),
+        ("declared", {**NO_ANSWER, "problem.prescribed.0": [[1, "0"], [2, ["1", "0.5"]]]}),
         # With an upper bound no answer is stretched to the total: nothing is cut off below it.
         ("declared-free", {**NO_ANSWER, "problem.duration_upper": ["5", "5", "5"],
                            "proof.tree": [[".", 1, 0, 1]]}),
@@ -100,16 +105,16 @@ FORGERIES = [
     Forgery(_COVERED + "declaration not covered: no declared piecewise polynomial", "stretched",
             lambda data: data.update(proof={"kind": "declared", "total": data["proof"]["total"],
                                             "rows": [], "tree": [["."]]})),
-    *(Forgery(_COVERED + "declaration not covered: a derivative other than 0 is prescribed",
-              "declared", {**NO_ANSWER, f"problem.prescribed.{end}": value})
-      for end in (0, 3) for value in ([[1, "0.1"], [2, "0"]], [[1, ["0", "-1"]], [2, "0"]])),
+    *(Forgery(_KIND + "_task: a prescribed derivative is of unusual size", "declared",
+              {**NO_ANSWER, f"problem.prescribed.{end}": [[1, value], [2, "0"]]})
+      for end in (0, 3) for value in ("1e16", ["0", "-1e-17"])),
     Forgery(_COVERED + "one segment alone has no inner break", "declared", _size(1)),
     Forgery(_COVERED + "more than {MOST_DECLARED_SEGMENTS} segments", "declared", _size(13)),
     *(Forgery(UNDETERMINED, "declared", {**NO_ANSWER, path: value}) for path, value in (
         ("problem.degrees.0", 4), ("problem.degrees.1", 3), ("problem.continuity.0", 1),
         ("problem.prescribed.0", [[1, "0"]]))),
     # A straight line is not at rest at its end, nor a cubic with two such conditions before it.
-    *(Forgery("declared_form._eliminated: the conditions contradict each other", "declared",
+    *(Forgery("curve.eliminated: the conditions contradict each other", "declared",
               {**NO_ANSWER, path: value})
       for path, value in (("problem.degrees.0", 1), ("problem.prescribed.1", [[1, "0"]]))),
     *(Forgery(WHOLE, "declared", {path: value}) for path, value in (
@@ -123,6 +128,10 @@ FORGERIES = [
         ("proof.tree", [[".", "1", 0, 1]]), ("proof.tree", [[".", 2**52 + 1, 0, 1]]),
         ("proof.tree", [[".", 0, 0, 2**52 + 1]]))),
     Forgery(WHOLE, "declared-free", {"proof.tree": [[".", -(2**52) - 1, 0, 1]]}),
+    # Where ends move, no answer may be stretched to the total either.
+    Forgery(WHOLE, "declared-free", {
+        **NO_ANSWER, "problem.prescribed.0": [[1, "0.1"], [2, "0"]],
+        "proof.tree": [[".", -1, 0, 1]]}),
     Forgery("reading.fields: malformed: {what}: {', '.join(missing)}: missing", "declared",
             {"proof.rows": GONE}),
 ]  # fmt: skip

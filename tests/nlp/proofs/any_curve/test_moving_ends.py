@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import copy
+from dataclasses import replace
+from fractions import Fraction
 from functools import cache
 from typing import Any
 
@@ -180,17 +182,21 @@ def test_ends_that_no_certificate_states_exactly(change: tuple[str, str], why: s
         printed_problem(statement)
 
 
-def test_a_declared_curve_in_motion_is_refused_in_one_sentence() -> None:
+def test_a_curve_in_motion_at_fixed_ratios_is_refused_in_one_sentence() -> None:
+    half = (Fraction(1, 2), Fraction(1, 2))
     for problem in (
         exact_problem(problem_with()),
         exact_problem(problem_with((0.5, 0.5), (0.5, 0.5))),
     ):
-        why = covered(problem)
+        assert covered(problem) is None
+        fixed = replace(problem, shares=half)
+        why = covered(fixed)
+        assert why is not None
         assert why.endswith(
-            "prescribes derivatives other than 0, and no proof covers such a curve yet; what "
-            "--any-curve proves over any curve is a lower bound for it"
+            "prescribes derivatives other than 0, which the proof for its kind of problem does not "
+            "cover; what --any-curve proves over any curve is a lower bound for it"
         )
-        with pytest.raises(TrajgapError, match="no proof covers such a curve yet"):
-            certify(problem, seconds=1.0)
-        with pytest.raises(TrajgapError, match="no proof covers such a curve yet"):
+        with pytest.raises(TrajgapError, match="prescribes derivatives other than 0"):
+            certify(fixed, seconds=1.0)
+        with pytest.raises(TrajgapError, match="prescribes derivatives other than 0"):
             problem.in_units([0, 0], 0)

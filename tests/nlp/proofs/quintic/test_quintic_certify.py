@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import json
 import runpy
 from collections.abc import Callable
@@ -31,7 +30,6 @@ from trajgap.verify import seal
 from trajgap.verify import verify_certificate as verify
 from trajgap.verify.quintic import QuinticSpline
 from trajgap.verify.quintic_bound import Bound, Task
-from trajgap.verify.reading import Clock
 
 module = import_module("trajgap.nlp.proofs.quintic.certifier")
 
@@ -62,10 +60,9 @@ def test_the_bound_of_a_box_is_that_of_the_verifier(seed: int) -> None:
     centred = (n, joints, r, e, step, total, matrix, inverse, x0, slope)
     rows = (segment, joint, 2 - order, limit, shape, weight)
     least = float(bound(*centred, *rows, tau, np.empty(n)))
-    read = np.stack([segment, joint, order, sign, spot], axis=1).tolist()
-    terms = itertools.chain.from_iterable(enumerate(weight.astype(int).tolist()))
-    task = Task(step, limits, total, read, Clock(1e9))
-    proved = Bound(task, (1 / high)[None], (1 / low)[None], [[int(tau), *terms]]).least()[0]
+    task = Task(step, limits, total, np.stack([segment, joint, order, sign, spot], axis=1))
+    leaf = np.array([tau]), np.arange(count)[None], weight[None]
+    proved = Bound(task, (1 / high)[None], (1 / low)[None], *leaf).least()[0]
     assert proved == pytest.approx(least, rel=1e-6, abs=1e-6)
 
 

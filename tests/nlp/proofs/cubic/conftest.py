@@ -1,0 +1,3 @@
+"""These tests are about a kind of proof of its own, on problems small enough to be quick."""
+
+from support.own_kinds import own_kinds as own_kinds

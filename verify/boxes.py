@@ -1,0 +1,175 @@
+"""Boxes of durations and leaves with weighted limits, of the proofs computed in floats."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from copy import copy
+from fractions import Fraction
+from itertools import permutations
+from typing import Any, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .problem import StatedProblem
+from .ranges import MOST_LIMITS, MOST_ROWS, MOST_WEIGHT
+from .reading import Clock, listed, need, sign_of, whole
+from .tree import ProofKind
+
+Array = NDArray[np.float64]
+Rows = NDArray[np.int64]
+Sides = tuple[list[float], list[float]]
+"""Least and largest durations, in the proof's unit of time."""
+
+SLACK = 1e-12
+"""Of the sides of a box: far more than the rounding of the sums that shrink it."""
+
+
+class Boxes(ProofKind[Sides]):
+    """Boxes that hold every answer of a total, or of a smaller one; a kind judges their leaves.
+
+    Where answers may be stretched in time, one with a smaller total is stretched to this one, which
+    keeps the limits: boxes are then those of the simplex of durations whose sum is the total, and
+    its multiplier τ may have either sign.
+
+    Attributes
+    ----------
+    most : float
+        The total, in the proof's unit of time.
+    stretches : bool
+    rows : ndarray of int, shape (row, 5)
+        Segment, joint, order, sign and place of limits that leaves lean on.
+    batch : int
+        Leaves that are judged together.
+    """
+
+    apart = True
+    most: float
+    stretches = True
+    rows: Rows
+    batch: int
+
+    def __init__(
+        self, problem: StatedProblem, proof: dict[str, Any], total: Fraction, clock: Clock
+    ) -> None:
+        super().__init__(problem, proof, total, clock)
+        self._waiting: list[tuple[Sides, list[Any]]] = []
+
+    def read_rows(self, stated: Any, first: int, places: int) -> Rows:
+        """Rows of orders from the first one on, whose places count in 1/places of a piece."""
+        last = self.problem.segments - 1, self.problem.joints - 1
+        entries = (listed(row, "a row", 5, 5) for row in listed(stated, "rows", MOST_ROWS))
+        found = [
+            [
+                whole(segment, 0, last[0]),
+                whole(joint, 0, last[1]),
+                whole(order, first, 3),
+                sign_of(sign),
+                whole(place, 0, places),
+            ]
+            for segment, joint, order, sign, place in self.clock.each(entries)
+        ]
+        return np.array(found, np.int64).reshape(-1, 5)
+
+    def shrunk(self, low: list[float], high: list[float]) -> Sides:
+        """Part of a box whose durations can add up to the total, with something to spare."""
+        total, below, above = self.most, sum(low), sum(high)
+        slack = SLACK * (above + total)
+        if self.stretches:
+            least = [max(a, total - (above - b) - slack) for a, b in zip(low, high, strict=True)]
+        else:
+            least = low
+        most = [min(b, total - (below - a) + slack) for a, b in zip(low, high, strict=True)]
+        return least, most
+
+    @staticmethod
+    @abstractmethod
+    def middle(low: float, high: float) -> float:
+        """Where a side is cut."""
+
+    def cut(self, box: Sides, coordinate: int, place: Any) -> tuple[Sides, Sides]:
+        """In the middle of a side; where the parts overlap or leave the box they still cover it."""
+        need(place is None, "the place of a cut is not stated in this kind of proof")
+        low, high = box
+        k = whole(coordinate, 0, len(low) - 1)
+        middle = self.middle(low[k], high[k])
+        return (
+            self.shrunk(low, [*high[:k], middle, *high[k + 1 :]]),
+            self.shrunk([*low[:k], middle, *low[k + 1 :]], high),
+        )
+
+    def leaf(self, box: Sides, data: list[Any]) -> None:
+        """Nothing, if the box is empty; or [τ, row, weight, row, weight, …]."""
+        if not data:
+            need(empty(box), "it is not empty")
+            return
+        self._waiting.append((box, data))
+        if len(self._waiting) == self.batch:
+            self.end()
+
+    def alone(self) -> Self:
+        """Its leaves wait for nobody else's."""
+        own = copy(self)
+        own._waiting = []
+        return own
+
+    def end(self) -> None:
+        """Judge the leaves with limits that wait."""
+        waiting, self._waiting = self._waiting, []
+        if not waiting:
+            return
+        taus, leaves = [], []
+        for _, (tau, *pairs) in waiting:
+            taus.append(whole(tau, -MOST_WEIGHT if self.stretches else 0, MOST_WEIGHT))
+            need(len(pairs) % 2 == 0, "a leaf misses a weight")
+            need(len(pairs) <= 2 * MOST_LIMITS, "a leaf has too many rows")
+            which = [whole(row, 0, len(self.rows) - 1) for row in pairs[::2]]
+            leaves.append((which, [whole(weight, 0, MOST_WEIGHT) for weight in pairs[1::2]]))
+        most = max(len(which) for which, _ in leaves)
+        ids, weights = np.zeros((len(leaves), most), np.int64), np.zeros((len(leaves), most))
+        for at, (which, each) in enumerate(leaves):
+            ids[at, : len(which)], weights[at, : len(each)] = which, each
+        sides = np.array([box for box, _ in waiting])
+        with np.errstate(all="ignore"):  # what is not finite fails every comparison
+            found = self.least(sides, np.array(taus, np.float64), ids, weights)
+        need(bool((found > 0.0).all()), "a leaf with limits is not proved")
+
+    @abstractmethod
+    def least(self, sides: Array, tau: Array, ids: Rows, weights: Array) -> Array:
+        """Lower bound of each leaf's weighted limits and τ, over its box.
+
+        Parameters
+        ----------
+        sides : ndarray, shape (leaf, 2, segment)
+        tau : ndarray, shape (leaf,)
+        ids : ndarray of int, shape (leaf, row)
+        weights : ndarray, shape (leaf, row)
+            0 where a leaf has fewer rows.
+        """
+
+
+def empty(box: Sides) -> bool:
+    """Whether no durations are in a box."""
+    return any(a > b for a, b in zip(*box, strict=True))
+
+
+def least_of_quadratic(gradient: Array, bend: Array, e: Array) -> Array:
+    """At most gᵀδ + ½ δᵀBδ for all |δ_k| ≤ e_k, box by box.
+
+    In x = δ/e: x_k x_m ≥ −½(x_k² + x_m²), so that products of two take from the squares.
+    """
+    each = np.arange(e.shape[1])
+    bend = bend * e[:, :, None] * e[:, None, :]
+    own = bend[:, each, each]
+    bend[:, each, each] = 0.0
+    own = own - np.abs(bend).sum(axis=2)
+    lean = np.abs(gradient) * e
+    inside = lean < own
+    turn = -0.5 * lean * lean / np.where(inside, own, 1.0)
+    return np.asarray(np.where(inside, turn, 0.5 * own - lean).sum(axis=1))
+
+
+def most_of_cubes(cubes: Array) -> Array:
+    """At least |Σ c_kmp x_k x_m x_p| for all |x| ≤ 1: what one product has in all its orders."""
+    alike = sum(np.transpose(cubes, (0, *order)) for order in permutations((1, 2, 3)))
+    return np.asarray(np.abs(alike).sum(axis=(1, 2, 3)) / 6.0)
