@@ -88,6 +88,7 @@ def content(path: Path) -> dict[str, str] | str | None:
 def test_whoever_is_stopped_anywhere_leaves_the_old_or_the_new(
     tmp_path: Path, what: str, how: str
 ) -> None:
+    old: dict[str, str] | str | None
     old, new = (OLD, NEW) if "folder" in what else ("old", "new")
     before = f"replace_folder(target, {OLD})" if old == OLD else "replace_file(target, 'old')"
     if what == "new file":
