@@ -16,6 +16,7 @@ from trajgap.problem import (
 )
 from trajgap.problem.cases.robot_file import load_robot
 from trajgap.problem.errors import TrajgapError
+from trajgap.problem.robots import workspace
 from trajgap.problem.robots.cartesian_line import ctraj
 from trajgap.problem.robots.chain import Chain, Convention, forward_kinematics
 from trajgap.problem.robots.workspace import StepKind, sample_workspace, waypoint_sequences
@@ -36,16 +37,13 @@ def test_points_are_those_of_the_joints_and_keep_the_bounds():
     assert (CLOUD.joints.max(axis=0) > PUMA.upper - 0.1 * width).all()
 
 
-def test_the_seed_decides_and_the_first_samples_do_not_depend_on_the_count():
-    np.testing.assert_array_equal(sample_workspace(PUMA, 100, 7).joints, CLOUD.joints[:100])
+def test_the_seed_decides_and_the_first_samples_depend_on_nothing_else(monkeypatch):
+    for batch in (workspace._BATCH, 33):
+        monkeypatch.setattr(workspace, "_BATCH", batch)
+        again = sample_workspace(PUMA, 100, 7)
+        np.testing.assert_array_equal(again.joints, CLOUD.joints[:100])
+        np.testing.assert_array_equal(again.points, CLOUD.points[:100])
     assert not np.array_equal(sample_workspace(PUMA, 100, 8).joints, CLOUD.joints[:100])
-
-
-def test_batches_leave_no_seam(monkeypatch):
-    from trajgap.problem.robots import workspace
-
-    monkeypatch.setattr(workspace, "_BATCH", 33)
-    np.testing.assert_array_equal(sample_workspace(PUMA, 100, 7).points, CLOUD.points[:100])
 
 
 def test_a_planar_arm_fills_its_ring():
@@ -90,12 +88,13 @@ def test_end_steps(orientation):
 
 
 def test_a_longer_family_begins_with_the_shorter():
-    kind = StepKind.END
-    long = waypoint_sequences(CLOUD, step=0.2, count=3, waypoints=3, seed=9, kind=kind)
-    short = waypoint_sequences(CLOUD, step=0.2, count=2, waypoints=3, seed=9, kind=kind)
-    np.testing.assert_array_equal(long[:2], short)
-    other = waypoint_sequences(CLOUD, step=0.2, count=2, waypoints=3, seed=10, kind=kind)
-    assert not np.array_equal(other, short)
+    def family(count, seed):
+        return waypoint_sequences(
+            CLOUD, step=0.2, count=count, waypoints=3, seed=seed, kind=StepKind.END
+        )
+
+    np.testing.assert_array_equal(family(3, 9)[:2], family(2, 9))
+    assert not np.array_equal(family(2, 10), family(2, 9))
 
 
 @pytest.mark.parametrize(
@@ -112,9 +111,6 @@ def test_a_longer_family_begins_with_the_shorter():
 def test_faults(change, message):
     with pytest.raises(TrajgapError, match=re.escape(message)):
         waypoint_sequences(CLOUD, **{"step": 0.1, "count": 1, "seed": 0, **change})
-
-
-def test_an_empty_sample_is_refused():
     with pytest.raises(TrajgapError, match="count: 0 samples; give at least 1"):
         sample_workspace(PUMA, 0, 1)
 
