@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import csv
 import io
-import json
 import tomllib
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -17,7 +15,6 @@ from support.refusals import Refusal, each_refusal
 from support.scara import SCARA, scara
 from trajgap.problem import (
     CaseError,
-    case_schema,
     compare_transcriptions,
     ctraj,
     forward_kinematics,
@@ -39,40 +36,30 @@ def test_each_joint_is_read_in_its_unit():
     assert problem.limits.velocity == pytest.approx([np.pi, np.radians(150), 0.12], rel=1e-15)
     assert problem.limits.acceleration[2] == 0.5
     assert problem.limits.position_upper == pytest.approx([np.radians(150), np.radians(140), 0.150])
-
-
-def test_a_reading_gives_its_whole_list():
-    problem = scara().problem(None, "deg-s")
-    assert problem.limits.velocity == pytest.approx([np.radians(30), np.radians(150), 0.12])
+    # A reading gives its whole list.
+    other = scara().problem(None, "deg-s").limits
+    assert other.velocity == pytest.approx([np.radians(30), np.radians(150), 0.12])
     assert scara().labels["deg-s"] == "velocities in °/s and mm/s"
 
 
 def test_a_problem_of_some_joints_keeps_listing_all():
-    header = '[[problems]]\nid = "slide"\njoints = ["d3"]\n\n[[readings]]\nid = "rpm"\n'
-    problem = scara(('[[readings]]\nid = "rpm"\n', header)).problem()
-    assert (problem.joints, problem.linear) == (("d3",), (True,))
-    assert problem.limits.velocity == pytest.approx([0.12])
-
-
-def test_one_number_serves_joints_of_one_unit():
-    """The slide alone: its one value needs no list."""
+    """And its one value needs no list."""
     header = '[[problems]]\nid = "slide"\njoints = ["d3"]\n\n[[readings]]\nid = "rpm"\n'
     claim = 'derivative = "velocity"\njoint = "d3"\nvalue = "0.2332"'
     case = scara(
         ('[[readings]]\nid = "rpm"\n', header),
         (claim, 'derivative = "velocity"\nvalue = "233.2"'),
     )
-    assert case.measured(case.claim("slide-velocity").printed[0], "velocity").value == (
-        pytest.approx(0.2332)
-    )
+    problem = case.problem()
+    assert (problem.joints, problem.linear) == (("d3",), (True,))
+    assert problem.limits.velocity == pytest.approx([0.12])
+    value = case.measured(case.claim("slide-velocity").printed[0], "velocity").value
+    assert value == pytest.approx(0.2332)
 
 
 def test_prescribed_ends_are_in_the_unit_of_their_joint():
-    case = scara(
-        ('family = "cubic-spline"', 'family = "cubic-spline"\nend_derivatives = [[3, 10, 20]]'),
-        ('[[claims]]\nid = "rest"', '[[claims]]\nid = "rest"\ntext = "at rest"'),
-    )
-    ((order, start),) = case.statement().curve().prescribed_at(0)
+    ends = 'family = "cubic-spline"\nend_derivatives = [[3, 10, 20]]'
+    ((order, start),) = scara(('family = "cubic-spline"', ends)).statement().curve().ends[0]
     assert order == 1
     assert start == pytest.approx((np.pi / 10, np.radians(10), 0.02))
 
@@ -165,34 +152,12 @@ def test_each_side_has_its_own_digits() -> None:
     assert np.degrees(cut.ends("velocity")[1][0]) == pytest.approx(100.1, rel=1e-6)
 
 
-def test_joints_that_take_part_keep_their_own() -> None:
-    both = parse_case(PAIRED.replace("limits = { velocity = 50 }", ""), "f")
-    limits = both.problem("two", "plain").limits
-    assert not limits.uneven
-    np.testing.assert_allclose(np.degrees(limits.velocity), [95], rtol=1e-15)
-
-
-def test_pairs_of_equal_size_are_sizes_to_the_last_bit() -> None:
-    sizes = parse_case(BASE, "f").problem("one", "plain").limits
-    pairs = BASE.replace(
-        'velocity = [100, "95.0"]', 'velocity = [[-100, 100], ["-95.0", "95.0"]]'
-    ).replace("acceleration = 60", "acceleration = [[-60, 60], [-60, 60]]")
-    limits = parse_case(pairs, "f").problem("one", "plain").limits
-    assert not limits.uneven
-    np.testing.assert_array_equal(limits.derivatives, sizes.derivatives)
-
-
 def test_transcriptions_are_compared_side_by_side() -> None:
     one = parse_case(PAIRED, "f")
     other = parse_case(PAIRED.replace('"-90.0"', '"-91.0"'), "f")
     assert compare_transcriptions(one, parse_case(PAIRED, "f")) == []
     found = compare_transcriptions(one, other)
     assert [d.field for d in found] == ["limits.velocity[0][0]"]
-
-
-def test_the_schema_knows_pairs() -> None:
-    assert '"minItems": 2' in Path("docs/reference/case.schema.json").read_text(encoding="utf-8")
-    assert "LimitsBlock" in str(case_schema())
 
 
 # --- ratios of durations --------------------------------------------------------------------------
@@ -275,11 +240,6 @@ def test_what_is_no_ratio_is_refused(one: Refusal) -> None:
 def test_neighbours_that_coincide_have_no_chord() -> None:
     with pytest.raises(CaseError, match=r"durations\.ratios: .*way-points 2 and 3, which coincide"):
         case('"chord"', CASE.replace("[90, 130]", "[30, 50]"))
-
-
-def test_the_words_are_those_of_the_schema() -> None:
-    ratios = case_schema()["$defs"]["Durations"]["properties"]["ratios"]
-    assert '"enum": ["equal", "chord", "free"]' in json.dumps(ratios)
 
 
 def test_readings_are_called_by_their_ratios() -> None:
