@@ -80,9 +80,8 @@ def test_samples_of_a_quintic_are_that_quintic(rows):
 
 def test_jumps_are_reported_with_place_and_number():
     zigzag = Samples(("1",), [0.0, 1.0, 2.0, 4.0], [[0.0], [1.0], [0.0], [-6.0]])
-    found = check_motion(
-        interpolated(zigzag, Interpolation.LINEAR), JointLimits.from_values(("1",), velocity=5.0)
-    )
+    motion = interpolated(zigzag, Interpolation.LINEAR)
+    found = check_motion(motion, JointLimits.from_values(("1",), velocity=5.0))
     assert (found.verdict, found.limits) == (Verdict.DISCONTINUOUS, Verdict.PASS)
     (jump,) = [one for one in found.jumps if one.quantity == "velocity"]
     assert (jump.count, jump.time, jump.size) == (2, 1.0, -2.0)
@@ -92,19 +91,16 @@ def test_jumps_are_reported_with_place_and_number():
 def test_a_jump_of_acceleration_counts_where_jerk_is_limited():
     samples = Samples(("1",), [0.0, 1.0, 2.0], [[0.0], [1.0], [0.0]], [[0.0], [0.0], [1.0]])
     motion = interpolated(samples, Interpolation.CUBIC)
-    free = JointLimits.from_values(("1",), acceleration=99.0)
-    assert check_motion(motion, free).verdict is Verdict.PASS
-    held = JointLimits.from_values(("1",), acceleration=99.0, jerk=999.0)
-    assert check_motion(motion, held).verdict is Verdict.DISCONTINUOUS
+    for jerk, verdict in ((np.inf, Verdict.PASS), (999.0, Verdict.DISCONTINUOUS)):
+        limits = JointLimits.from_values(("1",), acceleration=99.0, jerk=jerk)
+        assert check_motion(motion, limits).verdict is verdict
 
 
 def test_noise_makes_a_near_miss_undecided():
-    time, q, v, a = quintic(2.0, np.array([1.0]), 21)
-    limits = JointLimits.from_values(("1",), velocity=0.9375 * 1.0001)
-    exact = interpolated(Samples(("1",), time, q, v, a), Interpolation.QUINTIC)
-    assert check_motion(exact, limits).verdict is Verdict.PASS
-    loose = interpolated(Samples(("1",), time, q, v, a, noise=1e-3), Interpolation.QUINTIC)
-    assert check_motion(loose, limits).verdict is Verdict.UNDECIDED
+    rows, limits = quintic(2.0, np.array([1.0]), 21), JointLimits.from_values(("1",), 0.93759375)
+    for noise, verdict in ((0.0, Verdict.PASS), (1e-3, Verdict.UNDECIDED)):
+        motion = interpolated(Samples(("1",), *rows, noise=noise), Interpolation.QUINTIC)
+        assert check_motion(motion, limits).verdict is verdict
 
 
 @pytest.mark.parametrize("power", [-300, -40, 0, 40, 300])
@@ -141,11 +137,8 @@ def test_what_is_not_judged_stands_beside_the_verdict():
     motion = as_motion(PPoly([[[1.0] * 3]], [0.0, 1.0]), NAMES)
     found = check_motion(motion, JointLimits.from_values(NAMES, velocity=[1.0, np.inf, 2.0]))
     assert found.verdict is Verdict.PASS
-    assert (
-        str(found)
-        .splitlines()[0]
-        .endswith("; not judged: position, acceleration and jerk, no limit stated")
-    )
+    said = "; not judged: position, acceleration and jerk, no limit stated"
+    assert str(found).splitlines()[0].endswith(said)
     assert "not judged" not in str(check_motion(motion, WIDE))
 
 
