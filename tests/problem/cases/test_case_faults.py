@@ -59,27 +59,39 @@ def test_several_faults_are_named_and_spelling_comes_first():
     assert [field for field, _ in caught.value.faults] == ["algorithms[0].kinds", "robot.name"]
 
 
-def test_files_that_cannot_be_read(tmp_path):
-    def refused(path, reason):
-        with pytest.raises(CaseError) as caught:
-            load_case(path)
-        assert str(caught.value) == f"{path}: {reason}"
+@pytest.mark.parametrize(
+    ("data", "reason"),
+    [
+        (b" \n", "is empty; `trajgap new` writes a file to start from"),
+        (b"id = 1\n\x00\x01", "is a binary file; a UTF-8 text file is needed"),
+        (
+            "id = 1\n# J\xf6rg".encode("latin-1"),
+            "line 2: is not UTF-8 text; save the file as UTF-8",
+        ),
+        (b"#" * 10_000_000, "has 10.0 MB, the limit is 5 MB; keep only the case itself"),
+    ],
+)
+def test_files_that_cannot_be_read(tmp_path, data, reason):
+    path = tmp_path / "a.toml"
+    path.write_bytes(data)
+    with pytest.raises(CaseError) as caught:
+        load_case(path)
+    assert str(caught.value) == f"{path}: {reason}"
 
-    refused(tmp_path / "none.toml", "no such file; check the path")
-    refused(tmp_path, "is a directory; name a file in it")
-    (tmp_path / "empty.toml").write_text(" \n")
-    refused(tmp_path / "empty.toml", "is empty; `trajgap new` writes a file to start from")
-    (tmp_path / "binary.toml").write_bytes(b"id = 1\n\x00\x01")
-    refused(tmp_path / "binary.toml", "is a binary file; a UTF-8 text file is needed")
-    (tmp_path / "latin.toml").write_bytes("id = 1\n# Jörg".encode("latin-1"))
-    refused(tmp_path / "latin.toml", "line 2: is not UTF-8 text; save the file as UTF-8")
-    (tmp_path / "large.toml").write_bytes(b"#" * 10_000_000)
-    refused(tmp_path / "large.toml", "has 10.0 MB, the limit is 5 MB; keep only the case itself")
-    refused(Path("/dev/null"), "is not a regular file; name a text file")
-    with pytest.raises(CaseError, match=r"^a<U\+0000>b\.toml: no such file; check the path$"):
-        load_case("a\0b.toml")
-    with pytest.raises(CaseError, match=r"cannot be read .*; check the path"):
-        load_case("x" * 5000 + ".toml")
+
+@pytest.mark.parametrize(
+    ("name", "message"),
+    [
+        ("none.toml", r"^none\.toml: no such file; check the path$"),
+        ("/dev/null", "^/dev/null: is not a regular file; name a text file$"),
+        ("/", "^/: is a directory; name a file in it$"),
+        ("a\0b.toml", r"^a<U\+0000>b\.toml: no such file; check the path$"),
+        ("x" * 5000 + ".toml", r"cannot be read .*; check the path"),
+    ],
+)
+def test_names_of_what_is_no_file(name, message):
+    with pytest.raises(CaseError, match=message):
+        load_case(Path(name))
 
 
 def test_line_ends_and_byte_order_marks_do_not_matter(tmp_path):
@@ -89,32 +101,32 @@ def test_line_ends_and_byte_order_marks_do_not_matter(tmp_path):
     assert load_case(path).document == parse_case(BASE, "base.toml").document
 
 
-def test_unknown_ids():
-    with pytest.raises(CaseError, match=r"^puma: neither a published case nor a file; "):
-        load_case("puma")
-    with pytest.raises(CaseError, match="did you mean 'puma560-mnam-pso-353'"):
-        load_case("puma560-mnam-353")
-    case = parse_case(BASE, "base.toml")
-    with pytest.raises(
-        CaseError, match=r"^base\.toml: problem: no problem 'on'; did you mean 'one'"
-    ):
-        case.problem("on")
-    with pytest.raises(
-        CaseError, match=r"^base\.toml: reading: no reading 'deg'; known: plain, rad"
-    ):
-        case.problem("one", "deg")
-    with pytest.raises(
-        CaseError, match=r"^base\.toml: claim: no claim 'time'; did you mean 'times'"
-    ):
-        case.claim("time")
-    with pytest.raises(CaseError, match="coupling: unknown coupling 'x'; use shared, per-joint"):
-        case.problem(coupling="x")
-    with pytest.raises(CaseError, match="claim 'peak': states no durations; choose one that does"):
-        case.claim_durations(case.claim("peak"))
-    with pytest.raises(CaseError, match="no problem 'x'"):
-        case.selections("x")
-    with pytest.raises(CaseError, match="no reading 'x'"):
-        case.selections(reading="x")
+CASE = parse_case(BASE, "base.toml")
+
+
+@pytest.mark.parametrize(
+    ("ask", "message"),
+    [
+        (lambda: load_case("puma"), "^puma: neither a published case nor a file; "),
+        (lambda: load_case("puma560-mnam-353"), "did you mean 'puma560-mnam-pso-353'"),
+        (lambda: CASE.problem("on"), "^base.toml: problem: no problem 'on'; did you mean 'one'"),
+        (
+            lambda: CASE.problem("one", "deg"),
+            "^base.toml: reading: no reading 'deg'; known: plain, rad",
+        ),
+        (lambda: CASE.claim("time"), "^base.toml: claim: no claim 'time'; did you mean 'times'"),
+        (lambda: CASE.problem(coupling="x"), "coupling: unknown coupling 'x'; use shared, per-j"),
+        (
+            lambda: CASE.claim_durations(CASE.claim("peak")),
+            "claim 'peak': states no durations; choose one that does",
+        ),
+        (lambda: CASE.selections("x"), "no problem 'x'"),
+        (lambda: CASE.selections(reading="x"), "no reading 'x'"),
+    ],
+)
+def test_unknown_ids(ask, message):
+    with pytest.raises(CaseError, match=message):
+        ask()
 
 
 RAW = tomllib.loads(BASE, parse_float=Decimal)
