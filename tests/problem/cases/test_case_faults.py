@@ -237,15 +237,6 @@ def asking(points: str | int, robot: str = "", joints: str = "1", more: str = ""
     return case_text(points, curve, joints=joints, robot=robot, unit="rad", more=more)
 
 
-def refused(text: str, message: str) -> None:
-    begun = time.process_time()
-    with pytest.raises(CaseError, match=f"^f: {message}.*; ") as caught:
-        parse_case(text, "f")
-    assert "\n" not in str(caught.value)
-    # What is refused is not built: a million way-points took 38 s.
-    assert time.process_time() - begun < 5
-
-
 def numbers(count: int) -> str:
     return ", ".join(str(k % 7) for k in range(count))
 
@@ -261,17 +252,6 @@ def test_a_million_waypoints_in_one_line(tmp_path: Path) -> None:
     assert parse_case(asking(10_000), "f").document.waypoints.number == 10_000
 
 
-def test_waypoints_rows_and_joints() -> None:
-    row = f"joint_rows = [[{numbers(10_001)}]]"
-    refused(asking(row), r"waypoints\.joint_rows: holds 10,001 way-points, at most 10,000 are read")
-    rows = "waypoint_rows = [" + "[0], [1], " * 5_001 + "]\n"
-    refused(asking(rows), r"waypoints\.waypoint_rows: has more than 10,000 entries")
-    many = asking(4, joints=" ".join(map(str, range(101))))
-    refused(many, r"robot\.joints: has more than 100 entries")
-    dh = DH.format(*[numbers(101)] * 3)
-    refused(asking(4, dh), r"robot\.dh\.d: has more than 100 entries")
-
-
 DH = """[robot.dh]
 convention = "standard"
 length_unit = "m"
@@ -280,23 +260,52 @@ d = [{}]
 a = [{}]
 alpha = [{}]
 """
+PROBLEMS, READINGS = listed("problems", 40), listed("readings", 26, 'why = "x"\n')
+# Way-points of a reading count too.
+READING = f'[[readings]]\nid = "r"\nwhy = "x"\n[readings.waypoints]\n{ABSENT}'
+ANGLES = "waypoints: gives 360,000 joint angles over 40 pairs of problem and reading, at most"
+TOO_MUCH = [
+    (
+        asking(f"joint_rows = [[{numbers(10_001)}]]"),
+        r"waypoints\.joint_rows: holds 10,001 way-points, at most 10,000 are read",
+    ),
+    (
+        asking("waypoint_rows = [" + "[0], [1], " * 5_001 + "]\n"),
+        r"waypoints\.waypoint_rows: has more than 10,000 entries",
+    ),
+    (
+        asking(4, joints=" ".join(map(str, range(101)))),
+        r"robot\.joints: has more than 100 entries",
+    ),
+    (asking(4, DH.format(*[numbers(101)] * 3)), r"robot\.dh\.d: has more than 100 entries"),
+    (
+        asking(4, more=listed("tables", 1_001, 'where = "x"\n')),
+        "tables: gives 1,001 entries, at most 1,000 are read",
+    ),
+    (
+        asking(4, more=PROBLEMS + READINGS),
+        "readings: gives 1,040 pairs with problems, at most 1,000 are read",
+    ),
+    (asking(9_000, more=PROBLEMS), ANGLES),
+    (asking(4, more=PROBLEMS + READING.format(9_000)), ANGLES),
+    (
+        asking(ABSENT.format(4) + f"labels = [{numbers(100_000)}]\n"),
+        r"gives 100,\d+ values, at most 100,000 are",
+    ),
+    (
+        asking(4, more=PROBLEMS + READING.format(10**9)),
+        r"readings\[0\]\.waypoints\.count: 1000000000 is out of",
+    ),
+]
 
 
-def test_lists_pairs_and_values() -> None:
-    many = listed("tables", 1_001, 'where = "x"\n')
-    refused(asking(4, more=many), "tables: gives 1,001 entries, at most 1,000 are read")
-    problems, readings = listed("problems", 40), listed("readings", 26, 'why = "x"\n')
-    pairs = "readings: gives 1,040 pairs with problems, at most 1,000 are read"
-    refused(asking(4, more=problems + readings), pairs)
-    angles = "waypoints: gives 360,000 joint angles over 40 pairs of problem and reading, at most"
-    refused(asking(9_000, more=problems), angles)
-    labels = f"labels = [{numbers(100_000)}]\n"
-    refused(asking(ABSENT.format(4) + labels), r"gives 100,\d+ values, at most 100,000 are")
-    # Way-points of a reading count too.
-    reading = f'[[readings]]\nid = "r"\nwhy = "x"\n[readings.waypoints]\n{ABSENT}'
-    refused(asking(4, more=problems + reading.format(9_000)), angles)
-    out = r"readings\[0\]\.waypoints\.count: 1000000000 is out of"
-    refused(asking(4, more=problems + reading.format(10**9)), out)
+@pytest.mark.parametrize(("text", "message"), TOO_MUCH, ids=[said[:30] for _, said in TOO_MUCH])
+def test_a_case_that_asks_for_too_much_is_refused_before_it_is_built(text, message) -> None:
+    begun = time.process_time()
+    with pytest.raises(CaseError, match=f"^f: {message}.*; ") as caught:
+        parse_case(text, "f")
+    assert "\n" not in str(caught.value)
+    assert time.process_time() - begun < 5  # a million way-points took 38 s
 
 
 @pytest.mark.parametrize(
