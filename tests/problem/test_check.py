@@ -1,6 +1,7 @@
 """The checker and the batched evaluation: identities, known answers, every verdict and reason."""
 
 import dataclasses
+import itertools
 import os
 from dataclasses import replace
 from fractions import Fraction
@@ -20,6 +21,7 @@ from trajgap.problem import (
     TrajgapError,
     Verdict,
     check,
+    checker,
     cubic_spline,
     evaluate,
     extrema,
@@ -33,6 +35,7 @@ from trajgap.problem import (
     uniform_cubic_b_spline,
 )
 from trajgap.problem.curves import spline as spline_module
+from trajgap.problem.uneven_peaks import uneven_peaks
 
 
 def test_rest_to_rest_cubic_has_its_textbook_peaks() -> None:
@@ -78,6 +81,38 @@ def test_values_lie_within_the_stated_error(name: str) -> None:
             assert p.error <= 1e-9 * max(1.0, abs(p.value))
             batch = evaluate(problem, [h], nodal).ratios[0, j, order - 1]
             assert batch == pytest.approx(float(truth) / p.limit, rel=1e-10)
+
+
+@pytest.mark.parametrize("segments", [3, 130])
+def test_the_error_of_a_peak_covers_all_other_extrema(segments: int) -> None:
+    """Each may lie beyond the peak by its own error: few pieces are searched one by one."""
+    rng = np.random.default_rng(segments)
+    q, h = rng.normal(size=(segments + 1, 2)), rng.uniform(0.5, 1.0, segments)
+    motion = fit(rest_to_rest(segments, 5), q, h)
+    sides = rng.uniform(1.0, 9.0, (2, 2, 3))
+    limits = Limits(joints=2).with_sides(sides).with_positions([-9.0] * 2, [9.0] * 2)
+    problem = Problem(q, limits, rest_to_rest(segments, 5))
+    points = {(r, j): extrema(motion, j, r) for r in range(4) for j in (0, 1)}
+    size = np.array([[max(abs(e.value) for e in points[r, j]) for j in (0, 1)] for r in range(4)])
+    for _ in range(6):
+        error = size * rng.uniform(0.0, 1.0, (segments, 4, 2)) ** 4
+        uneven = iter(uneven_peaks(limits, motion, error))
+        for j, r in itertools.product((0, 1), (1, 2, 3)):
+            ends = [(e.value, float(error[e.segment, r, j])) for e in points[r, j]]
+            top, bound = checker._largest(motion, error, j, r)
+            assert abs(top.value) == pytest.approx(max(abs(v) for v, _ in ends), rel=1e-12)
+            reach = max(abs(v) + e for v, e in ends)
+            own = float(error[top.segment, r, j])
+            assert abs(top.value) + bound == pytest.approx(max(reach, abs(top.value) + own))
+            ratios = [
+                (sign * v + e) / sides[side, j, r - 1]
+                for side, sign in ((0, -1), (1, 1))
+                for v, e in ends
+            ]
+            peak = next(uneven)
+            assert peak.ratio + peak.error / peak.size >= max(ratios) - 1e-12
+        for peak in checker._position_peaks(problem, h, motion, error):
+            assert peak.error == error[:, 0, problem.joints.index(str(peak.joint))].max()
 
 
 # --- the batched evaluation beside the checker ---------------------------------------------------
