@@ -174,17 +174,16 @@ def test_case_with_positions_and_joints():
     assert case.dh is case.document.robot.dh
     assert load_case_text(BASE).dh is None
     assert load_case_text(BASE).chain() is None
+    assert load_case_text(BASE + COLUMN).columns[0].joint == "c"
 
 
 def test_a_shipped_model_instead_of_a_table():
     # Joints of the base case are a and b; a model has its own labels.
     text = changed(BASE, 'joints = ["a", "b"]', 'joints = ["1", "3"]\nmodel = "puma560"')
-    case = load_case_text(
-        changed(text, 'joints = ["b"]', 'joints = ["3"]').replace('joint = "b"', 'joint = "3"')
-    )
+    text = changed(text, 'joints = ["b"]', 'joints = ["3"]').replace('joint = "b"', 'joint = "3"')
+    case, irb = load_case_text(text), load_case("irb460-pso-353")
     assert case.chain().labels == ("1", "2", "3", "4", "5", "6")
     assert case.dh == robot_file("puma560").dh
-    irb = load_case("irb460-pso-353")
     assert irb.chain().name == "IRB 460"
     assert irb.chain(Convention.STANDARD).convention is Convention.STANDARD
 
@@ -228,10 +227,6 @@ def test_positions_name_labels_that_exist():
     load_case_text(with_table(extra=text))
     with pytest.raises(CaseError, match=re.escape("cartesian[3].waypoint: 'E' is no label of a")):
         load_case_text(with_table(extra=text.replace('"D"', '"E"')))
-
-
-def test_a_printed_joint_may_stand_without_a_table():
-    assert load_case_text(BASE + COLUMN).columns[0].joint == "c"
 
 
 def test_unknown_robots():
