@@ -63,14 +63,6 @@ def test_defaults():
     assert case.selections(reading="plain") == [("one", "plain"), ("two", "plain")]
 
 
-def test_without_problems_and_readings():
-    head, _, tail = BASE.partition("[[problems]]")
-    case = load(head)
-    assert case.selections() == [("main", "as-printed")]
-    assert case.problem("main", "as-printed").segments == 3
-    assert "[[algorithms]]" in tail
-
-
 def test_strings_are_rounded_and_bare_numbers_exact():
     text = BASE.replace('["1", "2", "3", "4"]]', '["1", 2, 3.50, "4.00"]]')
     lower, upper = load(text).waypoint_box("one", "rad")
@@ -97,13 +89,6 @@ def test_claims():
         "start": [0.3, 3],
         "seedless": True,
     }
-
-
-def test_repeated_waypoints_resting_joints_and_zero_limits_are_valid():
-    text = BASE.replace('["1", "2", "3", "4"]]', '["1", "1", "1", "1"]]').replace("[100,", "[0,")
-    problem = load(text).problem("one", "plain")
-    assert (np.ptp(problem.waypoints, axis=0) > 0).tolist() == [True, False]
-    assert problem.limits.velocity[0] == 0
 
 
 def test_the_example_of_fang2020_is_what_the_paper_prints():

@@ -11,7 +11,6 @@ from trajgap.problem import (
     CaseError,
     ClampedBSpline,
     Interpolant,
-    cubic_spline,
     cubic_spline_virtual,
     parse_case,
     quintic_spline_virtual,
@@ -43,31 +42,6 @@ def curve(interpolant: str, more: str = "") -> Interpolant | ClampedBSpline:
 @each_refusal("four_points")
 def test_each_fault_has_its_line(one: Refusal) -> None:
     one.said_by(lambda: parse_case(one.text(HEAD), "four.toml"), "four.toml: ")
-
-
-# --- end derivatives ------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize(
-    ("written", "start", "finish"),
-    [
-        ("end_derivatives = [90]", {1: np.pi / 2}, {1: np.pi / 2}),
-        ("end_derivatives = [90]\nfinish_derivatives = [0]", {1: np.pi / 2}, {1: 0.0}),
-        ("finish_derivatives = [[90, 90, 90]]", {1: 0.0}, {1: np.pi / 2}),
-        ("finish_orders = [2]", {1: 0.0}, {2: 0.0}),
-        ("end_derivatives = [90]\nfinish_orders = [2]", {1: np.pi / 2}, {2: 0.0}),
-        ("end_orders = [2]\nfinish_orders = [1]\nfinish_derivatives = [-180]", {2: 0}, {1: -np.pi}),
-        ("end_derivatives = [[0, 0, 0]]\nfinish_derivatives = [0]", {1: 0.0}, {1: 0.0}),
-    ],
-)
-def test_which_end_a_value_is_for(
-    written: str, start: dict[int, float], finish: dict[int, float]
-) -> None:
-    found = curve(f"{CUBIC}\n{written}")
-    first, last = found.ends
-    assert dict(first) == pytest.approx(start)
-    assert dict(last) == pytest.approx(finish)
-    assert (found == cubic_spline(3)) == (start == finish == {1: 0.0})
 
 
 # --- knots ----------------------------------------------------------------------------------------

@@ -136,13 +136,6 @@ def test_options_that_are_refused(table, units, options, reason):
     assert str(caught.value).startswith(reason)
 
 
-def test_tables_that_cannot_be_read(table, tmp_path):
-    with pytest.raises(CaseError, match="is a binary file; a UTF-8 text file is needed"):
-        scaffold(table(b"a,b\n\x00,1"), RAD)
-    with pytest.raises(CaseError, match=r"none\.csv: no such file; check the path"):
-        scaffold(tmp_path / "none.csv", RAD)
-
-
 def points(count):
     return "1,2\n" + "".join(f"0.{k}1,{k % 3}.5\n" for k in range(count))
 

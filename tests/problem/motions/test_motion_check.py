@@ -67,17 +67,6 @@ def quintic(duration, way, rows, start=0.0):
     return start + duration * s, np.outer(q, way), np.outer(v, way), np.outer(a, way)
 
 
-@pytest.mark.parametrize("rows", [2, 3, 150])
-def test_samples_of_a_quintic_are_that_quintic(rows):
-    duration, way = 1.7, np.array([0.8, -2.0, 0.1])
-    samples = Samples(NAMES, *quintic(duration, way, rows, start=5.0))
-    found = check_motion(interpolated(samples, Interpolation.QUINTIC), WIDE)
-    for factor, order in ((15 / 8, 1), (10 / np.sqrt(3), 2), (60.0, 3)):
-        sizes = [abs(p.value) for p in found.peaks[order::4]]
-        np.testing.assert_allclose(sizes, factor * np.abs(way) / duration**order, rtol=1e-7)
-    assert not found.jumps
-
-
 def test_jumps_are_reported_with_place_and_number():
     zigzag = Samples(("1",), [0.0, 1.0, 2.0, 4.0], [[0.0], [1.0], [0.0], [-6.0]])
     motion = interpolated(zigzag, Interpolation.LINEAR)
