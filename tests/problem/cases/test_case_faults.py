@@ -245,11 +245,8 @@ def listed(name: str, count: int, more: str = "") -> str:
     return "".join(f'[[{name}]]\nid = "{name[0]}{k}"\n{more}' for k in range(count))
 
 
-def test_a_million_waypoints_in_one_line(tmp_path: Path) -> None:
-    (tmp_path / "count_bomb.toml").write_text(asking(1_000_000))
-    with pytest.raises(CaseError, match=r"waypoints\.count: 1000000 is out of range; give at most"):
-        load_case(tmp_path / "count_bomb.toml")
-    assert parse_case(asking(10_000), "f").document.waypoints.number == 10_000
+def degrees(text: str) -> str:
+    return asking(4).replace('"cubic-spline"', f'"polynomials"\n{text}')
 
 
 DH = """[robot.dh]
@@ -260,82 +257,69 @@ d = [{}]
 a = [{}]
 alpha = [{}]
 """
+FAMILY = '[[families]]\nid = "f"\nclaim = "c"\nwhy = "x"\nsteps = [0.1, 0.2]\ninstances = {}\n'
 PROBLEMS, READINGS = listed("problems", 40), listed("readings", 26, 'why = "x"\n')
-# Way-points of a reading count too.
-READING = f'[[readings]]\nid = "r"\nwhy = "x"\n[readings.waypoints]\n{ABSENT}'
+READING = f'{PROBLEMS}[[readings]]\nid = "r"\nwhy = "x"\n[readings.waypoints]\n{ABSENT}'
 ANGLES = "waypoints: gives 360,000 joint angles over 40 pairs of problem and reading, at most"
-TOO_MUCH = [
-    (
-        asking(f"joint_rows = [[{numbers(10_001)}]]"),
-        r"waypoints\.joint_rows: holds 10,001 way-points, at most 10,000 are read",
+TOO_MUCH = {
+    "waypoints.count: 1000000 is out of range; give at most": asking(1_000_000),
+    "waypoints.joint_rows: holds 10,001 way-points, at most 10,000 are read; ": asking(
+        f"joint_rows = [[{numbers(10_001)}]]"
     ),
-    (
-        asking("waypoint_rows = [" + "[0], [1], " * 5_001 + "]\n"),
-        r"waypoints\.waypoint_rows: has more than 10,000 entries",
+    "waypoints.waypoint_rows: has more than 10,000 entries; ": asking(
+        "waypoint_rows = [" + "[0], [1], " * 5_001 + "]\n"
     ),
-    (
-        asking(4, joints=" ".join(map(str, range(101)))),
-        r"robot\.joints: has more than 100 entries",
+    "robot.joints: has more than 100 entries; ": asking(4, joints=" ".join(map(str, range(101)))),
+    "robot.dh.d: has more than 100 entries; ": asking(4, DH.format(*[numbers(101)] * 3)),
+    "robot.dh.alpha[0]: a number of 401 characters; at most 64": asking(
+        4, DH.format(0, 0, f'"{"9" * 400}π"')
     ),
-    (asking(4, DH.format(*[numbers(101)] * 3)), r"robot\.dh\.d: has more than 100 entries"),
-    (
-        asking(4, more=listed("tables", 1_001, 'where = "x"\n')),
-        "tables: gives 1,001 entries, at most 1,000 are read",
+    "tables: gives 1,001 entries, at most 1,000 are read; ": asking(
+        4, more=listed("tables", 1_001, 'where = "x"\n')
     ),
-    (
-        asking(4, more=PROBLEMS + READINGS),
-        "readings: gives 1,040 pairs with problems, at most 1,000 are read",
+    "readings: gives 1,040 pairs with problems, at most 1,000 are read; ": asking(
+        4, more=PROBLEMS + READINGS
     ),
-    (asking(9_000, more=PROBLEMS), ANGLES),
-    (asking(4, more=PROBLEMS + READING.format(9_000)), ANGLES),
-    (
-        asking(ABSENT.format(4) + f"labels = [{numbers(100_000)}]\n"),
-        r"gives 100,\d+ values, at most 100,000 are",
+    ANGLES: asking(9_000, more=PROBLEMS),
+    # Way-points of a reading count too.
+    ANGLES + " ": asking(4, more=READING.format(9_000)),
+    "readings[0].waypoints.count: 1000000000 is out of range; ": asking(
+        4, more=READING.format(10**9)
     ),
-    (
-        asking(4, more=PROBLEMS + READING.format(10**9)),
-        r"readings\[0\]\.waypoints\.count: 1000000000 is out of",
+    "gives 100,014 values, at most 100,000 are": asking(
+        ABSENT.format(4) + f"labels = [{numbers(100_000)}]\n"
     ),
-]
+    "interpolant.degrees[0]: 10 is out of range; give at most": degrees("degrees = [10, 5, 5]"),
+    "interpolant.continuity: 9 is out of range; give at most": degrees(
+        "degrees = [3, 5, 3]\ncontinuity = 9"
+    ),
+    **{
+        f"families[0].{said}": asking(4, more=FAMILY.format(keys))
+        for said, keys in {
+            "instances: 10001 is out of range": "10_001",
+            "instances: gives 18,000 instances, at most 10,000": "9_000",
+            "runs: gives 200,000 runs, at most 100,0": "5_000\nruns = 10",
+            "runs: 10001 is out of range": "1\nruns = 10_001",
+            "seed: 92233720368547": "1\nseed = 9223372036854775808",
+            "samples: 1000001 is out of range": "1\nsamples = 1_000_001",
+        }.items()
+    },
+}
+"""Refusals, each with a text that has it."""
 
 
-@pytest.mark.parametrize(("text", "message"), TOO_MUCH, ids=[said[:30] for _, said in TOO_MUCH])
-def test_a_case_that_asks_for_too_much_is_refused_before_it_is_built(text, message) -> None:
+@pytest.mark.parametrize("message", TOO_MUCH)
+def test_a_case_that_asks_for_too_much_is_refused_before_it_is_built(message: str) -> None:
     begun = time.process_time()
-    with pytest.raises(CaseError, match=f"^f: {message}.*; ") as caught:
-        parse_case(text, "f")
+    with pytest.raises(CaseError) as caught:
+        parse_case(TOO_MUCH[message], "f")
+    assert str(caught.value).startswith(f"f: {message.strip()}")
     assert "\n" not in str(caught.value)
     assert time.process_time() - begun < 5  # a million way-points took 38 s
 
 
-@pytest.mark.parametrize(
-    ("keys", "message"),
-    [
-        ("instances = 10_001", "instances: 10001 is out of range"),
-        ("instances = 9_000", "instances: gives 18,000 instances, at most 10,000"),
-        ("instances = 5_000\nruns = 10", "runs: gives 200,000 runs, at most 100,0"),
-        ("instances = 1\nruns = 10_001", "runs: 10001 is out of range"),
-        ("instances = 1\nseed = 9223372036854775808", "seed: 92233720368547"),
-        ("instances = 1\nsamples = 1_000_001", "samples: 1000001 is out of range"),
-    ],
-)
-def test_families_of_instances(keys: str, message: str) -> None:
-    family = f'[[families]]\nid = "f"\nclaim = "c"\nwhy = "x"\nsteps = [0.1, 0.2]\n{keys}\n'
-    with pytest.raises(CaseError, match=rf"^f: families\[0\]\.{message}"):
-        parse_case(asking(4, more=family), "f")
-
-
-@pytest.mark.parametrize("degree", ["degrees = [10, 5, 5]", "degrees = [3, 5, 3]\ncontinuity = 9"])
-def test_degrees(degree: str) -> None:
-    text = asking(4).replace('"cubic-spline"', f'"polynomials"\n{degree}')
-    with pytest.raises(CaseError, match=r"^f: interpolant\.\S+: \d+ is out of range; give at most"):
-        parse_case(text, "f")
-
-
-def test_a_multiple_of_pi_has_as_many_digits_as_any_number() -> None:
-    dh = DH.format(0, 0, f'"{"9" * 400}π"')
-    with pytest.raises(CaseError, match=r"alpha\[0\]: a number of 401 characters; at most 64"):
-        parse_case(asking(4, dh), "f")
+def test_what_is_large_and_allowed_is_read() -> None:
+    assert parse_case(asking(10_000), "f").document.waypoints.number == 10_000
 
 
 @pytest.mark.parametrize("key", ["particles", "iterations"])
