@@ -4,10 +4,12 @@ import math
 
 import numpy as np
 import pytest
+from scipy.interpolate import PPoly
 from trajgap.problem.motions import (
     Interpolation,
     JointLimits,
     Samples,
+    as_motion,
     check_motion,
     interpolated,
     shortest,
@@ -74,6 +76,15 @@ def test_the_floor_sums_over_standstills_and_waits_nowhere():
     assert paused.time == pytest.approx(by_hand)
     assert paused.waiting == pytest.approx(0.6)
     assert paused.above == pytest.approx(2.6 / by_hand - 1)
+
+
+def test_a_break_that_is_reached_at_speed_is_no_standstill():
+    """1 rad to a wall at 2 rad/s, and on from rest: nobody says that a motion must stop there."""
+    pieces = PPoly(
+        [[[0.0], [-2.0]], [[1.0], [3.0]], [[0.0], [0.0]], [[0.0], [1.0]]], [0.0, 1.0, 2.0]
+    )
+    found = check_motion(as_motion(pieces, ("1",)), JointLimits.from_values(("1",), 9.0, 99.0))
+    assert found.floor.time == pytest.approx(shortest(2.0, 9.0, 99.0, INF))
 
 
 @pytest.mark.parametrize("side", ["lower", "upper", "braking"])

@@ -116,19 +116,21 @@ def test_a_spline_through_two_near_samples_does_not_pass():
 
 
 def test_lines_that_may_bend_within_their_noise_do_not_pass():
-    """Rows on a line: exactly they pass, with noise their speed may jump."""
+    """Rows on a line: exactly they pass, with noise their speed may jump, shaken or not."""
     time = np.arange(5.0)
     limits = JointLimits.from_values(("a",), velocity=2.0, acceleration=1.0)
-
-    def verdict(noise):
-        line = Samples(("a",), time, time[:, None], noise=noise)
-        return check_motion(interpolated(line, Interpolation.LINEAR), limits)
-
-    assert verdict(0.0).verdict is Verdict.PASS
-    noisy = verdict(1e-3)
-    assert (noisy.verdict, noisy.limits) == (Verdict.UNDECIDED, Verdict.PASS)
-    assert "velocity of joint a may jump" in noisy.open[0]
-    assert noisy.feasible_time is None
+    for shaken in (0.0, 5e-4):
+        place = time[:, None] + shaken * np.array([0, 1, -1, 1, 0])[:, None]
+        for noise in (0.0, 1e-3):
+            line = Samples(("a",), time, place, noise=noise)
+            found = check_motion(interpolated(line, Interpolation.LINEAR), limits)
+            assert found.limits is Verdict.PASS
+            if noise:
+                assert found.verdict is Verdict.UNDECIDED
+                assert "velocity of joint a may jump" in found.open[0]
+                assert found.feasible_time is None
+            else:
+                assert found.verdict is (Verdict.DISCONTINUOUS if shaken else Verdict.PASS)
 
 
 # --- what the digits of a file leave open ---------------------------------------------------------

@@ -13,7 +13,7 @@ from trajgap.problem.motions import (
     check_motion,
     interpolated,
 )
-from trajgap.problem.motions.judged import judged, peak
+from trajgap.problem.motions.judged import MotionPeak, joined, judged, peak, slow_down
 
 NAMES = ("shoulder", "elbow", "wrist")
 WIDE = JointLimits.from_values(NAMES, 1e3, 1e3, 1e3, (-1e3, 1e3))
@@ -77,12 +77,39 @@ def test_jumps_are_reported_with_place_and_number():
     assert found.feasible_time is None
 
 
-def test_a_jump_of_acceleration_counts_where_jerk_is_limited():
+@pytest.mark.parametrize("sides", [(), (0,), (1,), (0, 1)])
+def test_a_jump_of_acceleration_counts_where_jerk_is_limited_on_any_side(sides):
     samples = Samples(("1",), [0.0, 1.0, 2.0], [[0.0], [1.0], [0.0]], [[0.0], [0.0], [1.0]])
+    limits = JointLimits.from_values(("1",), acceleration=99.0)
+    ends = np.stack([limits.lower, limits.upper])
+    for side in sides:
+        ends[side, 0, 3] = (-999.0, 999.0)[side]
     motion = interpolated(samples, Interpolation.CUBIC)
-    for jerk, verdict in ((np.inf, Verdict.PASS), (999.0, Verdict.DISCONTINUOUS)):
-        limits = JointLimits.from_values(("1",), acceleration=99.0, jerk=jerk)
-        assert check_motion(motion, limits).verdict is verdict
+    found = check_motion(motion, JointLimits(("1",), *ends, limits.deceleration))
+    assert found.verdict is (Verdict.DISCONTINUOUS if sides else Verdict.PASS)
+
+
+def test_the_nearer_side_is_shown_with_the_bounds_of_both():
+    for one, other in np.random.default_rng(2).uniform(0.5, 1.5, (30, 2, 3)):
+        ratios = [dict(zip(("least_ratio", "ratio", "most_ratio"), x)) for x in (one, other)]  # noqa: B905
+        found = joined([MotionPeak("1", "jerk", 0.0, 1.0, 1.0, source="", **x) for x in ratios])
+        largest = np.maximum(one, other).tolist()
+        assert [found.least_ratio, found.ratio, found.most_ratio] == largest
+
+
+@pytest.mark.parametrize(
+    ("least", "most", "why"),
+    [
+        (1.1, 1.3, "is exceeded"),
+        (0.9, 1.3, "may be exceeded"),
+        (0.8, 0.9, None),
+    ],
+)
+def test_going_slower_does_not_move_the_path(least, most, why):
+    position = MotionPeak("1", "position", 0.0, 1.0, 1.0, 0.9 * most, least, most, "")
+    factor, said = slow_down([position], 1e-6)
+    assert factor == 1.0
+    assert said == (why and f"a position limit {why}; going slower does not move the path")
 
 
 def test_noise_makes_a_near_miss_undecided():
