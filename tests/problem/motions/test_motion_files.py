@@ -15,7 +15,7 @@ from scipy.interpolate import CubicSpline
 from support.exact_motions import Row, hermite, value
 from support.refusals import Refusal, each_refusal
 from trajgap.problem import CaseError
-from trajgap.problem.motions import Interpolation, Motion, interpolated, read_motion
+from trajgap.problem.motions import Interpolation, Motion, interpolated, read_motion, rosbag
 
 HEADER = "time,arm 1,arm 1 velocity,arm-2,arm-2 velocity\n"
 ROWS = "0,1,0,2,0\n0.5,1.5,2,1,-1\n1.25,2,0,3,0\n"
@@ -251,12 +251,20 @@ def test_every_reader_reads_the_same_rows(tmp_path, reader):
             assert samples.given(order).tolist() == wanted
 
 
-def test_a_bag_holds_a_trajectory_and_is_readable(tmp_path):
+def test_a_bag_holds_a_trajectory_and_is_readable(tmp_path, monkeypatch):
     pytest.importorskip("rosbags")
     rows = [[Row(Fraction(k), (Fraction(k),) * 3) for k in range(2)]]
     bag = write_rows(np.random.default_rng(0), "bag", rows, tmp_path)
     with pytest.raises(CaseError, match="no topic with a trajectory; topics: /plan"):
         read_motion(bag, topic="/other")
+
+    def says_nothing(_):
+        raise ValueError
+
+    with monkeypatch.context() as patched:
+        patched.setattr(rosbag, "_plain", says_nothing)
+        with pytest.raises(CaseError, match=r"no readable bag \(ValueError\)"):
+            read_motion(bag)
     for one in bag.glob("*.db3"):
         one.write_bytes(b"not a data base")
     with pytest.raises(CaseError, match="no readable bag"):

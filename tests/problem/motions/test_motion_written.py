@@ -261,3 +261,15 @@ def test_ruckigs_profiles():
         found = check_motion(motion, JointLimits.from_values(motion.joints, *limits))
         assert found.verdict is Verdict.PASS, str(found)
         assert found.worst.ratio == pytest.approx(1.0, abs=1e-6)
+
+
+def test_steps_of_roundings_length_are_no_pieces():
+    steps = [[500.0, 500.0], [500.0 + 1e-11, 500.0]]
+    still = SimpleNamespace(
+        duration=1000.0,
+        profiles=[[SimpleNamespace(t=one) for one in steps]],
+        at_time=lambda t: ([t, 2.0 * t], [1.0, 2.0], [0.0, 0.0], [0.0, 0.0]),
+    )
+    motion = as_motion(still)
+    np.testing.assert_allclose(motion.durations, [500.0, 500.0])
+    same(motion, lambda t, order: [[t, 2.0 * t], [1.0, 2.0], [0.0, 0.0]][order])
