@@ -34,7 +34,9 @@ from trajgap.problem import (
     three_five_three,
     uniform_cubic_b_spline,
 )
+from trajgap.problem.curves import Trajectory
 from trajgap.problem.curves import spline as spline_module
+from trajgap.problem.jumps import jumps_of
 from trajgap.problem.uneven_peaks import uneven_peaks
 
 
@@ -113,6 +115,28 @@ def test_the_error_of_a_peak_covers_all_other_extrema(segments: int) -> None:
             assert peak.ratio + peak.error / peak.size >= max(ratios) - 1e-12
         for peak in checker._position_peaks(problem, h, motion, error):
             assert peak.error == error[:, 0, problem.joints.index(str(peak.joint))].max()
+
+
+@pytest.mark.parametrize("pieces", [1, 2, 5, 130])
+def test_steps_beyond_the_errors_on_both_sides_are_jumps(pieces: int) -> None:
+    """Of unrelated polynomials, by scipy's values at the two ends of every break."""
+    rng = np.random.default_rng(pieces)
+    problem, _ = sample_problem(rest_to_rest(pieces, 3), pieces)
+    motion = Trajectory(
+        rng.uniform(0.5, 2.0, pieces), rng.normal(size=(pieces, 4, 3)), (3,) * pieces
+    )
+    held, at = motion.polynomial, motion.breaks[1:-1]
+    steps = np.array([held(at, r) - held(np.nextafter(at, 0.0), r) for r in range(3)])
+    for _ in range(9):
+        error = rng.uniform(0.0, 6.0, (pieces, 4, 3)) * rng.uniform(0.0, 1.0, (pieces, 1, 1))
+        both = (error[1:, :3] + error[:-1, :3]).transpose(1, 0, 2)
+        expected = [
+            (b + 1, problem.joints[j], r, pytest.approx(at[b]), pytest.approx(steps[r, b, j]))
+            for b, j, r in np.argwhere((np.abs(steps) > both).transpose(1, 2, 0)).tolist()
+        ]
+        found = jumps_of(problem, motion, error)
+        assert [(j.break_index, j.joint, j.order, j.time, j.size) for j in found] == expected
+        assert len(expected) > 0 or pieces < 3
 
 
 # --- the batched evaluation beside the checker ---------------------------------------------------
@@ -222,10 +246,7 @@ def test_velocity_jump_is_discontinuous() -> None:
     problem = one_joint([0.3, 1.0, 0.6, 0.8], lines, velocity=5.0, acceleration=7.0)
     result = check(problem, [0.5, 0.4, 1.0])
     assert result.verdict is Verdict.DISCONTINUOUS
-    assert [(j.order, j.break_index, j.joint) for j in result.jumps] == [(1, 1, "1"), (1, 2, "1")]
-    # speeds 1.4, −1.0, 0.2
-    np.testing.assert_allclose([j.size for j in result.jumps], [-2.4, 1.2], rtol=1e-12)
-    np.testing.assert_allclose([j.time for j in result.jumps], [0.5, 0.9], rtol=1e-12)
+    assert [(j.order, j.break_index) for j in result.jumps] == [(1, 1), (1, 2)]
     assert result.feasible_time is result.tight_time is None
     assert result.feasible_why == "the motion jumps at a break; stretching does not repair that"
     assert result.tight_why == result.feasible_why

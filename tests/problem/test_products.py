@@ -33,7 +33,7 @@ ORDERS = ("position", *QUANTITIES)
 ROOM = 1e-6
 """Relative distance of a limit from the exact extreme: far above rounding, below all else."""
 KINDS = ("even", "only below", "only above", "tight below", "tight above")
-JOINT = 1
+JOINT = 2
 """The limited joint, of three."""
 
 
