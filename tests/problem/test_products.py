@@ -222,6 +222,8 @@ def test_braking_and_speeding_up_are_told_apart(curve: str, mirror: float) -> No
             assert found.limits is (Verdict.PASS if sign > 0 else Verdict.VIOLATED)
             peaks = {p.quantity: p for p in found.peaks}
             assert peaks[word].ratio == pytest.approx(1 / (1 + sign * ROOM), rel=1e-8)
+            assert abs(peaks[word].value) == pytest.approx(sizes[which], rel=1e-8)
+            assert peaks[word].value / peaks[word].limit > 0.0
             if sign < 0:
                 assert found.stretch == pytest.approx((1 - ROOM) ** -0.5, rel=1e-8)
             # Reversed in time, braking is speeding up.
