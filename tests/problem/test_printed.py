@@ -199,6 +199,18 @@ def test_the_interval_is_rounded_outwards(text, unit):
             assert Fraction(measured.lower) <= end * bound <= Fraction(measured.upper)
 
 
+@given(texts, every_unit)
+def test_what_was_cut_off_lies_in_an_interval_that_is_wider_away_from_0(text, unit):
+    printed = Printed(text)
+    measured = to_si(printed, unit)
+    cut, (low, high) = measured.cut_off(), printed.truncated
+    for bound in scale(unit).bounds:
+        assert Fraction(cut.lower) <= low * bound
+        assert high * bound <= Fraction(cut.upper)
+    assert cut.lower == measured.lower or measured.value <= 0
+    assert cut.upper == measured.upper or measured.value >= 0
+
+
 def test_known_values():
     assert to_si(Printed("180", exact=True), "deg").value == math.pi
     assert to_si(Printed("0.3", exact=True), "s").value == 0.3
