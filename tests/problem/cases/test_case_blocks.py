@@ -120,26 +120,21 @@ PAIRED = BASE.replace('velocity = [100, "95.0"]', 'velocity = [["-90.0", "100.0"
 )
 
 
-def test_each_side_has_its_own_digits() -> None:
-    case = parse_case(PAIRED, "f")
-    limits = case.problem("one", "plain").limits
-    np.testing.assert_allclose(
-        np.degrees(limits.ends("velocity")), [[-90, -95], [100, 95]], rtol=1e-15
-    )
-    np.testing.assert_allclose(
-        np.degrees(limits.ends("acceleration")), [[-np.inf, -40], [60, 40]], rtol=1e-15
-    )
-    tight = case.statement("one", "plain").problem(Digits.TIGHTEST).limits
-    loose = case.statement("one", "plain").problem(Digits.LOOSEST).limits
-    np.testing.assert_allclose(
-        np.degrees(tight.ends("velocity")), [[-89.95, -95], [99.95, 95]], rtol=1e-12
-    )
-    np.testing.assert_allclose(
-        np.degrees(loose.ends("velocity")), [[-90.05, -95], [100.05, 95]], rtol=1e-12
-    )
-    cut = case.statement("one", "plain").problem(Digits.LOOSEST_CUT).limits
-    assert np.degrees(cut.ends("velocity")[0][0]) == pytest.approx(-90.1, rel=1e-6)
-    assert np.degrees(cut.ends("velocity")[1][0]) == pytest.approx(100.1, rel=1e-6)
+@pytest.mark.parametrize(
+    ("digits", "velocity", "loose"),
+    [
+        (None, [[-90, -95], [100, 95]], 1e-14),
+        (Digits.TIGHTEST, [[-89.95, -95], [99.95, 95]], 1e-12),
+        (Digits.LOOSEST, [[-90.05, -95], [100.05, 95]], 1e-12),
+        (Digits.LOOSEST_CUT, [[-90.1, -95], [100.1, 95]], 1e-6),
+    ],
+)
+def test_each_side_has_its_own_digits(digits, velocity, loose) -> None:
+    statement = parse_case(PAIRED, "f").statement("one", "plain")
+    limits = (statement.problem() if digits is None else statement.problem(digits)).limits
+    np.testing.assert_allclose(np.degrees(limits.ends("velocity")), velocity, rtol=loose)
+    ends = [[-np.inf, -40], [60, 40]]
+    np.testing.assert_allclose(np.degrees(limits.ends("acceleration")), ends, rtol=1e-14)
 
 
 # --- ratios of durations --------------------------------------------------------------------------
