@@ -13,10 +13,12 @@ from trajgap.problem import (
     new_file,
     read_regular,
     recover_folder,
+    remove_drafts,
     replace_file,
     replace_folder,
     try_writing_in,
 )
+from trajgap.problem import files as module
 
 ODD = "half a pair \ud800"
 """What no file can hold, so that writing it fails half-way."""
@@ -224,6 +226,10 @@ def test_a_folder_is_replaced_as_a_whole(
     replace_folder(out, NEW)
     assert content(out) == NEW
     assert names(out.parent) == ["out"]
+    # What steps aside for another process later is not for this one to bring back.
+    aside = out.rename(out.parent / f"{module._stem(out)}0.old")
+    remove_drafts()
+    assert names(out.parent) == [aside.name]
 
 
 def test_whether_a_folder_can_be_written_is_known_before(tmp_path: Path) -> None:
