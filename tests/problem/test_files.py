@@ -282,6 +282,9 @@ def test_size_and_name_are_bounded(tmp_path: Path) -> None:
     assert read_regular(tmp_path / "a", 10, "cut it") == b"1234567890"
     with pytest.raises(CaseError, match=r"a: has 0.0 MB, the limit is 0 MB; cut it$"):
         read_regular(tmp_path / "a", 9, "cut it")
+    os.truncate(tmp_path / "a", 25_000_000)
+    with pytest.raises(CaseError, match=r"a: has 25.0 MB, the limit is 9 MB; cut it$"):
+        read_regular(tmp_path / "a", 9_000_000, "cut it")
     odd = Path(os.fsdecode(os.fsencode(tmp_path) + b"/\xff.toml"))
     odd.write_text("format = 1")
     with pytest.raises(CaseError, match=r"<U\+DCFF>\.toml: is not UTF-8; rename the file$"):
