@@ -70,6 +70,7 @@ def test_several_faults_are_named_and_spelling_comes_first():
         ),
         (b"#" * 10_000_000, "has 10.0 MB, the limit is 5 MB; keep only the case itself"),
     ],
+    ids=["empty", "binary", "Latin 1", "large"],
 )
 def test_files_that_cannot_be_read(tmp_path, data, reason):
     path = tmp_path / "a.toml"
@@ -88,6 +89,7 @@ def test_files_that_cannot_be_read(tmp_path, data, reason):
         ("a\0b.toml", r"^a<U\+0000>b\.toml: no such file; check the path$"),
         ("x" * 5000 + ".toml", r"cannot be read .*; check the path"),
     ],
+    ids=["absent", "device", "folder", "null character", "long"],
 )
 def test_names_of_what_is_no_file(name, message):
     with pytest.raises(CaseError, match=message):
