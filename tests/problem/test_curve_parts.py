@@ -1,0 +1,31 @@
+"""Parts of curves by themselves: band matrices beside dense ones, knots however they are given."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from trajgap.problem import ClampedBSpline
+from trajgap.problem.curves.banded import factorise
+
+
+@pytest.mark.parametrize(("lower", "upper"), [(1, 2), (2, 1), (3, 3), (0, 2)])
+def test_factors_of_a_band_matrix_solve_the_dense_system(lower: int, upper: int) -> None:
+    rng, size = np.random.default_rng(5), 14
+    rows, dense = rng.normal(size=(size, lower + upper + 1)), np.zeros((size, size))
+    for i, d in np.ndindex(rows.shape):
+        if 0 <= i + d - lower < size:
+            dense[i, i + d - lower] = rows[i, d]
+    right, factors = rng.normal(size=(size, 2)), factorise(rows, lower, upper)
+    for transposed, matrix in ((False, dense), (True, dense.T)):
+        found = factors.solve(right, transposed)
+        np.testing.assert_allclose(matrix @ found, right, atol=1e-10)
+
+
+def test_knots_are_numbers_of_one_kind_however_they_are_given() -> None:
+    whole = [0, 0, 0, 0, 0, 0.25, 0.5, 0.75, 1, 1, 1, 1, 1]
+    given = (whole, tuple(whole), np.array(whole))
+    curves = {ClampedBSpline(4, 4, "given", "times", knot_vector=one) for one in given}
+    assert len(curves) == 1
+    (curve,) = curves
+    assert curve.knot_vector == tuple(map(float, whole))
+    assert all(type(one) is float for one in curve.knot_vector)
