@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from trajgap.problem import ClampedBSpline
+from trajgap.problem import ClampedBSpline, fit
 from trajgap.problem.curves.banded import factorise
 
 
@@ -29,3 +29,19 @@ def test_knots_are_numbers_of_one_kind_however_they_are_given() -> None:
     (curve,) = curves
     assert curve.knot_vector == tuple(map(float, whole))
     assert all(type(one) is float for one in curve.knot_vector)
+
+
+@pytest.mark.parametrize(("degree", "orders"), [(3, (1,)), (5, (1, 2))])
+def test_inner_knots_at_the_times_of_way_points_make_a_spline(
+    degree: int, orders: tuple[int, ...]
+) -> None:
+    curve = ClampedBSpline(5, degree, end_orders=orders)
+    rng = np.random.default_rng(degree)
+    q, h = rng.normal(size=(5, 2)), rng.uniform(0.5, 1.5, 4)
+    at = np.linspace(0.0, h.sum(), 41)
+    spline = curve.polynomial_form()
+    np.testing.assert_allclose(fit(spline, q, h)(at), fit(curve, q, h)(at), atol=1e-9)
+    assert spline is not curve
+    for knots, places in (("waypoints", "chord"), ("averaged-continued", "times")):
+        other = ClampedBSpline(5, 5, knots, places)
+        assert other.polynomial_form() is other
