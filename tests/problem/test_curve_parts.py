@@ -21,7 +21,7 @@ def test_factors_of_a_band_matrix_solve_the_dense_system(lower: int, upper: int)
         np.testing.assert_allclose(matrix @ found, right, atol=1e-10)
 
 
-def test_knots_are_numbers_of_one_kind_however_they_are_given() -> None:
+def test_knots_are_numbers_of_one_kind_however_they_are_given():
     whole = [0, 0, 0, 0, 0, 0.25, 0.5, 0.75, 1, 1, 1, 1, 1]
     given = (whole, tuple(whole), np.array(whole))
     curves = {ClampedBSpline(4, 4, "given", "times", knot_vector=one) for one in given}
