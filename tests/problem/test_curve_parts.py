@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from trajgap.problem import ClampedBSpline, fit
+from trajgap.problem import ClampedBSpline, Knots, Parameters, Timing, fit
 from trajgap.problem.curves.banded import factorise
 
 
@@ -24,7 +24,7 @@ def test_factors_of_a_band_matrix_solve_the_dense_system(lower: int, upper: int)
 def test_knots_are_numbers_of_one_kind_however_they_are_given():
     whole = [0, 0, 0, 0, 0, 0.25, 0.5, 0.75, 1, 1, 1, 1, 1]
     given = (whole, tuple(whole), np.array(whole))
-    curves = {ClampedBSpline(4, 4, "given", "times", knot_vector=one) for one in given}
+    curves = {ClampedBSpline(4, 4, Knots.GIVEN, Parameters.TIMES, knot_vector=one) for one in given}
     assert len(curves) == 1
     (curve,) = curves
     assert curve.knot_vector == tuple(map(float, whole))
@@ -42,6 +42,15 @@ def test_inner_knots_at_the_times_of_way_points_make_a_spline(
     spline = curve.polynomial_form()
     np.testing.assert_allclose(fit(spline, q, h)(at), fit(curve, q, h)(at), atol=1e-9)
     assert spline is not curve
-    for knots, places in (("waypoints", "chord"), ("averaged-continued", "times")):
+    for knots, places in (
+        (Knots.WAYPOINTS, Parameters.CHORD),
+        (Knots.CONTINUED, Parameters.TIMES),
+    ):
         other = ClampedBSpline(5, 5, knots, places)
         assert other.polynomial_form() is other
+
+
+def test_segments_that_are_stretched_by_themselves_are_not_smooth():
+    for time, order in ((Timing.TIMED, 3), (Timing.STRETCHED, 0)):
+        curve = ClampedBSpline(5, 4, Knots.CONTINUED, Parameters.CHORD, time)
+        assert curve.smooth_order(2) == order
