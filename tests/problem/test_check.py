@@ -271,7 +271,7 @@ def test_acceleration_jump_counts_where_jerk_is_limited() -> None:
 def test_nothing_limited_or_nothing_moves(limited: bool) -> None:
     problem, h = sample_problem(three_five_three(), 1, limits=Limits(joints=3))
     if limited:
-        still, limits = np.full((4, 3), 0.7), Limits(1, 2, 3, joints=3)
+        still, limits = np.full((4, 3), 0.7), Limits([1, 0, 1], 2, 3)
         problem = dataclasses.replace(problem, waypoints=still, limits=limits)
     result = check(problem, h)
     assert result.verdict is Verdict.PASS
