@@ -6,32 +6,9 @@ import re
 import pytest
 from trajgap.problem import LONGEST_NAME, file_name
 
-TEXTS = [
-    "",
-    "a",
-    "b",
-    "A",
-    "a-b",
-    "b-c",
-    "c",
-    "a-",
-    "-a",
-    "a.b",
-    ".a",
-    "a/b",
-    "a_b",
-    "θ_1",
-    "θ/1",
-    "1",
-    "joint-1",
-    "..",
-    "a\0b",
-    "\udcff",
-    "x" * 300,
-    "x" * 301,
-    "x" * LONGEST_NAME,
-    "x" * (LONGEST_NAME + 1),
-]
+PLAIN = "a b A a-b b-c c a- -a a.b .a a/b a_b θ_1 θ/1 1 joint-1 .."
+TEXTS = [*PLAIN.split(), "", "a\0b", "\udcff", *("x" * n for n in (300, 301, LONGEST_NAME))]
+TEXTS.append("x" * (LONGEST_NAME + 1))
 
 
 @pytest.mark.parametrize("parts", [1, 2, 3])

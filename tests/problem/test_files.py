@@ -1,7 +1,6 @@
 """Files that are complete or absent, whoever is killed; reading that never waits."""
 
 import os
-import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -29,20 +28,99 @@ def names(folder: Path) -> list[str]:
     return sorted(path.name for path in folder.iterdir())
 
 
-def killed(program: str, folder: Path) -> None:
-    """Run a program that kills itself as the system would."""
-    start = (
-        "import os, signal, sys\n"
-        "from pathlib import Path\n"
-        "import trajgap.problem\n"
-        "from trajgap.problem import new_file, replace_folder\n"
-        "die = lambda *a, **k: os.kill(os.getpid(), signal.SIGKILL)\n"
-        "import importlib; module = importlib.import_module('trajgap.problem.files')\n"
-    )
-    done = subprocess.run(
-        [sys.executable, "-c", start + program], cwd=folder, capture_output=True, text=True
-    )
-    assert done.returncode == -signal.SIGKILL, done.stderr
+# --- stopped anywhere -----------------------------------------------------------------------------
+
+
+OLD = {"index": "old", "deep/one": "old"}
+NEW = {"index": "new", "deep/two": "new"}
+WRITES = {
+    "new file": "with new_file(target) as write: write('new')",
+    "replaced file": "replace_file(target, 'new')",
+    "folder": f"replace_folder(target, {NEW})",
+    "folder by two renames": f"module._exchanged = lambda *_: False; replace_folder(target, {NEW})",
+}
+STOPS = {
+    "killed": "os.kill(os.getpid(), 9)",
+    "ended": "module.remove_drafts(); os._exit(1)",
+    "fault": "raise OSError(5, 'Input/output error')",
+}
+"""A kill, a program that ends as programs do, and a step that fails."""
+PROGRAM = """
+import ctypes, fcntl, importlib, os, sys
+from itertools import count
+from pathlib import Path
+from trajgap.problem import new_file, replace_file, replace_folder
+module = importlib.import_module("trajgap.problem.files")
+target = Path("target")
+for step in count(1):
+    os.mkdir(str(step))
+    child = os.fork()
+    if not child:
+        os.chdir(str(step))
+        {before}
+        left = step
+        def hook(event, _):
+            global left
+            if event.startswith(("open", "os.", "fcntl.", "shutil.", "ctypes.")):
+                left -= 1
+                if left == 0:
+                    {stop}
+        sys.addaudithook(hook)
+        try:
+            {write}
+        except OSError:
+            os._exit(1)
+        os._exit(left <= 0)
+    if os.waitpid(child, 0)[1] == 0:
+        break
+"""
+"""Writes again and again, each time stopped one step later, until nothing is left to stop."""
+
+
+def content(path: Path) -> dict[str, str] | str | None:
+    if not path.is_dir():
+        return path.read_text() if path.exists() else None
+    files = (one for one in path.rglob("*") if one.is_file())
+    return {one.relative_to(path).as_posix(): one.read_text() for one in files}
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="exchanges names in one step")
+@pytest.mark.parametrize("how", STOPS)
+@pytest.mark.parametrize("what", WRITES)
+def test_whoever_is_stopped_anywhere_leaves_the_old_or_the_new(
+    tmp_path: Path, what: str, how: str
+) -> None:
+    old: dict[str, str] | str | None
+    old, new = (OLD, NEW) if "folder" in what else ("old", "new")
+    before = f"replace_folder(target, {OLD})" if old == OLD else "replace_file(target, 'old')"
+    if what == "new file":
+        old, before = None, "pass"
+    program = PROGRAM.format(before=before, stop=STOPS[how], write=WRITES[what])
+    subprocess.run([sys.executable, "-c", program], cwd=tmp_path, check=True)
+    seen = []
+    for step in range(1, len(names(tmp_path)) + 1):
+        target = tmp_path / str(step) / "target"
+        if how != "killed":
+            seen.append(content(target))
+        recover_folder(target)
+        seen.append(content(target))
+        if how == "ended":
+            assert names(target.parent) == ([] if seen[-1] is None else ["target"])
+        # Whatever is left stands in nobody's way, and goes with the next who writes.
+        if seen[-1] is None:
+            with new_file(target) as write:
+                write("another")
+        elif old == OLD:
+            replace_folder(target, NEW)
+        else:
+            replace_file(target, "another")
+        if old != OLD:
+            assert names(target.parent) == ["target"]
+        assert content(target) == (NEW if old == OLD else "another")
+    assert len(seen) > 5
+    assert all(one in (old, new) for one in seen)
+    assert old in seen
+    assert seen[-1] == new
 
 
 # --- one file -------------------------------------------------------------------------------------
@@ -104,19 +182,13 @@ def test_two_at_once_are_refused_before_they_compute(tmp_path: Path) -> None:
     assert names(tmp_path) == ["a", "b"]
 
 
-def test_what_a_killed_process_left_stands_in_nobodys_way(tmp_path: Path) -> None:
-    killed("with new_file(Path('a')) as write: die()", tmp_path)
-    (left,) = names(tmp_path)
-    # Names that can be guessed were refused for ever once they were there.
-    for name in (".trajgap-1.tmp", f".trajgap-{os.getpid()}.tmp"):
+def test_names_that_can_be_guessed_are_no_drafts(tmp_path: Path) -> None:
+    guessed = [f".trajgap-{number}.tmp" for number in (1, os.getpid())]
+    for name in guessed:
         (tmp_path / name).touch()
-    with new_file(tmp_path / "b") as write:
-        write("another")
-    assert left in names(tmp_path)
     with new_file(tmp_path / "a") as write:
-        assert left not in names(tmp_path)
         write("text")
-    assert names(tmp_path) == sorted((".trajgap-1.tmp", f".trajgap-{os.getpid()}.tmp", "a", "b"))
+    assert names(tmp_path) == sorted([*guessed, "a"])
 
 
 def test_replacing_a_file_leaves_the_old_or_the_new(tmp_path: Path) -> None:
@@ -130,13 +202,6 @@ def test_replacing_a_file_leaves_the_old_or_the_new(tmp_path: Path) -> None:
     assert names(path.parent) == ["a"]
 
 
-def test_drafts_are_removed_when_the_program_ends(tmp_path: Path) -> None:
-    with new_file(tmp_path / "a"):
-        assert len(names(tmp_path)) == 1
-        remove_drafts()
-        assert names(tmp_path) == []
-
-
 @pytest.mark.parametrize("name", ["x" * 300, "none/a"])
 def test_a_name_that_cannot_be_is_refused_before_computing(tmp_path: Path, name: str) -> None:
     with pytest.raises(OSError, match=r"too long|No such file"), new_file(tmp_path / name):
@@ -144,14 +209,6 @@ def test_a_name_that_cannot_be_is_refused_before_computing(tmp_path: Path, name:
 
 
 # --- one folder -----------------------------------------------------------------------------------
-
-OLD = {"index": "old", "deep/one": "old"}
-NEW = {"index": "new", "deep/two": "new"}
-
-
-def content(folder: Path) -> dict[str, str]:
-    files = (path for path in folder.rglob("*") if path.is_file())
-    return {path.relative_to(folder).as_posix(): path.read_text() for path in files}
 
 
 @pytest.mark.parametrize("exchange", [True, False])
@@ -169,78 +226,10 @@ def test_a_folder_is_replaced_as_a_whole(
     replace_folder(out, NEW)
     assert content(out) == NEW
     assert names(out.parent) == ["out"]
-
-
-@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="exchanges names in one step")
-def test_a_kill_at_any_rename_leaves_a_report(tmp_path: Path) -> None:
-    out = tmp_path / "out"
-    replace_folder(out, OLD)
-    program = f"replace_folder(Path('out'), {NEW!r})"
-    # Before the exchange and right after it; no further step touches the folder.
-    killed(f"module._exchanged = die\n{program}", tmp_path)
-    assert content(out) == OLD
-    after = "real = module._exchanged\nmodule._exchanged = lambda *a: real(*a) and die()\n"
-    killed(f"{after}{program}", tmp_path)
-    assert content(out) == NEW
-    replace_folder(out, OLD)
-    assert names(tmp_path) == ["out"]
-
-
-RENAMED = {
-    "killed": "Path.rename = lambda self, to: rename(self, to) if to.suffix == '.old' else die()",
-    "ended": (
-        "def interrupted(self, to):\n"
-        "    if '.old' in (self.suffix, to.suffix): return rename(self, to)\n"
-        "    module.remove_drafts()\n"
-        "    die()\n"
-        "Path.rename = interrupted"
-    ),
-}
-"""A process that is killed between two renames, and one that ends there as programs end."""
-
-
-@pytest.mark.parametrize("again", [True, False])
-@pytest.mark.parametrize("how", RENAMED)
-def test_a_stop_between_two_renames_is_recovered_from(
-    tmp_path: Path, how: str, again: bool
-) -> None:
-    out = tmp_path / "out"
-    replace_folder(out, OLD)
-    start = "module._exchanged = lambda *_: False\nrename = Path.rename\n"
-    killed(f"{start}{RENAMED[how]}\nreplace_folder(Path('out'), {NEW!r})", tmp_path)
-    if how == "killed":
-        assert not out.exists()
-    else:
-        assert content(out) == OLD
-        assert names(tmp_path) == ["out"]
-    if again:
-        replace_folder(out, NEW)
-        assert content(out) == NEW
-        assert names(tmp_path) == ["out"]
-    else:
-        for _ in range(2):
-            recover_folder(out)
-            assert content(out) == OLD
-
-
-def test_a_rename_that_fails_brings_the_folder_back(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    out = tmp_path / "out"
-    replace_folder(out, OLD)
-    rename = Path.rename
-
-    def refuse(self: Path, to: Path) -> Path:
-        if self.suffix == ".tmp":
-            raise OSError(5, "Input/output error")
-        return rename(self, to)
-
-    monkeypatch.setattr(module, "_exchanged", lambda *_: False)
-    monkeypatch.setattr(Path, "rename", refuse)
-    with pytest.raises(OSError, match="Input/output error"):
-        replace_folder(out, NEW)
-    assert content(out) == OLD
-    assert names(tmp_path) == ["out"]
+    # What steps aside for another process later is not for this one to bring back.
+    aside = out.rename(out.parent / f"{module._stem(out)}0.old")
+    remove_drafts()
+    assert names(out.parent) == [aside.name]
 
 
 def test_whether_a_folder_can_be_written_is_known_before(tmp_path: Path) -> None:
@@ -293,6 +282,9 @@ def test_size_and_name_are_bounded(tmp_path: Path) -> None:
     assert read_regular(tmp_path / "a", 10, "cut it") == b"1234567890"
     with pytest.raises(CaseError, match=r"a: has 0.0 MB, the limit is 0 MB; cut it$"):
         read_regular(tmp_path / "a", 9, "cut it")
+    os.truncate(tmp_path / "a", 25_000_000)
+    with pytest.raises(CaseError, match=r"a: has 25.0 MB, the limit is 9 MB; cut it$"):
+        read_regular(tmp_path / "a", 9_000_000, "cut it")
     odd = Path(os.fsdecode(os.fsencode(tmp_path) + b"/\xff.toml"))
     odd.write_text("format = 1")
     with pytest.raises(CaseError, match=r"<U\+DCFF>\.toml: is not UTF-8; rename the file$"):

@@ -8,8 +8,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from support.uneven import LIMITS
-from support.uneven import WAYPOINTS as TURNING
 from trajgap.nlp import problem_seal
 from trajgap.problem import (
     QUANTITIES,
@@ -39,39 +37,65 @@ def problem_with(**changes: object) -> Problem:
     return Problem(**{**given, **changes})  # type: ignore[arg-type]
 
 
-def test_limits_fill_in() -> None:
-    limits = Limits(2, [3, 4], position_upper=[np.inf, 1.5])
-    assert limits.joints == 2
-    np.testing.assert_array_equal(limits.velocity, [2, 2])
-    np.testing.assert_array_equal(limits.derivatives, [[2, 3, np.inf], [2, 4, np.inf]])
-    np.testing.assert_array_equal(limits.position_lower, [-np.inf, -np.inf])
+FORMS = {
+    "one size": (3.0, -3.0, 3.0),
+    "sizes": ([3.0, 4.0], [-3.0, -4.0], [3.0, 4.0]),
+    "pairs": ([[-2.0, 5.0], [-np.inf, 7.0]], [-2.0, -np.inf], [5.0, 7.0]),
+    "equal pairs": ([[-3.0, 3.0], [-4.0, 4.0]], [-3.0, -4.0], [3.0, 4.0]),
+    "nothing": (None, -np.inf, np.inf),
+}
+"""What may be given of two joints, and what it means below 0 and above."""
+
+
+@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize("order", range(3), ids=QUANTITIES)
+def test_limits_are_what_was_given(order: int, form: str) -> None:
+    given, low, high = FORMS[form]
+    name, others = QUANTITIES[order], [o for o in range(3) if o != order]
+    ranges = {"position_lower": -7, "position_upper": [np.inf, 1.5]}
+    limits = Limits(**({} if given is None else {name: given}), **ranges, joints=2)  # type: ignore[arg-type]
+    ends = np.array([np.broadcast_to(low, 2), np.broadcast_to(high, 2)])
+    for one in (limits, pickle.loads(pickle.dumps(limits)), limits.with_sides(limits.sides)):
+        np.testing.assert_array_equal(one.ends(name), ends)
+        np.testing.assert_array_equal(one.sides[:, :, order], np.abs(ends))
+        assert np.isinf(one.sides[:, :, others]).all()
+        np.testing.assert_array_equal(one.position_lower, [-7, -7])
+        np.testing.assert_array_equal(one.position_upper, [np.inf, 1.5])
+    assert limits.uneven == limits.is_uneven(name) == (form == "pairs")
+    np.testing.assert_array_equal(limits.widest[:, order], np.abs(ends).max(axis=0))
+    np.testing.assert_array_equal(limits.hull.derivatives, limits.widest)
+    np.testing.assert_array_equal(limits.joint(1).sides, limits.sides[:, 1:])
+    assert (limits.joint(1).joints, limits.joint(1).position_upper.tolist()) == (1, [1.5])
     assert limits.limits_position
+    if limits.uneven:
+        for size in (name, "derivatives"):
+            with pytest.raises(TrajgapError, match="differ in size"):
+                getattr(limits, size)
+    else:
+        assert limits.hull is limits
+        np.testing.assert_array_equal(getattr(limits, name), ends[1])
+        again = limits.with_derivatives(limits.derivatives)
+        np.testing.assert_array_equal(again.position_lower, limits.position_lower)
+        np.testing.assert_array_equal(again.derivatives, limits.derivatives)
+
+
+def test_limits_without_a_number_of_joints() -> None:
+    assert (Limits(2, 3).joints, Limits(2, [3, 4]).joints) == (1, 2)
     assert not Limits(2, 3).limits_position
-    assert Limits(2, 3).joints == 1
-    np.testing.assert_array_equal(Limits(2, joints=3).velocity, [2, 2, 2])
-    assert QUANTITIES == ("velocity", "acceleration", "jerk")
 
 
-def test_limits_are_frozen_copies() -> None:
-    given = np.array([2.0, 3.0])
-    limits = Limits(given)
-    given[0] = 99.0
-    assert limits.velocity[0] == 2.0
-    with pytest.raises(ValueError, match="read-only"):
-        limits.velocity[0] = 1.0
+def test_what_was_given_is_copied_and_frozen() -> None:
+    given = {"velocity": np.array([2.0, 3.0])}
+    points = WAYPOINTS.copy()
+    problem = problem_with(waypoints=points, limits=Limits(**given))
+    given["velocity"][0] = points[:] = 99.0
+    assert problem.limits.velocity[0] == 2.0
+    np.testing.assert_array_equal(problem.waypoints, WAYPOINTS)
+    for array in (problem.limits.velocity, problem.waypoints, problem.duration_lower):
+        with pytest.raises(ValueError, match="read-only"):
+            array[0] = 1.0
     with pytest.raises(dataclasses.FrozenInstanceError):
-        limits.velocity = given  # type: ignore[misc]
-
-
-def test_limits_of_one_joint_and_replaced() -> None:
-    limits = Limits([1, 2], [3, 4], [5, 6], [-7, -8], [9, 10])
-    one = limits.joint(1)
-    assert one.joints == 1
-    np.testing.assert_array_equal(one.derivatives, [[2, 4, 6]])
-    assert (one.position_lower[0], one.position_upper[0]) == (-8, 10)
-    other = limits.with_derivatives([[11, 12, 13], [14, 15, 16]])
-    np.testing.assert_array_equal(other.derivatives, [[11, 12, 13], [14, 15, 16]])
-    np.testing.assert_array_equal(other.position_lower, limits.position_lower)
+        problem.limits.velocity = 1.0  # type: ignore[misc]
 
 
 @pytest.mark.parametrize(
@@ -115,17 +139,9 @@ def test_problem_fills_in() -> None:
     same = problem_with(limits=Limits(2, 5, 9, -3, 4)).limits
     np.testing.assert_array_equal(same.derivatives, [[2, 5, 9], [2, 5, 9]])
     np.testing.assert_array_equal(same.position_upper, [4, 4])
-
-
-def test_problem_is_a_frozen_copy() -> None:
-    given = WAYPOINTS.copy()
-    problem = problem_with(waypoints=given)
-    given[:] = 0.0
-    np.testing.assert_array_equal(problem.waypoints, WAYPOINTS)
-    with pytest.raises(ValueError, match="read-only"):
-        problem.waypoints[0, 0] = 1.0
-    with pytest.raises(ValueError, match="read-only"):
-        problem.duration_lower[0] = 1.0
+    pair = problem_with(limits=Limits(acceleration=[[-15, 10]]))
+    np.testing.assert_array_equal(pair.limits.ends("acceleration"), [[-15, -15], [10, 10]])
+    assert not pair.hull.limits.uneven
 
 
 def test_joint_alone_is_judged_alike() -> None:
@@ -193,42 +209,6 @@ def test_problem_refuses(changes: dict[str, object], message: str) -> None:
 
 
 # --- sides that differ ----------------------------------------------------------------------------
-
-
-def test_pairs_are_kept_by_side() -> None:
-    limits = Limits(2.0, [[-15, 10], [-3, 3]], joints=2)
-    assert limits.uneven
-    assert limits.is_uneven("acceleration")
-    assert not limits.is_uneven("velocity")
-    np.testing.assert_array_equal(limits.sides[:, :, 1], [[15, 3], [10, 3]])
-    np.testing.assert_array_equal(limits.ends("acceleration"), [[-15, -3], [10, 3]])
-    np.testing.assert_array_equal(limits.widest, [[2, 15, np.inf], [2, 3, np.inf]])
-    np.testing.assert_array_equal(limits.hull.derivatives, limits.widest)
-    np.testing.assert_array_equal(limits.velocity, [2, 2])
-    np.testing.assert_array_equal(limits.joint(0).sides, limits.sides[:, :1])
-    assert not limits.joint(1).uneven
-    again = pickle.loads(pickle.dumps(limits))
-    np.testing.assert_array_equal(again.sides, limits.sides)
-    assert "-15" in repr(limits)
-
-
-def test_equal_pairs_are_sizes() -> None:
-    pairs = Limits(acceleration=[[-4, 4], [-3, 3]])
-    assert not pairs.uneven
-    np.testing.assert_array_equal(pairs.acceleration, [4, 3])
-    assert pairs.hull is pairs
-
-
-def test_one_pair_serves_every_joint() -> None:
-    problem = Problem(TURNING, Limits(acceleration=[[-15, 10]]), cubic_spline(3))
-    np.testing.assert_array_equal(problem.limits.ends("acceleration"), [[-15, -15], [10, 10]])
-    assert not problem.hull.limits.uneven
-
-
-def test_what_knows_sizes_alone_meets_an_error() -> None:
-    for name in ("velocity", "acceleration", "jerk", "derivatives"):
-        with pytest.raises(TrajgapError, match="differ in size"):
-            getattr(LIMITS, name)
 
 
 def test_a_side_of_zero_forbids_that_side_alone() -> None:

@@ -60,11 +60,14 @@ def test_directed_rounding_brackets_within_one_float(number):
     assert up(number) in (down(number), math.nextafter(down(number), math.inf))
 
 
-def test_trailing_zeros_count():
-    assert Printed("0.660").interval == (Fraction(1319, 2000), Fraction(1321, 2000))
-    assert Printed("0.66").interval == (Fraction(131, 200), Fraction(133, 200))
+def test_trailing_zeros_and_exponents_count():
     assert Printed("0.66") != Printed("0.660")
     assert Printed("0.660").places == 3
+    for text, half in (("0.660", "0.0005"), ("0.66", "0.005"), ("1.5e3", "50"), ("80", "0.5")):
+        value, half = Fraction(text), Fraction(half)
+        assert Printed(text).interval == (value - half, value + half)
+        assert Printed(text).truncated == (value, value + 2 * half)
+    assert Printed("0.0").truncated == (Fraction(-1, 10), Fraction(1, 10))
 
 
 @pytest.mark.parametrize("minus", ["-", "−", "–", "﹣", "－"])
@@ -86,42 +89,28 @@ def test_an_exact_number_has_no_width():
     assert Printed.number(80).value == 80.0
 
 
-def test_exponents_move_the_last_place():
-    assert Printed("1.5e3").interval == (1450, 1550)
-    assert Printed("80").interval == (Fraction(159, 2), Fraction(161, 2))
-    assert Printed("80").truncated == (80, 81)
-    assert Printed("0.0").truncated == (Fraction(-1, 10), Fraction(1, 10))
-
-
-@pytest.mark.parametrize("text", ["", " "])
-def test_no_text_is_called_empty(text):
-    with pytest.raises(TrajgapError, match="is empty; write the printed digits"):
-        Printed(text)
-
-
 @pytest.mark.parametrize(
-    "text", ["nan", "inf", "-inf", "1,5", "1_0", "0x1", "1 2", "1.2.3", "e5", "٣", "--1", "."]
+    ("given", "message"),
+    [
+        *((text, "is empty; write the printed digits") for text in ("", " ")),
+        *(
+            (text, "not a finite decimal number")
+            for text in ("nan", "inf", "-inf", "1,5", "1_0", "0x1", "1 2", "1.2.3", "e5", "٣", ".")
+        ),
+        *(
+            (text, "out of range; magnitudes from 1e-300 to 1e300")
+            for text in ("1e301", "1e-301", "1e999999999999", "9" * 60 + "e299")
+        ),
+        ("1" * 65, "a number of 65 characters; at most 64"),
+        pytest.param(10**400, "an integer of more than 300 digits is out of range", id="huge"),
+        (Decimal("nan"), "'NaN' is not a finite decimal number"),
+        (1.5, r"1\.5 is not text"),
+    ],
 )
-def test_other_text_is_no_number(text):
-    with pytest.raises(TrajgapError, match="not a finite decimal number"):
-        Printed(text)
-
-
-@pytest.mark.parametrize("text", ["1e301", "1e-301", "1e999999999999", "9" * 60 + "e299"])
-def test_huge_exponents_are_refused(text):
-    with pytest.raises(TrajgapError, match="out of range; magnitudes from 1e-300 to 1e300"):
-        Printed(text)
-
-
-def test_long_and_foreign_values_are_refused():
-    with pytest.raises(TrajgapError, match="a number of 65 characters; at most 64"):
-        Printed("1" * 65)
-    with pytest.raises(TrajgapError, match="an integer of more than 300 digits is out of range"):
-        Printed.number(10**400)
-    with pytest.raises(TrajgapError, match="'NaN' is not a finite decimal number"):
-        Printed.number(Decimal("nan"))
-    with pytest.raises(TrajgapError, match=r"1\.5 is not text"):
-        Printed(1.5)
+def test_what_is_no_printed_number_is_refused(given, message):
+    read = Printed.number if isinstance(given, int | Decimal) else Printed
+    with pytest.raises(TrajgapError, match=message):
+        read(given)
 
 
 def test_a_case_error_is_one_line_with_its_evidence():
@@ -192,7 +181,10 @@ def test_degrees_agree_with_numpy(text, unit):
 
 @given(texts, every_unit)
 def test_the_value_lies_in_its_interval_and_returns(text, unit):
+    exact = to_si(Printed(text, exact=True), unit)
+    assert exact.lower == exact.value == exact.upper
     measured = to_si(Printed(text), unit)
+    assert measured.value == exact.value
     assert measured.lower <= measured.value <= measured.upper
     assert from_si(measured.value, unit) == pytest.approx(float(text), rel=4e-16, abs=1e-300)
 
@@ -208,9 +200,15 @@ def test_the_interval_is_rounded_outwards(text, unit):
 
 
 @given(texts, every_unit)
-def test_an_exact_number_keeps_no_width(text, unit):
-    measured = to_si(Printed(text, exact=True), unit)
-    assert measured.lower == measured.value == measured.upper
+def test_what_was_cut_off_lies_in_an_interval_that_is_wider_away_from_0(text, unit):
+    printed = Printed(text)
+    measured = to_si(printed, unit)
+    cut, (low, high) = measured.cut_off(), printed.truncated
+    for bound in scale(unit).bounds:
+        assert Fraction(cut.lower) <= low * bound
+        assert high * bound <= Fraction(cut.upper)
+    assert cut.lower == measured.lower or measured.value <= 0
+    assert cut.upper == measured.upper or measured.value >= 0
 
 
 def test_known_values():

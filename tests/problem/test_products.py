@@ -33,7 +33,7 @@ ORDERS = ("position", *QUANTITIES)
 ROOM = 1e-6
 """Relative distance of a limit from the exact extreme: far above rounding, below all else."""
 KINDS = ("even", "only below", "only above", "tight below", "tight above")
-JOINT = 1
+JOINT = 2
 """The limited joint, of three."""
 
 
@@ -222,6 +222,8 @@ def test_braking_and_speeding_up_are_told_apart(curve: str, mirror: float) -> No
             assert found.limits is (Verdict.PASS if sign > 0 else Verdict.VIOLATED)
             peaks = {p.quantity: p for p in found.peaks}
             assert peaks[word].ratio == pytest.approx(1 / (1 + sign * ROOM), rel=1e-8)
+            assert abs(peaks[word].value) == pytest.approx(sizes[which], rel=1e-8)
+            assert peaks[word].value / peaks[word].limit > 0.0
             if sign < 0:
                 assert found.stretch == pytest.approx((1 - ROOM) ** -0.5, rel=1e-8)
             # Reversed in time, braking is speeding up.

@@ -8,6 +8,8 @@ import tomllib
 import jsonschema
 import numpy as np
 import pytest
+from attacks.cases import MOVING
+from attacks.grammar import draw_case
 from support.base_case import BASE
 from support.checkout import ROOT
 from trajgap.problem.cases.case import Case
@@ -21,69 +23,48 @@ def load(text: str = BASE) -> Case:
     return parse_case(text, "base.toml")
 
 
-def changed(*pairs: tuple[str, str]) -> str:
-    text = BASE
-    for old, new in pairs:
-        assert old in text, old
-        text = text.replace(old, new, 1)
-    return text
-
-
 # What a case means
 
 
-def test_base_reading_and_override():
-    case = load()
-    one = case.problem("one", "plain")
-    np.testing.assert_allclose(one.waypoints[:, 0], np.deg2rad([0, 10.5, -3.25, 4]), rtol=1e-15)
-    np.testing.assert_allclose(one.limits.velocity, np.deg2rad([100, 95]), rtol=1e-15)
-    np.testing.assert_allclose(one.limits.acceleration, np.deg2rad([60, 60]), rtol=1e-15)
-    assert np.isinf(one.limits.jerk).all()
-    assert one.joints == ("a", "b")
-    np.testing.assert_array_equal(one.duration_lower, [0.1] * 3)
-    np.testing.assert_array_equal(one.duration_upper, [3, 4, np.inf])
-
-    two = case.problem("two", "rad")
-    assert two.joints == ("b",)
-    np.testing.assert_array_equal(two.waypoints[:, 0], [1, 2, 3, 4])
-    np.testing.assert_allclose(two.limits.velocity, np.deg2rad([50]), rtol=1e-15)
-    np.testing.assert_allclose(two.limits.acceleration, np.deg2rad([60]), rtol=1e-15)
-    np.testing.assert_array_equal(two.duration_lower, [0.0] * 3)
-    np.testing.assert_array_equal(two.duration_upper, [3, 4, np.inf])
+@pytest.mark.parametrize("draw", range(6))
+def test_drawn_files_pose_what_a_second_reading_says(draw):
+    """Units, sides, bounds, ends, joints and overlays, read a second time by `attacks.grammar`."""
+    for seed in range(9):
+        drawn = draw_case(np.random.default_rng([draw, seed]))
+        case = load(drawn.text)
+        assert set(case.selections()) == set(drawn.asked)
+        for pair, asked in drawn.asked.items():
+            one, near = case.problem(*pair), {"rtol": 1e-14, "atol": 0.0}
+            assert (one.joints, one.coupling) == (asked.labels, asked.coupling)
+            np.testing.assert_allclose(one.waypoints, asked.waypoints, **near)
+            np.testing.assert_allclose(one.limits.sides, asked.sides, **near)
+            for name in ("position_lower", "position_upper"):
+                np.testing.assert_allclose(
+                    getattr(one.limits, name), getattr(asked, name), err_msg=name, **near
+                )
+            for name in ("duration_lower", "duration_upper"):
+                np.testing.assert_allclose(getattr(one, name), getattr(asked, name), **near)
+            if asked.block["family"] in MOVING:
+                still = np.zeros(len(one.joints))
+                for given, wanted in zip(one.curve.ends, (asked.ends, asked.finish), strict=True):
+                    for order in dict(given).keys() | wanted.keys():
+                        value = dict(given).get(order, 0.0) + still
+                        np.testing.assert_allclose(value, wanted.get(order, still), **near)
 
 
 def test_defaults():
     case = load()
     assert case.default_reading.id == "rad"
     np.testing.assert_array_equal(case.problem().waypoints[1], [10.5, 2])
-    assert case.problem().coupling == "shared"
     assert case.problem(coupling="per-joint").coupling == "per-joint"
-    assert case.selections() == [
-        ("one", "rad"),
-        ("one", "plain"),
-        ("two", "rad"),
-        ("two", "plain"),
-    ]
+    pairs = [(problem, reading) for problem in ("one", "two") for reading in ("rad", "plain")]
+    assert case.selections() == pairs
     assert case.selections(problem="two") == [("two", "rad"), ("two", "plain")]
     assert case.selections(reading="plain") == [("one", "plain"), ("two", "plain")]
 
 
-def test_without_problems_and_readings():
-    head, _, tail = BASE.partition("[[problems]]")
-    case = load(head)
-    assert case.selections() == [("main", "as-printed")]
-    assert case.problem("main", "as-printed").segments == 3
-    assert "[[algorithms]]" in tail
-
-
-def test_waypoint_rows_are_the_transpose():
-    rows = "waypoint_rows = [['0.0', '1'], ['10.5', '2'], ['-3.25', '3'], ['4', '4']]"
-    text = changed(('joint_rows = [["0.0", "10.5", "-3.25", "4"], ["1", "2", "3", "4"]]', rows))
-    np.testing.assert_array_equal(load(text).problem().waypoints, load().problem().waypoints)
-
-
 def test_strings_are_rounded_and_bare_numbers_exact():
-    text = changed(('["1", "2", "3", "4"]]', '["1", 2, 3.50, "4.00"]]'))
+    text = BASE.replace('["1", "2", "3", "4"]]', '["1", 2, 3.50, "4.00"]]')
     lower, upper = load(text).waypoint_box("one", "rad")
     np.testing.assert_allclose((upper - lower)[:, 1], [1, 0, 0, 0.01], rtol=1e-12)
     np.testing.assert_allclose((upper - lower)[:, 0], [0.1, 0.1, 0.01, 1], rtol=1e-12)
@@ -108,45 +89,6 @@ def test_claims():
         "start": [0.3, 3],
         "seedless": True,
     }
-
-
-def test_milliseconds():
-    text = changed(
-        ('time = "s"', 'time = "ms"'), ("lower = 0.1\nupper = [3, 4, inf]", "lower = 100")
-    )
-    case = load(text)
-    np.testing.assert_array_equal(case.problem("one", "plain").duration_lower, [0.1] * 3)
-    np.testing.assert_allclose(
-        case.claim_durations(case.claim("times")).value, [961e-6, 1258e-6, 1078e-6], rtol=1e-15
-    )
-
-
-def test_a_reading_can_lift_a_limit_and_shift_the_range():
-    text = changed(
-        ("durations = { lower = 0 }", "limits = { acceleration = inf, position_upper = '200' }")
-    )
-    limits = load(text).problem("one", "rad").limits
-    assert np.isinf(limits.acceleration).all()
-    np.testing.assert_array_equal(limits.position_upper, [200, 200])
-    assert np.isneginf(limits.position_lower).all()
-
-
-def test_end_derivatives_are_converted():
-    declaration = (
-        'family = "polynomials"\ndegrees = [3, 5, 3]\n'
-        'end_orders = [2, 1]\nend_derivatives = ["90", 180]'
-    )
-    interpolant = load(changed(('family = "3-5-3"', declaration))).problem().curve
-    assert interpolant.prescribed[0] == interpolant.prescribed[-1]
-    values = dict(interpolant.prescribed[0])
-    assert values == {1: pytest.approx(np.pi), 2: pytest.approx(np.pi / 2)}
-
-
-def test_repeated_waypoints_resting_joints_and_zero_limits_are_valid():
-    text = changed(('["1", "2", "3", "4"]]', '["1", "1", "1", "1"]]'), ("[100,", "[0,"))
-    problem = load(text).problem("one", "plain")
-    assert (np.ptp(problem.waypoints, axis=0) > 0).tolist() == [True, False]
-    assert problem.limits.velocity[0] == 0
 
 
 def test_the_example_of_fang2020_is_what_the_paper_prints():

@@ -2,12 +2,8 @@
 
 from __future__ import annotations
 
-import csv
-import io
-import json
 import tomllib
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -17,7 +13,6 @@ from support.refusals import Refusal, each_refusal
 from support.scara import SCARA, scara
 from trajgap.problem import (
     CaseError,
-    case_schema,
     compare_transcriptions,
     ctraj,
     forward_kinematics,
@@ -39,40 +34,30 @@ def test_each_joint_is_read_in_its_unit():
     assert problem.limits.velocity == pytest.approx([np.pi, np.radians(150), 0.12], rel=1e-15)
     assert problem.limits.acceleration[2] == 0.5
     assert problem.limits.position_upper == pytest.approx([np.radians(150), np.radians(140), 0.150])
-
-
-def test_a_reading_gives_its_whole_list():
-    problem = scara().problem(None, "deg-s")
-    assert problem.limits.velocity == pytest.approx([np.radians(30), np.radians(150), 0.12])
+    # A reading gives its whole list.
+    other = scara().problem(None, "deg-s").limits
+    assert other.velocity == pytest.approx([np.radians(30), np.radians(150), 0.12])
     assert scara().labels["deg-s"] == "velocities in °/s and mm/s"
 
 
 def test_a_problem_of_some_joints_keeps_listing_all():
-    header = '[[problems]]\nid = "slide"\njoints = ["d3"]\n\n[[readings]]\nid = "rpm"\n'
-    problem = scara(('[[readings]]\nid = "rpm"\n', header)).problem()
-    assert (problem.joints, problem.linear) == (("d3",), (True,))
-    assert problem.limits.velocity == pytest.approx([0.12])
-
-
-def test_one_number_serves_joints_of_one_unit():
-    """The slide alone: its one value needs no list."""
+    """And its one value needs no list."""
     header = '[[problems]]\nid = "slide"\njoints = ["d3"]\n\n[[readings]]\nid = "rpm"\n'
     claim = 'derivative = "velocity"\njoint = "d3"\nvalue = "0.2332"'
     case = scara(
         ('[[readings]]\nid = "rpm"\n', header),
         (claim, 'derivative = "velocity"\nvalue = "233.2"'),
     )
-    assert case.measured(case.claim("slide-velocity").printed[0], "velocity").value == (
-        pytest.approx(0.2332)
-    )
+    problem = case.problem()
+    assert (problem.joints, problem.linear) == (("d3",), (True,))
+    assert problem.limits.velocity == pytest.approx([0.12])
+    value = case.measured(case.claim("slide-velocity").printed[0], "velocity").value
+    assert value == pytest.approx(0.2332)
 
 
 def test_prescribed_ends_are_in_the_unit_of_their_joint():
-    case = scara(
-        ('family = "cubic-spline"', 'family = "cubic-spline"\nend_derivatives = [[3, 10, 20]]'),
-        ('[[claims]]\nid = "rest"', '[[claims]]\nid = "rest"\ntext = "at rest"'),
-    )
-    ((order, start),) = case.statement().curve().prescribed_at(0)
+    ends = 'family = "cubic-spline"\nend_derivatives = [[3, 10, 20]]'
+    ((order, start),) = scara(('family = "cubic-spline"', ends)).statement().curve().ends[0]
     assert order == 1
     assert start == pytest.approx((np.pi / 10, np.radians(10), 0.02))
 
@@ -103,17 +88,9 @@ def test_chords_of_each_joint_and_chords_of_one_kind_are_taken():
         replace(statement, joints=(1, 2), declaration=chord).curve()
 
 
-def test_transcriptions_differ_where_a_unit_does():
-    other = scara((POSITION, 'position = ["deg", "rad", "mm"]'))
-    (found,) = compare_transcriptions(scara(), other)
-    assert (found.field, found.first, found.second) == ("units.position[1]", '"deg"', '"rad"')
-
-
 def test_new_takes_a_unit_for_each_joint(tmp_path):
     table = tmp_path / "t.csv"
-    stream = io.StringIO()
-    csv.writer(stream).writerows([["q1", "q2", "d3"], ["10.5", "-20", "12"], ["60.1", "15", "85"]])
-    table.write_text(stream.getvalue())
+    table.write_text("q1,q2,d3\n10.5,-20,12\n60.1,15,85\n")
     units = {"position": "deg,rad,mm", "velocity": "rpm, rad/s, m/min"}
     text = scaffold(table, units, velocity="30,2,7.2", family="cubic-spline")
     assert tomllib.loads(text)["units"]["velocity"] == ["rpm", "rad/s", "m/min"]
@@ -143,56 +120,21 @@ PAIRED = BASE.replace('velocity = [100, "95.0"]', 'velocity = [["-90.0", "100.0"
 )
 
 
-def test_each_side_has_its_own_digits() -> None:
-    case = parse_case(PAIRED, "f")
-    limits = case.problem("one", "plain").limits
-    np.testing.assert_allclose(
-        np.degrees(limits.ends("velocity")), [[-90, -95], [100, 95]], rtol=1e-15
-    )
-    np.testing.assert_allclose(
-        np.degrees(limits.ends("acceleration")), [[-np.inf, -40], [60, 40]], rtol=1e-15
-    )
-    tight = case.statement("one", "plain").problem(Digits.TIGHTEST).limits
-    loose = case.statement("one", "plain").problem(Digits.LOOSEST).limits
-    np.testing.assert_allclose(
-        np.degrees(tight.ends("velocity")), [[-89.95, -95], [99.95, 95]], rtol=1e-12
-    )
-    np.testing.assert_allclose(
-        np.degrees(loose.ends("velocity")), [[-90.05, -95], [100.05, 95]], rtol=1e-12
-    )
-    cut = case.statement("one", "plain").problem(Digits.LOOSEST_CUT).limits
-    assert np.degrees(cut.ends("velocity")[0][0]) == pytest.approx(-90.1, rel=1e-6)
-    assert np.degrees(cut.ends("velocity")[1][0]) == pytest.approx(100.1, rel=1e-6)
-
-
-def test_joints_that_take_part_keep_their_own() -> None:
-    both = parse_case(PAIRED.replace("limits = { velocity = 50 }", ""), "f")
-    limits = both.problem("two", "plain").limits
-    assert not limits.uneven
-    np.testing.assert_allclose(np.degrees(limits.velocity), [95], rtol=1e-15)
-
-
-def test_pairs_of_equal_size_are_sizes_to_the_last_bit() -> None:
-    sizes = parse_case(BASE, "f").problem("one", "plain").limits
-    pairs = BASE.replace(
-        'velocity = [100, "95.0"]', 'velocity = [[-100, 100], ["-95.0", "95.0"]]'
-    ).replace("acceleration = 60", "acceleration = [[-60, 60], [-60, 60]]")
-    limits = parse_case(pairs, "f").problem("one", "plain").limits
-    assert not limits.uneven
-    np.testing.assert_array_equal(limits.derivatives, sizes.derivatives)
-
-
-def test_transcriptions_are_compared_side_by_side() -> None:
-    one = parse_case(PAIRED, "f")
-    other = parse_case(PAIRED.replace('"-90.0"', '"-91.0"'), "f")
-    assert compare_transcriptions(one, parse_case(PAIRED, "f")) == []
-    found = compare_transcriptions(one, other)
-    assert [d.field for d in found] == ["limits.velocity[0][0]"]
-
-
-def test_the_schema_knows_pairs() -> None:
-    assert '"minItems": 2' in Path("docs/reference/case.schema.json").read_text(encoding="utf-8")
-    assert "LimitsBlock" in str(case_schema())
+@pytest.mark.parametrize(
+    ("digits", "velocity", "loose"),
+    [
+        (None, [[-90, -95], [100, 95]], 1e-14),
+        (Digits.TIGHTEST, [[-89.95, -95], [99.95, 95]], 1e-12),
+        (Digits.LOOSEST, [[-90.05, -95], [100.05, 95]], 1e-12),
+        (Digits.LOOSEST_CUT, [[-90.1, -95], [100.1, 95]], 1e-6),
+    ],
+)
+def test_each_side_has_its_own_digits(digits, velocity, loose) -> None:
+    statement = parse_case(PAIRED, "f").statement("one", "plain")
+    limits = (statement.problem() if digits is None else statement.problem(digits)).limits
+    np.testing.assert_allclose(np.degrees(limits.ends("velocity")), velocity, rtol=loose)
+    ends = [[-np.inf, -40], [60, 40]]
+    np.testing.assert_allclose(np.degrees(limits.ends("acceleration")), ends, rtol=1e-14)
 
 
 # --- ratios of durations --------------------------------------------------------------------------
@@ -277,21 +219,26 @@ def test_neighbours_that_coincide_have_no_chord() -> None:
         case('"chord"', CASE.replace("[90, 130]", "[30, 50]"))
 
 
-def test_the_words_are_those_of_the_schema() -> None:
-    ratios = case_schema()["$defs"]["Durations"]["properties"]["ratios"]
-    assert '"enum": ["equal", "chord", "free"]' in json.dumps(ratios)
+@pytest.mark.parametrize(
+    ("text", "old", "new", "field"),
+    [
+        (SCARA, POSITION, 'position = ["deg", "rad", "mm"]', "units.position[1]"),
+        (PAIRED, '"-90.0"', '"-91.0"', "limits.velocity[0][0]"),
+        (CASE, "RATIOS", '[1, "2.0"]', "durations.ratios[1]"),
+    ],
+)
+def test_transcriptions_differ_where_one_number_or_unit_does(text, old, new, field) -> None:
+    one, other = (
+        parse_case(text.replace(old, x).replace("RATIOS", "[1, 2]"), "f") for x in (old, new)
+    )
+    assert compare_transcriptions(one, one) == []
+    assert [found.field for found in compare_transcriptions(one, other)] == [field]
 
 
 def test_readings_are_called_by_their_ratios() -> None:
     assert ratio_words((1,) * 7) == "durations in the ratios as listed"
     # Where problems say it, a reading that is silent says nothing of its own.
     assert "total-chosen" in case('"equal"').labels["total-chosen"]
-
-
-def test_two_transcriptions_differ_in_their_ratios() -> None:
-    first, second = case("[1, 2]"), case('[1, "2.0"]')
-    assert not compare_transcriptions(first, first)
-    assert any("durations" in str(one) for one in compare_transcriptions(first, second))
 
 
 # --- way-points on a straight line of the robot's end ---------------------------------------------

@@ -100,10 +100,14 @@ def test_a_blank_that_is_left_is_refused_in_its_place(table, printed):
             parse_case(text.replace(block, uncommented(block)), "x")
 
 
-def test_a_place_that_is_not_given_is_said_to_be_none(table):
-    for printed in ({"durations": "1.0,2.0,3.0"}, {"total": "6.0"}):
-        (claim,) = parse_case(scaffold(table, RAD, **printed), "x").claims
+def test_a_place_that_is_not_given_is_said_to_be_none_and_no_number_made_up(table):
+    for printed in ({"durations": "1.0,2.0,3.0"}, {"total": "6.0"}, PRINTED["durations and total"]):
+        text = scaffold(table, RAD, **{k: v for k, v in printed.items() if k != "where"})
+        (claim,) = parse_case(text, "x").claims
         assert claim.where == "a place not stated"
+        assert re.findall(r'^#? ?where = "([^"]+)"', text, re.M) == ["a place not stated"]
+        for block in blocks(text):
+            assert not re.search(r"[0-9]\.[0-9]", block), block
 
 
 def test_a_row_is_as_long_as_the_curve_has_segments(table):
@@ -116,10 +120,3 @@ def test_a_blank_number_is_called_one(table):
     text = scaffold(table, RAD, where="Table 2", total="6.0").replace('"6.0"', '""')
     with pytest.raises(CaseError, match=r"value: is empty; write the printed digits, such as"):
         parse_case(text, "x")
-
-
-def test_no_place_and_no_number_is_made_up(table):
-    text = scaffold(table, RAD, durations="1.0,2.0,3.0", total="6.0")
-    assert re.findall(r'^#? ?where = "([^"]+)"', text, re.M) == ["a place not stated"]
-    for block in blocks(text):
-        assert not re.search(r"[0-9]\.[0-9]", block), block

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from scipy.interpolate import CubicSpline
 from support.case_texts import case_text
 from support.refusals import Refusal, each_refusal
 from trajgap.problem import (
@@ -12,10 +11,7 @@ from trajgap.problem import (
     CaseError,
     ClampedBSpline,
     Interpolant,
-    check,
-    cubic_spline,
     cubic_spline_virtual,
-    fit,
     parse_case,
     quintic_spline_virtual,
 )
@@ -46,70 +42,6 @@ def curve(interpolant: str, more: str = "") -> Interpolant | ClampedBSpline:
 @each_refusal("four_points")
 def test_each_fault_has_its_line(one: Refusal) -> None:
     one.said_by(lambda: parse_case(one.text(HEAD), "four.toml"), "four.toml: ")
-
-
-# --- end derivatives ------------------------------------------------------------------------------
-
-
-def test_velocities_by_end_and_by_joint_are_scipys() -> None:
-    given = 'end_derivatives = [[28, -11, 0]]\nfinish_derivatives = [["-17", 23, 5]]'
-    one = case(f"{CUBIC}\n{given}").problem()
-    theirs = CubicSpline(
-        np.concatenate([[0.0], np.cumsum(H)]),
-        np.radians([[10, -50, 3], [50, -30, 9], [12, 20, 30], [-25, 6, 4]]),
-        bc_type=((1, np.radians([28, -11, 0])), (1, np.radians([-17, 23, 5]))),
-    )
-    places = np.linspace(0.0, H.sum(), 31)
-    np.testing.assert_allclose(fit(one.curve, one.waypoints, H)(places), theirs(places), atol=1e-12)
-
-
-@pytest.mark.parametrize(
-    ("written", "start", "finish"),
-    [
-        ("end_derivatives = [90]", {1: np.pi / 2}, {1: np.pi / 2}),
-        ("end_derivatives = [90]\nfinish_derivatives = [0]", {1: np.pi / 2}, {1: 0.0}),
-        ("finish_derivatives = [[90, 90, 90]]", {1: 0.0}, {1: np.pi / 2}),
-        ("finish_orders = [2]", {1: 0.0}, {2: 0.0}),
-        ("end_derivatives = [90]\nfinish_orders = [2]", {1: np.pi / 2}, {2: 0.0}),
-        ("end_orders = [2]\nfinish_orders = [1]\nfinish_derivatives = [-180]", {2: 0}, {1: -np.pi}),
-        ("end_derivatives = [[0, 0, 0]]\nfinish_derivatives = [0]", {1: 0.0}, {1: 0.0}),
-    ],
-)
-def test_which_end_a_value_is_for(
-    written: str, start: dict[int, float], finish: dict[int, float]
-) -> None:
-    found = curve(f"{CUBIC}\n{written}")
-    first, last = found.ends
-    assert dict(first) == pytest.approx(start)
-    assert dict(last) == pytest.approx(finish)
-    assert (found == cubic_spline(3)) == (start == finish == {1: 0.0})
-
-
-def test_polynomials_and_quintic_splines_take_accelerations_too() -> None:
-    ends = "end_derivatives = [[28, -11, 0], 90]\nfinish_derivatives = [0, [0, 45, 0]]"
-    polynomials = 'family = "polynomials"\ndegrees = [5, 5, 5]\ncontinuity = 4'
-    given = {1: [[28, -11, 0], [0, 0, 0]], 2: [[90, 90, 90], [0, 45, 0]]}
-    for family in (QUINTIC, polynomials):
-        one = case(f"{family}\n{ends}").problem()
-        motion = fit(one.curve, one.waypoints, H)
-        for order, values in given.items():
-            found = motion(np.array([0.0, H.sum()]), order)
-            np.testing.assert_allclose(found, np.radians(values), atol=1e-9)
-
-
-def test_a_problem_of_some_joints_has_their_ends() -> None:
-    some = '[[problems]]\nid = "two"\njoints = ["c", "a"]'
-    one = case(f"{CUBIC}\nend_derivatives = [[28, -11, 7]]", some).problem("two")
-    order = [one.joints.index("c"), one.joints.index("a")]
-    ((_, values),) = one.curve.ends[0]
-    assert np.array(values)[order] == pytest.approx(np.radians([7, 28]))
-
-
-def test_values_of_joints_take_part_in_the_check() -> None:
-    worst = check(case(f"{CUBIC}\nfinish_derivatives = [[0, 0, 81]]").problem(), 3 * H).worst
-    assert worst is not None
-    assert (worst.joint, worst.quantity) == ("c", "velocity")
-    assert worst.ratio == pytest.approx(81 / 80, rel=1e-9)
 
 
 # --- knots ----------------------------------------------------------------------------------------

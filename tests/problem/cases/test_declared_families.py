@@ -100,14 +100,13 @@ def test_the_programs_of_the_page_run(capsys: pytest.CaptureFixture[str]) -> Non
 
 def test_a_straight_line_becomes_a_case_file(tmp_path: Path) -> None:
     arm, start = load_robot("puma560"), np.array([0.1, -0.6, 0.4, 0.2, 0.5, 0.1])
-    first = forward_kinematics(arm, start)
-    last = first.copy()
+    last = forward_kinematics(arm, start)
     last[:3, 3] += [0.02, 0.12, 0.06]
-    line = ctraj(arm, first, last, 5, guess=start)
-    path = tmp_path / "line.csv"
-    path.write_text(line.table)
+    line = ctraj(arm, forward_kinematics(arm, start), last, 5, guess=start)
+    (tmp_path / "line.csv").write_text(line.table)
     units = {"position": "rad", "velocity": "rad/s", "acceleration": "rad/s^2"}
-    text = scaffold(path, units, family="cubic-spline", velocity="2.0", acceleration="8.0")
+    limits = {"velocity": "2.0", "acceleration": "8.0"}
+    text = scaffold(tmp_path / "line.csv", units, family="cubic-spline", **limits)
     problem = parse_case(text, "line.toml").problem()
     np.testing.assert_array_equal(problem.waypoints, line.waypoints)
     assert problem.curve == cubic_spline(4)

@@ -14,36 +14,34 @@ def labels(text: str) -> dict[str, str]:
     return parse_case(text, "base.toml").labels
 
 
-def with_label(**named: str) -> str:
+PLAIN = "angles in degrees, durations at least 0.1 s"
+RAD = "angles in radians, durations only positive"
+
+
+@pytest.mark.parametrize(
+    ("plain", "rad", "said"),
+    [
+        # What a reading changes and the others do not; its own label stands in place of that.
+        (None, None, (PLAIN, RAD)),
+        ("as the header says", None, ("as the header says", RAD)),
+        (
+            "alike",
+            "alike",
+            r"readings\[1\]\.label: 'alike' names another reading; ",
+        ),
+        *((label, None, "label") for label in ("", " padded", "x" * 81, r"two\nlines")),
+    ],
+)
+def test_a_label_of_its_own_stands_in_place_of_what_changes(plain, rad, said) -> None:
     text = BASE
-    for reading, label in named.items():
-        text = text.replace(f'id = "{reading}"\n', f'id = "{reading}"\nlabel = "{label}"\n', 1)
-    return text
-
-
-def test_without_a_label_a_reading_is_called_by_what_it_changes() -> None:
-    assert labels(BASE) == {
-        "plain": "angles in degrees, durations at least 0.1 s",
-        "rad": "angles in radians, durations only positive",
-    }
-
-
-def test_a_label_of_its_own_stands_and_the_other_is_still_made() -> None:
-    found = labels(with_label(plain="as the header says"))
-    assert found["plain"] == "as the header says"
-    assert found["rad"] == "angles in radians, durations only positive"
-
-
-def test_two_readings_cannot_have_one_label() -> None:
-    match = r"readings\[1\]\.label: 'alike' names another reading; say what differs"
-    with pytest.raises(CaseError, match=match):
-        labels(with_label(plain="alike", rad="alike"))
-
-
-@pytest.mark.parametrize("label", ["", " padded", "x" * 81, r"two\nlines"])
-def test_a_label_is_a_few_words_on_one_line(label: str) -> None:
-    with pytest.raises(CaseError, match="label"):
-        labels(with_label(plain=label))
+    for reading, label in (("plain", plain), ("rad", rad)):
+        if label is not None:
+            text = text.replace(f'id = "{reading}"\n', f'id = "{reading}"\nlabel = "{label}"\n', 1)
+    if isinstance(said, tuple):
+        assert labels(text) == dict(zip(("plain", "rad"), said, strict=True))
+        return
+    with pytest.raises(CaseError, match=said):
+        labels(text)
 
 
 KNOTS = 'family = "clamped-b-spline"\ndegree = 4\nknots = "given"\n'

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from support.refusals import Refusal, each_refusal
 from trajgap.problem import CaseError, TrajgapError
-from trajgap.problem.limit_files import limits_of_flags, merge, read_limits
+from trajgap.problem.limit_files import StatedLimits, limits_of_flags, merge, read_limits
 from trajgap.problem.motions import JointLimits, unstated_words
 
 ARM = """<?xml version="1.0"?>
@@ -76,36 +76,55 @@ def test_a_moveit_file(tmp_path):
     assert read_limits(write(tmp_path, "w.yaml", wrapped)).ranges == stated.ranges
 
 
-def test_flag_before_file_before_urdf(tmp_path):
-    joints = ("wheel", "turn")
+@pytest.mark.parametrize("seed", range(40))
+def test_of_sources_that_state_the_same_limit_the_first_counts(seed):
+    """Random limits, and what each joint has by hand."""
+    rng, joints = np.random.default_rng(seed), ("wheel", "turn")
+    factors = np.array([math.pi / 180, 1.0])
+    words = ("position", "velocity", "acceleration", "deceleration", "jerk")
+    stated = []
+    for name in ("flags", "file", "arm"):
+        own = {j: {w: rng.uniform(1, 9) for w in words if rng.random() < 0.5} for j in joints}
+        if name == "flags":
+            own = {j: {w: own["turn"][w] for w in own["turn"]} for j in joints}
+            given = {w: f"{x!r},{x!r}" for w, x in own["turn"].items()}
+            stated.append((limits_of_flags(given, joints, factors), own, factors))
+        else:
+            ranges = {j: {w: (-x, x) for w, x in own[j].items()} for j in joints}
+            stated.append((StatedLimits(name, ranges), own, np.ones(2)))
+    found = merge(joints, [source for source, *_ in stated])
+    for k, joint in enumerate(joints):
+        has, source = {}, {}
+        for one, own, scale in stated:
+            # An acceleration without a deceleration is meant of both.
+            both = "acceleration" in has
+            for word, value in own[joint].items():
+                if word not in has and not (word == "deceleration" and both):
+                    has[word], source[word] = value * scale[k], one.source
+        for r, word in enumerate(w for w in words if w != "deceleration"):
+            size = has.get(word, math.inf)
+            assert (found.lower[k, r], found.upper[k, r]) == pytest.approx((-size, size))
+        assert found.deceleration[k] == pytest.approx(has.get("deceleration", math.inf))
+        assert all(found.source(joint, word) == source.get(word, "given") for word in words)
+
+
+def test_a_limit_that_is_said_not_to_be_counts_too(tmp_path):
     sources = [
-        limits_of_flags({"velocity": "1.5", "jerk": "inf,20"}, joints, np.ones(2)),
         read_limits(write(tmp_path, "l.yaml", YAML)),
         read_limits(write(tmp_path, "arm.urdf", ARM)),
     ]
-    limits = merge(joints, sources)
-    assert limits.upper[:, 1].tolist() == [1.5, 1.5]
-    assert limits.upper[:, 2].tolist() == [math.inf, math.inf]  # the file says: no limit
-    assert limits.upper[:, 3].tolist() == [math.inf, 20.0]
-    assert limits.lower[:, 0].tolist() == [-9.0, -1.5]
-    said = {key: source.rpartition("/")[2] for key, source in limits.sources.items()}
-    assert said["turn", "velocity"] == "flags"
-    assert said["turn", "acceleration"] == "l.yaml"
-    assert said["turn", "position"] == "arm.urdf"
-    assert limits.source("wheel", "acceleration") == "given"
-    # An acceleration without a deceleration is meant of both.
+    limits = merge(("wheel", "turn"), sources)
+    assert limits.upper.tolist() == [[8.5, 4.0, math.inf, math.inf], [2.0, 2.5, math.inf, 50.0]]
+    assert limits.source("turn", "acceleration").endswith("l.yaml")
     assert limits.deceleration.tolist() == [math.inf, math.inf]
-    alone = merge(("turn",), sources[2:])
-    assert (alone.upper[0, 2], alone.deceleration[0]) == (8.0, 12.0)
 
 
-def test_flags_in_the_units_of_the_file():
-    given = {"velocity": "90,-1:2", "position": "-45:90,3", "deceleration": None}
-    factors = np.array([math.pi / 180, 1.0])
-    found = merge(("a", "b"), [limits_of_flags(given, ("a", "b"), factors)])
-    np.testing.assert_allclose(found.upper[:, 1], [math.pi / 2, 2.0])
-    np.testing.assert_allclose(found.lower[:, 1], [-math.pi / 2, -1.0])
-    np.testing.assert_allclose(found.lower[:, 0], [-math.pi / 4, -3.0])
+def test_flags_give_one_side_or_both():
+    given = {"velocity": "90,-1:2", "position": "-45:90,3", "jerk": "inf,2", "deceleration": None}
+    found = merge(("a", "b"), [limits_of_flags(given, ("a", "b"), np.array([2.0, 1.0]))])
+    np.testing.assert_allclose(found.lower[:, :2], [[-90, -180], [-3, -1]])
+    np.testing.assert_allclose(found.upper[:, :2], [[180, 180], [3, 2]])
+    assert found.upper[:, 3].tolist() == [math.inf, 2.0]
 
 
 @each_refusal("limits")

@@ -4,10 +4,12 @@ import math
 
 import numpy as np
 import pytest
+from scipy.interpolate import PPoly
 from trajgap.problem.motions import (
     Interpolation,
     JointLimits,
     Samples,
+    as_motion,
     check_motion,
     interpolated,
     shortest,
@@ -76,56 +78,56 @@ def test_the_floor_sums_over_standstills_and_waits_nowhere():
     assert paused.above == pytest.approx(2.6 / by_hand - 1)
 
 
-@pytest.mark.parametrize("side", ["lower", "upper"])
+def test_a_break_that_is_reached_at_speed_is_no_standstill():
+    """1 rad to a wall at 2 rad/s, and on from rest: nobody says that a motion must stop there."""
+    pieces = PPoly(
+        [[[0.0], [-2.0]], [[1.0], [3.0]], [[0.0], [0.0]], [[0.0], [1.0]]], [0.0, 1.0, 2.0]
+    )
+    found = check_motion(as_motion(pieces, ("1",)), JointLimits.from_values(("1",), 9.0, 99.0))
+    assert found.floor.time == pytest.approx(shortest(2.0, 9.0, 99.0, INF))
+
+
+@pytest.mark.parametrize("side", ["lower", "upper", "braking"])
 @pytest.mark.parametrize("order", [1, 2, 3])
 def test_the_larger_side_counts(order, side):
     """A motion may be planned to the larger side: nothing shorter than the floor exists."""
     sizes = [2.0, 8.0, 60.0]
     even = JointLimits.from_values(("1", "2"), *sizes)
-    lower, upper = even.lower.copy(), even.upper.copy()
-    {"lower": lower, "upper": upper}[side][:, order] *= 1.7
+    given = {"lower": even.lower.copy(), "upper": even.upper.copy()}
+    braking = even.deceleration
+    if side == "braking":
+        order, braking = 2, np.full(2, 1.7 * sizes[1])
+    else:
+        given[side][:, order] *= 1.7
     sizes[order - 1] *= 1.7
     stops = np.array([[0.0, 1.0], [1.0, 0.5]])
-    found = check_motion(trip(stops), JointLimits(("1", "2"), lower, upper, even.deceleration))
+    found = check_motion(trip(stops), JointLimits(("1", "2"), **given, deceleration=braking))
     assert found.floor.time == pytest.approx(shortest(1.0, *sizes))
 
 
-@pytest.mark.parametrize(("speeding", "braking"), [(3.0, 8.0), (8.0, 3.0), (8.0, INF)])
-def test_the_floor_lies_below_the_trapezoid_with_braking_of_its_own(speeding, braking):
+def test_the_floor_lies_below_the_trapezoid_with_braking_of_its_own():
     """d/V + V/2A + V/2D (Biagiotti and Melchiorri, 2008, trapezoid with unequal ramps)."""
-    limits = JointLimits.from_values(
-        ("1", "2"), 2.0, acceleration=speeding, deceleration=braking, jerk=INF
-    )
     stops = np.array([[0.0, 4.0], [4.0, 3.5]])
-    floor = check_motion(trip(stops), limits).floor.time
-    ramps = [a if np.isfinite(a) else speeding for a in (speeding, braking)]
-    assert floor == pytest.approx(shortest(4.0, 2.0, max(ramps), INF))
-    assert floor <= 4.0 / 2.0 + sum(2.0 / (2 * a) for a in ramps) + 1e-12
+    for speeding, braking in ((3.0, 8.0), (8.0, 3.0), (8.0, INF)):
+        limits = JointLimits.from_values(("1", "2"), 2.0, speeding, deceleration=braking)
+        ramps = [a if np.isfinite(a) else speeding for a in (speeding, braking)]
+        floor = check_motion(trip(stops), limits).floor.time
+        assert floor == pytest.approx(shortest(4.0, 2.0, max(ramps), INF))
+        assert floor <= 4.0 / 2.0 + sum(2.0 / (2 * a) for a in ramps) + 1e-12
 
 
 @pytest.mark.parametrize(
-    ("v", "limits", "why"),
+    ("speeds", "limited", "why"),
     [
-        (
-            [[0.5], [0.0]],
-            JointLimits.from_values(("1",), 2.0),
-            "that the motion starts at rest is not shown",
-        ),
-        (
-            [[0.0], [0.5]],
-            JointLimits.from_values(("1",), 2.0),
-            "that the motion ends at rest is not shown",
-        ),
-        (
-            [[0.0], [0.0]],
-            JointLimits.from_values(("1",), position=(-5.0, 5.0)),
-            "nothing is limited",
-        ),
+        ((0.5, 0.0), {"velocity": 2.0}, "that the motion starts at rest is not shown"),
+        ((0.0, 0.5), {"velocity": 2.0}, "that the motion ends at rest is not shown"),
+        ((0.0, 0.0), {"position": (-5.0, 5.0)}, "nothing is limited"),
     ],
 )
-def test_why_there_is_no_floor(v, limits, why):
-    samples = Samples(("1",), [0.0, 1.0], [[0.0], [1.0]], v)
-    found = check_motion(interpolated(samples, Interpolation.CUBIC), limits)
+def test_why_there_is_no_floor(speeds, limited, why):
+    samples = Samples(("1",), [0.0, 1.0], [[0.0], [1.0]], np.array(speeds)[:, None])
+    motion = interpolated(samples, Interpolation.CUBIC)
+    found = check_motion(motion, JointLimits.from_values(("1",), **limited))
     assert found.floor is None
     assert why in found.floor_why
 

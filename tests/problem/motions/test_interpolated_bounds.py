@@ -1,5 +1,6 @@
 """Interpolations beside their exact ones, of the samples as they stand and of shaken ones."""
 
+import dataclasses
 import json
 from fractions import Fraction
 from itertools import pairwise
@@ -68,31 +69,20 @@ def check_bounds(how, samples, curve):
 
 @pytest.mark.parametrize("how", [*DEGREE, "spline"])
 @pytest.mark.parametrize("uneven", [False, True])
-def test_exact_samples(how, uneven):
-    for seed in range(8):
-        samples = drawn(seed, uneven)
-        motion = check_bounds(how, samples, exact(how, samples, None))
-        if not uneven:
-            sizes = np.abs(motion.error / np.array([1, 1e1, 1e3, 1e4])[:, None])
-            assert sizes.max() < 1e-11
-
-
-@pytest.mark.parametrize("how", [*DEGREE, "spline"])
-@pytest.mark.parametrize("uneven", [False, True])
-def test_shaken_samples(how, uneven):
-    """Every sample at one end of its noise or the other: what a bound by signs has to stand."""
-    for seed in range(12):
-        rng = np.random.default_rng([seed, 7])
-        plain = drawn(seed, uneven)
-        noise = rng.choice([0.0, 1e-7, 1e-3], 4)
-        step = float(np.diff(plain.time).min())
-        rounding = HalfUnits(noise[3] * step, np.array(noise[:3])[:, None])
-        samples = Samples(
-            ("a",), plain.time, plain.position, plain.velocity, plain.acceleration,
-            rounding=rounding,
-        )  # fmt: skip
-        for _ in range(3):
-            check_bounds(how, samples, exact(how, samples, rng))
+@pytest.mark.parametrize("shaken", [False, True])
+def test_bounds_hold_for_exact_and_for_shaken_samples(how, uneven, shaken):
+    """Shaken: every sample at one end of its noise or the other, for a bound by signs to stand."""
+    for seed in range(10):
+        rng, plain = np.random.default_rng([seed, 7]), drawn(seed, uneven)
+        noise = rng.choice([0.0, 1e-7, 1e-3], 4) * shaken
+        rounding = HalfUnits(
+            noise[3] * float(np.diff(plain.time).min()), np.array(noise[:3])[:, None]
+        )
+        samples = dataclasses.replace(plain, rounding=rounding) if shaken else plain
+        for _ in range(3 if shaken else 1):
+            motion = check_bounds(how, samples, exact(how, samples, rng if shaken else None))
+        if not (uneven or shaken):
+            assert np.abs(motion.error / np.array([1, 1e1, 1e3, 1e4])[:, None]).max() < 1e-11
 
 
 @pytest.mark.parametrize("how", ["linear", "cubic", "quintic", "spline"])
@@ -126,19 +116,21 @@ def test_a_spline_through_two_near_samples_does_not_pass():
 
 
 def test_lines_that_may_bend_within_their_noise_do_not_pass():
-    """Rows on a line: exactly they pass, with noise their speed may jump."""
+    """Rows on a line: exactly they pass, with noise their speed may jump, shaken or not."""
     time = np.arange(5.0)
     limits = JointLimits.from_values(("a",), velocity=2.0, acceleration=1.0)
-
-    def verdict(noise):
-        line = Samples(("a",), time, time[:, None], noise=noise)
-        return check_motion(interpolated(line, Interpolation.LINEAR), limits)
-
-    assert verdict(0.0).verdict is Verdict.PASS
-    noisy = verdict(1e-3)
-    assert (noisy.verdict, noisy.limits) == (Verdict.UNDECIDED, Verdict.PASS)
-    assert "velocity of joint a may jump" in noisy.open[0]
-    assert noisy.feasible_time is None
+    for shaken in (0.0, 5e-4):
+        place = time[:, None] + shaken * np.array([0, 1, -1, 1, 0])[:, None]
+        for noise in (0.0, 1e-3):
+            line = Samples(("a",), time, place, noise=noise)
+            found = check_motion(interpolated(line, Interpolation.LINEAR), limits)
+            assert found.limits is Verdict.PASS
+            if noise:
+                assert found.verdict is Verdict.UNDECIDED
+                assert "velocity of joint a may jump" in found.open[0]
+                assert found.feasible_time is None
+            else:
+                assert found.verdict is (Verdict.DISCONTINUOUS if shaken else Verdict.PASS)
 
 
 # --- what the digits of a file leave open ---------------------------------------------------------

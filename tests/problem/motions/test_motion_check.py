@@ -13,7 +13,7 @@ from trajgap.problem.motions import (
     check_motion,
     interpolated,
 )
-from trajgap.problem.motions.judged import judged, peak
+from trajgap.problem.motions.judged import MotionPeak, joined, judged, peak, slow_down
 
 NAMES = ("shoulder", "elbow", "wrist")
 WIDE = JointLimits.from_values(NAMES, 1e3, 1e3, 1e3, (-1e3, 1e3))
@@ -67,44 +67,56 @@ def quintic(duration, way, rows, start=0.0):
     return start + duration * s, np.outer(q, way), np.outer(v, way), np.outer(a, way)
 
 
-@pytest.mark.parametrize("rows", [2, 3, 150])
-def test_samples_of_a_quintic_are_that_quintic(rows):
-    duration, way = 1.7, np.array([0.8, -2.0, 0.1])
-    samples = Samples(NAMES, *quintic(duration, way, rows, start=5.0))
-    found = check_motion(interpolated(samples, Interpolation.QUINTIC), WIDE)
-    for factor, order in ((15 / 8, 1), (10 / np.sqrt(3), 2), (60.0, 3)):
-        sizes = [abs(p.value) for p in found.peaks[order::4]]
-        np.testing.assert_allclose(sizes, factor * np.abs(way) / duration**order, rtol=1e-7)
-    assert not found.jumps
-
-
 def test_jumps_are_reported_with_place_and_number():
     zigzag = Samples(("1",), [0.0, 1.0, 2.0, 4.0], [[0.0], [1.0], [0.0], [-6.0]])
-    found = check_motion(
-        interpolated(zigzag, Interpolation.LINEAR), JointLimits.from_values(("1",), velocity=5.0)
-    )
+    motion = interpolated(zigzag, Interpolation.LINEAR)
+    found = check_motion(motion, JointLimits.from_values(("1",), velocity=5.0))
     assert (found.verdict, found.limits) == (Verdict.DISCONTINUOUS, Verdict.PASS)
     (jump,) = [one for one in found.jumps if one.quantity == "velocity"]
     assert (jump.count, jump.time, jump.size) == (2, 1.0, -2.0)
     assert found.feasible_time is None
 
 
-def test_a_jump_of_acceleration_counts_where_jerk_is_limited():
+@pytest.mark.parametrize("sides", [(), (0,), (1,), (0, 1)])
+def test_a_jump_of_acceleration_counts_where_jerk_is_limited_on_any_side(sides):
     samples = Samples(("1",), [0.0, 1.0, 2.0], [[0.0], [1.0], [0.0]], [[0.0], [0.0], [1.0]])
+    limits = JointLimits.from_values(("1",), acceleration=99.0)
+    ends = np.stack([limits.lower, limits.upper])
+    for side in sides:
+        ends[side, 0, 3] = (-999.0, 999.0)[side]
     motion = interpolated(samples, Interpolation.CUBIC)
-    free = JointLimits.from_values(("1",), acceleration=99.0)
-    assert check_motion(motion, free).verdict is Verdict.PASS
-    held = JointLimits.from_values(("1",), acceleration=99.0, jerk=999.0)
-    assert check_motion(motion, held).verdict is Verdict.DISCONTINUOUS
+    found = check_motion(motion, JointLimits(("1",), *ends, limits.deceleration))
+    assert found.verdict is (Verdict.DISCONTINUOUS if sides else Verdict.PASS)
+
+
+def test_the_nearer_side_is_shown_with_the_bounds_of_both():
+    for one, other in np.random.default_rng(2).uniform(0.5, 1.5, (30, 2, 3)):
+        ratios = [dict(zip(("least_ratio", "ratio", "most_ratio"), x)) for x in (one, other)]  # noqa: B905
+        found = joined([MotionPeak("1", "jerk", 0.0, 1.0, 1.0, source="", **x) for x in ratios])
+        largest = np.maximum(one, other).tolist()
+        assert [found.least_ratio, found.ratio, found.most_ratio] == largest
+
+
+@pytest.mark.parametrize(
+    ("least", "most", "why"),
+    [
+        (1.1, 1.3, "is exceeded"),
+        (0.9, 1.3, "may be exceeded"),
+        (0.8, 0.9, None),
+    ],
+)
+def test_going_slower_does_not_move_the_path(least, most, why):
+    position = MotionPeak("1", "position", 0.0, 1.0, 1.0, 0.9 * most, least, most, "")
+    factor, said = slow_down([position], 1e-6)
+    assert factor == 1.0
+    assert said == (why and f"a position limit {why}; going slower does not move the path")
 
 
 def test_noise_makes_a_near_miss_undecided():
-    time, q, v, a = quintic(2.0, np.array([1.0]), 21)
-    limits = JointLimits.from_values(("1",), velocity=0.9375 * 1.0001)
-    exact = interpolated(Samples(("1",), time, q, v, a), Interpolation.QUINTIC)
-    assert check_motion(exact, limits).verdict is Verdict.PASS
-    loose = interpolated(Samples(("1",), time, q, v, a, noise=1e-3), Interpolation.QUINTIC)
-    assert check_motion(loose, limits).verdict is Verdict.UNDECIDED
+    rows, limits = quintic(2.0, np.array([1.0]), 21), JointLimits.from_values(("1",), 0.93759375)
+    for noise, verdict in ((0.0, Verdict.PASS), (1e-3, Verdict.UNDECIDED)):
+        motion = interpolated(Samples(("1",), *rows, noise=noise), Interpolation.QUINTIC)
+        assert check_motion(motion, limits).verdict is verdict
 
 
 @pytest.mark.parametrize("power", [-300, -40, 0, 40, 300])
@@ -141,11 +153,8 @@ def test_what_is_not_judged_stands_beside_the_verdict():
     motion = as_motion(PPoly([[[1.0] * 3]], [0.0, 1.0]), NAMES)
     found = check_motion(motion, JointLimits.from_values(NAMES, velocity=[1.0, np.inf, 2.0]))
     assert found.verdict is Verdict.PASS
-    assert (
-        str(found)
-        .splitlines()[0]
-        .endswith("; not judged: position, acceleration and jerk, no limit stated")
-    )
+    said = "; not judged: position, acceleration and jerk, no limit stated"
+    assert str(found).splitlines()[0].endswith(said)
     assert "not judged" not in str(check_motion(motion, WIDE))
 
 

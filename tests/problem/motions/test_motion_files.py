@@ -9,11 +9,13 @@ from itertools import pairwise
 import numpy as np
 import pytest
 import yaml
+from attacks.motion_files import READERS
+from attacks.motion_files import write as write_rows
 from scipy.interpolate import CubicSpline
 from support.exact_motions import Row, hermite, value
 from support.refusals import Refusal, each_refusal
 from trajgap.problem import CaseError
-from trajgap.problem.motions import Interpolation, Motion, interpolated, read_motion
+from trajgap.problem.motions import Interpolation, Motion, interpolated, read_motion, rosbag
 
 HEADER = "time,arm 1,arm 1 velocity,arm-2,arm-2 velocity\n"
 ROWS = "0,1,0,2,0\n0.5,1.5,2,1,-1\n1.25,2,0,3,0\n"
@@ -67,30 +69,22 @@ def test_a_table_without_header_in_units_of_its_own(tmp_path):
     assert read_motion(path).joints == ("1", "2")
 
 
-def spline():
-    rng = np.random.default_rng(6)
-    return CubicSpline([0.0, 0.3, 1.0, 1.6], rng.normal(size=(4, 2)))
-
-
 def test_polynomials_by_piece_and_as_scipy_has_them(tmp_path):
-    one = spline()
-    by_piece = {
-        "joints": ["x", "y"],
-        "breaks": one.x.tolist(),
-        "coefficients": one.c.transpose(1, 0, 2).tolist(),
-    }
-    by_power = {"x": one.x.tolist(), "c": one.c.tolist(), "joints": ["x", "y"]}
-    at = np.linspace(0.0, 1.6, 50)
-    for k, found in enumerate((by_piece, by_power)):
-        read = read_motion(write(tmp_path, f"{k}.json", json.dumps(found)))
+    one = CubicSpline([0.0, 0.3, 1.0, 1.6], np.random.default_rng(6).normal(size=(4, 2)))
+    named = {"joints": ["x", "y"]}
+    by_piece = named | {"breaks": one.x.tolist(), "coefficients": one.c.swapaxes(0, 1).tolist()}
+    by_power = named | {"x": one.x.tolist(), "c": one.c.tolist()}
+    at, degrees = np.linspace(0.0, 1.6, 50), {"units": {"position": "deg"}}
+    for found, units, factor in (
+        (by_piece, (), 1.0),
+        (by_power, (), 1.0),
+        (by_piece, [("deg",)], np.pi / 180),
+        (by_piece | degrees, (), np.pi / 180),
+    ):
+        read = read_motion(write(tmp_path, "p.json", json.dumps(found)), *units)
         assert isinstance(read.content, Motion)
         assert read.joints == ("x", "y")
-        np.testing.assert_allclose(read.content(at), one(at), atol=1e-12)
-    stated = by_piece | {"units": {"position": "deg"}}
-    for given, units in ((by_piece, ("deg",)), (stated, ())):
-        read = read_motion(write(tmp_path, "d.json", json.dumps(given)), *[units][: len(units)])
-        np.testing.assert_allclose(read.content(at), np.deg2rad(one(at)), atol=1e-12)
-    assert read.units == ("deg", "deg")
+        np.testing.assert_allclose(read.content(at), factor * one(at), atol=1e-12)
 
 
 def message(stamp):
@@ -238,40 +232,43 @@ def test_units_and_noise_are_checked(tmp_path):
             read_motion(*given)
 
 
-def test_a_bag_needs_its_library_or_is_read(tmp_path):
-    pytest.importorskip("rosbags")
-    from rosbags.rosbag2 import Writer
-    from rosbags.typesys import Stores, get_typestore
+@pytest.mark.parametrize("reader", [one for one in READERS if one != "polynomials"])
+def test_every_reader_reads_the_same_rows(tmp_path, reader):
+    """As programs write them; CSV with every separator."""
+    pytest.importorskip("rosbags" if reader == "bag" else "pyarrow")
+    table = [
+        [Row(Fraction(2 * k + 1, 4), (Fraction(k + j, 2), Fraction(k, 4), Fraction(j, 8)))
+         for k in range(4)]
+        for j in range(2)
+    ]  # fmt: skip
+    for seed in range(9 if reader == "csv" else 1):
+        path = write_rows(np.random.default_rng(seed), reader, table, tmp_path)
+        samples = read_motion(path).content
+        assert samples.joints == ("j1", "j2")
+        assert samples.time.tolist() == [row.time for row in table[0]]
+        for order in range(3):
+            wanted = [[joint[k].values[order] for joint in table] for k in range(4)]
+            assert samples.given(order).tolist() == wanted
 
-    store = get_typestore(Stores.ROS2_HUMBLE)
-    kind = "trajectory_msgs/msg/JointTrajectory"
-    types = store.types
-    time = types["builtin_interfaces/msg/Time"](0, 0)
-    points = [
-        types["trajectory_msgs/msg/JointTrajectoryPoint"](
-            positions=np.array([0.5 * k, 1.0]),
-            velocities=np.zeros(2),
-            accelerations=np.zeros(0),
-            effort=np.zeros(0),
-            time_from_start=types["builtin_interfaces/msg/Duration"](k, 500_000_000),
-        )
-        for k in range(3)
-    ]
-    header = types["std_msgs/msg/Header"](time, "")
-    sent = types[kind](header, ["j1", "j2"], points)
-    with Writer(tmp_path / "bag", version=9) as writer:
-        connection = writer.add_connection("/plan", kind, typestore=store)
-        writer.write(connection, 1, store.serialize_cdr(sent, kind))
-    samples = read_motion(tmp_path / "bag").content
-    assert samples.joints == ("j1", "j2")
-    assert samples.time.tolist() == [0.5, 1.5, 2.5]
-    assert samples.position[:, 0].tolist() == [0.0, 0.5, 1.0]
+
+def test_a_bag_holds_a_trajectory_and_is_readable(tmp_path, monkeypatch):
+    pytest.importorskip("rosbags")
+    rows = [[Row(Fraction(k), (Fraction(k),) * 3) for k in range(2)]]
+    bag = write_rows(np.random.default_rng(0), "bag", rows, tmp_path)
     with pytest.raises(CaseError, match="no topic with a trajectory; topics: /plan"):
-        read_motion(tmp_path / "bag", topic="/other")
-    for one in (tmp_path / "bag").glob("*.db3"):
+        read_motion(bag, topic="/other")
+
+    def says_nothing(_):
+        raise ValueError
+
+    with monkeypatch.context() as patched:
+        patched.setattr(rosbag, "_plain", says_nothing)
+        with pytest.raises(CaseError, match=r"no readable bag \(ValueError\)"):
+            read_motion(bag)
+    for one in bag.glob("*.db3"):
         one.write_bytes(b"not a data base")
     with pytest.raises(CaseError, match="no readable bag"):
-        read_motion(tmp_path / "bag")
+        read_motion(bag)
 
 
 # --- Parquet --------------------------------------------------------------------------------------
@@ -281,12 +278,7 @@ pyarrow = pytest.importorskip("pyarrow")
 parquet = pytest.importorskip("pyarrow.parquet")
 
 
-def test_parquet(tmp_path):
-    columns = {"time": [0.0, 0.5], "a": [1, 2], "a velocity": [0.5, 0.25]}
-    parquet.write_table(pyarrow.table(columns), tmp_path / "a.parquet")
-    read = read_motion(tmp_path / "a.parquet")
-    assert read.format == "Parquet"
-    assert read.content.velocity.tolist() == [[0.5], [0.25]]
+def test_what_is_no_parquet(tmp_path):
     (tmp_path / "b.parquet").write_bytes(b"PAR1 no")
     with pytest.raises(CaseError, match="no Parquet table"):
         read_motion(tmp_path / "b.parquet")

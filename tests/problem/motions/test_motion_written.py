@@ -21,7 +21,6 @@ from trajgap.problem import (
 )
 from trajgap.problem.motions import (
     JointLimits,
-    Motion,
     MotionForm,
     as_motion,
     check_motion,
@@ -147,31 +146,59 @@ def test_a_name_with_a_comma_is_no_column():
 WAYS = np.array([[0.3, 1.0], [1.0, -0.5], [0.2, 0.4], [1.5, 2.0]])
 
 
-def same(motion, truth, orders=(0, 1, 2), loose=1e-7, start=0.0):
+def same(motion, truth, orders=(0, 1, 2), loose=1e-7):
     at = np.linspace(motion.breaks[0], motion.breaks[-1], 501)[1:-1]
     for order in orders:
-        wanted = np.array([truth(float(t) + start, order) for t in at])
+        wanted = np.array([truth(float(t), order) for t in at])
         np.testing.assert_allclose(motion(at, order), wanted, rtol=loose, atol=loose)
-
-
-def test_scipys_bernstein_polynomials():
-    rng = np.random.default_rng(1)
-    held = BPoly(rng.normal(size=(4, 3, 2)), [1.0, 1.5, 3.0, 3.2])
-    same(as_motion(held), lambda t, order: held(t, nu=order))
-
-
-def test_one_joint_of_scipy_needs_no_second_axis():
-    one = as_motion(PPoly([[1.0], [2.0]], [0.0, 1.0]), ("a",))
-    assert one(0.5).tolist() == [2.5]
-    assert as_motion(one) is one
-    spline = make_interp_spline(np.arange(6.0), np.arange(6.0) ** 2, k=3)
-    assert as_motion(spline)(2.5)[0] == pytest.approx(6.25)
 
 
 def path():
     import toppra
 
     return toppra.SplineInterpolator([0.0, 0.4, 0.7, 1.3], WAYS)
+
+
+def drake_polynomial(held):
+    """What pydrake's PiecewisePolynomial offers: ascending coefficients from each break."""
+
+    def matrix(k):
+        rows = [[SimpleNamespace(GetCoefficients=lambda j=j: held.c[::-1, k, j])] for j in range(2)]
+        return np.array(rows, dtype=object)
+
+    return SimpleNamespace(get_segment_times=lambda: held.x.tolist(), getPolynomialMatrix=matrix)
+
+
+def drake_spline(held):
+    basis = SimpleNamespace(knots=lambda: held.t.tolist(), degree=lambda: 3)
+    return SimpleNamespace(basis=lambda: basis, control_points=lambda: [c[:, None] for c in held.c])
+
+
+DRAWN = np.random.default_rng(1).normal(size=(4, 3, 2))
+HELD = {
+    "Bernstein polynomials": BPoly(DRAWN, [1.0, 1.5, 3.0, 3.2]),
+    "polynomials": PPoly(DRAWN, [0.0, 0.5, 2.0, 2.4]),
+    "B-spline": make_interp_spline([0.0, 0.4, 0.7, 1.3], WAYS, k=3),
+}
+AS_THEY_ARE = {
+    **{f"scipy's {name}": (one, one) for name, one in HELD.items()},
+    "Drake's polynomials": (drake_polynomial(HELD["polynomials"]), HELD["polynomials"]),
+    "Drake's B-spline": (drake_spline(HELD["B-spline"]), HELD["B-spline"]),
+}
+
+
+@pytest.mark.parametrize("name", AS_THEY_ARE)
+def test_objects_of_scipy_and_drake_are_read_as_they_are(name):
+    given, held = AS_THEY_ARE[name]
+    motion = as_motion(given, ("x", "y"))
+    assert as_motion(motion) is motion
+    same(motion, lambda t, order: held(t, nu=order))
+
+
+def test_one_joint_of_scipy_needs_no_second_axis():
+    assert as_motion(PPoly([[1.0], [2.0]], [0.0, 1.0]), ("a",))(0.5).tolist() == [2.5]
+    spline = make_interp_spline(np.arange(6.0), np.arange(6.0) ** 2, k=3)
+    assert as_motion(spline)(2.5)[0] == pytest.approx(6.25)
 
 
 def test_toppras_path():
@@ -236,24 +263,13 @@ def test_ruckigs_profiles():
         assert found.worst.ratio == pytest.approx(1.0, abs=1e-6)
 
 
-def drake_polynomial(held):
-    """What pydrake's PiecewisePolynomial offers: ascending coefficients from each break."""
-
-    def matrix(k):
-        rows = [[SimpleNamespace(GetCoefficients=lambda j=j: held.c[::-1, k, j])] for j in range(2)]
-        return np.array(rows, dtype=object)
-
-    return SimpleNamespace(get_segment_times=lambda: held.x.tolist(), getPolynomialMatrix=matrix)
-
-
-def test_drakes_polynomials_and_splines():
-    held = PPoly(np.random.default_rng(2).normal(size=(4, 3, 2)), [0.0, 0.5, 2.0, 2.4])
-    same(as_motion(drake_polynomial(held)), lambda t, order: held(t, nu=order))
-    spline = make_interp_spline([0.0, 0.4, 0.7, 1.3], WAYS, k=3)
-    basis = SimpleNamespace(knots=lambda: spline.t.tolist(), degree=lambda: 3)
-    given = SimpleNamespace(
-        basis=lambda: basis, control_points=lambda: [c[:, None] for c in spline.c]
+def test_steps_of_roundings_length_are_no_pieces():
+    steps = [[500.0, 500.0], [500.0 + 1e-11, 500.0]]
+    still = SimpleNamespace(
+        duration=1000.0,
+        profiles=[[SimpleNamespace(t=one) for one in steps]],
+        at_time=lambda t: ([t, 2.0 * t], [1.0, 2.0], [0.0, 0.0], [0.0, 0.0]),
     )
-    motion = as_motion(given, ("x", "y"))
-    assert isinstance(motion, Motion)
-    same(motion, lambda t, order: spline(t, nu=order))
+    motion = as_motion(still)
+    np.testing.assert_allclose(motion.durations, [500.0, 500.0])
+    same(motion, lambda t, order: [[t, 2.0 * t], [1.0, 2.0], [0.0, 0.0]][order])

@@ -106,16 +106,14 @@ def test_arms_and_reach_bound_the_end(chain):
 def test_batches_lead():
     chain = load_robot("z1")
     q = some(chain, 12).reshape(2, 3, 2, 6)
-    frames, ends = link_frames(chain, q), forward_kinematics(chain, q)
-    assert frames.shape == (2, 3, 2, 6, 4, 4)
-    assert ends.shape == (2, 3, 2, 4, 4)
-    assert geometric_jacobian(chain, q).shape == (2, 3, 2, 6, 6)
-    np.testing.assert_array_equal(frames[..., -1, :, :], ends)
-    for at in np.ndindex(2, 3, 2):
-        np.testing.assert_allclose(forward_kinematics(chain, q[at]), ends[at], atol=1e-15)
-        one = geometric_jacobian(chain, q[at])
-        np.testing.assert_allclose(geometric_jacobian(chain, q)[at], one, atol=1e-15)
-    assert forward_kinematics(chain, np.empty((0, 6))).shape == (0, 4, 4)
+    for compute in (forward_kinematics, link_frames, geometric_jacobian):
+        whole = compute(chain, q)
+        for at in np.ndindex(2, 3, 2):
+            np.testing.assert_allclose(whole[at], compute(chain, q[at]), atol=1e-15)
+        assert compute(chain, np.empty((0, 6))).shape == (0, *whole.shape[3:])
+    np.testing.assert_array_equal(
+        link_frames(chain, q)[..., -1, :, :], forward_kinematics(chain, q)
+    )
 
 
 def test_first_frames_do_not_depend_on_later_joints():

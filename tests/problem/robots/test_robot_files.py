@@ -86,17 +86,12 @@ def test_sliding_joints_have_bounds_in_lengths():
     assert chain.labels == ("1", "2", "3")
 
 
-def test_flipped_twists_and_other_conventions():
+def test_twists_may_be_flipped_and_other_conventions_tried():
     dh = load_case_text(with_table()).dh
     assert dh.twisted == (1, 2)
-    flipped = dh.chain(flipped=(1,))
-    np.testing.assert_allclose(flipped.alpha, np.deg2rad([0, 90, 90]), rtol=1e-15)
-    standard = dh.chain(convention=Convention.STANDARD)
-    assert standard.convention is Convention.STANDARD
-    np.testing.assert_array_equal(standard.a, dh.chain().a)
-
-
-def test_twists_of_a_half_turn_have_no_sign():
+    np.testing.assert_allclose(dh.chain(flipped=(1,)).alpha, np.deg2rad([0, 90, 90]), rtol=1e-15)
+    assert dh.chain(convention=Convention.STANDARD).convention is Convention.STANDARD
+    # A half turn is the same in either direction.
     table = TABLE.replace('"-90", 90', '"180", -180')
     assert parse_robot(changed(ROBOT, TABLE, table), "arm").dh.twisted == ()
 
@@ -179,17 +174,16 @@ def test_case_with_positions_and_joints():
     assert case.dh is case.document.robot.dh
     assert load_case_text(BASE).dh is None
     assert load_case_text(BASE).chain() is None
+    assert load_case_text(BASE + COLUMN).columns[0].joint == "c"
 
 
 def test_a_shipped_model_instead_of_a_table():
     # Joints of the base case are a and b; a model has its own labels.
     text = changed(BASE, 'joints = ["a", "b"]', 'joints = ["1", "3"]\nmodel = "puma560"')
-    case = load_case_text(
-        changed(text, 'joints = ["b"]', 'joints = ["3"]').replace('joint = "b"', 'joint = "3"')
-    )
+    text = changed(text, 'joints = ["b"]', 'joints = ["3"]').replace('joint = "b"', 'joint = "3"')
+    case, irb = load_case_text(text), load_case("irb460-pso-353")
     assert case.chain().labels == ("1", "2", "3", "4", "5", "6")
     assert case.dh == robot_file("puma560").dh
-    irb = load_case("irb460-pso-353")
     assert irb.chain().name == "IRB 460"
     assert irb.chain(Convention.STANDARD).convention is Convention.STANDARD
 
@@ -235,20 +229,13 @@ def test_positions_name_labels_that_exist():
         load_case_text(with_table(extra=text.replace('"D"', '"E"')))
 
 
-def test_a_printed_joint_may_stand_without_a_table():
-    assert load_case_text(BASE + COLUMN).columns[0].joint == "c"
-
-
-@pytest.mark.parametrize(
-    ("source", "message"),
-    [
-        ("puma", "puma: neither a shipped robot nor a file; did you mean 'puma560'?"),
-        ("no.toml", "no.toml: no such file; check the path"),
-    ],
-)
-def test_unknown_robots(source, message):
-    with pytest.raises(CaseError, match=f"^{re.escape(message)}$"):
-        load_robot(source)
+def test_unknown_robots():
+    for source, message in (
+        ("puma", "neither a shipped robot nor a file; did you mean 'puma560'?"),
+        ("no.toml", "no such file; check the path"),
+    ):
+        with pytest.raises(CaseError, match=f"^{re.escape(f'{source}: {message}')}$"):
+            load_robot(source)
 
 
 def test_unknown_model():

@@ -16,7 +16,8 @@ from trajgap.problem import (
 )
 from trajgap.problem.cases.robot_file import load_robot
 from trajgap.problem.errors import TrajgapError
-from trajgap.problem.robots.cartesian_line import ctraj
+from trajgap.problem.robots import workspace
+from trajgap.problem.robots.cartesian_line import CartesianLine, ctraj
 from trajgap.problem.robots.chain import Chain, Convention, forward_kinematics
 from trajgap.problem.robots.workspace import StepKind, sample_workspace, waypoint_sequences
 
@@ -36,16 +37,13 @@ def test_points_are_those_of_the_joints_and_keep_the_bounds():
     assert (CLOUD.joints.max(axis=0) > PUMA.upper - 0.1 * width).all()
 
 
-def test_the_seed_decides_and_the_first_samples_do_not_depend_on_the_count():
-    np.testing.assert_array_equal(sample_workspace(PUMA, 100, 7).joints, CLOUD.joints[:100])
+def test_the_seed_decides_and_the_first_samples_depend_on_nothing_else(monkeypatch):
+    for batch in (workspace._BATCH, 33):
+        monkeypatch.setattr(workspace, "_BATCH", batch)
+        again = sample_workspace(PUMA, 100, 7)
+        np.testing.assert_array_equal(again.joints, CLOUD.joints[:100])
+        np.testing.assert_array_equal(again.points, CLOUD.points[:100])
     assert not np.array_equal(sample_workspace(PUMA, 100, 8).joints, CLOUD.joints[:100])
-
-
-def test_batches_leave_no_seam(monkeypatch):
-    from trajgap.problem.robots import workspace
-
-    monkeypatch.setattr(workspace, "_BATCH", 33)
-    np.testing.assert_array_equal(sample_workspace(PUMA, 100, 7).points, CLOUD.points[:100])
 
 
 def test_a_planar_arm_fills_its_ring():
@@ -90,12 +88,13 @@ def test_end_steps(orientation):
 
 
 def test_a_longer_family_begins_with_the_shorter():
-    kind = StepKind.END
-    long = waypoint_sequences(CLOUD, step=0.2, count=3, waypoints=3, seed=9, kind=kind)
-    short = waypoint_sequences(CLOUD, step=0.2, count=2, waypoints=3, seed=9, kind=kind)
-    np.testing.assert_array_equal(long[:2], short)
-    other = waypoint_sequences(CLOUD, step=0.2, count=2, waypoints=3, seed=10, kind=kind)
-    assert not np.array_equal(other, short)
+    def family(count, seed):
+        return waypoint_sequences(
+            CLOUD, step=0.2, count=count, waypoints=3, seed=seed, kind=StepKind.END
+        )
+
+    np.testing.assert_array_equal(family(3, 9)[:2], family(2, 9))
+    assert not np.array_equal(family(2, 10), family(2, 9))
 
 
 @pytest.mark.parametrize(
@@ -112,9 +111,6 @@ def test_a_longer_family_begins_with_the_shorter():
 def test_faults(change, message):
     with pytest.raises(TrajgapError, match=re.escape(message)):
         waypoint_sequences(CLOUD, **{"step": 0.1, "count": 1, "seed": 0, **change})
-
-
-def test_an_empty_sample_is_refused():
     with pytest.raises(TrajgapError, match="count: 0 samples; give at least 1"):
         sample_workspace(PUMA, 0, 1)
 
@@ -148,19 +144,30 @@ def test_poses_lie_on_the_line_in_equal_steps_and_turn_about_one_axis() -> None:
     assert np.abs(np.diff(line.waypoints, axis=0)).max() < 0.5
 
 
+@pytest.mark.parametrize("length", [0.0, 0.13, 2.0])
+def test_a_deviation_is_the_distance_from_the_nearest_place_of_the_line(length) -> None:
+    arm = load_robot("puma560")
+    q = START + np.array([[0.0], [0.3]])
+    poses = forward_kinematics(arm, np.stack([START, START]))
+    poses[1, :3, 3] += length * np.array([0.6, 0.0, -0.8])
+    motion = fit(jtraj(1), q, [1.0])
+    ends = forward_kinematics(arm, motion(np.linspace(0.0, 1.0, 51)))[:, None, :3, 3]
+    line = np.linspace(poses[0, :3, 3], poses[1, :3, 3], 4001)
+    furthest = np.linalg.norm(ends - line, axis=-1).min(axis=1).max()
+    found = CartesianLine(arm, q, poses, 0.0).deviation(motion, 51)
+    assert found == pytest.approx(furthest, abs=1e-6)
+
+
 def test_a_curve_through_more_points_leaves_the_line_less() -> None:
     arm, first, last = ends()
     off = []
-    for points in (4, 7, 13):
+    for points in (2, 4, 7):
         line = ctraj(arm, first, last, points, guess=START)
-        curve = cubic_spline(points - 1)
+        curve = cubic_spline(points - 1) if points > 2 else jtraj(1)
         off.append(line.deviation(fit(curve, line.waypoints, np.full(points - 1, 0.3))))
-    assert off[0] > 1e-5
+    assert off[-1] > 1e-6
     # Standing still at the ends, the clamped spline is of second order in the spacing there.
     assert all(b < a / 3 for a, b in pairwise(off))
-    straight = ctraj(arm, first, last, 2, guess=START)
-    joints = fit(jtraj(1), straight.waypoints, [1.0])
-    assert straight.deviation(joints) > off[0]
 
 
 def test_a_move_on_the_spot_turns_only() -> None:
