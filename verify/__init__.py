@@ -6,10 +6,14 @@ polynomials and C4 quintic splines need numpy. Format and mathematics are in
 docs/explanation/certificates.md.
 """
 
+from .answer import check_answer
+from .any_curve import check_motion, spans_of
 from .bounds import shown_bound
+from .curve import derivative, pieces, uniform_pieces, value_at
 from .floors import least_durations
-from .problem import CHORD, read_problem
+from .problem import CHORD, StatedProblem, read_problem
 from .ranges import (
+    MIX,
     MIX_DIGITS,
     MOST_CUBIC_SEGMENTS,
     MOST_INTEGER,
@@ -20,6 +24,8 @@ from .ranges import (
     PLACES,
     SHORTEST_TOTAL,
     SMALLEST,
+    SPOTS,
+    TANGENT_UNIT,
     TICKS,
     USUAL_WEIGHT,
 )
@@ -42,6 +48,7 @@ __all__ = [
     "CHORD",
     "CUT",
     "LEAF",
+    "MIX",
     "MIX_DIGITS",
     "MOST_CUBIC_SEGMENTS",
     "MOST_INTEGER",
@@ -55,7 +62,9 @@ __all__ = [
     "SECONDS",
     "SHORTEST_TOTAL",
     "SMALLEST",
+    "SPOTS",
     "STATE_FORMAT",
+    "TANGENT_UNIT",
     "TICKS",
     "USUAL_WEIGHT",
     "CertificateVerdict",
@@ -63,14 +72,22 @@ __all__ = [
     "Clock",
     "OutOfTime",
     "Refused",
+    "StatedProblem",
     "Subject",
+    "check_answer",
+    "check_motion",
+    "derivative",
     "least_durations",
     "number",
+    "pieces",
     "proof_kind",
     "read_document",
     "read_problem",
     "seal",
     "shown",
     "shown_bound",
+    "spans_of",
+    "uniform_pieces",
+    "value_at",
     "verify_certificate",
 ]

@@ -51,13 +51,13 @@ class FixedRatios(ProofKind[None]):
             need(total * self._shares[k] <= problem.shortest[k], "above its lower bound")
             return
         r = whole(order, 1, 3)
-        value = self._value(joint, k, r, Fraction(whole(place, 0, PLACES), PLACES))
+        value = self.value(joint, k, r, Fraction(whole(place, 0, PLACES), PLACES))
         side = problem.sides[1 if value > 0 else 0]
         bound = required(side[joint][r - 1], "a limit that is not there")
         need(bound[1] > 0, "a limit that is not there")
         need(bound[1] * total**r <= abs(value), "the total is not proved")
 
-    def _value(self, joint: int, segment: int, order: int, place: Fraction) -> Fraction:
+    def value(self, joint: int, segment: int, order: int, place: Fraction) -> Fraction:
         """Derivative at a place of a segment if the total is 1 s."""
         share = self._shares[segment]
         if self.problem.curve == UNIFORM:

@@ -27,10 +27,10 @@ from ...verify import (
     seal,
     verify_certificate,
 )
+from .clock import RunClock
 from .crew import ProofCrew
 from .document import certificate, fits, problem_document
 from .exact import ExactProblem
-from .judged import Deadline
 from .outcome import Certified, EarlierProof, Outcome
 
 VARIABLE = "TRAJGAP_CACHE"
@@ -81,7 +81,7 @@ class KeptProofs:
         subject: Subject,
         gap: float,
         seed: int,
-        deadline: Deadline,
+        clock: RunClock,
         crew: ProofCrew | None = None,
     ) -> Certified | None:
         """What was proved before to the very question, proved again.
@@ -93,8 +93,8 @@ class KeptProofs:
         gap : float
             Relative width that the interval has to reach.
         seed : int
-        deadline : Deadline
-            Until which proving again may take.
+        clock : RunClock
+            Of which proving again may take what is left.
         crew : ProofCrew, optional
             Who proves it again; without one, this process alone.
 
@@ -111,7 +111,7 @@ class KeptProofs:
             document, nodes = _parts(kept)
             if not fits(document, problem, subject):
                 return None
-            left, spread = deadline.left, None if crew is None else crew.spread
+            left, spread = clock.left, None if crew is None else crew.spread
             verdict = verify_certificate(document, seconds=left, spread=spread)
             if not verdict.proves or verdict.altered or verdict.lower is None:
                 return None

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from concurrent.futures import Executor
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
@@ -11,7 +10,6 @@ from typing import Any
 import numpy as np
 
 from ....problem import Array, Interpolant, Verdict, check
-from ....problem.curves import at_hand
 from ....verify import (
     MOST_POWER,
     MOST_QUINTIC_JOINTS,
@@ -20,13 +18,12 @@ from ....verify import (
     SMALLEST,
 )
 from ..certifier import Certifier
+from ..driver import grow
 from ..exact import ExactProblem, decimal
-from ..executors import executor_for
 from ..rounding import below
 from ..session import Ladder, Session, Shorter
 from .leaves import Leaves
-from .search import search
-from .subtrees import Root, Stage, search_all
+from .subtrees import Parts, Root, Stage, search_part
 from .windows import Windows, windows
 
 _LADDER = Ladder(
@@ -38,24 +35,9 @@ _LADDER = Ladder(
 )
 """Boxes grow with a power of 1/gap: small steps keep a stopped run near its goal. From 0.2 on they
 grow to 15 to 20 times as many, and judging takes on one core as long again as the search."""
-COMPILING = 25.0
-"""Seconds that compiling the search takes, once after an installation: 22 were measured."""
-UNCOMPILED = f"compiling the search takes about {COMPILING:.0f} s, once after an installation"
-"""What is left out where there is less time than that."""
 _SPARE = Fraction(1, 10**9)
 """Share by which a total stays below the sum of the least durations, so that the first box is empty
 by far more than the verifier's slack."""
-_JUDGING = 1.2
-"""Seconds that judging takes, on one core, for one of search on one core, until it is measured:
-0.9 to 1.1 were (docs/explanation/certificates-quintic.md)."""
-_TELLING = 1000
-"""Boxes of a stage whose judging tells how long a box takes: half a second."""
-_EARLY = 0.05
-"""Share of the time after which it is measured: the stages that follow need it."""
-_SLIGHT = 1e-7
-"""Share by which durations must be shorter to be worth a new start of the ladder."""
-_NEAR = 8
-"""Powers of two by which a size may differ from 1 before the units are changed."""
 _REST = ((1, 0.0), (2, 0.0))
 """Velocity and acceleration 0 at an end, as a declaration prescribes them."""
 
@@ -153,20 +135,23 @@ def shortest(problem: ExactProblem) -> tuple[Fraction, ...]:
     return tuple(out)
 
 
-class _Search:
+class Stages:
     """What the stages share: numbers in the units of the proof, and windows that exclude boxes."""
 
-    def __init__(self, session: Session, executor: Executor) -> None:
+    def __init__(self, session: Session) -> None:
         self.session, self.units = session, _units(session.exact)
-        self.executor, self.workers = executor, session.request.workers
         own = session.exact.in_units(self.units.powers, self.units.second)
         self.low = shortest(own)
         self.steps, self.limits = _steps(own), _limits(own)
         assert session.durations is not None
         near = np.array([float(h / self.units.time) for h in session.durations])
         self.library = windows(self.steps, self.limits, near, clock=session.check_clock)
-        self._visited = 0
-        self._proved: tuple[int, Tree] | None = None
+        with session.clock.standing():  # the first search compiles, or loads what is compiled
+            nowhere = np.ones(len(self.low))
+            search_part(self._stage(1.0, 0.0), Root(nowhere, 0.0 * nowhere))
+
+    def _stage(self, total: float, look: float) -> Stage:
+        return Stage(self.steps, self.limits, total, self.library.terms, look)
 
     def rounded(self, total: Fraction) -> Fraction:
         """A total that is exact in floating point in the units of the proof, s."""
@@ -174,42 +159,19 @@ class _Search:
 
     def stage(self, target: Fraction) -> Tree:
         """Prove that no total is below ``target``, s."""
-        session = self.session
-        if not at_hand(search):
-            session.left_out = UNCOMPILED
-            session.check_clock(COMPILING)
-            session.left_out = None
-        session.check_clock()
-        own, upper = target / self.units.time, session.upper
-        look = 0.0 if upper is None else float(upper / self.units.time) * (1.0 - _SLIGHT)
-        stage = Stage(self.steps, self.limits, float(own), self.library.terms, look)
-        root = Root(np.array([float(x) for x in self.low]), np.full(len(self.low), stage.total))
-
-        self._visited = 0
-
-        def watch(waiting: int, boxes: int) -> float:
-            session.report(waiting, session.nodes + boxes)
-            self._weigh(boxes)
-            session.check_clock()
-            return session.searching
-
-        leaves = search_all(
-            stage, root, lambda h: self._look(h, look), watch, self.executor, self.workers
+        session, own = self.session, target / self.units.time
+        assert session.upper is not None
+        # Durations that are shorter by less are not worth a new start of the ladder.
+        look = float(session.upper / self.units.time) * (1.0 - 1e-7)
+        before = session.nodes
+        parts = Parts(
+            self._stage(float(own), look),
+            lambda h: self._look(h, look),
+            lambda waiting, boxes: session.report(waiting, before + boxes),
         )
-        tree = Tree(self.units, own, self.low, self.library, leaves)
-        boxes = int(leaves.sizes[0])
-        if boxes >= _TELLING:
-            self._proved = boxes, tree
-        return tree
-
-    def _weigh(self, boxes: int) -> None:
-        """Keep the time free that judging this stage takes, as measured on the one before."""
-        self._visited += boxes
-        session = self.session
-        if self._proved is not None:
-            visited, tree = self._proved
-            session.weigh(visited, lambda: tree, _EARLY)
-            session.judged_boxes = max(session.judged_boxes, self._visited)
+        root = Root(np.array([float(x) for x in self.low]), np.full(len(self.low), float(own)))
+        grow(parts, [root], session)
+        return Tree(self.units, own, self.low, self.library, parts.leaves)
 
     def _look(self, durations: Array, below_it: float) -> bool:
         """Raise `Shorter` if the direction of ``durations`` holds a total below the one given.
@@ -243,7 +205,7 @@ def _units(exact: ExactProblem) -> BinaryUnits:
 def _power(size: float) -> int:
     """Of two, for a size far from 1; else 0."""
     power = math.frexp(size)[1] if size > 0.0 else 0
-    return 0 if abs(power) <= _NEAR else max(-MOST_POWER, min(MOST_POWER, power))
+    return 0 if abs(power) <= 8 else max(-MOST_POWER, min(MOST_POWER, power))
 
 
 def _keep_mean_velocities(session: Session) -> None:
@@ -266,10 +228,10 @@ def _prove(session: Session) -> bool:
     session.seek()
     if session.upper is None:
         return False
-    session.judging = _JUDGING * session.request.workers
-    with executor_for(session.request.executor, session.request.workers) as executor:
-        stages = _Search(session, executor)
-        session.climb(_LADDER, stages.rounded, stages.stage)
+    # Judging takes as long as the search on one core: 0.9 to 1.1 times were measured.
+    session.judging = 1.2
+    stages = Stages(session)
+    session.climb(_LADDER, stages.rounded, stages.stage)
     return True
 
 

@@ -172,7 +172,7 @@ ANY = [
 ]  # fmt: skip
 
 _KIND, _SYSTEM, _WEIGHTS = "cubic/kind.CubicSpline.", "cubic/system.", "cubic/weights."
-_ENDS = f"{_SYSTEM}_kind_of_ends: "
+_ENDS = f"{_SYSTEM}kind_of_ends: "
 NOT_A_SIDE = f"{_KIND}step: a side is not proved"
 SPOT = "reading.whole: malformed: no integer in {low}..{high}: {shown(repr(value))}"
 

@@ -8,9 +8,9 @@ from fractions import Fraction
 import numpy as np
 import pytest
 from trajgap.nlp import solve
-from trajgap.nlp.proofs.answer import keeps_limits, uniform_coefficients
+from trajgap.nlp.proofs.answer import keeps_limits
 from trajgap.nlp.proofs.certifiers import certify, covered
-from trajgap.nlp.proofs.closed_form.fixed_ratios import MOST_REBUILT
+from trajgap.nlp.proofs.closed_form.formulas import MOST_REBUILT
 from trajgap.nlp.proofs.document import certificate, fits
 from trajgap.nlp.proofs.evidence import interval_of, printed_problem_or_none
 from trajgap.nlp.proofs.exact import exact_problem
