@@ -53,7 +53,7 @@ class Stage:
 
         To 8 segments 500 do; beyond, a box takes time of the third power.
         """
-        return max(1, int(500 * min(1.0, 8 / len(self.steps)) ** 3))
+        return min(self.part, max(1, int(500 * min(1.0, 8 / len(self.steps)) ** 3)))
 
 
 @dataclass(frozen=True, eq=False)

@@ -18,7 +18,6 @@ from support.unjudged import unjudged
 from trajgap.nlp.proofs.certifiers import certify, covered
 from trajgap.nlp.proofs.document import certificate
 from trajgap.nlp.proofs.exact import exact_problem
-from trajgap.nlp.proofs.executors import Here
 from trajgap.nlp.proofs.outcome import Certified, Outcome, Progress, Request
 from trajgap.nlp.proofs.quintic.bound import bound
 from trajgap.nlp.proofs.quintic.nodal import centre
@@ -120,9 +119,9 @@ def test_limits_falsified_on_purpose_prove_too_much_and_are_refused(
     assert (judged.outcome, judged.proof) == (Outcome.OPEN, None)
     units = module._units(exact_problem(small()))
     assert units == module.BinaryUnits((0, 0), 0)
-    session = Session(exact_problem(small()), Request(seconds=np.inf))
+    session = Session(exact_problem(small()), Request())
     session.durations = truth.durations
-    stages = module._Search(session, Here())
+    stages = module.Stages(session)
     too_much = stages.stage(stages.rounded(truth.upper * Fraction(101, 100)))
     assert too_much.total > truth.upper
     document = certificate(false[0])
