@@ -9,7 +9,6 @@ docs/explanation/certificates.md.
 from .answer import check_answer
 from .any_curve import check_motion, spans_of
 from .bounds import shown_bound
-from .curve import derivative, pieces, uniform_pieces, value_at
 from .floors import least_durations
 from .problem import CHORD, StatedProblem, read_problem
 from .ranges import (
@@ -76,10 +75,8 @@ __all__ = [
     "Subject",
     "check_answer",
     "check_motion",
-    "derivative",
     "least_durations",
     "number",
-    "pieces",
     "proof_kind",
     "read_document",
     "read_problem",
@@ -87,7 +84,5 @@ __all__ = [
     "shown",
     "shown_bound",
     "spans_of",
-    "uniform_pieces",
-    "value_at",
     "verify_certificate",
 ]

@@ -66,7 +66,7 @@ def spans_of(problem: StatedProblem) -> Spans:
 
 
 @dataclass(frozen=True)
-class SpanRow:
+class _Row:
     """time·h + first·v₀ + last·v₁ ≥ right, for every motion of a joint through a span."""
 
     kind: str
@@ -78,7 +78,7 @@ class SpanRow:
     n: int
 
     @classmethod
-    def read(cls, entry: Any, spans: int, joints: int) -> SpanRow:
+    def read(cls, entry: Any, spans: int, joints: int) -> _Row:
         """Read [kind, span, joint, sign, m₀, m₁, n]."""
         kind, span, joint, sign, m0, m1, n = listed(entry, "a row", 7, 7)
         kind = text(kind, "a row")
@@ -133,30 +133,30 @@ class AnyCurve(ProofKind[Sides]):
         self, problem: StatedProblem, proof: dict[str, Any], total: Fraction, clock: Clock
     ) -> None:
         super().__init__(problem, proof, total, clock)
-        self.asked = spans_of(problem)
+        self._asked = spans_of(problem)
         self._cap = number(proof["cap"])
         need(0 < total <= self._cap, "the total exceeds the cap below which the boxes lie")
         rows = listed(proof["rows"], "rows", MOST_ROWS)
         self._rows = [self.row(row) for row in clock.each(rows)]
         self.speeds = [self._speed(joint) for joint in range(problem.joints)]
 
-    def row(self, entry: Any) -> SpanRow:
+    def row(self, entry: Any) -> _Row:
         """Read [kind, span, joint, sign, m₀, m₁, n]."""
-        return SpanRow.read(entry, len(self.asked.steps), self.problem.joints)
+        return _Row.read(entry, len(self._asked.steps), self.problem.joints)
 
     def _speed(self, joint: int) -> Fraction | None:
         """No motion with a total below the cap is faster; None if nothing bounds the speed."""
-        velocity, acceleration = self.asked.velocity[joint], self.asked.acceleration[joint]
+        velocity, acceleration = self._asked.velocity[joint], self._asked.acceleration[joint]
         if velocity is not None:
             return velocity[1]
-        known = [abs(v) for v in (side[joint] for side in self.asked.ends) if v is not None]
+        known = [abs(v) for v in (side[joint] for side in self._asked.ends) if v is not None]
         if not known or acceleration is None:
             return None
         return min(known) + acceleration[1] * self._cap
 
     def root(self) -> Sides:
         """Durations by their bounds, the mean velocities, and what a total below the cap leaves."""
-        asked = self.asked
+        asked = self._asked
         least = list(asked.shortest)
         for k, steps in enumerate(asked.steps):
             for step, limit in zip(steps, asked.velocity, strict=True):
@@ -194,12 +194,12 @@ class AnyCurve(ProofKind[Sides]):
         proved = self.least_total(box, weighted)
         need(proved >= self.total, f"it proves only {float(proved):.12g} s")
 
-    def least_total(self, box: Sides, weighted: Sequence[tuple[SpanRow, Fraction]]) -> Fraction:
+    def least_total(self, box: Sides, weighted: Sequence[tuple[_Row, Fraction]]) -> Fraction:
         """Least value of Σh − Σ weight·(left − right) over a box and all speeds within bounds.
 
         Every motion has left ≥ right and so Σh ≥ that; it is linear, least at ends of the sides.
         """
-        asked, result = self.asked, Zero
+        asked, result = self._asked, Zero
         slope: dict[tuple[int, int], Fraction] = {}
         fastest: dict[int, Fraction] = {}
         times = [Fraction(1)] * len(box)

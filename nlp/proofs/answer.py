@@ -86,6 +86,6 @@ def _within_bounds(stated: StatedProblem, durations: Sequence[Fraction]) -> list
         longer = [(max(up(h, 15), low), high) for h, (low, high) in each]
         return [h if high is None else min(h, high) for h, high in longer]
     both = list(zip(stated.shares, bounds, strict=True))
-    total = max(up(sum(durations), 15), *(low / share for share, (low, _) in both))
+    total = max(up(sum(durations, Fraction(0)), 15), *(low / share for share, (low, _) in both))
     total = min([total, *(high / share for share, (_, high) in both if high is not None)])
     return [share * total for share in stated.shares]

@@ -57,11 +57,6 @@ class ProofPiece:
             self.error = error
         self.done = True
 
-    @property
-    def finished(self) -> bool:
-        """Whether nobody has to work on it any more."""
-        return self.done or (self.future is not None and self.future.done())
-
     def taken_back(self) -> bool:
         """Whether nobody has begun it, and nobody else will."""
         return not self.done and (self.future is None or self.future.cancel())
@@ -117,11 +112,6 @@ class ProofCrew:
             self._processes.end()
 
     @property
-    def shared(self) -> bool:
-        """Whether there may be others than this process."""
-        return self.workers > 1 or self._executor is not None
-
-    @property
     def processes(self) -> int:
         """How many were started."""
         return 0 if self._processes is None else self.workers
@@ -161,14 +151,11 @@ class ProofCrew:
             raise piece.error
         return piece.value
 
-    def drop(self, pieces: Iterable[ProofPiece]) -> list[ProofPiece]:
-        """Give up what nobody has begun; returns what was begun."""
-        kept = []
+    def drop(self, pieces: Iterable[ProofPiece]) -> None:
+        """Give up what nobody has begun."""
         for piece in pieces:
-            if not piece.taken_back():
-                kept.append(piece)
+            piece.taken_back()
             self._forget(piece)
-        return kept
 
     def spread(
         self, work: Callable[..., Any], common: Any, items: Iterable[tuple[Any, ...]]

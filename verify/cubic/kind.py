@@ -30,9 +30,7 @@ class CubicSpline(ProofKind[Box]):
         super().__init__(problem, proof, total, clock)
         self.cubic = Cubic(problem, proof)
         ticks = total / self.cubic.second * TICKS
-        need(
-            ticks <= self.cubic.cap * TICKS, "the total exceeds the cap below which the boxes lie"
-        )
+        need(ticks <= self.cubic.cap * TICKS, "the total exceeds the cap below which the boxes lie")
         self._ticks = ticks
         rows = listed(proof["rows"], "rows", MOST_ROWS)
         self._known = [self.cubic.condition(entry) for entry in clock.each(rows)]

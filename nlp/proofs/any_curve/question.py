@@ -14,6 +14,9 @@ from ..document import stated_problem
 from ..exact import ExactProblem
 from ..rounding import STRETCHES, up
 
+Bounds = tuple[Fraction, Fraction] | None
+"""Rational bounds of a limit; None where there is none."""
+
 Number = Fraction | None
 Motion = tuple[tuple[Fraction, ...], tuple[tuple[Fraction, ...], ...]]
 """Durations between way-points, and the speeds of all joints at the way-points."""
@@ -42,8 +45,8 @@ class FreeQuestion:
     stated: StatedProblem
     joints: tuple[int, ...]
     steps: list[list[Fraction]]
-    velocity: list[tuple[Fraction, Fraction] | None]
-    acceleration: list[tuple[Fraction, Fraction] | None]
+    velocity: list[Bounds]
+    acceleration: list[Bounds]
     shortest: list[Fraction]
     longest: list[Number]
     ends: list[list[Number]]
@@ -63,8 +66,9 @@ def question(problem: ExactProblem) -> FreeQuestion:
     """
     stated = stated_problem(problem)
     limits = [[*row[:2], None] for row in stated.limits]
-    free: list[list[None]] = [[None] * stated.joints] * 2
-    alone = replace(stated, limits=limits, sides=[limits, limits], position=free)
+    nowhere: list[Bounds] = [None] * stated.joints
+    position = [nowhere, nowhere]
+    alone = replace(stated, limits=limits, sides=[limits, limits], position=position)
     spans, restless = spans_of(alone), _restless(stated)
     joints = tuple(j for j in restless if spans.velocity[j] or spans.acceleration[j])
     return FreeQuestion(
@@ -157,7 +161,7 @@ def prove_motion(asked: FreeQuestion, durations: Array, speeds: Array) -> Motion
     return None
 
 
-def _speed(value: float, stretch: Fraction, limit: tuple[Fraction, Fraction] | None) -> Fraction:
+def _speed(value: float, stretch: Fraction, limit: Bounds) -> Fraction:
     """A speed of a longer motion, cut to 16 digits."""
     if not np.isfinite(value) or abs(value) < 1e-30:
         return Fraction(0)

@@ -42,7 +42,7 @@ Weighted = tuple[list[Any], str]
 
 
 @dataclass(frozen=True)
-class Effort:
+class CutEffort:
     """How much work a box is worth; what is proved does not depend on it.
 
     Attributes
@@ -140,12 +140,12 @@ class Search:
         Boxes that were bounded.
     """
 
-    effort = Effort()
+    effort = CutEffort()
 
     def __init__(self, asked: FreeQuestion, cap: Fraction) -> None:
         self.asked, self.cap, self.nodes = asked, cap, 0
-        proof = {"cap": decimal(cap), "rows": []}
-        self.kind: Any = proof_kind("any-curve")(asked.stated, proof, cap, Clock(math.inf))
+        make: Any = proof_kind("any-curve")
+        self.kind = make(asked.stated, {"cap": decimal(cap), "rows": []}, cap, Clock(math.inf))
         speeds = [self.kind.speeds[j] for j in asked.joints]
         self.scaled = floats(asked, speeds, float(cap) / len(asked.steps))
 
@@ -310,7 +310,7 @@ class Search:
         return self.node(box, np.concatenate([change_rows(scaled), tangents]), target, None)
 
     def exact(self, leaf: Node, digits: int) -> tuple[Fraction, list[Weighted]]:
-        """What the weights of a leaf, rounded to so many digits, prove, s; and rows with weights."""
+        """What the weights of a leaf, rounded to so many digits, prove; and its rows with them."""
         if not leaf.box:
             return self.cap, []
         scaled = self.scaled

@@ -116,8 +116,8 @@ def _prove_segments(name: str, session: Session) -> bool:
     for e, asked in _asking(session, np.ones(n)):
         if asked > longest[e.segment]:
             longest[e.segment], asking[e.segment] = asked, e
-    for k, e in enumerate(asking):
-        found = None if e is None else _proved(exact, kind, e)
+    for k, most in enumerate(asking):
+        found = None if most is None else _proved(exact, kind, most)
         bounds[k] = bounds[k] if found is None or found.least < bounds[k].least else found
     proof = Formula(name, tuple(bounds))
     session.keep(proof.total, proof)

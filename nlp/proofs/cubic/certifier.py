@@ -15,7 +15,7 @@ from ..document import stated_problem
 from ..driver import grow
 from ..exact import ExactProblem
 from ..session import Ladder, Session
-from .search import Stage
+from .search import CubicStage
 from .system import CubicSystem, cubic_system, declares
 from .tree import Prover, Tree, regrown
 
@@ -106,7 +106,7 @@ def _prove(session: Session) -> bool:
         def watch(now: Tree, waiting: int, boxes: int, before: int = nodes) -> None:
             session.report(waiting, before + boxes, now.seconds)
 
-        stage = Stage(tree, goal, restart, run.improve, watch)
+        stage = CubicStage(tree, goal, restart, run.improve, watch)
         try:
             grow(stage, stage.root.leaves(), session)
         finally:

@@ -36,7 +36,7 @@ class WorkedBox(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Effort:
+class NarrowingEffort:
     """How much work a box is worth; what is proved does not depend on it.
 
     Attributes
@@ -81,12 +81,12 @@ def work_on(prover: Prover, box: TickBox, rows: tuple[CubicRow, ...]) -> WorkedB
     OutOfTime
         When time is up; what was done to the box by then stands.
     """
-    work = _BoxWork(prover, list(rows), Effort())
+    work = _BoxWork(prover, list(rows), NarrowingEffort())
     cut = work.narrowed(box)
     return WorkedBox(box, cut, tuple(work.rows[len(rows) :]), tuple(work.points))
 
 
-class Stage(Branching[TickBox]):
+class CubicStage(Branching[TickBox]):
     """Raises the floor of the lowest box until it reaches the goal.
 
     Each box knows the rows that were known when it was taken up, fewer than it could: that took 3
@@ -165,7 +165,7 @@ class Stage(Branching[TickBox]):
 class _BoxWork:
     """The linear programs of one box."""
 
-    def __init__(self, prover: Prover, rows: list[CubicRow], effort: Effort) -> None:
+    def __init__(self, prover: Prover, rows: list[CubicRow], effort: NarrowingEffort) -> None:
         self.prover, self.rows, self.effort = prover, rows, effort
         self.relaxation = Relaxation(prover.system, rows)
         self.points: list[Array] = []

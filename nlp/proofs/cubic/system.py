@@ -28,13 +28,13 @@ class CubicRow(NamedTuple):
     """A condition ≤ 0, as a certificate has it.
 
     ``kind`` is "jerk" of a piece, "velocity" in a span, "lower" or "upper" bound of a piece's
-    duration, or "total"; ``joint`` is −1 where no joint takes part, and ``index`` a piece, or a
+    duration, or "total"; ``joint`` is −1 where no joint takes part, and ``at`` a piece, or a
     span for "velocity", whose ``place`` counts in 64ths.
     """
 
     kind: str
     joint: int = -1
-    index: int = 0
+    at: int = 0
     sign: int = 1
     place: int = 0
 
@@ -150,9 +150,9 @@ class CubicSystem:
                     rows += [CubicRow("velocity", j, t, sign, place) for place in places]
         for k in range(exact.n):
             if len(exact.lengths[k]) > 1:
-                rows.append(CubicRow("lower", index=k))
+                rows.append(CubicRow("lower", at=k))
             if exact.longest[k] is not None:
-                rows.append(CubicRow("upper", index=k))
+                rows.append(CubicRow("upper", at=k))
         return rows
 
 

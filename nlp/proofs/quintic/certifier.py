@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -94,55 +95,69 @@ def _missing(problem: ExactProblem) -> str | None:
         return f"{problem.curve.name}: only rest with zero acceleration at both ends is covered"
     if problem.segments > MOST_QUINTIC_SEGMENTS or len(problem.joints) > MOST_QUINTIC_JOINTS:
         return f"more than {MOST_QUINTIC_SEGMENTS} segments or {MOST_QUINTIC_JOINTS} joints"
-    units = _units(problem)
-    own = problem.in_units(units.powers, units.second)
-    q = own.waypoints
-    sizes = [abs(b - a) for k in range(len(q) - 1) for a, b in zip(q[k], q[k + 1], strict=True)]
-    sizes += [x.high for row in own.limits for x in row if x is not None]
-    if not all(x == 0 or SMALLEST < x < 1 / SMALLEST for x in sizes):
+    own = _Scaled(problem)
+    sizes = np.concatenate([np.abs(own.steps).ravel(), own.limits[np.isfinite(own.limits)]])
+    if not all(x == 0.0 or SMALLEST < x < 1 / SMALLEST for x in sizes.tolist()):
         return "a step or a limit is of unusual size"
     if all(problem.duration_lower):
         return None
-    if not np.isfinite(_limits(problem)).any() and not any(problem.duration_lower):
+    if not np.isfinite(own.limits).any() and not any(problem.duration_lower):
         return "nothing limits the total from below"
-    moving = np.asarray(_steps(problem).any(axis=0), dtype=np.bool_)
-    if not (np.isfinite(_limits(problem)[:, :2]) & moving[:, None]).any():
+    moving = np.asarray(own.steps.any(axis=0), dtype=np.bool_)
+    if not (np.isfinite(own.limits[:, :2]) & moving[:, None]).any():
         return "no joint that moves has a velocity or acceleration limit"
     return None
 
 
 def _limits(problem: ExactProblem) -> Array:
     """Looser ends of the limits, shape (joints, 3); a limit of 0 takes no part."""
-    limits = problem.derivative_limits()
-    return np.asarray(np.where(limits > 0.0, limits, np.inf), dtype=np.float64)
+    each = [[math.inf if x is None else float(x.high) for x in row] for row in problem.limits]
+    limits = np.array(each, dtype=np.float64)
+    return np.where(limits > 0.0, limits, np.inf)
 
 
-def _steps(problem: ExactProblem) -> Array:
-    q = problem.waypoints
-    return np.array(
-        [[float(b - a) for a, b in zip(q[k], q[k + 1], strict=True)] for k in range(len(q) - 1)]
-    )
-
-
-def shortest(problem: ExactProblem) -> tuple[Fraction, ...]:
-    """Least durations by their bounds and by the mean velocities, as floats."""
+def shortest(problem: ExactProblem, unit: Fraction = Fraction(1)) -> tuple[Fraction, ...]:
+    """Least durations by their bounds and by the mean velocities, as floats, in a unit of time."""
     q, out = problem.waypoints, []
     for k, low in enumerate(problem.duration_lower):
         for j, (velocity, *_) in enumerate(problem.limits):
             if velocity is not None and velocity.high > 0:
                 low = max(low, abs(q[k + 1][j] - q[k][j]) / velocity.high)
-        out.append(below(low))
+        out.append(below(low / unit))
     return tuple(out)
+
+
+class _Scaled:
+    """A problem in floats, in units in which steps and total are not far from 1.
+
+    They are powers of two, which spoil no digit; where the problem's own units do, they are those.
+    Weights, multipliers and totals of a proof have ranges, which these units keep to.
+    """
+
+    def __init__(self, problem: ExactProblem) -> None:
+        rows = [[float(b - a) for a, b in zip(*pair, strict=True)]
+                for pair in pairwise(problem.waypoints)]  # fmt: skip
+        steps, limits = np.array(rows), _limits(problem)
+        powers = np.array([_power(float(column.max())) for column in np.abs(steps).T])
+        least = np.array([float(x) for x in problem.duration_lower])
+        with np.errstate(divide="ignore"):
+            for order in (1, 2, 3):
+                needs = (np.abs(steps) / limits[:, order - 1]) ** (1.0 / order)
+                least = np.maximum(least, needs.max(axis=1))
+        self.units = BinaryUnits(tuple(powers.tolist()), _power(float(least.sum())))
+        self.steps = steps / 2.0**powers
+        time = 2.0 ** (self.units.second * np.array([1.0, 2.0, 3.0]))
+        self.limits = limits * time / 2.0 ** powers[:, None]
+        self.low = shortest(problem, self.units.time)
 
 
 class Stages:
     """What the stages share: numbers in the units of the proof, and windows that exclude boxes."""
 
     def __init__(self, session: Session) -> None:
-        self.session, self.units = session, _units(session.exact)
-        own = session.exact.in_units(self.units.powers, self.units.second)
-        self.low = shortest(own)
-        self.steps, self.limits = _steps(own), _limits(own)
+        own = _Scaled(session.exact)
+        self.session, self.units, self.low = session, own.units, own.low
+        self.steps, self.limits = own.steps, own.limits
         assert session.durations is not None
         near = np.array([float(h / self.units.time) for h in session.durations])
         self.library = windows(self.steps, self.limits, near, clock=session.check_clock)
@@ -187,21 +202,6 @@ class Stages:
         return False
 
 
-def _units(exact: ExactProblem) -> BinaryUnits:
-    """Units in which steps and total are not far from 1; those of the problem where they are not.
-
-    Weights, multipliers and totals of a proof have ranges, which these units keep to.
-    """
-    steps, limits = np.abs(_steps(exact)), _limits(exact)
-    powers = [_power(float(column.max())) for column in steps.T]
-    least = np.array([float(x) for x in exact.duration_lower])
-    with np.errstate(divide="ignore"):
-        for order in (1, 2, 3):
-            needs = (steps / limits[:, order - 1]) ** (1.0 / order)
-            least = np.maximum(least, needs.max(axis=1))
-    return BinaryUnits(tuple(powers), _power(float(least.sum())))
-
-
 def _power(size: float) -> int:
     """Of two, for a size far from 1; else 0."""
     power = math.frexp(size)[1] if size > 0.0 else 0
@@ -210,8 +210,8 @@ def _power(size: float) -> int:
 
 def _keep_mean_velocities(session: Session) -> None:
     """Bound the total by the sum of the least durations: one leaf proves it, in no time."""
-    units = _units(session.exact)
-    low = shortest(session.exact.in_units(units.powers, units.second))
+    own = _Scaled(session.exact)
+    units, low = own.units, own.low
     total = below(sum(low, Fraction(0)) * (1 - _SPARE))
     if total > SHORTEST_TOTAL:
         n = len(low)

@@ -29,12 +29,13 @@ from trajgap.nlp.optimum.curve_tracking import curve_coarse
 from trajgap.nlp.optimum.exact_multistart import box_above
 from trajgap.nlp.optimum.ipopt import compiled, structure_of
 from trajgap.nlp.optimum.tracking import solve_coarse
+from trajgap.nlp.proofs import clock as proof_clock
 from trajgap.nlp.proofs import session
 from trajgap.nlp.proofs.any_curve.estimate import estimate_any_curve
 from trajgap.nlp.proofs.exact import exact_problem
 from trajgap.nlp.proofs.outcome import Request
 from trajgap.nlp.proofs.quintic import windows
-from trajgap.nlp.proofs.session import OutOfTime, Session
+from trajgap.nlp.proofs.session import Session
 from trajgap.problem import (
     Limits,
     Problem,
@@ -45,6 +46,7 @@ from trajgap.problem import (
     uniform_cubic_b_spline,
 )
 from trajgap.problem.curves import Deferred, compilation
+from trajgap.verify import OutOfTime
 
 
 @dataclass
@@ -172,9 +174,9 @@ def test_the_answer_of_a_certification_has_a_share_of_the_time(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     ticks = Ticking(step=0.0)
-    monkeypatch.setattr(session, "time", ticks)
+    monkeypatch.setattr(proof_clock, "time", ticks)
     monkeypatch.setattr(clock, "time", ticks)
-    one = Session(exact_problem(NEAR), Request(seconds=100.0))
+    one = Session(exact_problem(NEAR), Request(clock=proof_clock.RunClock(100.0)))
     ticks.now = 60.0
     left: list[float] = []
     real = session.solve

@@ -192,5 +192,3 @@ def test_a_declared_curve_in_motion_is_refused_in_one_sentence() -> None:
         )
         with pytest.raises(TrajgapError, match="no proof covers such a curve yet"):
             certify(problem, seconds=1.0)
-        with pytest.raises(TrajgapError, match="no proof covers such a curve yet"):
-            problem.in_units([0, 0], 0)

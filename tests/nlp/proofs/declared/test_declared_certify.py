@@ -33,8 +33,9 @@ from trajgap.problem import (
     three_five_three,
     uniform_cubic_b_spline,
 )
-from trajgap.verify import Clock, Subject, pieces, read_problem
+from trajgap.verify import Clock, Subject, read_problem
 from trajgap.verify import verify_certificate as verify
+from trajgap.verify.curve import pieces
 
 module = import_module("trajgap.nlp.proofs.declared.certifier")
 
