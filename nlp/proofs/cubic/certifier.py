@@ -122,10 +122,6 @@ def _prove(session: Session) -> bool:
     return True
 
 
-def _declares(problem: ExactProblem) -> bool:
-    return declares(stated_problem(problem))
-
-
 def _missing(problem: ExactProblem) -> str | None:
     if problem.segments > MOST_CUBIC_SEGMENTS:
         return f"more than {MOST_CUBIC_SEGMENTS} segments"
@@ -139,6 +135,6 @@ def _missing(problem: ExactProblem) -> str | None:
 
 
 CUBIC = Certifier(
-    "C2 cubic splines (clamped, natural, virtual)", _declares, _missing, _prove, boxes=16
+    "C2 cubic splines (clamped, natural, virtual)", declares, _missing, _prove, boxes=16
 )
 """The ends that the verifier knows: only for them are the equations derived."""

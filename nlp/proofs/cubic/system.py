@@ -19,6 +19,8 @@ from numpy.typing import NDArray
 from ....problem import Array
 from ....verify import TICKS, Refused, StatedProblem
 from ....verify.cubic import Cubic, kind_of_ends
+from ..document import stated_problem
+from ..exact import ExactProblem
 
 EPS = float(np.finfo(np.float64).eps)
 """Spacing of floats at 1."""
@@ -48,10 +50,11 @@ class DenseTerms(NamedTuple):
     constant: float
 
 
-def declares(stated: StatedProblem) -> bool:
+def declares(problem: ExactProblem) -> bool:
     """Whether the curve is a C2 cubic spline of the kinds covered."""
     try:
-        return stated.declaration is not None and bool(kind_of_ends(stated.declaration))
+        declaration = stated_problem(problem).declaration
+        return declaration is not None and bool(kind_of_ends(declaration))
     except Refused:
         return False
 
