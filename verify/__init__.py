@@ -21,12 +21,14 @@ from .ranges import (
     MOST_QUINTIC_SEGMENTS,
     MOST_WEIGHT,
     PLACES,
+    QUINTIC_PLACES,
     SHORTEST_TOTAL,
     SMALLEST,
     SPOTS,
     TANGENT_UNIT,
     TICKS,
     USUAL_WEIGHT,
+    WINDOW_UNIT,
 )
 from .reading import Clock, OutOfTime, Refused, number, read_document, shown
 from .tree import CUT, LEAF, OPEN, Subject
@@ -58,6 +60,7 @@ __all__ = [
     "OLD_FORMATS",
     "OPEN",
     "PLACES",
+    "QUINTIC_PLACES",
     "SECONDS",
     "SHORTEST_TOTAL",
     "SMALLEST",
@@ -66,6 +69,7 @@ __all__ = [
     "TANGENT_UNIT",
     "TICKS",
     "USUAL_WEIGHT",
+    "WINDOW_UNIT",
     "CertificateVerdict",
     "CertifiedQuestion",
     "Clock",

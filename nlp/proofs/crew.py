@@ -13,14 +13,6 @@ from typing import Any
 
 from .processes import Processes, ProcessGone, packed, worked
 
-_WORTH = 1.0
-"""Seconds of a run before processes are started: starting one takes about as long, and most proofs
-are over by then."""
-_LOOK = 0.1
-"""Seconds between two looks at the clock while pieces are worked on elsewhere."""
-_AHEAD = 3
-"""Pieces handed out for each worker: the next one is there when it ends one."""
-
 
 @dataclass(eq=False)
 class ProofPiece:
@@ -86,11 +78,23 @@ class ProofCrew:
     Parameters
     ----------
     workers : int
-        This process is one of them; the others are started after `_WORTH` seconds, if there are
+        This process is one of them; the others are started after `worth` seconds, if there are
         pieces for them.
     executor : concurrent.futures.Executor, optional
         Works on all pieces instead, from the beginning.
+
+    Attributes
+    ----------
+    worth : float
+        Seconds of a run before processes are started: starting one takes about as long, and most
+        proofs are over by then.
+    look : float
+        Seconds between two looks at the clock while pieces are worked on elsewhere.
+    ahead : int
+        Pieces of `spread` handed out for each worker: the next one is there when it ends one.
     """
+
+    worth, look, ahead = 1.0, 0.1, 3
 
     def __init__(self, workers: int = 1, executor: Executor | None = None) -> None:
         self.workers, self._executor = workers, executor
@@ -142,7 +146,7 @@ class ProofCrew:
             mine = self._mine(piece)
             if mine is not None:
                 mine.run()
-            elif piece.future is not None and not wait([piece.future], _LOOK).done:
+            elif piece.future is not None and not wait([piece.future], self.look).done:
                 watch()
             elif piece.future is not None:
                 self._collect(piece)
@@ -165,7 +169,7 @@ class ProofCrew:
         try:
             for item in items:
                 begun.append(self.begin(work, shared, *item))
-                if len(begun) > _AHEAD * self.workers:
+                if len(begun) > self.ahead * self.workers:
                     yield self.value(begun.popleft())
             while begun:
                 yield self.value(begun.popleft())
@@ -174,7 +178,7 @@ class ProofCrew:
 
     def _hand_out(self) -> None:
         """Give pieces to others, if there are others."""
-        late = time.perf_counter() - self._began >= _WORTH
+        late = time.perf_counter() - self._began >= self.worth
         if self.workers > 1 and self._executor is None and late and len(self._waiting) > 1:
             self._processes = self._processes or Processes(self.workers)
         others = self._executor or self._processes

@@ -24,14 +24,6 @@ T = TypeVar("T")
 Answer = tuple[tuple[Fraction, ...], tuple[tuple[Fraction, ...], ...] | None]
 """Durations, and the speeds at the way-points that an answer of any curve has."""
 
-OFTEN = 0.2
-"""Seconds between reports: a reader follows them, and they cost nothing beside the boxes."""
-SEEKING = 0.5
-"""Share of what is left of the time that a local search may take: the rest is for the proof."""
-ANSWERING = 0.5
-"""Seconds that the exact proof of an answer may take beyond the time limit, or beyond its beginning
-where that is later: an answer of usual size is proved in a tenth of it, whatever the limit."""
-
 UNBOUNDED = "the time ended before a lower bound was proved"
 """What was left out where a search had to end before its first proof."""
 BARE = "the time ended before a bound better than that of the mean velocities was proved"
@@ -39,7 +31,7 @@ BARE = "the time ended before a bound better than that of the mean velocities wa
 BOXED = "the boxes that were allowed ended before a lower bound was proved"
 """The same where boxes were counted, and no time was limited."""
 UNPROVED = "a motion was found, and the exact proof that it keeps its limits was cut short"
-"""What was left out where `ANSWERING` is over."""
+"""What was left out where `Session.answering` is over."""
 
 
 class Shorter(Exception):
@@ -116,7 +108,17 @@ class Session:
         What the time was too short for, in words; a kind of proof sets it where it ends the run.
     nodes, open_boxes : int
         Boxes visited, boxes left.
+    often : float
+        Seconds between reports: a reader follows them, and they cost nothing beside the boxes.
+    seeking : float
+        Share of what is left of the time that a local search may take: the rest is for the proof.
+    answering : float
+        Seconds that the exact proof of an answer may take beyond the time limit, or beyond its
+        beginning where that is later: an answer of usual size is proved in a tenth of it, whatever
+        the limit.
     """
+
+    often, seeking, answering = 0.2, 0.5, 0.5
 
     def __init__(self, exact: ExactProblem, request: Request) -> None:
         self.exact, self.request, self.crew = exact, request, request.crew
@@ -210,7 +212,7 @@ class Session:
         """
         began = self.seconds
         try:
-            proved = prove_feasible(self.exact, durations, Clock(self.clock.left + ANSWERING))
+            proved = prove_feasible(self.exact, durations, Clock(self.clock.left + self.answering))
         except OutOfTime:
             self.left_out = UNPROVED
             raise
@@ -243,7 +245,7 @@ class Session:
 
     def sharing_the_time(self) -> AbstractContextManager[None]:
         """Within, a local search ends after its share of the time that is left."""
-        return stopping_after(SEEKING * self.clock.left)
+        return stopping_after(self.seeking * self.clock.left)
 
     def stretched(self, directions: Array) -> Array:
         """Rows of durations, each stretched until it keeps the limits and the least durations.
@@ -309,7 +311,7 @@ class Session:
         """Tell whoever asked how far the run is, now and then."""
         self.open_boxes, self.nodes = open_boxes, nodes
         now = self.seconds
-        if self.request.report is None or now - self._reported < OFTEN:
+        if self.request.report is None or now - self._reported < self.often:
             return
         self._reported = now
         least = max(float(self.lower), 0.0 if lower is None else float(lower))

@@ -13,8 +13,9 @@ from numpy.typing import NDArray
 
 from ....problem import Array
 from ....verify import MIX
+from ...enclosure import EPS
 from .ranges import Side
-from .system import EPS, CubicRow, CubicSystem
+from .system import CubicRow, CubicSystem
 
 _SLOPES = 33
 """Tangents of ρ = h²/T that are tried: every fourth of those that the verifier tries."""

@@ -11,7 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ....problem import Array
-from .system import EPS, CubicSystem
+from ...enclosure import EPS
+from .system import CubicSystem
 
 _ROUNDS = 6
 """Of narrowing by the equations: as many as the verifier makes, which could not follow more."""

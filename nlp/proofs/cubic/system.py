@@ -19,11 +19,9 @@ from numpy.typing import NDArray
 from ....problem import Array
 from ....verify import TICKS, Refused, StatedProblem
 from ....verify.cubic import Cubic, kind_of_ends
+from ...enclosure import EPS
 from ..document import stated_problem
 from ..exact import ExactProblem
-
-EPS = float(np.finfo(np.float64).eps)
-"""Spacing of floats at 1."""
 
 
 class CubicRow(NamedTuple):

@@ -36,11 +36,6 @@ _LADDER = Ladder(
 )
 """Boxes grow with a power of 1/gap: small steps keep a stopped run near its goal. From 0.2 on they
 grow to 15 to 20 times as many, and judging takes on one core as long again as the search."""
-_SPARE = Fraction(1, 10**9)
-"""Share by which a total stays below the sum of the least durations, so that the first box is empty
-by far more than the verifier's slack."""
-_REST = ((1, 0.0), (2, 0.0))
-"""Velocity and acceleration 0 at an end, as a declaration prescribes them."""
 
 
 @dataclass(frozen=True)
@@ -90,8 +85,8 @@ def _declares(problem: ExactProblem) -> bool:
 
 
 def _missing(problem: ExactProblem) -> str | None:
-    inner = ((),) * (problem.segments - 1)
-    if problem.piecewise.prescribed != (_REST, *inner, _REST):
+    rest, inner = ((1, 0.0), (2, 0.0)), ((),) * (problem.segments - 1)
+    if problem.piecewise.prescribed != (rest, *inner, rest):
         return f"{problem.curve.name}: only rest with zero acceleration at both ends is covered"
     if problem.segments > MOST_QUINTIC_SEGMENTS or len(problem.joints) > MOST_QUINTIC_JOINTS:
         return f"more than {MOST_QUINTIC_SEGMENTS} segments or {MOST_QUINTIC_JOINTS} joints"
@@ -212,7 +207,8 @@ def _keep_mean_velocities(session: Session) -> None:
     """Bound the total by the sum of the least durations: one leaf proves it, in no time."""
     own = _Scaled(session.exact)
     units, low = own.units, own.low
-    total = below(sum(low, Fraction(0)) * (1 - _SPARE))
+    # The first box is to be empty by far more than the verifier's slack.
+    total = below(sum(low, Fraction(0)) * (1 - Fraction(1, 10**9)))
     if total > SHORTEST_TOTAL:
         n = len(low)
         none = Windows(

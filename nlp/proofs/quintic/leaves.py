@@ -11,16 +11,14 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ....verify import USUAL_WEIGHT
+from ....verify import USUAL_WEIGHT, WINDOW_UNIT
 from .search import EMPTY, WINDOW
-from .windows import UNIT, Windows
+from .windows import Windows
 
 T = TypeVar("T")
 
 _CUTS = " abcdefghijklmnopqrstuvwxyz"
 """Letter k + 1 of the search as the document has it."""
-_ROOM = (1 << 12, 1 << 12, 1 << 13)
-"""Letters, leaves and rows of the first arrays: 0.3 MB, and doubled when full."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,8 +37,8 @@ class Leaves:
     sizes: NDArray[np.int64]
 
     @classmethod
-    def empty(cls, room: tuple[int, int, int] = _ROOM) -> Leaves:
-        """Arrays with room for letters, leaves and rows."""
+    def empty(cls, room: tuple[int, int, int] = (1 << 12, 1 << 12, 1 << 13)) -> Leaves:
+        """Arrays with room for letters, leaves and rows: 0.3 MB, and doubled when full."""
         letters, leaves, rows = room
         return cls(
             np.zeros(letters, np.int8),
@@ -140,8 +138,8 @@ class Leaves:
             "windows": [
                 [
                     int(windows.joint[w]),
-                    *(int(x) for x in windows.psi[w] * UNIT),
-                    *(int(x) for x in windows.weights[w] * UNIT),
+                    *(int(x) for x in windows.psi[w] * WINDOW_UNIT),
+                    *(int(x) for x in windows.weights[w] * WINDOW_UNIT),
                 ]
                 for w in of_windows
             ],

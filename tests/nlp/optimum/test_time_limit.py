@@ -187,7 +187,7 @@ def test_the_answer_of_a_certification_has_a_share_of_the_time(
 
     monkeypatch.setattr(session, "solve", looked)
     assert one.seek()
-    assert left == [session.SEEKING * 40.0]
+    assert left == [Session.seeking * 40.0]
     assert clock.seconds_left() == math.inf
 
 

@@ -240,7 +240,7 @@ def test_the_proof_of_an_answer_is_cut_short_and_proves_nothing(
     monkeypatch.setattr(session, "Clock", lambda left: (asked.append(left), Cut(left))[1])
     with pytest.raises(OutOfTime):
         one.offer(SLOW)
-    assert asked == [pytest.approx(100.0 + session.ANSWERING, abs=1.0)]
+    assert asked == [pytest.approx(100.0 + Session.answering, abs=1.0)]
     found = one.result(False, certifier.QUINTIC.subject)
     assert (found.outcome, found.lower, found.upper) == (Outcome.OPEN, 0, None)
     assert found.left_out == session.UNPROVED

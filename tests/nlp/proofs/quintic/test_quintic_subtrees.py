@@ -92,7 +92,7 @@ SMALL = {"part": 8}
 @pytest.fixture
 def at_once(monkeypatch: pytest.MonkeyPatch) -> None:
     """Processes are started for the first pieces."""
-    monkeypatch.setattr(crew, "_WORTH", 0.0)
+    monkeypatch.setattr(crew.ProofCrew, "worth", 0.0)
 
 
 def test_parts_join_to_the_tree_of_one_search(monkeypatch: pytest.MonkeyPatch) -> None:
