@@ -31,7 +31,7 @@ from .clock import RunClock
 from .crew import ProofCrew
 from .document import certificate, fits, problem_document
 from .exact import ExactProblem
-from .outcome import Certified, EarlierProof, Outcome
+from .outcome import Certified, Outcome, WrittenProof
 
 VARIABLE = "TRAJGAP_CACHE"
 """Environment variable with another folder for what is kept; empty for none."""
@@ -128,7 +128,7 @@ class KeptProofs:
                 nodes,
                 0,
                 0.0,
-                EarlierProof(document["proof"]),
+                WrittenProof(document["proof"]),
                 subject=subject,
                 speeds=None if speeds is None else tuple(tuple(map(number, row)) for row in speeds),
                 verdict=verdict,

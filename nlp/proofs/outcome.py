@@ -52,13 +52,13 @@ class Argument(Protocol):
 
 
 @dataclass(frozen=True)
-class EarlierProof:
-    """A proof from a state, as it was read there, and proved again by `trajgap.verify`."""
+class WrittenProof:
+    """A proof as it stands in documents: small, or read in one and proved again."""
 
     proof: dict[str, Any]
 
     def document(self) -> dict[str, Any]:
-        """As it was read."""
+        """As it stands there."""
         return self.proof
 
 
@@ -70,7 +70,7 @@ class Resumed:
     ----------
     lower : Fraction
         Proved by ``proof``, s; 0 without it.
-    proof : EarlierProof or None
+    proof : WrittenProof or None
     durations : tuple of Fraction or None
         Proved to keep the limits.
     speeds : tuple or None
@@ -82,7 +82,7 @@ class Resumed:
     """
 
     lower: Fraction
-    proof: EarlierProof | None
+    proof: WrittenProof | None
     durations: tuple[Fraction, ...] | None
     speeds: tuple[tuple[Fraction, ...], ...] | None
     proposals: dict[str, Any] | None

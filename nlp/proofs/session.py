@@ -17,7 +17,7 @@ from ...verify import OutOfTime as OutOfTime
 from ..optimum import solve, stopping_after
 from .answer import float_problem, prove_feasible
 from .exact import ExactProblem
-from .outcome import Argument, Certified, EarlierProof, Outcome, Progress, Request
+from .outcome import Argument, Certified, Outcome, Progress, Request, WrittenProof
 
 T = TypeVar("T")
 
@@ -141,7 +141,7 @@ class Session:
             self.lower, self.proof = resumed.lower, resumed.proof
             self._unsearched = resumed.proof is None
             if resumed.proposals is not None:
-                self.proposals = EarlierProof(resumed.proposals)
+                self.proposals = WrittenProof(resumed.proposals)
 
     def read(self, state: Callable[[], T]) -> T:
         """What a kind of proof reads in a state, in which it trusts nothing.

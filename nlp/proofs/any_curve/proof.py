@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
@@ -11,6 +10,7 @@ import numpy as np
 from ....verify import CUT, LEAF, number
 from ..driver import regrow
 from ..exact import decimal
+from ..outcome import WrittenProof
 from .search import Node, Search
 from .tangents import KINDS
 
@@ -18,37 +18,10 @@ DIGITS = (4, 6, 8, 12)
 """Of the weights: as few as prove the bound."""
 
 
-@dataclass(frozen=True)
-class FreeBound:
-    """Boxes of durations, each with rows and weights, as the proof of a certificate.
-
-    Attributes
-    ----------
-    total, cap : Fraction
-        The bound; all boxes lie below the cap, s.
-    rows : tuple of list
-    tree : tuple of list
-        Nodes in preorder.
-    """
-
-    total: Fraction
-    cap: Fraction
-    rows: tuple[list[int | str], ...]
-    tree: tuple[list[int | str], ...]
-
-    def document(self) -> dict[str, Any]:
-        """Kind "any-curve" of docs/explanation/certificates-any-curve.md."""
-        return {
-            "kind": "any-curve",
-            "total": decimal(self.total),
-            "cap": decimal(self.cap),
-            "rows": [list(row) for row in self.rows],
-            "tree": [list(node) for node in self.tree],
-        }
-
-
-def free_bound(search: Search, root: Node, total: Fraction) -> FreeBound:
+def free_bound(search: Search, root: Node, total: Fraction) -> WrittenProof:
     """Write down what the boxes of a search prove.
+
+    It is kind "any-curve" of docs/explanation/certificates-any-curve.md.
 
     Parameters
     ----------
@@ -72,7 +45,15 @@ def free_bound(search: Search, root: Node, total: Fraction) -> FreeBound:
         for row, weight in weighted:
             leaf += [known.setdefault(tuple(row), len(known)), weight]
         tree.append(leaf)
-    return FreeBound(total, search.cap, tuple(map(list, known)), tuple(tree))
+    return WrittenProof(
+        {
+            "kind": "any-curve",
+            "total": decimal(total),
+            "cap": decimal(search.cap),
+            "rows": [list(row) for row in known],
+            "tree": tree,
+        }
+    )
 
 
 def regrown(search: Search, document: dict[str, Any], target: float) -> Node:

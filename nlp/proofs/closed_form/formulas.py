@@ -22,6 +22,7 @@ from ...optimum import solve
 from ..certifier import Certifier
 from ..document import stated_problem
 from ..exact import ExactProblem, decimal
+from ..outcome import WrittenProof
 from ..rounding import root_below
 from ..session import Session
 
@@ -44,26 +45,10 @@ class LeastTime:
     place: int = 0
 
 
-@dataclass(frozen=True)
-class Formula:
-    """Bounds as the one leaf of a proof: one for each segment, or one for the total."""
-
-    kind: str
-    bounds: tuple[LeastTime, ...]
-
-    @property
-    def total(self) -> Fraction:
-        """What they prove, s."""
-        return sum((b.least for b in self.bounds), Fraction(0))
-
-    def document(self) -> dict[str, Any]:
-        """Kinds "rest-to-rest", "stretched", "fixed-ratios" of docs/explanation/certificates.md."""
-        if self.kind == "fixed-ratios":
-            (one,) = self.bounds
-            leaf = [LEAF, one.joint, one.order, one.segment, one.place]
-        else:
-            leaf = [LEAF, *([b.joint, b.order, b.place, decimal(b.least)] for b in self.bounds)]
-        return {"kind": self.kind, "total": decimal(self.total), "tree": [leaf]}
+def _keep(session: Session, kind: str, total: Fraction, leaf: list[Any]) -> None:
+    """Keep a proof of one leaf, as docs/explanation/certificates.md has it."""
+    tree = [[LEAF, *leaf]]
+    session.keep(total, WrittenProof({"kind": kind, "total": decimal(total), "tree": tree}))
 
 
 def _exact_kind(name: str, problem: ExactProblem) -> Any:
@@ -119,8 +104,8 @@ def _prove_segments(name: str, session: Session) -> bool:
     for k, most in enumerate(asking):
         found = None if most is None else _proved(exact, kind, most)
         bounds[k] = bounds[k] if found is None or found.least < bounds[k].least else found
-    proof = Formula(name, tuple(bounds))
-    session.keep(proof.total, proof)
+    leaf = [[b.joint, b.order, b.place, decimal(b.least)] for b in bounds]
+    _keep(session, name, sum((b.least for b in bounds), Fraction(0)), leaf)
     # Nothing moves in a segment that asks for no time: a billionth of the total will do.
     still = max(float(longest.sum()), 1e-3) * 1e-9
     if not session.offer(np.maximum(longest, still)):
@@ -142,9 +127,9 @@ def _prove_total(session: Session) -> bool:
     if asking:
         with suppress(Refused):  # the conditions determine no curve at these ratios
             bounds.append(_proved(exact, kind, max(asking, key=lambda one: one[1])[0]))
-    for bound in bounds:
-        if bound is not None:
-            session.keep(bound.least, Formula("fixed-ratios", (bound,)))
+    for b in bounds:
+        if b is not None:
+            _keep(session, "fixed-ratios", b.least, [b.joint, b.order, b.segment, b.place])
     answer = solve(session.floats)
     if answer.durations is None or not session.offer(answer.durations):
         session.infeasible = any(

@@ -38,26 +38,12 @@ _LADDER = Ladder(
 grow to 15 to 20 times as many, and judging takes on one core as long again as the search."""
 
 
-@dataclass(frozen=True)
-class BinaryUnits:
-    """Joint j is measured in 2**powers[j] of the problem's unit of angle, time in 2**second s."""
-
-    powers: tuple[int, ...]
-    second: int
-
-    @property
-    def time(self) -> Fraction:
-        """In s."""
-        return Fraction(2) ** self.second
-
-
 @dataclass(frozen=True, eq=False)
 class Tree:
-    """Bisections of the simplex of durations that prove a total; both in the units of the proof."""
+    """Bisections of the simplex of durations that prove a total, in the units of the proof."""
 
-    units: BinaryUnits
+    own: Scaled
     total: Fraction
-    low: tuple[Fraction, ...]
     windows: Windows
     leaves: Leaves
 
@@ -65,10 +51,10 @@ class Tree:
         """Kind "quintic-spline" of docs/explanation/certificates-quintic.md."""
         return {
             "kind": "quintic-spline",
-            "total": decimal(self.total * self.units.time),
-            "powers": list(self.units.powers),
-            "second": self.units.second,
-            "low": [decimal(x * self.units.time) for x in self.low],
+            "total": decimal(self.total * self.own.time),
+            "powers": list(self.own.powers),
+            "second": self.own.second,
+            "low": [decimal(x * self.own.time) for x in self.own.low],
             **self.leaves.document(self.windows),
         }
 
@@ -90,7 +76,7 @@ def _missing(problem: ExactProblem) -> str | None:
         return f"{problem.curve.name}: only rest with zero acceleration at both ends is covered"
     if problem.segments > MOST_QUINTIC_SEGMENTS or len(problem.joints) > MOST_QUINTIC_JOINTS:
         return f"more than {MOST_QUINTIC_SEGMENTS} segments or {MOST_QUINTIC_JOINTS} joints"
-    own = _Scaled(problem)
+    own = Scaled(problem)
     sizes = np.concatenate([np.abs(own.steps).ravel(), own.limits[np.isfinite(own.limits)]])
     if not all(x == 0.0 or SMALLEST < x < 1 / SMALLEST for x in sizes.tolist()):
         return "a step or a limit is of unusual size"
@@ -122,11 +108,13 @@ def shortest(problem: ExactProblem, unit: Fraction = Fraction(1)) -> tuple[Fract
     return tuple(out)
 
 
-class _Scaled:
+class Scaled:
     """A problem in floats, in units in which steps and total are not far from 1.
 
     They are powers of two, which spoil no digit; where the problem's own units do, they are those.
-    Weights, multipliers and totals of a proof have ranges, which these units keep to.
+    Weights, multipliers and totals of a proof have ranges, which these units keep to: joint j is
+    measured in 2**powers[j] of the problem's unit of angle, time in 2**second s. ``low`` are the
+    least durations.
     """
 
     def __init__(self, problem: ExactProblem) -> None:
@@ -139,25 +127,25 @@ class _Scaled:
             for order in (1, 2, 3):
                 needs = (np.abs(steps) / limits[:, order - 1]) ** (1.0 / order)
                 least = np.maximum(least, needs.max(axis=1))
-        self.units = BinaryUnits(tuple(powers.tolist()), _power(float(least.sum())))
+        self.powers, self.second = powers.tolist(), _power(float(least.sum()))
+        self.time = Fraction(2) ** self.second
         self.steps = steps / 2.0**powers
-        time = 2.0 ** (self.units.second * np.array([1.0, 2.0, 3.0]))
-        self.limits = limits * time / 2.0 ** powers[:, None]
-        self.low = shortest(problem, self.units.time)
+        times = 2.0 ** (self.second * np.array([1.0, 2.0, 3.0]))
+        self.limits = limits * times / 2.0 ** powers[:, None]
+        self.low = shortest(problem, self.time)
 
 
 class Stages:
     """What the stages share: numbers in the units of the proof, and windows that exclude boxes."""
 
     def __init__(self, session: Session) -> None:
-        own = _Scaled(session.exact)
-        self.session, self.units, self.low = session, own.units, own.low
-        self.steps, self.limits = own.steps, own.limits
+        self.session, self.own = session, Scaled(session.exact)
+        self.steps, self.limits = self.own.steps, self.own.limits
         assert session.durations is not None
-        near = np.array([float(h / self.units.time) for h in session.durations])
+        near = np.array([float(h / self.own.time) for h in session.durations])
         self.library = windows(self.steps, self.limits, near, clock=session.check_clock)
         with session.clock.standing():  # the first search compiles, or loads what is compiled
-            nowhere = np.ones(len(self.low))
+            nowhere = np.ones(len(self.own.low))
             search_part(self._stage(1.0, 0.0), Root(nowhere, 0.0 * nowhere))
 
     def _stage(self, total: float, look: float) -> Stage:
@@ -165,30 +153,32 @@ class Stages:
 
     def rounded(self, total: Fraction) -> Fraction:
         """A total that is exact in floating point in the units of the proof, s."""
-        return below(total / self.units.time) * self.units.time
+        return below(total / self.own.time) * self.own.time
 
     def stage(self, target: Fraction) -> Tree:
         """Prove that no total is below ``target``, s."""
-        session, own = self.session, target / self.units.time
+        session, own = self.session, target / self.own.time
         assert session.upper is not None
         # Durations that are shorter by less are not worth a new start of the ladder.
-        look = float(session.upper / self.units.time) * (1.0 - 1e-7)
+        look = float(session.upper / self.own.time) * (1.0 - 1e-7)
         before = session.nodes
         parts = Parts(
             self._stage(float(own), look),
             lambda h: self._look(h, look),
             lambda waiting, boxes: session.report(waiting, before + boxes),
         )
-        root = Root(np.array([float(x) for x in self.low]), np.full(len(self.low), float(own)))
+        root = Root(
+            np.array([float(x) for x in self.own.low]), np.full(len(self.own.low), float(own))
+        )
         grow(parts, [root], session)
-        return Tree(self.units, own, self.low, self.library, parts.leaves)
+        return Tree(self.own, own, self.library, parts.leaves)
 
     def _look(self, durations: Array, below_it: float) -> bool:
         """Raise `Shorter` if the direction of ``durations`` holds a total below the one given.
 
         False if it does but for bounds that stretching cannot repair: more would follow.
         """
-        time = float(self.units.time)
+        time = float(self.own.time)
         found = self.session.stretched(durations[None] * time)[0]
         if not found.sum() < below_it * time:
             return True
@@ -205,8 +195,8 @@ def _power(size: float) -> int:
 
 def _keep_mean_velocities(session: Session) -> None:
     """Bound the total by the sum of the least durations: one leaf proves it, in no time."""
-    own = _Scaled(session.exact)
-    units, low = own.units, own.low
+    own = Scaled(session.exact)
+    low = own.low
     # The first box is to be empty by far more than the verifier's slack.
     total = below(sum(low, Fraction(0)) * (1 - Fraction(1, 10**9)))
     if total > SHORTEST_TOTAL:
@@ -214,8 +204,8 @@ def _keep_mean_velocities(session: Session) -> None:
         none = Windows(
             np.zeros(0, np.int64), np.zeros((0, n + 1)), np.zeros((0, n)), np.zeros((0, 2 * n + 1))
         )
-        tree = Tree(units, total, low, none, Leaves.of_nothing())
-        session.keep_at_once(total * units.time, tree)
+        tree = Tree(own, total, none, Leaves.of_nothing())
+        session.keep_at_once(total * own.time, tree)
 
 
 def _prove(session: Session) -> bool:

@@ -117,8 +117,8 @@ def test_limits_falsified_on_purpose_prove_too_much_and_are_refused(
     false = unjudged(monkeypatch)
     judged = certify(small(), gap=0.01)
     assert (judged.outcome, judged.proof) == (Outcome.OPEN, None)
-    units = module._Scaled(exact_problem(small())).units
-    assert units == module.BinaryUnits((0, 0), 0)
+    own = module.Scaled(exact_problem(small()))
+    assert (own.powers, own.second) == ([0, 0], 0)
     session = Session(exact_problem(small()), Request())
     session.durations = truth.durations
     stages = module.Stages(session)
