@@ -42,7 +42,7 @@ grow to 15 to 20 times as many, and judging takes on one core as long again as t
 class Tree:
     """Bisections of the simplex of durations that prove a total, in the units of the proof."""
 
-    own: Scaled
+    own: OwnUnits
     total: Fraction
     windows: Windows
     leaves: Leaves
@@ -76,7 +76,7 @@ def _missing(problem: ExactProblem) -> str | None:
         return f"{problem.curve.name}: only rest with zero acceleration at both ends is covered"
     if problem.segments > MOST_QUINTIC_SEGMENTS or len(problem.joints) > MOST_QUINTIC_JOINTS:
         return f"more than {MOST_QUINTIC_SEGMENTS} segments or {MOST_QUINTIC_JOINTS} joints"
-    own = Scaled(problem)
+    own = OwnUnits(problem)
     sizes = np.concatenate([np.abs(own.steps).ravel(), own.limits[np.isfinite(own.limits)]])
     if not all(x == 0.0 or SMALLEST < x < 1 / SMALLEST for x in sizes.tolist()):
         return "a step or a limit is of unusual size"
@@ -108,7 +108,7 @@ def shortest(problem: ExactProblem, unit: Fraction = Fraction(1)) -> tuple[Fract
     return tuple(out)
 
 
-class Scaled:
+class OwnUnits:
     """A problem in floats, in units in which steps and total are not far from 1.
 
     They are powers of two, which spoil no digit; where the problem's own units do, they are those.
@@ -139,7 +139,7 @@ class Stages:
     """What the stages share: numbers in the units of the proof, and windows that exclude boxes."""
 
     def __init__(self, session: Session) -> None:
-        self.session, self.own = session, Scaled(session.exact)
+        self.session, self.own = session, OwnUnits(session.exact)
         self.steps, self.limits = self.own.steps, self.own.limits
         assert session.durations is not None
         near = np.array([float(h / self.own.time) for h in session.durations])
@@ -195,7 +195,7 @@ def _power(size: float) -> int:
 
 def _keep_mean_velocities(session: Session) -> None:
     """Bound the total by the sum of the least durations: one leaf proves it, in no time."""
-    own = Scaled(session.exact)
+    own = OwnUnits(session.exact)
     low = own.low
     # The first box is to be empty by far more than the verifier's slack.
     total = below(sum(low, Fraction(0)) * (1 - Fraction(1, 10**9)))

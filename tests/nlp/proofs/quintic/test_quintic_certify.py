@@ -117,7 +117,7 @@ def test_limits_falsified_on_purpose_prove_too_much_and_are_refused(
     false = unjudged(monkeypatch)
     judged = certify(small(), gap=0.01)
     assert (judged.outcome, judged.proof) == (Outcome.OPEN, None)
-    own = module.Scaled(exact_problem(small()))
+    own = module.OwnUnits(exact_problem(small()))
     assert (own.powers, own.second) == ([0, 0], 0)
     session = Session(exact_problem(small()), Request())
     session.durations = truth.durations
