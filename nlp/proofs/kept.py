@@ -39,8 +39,6 @@ FORMAT = "trajgap kept proof 1"
 """Of the files; what begins with anything else is none of them."""
 MOST_KEPT = 256 * 2**20
 """Bytes of all files together: thousands of proofs of usual size. The oldest make way."""
-MOST_NODES = 2**53
-"""Boxes that a file may speak of; every whole number below it is a float."""
 _ODD = (OSError, LookupError, TypeError, ValueError, ArithmeticError, RecursionError)
 """What a file of any content may raise while it is read; `Refused` is a `ValueError`."""
 _LIBRARIES = ("casadi", "numba", "numpy", "scipy")
@@ -190,7 +188,7 @@ def _parts(kept: Any) -> tuple[dict[str, Any], int]:
     document, nodes = kept["certificate"], kept["nodes"]
     if kept["format"] != FORMAT or type(document) is not dict or document.get("proof") is None:
         raise ValueError("no kept proof")
-    if type(nodes) is not int or not 0 <= nodes < MOST_NODES:
+    if type(nodes) is not int or not 0 <= nodes < 2**53:
         raise ValueError("no number of boxes")
     return document, nodes
 

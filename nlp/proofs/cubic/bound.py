@@ -17,8 +17,6 @@ from ...enclosure import EPS
 from .ranges import Side
 from .system import CubicRow, CubicSystem
 
-_SLOPES = 33
-"""Tangents of ρ = h²/T that are tried: every fourth of those that the verifier tries."""
 _ROUNDINGS = 64
 """Roundings of a sum of products of some thousand terms, which numpy adds up in pairs: 30."""
 
@@ -199,11 +197,11 @@ def _over_box(
 
 
 def _slope(factor: float, along: Array, inverse: float, side: Side, h: int, t: int) -> float:
-    """θ of a good tangent of ρ."""
+    """θ of a good tangent of ρ, of 33: every fourth of those that the verifier tries."""
     if factor == 0 or side.low[t] <= 0:
         return 0.0
     low, high = side.low, side.high
-    theta = np.linspace(low[h] / high[t], min(1.0, high[h] / low[t]), _SLOPES)
+    theta = np.linspace(low[h] / high[t], min(1.0, high[h] / low[t]), 33)
     first, second = along[h] + 2 * theta * factor, along[t] - theta**2 * factor
     value = np.minimum(first * low[h], first * high[h])
     with np.errstate(divide="ignore", invalid="ignore"):
