@@ -17,7 +17,7 @@ import numpy as np
 from certificates import HEAD, line, named, statements
 from on_cores import CORES, on_cores
 from trajgap.nlp import certify
-from trajgap.nlp.proofs.any_curve.exact import missing
+from trajgap.nlp.proofs.any_curve.question import missing
 from trajgap.nlp.proofs.document import problem_document, question
 from trajgap.nlp.proofs.exact import ExactProblem
 from trajgap.problem import Limits, Problem, cubic_spline

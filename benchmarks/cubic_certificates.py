@@ -17,12 +17,12 @@ from pathlib import Path
 import numpy as np
 from on_cores import CORES, on_cores
 from trajgap.nlp.proofs.certifiers import certify
+from trajgap.nlp.proofs.cubic.bound import TOTAL
 from trajgap.nlp.proofs.cubic.guide import peaks
-from trajgap.nlp.proofs.cubic.proof import TOTAL
 from trajgap.nlp.proofs.cubic.relaxation import Relaxation
-from trajgap.nlp.proofs.cubic.system import cubic_system
+from trajgap.nlp.proofs.cubic.system import CubicSystem, cubic_system
 from trajgap.nlp.proofs.cubic.tree import Prover
-from trajgap.nlp.proofs.document import certificate, write_certificate
+from trajgap.nlp.proofs.document import certificate, stated_problem, write_certificate
 from trajgap.nlp.proofs.exact import ExactProblem, exact_problem, printed_problem
 from trajgap.nlp.proofs.outcome import Certified
 from trajgap.problem import (
@@ -115,17 +115,19 @@ def by_width(name: str, found: Certified) -> str:
     """Gap that one relaxation proves over a box of relative half-width w around the answer."""
     assert found.durations is not None
     assert found.upper is not None
-    system = cubic_system(found.problem, found.upper)
-    unit = 2.0**system.second
+    stated = stated_problem(found.problem)
+    near = cubic_system(stated, found.upper)
+    unit = 2.0**near.second
     h = np.array([float(x) for x in found.durations]) / unit
     cap = int(float(found.upper) / unit * 1.5 * TICKS)
-    prover = Prover(system, cap)
+    system = CubicSystem(stated, near.powers, near.second, cap)
+    prover, exact = Prover(system), system.exact
     at = [
-        sum(h[k] for k in range(system.pieces) if system.piece(k).get(t, 0) > 0)
+        sum(h[k] for k in range(exact.n) if exact.lengths[k].get(t, 0) > 0)
         for t in range(system.free)
     ]
-    for end, (first, _, _) in zip((0, system.pieces - 1), system.curved, strict=False):
-        at[0 if end == 0 else system.spans - 1] += h[end]
+    for end, (first, _, _) in zip((0, exact.n - 1), exact.rho(), strict=False):
+        at[0 if end == 0 else exact.m - 1] += h[end]
         at[first] = h[end]
     gaps = []
     for width in WIDTHS:
@@ -135,7 +137,7 @@ def by_width(name: str, found: Certified) -> str:
         prover.narrow(box)
         rows = system.starting_rows()
         for _ in range(10):
-            program = Relaxation(system, rows, prover.total).over(prover.side(box), box.ranges)
+            program = Relaxation(system, rows).over(prover.side(box), box.ranges)
             proposal = program.bound(TOTAL, capped=False)
             assert proposal is not None
             new = [x for x in peaks(system, proposal.point[: system.free]) if x not in rows]

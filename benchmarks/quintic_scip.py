@@ -16,8 +16,9 @@ from pyscipopt import Model, quicksum
 from quintic_instances import instances
 from trajgap.nlp import solve
 from trajgap.nlp.proofs.quintic.nodal import LOAD, LOAD_POWERS, POWERS, STIFFNESS
-from trajgap.nlp.proofs.quintic.rows import PLACES, row_shape
+from trajgap.nlp.proofs.quintic.rows import row_shape
 from trajgap.problem import Limits, Problem, quintic_spline
+from trajgap.verify import QUINTIC_PLACES
 
 
 def small():
@@ -57,7 +58,7 @@ def lower_bound(problem, upper, seconds):
                 load = float(LOAD[a] * step[k, j]) * r[k] ** int(LOAD_POWERS[a])
                 rows[k + a % 2][a // 2] += quicksum(terms) - load
             for order in (1, 2):
-                for spot in range(0, PLACES + 1, PLACES // 8):
+                for spot in range(0, QUINTIC_PLACES + 1, QUINTIC_PLACES // 8):
                     shape = np.empty(5)
                     row_shape(order, 1.0, spot, shape)
                     scaled = [step[k, j] * r[k] * r[k], r[k] * ends[0], r[k] * ends[1], *ends[2:]]

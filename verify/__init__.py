@@ -6,9 +6,13 @@ polynomials and C4 quintic splines need numpy. Format and mathematics are in
 docs/explanation/certificates.md.
 """
 
+from .answer import check_answer
+from .any_curve import check_motion, spans_of
 from .bounds import shown_bound
-from .problem import CHORD, read_problem
+from .floors import least_durations
+from .problem import CHORD, StatedProblem, read_problem
 from .ranges import (
+    MIX,
     MIX_DIGITS,
     MOST_CUBIC_SEGMENTS,
     MOST_INTEGER,
@@ -17,9 +21,13 @@ from .ranges import (
     MOST_QUINTIC_SEGMENTS,
     MOST_WEIGHT,
     PLACES,
+    QUINTIC_PLACES,
     SHORTEST_TOTAL,
     SMALLEST,
+    SPOTS,
+    TANGENT_UNIT,
     TICKS,
+    WINDOW_UNIT,
 )
 from .reading import Clock, OutOfTime, Refused, number, read_document, shown
 from .tree import CUT, LEAF, OPEN, Subject
@@ -40,6 +48,7 @@ __all__ = [
     "CHORD",
     "CUT",
     "LEAF",
+    "MIX",
     "MIX_DIGITS",
     "MOST_CUBIC_SEGMENTS",
     "MOST_INTEGER",
@@ -50,17 +59,25 @@ __all__ = [
     "OLD_FORMATS",
     "OPEN",
     "PLACES",
+    "QUINTIC_PLACES",
     "SECONDS",
     "SHORTEST_TOTAL",
     "SMALLEST",
+    "SPOTS",
     "STATE_FORMAT",
+    "TANGENT_UNIT",
     "TICKS",
+    "WINDOW_UNIT",
     "CertificateVerdict",
     "CertifiedQuestion",
     "Clock",
     "OutOfTime",
     "Refused",
+    "StatedProblem",
     "Subject",
+    "check_answer",
+    "check_motion",
+    "least_durations",
     "number",
     "proof_kind",
     "read_document",
@@ -68,5 +85,6 @@ __all__ = [
     "seal",
     "shown",
     "shown_bound",
+    "spans_of",
     "verify_certificate",
 ]

@@ -137,9 +137,12 @@ class AnyCurve(ProofKind[Sides]):
         self._cap = number(proof["cap"])
         need(0 < total <= self._cap, "the total exceeds the cap below which the boxes lie")
         rows = listed(proof["rows"], "rows", MOST_ROWS)
-        spans = len(self._asked.steps)
-        self._rows = [_Row.read(row, spans, problem.joints) for row in clock.each(rows)]
-        self._speeds = [self._speed(joint) for joint in range(problem.joints)]
+        self._rows = [self.row(row) for row in clock.each(rows)]
+        self.speeds = [self._speed(joint) for joint in range(problem.joints)]
+
+    def row(self, entry: Any) -> _Row:
+        """Read [kind, span, joint, sign, m₀, m₁, n]."""
+        return _Row.read(entry, len(self._asked.steps), self.problem.joints)
 
     def _speed(self, joint: int) -> Fraction | None:
         """No motion with a total below the cap is faster; None if nothing bounds the speed."""
@@ -188,10 +191,10 @@ class AnyCurve(ProofKind[Sides]):
             for row, weight in zip(data[::2], data[1::2], strict=True)
         ]
         need(all(weight >= 0 for _, weight in weighted), "a weight is negative")
-        proved = self._least_total(box, weighted)
+        proved = self.least_total(box, weighted)
         need(proved >= self.total, f"it proves only {float(proved):.12g} s")
 
-    def _least_total(self, box: Sides, weighted: Sequence[tuple[_Row, Fraction]]) -> Fraction:
+    def least_total(self, box: Sides, weighted: Sequence[tuple[_Row, Fraction]]) -> Fraction:
         """Least value of Σh − Σ weight·(left − right) over a box and all speeds within bounds.
 
         Every motion has left ≥ right and so Σh ≥ that; it is linear, least at ends of the sides.
@@ -203,7 +206,7 @@ class AnyCurve(ProofKind[Sides]):
         for row, weight in weighted:
             self.clock.check()
             k, joint = row.span, row.joint
-            v_max = fastest[joint] = required(self._speeds[joint], _NO_LIMIT)
+            v_max = fastest[joint] = required(self.speeds[joint], _NO_LIMIT)
             bend = required(asked.acceleration[joint], _NO_LIMIT)[1]
             need(v_max > 0 and bend > 0, "a row leans on a limit of 0")
             time, first, last, right = row.terms(asked.steps[k][joint], v_max, bend, box[k])

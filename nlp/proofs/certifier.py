@@ -6,14 +6,10 @@ from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, replace
 
-from ...verify import Subject
+from ...verify import OutOfTime, Subject
 from .exact import ExactProblem
 from .outcome import Certified, Outcome, Request
-from .session import OutOfTime, Session
-
-WIDER = 0.5
-"""Share of the time that a proof may take within limits of equal sides, where lower and upper ones
-differ: what is left is for the search of an answer."""
+from .session import Session
 
 
 @dataclass(frozen=True)
@@ -83,8 +79,8 @@ class Certifier:
         """
         session = Session(exact, request)
         own = self.subject is Subject.DECLARED
-        share = WIDER if own else 1.0
-        wide = self.run(exact.even, replace(request, seconds=share * request.seconds))
+        clock = request.clock.share(0.5 if own else 1.0)  # the rest is for the search of an answer
+        wide = self.run(exact.even, replace(request, clock=clock))
         if wide.outcome is Outcome.INFEASIBLE:
             session.infeasible = True
         if wide.proof is not None:

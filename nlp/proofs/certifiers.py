@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import functools
 import math
-import time
 from collections.abc import Callable
 from concurrent.futures import Executor
 from dataclasses import replace
@@ -18,9 +17,10 @@ from numpy.typing import ArrayLike
 from ...problem import Problem, TrajgapError
 from ...verify import Subject
 from .certifier import Certifier
+from .clock import RunClock
 from .crew import ProofCrew
 from .exact import MOVING, ExactProblem, exact_problem
-from .judged import SPARE, Deadline, judged, why_too_large
+from .judged import judged, why_too_large
 from .kept import KeptProofs, cache_folder
 from .outcome import GAP, Certified, Progress, Request
 from .session import Session
@@ -43,6 +43,9 @@ question of any curve, which the kinds behind know nothing of: they stand before
 _FEW = 7
 """Segments up to which boxes of durations may close in a second: of the six cubic splines of six
 and seven in the suite two do, and the kind of their own takes one to ten seconds."""
+MINUTE = 6
+"""Times the boxes that an audit allows, which take ten seconds: a user who asks for a proof waits
+for a minute."""
 
 
 @functools.cache
@@ -126,8 +129,8 @@ def certify(
     *,
     subject: Subject = Subject.DECLARED,
     gap: float = GAP,
-    seconds: float = 60.0,
-    boxes: float = math.inf,
+    seconds: float | None = None,
+    boxes: float | None = None,
     seed: int = 0,
     resume: Certified | dict[str, Any] | None = None,
     report: Callable[[Progress], None] | None = None,
@@ -151,15 +154,17 @@ def certify(
         claimed.
     gap : float
         Relative width of the interval to reach.
-    seconds : float
+    seconds : float, optional
         Time limit of all of it: proving a state again, the search, and proving the result with
-        `trajgap.verify`, for which the search leaves time. At the limit, or at Ctrl-C, the best
-        interval proved so far is returned; a proof that could not be verified in time is left in
-        the state alone. It is kept to within a second and one step: a box, or a step of the local
-        solver. An answer whose exact proof was cut short is none; `Certified.left_out` says so.
-    boxes : float
-        Boxes after which the search ends. With infinite ``seconds`` they alone limit it, and the
-        result does not depend on how busy the machine is.
+        `trajgap.verify`, for which the search leaves time. Compiling does not count. At the limit,
+        or at Ctrl-C, the best interval proved so far is returned; a proof that could not be
+        verified in time is left in the state alone. It is kept to within a second and one step: a
+        box, or a step of the local solver. An answer whose exact proof was cut short is none;
+        `Certified.left_out` says so.
+    boxes : float, optional
+        Boxes after which the search ends. Without ``seconds`` they alone limit it, and the result
+        does not depend on how busy the machine is. Without either of them a search has `MINUTE`
+        times the boxes that an audit allows.
     seed : int
         Of the starts of the local solver that finds the answer.
     resume : Certified or dict, optional
@@ -170,10 +175,8 @@ def certify(
         Parts of search and judging that run at a time; the result does not depend on it. Closed
         forms and declared polynomials such as 3-5-3 take one core: they are over in a second.
     executor : concurrent.futures.Executor, optional
-        Where parts run, such as processes or a Dask cluster's `get_executor()`. Without one, C4
-        quintic splines are searched in threads, since compiled searches do not hold the
-        interpreter's lock; the rest runs in processes that are started after a second and end with
-        the run.
+        Where parts run, such as processes or a Dask cluster's `get_executor()`. Without one they
+        run in processes that are started after a second and end with the run.
     cache : bool or Path
         Whether a proof that settles the question is kept for later runs, and one that an earlier
         run kept is used: in the user's cache folder, or in the folder given. Nothing that is kept
@@ -202,28 +205,28 @@ def certify(
         raise TrajgapError(f"certify: {why}")
     if workers < 1:
         raise TrajgapError("certify: workers must be 1 or more")
-    if not 0 <= gap < 1 or not seconds >= 0:
+    if not 0 <= gap < 1 or not (seconds is None or seconds >= 0):
         raise TrajgapError("certify: the gap must lie in [0, 1), the seconds must be 0 or more")
-    began, deadline = time.perf_counter(), Deadline.after(seconds)
+    certifier = certifier or _certifier(exact, subject)
+    assert certifier is not None
+    if boxes is None:
+        boxes = MINUTE * certifier.boxes if seconds is None else math.inf
+    clock = RunClock(math.inf if seconds is None else seconds)
     where = None if resume is not None or cache is False else cache
     kept = KeptProofs(cache_folder() if where is True else where)
     with ProofCrew(workers, executor) as crew:
-        earlier = kept.taken(exact, subject, gap, seed, deadline, crew)
+        earlier = kept.taken(exact, subject, gap, seed, clock, crew)
         if earlier is not None:
-            return replace(earlier, seconds=time.perf_counter() - began)
-        certifier = certifier or _certifier(exact, subject)
-        assert certifier is not None
-        taken_up, before = None, None
+            return replace(earlier, seconds=clock.used)
+        request = Request(gap, clock, seed, report=report, crew=crew, boxes=boxes)
+        before = None
         if resume is not None:
-            taken_up = resumed(exact, resume, subject, seconds + SPARE, crew)
-            request = Request(gap, 0.0, seed, taken_up)
+            taken_up = resumed(exact, resume, subject, clock.left + clock.spare, crew)
+            request = replace(request, resume=taken_up)
             before = Session(exact, request).result(False, subject)
             before = replace(before, verdict=taken_up.verdict)
-        request = Request(
-            gap, deadline.left, seed, taken_up, report, workers, executor, crew, boxes
-        )
         if known is not None:
             request = replace(request, known=np.asarray(known, dtype=np.float64))
-        found = judged(certifier.run(exact, request), deadline, before, crew)
+        found = judged(certifier.run(exact, request), clock, before, crew)
     kept.keep(found, gap, seed)
     return found

@@ -13,14 +13,6 @@ from typing import Any
 
 from .processes import Processes, ProcessGone, packed, worked
 
-_WORTH = 1.0
-"""Seconds of a run before processes are started: starting one takes about as long, and most proofs
-are over by then."""
-_LOOK = 0.1
-"""Seconds between two looks at the clock while pieces are worked on elsewhere."""
-_AHEAD = 3
-"""Pieces handed out for each worker: the next one is there when it ends one."""
-
 
 @dataclass(eq=False)
 class ProofPiece:
@@ -57,11 +49,6 @@ class ProofPiece:
             self.error = error
         self.done = True
 
-    @property
-    def finished(self) -> bool:
-        """Whether nobody has to work on it any more."""
-        return self.done or (self.future is not None and self.future.done())
-
     def taken_back(self) -> bool:
         """Whether nobody has begun it, and nobody else will."""
         return not self.done and (self.future is None or self.future.cancel())
@@ -91,11 +78,23 @@ class ProofCrew:
     Parameters
     ----------
     workers : int
-        This process is one of them; the others are started after `_WORTH` seconds, if there are
+        This process is one of them; the others are started after `worth` seconds, if there are
         pieces for them.
     executor : concurrent.futures.Executor, optional
         Works on all pieces instead, from the beginning.
+
+    Attributes
+    ----------
+    worth : float
+        Seconds of a run before processes are started: starting one takes about as long, and most
+        proofs are over by then.
+    look : float
+        Seconds between two looks at the clock while pieces are worked on elsewhere.
+    ahead : int
+        Pieces of `spread` handed out for each worker: the next one is there when it ends one.
     """
+
+    worth, look, ahead = 1.0, 0.1, 3
 
     def __init__(self, workers: int = 1, executor: Executor | None = None) -> None:
         self.workers, self._executor = workers, executor
@@ -115,11 +114,6 @@ class ProofCrew:
     ) -> None:
         if self._processes is not None:
             self._processes.end()
-
-    @property
-    def shared(self) -> bool:
-        """Whether there may be others than this process."""
-        return self.workers > 1 or self._executor is not None
 
     @property
     def processes(self) -> int:
@@ -152,7 +146,7 @@ class ProofCrew:
             mine = self._mine(piece)
             if mine is not None:
                 mine.run()
-            elif piece.future is not None and not wait([piece.future], _LOOK).done:
+            elif piece.future is not None and not wait([piece.future], self.look).done:
                 watch()
             elif piece.future is not None:
                 self._collect(piece)
@@ -161,14 +155,11 @@ class ProofCrew:
             raise piece.error
         return piece.value
 
-    def drop(self, pieces: Iterable[ProofPiece]) -> list[ProofPiece]:
-        """Give up what nobody has begun; returns what was begun."""
-        kept = []
+    def drop(self, pieces: Iterable[ProofPiece]) -> None:
+        """Give up what nobody has begun."""
         for piece in pieces:
-            if not piece.taken_back():
-                kept.append(piece)
+            piece.taken_back()
             self._forget(piece)
-        return kept
 
     def spread(
         self, work: Callable[..., Any], common: Any, items: Iterable[tuple[Any, ...]]
@@ -178,7 +169,7 @@ class ProofCrew:
         try:
             for item in items:
                 begun.append(self.begin(work, shared, *item))
-                if len(begun) > _AHEAD * self.workers:
+                if len(begun) > self.ahead * self.workers:
                     yield self.value(begun.popleft())
             while begun:
                 yield self.value(begun.popleft())
@@ -187,7 +178,7 @@ class ProofCrew:
 
     def _hand_out(self) -> None:
         """Give pieces to others, if there are others."""
-        late = time.perf_counter() - self._began >= _WORTH
+        late = time.perf_counter() - self._began >= self.worth
         if self.workers > 1 and self._executor is None and late and len(self._waiting) > 1:
             self._processes = self._processes or Processes(self.workers)
         others = self._executor or self._processes

@@ -14,7 +14,17 @@ from typing import Any
 from ...problem import Curve, Interpolant, Problem, TrajgapError, replace_file
 from ...problem.curves import StretchedUniformBSpline, TimedUniformBSpline
 from ...problem.suite import list_instances
-from ...verify import CERTIFICATE_FORMAT, CHORD, CertifiedQuestion, Refused, Subject, number, seal
+from ...verify import (
+    CERTIFICATE_FORMAT,
+    CHORD,
+    CertifiedQuestion,
+    Refused,
+    StatedProblem,
+    Subject,
+    number,
+    read_problem,
+    seal,
+)
 from .exact import ExactProblem, Real, decimal, exact_problem, one_velocity
 from .outcome import Certified, Outcome
 
@@ -65,6 +75,18 @@ def problem_document(problem: ExactProblem) -> dict[str, Any]:
         "duration_upper": [None if x is None else decimal(x) for x in problem.duration_upper],
         **_ratios(problem),
     }
+
+
+@lru_cache(maxsize=64)
+def stated_problem(problem: ExactProblem) -> StatedProblem:
+    """A problem as the verifier reads it; nothing in it may be changed.
+
+    Raises
+    ------
+    Refused
+        If something in it is too large for a certificate.
+    """
+    return read_problem(problem_document(problem))
 
 
 def _ratios(problem: ExactProblem) -> dict[str, Any]:

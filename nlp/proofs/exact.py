@@ -8,7 +8,6 @@ from fractions import Fraction
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...problem import (
     Curve,
@@ -217,45 +216,6 @@ class ExactProblem:
             self.shares,
             self.chord,
         )
-
-    def in_units(self, powers: Sequence[int], second: int) -> ExactProblem:
-        """The same problem in units of 2**powers[j] of its angle for joint j, and 2**second s.
-
-        Raises
-        ------
-        TrajgapError
-            If derivatives other than 0 are prescribed, which would have to be scaled too.
-        """
-        if not self.curve.homogeneous:
-            raise TrajgapError(f"certify: {MOVING}")
-        angle, time = [Fraction(2) ** p for p in powers], Fraction(2) ** second
-
-        def over(x: Real | None, unit: Fraction) -> Real | None:
-            return None if x is None else Real(x.rational / unit, x.pi)
-
-        return replace(
-            self,
-            waypoints=tuple(
-                tuple(q / a for q, a in zip(row, angle, strict=True)) for row in self.waypoints
-            ),
-            limits=tuple(
-                tuple(over(x, a / time**r) for r, x in enumerate(row, 1))
-                for row, a in zip(self.limits, angle, strict=True)
-            ),
-            position_lower=tuple(map(over, self.position_lower, angle)),
-            position_upper=tuple(map(over, self.position_upper, angle)),
-            duration_lower=tuple(x / time for x in self.duration_lower),
-            duration_upper=tuple(None if x is None else x / time for x in self.duration_upper),
-            pairs=tuple(
-                ((j, r), (over(low, angle[j] / time**r), over(high, angle[j] / time**r)))
-                for (j, r), (low, high) in self.pairs
-            ),
-        )
-
-    def derivative_limits(self) -> NDArray[np.float64]:
-        """Looser ends of the limits as floats, shape (joints, 3); inf where there is none."""
-        values = [[np.inf if x is None else float(x.high) for x in row] for row in self.limits]
-        return np.array(values, dtype=np.float64)
 
 
 def one_velocity(end: Derivatives) -> float | None:

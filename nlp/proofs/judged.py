@@ -2,48 +2,15 @@
 
 from __future__ import annotations
 
-import time
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 
-from ...verify import Refused, read_problem, verify_certificate
+from ...verify import Refused, verify_certificate
+from .clock import RunClock
 from .crew import ProofCrew
-from .document import certificate, problem_document
+from .document import certificate, stated_problem
 from .exact import ExactProblem
 from .outcome import Certified, Outcome
-
-SPARE = 1.0
-"""Seconds that judging may take beyond the time limit: what takes no time is judged without one."""
-LEAST = 0.5
-"""Seconds that judging has whenever it begins: a certificate of usual size takes a tenth of it."""
-
-
-@dataclass(frozen=True)
-class Deadline:
-    """The time limit of a certification: what it goes on from, its search and its judging.
-
-    Attributes
-    ----------
-    end : float
-        Of the limit, by `time.perf_counter`.
-    """
-
-    end: float
-
-    @classmethod
-    def after(cls, seconds: float) -> Deadline:
-        """So many seconds from now."""
-        return cls(time.perf_counter() + seconds)
-
-    @property
-    def left(self) -> float:
-        """Seconds until then; 0 where it is over."""
-        return max(0.0, self.end - time.perf_counter())
-
-    @property
-    def judging(self) -> float:
-        """Seconds that judging may take: until `SPARE` after the limit, and `LEAST` at least."""
-        return max(LEAST, self.end + SPARE - time.perf_counter())
 
 
 def why_too_large(problem: ExactProblem) -> str | None:
@@ -58,7 +25,7 @@ def why_too_large(problem: ExactProblem) -> str | None:
     str or None
     """
     try:
-        read_problem(problem_document(problem))
+        stated_problem(problem)
     except Refused as error:
         return f"no certificate can state the problem ({error})"
     return None
@@ -66,7 +33,7 @@ def why_too_large(problem: ExactProblem) -> str | None:
 
 def judged(
     found: Certified,
-    deadline: Deadline,
+    clock: RunClock,
     before: Certified | None = None,
     crew: ProofCrew | None = None,
 ) -> Certified:
@@ -75,9 +42,10 @@ def judged(
     Parameters
     ----------
     found : Certified
-    deadline : Deadline
-        Judging ends `SPARE` after it, or takes `LEAST`. A proof that takes longer to judge does not
-        count: it becomes what a state proposes, so that a run with more time can go on from it.
+    clock : RunClock
+        Judging ends a second after its limit, or takes half a second. A proof that takes longer to
+        judge does not count: it becomes what a state proposes, so that a run with more time can go
+        on from it.
     before : Certified, optional
         What the state that the run went on from proved, with its verdict: it holds if time is up.
     crew : ProofCrew, optional
@@ -90,7 +58,7 @@ def judged(
     if found.proof is None:
         return found
     document, spread = certificate(found), None if crew is None else crew.spread
-    verdict = verify_certificate(document, seconds=deadline.judging, spread=spread)
+    verdict = verify_certificate(document, seconds=clock.judging, spread=spread)
     if verdict.proves:
         return replace(found, verdict=verdict)
     nothing = replace(

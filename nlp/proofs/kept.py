@@ -27,11 +27,11 @@ from ...verify import (
     seal,
     verify_certificate,
 )
+from .clock import RunClock
 from .crew import ProofCrew
 from .document import certificate, fits, problem_document
 from .exact import ExactProblem
-from .judged import Deadline
-from .outcome import Certified, EarlierProof, Outcome
+from .outcome import Certified, Outcome, WrittenProof
 
 VARIABLE = "TRAJGAP_CACHE"
 """Environment variable with another folder for what is kept; empty for none."""
@@ -39,8 +39,6 @@ FORMAT = "trajgap kept proof 1"
 """Of the files; what begins with anything else is none of them."""
 MOST_KEPT = 256 * 2**20
 """Bytes of all files together: thousands of proofs of usual size. The oldest make way."""
-MOST_NODES = 2**53
-"""Boxes that a file may speak of; every whole number below it is a float."""
 _ODD = (OSError, LookupError, TypeError, ValueError, ArithmeticError, RecursionError)
 """What a file of any content may raise while it is read; `Refused` is a `ValueError`."""
 _LIBRARIES = ("casadi", "numba", "numpy", "scipy")
@@ -81,7 +79,7 @@ class KeptProofs:
         subject: Subject,
         gap: float,
         seed: int,
-        deadline: Deadline,
+        clock: RunClock,
         crew: ProofCrew | None = None,
     ) -> Certified | None:
         """What was proved before to the very question, proved again.
@@ -93,8 +91,8 @@ class KeptProofs:
         gap : float
             Relative width that the interval has to reach.
         seed : int
-        deadline : Deadline
-            Until which proving again may take.
+        clock : RunClock
+            Of which proving again may take what is left.
         crew : ProofCrew, optional
             Who proves it again; without one, this process alone.
 
@@ -111,7 +109,7 @@ class KeptProofs:
             document, nodes = _parts(kept)
             if not fits(document, problem, subject):
                 return None
-            left, spread = deadline.left, None if crew is None else crew.spread
+            left, spread = clock.left, None if crew is None else crew.spread
             verdict = verify_certificate(document, seconds=left, spread=spread)
             if not verdict.proves or verdict.altered or verdict.lower is None:
                 return None
@@ -128,7 +126,7 @@ class KeptProofs:
                 nodes,
                 0,
                 0.0,
-                EarlierProof(document["proof"]),
+                WrittenProof(document["proof"]),
                 subject=subject,
                 speeds=None if speeds is None else tuple(tuple(map(number, row)) for row in speeds),
                 verdict=verdict,
@@ -190,7 +188,7 @@ def _parts(kept: Any) -> tuple[dict[str, Any], int]:
     document, nodes = kept["certificate"], kept["nodes"]
     if kept["format"] != FORMAT or type(document) is not dict or document.get("proof") is None:
         raise ValueError("no kept proof")
-    if type(nodes) is not int or not 0 <= nodes < MOST_NODES:
+    if type(nodes) is not int or not 0 <= nodes < 2**53:
         raise ValueError("no number of boxes")
     return document, nodes
 

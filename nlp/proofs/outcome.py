@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from concurrent.futures import Executor
 from dataclasses import dataclass, field
 from enum import StrEnum
 from fractions import Fraction
@@ -12,6 +11,7 @@ from typing import Any, Protocol
 
 from ...problem import Array
 from ...verify import CertificateVerdict, Subject, shown_bound
+from .clock import RunClock
 from .crew import ProofCrew
 from .exact import ExactProblem
 
@@ -52,13 +52,13 @@ class Argument(Protocol):
 
 
 @dataclass(frozen=True)
-class EarlierProof:
-    """A proof from a state, as it was read there, and proved again by `trajgap.verify`."""
+class WrittenProof:
+    """A proof as it stands in documents: small, or read in one and proved again."""
 
     proof: dict[str, Any]
 
     def document(self) -> dict[str, Any]:
-        """As it was read."""
+        """As it stands there."""
         return self.proof
 
 
@@ -70,7 +70,7 @@ class Resumed:
     ----------
     lower : Fraction
         Proved by ``proof``, s; 0 without it.
-    proof : EarlierProof or None
+    proof : WrittenProof or None
     durations : tuple of Fraction or None
         Proved to keep the limits.
     speeds : tuple or None
@@ -82,7 +82,7 @@ class Resumed:
     """
 
     lower: Fraction
-    proof: EarlierProof | None
+    proof: WrittenProof | None
     durations: tuple[Fraction, ...] | None
     speeds: tuple[tuple[Fraction, ...], ...] | None
     proposals: dict[str, Any] | None
@@ -97,8 +97,8 @@ class Request:
     ----------
     gap : float
         Relative width of the interval to reach.
-    seconds : float
-        Time limit of search and judging; the session ends the search early enough.
+    clock : RunClock
+        Of search and judging; the session ends the search early enough.
     boxes : float
         Boxes after which the search ends, whatever the time.
     known : ndarray, shape (segments,), or None
@@ -109,21 +109,15 @@ class Request:
         Where a stopped run is to go on.
     report : callable or None
         Called with a `Progress` now and then.
-    workers : int
-        Parts of a search that run at a time, where its kind of proof has parts.
-    executor : concurrent.futures.Executor or None
-        Where they run; None for threads of this process.
     crew : ProofCrew
-        Who works on pieces of search and judging that hold the interpreter's lock.
+        Who works on pieces of search and judging.
     """
 
     gap: float = GAP
-    seconds: float = 60.0
+    clock: RunClock = field(default_factory=lambda: RunClock(math.inf))
     seed: int = 0
     resume: Resumed | None = None
     report: Callable[[Progress], None] | None = None
-    workers: int = 1
-    executor: Executor | None = None
     crew: ProofCrew = field(default_factory=ProofCrew)
     boxes: float = math.inf
     known: Array | None = None

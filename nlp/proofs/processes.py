@@ -23,8 +23,6 @@ _BEGIN = (
 that no program needs a guard around its beginning."""
 _SIZE = 8
 """Bytes of the length that stands before each message: enough for any."""
-_COMMON = 4
-"""Common parts that a process keeps unpacked: those of search and judging, and some to spare."""
 
 
 class ProcessGone(Exception):
@@ -119,7 +117,7 @@ def worked(work: bytes, common: bytes) -> bytes:
         return pickle.dumps((False, RuntimeError(f"{type(answer[1]).__name__}: {error}")))
 
 
-@lru_cache(maxsize=_COMMON)
+@lru_cache(maxsize=4)  # those of search and judging, and some to spare
 def _unpacked(common: bytes) -> Any:
     """What pieces have in common is unpacked once: tables that are kept for it are found again."""
     return pickle.loads(common)

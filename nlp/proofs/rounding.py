@@ -5,8 +5,16 @@ from __future__ import annotations
 import math
 from fractions import Fraction
 
-UNIT = 2**30
-"""Steps in a unit of what `below` rounds: their count times a total of days fits a double."""
+STRETCHES = (Fraction(0), *(Fraction(1, 10**k) for k in range(13, 6, -1)))
+"""Shares by which an answer is stretched until it is feasible, tried in turn: from some roundings
+of a float to a tenth of the gap that is asked for by default."""
+
+
+def up(value: Fraction, digits: int) -> Fraction:
+    """The least decimal of so many digits that is not below a positive number."""
+    places = digits - math.ceil(math.log10(max(float(value), 1e-12)))
+    ten = Fraction(10) ** places
+    return math.ceil(value * ten) / ten
 
 
 def down(value: Fraction, digits: int) -> Fraction:
@@ -24,8 +32,8 @@ def down(value: Fraction, digits: int) -> Fraction:
 
 
 def below(value: Fraction) -> Fraction:
-    """The largest multiple of 2⁻³⁰ that is not above: exact in floating point."""
-    return Fraction(math.floor(value * UNIT), UNIT)
+    """The largest multiple of 2⁻³⁰ that is not above: times a total of days it fits a double."""
+    return Fraction(math.floor(value * 2**30), 2**30)
 
 
 def root_below(value: Fraction, order: int) -> Fraction:

@@ -3,46 +3,26 @@
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Callable
 from contextlib import AbstractContextManager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any, TypeVar
+from typing import TypeVar
 
 import numpy as np
 
 from ...problem import Array, TrajgapError, evaluate
-from ...verify import Subject, verify_certificate
+from ...verify import Clock, Subject
+from ...verify import OutOfTime as OutOfTime
 from ..optimum import solve, stopping_after
 from .answer import float_problem, prove_feasible
-from .document import certificate
 from .exact import ExactProblem
-from .outcome import Argument, Certified, EarlierProof, Outcome, Progress, Request
+from .outcome import Argument, Certified, Outcome, Progress, Request, WrittenProof
 
 T = TypeVar("T")
 
 Answer = tuple[tuple[Fraction, ...], tuple[tuple[Fraction, ...], ...] | None]
 """Durations, and the speeds at the way-points that an answer of any curve has."""
-
-OFTEN = 0.2
-"""Seconds between reports: a reader follows them, and they cost nothing beside the boxes."""
-
-
-JUDGING = 0.25
-"""Seconds that judging takes for one of search, before it is measured: more than most kinds of
-proof need. Those for cubic and quintic splines are measured."""
-EARLY = 0.25
-"""Share of the time after which judging is measured: earlier, most runs that end in time are over,
-and judging twice would cost them more than it gives."""
-SEEKING = 0.5
-"""Share of what is left of the time that a local search may take: the rest is for the proof."""
-ANSWERING = 0.5
-"""Seconds that the exact proof of an answer may take beyond the time limit, or beyond its beginning
-where that is later: an answer of usual size is proved in a tenth of it, whatever the limit."""
-SAFE = 1.5
-"""Factor on what was measured: later boxes may take longer to judge than those so far."""
-
 
 UNBOUNDED = "the time ended before a lower bound was proved"
 """What was left out where a search had to end before its first proof."""
@@ -51,11 +31,7 @@ BARE = "the time ended before a bound better than that of the mean velocities wa
 BOXED = "the boxes that were allowed ended before a lower bound was proved"
 """The same where boxes were counted, and no time was limited."""
 UNPROVED = "a motion was found, and the exact proof that it keeps its limits was cut short"
-"""What was left out where `ANSWERING` is over."""
-
-
-class OutOfTime(Exception):
-    """Time is up, or boxes are as small as they may get: what is proved so far is the result."""
+"""What was left out where `Session.answering` is over."""
 
 
 class Shorter(Exception):
@@ -123,16 +99,26 @@ class Session:
         What a stopped run had not finished; a kind of proof sets it before it is interrupted. Until
         then it is what the run goes on from.
     judging : float
-        Seconds that judging takes for one of search, before it is measured.
+        Seconds that judging takes for one of search: what a kind of proof asks for is left to it.
     infeasible : bool
         A kind of proof showed that nothing is feasible.
     one_sided : bool
         The kind of proof bounds from below only: no answer of its own is claimed.
     left_out : str or None
         What the time was too short for, in words; a kind of proof sets it where it ends the run.
-    nodes, open_boxes, judged_boxes : int
-        Boxes visited, boxes left, and boxes of the proof where its kind says so.
+    nodes, open_boxes : int
+        Boxes visited, boxes left.
+    often : float
+        Seconds between reports: a reader follows them, and they cost nothing beside the boxes.
+    seeking : float
+        Share of what is left of the time that a local search may take: the rest is for the proof.
+    answering : float
+        Seconds that the exact proof of an answer may take beyond the time limit, or beyond its
+        beginning where that is later: an answer of usual size is proved in a tenth of it, whatever
+        the limit.
     """
+
+    often, seeking, answering = 0.2, 0.5, 0.5
 
     def __init__(self, exact: ExactProblem, request: Request) -> None:
         self.exact, self.request, self.crew = exact, request, request.crew
@@ -143,12 +129,10 @@ class Session:
         self.proposals: Argument | None = None
         self.infeasible = self.one_sided = False
         self.left_out: str | None = None
-        self.nodes = self.open_boxes = self.judged_boxes = 0
+        self.nodes = self.open_boxes = 0
         self._unsearched = True
-        self.judging = JUDGING
-        self._judging: float | None = None
-        self._answering = 0.0
-        self._began = time.perf_counter()
+        self.judging = 0.25
+        self.clock, self._answering = request.clock, 0.0
         self._reported = -math.inf
         resumed = request.resume
         if resumed is not None:
@@ -157,26 +141,18 @@ class Session:
             self.lower, self.proof = resumed.lower, resumed.proof
             self._unsearched = resumed.proof is None
             if resumed.proposals is not None:
-                self.proposals = EarlierProof(resumed.proposals)
+                self.proposals = WrittenProof(resumed.proposals)
 
-    def taken_up(self, read: Callable[[dict[str, Any]], T]) -> T | None:
-        """What a stopped run had not finished, read by its kind of proof; None if there is nothing.
-
-        Parameters
-        ----------
-        read : callable
-            Trusts nothing in what it reads.
+    def read(self, state: Callable[[], T]) -> T:
+        """What a kind of proof reads in a state, in which it trusts nothing.
 
         Raises
         ------
         TrajgapError
             If it is malformed, or not proved where that is asked for.
         """
-        resumed = self.request.resume
-        if resumed is None or resumed.proposals is None:
-            return None
         try:
-            return read(resumed.proposals)
+            return state()
         except (KeyError, IndexError, TypeError, ValueError, ArithmeticError) as error:
             if isinstance(error, TrajgapError):
                 raise
@@ -199,65 +175,30 @@ class Session:
 
     @property
     def seconds(self) -> float:
-        """Time since the run began."""
-        return time.perf_counter() - self._began
+        """Time since the run began; compiling does not count."""
+        return self.clock.used
 
-    def check_clock(self, ahead: float = 0.0) -> None:
+    @property
+    def left(self) -> float:
+        """Seconds that a search may still take: judging and the answer have the rest."""
+        return (self.clock.seconds - self._answering) / (1.0 + self.judging) - self.seconds
+
+    def check_clock(self) -> None:
         """Raise `OutOfTime` when what is left of the time is needed for judging.
 
         So it does when as many boxes were visited as are allowed: whether the clock has a say is up
         to who asks.
-
-        Parameters
-        ----------
-        ahead : float
-            Seconds that a stage without steps is estimated to take, which is not begun then.
         """
-        if self.nodes >= self.request.boxes:
-            if self._unsearched and self.left_out is None:
-                self.left_out = BOXED
-            raise OutOfTime
-        seconds = self.seconds
-        judging = (
-            self.judging * seconds if self._judging is None else self._judging * self.judged_boxes
-        )
-        if seconds + judging + self._answering + ahead > self.request.seconds:
-            if self._unsearched and self.left_out is None:
-                self.left_out = UNBOUNDED if self.proof is None else BARE
-            raise OutOfTime
-
-    @property
-    def searching(self) -> float:
-        """Seconds that a search may still take, before `check_clock` ends it."""
-        end = self.request.seconds - self._answering
-        if self._judging is None:
-            return end / (1.0 + self.judging) - self.seconds
-        return end - self._judging * self.judged_boxes - self.seconds
-
-    def weigh(self, boxes: int, proof: Callable[[], Argument], after: float = EARLY) -> None:
-        """Say how large the proof is by now, for kinds whose judging takes as long as the search.
-
-        Once in a run the proof is judged on the way, which tells how long a box takes.
-
-        Parameters
-        ----------
-        boxes : int
-            That judging would have to go through.
-        proof : callable
-            The proof so far.
-        after : float
-            Share of the time that is to be over before.
-        """
-        self.judged_boxes = max(self.judged_boxes, boxes)
-        if self._judging is not None or boxes < 1:
+        boxed = self.nodes >= self.request.boxes
+        if not boxed and self.left >= 0.0:
             return
-        if self.seconds < after * self.request.seconds:
-            return
-        part = replace(self.result(False, Subject.DECLARED), lower=Fraction(0), proof=proof())
-        began = time.perf_counter()
-        left = max(0.0, self.request.seconds - self.seconds)
-        verify_certificate(certificate(part), seconds=left, spread=self.crew.spread)
-        self._judging = SAFE * (time.perf_counter() - began) / boxes
+        if self._unsearched and self.left_out is None:
+            self.left_out = BOXED if boxed else UNBOUNDED if self.proof is None else BARE
+        raise OutOfTime
+
+    def searching(self) -> AbstractContextManager[None]:
+        """Within, `time_up` says when a search is to end that does not ask the session."""
+        return stopping_after(self.left)
 
     # --- the answer -------------------------------------------------------------------------------
 
@@ -270,14 +211,11 @@ class Session:
             If the time for that proof is over: nothing is said of the durations then.
         """
         began = self.seconds
-        end = max(began, self.request.seconds) + ANSWERING
-
-        def clock() -> None:
-            if self.seconds > end:
-                self.left_out = UNPROVED
-                raise OutOfTime
-
-        proved = prove_feasible(self.exact, durations, clock)
+        try:
+            proved = prove_feasible(self.exact, durations, Clock(self.clock.left + self.answering))
+        except OutOfTime:
+            self.left_out = UNPROVED
+            raise
         # Whoever judges proves the answer once more.
         self._answering = max(self._answering, self.seconds - began)
         if proved is None or (self.upper is not None and sum(proved) >= self.upper):
@@ -307,8 +245,7 @@ class Session:
 
     def sharing_the_time(self) -> AbstractContextManager[None]:
         """Within, a local search ends after its share of the time that is left."""
-        left = self.request.seconds - self.seconds
-        return stopping_after(SEEKING * left)
+        return stopping_after(self.seeking * self.clock.left)
 
     def stretched(self, directions: Array) -> Array:
         """Rows of durations, each stretched until it keeps the limits and the least durations.
@@ -363,8 +300,8 @@ class Session:
                         continue
                     began = self.seconds
                     self.keep(target, stage(target))
-                    took, left = self.seconds - began, self.request.seconds - self.seconds
-                    leaping = leaping or ladder.leaps(gap, took, left)
+                    took = self.seconds - began
+                    leaping = leaping or ladder.leaps(gap, took, self.clock.left)
                 return
             except Shorter as found:
                 if not self.seek(found.durations):
@@ -374,7 +311,7 @@ class Session:
         """Tell whoever asked how far the run is, now and then."""
         self.open_boxes, self.nodes = open_boxes, nodes
         now = self.seconds
-        if self.request.report is None or now - self._reported < OFTEN:
+        if self.request.report is None or now - self._reported < self.often:
             return
         self._reported = now
         least = max(float(self.lower), 0.0 if lower is None else float(lower))

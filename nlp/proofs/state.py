@@ -21,7 +21,7 @@ from ...verify import (
 from .crew import ProofCrew
 from .document import document_of, fits, sealed
 from .exact import ExactProblem
-from .outcome import Certified, EarlierProof, Resumed
+from .outcome import Certified, Resumed, WrittenProof
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,7 +139,7 @@ def resumed(
     durations, speeds = claim["durations"], claim["speeds"]
     return Resumed(
         Fraction(0) if proof is None else number(claim["lower"]),
-        None if proof is None else EarlierProof(proof),
+        None if proof is None else WrittenProof(proof),
         None if durations is None else tuple(map(number, durations)),
         None if speeds is None else tuple(tuple(map(number, row)) for row in speeds),
         document["proposals"],

@@ -8,14 +8,14 @@ from ...problem import Array, Limits, Trajectory, TrajgapError
 from ...problem.motions import Interpolation, Motion, Samples, interpolated
 from .grid import measure, sample
 from .path import pieces
-from .toppra_check import excess, not_applicable
-
-CELLS = 2000
-"""Cells of each piece of up to five segments: the finest grid of the comparison."""
+from .toppra_check import GRIDPOINTS, excess, not_applicable
 
 
 def retimed_motion(
-    trajectory: Trajectory, limits: Limits, joints: tuple[str, ...] = (), cells: int = CELLS
+    trajectory: Trajectory,
+    limits: Limits,
+    joints: tuple[str, ...] = (),
+    cells: int = GRIDPOINTS[-1],
 ) -> Motion:
     """The fastest motion on a path under velocity and acceleration limits, as TOPPRA finds it.
 
@@ -32,7 +32,8 @@ def retimed_motion(
     joints : tuple of str, optional
         Labels.
     cells : int
-        Of each piece between standstills, of up to five segments.
+        Of each piece between standstills, of up to five segments; the finest grid of the comparison
+        by default.
 
     Returns
     -------

@@ -14,8 +14,6 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(6)
 """Gauss–Legendre of 6 nodes: exact for degree 11, so that a cell's arc length is, to rounding."""
 _TABLE, _REFINEMENTS = 256, 4
 """Points of a stretch's first table, and rounds in which points move to where the path turns."""
-_SEGMENTS = 5
-"""Segments that a piece may have before its number of cells grows in proportion."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,7 +114,7 @@ def sample(piece: PathPiece, graded: Measure, cells: int) -> SampledPath:
     -------
     SampledPath
     """
-    cells = round(cells * max(1.0, len(piece.stretches) / _SEGMENTS))
+    cells = round(cells * max(1.0, len(piece.stretches) / 5))
     shares = np.array([tau[-1] - tau[0] for tau in graded.tau])
     counts = np.maximum(1, np.round(cells * shares / shares.sum()).astype(int))
     parts = []

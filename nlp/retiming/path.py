@@ -15,10 +15,6 @@ STANDSTILL = 1e-5
 
 Exact standstills lie at 1e-12; a turn taken at a speed in between is sharper than TOPPRA's linear
 programs resolve, and stopping there costs less than this share of the time."""
-_VANISHING = 1e-9
-"""Coefficients below this share of the largest are rounding where all joints stand still."""
-_IDLE = 1e-11
-"""A segment that moves by less than this share of what the fastest speed covers stands still."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,7 +139,8 @@ def pieces(trajectory: Trajectory) -> tuple[tuple[PathPiece, ...], tuple[float, 
     for k, begin in enumerate(trajectory.breaks[:-1]):
         h = float(trajectory.durations[k])
         a = trajectory.scaled[k, : trajectory.degrees[k] + 1]
-        if np.abs(a[1:]).sum(axis=0).max() <= _IDLE * tops.max() * h:
+        # What moves by less than this share of what the fastest speed covers stands still.
+        if np.abs(a[1:]).sum(axis=0).max() <= 1e-11 * tops.max() * h:
             cuts += [float(begin), float(begin + h)]
             groups.append([])
             continue
@@ -184,7 +181,7 @@ def _expanded(a: Array, about: float, width: float, rest: bool) -> Array:
         b[1] = 0.0
         scale = np.abs(b[1:]).max()
         for m in range(2, size):
-            if np.abs(b[m]).max() > _VANISHING * scale:
+            if np.abs(b[m]).max() > 1e-9 * scale:  # below it, rounding
                 break
             b[m] = 0.0
     return b

@@ -14,14 +14,6 @@ from .path import jump, pieces
 
 GRIDPOINTS = (500, 1000, 2000)
 """Three sizes, each twice the last, to fit the order of the grid's error."""
-KEPT = 1e-9
-"""Relative excess over a limit that still counts as keeping it."""
-_RESOLUTION = 1e-5
-"""Relative accuracy of one TOPPRA duration on its grid: tolerances of its linear programs, and
-the share of the time that stopping at a very sharp turn may cost."""
-
-_COARSE = 0.05
-"""Error estimate, relative to the duration, beyond which nothing is asserted."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,7 +127,7 @@ def retime(
         return Retiming(False, reason, total, cells)
     worst, stretch = excess(trajectory, limits)
     parts, cuts = pieces(trajectory)
-    from .toppra_piece import optimal_duration  # toppra takes a second to import
+    from .toppra_piece import optimal_speeds  # toppra takes a second to import
 
     durations = np.zeros(3)
     for i, piece in enumerate(parts):
@@ -146,17 +138,17 @@ def retime(
             ends = path.end_speeds(given)
             # No joint with a limit moves far enough to count: any scale will do.
             expected = (stretch or 1.0) * piece.duration
-            found = optimal_duration(path, limits.velocity, limits.acceleration, ends, expected)
+            found = optimal_speeds(path, limits.velocity, limits.acceleration, ends, expected)
             if found is None:
                 why = f"TOPPRA found no parametrisation of piece {i + 1} on {n} cells"
                 return Retiming(False, why, total, cells, cuts=cuts)
-            durations[level] += found
+            durations[level] += found[0]
     order, extrapolated, error = extrapolate(cells, durations)
     if end_speeds is not None:
         reason = "the end speeds are not the trajectory's"
-    elif worst > 1.0 + KEPT:
+    elif worst > 1.0 + 1e-9:
         reason = f"the trajectory exceeds a limit itself (ratio {worst:.6g})"
-    elif error > _COARSE * extrapolated:
+    elif error > 0.05 * extrapolated:
         reason = f"the grids are too coarse (error estimate {error:.2g} s)"
     holds = extrapolated <= total + error if reason is None else None
     return Retiming(
@@ -246,7 +238,8 @@ def extrapolate(cells: Sequence[int], durations: Array) -> tuple[float | None, f
     """
     first, second = float(durations[0] - durations[1]), float(durations[1] - durations[2])
     last = float(durations[2])
-    noise = _RESOLUTION * last
+    # Tolerances of TOPPRA's programs, and what stopping at a very sharp turn may cost.
+    noise = 1e-5 * last
     n = np.asarray(cells, dtype=np.float64) / cells[2]
 
     def mismatch(p: float) -> float:

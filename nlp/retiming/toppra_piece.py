@@ -27,10 +27,6 @@ _UNITS = ((1e4, 10.0), (1e4, 1.0), (1e2, 10.0), (1e4, 3.0), (1e4, 30.0), (1e2, 1
 
 The linear programs have absolute tolerances around 1e-9 and bounds of 1e8 on all variables, and
 now and then fail in one scaling; where several succeed, they agree to 1e-6."""
-_SLOWER = 10.0
-"""Largest relative change of an end speed that counts as error of the grid, in cells."""
-_UNLIMITED = 1e3
-"""Stands for no velocity limit, in path lengths per expected duration."""
 
 
 class _Path:
@@ -151,13 +147,13 @@ def _quiet() -> Iterator[None]:
         logger.setLevel(level)
 
 
-def optimal_duration(
+def optimal_speeds(
     path: SampledPath,
     velocity: Array,
     acceleration: Array,
     end_speeds: tuple[float, float],
     expected: float,
-) -> float | None:
+) -> tuple[float, Array] | None:
     """Least time for one piece under velocity and acceleration limits.
 
     Parameters
@@ -172,31 +168,14 @@ def optimal_duration(
 
     Returns
     -------
-    float or None
-        Duration, s; None if no parametrisation was found, or no joint that moves on this piece
-        has an acceleration limit.
-    """
-    found = optimal_speeds(path, velocity, acceleration, end_speeds, expected)
-    return None if found is None else found[0]
-
-
-def optimal_speeds(
-    path: SampledPath,
-    velocity: Array,
-    acceleration: Array,
-    end_speeds: tuple[float, float],
-    expected: float,
-) -> tuple[float, Array] | None:
-    """As `optimal_duration`, with the path speeds at the points of the grid.
-
-    Returns
-    -------
     tuple of float and ndarray, shape (points,), or None
-        s, and rad/s.
+        Duration, s, and path speeds at the points of the grid, rad/s; None if no parametrisation
+        was found, or no joint that moves on this piece has an acceleration limit.
     """
     if not np.isfinite(acceleration[path.moving]).any():
         return None
-    unlimited = _UNLIMITED * float(path.s[-1]) / expected
+    # No limit stands for a thousand path lengths per expected duration.
+    unlimited = 1e3 * float(path.s[-1]) / expected
     velocity = np.where(np.isfinite(velocity), velocity, unlimited)
     for length, speed in _UNITS:
         time_unit = expected * speed / length
@@ -227,7 +206,7 @@ def _attempt(
         ),
     ]
     start, end = (speed * time_unit * scale for speed in end_speeds)
-    slower = 1.0 - _SLOWER / path.s.size
+    slower = 1.0 - 10.0 / path.s.size  # an error of the grid: ten cells
     with _quiet(), np.errstate(all="ignore"):
         solver = _Solver(
             limits,

@@ -7,7 +7,7 @@ from functools import lru_cache
 
 import numpy as np
 from trajgap.nlp.proofs.certifiers import certify
-from trajgap.nlp.proofs.cubic.system import cubic_system
+from trajgap.nlp.proofs.cubic.system import CubicSystem, cubic_system
 from trajgap.nlp.proofs.cubic.tree import Prover
 from trajgap.nlp.proofs.document import problem_document
 from trajgap.nlp.proofs.exact import exact_problem
@@ -21,7 +21,6 @@ from trajgap.problem import (
     evaluate,
 )
 from trajgap.verify import TICKS, read_problem
-from trajgap.verify.cubic.system import Cubic
 
 NATURAL = ((2, 0.0),)
 
@@ -84,11 +83,10 @@ def base() -> Certified:
     return certify(base_problem(), gap=0.02)
 
 
-def both(problem: Problem, total: Fraction | None = None) -> tuple[Prover, Cubic]:
-    """Solver and verifier for one problem, by their own routes."""
-    exact = exact_problem(problem)
-    system = cubic_system(exact, Fraction(11) if total is None else total)
-    cap = 11 * TICKS if total is None else int(total / Fraction(2) ** system.second * TICKS)
-    prover = Prover(system, cap)
-    proof = {"powers": list(prover.system.powers), "second": prover.system.second, "cap": cap}
-    return prover, Cubic(read_problem(problem_document(exact)), proof)
+def prover_of(problem: Problem, total: Fraction | None = None) -> Prover:
+    """What carries out steps below a total; of 11 units of time by default."""
+    stated = read_problem(problem_document(exact_problem(problem)))
+    if total is not None:
+        return Prover(cubic_system(stated, total))
+    system = cubic_system(stated, Fraction(11))
+    return Prover(CubicSystem(stated, system.powers, system.second, 11 * TICKS))

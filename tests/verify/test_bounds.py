@@ -99,7 +99,7 @@ def test_weighted_rows_are_least_at_a_corner(seed: int) -> None:
                 x, y = (0, v[row.joint]) if row.span == 0 else (v[row.joint], 0)
                 total -= weight * (time * h[row.span] + first * x + last * y - right)
             values.append(total)
-    assert kind._least_total(box, weighted) == min(values)
+    assert kind.least_total(box, weighted) == min(values)
 
 
 def test_a_total_below_the_cap_bounds_the_durations_and_the_speed() -> None:
@@ -119,4 +119,4 @@ def test_a_total_below_the_cap_bounds_the_durations_and_the_speed() -> None:
     low = [Fraction(2, 3), Fraction(data["problem"]["duration_lower"][1])]
     spare = cap - sum(low)
     assert free.root() == [(x, x + spare) for x in low]
-    assert free._speeds == [Fraction(1, 4) + 2 * cap, Fraction("1.5")]
+    assert free.speeds == [Fraction(1, 4) + 2 * cap, Fraction("1.5")]

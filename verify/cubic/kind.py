@@ -28,24 +28,22 @@ class CubicSpline(ProofKind[Box]):
         self, problem: StatedProblem, proof: dict[str, Any], total: Fraction, clock: Clock
     ) -> None:
         super().__init__(problem, proof, total, clock)
-        self._cubic = Cubic(problem, proof)
-        ticks = total / self._cubic.second * TICKS
-        need(
-            ticks <= self._cubic.cap * TICKS, "the total exceeds the cap below which the boxes lie"
-        )
+        self.cubic = Cubic(problem, proof)
+        ticks = total / self.cubic.second * TICKS
+        need(ticks <= self.cubic.cap * TICKS, "the total exceeds the cap below which the boxes lie")
         self._ticks = ticks
         rows = listed(proof["rows"], "rows", MOST_ROWS)
-        self._known = [self._cubic.condition(entry) for entry in clock.each(rows)]
-        self._root = self._cubic.root(proof["root"])
+        self._known = [self.cubic.condition(entry) for entry in clock.each(rows)]
+        self._root = self.cubic.root(proof["root"])
 
     def root(self) -> Box:
         """Its lower sides are stated in the file, and proved."""
-        nothing: list[list[Range]] = [[None] * self._cubic.size for _ in range(self._cubic.joints)]
-        return Box(self._cubic, *self._root, nothing, 0)
+        nothing: list[list[Range]] = [[None] * self.cubic.size for _ in range(self.cubic.joints)]
+        return Box(self.cubic, *self._root, nothing, 0)
 
     def cut(self, box: Box, coordinate: int, place: Any) -> tuple[Box, Box]:
         """At the stated tick; a place outside leaves one part empty."""
-        k, at = whole(coordinate, 0, self._cubic.free - 1), whole(place, 0, MOST_INTEGER)
+        k, at = whole(coordinate, 0, self.cubic.free - 1), whole(place, 0, MOST_INTEGER)
         parts = []
         for lower in (True, False):
             low, high = list(box.low), list(box.high)
@@ -53,7 +51,7 @@ class CubicSpline(ProofKind[Box]):
                 high[k] = min(at, high[k])
             else:
                 low[k] = max(at, low[k])
-            part = Box(self._cubic, low, high, [list(x) for x in box.x], box.floor)
+            part = Box(self.cubic, low, high, [list(x) for x in box.x], box.floor)
             part.empty |= box.empty
             parts.append(part)
         return parts[0], parts[1]
@@ -70,14 +68,14 @@ class CubicSpline(ProofKind[Box]):
         elif tag == "f":
             value, scale, *weights = listed(data, 'a step "f"', 5, 5)
             whole(value, 0, MOST_INTEGER)
-            total = dict.fromkeys(range(self._cubic.m), whole(scale, 1, MOST_INTEGER))
+            total = dict.fromkeys(range(self.cubic.m), whole(scale, 1, MOST_INTEGER))
             proved = least(box, total, weights, self._known) * TICKS >= value * scale
             need(proved, "a floor is not proved")
             box.floor = max(box.floor, value)
             box.trim()
         else:
             k, sign, value, scale, *weights = listed(data, 'a step "t"', 7, 7)
-            whole(k, 0, self._cubic.free - 1)
+            whole(k, 0, self.cubic.free - 1)
             sign_of(sign)
             whole(value, -MOST_INTEGER, MOST_INTEGER)
             target = {k: sign * whole(scale, 1, MOST_INTEGER)}

@@ -28,7 +28,7 @@ class Cubic:
     def __init__(self, problem: StatedProblem, proof: dict[str, Any]) -> None:
         self.problem = problem
         declared = required(problem.declaration, "the curve is no declared piecewise polynomial")
-        self.ends, self.virtual = _kind_of_ends(declared)
+        self.ends, self.virtual = kind_of_ends(declared)
         q = problem.waypoints
         self.n, self.m, self.joints = problem.segments, len(q) - 1, problem.joints
         need(self.n <= MOST_CUBIC_SEGMENTS, f"more than {MOST_CUBIC_SEGMENTS} segments")
@@ -153,26 +153,30 @@ class Cubic:
         other = a * self.cap / still if still and a is not None else None
         return smaller(velocity, other), a
 
+    def side(self, c: int) -> tuple[Fraction, Fraction]:
+        """Least and largest value of a coordinate: bounds, mean velocities, and the cap."""
+        held = [k for k, x in enumerate(self.lengths) if x.get(c, 0) > 0]
+        if self.virtual and c in (0, self.m - 1):
+            held.append(0 if c == 0 else self.n - 1)
+        least = sum((self.shortest[k] for k in held), ZERO)
+        for j in range(self.joints if c < self.m else 0):
+            v, _ = self.fastest(j)
+            least = max(least, abs(self.steps[c][j]) / v) if v else least
+        longest = [x for x in (self.longest[k] for k in held) if x is not None]
+        return least, sum(longest, ZERO) if len(longest) == len(held) else self.cap
+
     def root(self, stated: Any) -> tuple[list[int], list[int]]:
         """Lower sides, which are proved here, and upper sides of the outermost box."""
         stated = listed(stated, "root", self.free, self.free)
         low, high = [whole(x, 0, MOST_INTEGER) for x in stated], []
         for c in range(self.free):
-            held = [k for k, x in enumerate(self.lengths) if x.get(c, 0) > 0]
-            if self.virtual and c in (0, self.m - 1):
-                held.append(0 if c == 0 else self.n - 1)
-            least = sum((self.shortest[k] for k in held), ZERO)
-            for j in range(self.joints if c < self.m else 0):
-                v, _ = self.fastest(j)
-                least = max(least, abs(self.steps[c][j]) / v) if v else least
+            least, top = self.side(c)
             need(Fraction(low[c], TICKS) <= least, "root: a side is not proved")
-            longest = [x for x in (self.longest[k] for k in held) if x is not None]
-            top = sum(longest, ZERO) if len(longest) == len(held) else self.cap
             high.append(ceil(min(top, self.cap) * TICKS))
         return low, high
 
 
-def _kind_of_ends(declared: Declaration) -> tuple[tuple[int, int], bool]:
+def kind_of_ends(declared: Declaration) -> tuple[tuple[int, int], bool]:
     """Order prescribed at each end (0: both), and whether there are virtual way-points."""
     n = len(declared.degrees)
     need(set(declared.degrees) == {3} and set(declared.continuity) <= {2}, "no C2 cubic spline")

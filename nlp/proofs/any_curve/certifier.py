@@ -11,23 +11,90 @@ from ....problem import Array
 from ....verify import Subject
 from ..answer import float_problem
 from ..certifier import Certifier
-from ..exact import ExactProblem
+from ..document import stated_problem
+from ..driver import grow
 from ..rounding import down
-from ..session import Session
+from ..session import Session, Shorter
 from .estimate import estimate_any_curve
-from .exact import FreeQuestion, missing, prove_motion, question, unanswered
 from .local import LocalQuestion, local_optimum
-from .proof import DIGITS, free_bound, restored
-from .search import Node, Search
+from .proof import DIGITS, free_bound, regrown
+from .question import FreeQuestion, Motion, keeps, missing, prove_motion, question
+from .search import Cutting, Node, Search
 
-_SHARE = 0.9
-"""Of the gap asked for, so that rounding has room."""
-_ABOVE = Fraction(1, 2**20)
-"""Share by which the cap exceeds the sum of all longest durations: a proof must get above it."""
-_DIGITS = 15
-"""Of a total after its first: what a double holds, about."""
 
-Motion = tuple[tuple[Fraction, ...], tuple[tuple[Fraction, ...], ...]]
+class _Run:
+    """The best motion of one run, and the boxes that are cut below it."""
+
+    def __init__(self, session: Session) -> None:
+        self.session, self.asked = session, question(session.exact)
+        self.stated = stated_problem(session.exact)
+        self.longest = [x for x in self.asked.longest if x is not None]
+        self.bounded = len(self.longest) == len(self.asked.longest)
+        self.motion: Motion | None = None
+        for found in (session.answer, self._first()):
+            if found is not None and found[1] is not None:
+                self.take((found[0], found[1]))
+
+    def take(self, motion: Motion) -> bool:
+        """Take a motion as the answer if it is the shortest; one that is none bounds all the same.
+
+        Limits of jerk and position only make motions slower: an answer has to keep them too.
+        """
+        if self.motion is not None and sum(motion[0]) >= sum(self.motion[0]):
+            return False
+        self.motion = motion
+        self.session.one_sided = not keeps(self.stated, motion)
+        if not self.session.one_sided:
+            self.session.answer = motion
+        return True
+
+    def _first(self) -> Motion | None:
+        """The best motion that the local solver finds, proved."""
+        exact = self.session.exact
+        free = (None,) * len(exact.joints)
+        alone = replace(
+            exact,
+            limits=tuple((v, a, None) for v, a, _ in exact.limits),
+            position_lower=free,
+            position_upper=free,
+        )
+        with self.session.sharing_the_time():
+            known = estimate_any_curve(float_problem(alone), seed=self.session.request.seed)
+        if known.durations is None or known.nodal_velocities is None:
+            return None
+        speeds = known.nodal_velocities[:, list(self.asked.joints)]
+        return prove_motion(self.asked, known.durations, speeds)
+
+    def cap(self) -> Fraction | None:
+        """Totals below it are looked at, s; None where there is neither answer nor bound."""
+        if self.motion is not None:
+            return sum(self.motion[0], Fraction(0))
+        # A proof that nothing is feasible must get above the sum of all longest durations.
+        most = sum(self.longest, Fraction(0)) * (1 + Fraction(1, 2**20))
+        return most if self.bounded else None
+
+    def target(self, cap: Fraction) -> float:
+        """What is enough for every box, s: nine tenths of the gap leave room for rounding."""
+        if self.motion is None:
+            return float(cap)
+        return float(sum(self.motion[0])) * (1 - 0.9 * self.session.request.gap)
+
+    def improve(self, durations: Array) -> None:
+        """Raise `Shorter` if a motion that is shorter lies near durations."""
+        better = _local_motion(self.asked, durations)
+        if better is not None and self.take(better):
+            raise Shorter(durations)
+
+    def close(self, search: Search, root: Node) -> None:
+        """Leave the bound of all boxes, proved in rational numbers."""
+        cap = search.cap if self.motion is None else sum(self.motion[0], Fraction(0))
+        least = min(search.exact(leaf, DIGITS[-1])[0] for leaf in root.leaves)
+        total = down(min(least, cap), 15)  # digits of a double
+        if total > 0:
+            self.session.keep(total, free_bound(search, root, total))
+        gap = self.session.request.gap if self.motion is not None else 0.0
+        wanted = float(cap) * (1.0 - gap)
+        self.session.report(sum(leaf.lower < wanted for leaf in root.leaves), search.nodes)
 
 
 def _prove(session: Session) -> bool:
@@ -36,127 +103,65 @@ def _prove(session: Session) -> bool:
     Of the curve only the velocities prescribed at its two ends count. Limits of jerk and position
     only make motions slower: the lower bound holds with them, and no upper bound is claimed.
     """
-    exact, gap = session.exact, session.request.gap
-    asked = question(exact)
-    answered = unanswered(exact) is None
-    motion = _shorter(_given_motion(session, asked), _first_motion(session, asked))
-    longest = [x for x in asked.longest if x is not None]
-    bounded = len(longest) == len(asked.longest)
-    if motion is not None:
-        cap = sum(motion[0], Fraction(0))
-    elif bounded:
-        cap = sum(longest, Fraction(0)) * (1 + _ABOVE)
-    else:
+    run = _Run(session)
+    cap = run.cap()
+    if cap is None:
         return True
-    search = Search(asked, cap, searching=lambda: session.searching, crew=session.crew)
-    found: list[Motion] = []
-
-    def take(better: Motion) -> None:
-        found.append(better)
-        session.one_sided = not answered
-        if answered:
-            session.answer = better[0], _all_speeds(exact, asked, better)
-
-    def target() -> float:
-        total = sum(found[-1][0]) if found else cap
-        return float(total) * (1 - _SHARE * gap if found else 1.0)
-
-    def watch(lower: float, left: int) -> None:
-        session.report(left, search.nodes, lower)
-        session.check_clock()
-
-    def improve(durations: Array) -> bool:
-        better = _local_motion(asked, durations)
-        if better is None or (found and sum(better[0]) >= sum(found[-1][0])):
-            return False
-        take(better)
-        return True
-
-    if motion is not None:
-        take(motion)
+    search, looks = Search(run.asked, cap), iter(range(Search.effort.looks))
     pending = session.proposals or session.proof
     if pending is not None:
-        search.clock = session.check_clock
-        root = restored(search, pending.document(), target())
+        document = pending.document()
+        with session.searching():
+            root = session.read(lambda: regrown(search, document, run.target(cap)))
     else:
         # The first box is bounded whatever the time: without it nothing is proved.
-        root = search.root(*_floats(asked, motion), target())
-        search.clock = session.check_clock
+        root = search.root(*_floats(run.asked, run.motion), run.target(cap))
     session.proposals = None
+
+    def watch(waiting: int, lowest: float) -> None:
+        session.report(waiting, search.nodes, lowest)
+
+    def improve(durations: Array) -> None:
+        if next(looks, None) is not None:
+            run.improve(durations)
+
     try:
-        complete = False
-        while not complete:
-            known = len(found)
-            complete = search.grow(root, target(), watch, improve)
-            if len(found) == known:
+        while True:
+            cutting = Cutting(search, run.target(cap), watch, improve)
+            try:
+                grow(
+                    cutting, (leaf for leaf in root.leaves if leaf.lower < cutting.target), session
+                )
                 break
+            except Shorter:
+                continue
     finally:
-        _close(session, search, root, found[-1] if found else None)
-    session.infeasible = not found and bounded and session.lower > sum(longest)
-    return complete
-
-
-def _close(session: Session, search: Search, root: Node, motion: Motion | None) -> None:
-    """Leave the bound of all boxes, proved in rational numbers, and the motion as the answer."""
-    top = search.cap if motion is None else sum(motion[0], Fraction(0))
-    least = min(search.exact(leaf, DIGITS[-1])[0] for leaf in root.leaves)
-    total = down(min(least, top), _DIGITS)
-    if total > 0:
-        session.keep(total, free_bound(search, root, total))
-    wanted = float(top) * (1 - session.request.gap if motion is not None else 1.0)
-    session.report(sum(leaf.lower < wanted for leaf in root.leaves), search.nodes)
+        run.close(search, root)
+    session.infeasible = run.motion is None and run.bounded and session.lower > sum(run.longest)
+    return not cutting.stuck
 
 
 ANY_CURVE = Certifier(
-    "every C1 motion", lambda _: True, missing, _prove, subject=Subject.ANY, moving=True
+    "every C1 motion", lambda _: True, missing, _prove, subject=Subject.ANY, boxes=200, moving=True
 )
 """Takes every curve, since of a curve only the velocities at its two ends count."""
 
 
-def _given_motion(session: Session, asked: FreeQuestion) -> Motion | None:
-    """The answer of the run that this one goes on from, proved there."""
-    durations, speeds = session.answer or (None, None)
-    if durations is None or speeds is None:
-        return None
-    return durations, tuple(tuple(row[j] for j in asked.joints) for row in speeds)
-
-
-def _first_motion(session: Session, asked: FreeQuestion) -> Motion | None:
-    """The best motion that the local solver finds, proved."""
-    exact = session.exact
-    alone = replace(
-        exact,
-        limits=tuple((v, a, None) for v, a, _ in exact.limits),
-        position_lower=(None,) * len(exact.joints),
-        position_upper=(None,) * len(exact.joints),
-    )
-    with session.sharing_the_time():
-        known = estimate_any_curve(float_problem(alone), seed=session.request.seed)
-    if known.durations is None or known.nodal_velocities is None:
-        return None
-    return prove_motion(asked, known.durations, known.nodal_velocities[:, list(asked.joints)])
-
-
-def _shorter(one: Motion | None, other: Motion | None) -> Motion | None:
-    """The motion that takes less time; the first of two that take the same."""
-    if one is None or other is None:
-        return one or other
-    return other if sum(other[0]) < sum(one[0]) else one
-
-
 def _local_motion(asked: FreeQuestion, durations: Array) -> Motion | None:
     """A locally best motion from given durations, proved."""
-    bent = [j for j, (_, a) in enumerate(asked.tight) if a is not None]
-    limits = np.array(
-        [[np.inf if x is None else float(x) for x in asked.tight[j]] for j in bent]
-    ).reshape(-1, 2)
+    bent = [j for j, a in enumerate(asked.acceleration) if a is not None]
+
+    def tight(limits: list[tuple[Fraction, Fraction] | None]) -> Array:
+        own = [limits[j] for j in bent]
+        return np.array([np.inf if x is None else float(x[0]) for x in own])
+
     ends = [
         [np.nan if v is None else float(v) for v in (side[j] for j in bent)] for side in asked.ends
     ]
     core = LocalQuestion(
         np.array([[float(row[j]) for j in bent] for row in asked.steps]),
-        limits[:, 0],
-        limits[:, 1],
+        tight(asked.velocity),
+        tight(asked.acceleration),
         np.array([float(asked.floor(k)) for k in range(len(asked.steps))]),
         np.array([np.inf if x is None else float(x) for x in asked.longest]),
         np.array(ends).reshape(2, -1),
@@ -175,16 +180,5 @@ def _floats(asked: FreeQuestion, motion: Motion | None) -> tuple[Array, Array]:
         return np.array(h), np.zeros((len(h) + 1, len(asked.joints)))
     return (
         np.array([float(x) for x in motion[0]]),
-        np.array([[float(v) for v in row] for row in motion[1]]),
-    )
-
-
-def _all_speeds(
-    exact: ExactProblem, asked: FreeQuestion, answer: Motion
-) -> tuple[tuple[Fraction, ...], ...]:
-    """Speeds of every joint at the way-points: a joint that does not matter stands still."""
-    place = {j: n for n, j in enumerate(asked.joints)}
-    every = range(len(exact.joints))
-    return tuple(
-        tuple(row[place[j]] if j in place else Fraction(0) for j in every) for row in answer[1]
+        np.array([[float(row[j]) for j in asked.joints] for row in motion[1]]),
     )

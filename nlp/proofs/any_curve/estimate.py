@@ -16,8 +16,6 @@ from .reach import profile
 
 STARTS = 6
 """Standing still at every way-point, and five random ones: the problem is not convex."""
-SAME = 1e-6
-"""Relative difference below which two totals count as the same."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -162,7 +160,7 @@ def estimate_any_curve(
     velocities[:, ~_restless(problem)] = 0.0
     total = float(durations.sum())
     why = _not_attained(question, durations)
-    best = sum(t <= total * (1 + SAME) for t in totals)
+    best = sum(t <= total * (1 + 1e-6) for t in totals)  # as near they count as the same
     return AnyCurveEstimate(total, durations, velocities, why is None, why, count, best, totals)
 
 

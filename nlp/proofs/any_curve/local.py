@@ -12,12 +12,8 @@ from numpy.typing import NDArray
 from ...optimum import ca, call_cap
 from .reach import reachable
 
-QUICK_SIZE = 16
-"""Segments times joints up to which a call of IPOPT ends by itself in less than a second."""
 KEPT = 1e-9
 """Relative excess over a bound that still counts as keeping it."""
-_REPAIR = 1e-6
-"""Largest relative stretch by which a solver's answer may be made exactly feasible."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,7 +117,8 @@ def local_optimum(
     down = np.minimum(cap, (-v[:-1] - v[1:] + a * h[:, None]) / 2)
     tall = np.tile(cap, (n, 1)).ravel("F")
     free = np.full(n * joints, -np.inf)
-    solver = _solver(n, joints, call_cap() if n * joints > QUICK_SIZE else None)
+    # Up to this size a call of IPOPT ends by itself in less than a second.
+    solver = _solver(n, joints, call_cap() if n * joints > 16 else None)
     given = {
         "x0": np.concatenate([h, *[part.ravel("F") for part in (v, up, down)]]),
         "p": np.concatenate([steps.ravel("F"), a]),
@@ -171,7 +168,7 @@ def _repaired(
     low, high = 0.0, 1e-15
     while not keeps(1.0 + high):
         low, high = high, 4.0 * high
-        if high > _REPAIR:
+        if high > 1e-6:  # no repair of a solver's tolerance
             return None
     for _ in range(6):
         middle = (low + high) / 2

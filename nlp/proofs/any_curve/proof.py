@@ -2,55 +2,26 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
 import numpy as np
 
-from ....problem import TrajgapError
 from ....verify import CUT, LEAF, number
+from ..driver import regrow
 from ..exact import decimal
-from .rows import KINDS, ReachRow
+from ..outcome import WrittenProof
 from .search import Node, Search
+from .tangents import KINDS
 
-KIND = "any-curve"
-"""Of the proof, as `trajgap.verify` knows it."""
 DIGITS = (4, 6, 8, 12)
 """Of the weights: as few as prove the bound."""
 
 
-@dataclass(frozen=True)
-class FreeBound:
-    """Boxes of durations, each with rows and weights, as the proof of a certificate.
-
-    Attributes
-    ----------
-    total, cap : Fraction
-        The bound; all boxes lie below the cap, s.
-    rows : tuple of list
-    tree : tuple of list
-        Nodes in preorder.
-    """
-
-    total: Fraction
-    cap: Fraction
-    rows: tuple[list[int | str], ...]
-    tree: tuple[list[int | str], ...]
-
-    def document(self) -> dict[str, Any]:
-        """Kind "any-curve" of docs/explanation/certificates-any-curve.md."""
-        return {
-            "kind": KIND,
-            "total": decimal(self.total),
-            "cap": decimal(self.cap),
-            "rows": [list(row) for row in self.rows],
-            "tree": [list(node) for node in self.tree],
-        }
-
-
-def free_bound(search: Search, root: Node, total: Fraction) -> FreeBound:
+def free_bound(search: Search, root: Node, total: Fraction) -> WrittenProof:
     """Write down what the boxes of a search prove.
+
+    It is kind "any-curve" of docs/explanation/certificates-any-curve.md.
 
     Parameters
     ----------
@@ -59,7 +30,7 @@ def free_bound(search: Search, root: Node, total: Fraction) -> FreeBound:
     total : Fraction
         At most what every leaf proves with all digits, s.
     """
-    known: dict[ReachRow, int] = {}
+    known: dict[tuple[int | str, ...], int] = {}
     tree: list[list[int | str]] = []
     stack = [root]
     while stack:
@@ -72,55 +43,49 @@ def free_bound(search: Search, root: Node, total: Fraction) -> FreeBound:
         weighted = next(texts for proved, texts in found if proved >= total)
         leaf: list[int | str] = [LEAF]
         for row, weight in weighted:
-            leaf += [known.setdefault(row, len(known)), weight]
+            leaf += [known.setdefault(tuple(row), len(known)), weight]
         tree.append(leaf)
-    joints = search.asked.joints
-    rows: tuple[list[int | str], ...] = tuple(
-        [KINDS[r.kind], r.segment, joints[r.joint], *r[3:]] for r in known
+    return WrittenProof(
+        {
+            "kind": "any-curve",
+            "total": decimal(total),
+            "cap": decimal(search.cap),
+            "rows": [list(row) for row in known],
+            "tree": tree,
+        }
     )
-    return FreeBound(total, search.cap, rows, tuple(tree))
 
 
-def restored(search: Search, document: dict[str, Any], target: float) -> Node:
+def regrown(search: Search, document: dict[str, Any], target: float) -> Node:
     """The boxes of a stopped run, bounded anew; of its rows only the parameters are used.
 
     Under a lower cap the sides of the boxes end earlier: a part beyond them is left out.
-
-    Raises
-    ------
-    TrajgapError
-        If the document is malformed.
     """
+    rows = np.array([_row(search, row) for row in document["rows"]], dtype=np.int64).reshape(-1, 7)
+    fallen = search.cap < number(document["cap"])
+    beyond = search.beyond
+    divided: list[Node] = []
+
+    def cut(node: Node, segment: int, place: str) -> tuple[Node, ...]:
+        if node is beyond:
+            return beyond, beyond
+        if fallen and number(place) >= node.box[segment][1]:
+            return node, beyond
+        divided.append(node)
+        return search.halves(node, segment, number(place), -np.inf)
+
+    def leaf(node: Node, data: list[Any]) -> None:
+        if node is not beyond:
+            used = rows[[int(n) for n in data[::2]]]
+            node.carried = np.unique(np.concatenate([node.carried, used]), axis=0)
+
+    def step(node: Node, tag: str, data: list[Any]) -> None:
+        raise ValueError(f"a step {tag}")
+
     durations = np.ones(len(search.asked.steps))
     speeds = np.zeros((len(durations) + 1, len(search.asked.joints)))
-    try:
-        rows = np.array([_row(search, row) for row in document["rows"]], dtype=np.int64)
-        root = search.root(durations, speeds, -np.inf)
-        stack: list[Node | None] = [root]
-        divided: list[Node] = []
-        fallen = search.cap < number(document["cap"])
-        for tag, *data in document["tree"]:
-            node = stack.pop()
-            if tag == CUT:
-                k, at = int(data[0]), number(data[1])
-                if not 0 <= k < len(durations):
-                    raise ValueError("a cut of a segment that is not there")
-                if node is None:
-                    stack += [None, None]
-                elif fallen and at >= node.box[k][1]:
-                    stack += [None, node]
-                else:
-                    stack += reversed(search.halves(node, k, at, -np.inf))
-                    divided.append(node)
-                continue
-            if node is None:
-                continue
-            used = rows.reshape(-1, 7)[[int(n) for n in data[::2]]]
-            node.carried = np.unique(np.concatenate([node.carried, used]), axis=0)
-        if stack:
-            raise ValueError("the tree leaves a part open")
-    except (KeyError, IndexError, TypeError, ValueError, OverflowError, ZeroDivisionError) as error:
-        raise TrajgapError(f"certify: the state cannot be resumed: {error}") from None
+    root = search.root(durations, speeds, -np.inf)
+    regrow(document["tree"], root, cut, step, leaf)
 
     def bounded(node: Node) -> Node:
         open_leaf = node.box and not node.parts
@@ -131,12 +96,12 @@ def restored(search: Search, document: dict[str, Any], target: float) -> Node:
     return bounded(root)
 
 
-def _row(search: Search, row: Any) -> ReachRow:
-    kind, segment, joint, sign = KINDS.index(row[0]), int(row[1]), int(row[2]), int(row[3])
-    numbers = [int(x) for x in row[4:]]
-    own = search.asked.joints.index(joint)
-    if sign not in (1, -1) or len(numbers) != 3 or segment < 0:
-        raise ValueError("a row is malformed")
-    if search.asked.loose[own][1] is None or sign * search.asked.steps[segment][own] < 0:
+def _row(search: Search, row: Any) -> list[int]:
+    """A row in floats' terms: only what fits the problem is taken up."""
+    own = search.kind.row(row)
+    joint = search.asked.joints.index(own.joint)
+    if search.asked.acceleration[joint] is None:
         raise ValueError("a row does not fit the problem")
-    return ReachRow(kind, segment, own, sign, *numbers)
+    if own.kind != "change" and own.sign * search.asked.steps[own.span][joint] < 0:
+        raise ValueError("a row does not fit the problem")
+    return [KINDS.index(own.kind), own.span, joint, own.sign, own.m0, own.m1, own.n]

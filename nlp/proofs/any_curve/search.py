@@ -2,26 +2,29 @@
 
 from __future__ import annotations
 
-import heapq
-import itertools
-import time
+import math
 from collections.abc import Callable
 from copy import copy
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ....problem import Array
-from ..crew import Common, ProofCrew, ProofPiece
-from ..session import OutOfTime
-from .exact import FreeQuestion
+from ....verify import Clock, OutOfTime, proof_kind
+from ...optimum import time_up
+from ..crew import Common
+from ..driver import Branching
+from ..exact import decimal
 from .program import least_total, lower
-from .rows import BRAKE, CHANGE, REACH, ReachRow, Sides, bound
+from .question import FreeQuestion
 from .tangents import (
-    Floats,
+    BRAKE,
+    CHANGE,
+    KINDS,
+    REACH,
     Ints,
     brake_rows,
     change_rows,
@@ -30,28 +33,53 @@ from .tangents import (
     reach_rows,
 )
 
-_TOLERANCE = 1e-10
-"""Excess, scaled, above which a tangent is added: the tolerance of the linear program."""
-_ROUNDS = 60
-"""Linear programs for one box at most: a guard, since they end where tangents gain little."""
-_STALL = 4
-"""Rounds in which a bound must gain a tenth of what it lacks: fewer could be one unlucky vertex."""
-_NEAR = 1e-3
-"""Rows this close to being active are handed on to the halves of a box."""
-_MARGIN = 0.1
-"""A box is never cut closer to its sides than this share of its width."""
-_AHEAD = 2
-"""Trials under way for each worker: the next one is there when one ends."""
-_LOWEST = 64
-"""Boxes whose first trials may begin before their turn: enough for many workers."""
-_TRIALS = 5
-"""Cuts tried for one box: each costs the bounds of two halves."""
-_FAINT = 0.01
-"""Share of the largest score below which cutting a segment cannot pay."""
-_NARROWEST = 1e-12
-"""Relative width below which a side is not cut: some digits more, and no float is inside."""
-_DOUBTFUL = 1e-6
-"""Excess, scaled, below which durations look feasible enough for the local solver to try them."""
+Sides = list[tuple[Fraction, Fraction]]
+"""A box: bounds of every duration, s."""
+
+
+Weighted = tuple[list[Any], str]
+"""A row as a certificate has it, and its weight."""
+
+
+@dataclass(frozen=True)
+class CutEffort:
+    """How much work a box is worth; what is proved does not depend on it.
+
+    Attributes
+    ----------
+    tolerance : float
+        Excess, scaled, above which a tangent is added: that of the linear program.
+    rounds : int
+        Linear programs for one box at most: a guard, since they end where tangents gain little.
+    stall : int
+        Rounds in which a bound must gain a tenth of what it lacks: fewer could be one unlucky
+        vertex.
+    near : float
+        Rows this close to being active are handed on to the halves of a box.
+    margin : float
+        A box is never cut closer to its sides than this share of its width.
+    trials : int
+        Cuts tried for one box: each costs the bounds of two halves.
+    faint : float
+        Share of the largest score below which cutting a segment cannot pay.
+    narrowest : float
+        Relative width below which a side is not cut: some digits more, and no float is inside.
+    doubtful : float
+        Excess, scaled, below which durations look feasible enough for the local solver.
+    looks : int
+        Times that the local solver tries such durations.
+    """
+
+    tolerance: float = 1e-10
+    rounds: int = 60
+    stall: int = 4
+    near: float = 1e-3
+    margin: float = 0.1
+    trials: int = 5
+    faint: float = 0.01
+    narrowest: float = 1e-12
+    doubtful: float = 1e-6
+    looks: int = 8
 
 
 @dataclass(eq=False)
@@ -95,104 +123,37 @@ class Node:
         return [leaf for part in self.parts for leaf in part.leaves] if self.parts else [self]
 
 
-class Trials:
-    """Trials of cuts that were begun, by box.
-
-    All boxes whose bound is below the target are cut, in whatever order: those of the lowest ones
-    may begin before it is their turn.
-    """
-
-    def __init__(self, crew: ProofCrew) -> None:
-        self.crew, self.most = crew, _AHEAD * crew.workers if crew.shared else 1
-        self._begun: dict[Node, list[ProofPiece]] = {}
-
-    def take(
-        self, number: int, lowest: list[Node], begun: Callable[[Node, int], ProofPiece]
-    ) -> ProofPiece:
-        """A trial of the lowest box, while others are under way.
-
-        What is sure to be needed comes first: the first trial of each box. Others of the lowest box
-        follow where boxes are few.
-        """
-        mine = self._begun.setdefault(lowest[0], [])
-        while len(mine) <= number:
-            mine.append(begun(lowest[0], len(mine)))
-        for node in lowest[1:]:
-            if node not in self._begun and node.cuts and self._room:
-                self._begun[node] = [begun(node, 0)]
-        while len(mine) < len(lowest[0].cuts) and self._room:
-            mine.append(begun(lowest[0], len(mine)))
-        return mine[number]
-
-    @property
-    def _room(self) -> bool:
-        """Whether fewer are under way than would keep everybody at work."""
-        every = (piece for pieces in self._begun.values() for piece in pieces)
-        return sum(not piece.finished for piece in every) < self.most
-
-    def end(self, node: Node) -> None:
-        """Give up the trials of a box that are not needed."""
-        self.crew.drop(self._begun.pop(node))
-
-    def drop(self) -> None:
-        """Give up what is left."""
-        for every in self._begun.values():
-            self.crew.drop(every)
-
-
-@dataclass(eq=False)
 class Search:
-    """The tree of boxes for one question.
+    """What bounds the boxes of one question.
 
-    Attributes
+    Parameters
     ----------
     asked : FreeQuestion
     cap : Fraction
         Totals below it are looked at, s.
-    clock : callable
-        Called before every box; stops the search by raising.
-    searching : callable
-        Seconds that are left.
-    crew : ProofCrew
-        Who tries the cuts. The tree does not depend on it: what a trial finds is a function of the
-        box, and trials count in the order of `Node.cuts`, the box with the least bound first.
+
+    Attributes
+    ----------
+    kind : AnyCurve
+        The verifier's own kind of proof, without rows.
+    nodes : int
+        Boxes that were bounded.
     """
 
-    asked: FreeQuestion
-    cap: Fraction
-    nodes: int = 0
-    looks: int = 8
-    clock: Callable[[], None] = lambda: None
-    searching: Callable[[], float] = lambda: np.inf
-    crew: ProofCrew = field(default_factory=ProofCrew)
-    until: float = np.inf
-    speeds: tuple[Fraction, ...] = field(init=False)
-    scaled: Floats = field(init=False)
+    effort = CutEffort()
 
-    def __post_init__(self) -> None:
-        joints = range(len(self.asked.joints))
-        self.speeds = tuple(self.asked.speed(j, self.cap) for j in joints)
-        self._common = Common(self)
-        self.scaled = floats(self.asked, self.speeds, float(self.cap) / len(self.asked.steps))
+    def __init__(self, asked: FreeQuestion, cap: Fraction) -> None:
+        self.asked, self.cap, self.nodes = asked, cap, 0
+        make: Any = proof_kind("any-curve")
+        self.kind = make(asked.stated, {"cap": decimal(cap), "rows": []}, cap, Clock(math.inf))
+        speeds = [self.kind.speeds[j] for j in asked.joints]
+        self.scaled = floats(asked, speeds, float(cap) / len(asked.steps))
 
-    def __getstate__(self) -> dict[str, Any]:
-        """All that another process, or a trial, needs to bound a box."""
-        own = {"clock", "searching", "crew", "_common", "nodes", "looks"}
-        return {key: value for key, value in vars(self).items() if key not in own}
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        rest = {"clock": lambda: None, "searching": lambda: np.inf, "crew": ProofCrew()}
-        vars(self).update(state, **rest, nodes=0, looks=0)
-
-    def whole(self) -> Sides | None:
-        """The box of all durations with a total below the cap; None if it is empty."""
-        floor = [self.asked.floor(k) for k in range(len(self.asked.steps))]
-        spare = self.cap - sum(floor)
-        box = tuple(
-            (low, low + spare if top is None else min(top, low + spare))
-            for low, top in zip(floor, self.asked.longest, strict=True)
-        )
-        return None if any(low > high for low, high in box) else box
+    @property
+    def beyond(self) -> Node:
+        """A box without durations."""
+        nothing = np.empty((0, 7), dtype=np.int64)
+        return Node([], nothing, np.empty(0), np.inf, nothing)
 
     def node(self, box: Sides, carried: Ints, target: float, inherited: Node | None) -> Node:
         """Bound the total in a box by a linear program, refined by tangents until it is enough.
@@ -207,8 +168,7 @@ class Search:
         inherited : Node or None
             The box that this one is a part of: its weights serve if no better ones are found.
         """
-        self.clock()
-        if time.time() > self.until:
+        if time_up():
             raise OutOfTime
         self.nodes += 1
         scaled, unit = self.scaled, self.scaled.time
@@ -222,7 +182,7 @@ class Search:
                 best = Node(box, inherited.rows, inherited.weights, again, carried)
         best.cuts = self._cuts(low, high, (high - low,), (low + high) / 2)
         rows, past = carried, [best.lower]
-        for _ in range(_ROUNDS):
+        for _ in range(self.effort.rounds):
             if best.lower >= target:
                 break
             answer = least_total(scaled, rows, low, high, target / unit)
@@ -231,8 +191,8 @@ class Search:
             x, weights = answer
             proved = lower(scaled, rows, weights, low, high) * unit
             h, v = x[: len(box)], x[len(box) :].reshape(len(box) + 1, -1)
-            new_reach = reach_rows(scaled, h, v, _TOLERANCE)
-            new_brake, excess = brake_rows(scaled, h, v, low, high, _TOLERANCE)
+            new_reach = reach_rows(scaled, h, v, self.effort.tolerance)
+            new_brake, excess = brake_rows(scaled, h, v, low, high, self.effort.tolerance)
             new = np.concatenate([new_reach, new_brake])
             if proved >= best.lower:
                 used = weights > 0
@@ -253,7 +213,9 @@ class Search:
             else:
                 enough = True
             past.append(proved)
-            stalled = len(past) > _STALL and past[-1] - past[-_STALL] < 0.1 * (target - past[-1])
+            stalled = len(past) > self.effort.stall and past[-1] - past[
+                -self.effort.stall
+            ] < 0.1 * (target - past[-1])
             if not len(new) or (stalled and enough):
                 break
             rows = np.unique(np.concatenate([rows, new]), axis=0)
@@ -261,7 +223,7 @@ class Search:
 
     def _near(self, rows: Ints, low: Array, high: Array, x: Array) -> NDArray[np.bool_]:
         left, right, _ = matrix(self.scaled, rows, low, high)
-        return np.asarray((left @ x - right < _NEAR) | (rows[:, 0] == CHANGE))
+        return np.asarray((left @ x - right < self.effort.near) | (rows[:, 0] == CHANGE))
 
     def _stress(self, node: Node, h: Array, low: Array, high: Array) -> Array:
         """What the chords in a box cost in each segment: weight times their distance.
@@ -281,16 +243,16 @@ class Search:
         """Segments with large scores, taken from each list in turn, and the places to cut them."""
         width = high - low
         ranks = [np.argsort(-score) for score in scores]
-        wide = width > _NARROWEST * high
+        wide = width > self.effort.narrowest * high
         turns = [
             int(rank[n])
             for n in range(len(low))
             for score, rank in zip(scores, ranks, strict=True)
-            if wide[rank[n]] and score[rank[n]] > _FAINT * score.max()
+            if wide[rank[n]] and score[rank[n]] > self.effort.faint * score.max()
         ]
         cuts = []
-        for k in list(dict.fromkeys(turns))[:_TRIALS]:
-            margin = _MARGIN * width[k]
+        for k in list(dict.fromkeys(turns))[: self.effort.trials]:
+            margin = self.effort.margin * width[k]
             place = min(max(h[k], low[k] + margin), high[k] - margin) * self.scaled.time
             digits = 2 - int(np.floor(np.log10(width[k] * self.scaled.time)))
             cuts.append((k, Fraction(round(Fraction(place), digits))))
@@ -310,92 +272,24 @@ class Search:
 
     def parts(self, node: Node, segment: int, at: Fraction, target: float) -> tuple[Node, ...]:
         """The halves of a box, which is not changed."""
-        low, high = node.box[segment]
-        if not low < at < high:
-            raise ValueError("a cut lies outside its box")
-        before, after = node.box[:segment], node.box[segment + 1 :]
-        return tuple(
-            self.node((*before, side, *after), node.carried, target, node)
-            for side in ((low, at), (at, high))
-        )
+        pair = self.kind.cut(node.box, segment, decimal(at))
+        return tuple(self.node(box, node.carried, target, node) for box in pair)
 
-    def _best_cut(self, lowest: list[Node], target: float, trials: Trials) -> tuple[Node, ...]:
-        """Try several cuts of the lowest box and keep the one whose worse half is bounded best."""
-        node, begun = lowest[0], self._trial(target)
+    def best_cut(self, node: Node, target: float) -> Halves:
+        """Try several cuts of a box and keep the one whose worse half is bounded best."""
 
         def worth(parts: tuple[Node, ...]) -> tuple[float, float]:
             ends = sorted(min(part.lower, target) for part in parts)
             return ends[0], ends[1]
 
         tried = []
-        for number, (segment, at) in enumerate(node.cuts):
-            piece = trials.take(number, lowest, begun)
-            parts, nodes = self.crew.value(piece, self.clock)
-            self.nodes += nodes
+        for segment, at in node.cuts:
+            parts = self.parts(node, segment, at, target)
             tried.append((worth(parts), segment, at, parts))
             if worth(parts)[0] >= target:
                 break
-        trials.end(node)
-        _, node.segment, node.at, node.parts = max(tried, key=lambda found: found[0])
-        return node.parts
-
-    def grow(
-        self,
-        root: Node,
-        target: float,
-        watch: Callable[[float, int], None],
-        improve: Callable[[Array], bool],
-    ) -> bool:
-        """Cut boxes, the one with the least bound first, until every bound is enough.
-
-        Parameters
-        ----------
-        root : Node
-            Changed in place.
-        target : float
-            s.
-        watch : callable
-            Called with the least bound and the number of open boxes; stops the search by raising.
-        improve : callable
-            Called with durations that look feasible and too short, s; true ends the search.
-
-        Returns
-        -------
-        bool
-            Whether it was completed; otherwise a better motion turned up or nothing can be cut.
-        """
-        count = itertools.count()
-        heap = [(leaf.lower, next(count), leaf) for leaf in root.leaves if leaf.lower < target]
-        heapq.heapify(heap)
-        stuck, trials = False, Trials(self.crew)
-        try:
-            while heap:
-                watch(heap[0][0], len(heap))
-                node = heap[0][2]
-                if node.durations is not None and node.excess < _DOUBTFUL and self.looks > 0:
-                    self.looks -= 1
-                    if improve(node.durations * self.scaled.time):
-                        return False
-                if not node.cuts:
-                    heapq.heappop(heap)
-                    stuck = True
-                    continue
-                lowest = [one for _, _, one in heapq.nsmallest(_LOWEST, heap)]
-                parts = self._best_cut(lowest, target, trials)
-                heapq.heappop(heap)
-                for part in parts:
-                    if part.lower < target:
-                        heapq.heappush(heap, (part.lower, next(count), part))
-        finally:
-            trials.drop()
-        return not stuck
-
-    def _trial(self, target: float) -> Callable[[Node, int], ProofPiece]:
-        """What begins the trial of a cut of a node."""
-        until = time.time() + self.searching()
-        return lambda node, cut: self.crew.begin(
-            trial, self._common, node, *node.cuts[cut], target, until
-        )
+        _, segment, at, parts = max(tried, key=lambda found: found[0])
+        return Halves(segment, at, parts, self.nodes)
 
     def root(self, durations: Array, speeds: Array, target: float) -> Node:
         """The undivided box, bounded with tangents at a known motion.
@@ -408,39 +302,109 @@ class Search:
         target : float
             Bound that is enough, s.
         """
-        box, scaled = self.whole(), self.scaled
-        nothing = np.empty((0, 7), dtype=np.int64)
-        if box is None:
-            return Node((), nothing, np.empty(0), np.inf, nothing)
+        box, scaled = self.kind.root(), self.scaled
+        if any(low > high for low, high in box):
+            return self.beyond
         v = np.nan_to_num(speeds) * scaled.time / scaled.angle
         tangents = reach_rows(scaled, durations / scaled.time, v, -np.inf)
         return self.node(box, np.concatenate([change_rows(scaled), tangents]), target, None)
 
-    def exact(self, leaf: Node, digits: int) -> tuple[Fraction, list[tuple[ReachRow, str]]]:
-        """What the weights of a leaf, rounded to so many digits, prove: s, and them as text."""
+    def exact(self, leaf: Node, digits: int) -> tuple[Fraction, list[Weighted]]:
+        """What the weights of a leaf, rounded to so many digits, prove; and its rows with them."""
         if not leaf.box:
             return self.cap, []
         scaled = self.scaled
         rates = scaled.time**2 / scaled.angle[leaf.rows[:, 2]]
         weights = leaf.weights * np.where(leaf.rows[:, 0] == REACH, 1.0, rates)
-        texts = [
-            (ReachRow(*map(int, row)), f"{weight:.{digits}g}".replace("e+", "e"))
-            for row, weight in zip(leaf.rows, weights, strict=True)
+        stated = [
+            ([KINDS[kind], k, self.asked.joints[j], *rest], f"{w:.{digits}g}".replace("e+", "e"))
+            for (kind, k, j, *rest), w in zip(leaf.rows.tolist(), weights, strict=True)
         ]
-        weighted = ((row, Fraction(text)) for row, text in texts)
-        return bound(self.asked, self.speeds, leaf.box, weighted), texts
+        weighted = [(self.kind.row(row), Fraction(weight)) for row, weight in stated]
+        return self.kind.least_total(leaf.box, weighted), stated
 
 
-def trial(
-    search: Search, node: Node, segment: int, at: Fraction, target: float, until: float
-) -> tuple[tuple[Node, ...], int]:
-    """Halves of a box, and how many boxes were bounded for them.
+class Halves(NamedTuple):
+    """Where a box is cut, both parts, and how many boxes were bounded for them."""
+
+    segment: int
+    at: Fraction
+    parts: tuple[Node, ...]
+    nodes: int
+
+
+def cut_box(search: Search, node: Node, target: float) -> Halves | None:
+    """The best cut of a box; None if it cannot be cut.
 
     Raises
     ------
     OutOfTime
-        If it would take longer than until then, by `time.time`.
+        When time is up.
     """
+    if not node.cuts:
+        return None
     own = copy(search)
-    own.until = until
-    return own.parts(node, segment, at, target), own.nodes
+    own.nodes = 0
+    return own.best_cut(node, target)
+
+
+class Cutting(Branching[Node]):
+    """Cuts boxes until every bound is enough, the one with the least bound first.
+
+    Parameters
+    ----------
+    search : Search
+    target : float
+        s.
+    watch : callable
+        Given the boxes that wait and the least bound.
+    improve : callable
+        Given durations that look feasible and too short, s; may raise.
+
+    Attributes
+    ----------
+    stuck : bool
+        Whether there is a box that cannot be cut.
+    """
+
+    ahead = 4
+    work = staticmethod(cut_box)
+
+    def __init__(
+        self,
+        search: Search,
+        target: float,
+        watch: Callable[[int, float], None],
+        improve: Callable[[Array], None],
+    ) -> None:
+        self.search, self.target, self.stuck = search, target, False
+        self.common, self._watch, self._improve = Common(search), watch, improve
+        self._lowest = 0.0
+
+    def order(self, box: Node) -> float:
+        """The least bound first."""
+        return box.lower
+
+    def wanted(self, box: Node) -> bool:
+        """Whether its bound is too low."""
+        return box.lower < self.target
+
+    def given(self, box: Node) -> tuple[Node, float]:
+        """The box, once its durations were looked at."""
+        self._lowest = box.lower
+        if box.durations is not None and box.excess < self.search.effort.doubtful:
+            self._improve(box.durations * self.search.scaled.time)
+        return box, self.target
+
+    def taken(self, box: Node, found: Halves | None) -> tuple[Node, ...]:
+        """Both halves, where they are not bounded well enough."""
+        if found is None:
+            self.stuck = True
+            return ()
+        box.segment, box.at, box.parts = found.segment, found.at, found.parts
+        self.search.nodes += found.nodes
+        return tuple(part for part in box.parts if part.lower < self.target)
+
+    def look(self, waiting: int) -> None:
+        """Report."""
+        self._watch(waiting, self._lowest)

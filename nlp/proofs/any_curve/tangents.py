@@ -1,7 +1,11 @@
-"""The rows of `rows` in floats: as a matrix, and chosen where a point breaks them."""
+"""Rows that hold for every motion, in floats: as a matrix, and chosen where a point breaks them.
+
+The verifier has them in rational numbers, and says why they hold: `verify/any_curve.py`.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -10,13 +14,19 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from ....problem import Array
-from .exact import FreeQuestion
-from .rows import BRAKE, CHANGE, REACH, UNIT, ReachRow
+from ....verify import TANGENT_UNIT
+from .question import FreeQuestion
 
 Ints = NDArray[np.int64]
+"""Rows: kind, segment, joint, sign, two slopes of tangents, velocity limit over peak speed; the
+last three times `TANGENT_UNIT`. The sign mirrors the joint so that it does not go back."""
 
+KINDS = ("reach", "brake", "change")
+"""Names of the kinds of rows in a certificate, in the order of the integers."""
+REACH, BRAKE, CHANGE = range(3)
+"""The kinds as integers."""
 _LARGEST = 1e5
-"""Largest slope in a row: times `UNIT` it is an integer that a float still holds exactly."""
+"""Largest slope in a row: times `TANGENT_UNIT` it is an integer that a float holds exactly."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,11 +56,11 @@ class Floats:
     angle: Array
 
 
-def floats(asked: FreeQuestion, speeds: tuple[Fraction, ...], time: float) -> Floats:
+def floats(asked: FreeQuestion, speeds: Sequence[Fraction], time: float) -> Floats:
     """Scale a question for a linear program."""
     steps = np.array([[float(x) for x in row] for row in asked.steps])
     angle = np.abs(steps).max(axis=0)
-    a = np.array([np.nan if x is None else float(x) for _, x in asked.loose])
+    a = np.array([np.nan if x is None else float(x[1]) for x in asked.acceleration])
     angle = np.where(angle > 0, angle, np.where(np.isnan(a), 1.0, a) * time**2)
     ends = np.array([[np.nan if x is None else float(x) for x in side] for side in asked.ends])
     return Floats(
@@ -71,7 +81,7 @@ def matrix(scaled: Floats, rows: Ints, low: Array, high: Array) -> tuple[csr_arr
     ----------
     scaled : Floats
     rows : ndarray, shape (rows, 7)
-        As in `ReachRow`.
+        As `Ints` has them.
     low, high : ndarray, shape (segments,)
         The box, scaled.
 
@@ -84,7 +94,7 @@ def matrix(scaled: Floats, rows: Ints, low: Array, high: Array) -> tuple[csr_arr
         What each row was divided by.
     """
     kind, k, j, sign = rows[:, :4].T
-    a, b, c = rows[:, 4:].T / UNIT
+    a, b, c = rows[:, 4:].T / TANGENT_UNIT
     segments, joints = scaled.ways.shape
     way, top, bend = scaled.ways[k, j], scaled.speed[j], scaled.acceleration[j]
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -109,7 +119,7 @@ def change_rows(scaled: Floats) -> Ints:
     """All rows |v₁ − v₀| ≤ A·h."""
     segments, joints = scaled.ways.shape
     found = [
-        ReachRow(CHANGE, k, j, sign, 0, 0, 0)
+        (CHANGE, k, j, sign, 0, 0, 0)
         for k in range(segments)
         for j in range(joints)
         if np.isfinite(scaled.acceleration[j])
@@ -196,11 +206,11 @@ def brake_rows(
     rows = _rows(BRAKE, k, j, scaled.signs[k, j], [a, b, np.zeros_like(a)])
     # Below the cap the two slopes add up to 1 exactly; rounding must not break that.
     inside = (free < scaled.speed)[k, j]
-    rows[inside, 5] = UNIT - rows[inside, 4]
+    rows[inside, 5] = TANGENT_UNIT - rows[inside, 4]
     return rows, np.where((way > 0) & np.isfinite(excess), excess, 0.0)
 
 
 def _rows(kind: int, k: Ints, j: Ints, sign: Array, parameters: list[Array]) -> Ints:
-    numbers = [np.rint(x * UNIT).astype(np.int64) for x in parameters]
+    numbers = [np.rint(x * TANGENT_UNIT).astype(np.int64) for x in parameters]
     whole = np.rint(sign).astype(np.int64)
     return np.stack([np.full(len(k), kind), k, j, whole, *numbers], axis=1).astype(np.int64)

@@ -1,5 +1,3 @@
-from .fixed_ratios import FIXED_RATIOS
-from .rest_polynomials import REST_TO_REST
-from .stretched import STRETCHED
+from .formulas import FIXED_RATIOS, REST_TO_REST, STRETCHED
 
 __all__ = ["FIXED_RATIOS", "REST_TO_REST", "STRETCHED"]

@@ -5,14 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from ....problem import Array
-from .ranges import matrices
+from ....verify import SPOTS
 from .relaxation import BoxProgram, Proposal
-from .system import PLACES, CubicRow, CubicSystem
-
-_TINY = 1e-9
-"""Stands for a span of 0 in a quotient: spans are of order 1 in the units of a system."""
-_EXCESS = 1.001
-"""A peak counts where it exceeds its limit by this factor."""
+from .system import CubicRow, CubicSystem
 
 
 def errors(program: BoxProgram, proposal: Proposal) -> Array:
@@ -23,7 +18,7 @@ def errors(program: BoxProgram, proposal: Proposal) -> Array:
     for p, (k, i) in enumerate(program.relaxation.pairs):
         miss = np.abs(proposal.products[:, p] - proposal.point[k] * proposal.unknowns[:, i])
         out[k] += float((miss / scale).sum())
-    for h, _, rho in system.curved:
+    for h, _, rho in system.exact.rho():
         out[h] += out[rho]
     return out[: system.free]
 
@@ -44,32 +39,29 @@ def peaks(system: CubicSystem, point: Array) -> list[CubicRow]:
     list of CubicRow
         Where a limit is exceeded; empty if the durations determine no spline.
     """
-    fixed, linear, steps, which = matrices(system)
-    m, n = system.spans, system.pieces
-    y = np.append(point, [point[h] ** 2 / max(point[t], _TINY) for h, t, _ in system.curved])
-    right = np.zeros((system.unknowns, system.joints))
-    for t in np.flatnonzero(which >= 0).tolist():
-        right[which[t]] = steps.mid[t] / max(point[t], _TINY)
+    exact, (m, n) = system.exact, (system.exact.m, system.exact.n)
+    y = np.append(point, [point[h] ** 2 / max(point[t], 1e-9) for h, t, _ in exact.rho()])
+    right, spans = np.zeros((exact.size, exact.joints)), np.flatnonzero(system.moving)
+    right[system.which[spans]] = system.steps[spans] / np.maximum(point[spans], 1e-9)[:, None]
     try:
-        x = np.linalg.solve(fixed + np.tensordot(y, linear, 1), right)
+        x = np.linalg.solve(system.fixed + np.tensordot(y, system.linear, 1), right)
     except np.linalg.LinAlgError:
         return []
     found = []
-    for j, (velocity, _, _) in enumerate(system.limits):
+    for j, (velocity, _, _) in enumerate(exact.limits):
         for t in range(m if velocity is not None else 0):
-            rough = system.virtual and t in (0, m - 1)
-            if rough:
+            if system.rough(t):
                 near, far, h = (1, 2, m) if t == 0 else (n - 1, n - 2, m + 1)
                 a, b, length = x[near, j], x[far, j], y[t] - y[h]
                 speed = a * y[h] / 2
             else:
-                a, b, length = x[system.breaks[t], j], x[system.breaks[t + 1], j], y[t]
-                speed = x[system.speed(t), j]
+                a, b, length = x[exact.breaks[t], j], x[exact.breaks[t + 1], j], y[t]
+                speed = x[n + 1 + t, j]
             if not a * b < 0:
                 continue
-            place = round(a / (a - b) * PLACES)
-            s = place / PLACES
+            place = round(a / (a - b) * SPOTS)
+            s = place / SPOTS
             value = speed + length * (a * (s - s * s / 2) + b * s * s / 2)
-            if abs(value) > _EXCESS * float(velocity or 0):
+            if abs(value) > 1.001 * float(velocity or 0):
                 found.append(CubicRow("velocity", j, t, 1 if value > 0 else -1, place))
     return found

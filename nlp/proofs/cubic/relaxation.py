@@ -3,28 +3,24 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from fractions import Fraction
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linprog
-from scipy.sparse import csr_array, hstack, vstack
+from scipy.sparse import coo_array, csr_array, hstack, vstack
 
 from ....problem import Array
-from .proof import MIX, Target, Weights
-from .ranges import Side, matrices
+from ....verify import MIX
+from .bound import Target, Weights
+from .ranges import Side
 from .system import CubicRow, CubicSystem
 
 _TANGENTS = 5
-"""Of 1/T over a side: what they miss falls with the square of the box, and rows cost time."""
-_SLOPES = 4
-"""Tangents of ρ over a box: what they miss falls with its square, too."""
+"""Of 1/T and of ρ over a side: what they miss falls with the square of the box; rows cost time."""
 _LARGEST = 2**22
 """Of the integer weights."""
 _SMALLEST = 0.6
 """Weights below it, in units of the rounding, are left out: those kept round to 1 or more."""
-_BARRED = 1e6
-"""Total that stands for "not limited"."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,22 +45,26 @@ class Proposal:
 
 
 class Relaxation:
-    """The relaxation of one system under some conditions, to be written down for boxes."""
+    """The relaxation of one system under some conditions, to be written down for boxes.
 
-    def __init__(self, system: CubicSystem, rows: list[CubicRow], cap: Fraction) -> None:
-        self.system, self.cap = system, cap
-        self.rows = [*rows, CubicRow("total")]
-        fixed, linear, _, _ = matrices(system)
-        used = np.abs(linear).sum(axis=1) > 0
-        terms = [system.row(row, cap) for row in self.rows]
+    Each condition is divided by its own constant: ``by``. Its entries stand in columns of its own
+    joint alone: coordinates, unknowns, products.
+    """
+
+    def __init__(self, system: CubicSystem, rows: list[CubicRow]) -> None:
+        self.system, self.rows = system, [*rows, CubicRow("total")]
+        terms = [system.terms(row) for row in self.rows]
+        used = np.abs(system.linear).sum(axis=1) > 0
         for t in terms:
-            for pair in t.product:
-                used[pair] = True
-        self.pairs = [(int(k), int(i)) for k, i in np.argwhere(used)]
-        self._number = {pair: p for p, pair in enumerate(self.pairs)}
-        self._terms = terms
-        self._linear = np.array([linear[k, :, i] for k, i in self.pairs])
-        self._fixed = fixed
+            used |= t.product != 0
+        k, i = np.nonzero(used)
+        self.pairs = list(zip(k.tolist(), i.tolist(), strict=True))
+        self.equations = np.hstack([system.fixed, system.linear[k, :, i].T])
+        self.by = np.array([abs(t.constant) or np.abs(t.along).max() for t in terms])
+        self.right = -np.array([t.constant for t in terms]) / self.by
+        self.joint = np.array([row.joint for row in self.rows])
+        dense = [np.concatenate([t.along, t.alone, t.product[k, i]]) for t in terms]
+        self.entries = coo_array(np.array(dense) / self.by[:, None])
 
     def over(self, side: Side, ranges: tuple[Array, Array]) -> BoxProgram:
         """Its program over a box."""
@@ -72,25 +72,12 @@ class Relaxation:
         return BoxProgram(self, side, ranges, joints)
 
 
-class _Entries:
-    """Entries of a sparse matrix, row after row."""
-
-    def __init__(self) -> None:
-        self.row: list[int] = []
-        self.column: list[int] = []
-        self.value: list[float] = []
-        self.right: list[float] = []
-
-    def add(self, entries: list[tuple[int, float]], right: float) -> None:
-        for column, value in entries:
-            self.row.append(len(self.right))
-            self.column.append(column)
-            self.value.append(value)
-        self.right.append(right)
-
-    def matrix(self, columns: int) -> csr_array:
-        shape = (len(self.right), columns)
-        return csr_array((self.value, (self.row, self.column)), shape=shape)
+def _sparse(rows: list[dict[int, float]], columns: int) -> csr_array:
+    """A matrix from its rows."""
+    row = [i for i, entries in enumerate(rows) for _ in entries]
+    column = [c for entries in rows for c in entries]
+    value = [x for entries in rows for x in entries.values()]
+    return csr_array((value, (row, column)), shape=(len(rows), columns))
 
 
 class BoxProgram:
@@ -105,73 +92,65 @@ class BoxProgram:
     ) -> None:
         self.relaxation, self.joints, self.side = relaxation, joints, side
         system = relaxation.system
-        self.size, self.count = system.unknowns, len(relaxation.pairs)
-        self.first = system.coordinates + system.spans
+        self.size, self.count = system.exact.size, len(relaxation.pairs)
+        self.first = system.coordinates + system.exact.m
         self.columns = self.first + len(joints) * (self.size + self.count)
         low, high = (r[:, joints].T for r in ranges)
-        self._conditions()
-        simple = self._simple()
-        products = self._products(low, high)
+        blocks = (self._conditions(), self._simple(), self._products(low, high))
+        self.matrix = vstack([matrix for matrix, _ in blocks], format="csr")
+        self.right = np.concatenate([right for _, right in blocks])
         self.equations, self.equal = self._equations()
-        self.matrix = vstack([self.limits.matrix(self.columns), simple, products], format="csr")
-        self.right = np.concatenate([self.limits.right, self._simple_right, self._product_right])
         bounds = np.full((self.columns, 2), [-np.inf, np.inf])
         bounds[: system.coordinates] = np.column_stack([side.low, side.high])
         for j in range(len(joints)):
-            bounds[self._at(j, 0) : self._at(j, self.size)] = np.column_stack([low[j], high[j]])
+            at = self.first + j * (self.size + self.count)
+            bounds[at : at + self.size] = np.column_stack([low[j], high[j]])
         self.bounds = bounds
 
-    def _at(self, joint: int, unknown: int) -> int:
-        return self.first + joint * (self.size + self.count) + unknown
+    def _conditions(self) -> tuple[csr_array, Array]:
+        """Those of joints that take part."""
+        relaxation, coordinates = self.relaxation, self.relaxation.system.coordinates
+        place = np.full(relaxation.system.exact.joints, -1)
+        place[self.joints] = np.arange(len(self.joints))
+        own = place[relaxation.joint]
+        held = (relaxation.joint < 0) | (own >= 0)
+        self.held = np.flatnonzero(held)
+        entries = relaxation.entries
+        some = held[entries.row]
+        row, column, value = entries.row[some], entries.col[some], entries.data[some]
+        at = self.first + own[row] * (self.size + self.count) - coordinates
+        column = np.where(column < coordinates, column, column + at)
+        shape = (len(self.held), self.columns)
+        matrix = csr_array((value, ((np.cumsum(held) - 1)[row], column)), shape=shape)
+        return matrix, relaxation.right[held]
 
-    def _conditions(self) -> None:
-        """Conditions, each divided by its own constant."""
-        number = self.relaxation._number
-        self.limits, self.held, self.divisor = _Entries(), [], []
-        place = {int(j): i for i, j in enumerate(self.joints)}
-        for row, terms in zip(self.relaxation.rows, self.relaxation._terms, strict=True):
-            if row.joint >= 0 and row.joint not in place:
-                continue
-            j = place.get(row.joint, 0)
-            by = float(abs(terms.constant)) or float(max(map(abs, terms.along.values())))
-            entries = [(self._at(j, v), x / by) for v, x in terms.by.items()]
-            entries += [
-                (self._at(j, self.size + number[pair]), x / by) for pair, x in terms.product.items()
-            ]
-            entries += [(c, float(x) / by) for c, x in terms.along.items()]
-            self.limits.add(entries, -float(terms.constant) / by)
-            self.held.append(row)
-            self.divisor.append(by)
-
-    def _simple(self) -> csr_array:
+    def _simple(self) -> tuple[csr_array, Array]:
         """Bounds of 1/T and of ρ = h²/T.
 
         1/T ≥ 2/τ − T/τ² and 1/T ≤ 1/l + 1/u − T/lu for l ≤ T ≤ u; ρ ≥ 2θh − θ²T for any θ, and
         ρ ≤ h²/l ≤ ((h_l + h_u)h − h_l h_u)/l, or ρ ≤ h where l is 0.
         """
-        system, side = self.relaxation.system, self.side
-        _, _, _, which = matrices(system)
-        out, low, high = _Entries(), side.low, side.high
-        for t in np.flatnonzero(which >= 0).tolist():
-            if low[t] <= 0:
-                continue
+        system, low, high = self.relaxation.system, self.side.low, self.side.high
+        rows: list[dict[int, float]] = []
+        right: list[float] = []
+        for t in np.flatnonzero(system.moving & (low[: system.exact.m] > 0)).tolist():
             z = system.coordinates + t
             for place in np.geomspace(low[t], high[t], _TANGENTS):
-                out.add([(z, -1.0), (t, -1.0 / place**2)], -2.0 / place)
-            out.add([(z, 1.0), (t, 1.0 / (low[t] * high[t]))], 1.0 / low[t] + 1.0 / high[t])
-        for h, t, rho in system.curved:
+                rows.append({z: -1.0, t: -1.0 / place**2})
+                right.append(-2.0 / place)
+            rows.append({z: 1.0, t: 1.0 / (low[t] * high[t])})
+            right.append(1.0 / low[t] + 1.0 / high[t])
+        for h, t, rho in system.exact.rho():
             top = min(1.0, high[h] / low[t]) if low[t] > 0 else 1.0
-            for slope in np.linspace(low[h] / high[t], top, _SLOPES):
-                out.add([(h, 2 * slope), (t, -(slope**2)), (rho, -1.0)], 0.0)
-            if low[t] > 0:
-                chord = -(low[h] + high[h]) / low[t]
-                out.add([(rho, 1.0), (h, chord)], -low[h] * high[h] / low[t])
-            else:
-                out.add([(rho, 1.0), (h, -1.0)], 0.0)
-        self._simple_right = np.array(out.right)
-        return out.matrix(self.columns)
+            for slope in np.linspace(low[h] / high[t], top, _TANGENTS - 1):
+                rows.append({h: 2 * slope, t: -(slope**2), rho: -1.0})
+                right.append(0.0)
+            chord = -(low[h] + high[h]) / low[t] if low[t] > 0 else -1.0
+            rows.append({rho: 1.0, h: chord})
+            right.append(-low[h] * high[h] / low[t] if low[t] > 0 else 0.0)
+        return _sparse(rows, self.columns), np.array(right)
 
-    def _products(self, low: Array, high: Array) -> csr_array:
+    def _products(self, low: Array, high: Array) -> tuple[csr_array, Array]:
         """Four bounds of every product: below and above, exact where the unknown is low or high.
 
         McCormick's: y·x ≥ corner·x + edge·y − corner·edge at the two equal corners (low, low) and
@@ -200,20 +179,15 @@ class BoxProgram:
             row = np.repeat(np.arange(product.size), 3)
             blocks.append(csr_array((values, (row, columns)), shape=(product.size, self.columns)))
             right.append((-sign * corner * edge).ravel())
-        self._product_right = np.concatenate(right)
-        return vstack(blocks)
+        return vstack(blocks), np.concatenate(right)
 
     def _equations(self) -> tuple[csr_array, Array]:
-        relaxation = self.relaxation
-        system = relaxation.system
-        _, _, steps, which = matrices(system)
-        block = csr_array(np.hstack([relaxation._fixed, relaxation._linear.T]))
-        parts = []
+        system, width = self.relaxation.system, self.size + self.count
+        block, parts = csr_array(self.relaxation.equations), []
+        spans = np.flatnonzero(system.moving)
         for j, joint in enumerate(self.joints):
             front = np.zeros((self.size, self.first))
-            for t in np.flatnonzero(which >= 0):
-                front[which[t], system.coordinates + t] = -steps.mid[t, joint]
-            width = self.size + self.count
+            front[system.which[spans], system.coordinates + spans] = -system.steps[spans, joint]
             before = csr_array((self.size, j * width))
             after = csr_array((self.size, (len(self.joints) - j - 1) * width))
             parts.append(hstack([csr_array(front), before, block, after]))
@@ -228,7 +202,7 @@ class BoxProgram:
         cost[: system.coordinates] = target.weights(system)
         right = self.right.copy()
         if not capped:
-            right[len(self.held) - 1] = _BARRED
+            right[len(self.held) - 1] = 1e6  # stands for "not limited"
         found = linprog(
             cost,
             A_ub=self.matrix,
@@ -276,12 +250,12 @@ class BoxProgram:
         self, scale: float, x: Array, value: float, dual: Array, equal: Array
     ) -> Proposal:
         system, relaxation = self.relaxation.system, self.relaxation
-        limits = np.maximum(dual[: len(self.held)], 0.0) / np.array(self.divisor)
+        limits = np.maximum(dual[: len(self.held)], 0.0) / relaxation.by[self.held]
         top = max(scale, float(limits.max(initial=0.0)), float(np.abs(equal).max(initial=0.0)))
         unit = _LARGEST / top
         rows = {
-            row: round(w * unit)
-            for row, w in zip(self.held, limits, strict=True)
+            relaxation.rows[i]: round(w * unit)
+            for i, w in zip(self.held.tolist(), limits.tolist(), strict=True)
             if w * unit > _SMALLEST
         }
         size = self.size
@@ -297,7 +271,7 @@ class BoxProgram:
         lowest, highest = parts[0] + parts[2], parts[1] + parts[3]
         with np.errstate(invalid="ignore"):
             share = np.where(lowest + highest > 0, lowest / (lowest + highest), 0.5)
-        mix = np.full((system.joints, system.coordinates, size), MIX // 2)
+        mix = np.full((system.exact.joints, system.coordinates, size), MIX // 2)
         for p, (k, i) in enumerate(relaxation.pairs):
             mix[self.joints, k, i] = np.rint(share[:, p] * MIX)
         blocks = x[self.first :].reshape(len(self.joints), size + self.count)

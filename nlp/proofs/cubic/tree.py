@@ -3,34 +3,39 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Any
 
 import numpy as np
 
-from ....problem import Array
-from ....verify import CUT, LEAF, MIX_DIGITS, OPEN, TICKS
+from ....problem import Array, TrajgapError
+from ....verify import (
+    CUT,
+    LEAF,
+    MIX_DIGITS,
+    MOST_INTEGER,
+    MOST_POWER,
+    OPEN,
+    TICKS,
+    Clock,
+    StatedProblem,
+    proof_kind,
+)
+from ..driver import regrow
 from ..exact import decimal
-from .proof import NOTHING, TOTAL, Target, Weights, least, multiplied
-from .ranges import Side, a_priori, implied, narrowed, with_rho
+from .bound import NOTHING, TOTAL, Target, Weights, least, multiplied
+from .ranges import Side, a_priori, narrowed, with_rho
 from .system import CubicRow, CubicSystem
 
+Step = list[Any]
+"""What is done to a box: a node of the document, whose conditions are not numbered yet.
 
-@dataclass(frozen=True, eq=False)
-class BoxStep:
-    """What is done to a box.
-
-    ``kind``: "r" narrows the ranges, "t" sets a side (``sign`` 1: its lower end) to ``value``, "f"
-    raises the floor of the total to ``value``, "e" shows the box to be empty, "s" halves it.
-    """
-
-    kind: str
-    coordinate: int = -1
-    sign: int = 0
-    value: int = 0
-    weights: Weights | None = None
+["r"] narrows the ranges, ["t", coordinate, sign, value, …] sets a side (sign 1: its lower end),
+["f", value, …] raises the floor of the total, [LEAF, …] shows the box to be empty, and
+[CUT, coordinate, value] splits it; … stands for weights.
+"""
 
 
 @dataclass(eq=False)
@@ -45,10 +50,10 @@ class TickBox:
         Of the unknowns.
     floor : int
         The total is at least this many ticks.
-    steps : list of BoxStep
+    steps : list of Step
         What was done to it, in this order.
     children : tuple of TickBox
-        After a step "s".
+        After a cut.
     closed : bool
         Nothing below the cap is feasible in it.
     """
@@ -57,7 +62,7 @@ class TickBox:
     high: list[int]
     ranges: tuple[Array, Array]
     floor: int
-    steps: list[BoxStep] = field(default_factory=list)
+    steps: list[Step] = field(default_factory=list)
     children: tuple[TickBox, ...] = ()
     closed: bool = False
 
@@ -78,58 +83,25 @@ class TickBox:
             elif not box.closed:
                 yield box
 
-    def worked(self) -> Iterator[TickBox]:
-        """Boxes that something was done to, itself included."""
-        stack = [self]
-        while stack:
-            box = stack.pop()
-            stack += box.children
-            if box.steps:
-                yield box
-
 
 class Prover:
-    """Carries out steps, each only if it is proved; the total is below ``cap`` ticks."""
+    """Carries out steps, each only if it is proved; the total is below the system's cap."""
 
-    def __init__(self, system: CubicSystem, cap: int) -> None:
-        self.system, self.cap = system, cap
-
-    @property
-    def total(self) -> Fraction:
-        """The cap in units of time."""
-        return Fraction(self.cap, TICKS)
+    def __init__(self, system: CubicSystem) -> None:
+        self.system, self.cap = system, system.cap
 
     def root(self) -> TickBox:
         """Box of everything feasible below the cap."""
-        system = self.system
-        low = [0] * system.free
-        high = [self.cap] * system.free
-        fastest = [v for v, _ in implied(system, self.total)]
-        for t, steps in enumerate(system.steps):
-            held = [k for k in range(system.pieces) if t in system.piece(k)]
-            if system.virtual and t in (0, system.spans - 1):
-                held.append(0 if t == 0 else system.pieces - 1)
-            shortest = sum((system.shortest[k] for k in held), Fraction(0))
-            for step, v in zip(steps, fastest, strict=True):
-                if math.isfinite(v) and v > 0:
-                    shortest = max(shortest, abs(step) / Fraction(v))
+        low, high = [], []
+        for c in range(self.system.free):
+            least_, most = self.system.exact.side(c)
             # No feasible total is below the cap where a side begins there.
-            low[t] = min(math.floor(shortest * TICKS), self.cap)
-            longest = [x for x in (system.longest[k] for k in held) if x is not None]
-            if len(longest) == len(held):
-                high[t] = min(high[t], math.ceil(sum(longest) * TICKS))
-        for (h, _, _), k in zip(system.curved, (0, system.pieces - 1), strict=False):
-            low[h] = min(math.floor(system.shortest[k] * TICKS), self.cap)
-            longest_piece = system.longest[k]
-            if longest_piece is not None:
-                high[h] = min(high[h], math.ceil(longest_piece * TICKS))
-        box = TickBox(low, high, self._widest(), 0)
+            low.append(min(math.floor(least_ * TICKS), self.cap))
+            high.append(min(math.ceil(most * TICKS), self.cap))
+        shape = (self.system.exact.size, self.system.exact.joints)
+        box = TickBox(low, high, (np.full(shape, -np.inf), np.full(shape, np.inf)), 0)
         self.trim(box)
         return box
-
-    def _widest(self) -> tuple[Array, Array]:
-        shape = (self.system.unknowns, self.system.joints)
-        return np.full(shape, -np.inf), np.full(shape, np.inf)
 
     def side(self, box: TickBox) -> Side:
         """The box in floats, which hold ticks exactly."""
@@ -138,11 +110,11 @@ class Prover:
 
     def trim(self, box: TickBox) -> None:
         """What the cap says about the spans, and a span about the piece in it."""
-        spans = range(self.system.spans)
+        spans = range(self.system.exact.m)
         total = sum(box.low[t] for t in spans)
         for t in spans:
             box.high[t] = min(box.high[t], self.cap - total + box.low[t])
-        for h, t, _ in self.system.curved:
+        for h, t, _ in self.system.exact.rho():
             box.high[h] = min(box.high[h], box.high[t])
         box.floor = max(box.floor, total)
         empty = any(x > y for x, y in zip(box.low, box.high, strict=True))
@@ -151,10 +123,10 @@ class Prover:
     def narrow(self, box: TickBox) -> bool:
         """Narrow the ranges of the unknowns; False if the box turns out to be empty."""
         side = self.side(box)
-        low, high = a_priori(self.system, side, self.total)
+        low, high = a_priori(self.system, side)
         low, high = np.maximum(low, box.ranges[0]), np.minimum(high, box.ranges[1])
         found = narrowed(self.system, side, low, high)
-        box.steps.append(BoxStep("r"))
+        box.steps.append(["r"])
         if found is None:
             box.closed = True
             return False
@@ -165,38 +137,28 @@ class Prover:
         """Proved bound of a target (of nothing: whether it is positive), in ticks."""
         if weights.scale < 1 and target.sign != 0:
             return None
-        value = least(self.system, self.total, target, weights, self.side(box), box.ranges)
+        value = least(self.system, target, weights, self.side(box), box.ranges)
         if not np.isfinite(value):
             return None
         return Fraction(value) * TICKS / max(weights.scale, 1)
 
     def tighten(
         self, box: TickBox, coordinate: int, sign: int, weights: Weights, least_: int
-    ) -> bool:
+    ) -> None:
         """Move a side inward, if by ``least_`` ticks at least."""
         bound = self.bound(box, Target(coordinate, sign), weights)
         if bound is None:
-            return False
+            return
         value = math.floor(bound) if sign > 0 else math.ceil(-bound)
         old = box.low[coordinate] if sign > 0 else box.high[coordinate]
         if (value - old) * sign < least_:
-            return False
+            return
         # One tick beyond the other side says that the box is empty, which is all there is to say.
         if sign > 0:
-            value = min(value, box.high[coordinate] + 1)
+            box.low[coordinate] = value = min(value, box.high[coordinate] + 1)
         else:
-            value = max(value, box.low[coordinate] - 1)
-        self.set(box, BoxStep("t", coordinate, sign, value, weights))
-        return True
-
-    def set(self, box: TickBox, step: BoxStep) -> None:
-        """Carry out a step "t" that is proved."""
-        box.steps.append(step)
-        k = step.coordinate
-        if step.sign > 0:
-            box.low[k] = max(box.low[k], step.value)
-        else:
-            box.high[k] = min(box.high[k], step.value)
+            box.high[coordinate] = value = max(value, box.low[coordinate] - 1)
+        box.steps.append(["t", coordinate, sign, value, weights.scale, *self._stated(weights)])
         self.trim(box)
 
     def lift(self, box: TickBox, weights: Weights) -> None:
@@ -204,87 +166,175 @@ class Prover:
         bound = self.bound(box, TOTAL, weights)
         if bound is not None and math.floor(bound) > box.floor:
             box.floor = min(math.floor(bound), self.cap)
-            box.steps.append(BoxStep("f", value=box.floor, weights=weights))
+            box.steps.append(["f", box.floor, weights.scale, *self._stated(weights)])
             box.closed = box.floor >= self.cap
 
-    def clear(self, box: TickBox, weights: Weights) -> bool:
+    def clear(self, box: TickBox, weights: Weights) -> None:
         """Close a box that is empty."""
         bound = self.bound(box, NOTHING, weights)
-        if bound is None or bound <= 0:
-            return False
-        box.steps.append(BoxStep("e", weights=weights))
-        box.closed = True
-        return True
+        if bound is not None and bound > 0:
+            box.steps.append([LEAF, *self._stated(weights)])
+            box.closed = True
+
+    def _stated(self, weights: Weights) -> list[Any]:
+        """Weights of conditions and equations, and the shares of the products, as in a node."""
+        size = self.system.exact.size
+        held = [x for pair in weights.rows.items() for x in pair]
+        equations = [x for (j, i), w in weights.equations.items() for x in (j * size + i, w)]
+        shares = weights.mix[multiplied(self.system, weights)]
+        return [held, equations, "".join(MIX_DIGITS[x] for x in shares)]
 
     def halve(self, box: TickBox, coordinate: int) -> tuple[TickBox, TickBox]:
         """Halve a box."""
         at = (box.low[coordinate] + box.high[coordinate]) // 2
-        return self.split(box, coordinate, at)
-
-    def split(self, box: TickBox, coordinate: int, at: int) -> tuple[TickBox, TickBox]:
-        """Split a box at a place."""
         lower = TickBox(list(box.low), list(box.high), box.ranges, box.floor)
         upper = TickBox(list(box.low), list(box.high), box.ranges, box.floor)
-        lower.high[coordinate] = min(at, box.high[coordinate])
-        upper.low[coordinate] = max(at, box.low[coordinate])
+        lower.high[coordinate], upper.low[coordinate] = at, at
         for half in (lower, upper):
             self.trim(half)
-        box.steps.append(BoxStep("s", coordinate, value=at))
+        box.steps.append([CUT, coordinate, at])
         box.children = (lower, upper)
         return lower, upper
 
 
-def proof_document(prover: Prover, root: TickBox, lower: int, unfinished: bool) -> dict[str, Any]:
-    """The proof that the total is at least ``lower`` ticks.
+@dataclass(frozen=True, eq=False)
+class Tree:
+    """The proof of a lower bound, in ticks; unfinished: open boxes of it are proposed."""
 
-    It is derived in docs/explanation/certificates-cubic.md.
-    With ``unfinished``, boxes that are not closed are open leaves: a proposal to go on from.
-    """
-    system = prover.system
-    rows: dict[CubicRow, int] = {}
-    tree: list[Any] = []
-    stack = [root]
-    while stack:
-        box = stack.pop()
-        steps = [s for s in box.steps if s.kind != "f" or _serves(box, s)]
-        tree += [_step(system, step, rows) for step in steps]
-        if box.children:
-            stack += reversed(box.children)
-        elif not (steps and steps[-1].kind == "e"):
-            tree.append([OPEN if unfinished and not box.closed else LEAF])
-    return {
-        "kind": "cubic",
-        "total": decimal(Fraction(lower, TICKS) * Fraction(2) ** system.second),
-        "powers": list(system.powers),
-        "second": system.second,
-        "cap": prover.cap,
-        "root": prover.root().low,
-        "rows": [[r.kind, r.joint, r.index, r.sign, r.place] for r in rows],
-        "tree": tree,
-    }
+    prover: Prover
+    root: TickBox
+    lower: int
+    unfinished: bool = False
+
+    @property
+    def seconds(self) -> Fraction:
+        """The lower bound, s."""
+        return self.lower * self.prover.system.unit
+
+    @property
+    def proposed(self) -> Tree:
+        """It, to go on from."""
+        return replace(self, unfinished=True)
+
+    def document(self) -> dict[str, Any]:
+        """Kind "cubic" of docs/explanation/certificates-cubic.md."""
+        system = self.prover.system
+        rows: dict[CubicRow, int] = {}
+        tree: list[Any] = []
+        stack = [self.root]
+        while stack:
+            box = stack.pop()
+            steps = [s for s in box.steps if s[0] != "f" or _serves(box, s)]
+            tree += [_numbered(step, rows) for step in steps]
+            if box.children:
+                stack += reversed(box.children)
+            elif not (steps and steps[-1][0] == LEAF):
+                tree.append([OPEN if self.unfinished and not box.closed else LEAF])
+        return {
+            "kind": "cubic",
+            "total": decimal(self.seconds),
+            "powers": list(system.powers),
+            "second": system.second,
+            "cap": system.cap,
+            "root": self.prover.root().low,
+            "rows": [list(row) for row in rows],
+            "tree": tree,
+        }
 
 
-def _serves(box: TickBox, step: BoxStep) -> bool:
+def _serves(box: TickBox, step: Step) -> bool:
     """Whether a floor is needed: it closes the box, or something below it is open."""
     if box.closed:
         return step is box.steps[-1]
-    last = [s for s in box.steps if s.kind == "f"][-1]
+    last = [s for s in box.steps if s[0] == "f"][-1]
     return step is last and next(box.leaves(), None) is not None
 
 
-def _step(system: CubicSystem, step: BoxStep, rows: dict[CubicRow, int]) -> Any:
-    if step.kind == "r":
-        return ["r"]
-    if step.kind == "s":
-        return [CUT, step.coordinate, step.value]
-    weights = step.weights
-    assert weights is not None
-    held = [x for row, w in weights.rows.items() for x in (rows.setdefault(row, len(rows)), w)]
-    equations = [x for (j, i), w in weights.equations.items() for x in (j * system.unknowns + i, w)]
-    alphabet = "".join(MIX_DIGITS[x] for x in weights.mix[multiplied(system, weights)])
-    tail = [held, equations, alphabet]
-    if step.kind == "e":
-        return [LEAF, *tail]
-    if step.kind == "f":
-        return ["f", step.value, weights.scale, *tail]
-    return ["t", step.coordinate, step.sign, step.value, weights.scale, *tail]
+def _numbered(step: Step, rows: dict[CubicRow, int]) -> Step:
+    """A step with numbers for its conditions."""
+    if len(step) < 4:
+        return step
+    *head, held, equations, shares = step
+    own = [rows.setdefault(x, len(rows)) if isinstance(x, CubicRow) else x for x in held]
+    return [*head, own, equations, shares]
+
+
+def regrown(stated: StatedProblem, document: dict[str, Any], clock: Callable[[], None]) -> Tree:
+    """The tree that a state proposes, each step proved again by the verifier's own kind.
+
+    Parameters
+    ----------
+    stated : StatedProblem
+    document : dict
+        As `Tree.document` writes it; nothing in it is trusted.
+    clock : callable
+        Called before every step; ends it by raising.
+
+    Raises
+    ------
+    TrajgapError, Refused
+        If it is another kind of proof, or a step is not proved.
+    """
+    if document["kind"] != "cubic":
+        raise TrajgapError("resume: the state proposes another kind of proof")
+    kind = proof_kind("cubic")(stated, document, Fraction(0), Clock(math.inf))
+    numbers = [*document["powers"], document["second"]]
+    if not all(type(p) is int and abs(p) <= MOST_POWER for p in numbers):
+        raise TrajgapError("resume: units are malformed")
+    prover = Prover(CubicSystem(stated, document["powers"], document["second"], document["cap"]))
+    known = [CubicRow(*row) for row in document["rows"]]
+    judged: dict[TickBox, Any] = {}
+
+    def taken(own: Any) -> TickBox:
+        box = TickBox([], [], _floats(own), 0)
+        _follow(box, own)
+        judged[box] = own
+        return box
+
+    def cut(box: TickBox, k: int, at: int) -> tuple[TickBox, ...]:
+        if box.closed:  # whatever was done to it once is not needed
+            return box, box
+        box.children = tuple(map(taken, kind.cut(judged[box], k, at)))
+        box.steps.append([CUT, k, at])
+        return box.children
+
+    def named(step: Step) -> Step:
+        if len(step) < 4:
+            return step
+        *head, held, equations, shares = step
+        rows = [x for i, w in zip(held[::2], held[1::2], strict=True) for x in (known[i], w)]
+        return [*head, rows, equations, shares]
+
+    def step(box: TickBox, tag: str, data: list[Any]) -> None:
+        clock()
+        if not box.closed:
+            kind.step(judged[box], tag, data)
+            box.steps.append(named([tag, *data]))
+            _follow(box, judged[box])
+
+    def leaf(box: TickBox, data: list[Any]) -> None:
+        if data and not box.closed:
+            clock()
+            kind.leaf(judged[box], data)
+            box.steps.append(named([LEAF, *data]))
+            box.closed = True
+
+    root = taken(kind.root())
+    regrow(document["tree"], root, cut, step, leaf)
+    floor = min((box.floor for box in root.leaves()), default=prover.cap)
+    return Tree(prover, root, min(floor, MOST_INTEGER))
+
+
+def _follow(box: TickBox, own: Any) -> None:
+    """Make a box what the verifier's is."""
+    box.low, box.high, box.floor = list(own.low), list(own.high), own.floor
+    box.ranges, box.closed = _floats(own), own.empty
+
+
+def _floats(own: Any) -> tuple[Array, Array]:
+    """The verifier's ranges, shape (unknowns, joints), rounded outward."""
+    low, high = (
+        np.array([[sign * np.inf if x is None else float(x[end]) for x in row] for row in own.x])
+        for sign, end in ((-1, 0), (1, 1))
+    )
+    return np.nextafter(low.T, -np.inf), np.nextafter(high.T, np.inf)

@@ -17,7 +17,7 @@ from .energy import (
     residual_part,
     spectrum,
 )
-from .nodal import LOAD, LOAD_POWERS, POWERS, STIFFNESS, apply_inverse, compiled, place, taylor
+from .nodal import LOAD, LOAD_POWERS, POWERS, STIFFNESS, compiled, place, taylor
 
 
 @compiled
@@ -42,8 +42,8 @@ def bound(  # type: ignore[no-untyped-def]
     where the lowest order of (Rπ)ᵀ(Rρ) is cubic too: its terms join the others before their
     absolute values are taken.
     """
-    size = matrix.shape[0]
-    small, large = spectrum(n, r, e, inverse, matrix)
+    size, back = matrix.shape[0], inverse.T.copy()
+    small, large = spectrum(n, r, e, inverse, back, matrix)
     if not large > 0.0:
         return -np.inf
     middle = 0.5 * (large + small)
@@ -70,11 +70,11 @@ def bound(  # type: ignore[no-untyped-def]
             absolute += abs(w) * limit[i] * (top if power[i] == 1 else 1.0)
     second, first = np.zeros((n, n)), np.zeros(n)
     later_orders, error = 0.0, 0.0
-    pi1, rho2 = np.empty((n, size)), np.empty((n * (n + 1) // 2, size))
-    pi_share, rho_share = np.empty(n), np.empty(n * (n + 1) // 2)
+    third = n * (n + 1) // 2
+    fourth = third + n * n
+    pi_share, rho_share = np.empty(n), np.empty(third)
     blame[:] = 0.0
-    pi2, rho3 = np.empty((n, size)), np.empty((n * n, size))
-    mu, right, reach = np.zeros(size), np.zeros(size), np.zeros(size)
+    right, reach = np.zeros(size), np.zeros(size)
     gain = np.zeros((n, 4, 4))
     for j in range(joints):
         if not active[j]:
@@ -85,15 +85,12 @@ def bound(  # type: ignore[no-untyped-def]
                 i = place(k, a, n)
                 if i >= 0:
                     right[i] += phi[j, k, a] * (r[k] if a < 2 else 1.0)
-        apply_inverse(inverse, right, mu)
-        later, loose, rest = adjoint_part(
-            n, r, e, inverse, matrix, phi[j], rough[j], mu, gain, pi1, pi2
-        )
-        rho_later, rho_loose = residual_part(
-            n, r, e, inverse, matrix, step[:, j], x0[j], slope[j], reach, rho2, rho3
-        )
+        mu = np.dot(back, np.dot(inverse, right))
+        pi, loose, rest = adjoint_part(n, r, e, back, matrix, phi[j], rough[j], mu, gain)
+        rho, rho_loose = residual_part(n, r, e, back, matrix, step[:, j], x0[j], slope[j], reach)
+        pi1, pi2, rho2, rho3 = pi[:n], pi[n : 2 * n], rho[:third], rho[third:fourth]
         adjoint, residual = leading_norm(pi1, pi_share), leading_norm(rho2, rho_share)
-        later, rho_later = later + loose, rho_later + rho_loose
+        later, rho_later = norms(pi[2 * n :]) + loose, norms(rho[fourth:]) + rho_loose
         n2, n3 = norms(pi2), norms(rho3)
         most, rho_most = adjoint + n2 + later, residual + n3 + rho_later
         error += add_cubic(n, middle, pi1, rho2, cubic)
@@ -107,13 +104,9 @@ def bound(  # type: ignore[no-untyped-def]
                 blame[k] += spread * rho_share[at] * most
                 blame[m] += spread * rho_share[at] * most
                 at += 1
-        wide = np.abs(x0[j])
-        for m in range(n):
-            wide += e[m] * np.abs(slope[j, m])
-            for i in range(size):
-                first[m] += rest[i] * slope[j, m, i]
-        for i in range(size):
-            absolute += abs(mu[i]) * reach[i]
+        wide = np.abs(x0[j]) + np.dot(e, np.abs(slope[j]))
+        first += np.dot(slope[j], rest)
+        absolute += np.dot(np.abs(mu), reach)
         for k in range(n):
             top = r[k] + e[k]
             for a in range(4):

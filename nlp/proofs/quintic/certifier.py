@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import math
-from concurrent.futures import Executor
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
 from ....problem import Array, Interpolant, Verdict, check
-from ....problem.curves import at_hand
 from ....verify import (
     MOST_POWER,
     MOST_QUINTIC_JOINTS,
@@ -20,13 +19,12 @@ from ....verify import (
     SMALLEST,
 )
 from ..certifier import Certifier
+from ..driver import grow
 from ..exact import ExactProblem, decimal
-from ..executors import executor_for
 from ..rounding import below
 from ..session import Ladder, Session, Shorter
 from .leaves import Leaves
-from .search import search
-from .subtrees import Root, Stage, search_all
+from .subtrees import Parts, Root, Stage, search_part
 from .windows import Windows, windows
 
 _LADDER = Ladder(
@@ -38,48 +36,14 @@ _LADDER = Ladder(
 )
 """Boxes grow with a power of 1/gap: small steps keep a stopped run near its goal. From 0.2 on they
 grow to 15 to 20 times as many, and judging takes on one core as long again as the search."""
-COMPILING = 25.0
-"""Seconds that compiling the search takes, once after an installation: 22 were measured."""
-UNCOMPILED = f"compiling the search takes about {COMPILING:.0f} s, once after an installation"
-"""What is left out where there is less time than that."""
-_SPARE = Fraction(1, 10**9)
-"""Share by which a total stays below the sum of the least durations, so that the first box is empty
-by far more than the verifier's slack."""
-_JUDGING = 1.2
-"""Seconds that judging takes, on one core, for one of search on one core, until it is measured:
-0.9 to 1.1 were (docs/explanation/certificates-quintic.md)."""
-_TELLING = 1000
-"""Boxes of a stage whose judging tells how long a box takes: half a second."""
-_EARLY = 0.05
-"""Share of the time after which it is measured: the stages that follow need it."""
-_SLIGHT = 1e-7
-"""Share by which durations must be shorter to be worth a new start of the ladder."""
-_NEAR = 8
-"""Powers of two by which a size may differ from 1 before the units are changed."""
-_REST = ((1, 0.0), (2, 0.0))
-"""Velocity and acceleration 0 at an end, as a declaration prescribes them."""
-
-
-@dataclass(frozen=True)
-class BinaryUnits:
-    """Joint j is measured in 2**powers[j] of the problem's unit of angle, time in 2**second s."""
-
-    powers: tuple[int, ...]
-    second: int
-
-    @property
-    def time(self) -> Fraction:
-        """In s."""
-        return Fraction(2) ** self.second
 
 
 @dataclass(frozen=True, eq=False)
 class Tree:
-    """Bisections of the simplex of durations that prove a total; both in the units of the proof."""
+    """Bisections of the simplex of durations that prove a total, in the units of the proof."""
 
-    units: BinaryUnits
+    own: OwnUnits
     total: Fraction
-    low: tuple[Fraction, ...]
     windows: Windows
     leaves: Leaves
 
@@ -87,10 +51,10 @@ class Tree:
         """Kind "quintic-spline" of docs/explanation/certificates-quintic.md."""
         return {
             "kind": "quintic-spline",
-            "total": decimal(self.total * self.units.time),
-            "powers": list(self.units.powers),
-            "second": self.units.second,
-            "low": [decimal(x * self.units.time) for x in self.low],
+            "total": decimal(self.total * self.own.time),
+            "powers": list(self.own.powers),
+            "second": self.own.second,
+            "low": [decimal(x * self.own.time) for x in self.own.low],
             **self.leaves.document(self.windows),
         }
 
@@ -107,116 +71,114 @@ def _declares(problem: ExactProblem) -> bool:
 
 
 def _missing(problem: ExactProblem) -> str | None:
-    inner = ((),) * (problem.segments - 1)
-    if problem.piecewise.prescribed != (_REST, *inner, _REST):
+    rest, inner = ((1, 0.0), (2, 0.0)), ((),) * (problem.segments - 1)
+    if problem.piecewise.prescribed != (rest, *inner, rest):
         return f"{problem.curve.name}: only rest with zero acceleration at both ends is covered"
     if problem.segments > MOST_QUINTIC_SEGMENTS or len(problem.joints) > MOST_QUINTIC_JOINTS:
         return f"more than {MOST_QUINTIC_SEGMENTS} segments or {MOST_QUINTIC_JOINTS} joints"
-    units = _units(problem)
-    own = problem.in_units(units.powers, units.second)
-    q = own.waypoints
-    sizes = [abs(b - a) for k in range(len(q) - 1) for a, b in zip(q[k], q[k + 1], strict=True)]
-    sizes += [x.high for row in own.limits for x in row if x is not None]
-    if not all(x == 0 or SMALLEST < x < 1 / SMALLEST for x in sizes):
+    own = OwnUnits(problem)
+    sizes = np.concatenate([np.abs(own.steps).ravel(), own.limits[np.isfinite(own.limits)]])
+    if not all(x == 0.0 or SMALLEST < x < 1 / SMALLEST for x in sizes.tolist()):
         return "a step or a limit is of unusual size"
     if all(problem.duration_lower):
         return None
-    if not np.isfinite(_limits(problem)).any() and not any(problem.duration_lower):
+    if not np.isfinite(own.limits).any() and not any(problem.duration_lower):
         return "nothing limits the total from below"
-    moving = np.asarray(_steps(problem).any(axis=0), dtype=np.bool_)
-    if not (np.isfinite(_limits(problem)[:, :2]) & moving[:, None]).any():
+    moving = np.asarray(own.steps.any(axis=0), dtype=np.bool_)
+    if not (np.isfinite(own.limits[:, :2]) & moving[:, None]).any():
         return "no joint that moves has a velocity or acceleration limit"
     return None
 
 
 def _limits(problem: ExactProblem) -> Array:
     """Looser ends of the limits, shape (joints, 3); a limit of 0 takes no part."""
-    limits = problem.derivative_limits()
-    return np.asarray(np.where(limits > 0.0, limits, np.inf), dtype=np.float64)
+    each = [[math.inf if x is None else float(x.high) for x in row] for row in problem.limits]
+    limits = np.array(each, dtype=np.float64)
+    return np.where(limits > 0.0, limits, np.inf)
 
 
-def _steps(problem: ExactProblem) -> Array:
-    q = problem.waypoints
-    return np.array(
-        [[float(b - a) for a, b in zip(q[k], q[k + 1], strict=True)] for k in range(len(q) - 1)]
-    )
-
-
-def shortest(problem: ExactProblem) -> tuple[Fraction, ...]:
-    """Least durations by their bounds and by the mean velocities, as floats."""
+def shortest(problem: ExactProblem, unit: Fraction = Fraction(1)) -> tuple[Fraction, ...]:
+    """Least durations by their bounds and by the mean velocities, as floats, in a unit of time."""
     q, out = problem.waypoints, []
     for k, low in enumerate(problem.duration_lower):
         for j, (velocity, *_) in enumerate(problem.limits):
             if velocity is not None and velocity.high > 0:
                 low = max(low, abs(q[k + 1][j] - q[k][j]) / velocity.high)
-        out.append(below(low))
+        out.append(below(low / unit))
     return tuple(out)
 
 
-class _Search:
+class OwnUnits:
+    """A problem in floats, in units in which steps and total are not far from 1.
+
+    They are powers of two, which spoil no digit; where the problem's own units do, they are those.
+    Weights, multipliers and totals of a proof have ranges, which these units keep to: joint j is
+    measured in 2**powers[j] of the problem's unit of angle, time in 2**second s. ``low`` are the
+    least durations.
+    """
+
+    def __init__(self, problem: ExactProblem) -> None:
+        rows = [[float(b - a) for a, b in zip(*pair, strict=True)]
+                for pair in pairwise(problem.waypoints)]  # fmt: skip
+        steps, limits = np.array(rows), _limits(problem)
+        powers = np.array([_power(float(column.max())) for column in np.abs(steps).T])
+        least = np.array([float(x) for x in problem.duration_lower])
+        with np.errstate(divide="ignore"):
+            for order in (1, 2, 3):
+                needs = (np.abs(steps) / limits[:, order - 1]) ** (1.0 / order)
+                least = np.maximum(least, needs.max(axis=1))
+        self.powers, self.second = powers.tolist(), _power(float(least.sum()))
+        self.time = Fraction(2) ** self.second
+        self.steps = steps / 2.0**powers
+        times = 2.0 ** (self.second * np.array([1.0, 2.0, 3.0]))
+        self.limits = limits * times / 2.0 ** powers[:, None]
+        self.low = shortest(problem, self.time)
+
+
+class Stages:
     """What the stages share: numbers in the units of the proof, and windows that exclude boxes."""
 
-    def __init__(self, session: Session, executor: Executor) -> None:
-        self.session, self.units = session, _units(session.exact)
-        self.executor, self.workers = executor, session.request.workers
-        own = session.exact.in_units(self.units.powers, self.units.second)
-        self.low = shortest(own)
-        self.steps, self.limits = _steps(own), _limits(own)
+    def __init__(self, session: Session) -> None:
+        self.session, self.own = session, OwnUnits(session.exact)
+        self.steps, self.limits = self.own.steps, self.own.limits
         assert session.durations is not None
-        near = np.array([float(h / self.units.time) for h in session.durations])
+        near = np.array([float(h / self.own.time) for h in session.durations])
         self.library = windows(self.steps, self.limits, near, clock=session.check_clock)
-        self._visited = 0
-        self._proved: tuple[int, Tree] | None = None
+        with session.clock.standing():  # the first search compiles, or loads what is compiled
+            nowhere = np.ones(len(self.own.low))
+            search_part(self._stage(1.0, 0.0), Root(nowhere, 0.0 * nowhere))
+
+    def _stage(self, total: float, look: float) -> Stage:
+        return Stage(self.steps, self.limits, total, self.library.terms, look)
 
     def rounded(self, total: Fraction) -> Fraction:
         """A total that is exact in floating point in the units of the proof, s."""
-        return below(total / self.units.time) * self.units.time
+        return below(total / self.own.time) * self.own.time
 
     def stage(self, target: Fraction) -> Tree:
         """Prove that no total is below ``target``, s."""
-        session = self.session
-        if not at_hand(search):
-            session.left_out = UNCOMPILED
-            session.check_clock(COMPILING)
-            session.left_out = None
-        session.check_clock()
-        own, upper = target / self.units.time, session.upper
-        look = 0.0 if upper is None else float(upper / self.units.time) * (1.0 - _SLIGHT)
-        stage = Stage(self.steps, self.limits, float(own), self.library.terms, look)
-        root = Root(np.array([float(x) for x in self.low]), np.full(len(self.low), stage.total))
-
-        self._visited = 0
-
-        def watch(waiting: int, boxes: int) -> float:
-            session.report(waiting, session.nodes + boxes)
-            self._weigh(boxes)
-            session.check_clock()
-            return session.searching
-
-        leaves = search_all(
-            stage, root, lambda h: self._look(h, look), watch, self.executor, self.workers
+        session, own = self.session, target / self.own.time
+        assert session.upper is not None
+        # Durations that are shorter by less are not worth a new start of the ladder.
+        look = float(session.upper / self.own.time) * (1.0 - 1e-7)
+        before = session.nodes
+        parts = Parts(
+            self._stage(float(own), look),
+            lambda h: self._look(h, look),
+            lambda waiting, boxes: session.report(waiting, before + boxes),
         )
-        tree = Tree(self.units, own, self.low, self.library, leaves)
-        boxes = int(leaves.sizes[0])
-        if boxes >= _TELLING:
-            self._proved = boxes, tree
-        return tree
-
-    def _weigh(self, boxes: int) -> None:
-        """Keep the time free that judging this stage takes, as measured on the one before."""
-        self._visited += boxes
-        session = self.session
-        if self._proved is not None:
-            visited, tree = self._proved
-            session.weigh(visited, lambda: tree, _EARLY)
-            session.judged_boxes = max(session.judged_boxes, self._visited)
+        root = Root(
+            np.array([float(x) for x in self.own.low]), np.full(len(self.own.low), float(own))
+        )
+        grow(parts, [root], session)
+        return Tree(self.own, own, self.library, parts.leaves)
 
     def _look(self, durations: Array, below_it: float) -> bool:
         """Raise `Shorter` if the direction of ``durations`` holds a total below the one given.
 
         False if it does but for bounds that stretching cannot repair: more would follow.
         """
-        time = float(self.units.time)
+        time = float(self.own.time)
         found = self.session.stretched(durations[None] * time)[0]
         if not found.sum() < below_it * time:
             return True
@@ -225,39 +187,25 @@ class _Search:
         return False
 
 
-def _units(exact: ExactProblem) -> BinaryUnits:
-    """Units in which steps and total are not far from 1; those of the problem where they are not.
-
-    Weights, multipliers and totals of a proof have ranges, which these units keep to.
-    """
-    steps, limits = np.abs(_steps(exact)), _limits(exact)
-    powers = [_power(float(column.max())) for column in steps.T]
-    least = np.array([float(x) for x in exact.duration_lower])
-    with np.errstate(divide="ignore"):
-        for order in (1, 2, 3):
-            needs = (steps / limits[:, order - 1]) ** (1.0 / order)
-            least = np.maximum(least, needs.max(axis=1))
-    return BinaryUnits(tuple(powers), _power(float(least.sum())))
-
-
 def _power(size: float) -> int:
     """Of two, for a size far from 1; else 0."""
     power = math.frexp(size)[1] if size > 0.0 else 0
-    return 0 if abs(power) <= _NEAR else max(-MOST_POWER, min(MOST_POWER, power))
+    return 0 if abs(power) <= 8 else max(-MOST_POWER, min(MOST_POWER, power))
 
 
 def _keep_mean_velocities(session: Session) -> None:
     """Bound the total by the sum of the least durations: one leaf proves it, in no time."""
-    units = _units(session.exact)
-    low = shortest(session.exact.in_units(units.powers, units.second))
-    total = below(sum(low, Fraction(0)) * (1 - _SPARE))
+    own = OwnUnits(session.exact)
+    low = own.low
+    # The first box is to be empty by far more than the verifier's slack.
+    total = below(sum(low, Fraction(0)) * (1 - Fraction(1, 10**9)))
     if total > SHORTEST_TOTAL:
         n = len(low)
         none = Windows(
             np.zeros(0, np.int64), np.zeros((0, n + 1)), np.zeros((0, n)), np.zeros((0, 2 * n + 1))
         )
-        tree = Tree(units, total, low, none, Leaves.of_nothing())
-        session.keep_at_once(total * units.time, tree)
+        tree = Tree(own, total, none, Leaves.of_nothing())
+        session.keep_at_once(total * own.time, tree)
 
 
 def _prove(session: Session) -> bool:
@@ -266,10 +214,10 @@ def _prove(session: Session) -> bool:
     session.seek()
     if session.upper is None:
         return False
-    session.judging = _JUDGING * session.request.workers
-    with executor_for(session.request.executor, session.request.workers) as executor:
-        stages = _Search(session, executor)
-        session.climb(_LADDER, stages.rounded, stages.stage)
+    # Judging takes as long as the search on one core: 0.9 to 1.1 times were measured.
+    session.judging = 1.2
+    stages = Stages(session)
+    session.climb(_LADDER, stages.rounded, stages.stage)
     return True
 
 

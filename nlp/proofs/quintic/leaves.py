@@ -11,14 +11,11 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ....verify import LEAF
+from ....verify import LEAF, WINDOW_UNIT
 from .search import EMPTY, WINDOW
-from .windows import UNIT, Windows
+from .windows import Windows
 
 T = TypeVar("T")
-
-_ROOM = (1 << 12, 1 << 12, 1 << 13)
-"""Letters, leaves and rows of the first arrays: 0.3 MB, and doubled when full."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,8 +34,8 @@ class Leaves:
     sizes: NDArray[np.int64]
 
     @classmethod
-    def empty(cls, room: tuple[int, int, int] = _ROOM) -> Leaves:
-        """Arrays with room for letters, leaves and rows."""
+    def empty(cls, room: tuple[int, int, int] = (1 << 12, 1 << 12, 1 << 13)) -> Leaves:
+        """Arrays with room for letters, leaves and rows: 0.3 MB, and doubled when full."""
         letters, leaves, rows = room
         return cls(
             np.zeros(letters, np.int8),
@@ -135,8 +132,8 @@ class Leaves:
             "windows": [
                 [
                     int(windows.joint[w]),
-                    *(int(x) for x in windows.psi[w] * UNIT),
-                    *(int(x) for x in windows.weights[w] * UNIT),
+                    *(int(x) for x in windows.psi[w] * WINDOW_UNIT),
+                    *(int(x) for x in windows.weights[w] * WINDOW_UNIT),
                 ]
                 for w in of_windows
             ],

@@ -106,21 +106,6 @@ def inverse_factor(matrix, inverse):  # type: ignore[no-untyped-def]
 
 
 @compiled
-def apply_inverse(inverse, right, out):  # type: ignore[no-untyped-def]
-    """RᵀR right, into ``out``."""
-    size = inverse.shape[0]
-    half = np.zeros(size)
-    for i in range(size):
-        for m in range(i + 1):
-            half[i] += inverse[i, m] * right[m]
-    for i in range(size):
-        v = 0.0
-        for m in range(i, size):
-            v += inverse[m, i] * half[m]
-        out[i] = v
-
-
-@compiled
 def centre(n, joints, r, step, matrix, inverse, x0, slope):  # type: ignore[no-untyped-def]
     """Fill M0, R, and per joint x0 ≈ x(r) and slope[j, m] ≈ ∂x/∂r_m; False if it failed.
 
@@ -129,7 +114,7 @@ def centre(n, joints, r, step, matrix, inverse, x0, slope):  # type: ignore[no-u
     stiffness(n, r, matrix)
     if not inverse_factor(matrix, inverse):
         return False
-    right = np.empty(matrix.shape[0])
+    right, weight = np.empty(matrix.shape[0]), np.dot(inverse.T, inverse)
     for j in range(joints):
         right[:] = 0.0
         for k in range(n):
@@ -137,7 +122,7 @@ def centre(n, joints, r, step, matrix, inverse, x0, slope):  # type: ignore[no-u
                 i = place(k, a, n)
                 if i >= 0:
                     right[i] += LOAD[a] * taylor(LOAD_POWERS[a], 0, r[k]) * step[k, j]
-        apply_inverse(inverse, right, x0[j])
+        x0[j] = np.dot(weight, right)
         for m in range(n):
             right[:] = 0.0
             for a in range(4):
@@ -149,5 +134,5 @@ def centre(n, joints, r, step, matrix, inverse, x0, slope):  # type: ignore[no-u
                     q = place(m, b, n)
                     if q >= 0:
                         right[i] -= STIFFNESS[a, b] * taylor(POWERS[a, b], 1, r[m]) * x0[j, q]
-            apply_inverse(inverse, right, slope[j, m])
+            slope[j, m] = np.dot(weight, right)
     return True

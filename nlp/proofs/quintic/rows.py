@@ -4,20 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
+from ....verify import QUINTIC_PLACES
 from .nodal import BASIS, compiled, place
 
-PLACES = 1024
-"""Places on a segment are multiples of 1/PLACES."""
 MOST = 40
 """Rows that take part in a box: below `MOST_LIMITS` of a leaf, and the table stays small."""
 _GRID = 9
 """Places where a derivative is scanned: it has at most three extrema inside a segment."""
-_STEPS = 3
-"""Newton steps to an extremum, which begin less than an eighth of a segment away."""
-_PIVOTS = 60
-"""Of the simplex method: a guard, since any weights are valid."""
-_SMALL = 1e-9
-"""Gain below which no variable enters: what it could win is lost in rounding."""
 
 
 def derivative_table() -> np.ndarray:
@@ -36,8 +29,8 @@ TABLE = derivative_table()
 
 @compiled
 def row_shape(order, sign, spot, shape):  # type: ignore[no-untyped-def]
-    """Fill ``shape`` (step, v0, v1, a0, a1) of a derivative at spot/PLACES."""
-    s = spot / PLACES
+    """Fill ``shape`` (step, v0, v1, a0, a1) of a derivative at spot/QUINTIC_PLACES."""
+    s = spot / QUINTIC_PLACES
     for i in range(5):
         v = 0.0
         for p in range(5, -1, -1):
@@ -50,7 +43,7 @@ def _peak(poly, sign, start):  # type: ignore[no-untyped-def]
     """Newton steps from a grid point to the extremum beside it, kept within one cell and [0, 1]."""
     low, high = max(0.0, start - 1.0 / (_GRID - 1)), min(1.0, start + 1.0 / (_GRID - 1))
     s = start
-    for _ in range(_STEPS):
+    for _ in range(3):  # from less than an eighth of a segment away
         rise, bend = 0.0, 0.0
         for p in range(5, 0, -1):
             rise = rise * s + p * poly[p]
@@ -105,7 +98,7 @@ def candidates(  # type: ignore[no-untyped-def]
                     if here < before or here <= after:
                         continue
                     s = _peak(poly, sign, g / (_GRID - 1.0))
-                    spot = int(np.rint(s * PLACES))
+                    spot = int(np.rint(s * QUINTIC_PLACES))
                     row_shape(order, sign, spot, shape)
                     v = 0.0
                     for i in range(5):
@@ -193,8 +186,8 @@ def simplex(n, count, value, gradient, r, e, total, weight):  # type: ignore[no-
             for c in range(wide + 1):
                 table[k, c] = -table[k, c]
     gain = np.empty(wide)
-    for _ in range(_PIVOTS):
-        enter, most = -1, _SMALL
+    for _ in range(60):  # a guard: any weights are valid
+        enter, most = -1, 1e-9  # what wins less is lost in rounding
         for c in range(wide):
             gain[c] = cost[c]
         for q in range(n + 1):

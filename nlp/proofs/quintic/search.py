@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ....verify import MOST_WEIGHT
 from .bound import bound
 from .nodal import centre, compiled
 from .rows import MOST, candidates, simplex
@@ -13,23 +14,10 @@ EMPTY, WINDOW, LIMITS = 0, 1, 2
 """Kinds of leaves: no durations of this total, a condition of all motions, weighted limits."""
 DONE, PAUSED, FULL, SHORTER, DEEP = 0, 1, 2, 3, 4
 """Why the search returned."""
-SHARES = 2.0**13
-"""Largest weight of a row: with 2²⁰ there are as many boxes, in a certificate a sixth longer."""
-MOST_TAU = 2.0**52
-"""Largest multiplier of the total, as in `trajgap.verify`: floats hold it exactly."""
 SPARE = 1e-9
 """Part of the limits by which a leaf must exceed them, so that another evaluation agrees."""
 _SLACK = 1e-12
 """Share that boxes are widened by, as in `trajgap.verify`: far more than the rounding of sums."""
-_WIDEST = 0.6
-"""Relative half-width in 1/h of a box with a bound, as in `trajgap.verify`; at 1 there is none."""
-_KEPT = 1e-5
-"""Weight of a row below which it is left out: they sum up to 1, and short leaves are cheap."""
-STILL = 0.1
-"""Change of the rows, in limits, that a side counts with at least: a wide one is cut even where no
-row changes along it. From 0.02 to 1 the number of boxes differed by a tenth."""
-_BRIEFEST = 1e-40
-"""Durations of a box with a bound are above it, as in `trajgap.verify`: nothing underflows."""
 
 
 @compiled
@@ -56,28 +44,37 @@ def cut(low, high):  # type: ignore[no-untyped-def]
 
 @compiled
 def inverse_box(n, low, high, r, e):  # type: ignore[no-untyped-def]
-    """Centre and half-widths of a box in 1/h; False if it is too wide for `bound`."""
+    """Centre and half-widths of a box in 1/h; False if it is too wide for `bound`.
+
+    The verifier takes the same ones: durations above 1e-40, so that nothing underflows, and
+    half-widths below 0.6 of the centre; at 1 there is no bound.
+    """
     for k in range(n):
-        if not low[k] > _BRIEFEST:
+        if not low[k] > 1e-40:
             return False
         a, b = 1.0 / high[k], 1.0 / low[k]
         r[k] = 0.5 * (a + b)
         e[k] = 0.5 * (b - a) + 4.0 * _SLACK * b
-        if not e[k] < _WIDEST * r[k]:
+        if not e[k] < 0.6 * r[k]:
             return False
     return True
 
 
 @compiled
 def _share_out(count, norms, weight, tau, share):  # type: ignore[no-untyped-def]
-    """Weights of the rows and tau as whole numbers: any positive multiple proves the same."""
+    """Weights of the rows and tau as whole numbers: any positive multiple proves the same.
+
+    The largest weight is 2²⁰. Weights below ``kept`` are left out: they sum up to 1,
+    and short leaves are cheap.
+    """
+    kept = 1e-5
     top = 0.0
     for c in range(count):
-        if weight[c] > _KEPT:
+        if weight[c] > kept:
             top = max(top, weight[c] / norms[c])
-    scale = min(SHARES / top, MOST_TAU / max(abs(tau), 1e-300))
+    scale = min(2.0**20 / top, MOST_WEIGHT / max(abs(tau), 1e-300))
     for c in range(count):
-        share[c] = np.rint(weight[c] / norms[c] * scale) if weight[c] > _KEPT else 0.0
+        share[c] = np.rint(weight[c] / norms[c] * scale) if weight[c] > kept else 0.0
     return np.rint(tau * scale)
 
 
@@ -122,6 +119,8 @@ def _worst_side(  # type: ignore[no-untyped-def]
 
     What is proved does not depend on it. Of the rules tried on two of the twenty problems of
     docs/explanation/certificates-quintic.md this one left a third fewer boxes than the widest side.
+    A wide side is cut even where no row changes along it: it counts with a tenth of the limits, and
+    from 0.02 to 1 the number of boxes differed by a tenth.
     """
     axis, most = 0, -1.0
     for k in range(n):
@@ -132,7 +131,7 @@ def _worst_side(  # type: ignore[no-untyped-def]
                 change = abs(gradient[c, k]) * e[k]
                 mean += weight[c] * change
                 top = max(top, change * max(0.0, 1.0 + value[c]))
-            width *= mean + top + STILL
+            width *= mean + top + 0.1
             if blame[k] > 0.0:
                 width *= blame[k]
         if width > most:

@@ -1,33 +1,19 @@
-"""One search in parts that any executor may run, joined in the order in which one core goes."""
+"""One search in parts that anybody may run, joined in the order in which one core goes."""
 
 from __future__ import annotations
 
-import heapq
-import math
-import time
 from collections.abc import Callable
-from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ....problem import Array
-from ..session import OutOfTime, Shorter
+from ....verify import OutOfTime
+from ...optimum import time_up
+from ..crew import Common
+from ..driver import Branching
 from .leaves import Leaves
 from .search import DEEP, FULL, PAUSED, SHORTER, search
-
-_PART = 5_000
-"""Boxes of a part: about a second, beside which handing it out costs nothing."""
-_CHUNK = 500
-"""Boxes between two looks at the clock, to `_USUAL` segments: less than a tenth of a second."""
-_USUAL = 8
-"""Segments up to which that holds; beyond, a box takes time of the third power."""
-_AHEAD = 2
-"""Parts handed out for each worker: the next one is there when it ends one."""
-_STACK = 600
-"""Boxes that wait: depth first, more than the deepest tree that the verifier takes."""
-_LOOK = 0.1
-"""Seconds between two looks at the clock while parts run elsewhere."""
 
 Place = tuple[int, ...]
 """Where a part begins: sorted, places are in preorder."""
@@ -47,6 +33,10 @@ class Stage:
         Conditions of all motions.
     look : float
         A direction whose total seems to be below it ends a part; 0 for none.
+    part : int
+        Boxes of a part: about a second, beside which handing it out costs nothing.
+    stack : int
+        Boxes that wait: depth first, more than the deepest tree that the verifier takes.
     """
 
     steps: Array
@@ -54,6 +44,16 @@ class Stage:
     total: float
     windows: Array
     look: float
+    part: int = 5_000
+    stack: int = 600
+
+    @property
+    def between_looks(self) -> int:
+        """Boxes between two looks at the clock, which take less than a tenth of a second.
+
+        To 8 segments 500 do; beyond, a box takes time of the third power.
+        """
+        return min(self.part, max(1, int(500 * min(1.0, 8 / len(self.steps)) ** 3)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,6 +63,7 @@ class Root:
     Attributes
     ----------
     low, high : ndarray, shape (segments,)
+    place : tuple of int
     height : int
         Boxes that wait below it.
     seen : bool
@@ -73,6 +74,7 @@ class Root:
 
     low: Array
     high: Array
+    place: Place = ()
     height: int = 0
     seen: bool = False
     wary: bool = True
@@ -98,126 +100,93 @@ class Part:
     code: int
 
 
-def between_looks(segments: int) -> int:
-    """Boxes of a spline of so many segments that are searched without a look at the clock."""
-    return max(1, int(_CHUNK * min(1.0, _USUAL / segments) ** 3))
-
-
-def search_part(stage: Stage, root: Root, seconds: float, until: float = math.inf) -> Part:
-    """Search below a box until it is empty, `_PART` boxes are visited or time is up.
-
-    Parameters
-    ----------
-    stage : Stage
-    root : Root
-    seconds : float
-        From now.
-    until : float
-        And no longer than this, by `time.time`: a part may have waited for its turn.
+def search_part(stage: Stage, root: Root) -> Part:
+    """Search below a box until it is empty, a part's boxes are visited or time is up.
 
     Returns
     -------
     Part
         But for the clock, a function of stage and root alone.
     """
-    ends = time.monotonic() + min(seconds, until - time.time())
     n, joints = stage.steps.shape
-    low, high = (np.zeros((_STACK - root.height, n)) for _ in range(2))
+    low, high = (np.zeros((stage.stack - root.height, n)) for _ in range(2))
     low[0], high[0] = root.low, root.high
     depth, counts = np.array([1]), np.zeros(3, np.int64)
     leaves, seen = Leaves.empty(), root.seen
-    chunk = between_looks(n)
     while True:
         look = stage.look if root.wary and not seen else 0.0
         code = search(
             n, joints, stage.steps, stage.limits, stage.total, stage.windows,
-            low, high, depth, 1 if seen else chunk, look, *leaves.arrays, counts,
+            low, high, depth, 1 if seen else stage.between_looks, look, *leaves.arrays, counts,
         )  # fmt: skip
         if code == FULL:
             leaves = leaves.larger()
             continue
         seen = False
-        if code != PAUSED or counts[0] >= _PART or time.monotonic() > ends:
+        if code != PAUSED or counts[0] >= stage.part or time_up():
             break
     top = int(depth[0]) - 1
     rest = tuple(
-        Root(low[i], high[i], root.height + i, code == SHORTER and i == top, root.wary)
+        Root(
+            low[i], high[i], (*root.place, top - i), root.height + i,
+            code == SHORTER and i == top, root.wary,
+        )
         for i in range(top, -1, -1)
-    )
+    )  # fmt: skip
     return Part(leaves.trimmed(), rest, int(counts[0]), int(code))
 
 
-def search_all(
-    stage: Stage,
-    root: Root,
-    look: Callable[[Array], bool],
-    watch: Callable[[int, int], float],
-    executor: Executor,
-    workers: int,
-) -> Leaves:
-    """Search below a box, part by part; the same tree on any number of workers.
+class Parts(Branching[Root]):
+    """Search below boxes, part by part.
 
     Parameters
     ----------
     stage : Stage
-    root : Root
     look : callable
         Given durations whose total seems to be below ``stage.look``: whether to go on looking.
         It raises `Shorter` where they are what they seem to be.
     watch : callable
-        Given the roots that wait and the boxes visited since it was last asked: the seconds left.
-        It raises when time is up.
-    executor : concurrent.futures.Executor
-    workers : int
-        Parts that it runs at a time.
-
-    Returns
-    -------
-    Leaves
-
-    Raises
-    ------
-    Shorter, OutOfTime
-        What ends the search first in preorder, so that the order in which parts come back is
-        nowhere seen. `OutOfTime` says that the tree is too deep.
+        Given the roots that wait and the boxes visited.
     """
-    waiting: list[tuple[Place, Root]] = [((), root)]
-    running: dict[Future[Part], Place] = {}
-    found: dict[Place, Leaves] = {}
-    ended: tuple[Place, Exception] | None = None
-    boxes = 0
-    try:
-        while waiting or running:
-            left = watch(len(waiting) + len(running), boxes)
-            boxes, until = 0, time.time() + left
-            while waiting and len(running) < _AHEAD * workers:
-                place, one = heapq.heappop(waiting)
-                if ended is None or place < ended[0]:
-                    running[executor.submit(search_part, stage, one, left, until)] = place
-            for future in wait(running, _LOOK, FIRST_COMPLETED).done:
-                place, part = running.pop(future), future.result()
-                boxes += part.boxes
-                found[place] = part.leaves
-                try:
-                    rest = _going_on(part, look)
-                except (Shorter, OutOfTime) as error:
-                    if ended is None or place < ended[0]:
-                        ended = place, error
-                else:
-                    for i, one in enumerate(rest):
-                        heapq.heappush(waiting, ((*place, i), one))
-    finally:
-        for future in running:
-            future.cancel()
-    if ended is not None:
-        raise ended[1]
-    return Leaves.joined([found[place] for place in sorted(found)])
 
+    ahead = 8
+    work = staticmethod(search_part)
 
-def _going_on(part: Part, look: Callable[[Array], bool]) -> tuple[Root, ...]:
-    """What is left of a part, once the direction that ended it was looked at."""
-    if part.code == DEEP:
-        raise OutOfTime
-    if part.code != SHORTER or look(2.0 / (1.0 / part.rest[0].low + 1.0 / part.rest[0].high)):
-        return part.rest
-    return tuple(replace(one, wary=False) for one in part.rest)
+    def __init__(
+        self, stage: Stage, look: Callable[[Array], bool], watch: Callable[[int, int], None]
+    ) -> None:
+        self.common, self._look, self._watch = Common(stage), look, watch
+        self._found: dict[Place, Leaves] = {}
+        self._boxes = 0
+
+    @property
+    def leaves(self) -> Leaves:
+        """Those of all parts."""
+        return Leaves.joined([self._found[place] for place in sorted(self._found)])
+
+    def order(self, box: Root) -> Place:
+        """In preorder."""
+        return box.place
+
+    def wanted(self, box: Root) -> bool:
+        """Every box is."""
+        return True
+
+    def given(self, box: Root) -> tuple[Root]:
+        """The box."""
+        return (box,)
+
+    def taken(self, box: Root, found: Part) -> tuple[Root, ...]:
+        """What is left of a part, once the direction that ended it was looked at."""
+        self._boxes += found.boxes
+        self._found[box.place] = found.leaves
+        if found.code == DEEP:
+            raise OutOfTime
+        first = found.rest[0] if found.code == SHORTER else None
+        if first is None or self._look(2.0 / (1.0 / first.low + 1.0 / first.high)):
+            return found.rest
+        return tuple(replace(one, wary=False) for one in found.rest)
+
+    def look(self, waiting: int) -> None:
+        """Report."""
+        self._watch(waiting, self._boxes)

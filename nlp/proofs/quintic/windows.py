@@ -18,17 +18,12 @@ from numpy.typing import NDArray
 from scipy.optimize import linprog
 
 from ....problem import Array
+from ....verify import WINDOW_UNIT
 from .energy import ROUNDING
 from .nodal import compiled
 
-UNIT = 2.0**16
-"""ψ and c are multiples of 1/UNIT."""
 _CELLS = 6
 """Of a segment in the linear program for ψ: it only proposes, the mean of |ψ| is exact later."""
-_PROMISING = 4
-"""Conditions that are tried with multipliers of the total: the nearest to excluding the box."""
-_SPREAD = 0.5
-"""Deviation of the random log durations: directions within a factor of about e of the answer's."""
 
 
 def mean_size(psi: Array) -> Array:
@@ -102,8 +97,8 @@ def window(
     if not top > 0.0:
         return None
     # Dyadic numbers: the sums c + ψ' h are exact.
-    psi = np.rint(psi / top * UNIT) / UNIT
-    weights = np.rint(weights / top * UNIT) / UNIT
+    psi = np.rint(psi / top * WINDOW_UNIT) / WINDOW_UNIT
+    weights = np.rint(weights / top * WINDOW_UNIT) / WINDOW_UNIT
     if not limited_v:  # no limit pays for what is left between them
         weights = psi[:-1] - psi[1:]
     if not limited_a:
@@ -146,6 +141,7 @@ def windows(
     limits: Array,
     durations: Array,
     directions: int = 50,
+    deviation: float = 0.5,
     clock: Callable[[], None] = lambda: None,
 ) -> Windows:
     """Conditions that are violated at random directions, and the mean velocities.
@@ -158,6 +154,8 @@ def windows(
     durations : ndarray, shape (segments,)
         The directions spread around it.
     directions : int
+    deviation : float
+        Of their log durations: within a factor of about e of the answer's.
     clock : callable, optional
         Called before each direction; may raise.
 
@@ -177,7 +175,7 @@ def windows(
     limited = [j for j in range(joints) if np.isfinite(limits[j, :2]).any() and steps[:, j].any()]
     for d in range(directions):
         clock()
-        spread = _SPREAD * rng.standard_normal(n) if d else np.zeros(n)
+        spread = deviation * rng.standard_normal(n) if d else np.zeros(n)
         direction = durations * np.exp(spread)
         direction *= durations.sum() / direction.sum()
         for j in limited:
@@ -228,9 +226,12 @@ def window_bound(n, terms, low, high, tau, total):  # type: ignore[no-untyped-de
 
 @compiled
 def excluding_window(n, library, low, high, total):  # type: ignore[no-untyped-def]
-    """Number and tau of a condition that the whole box violates; −1 if none is found."""
-    best = np.full(_PROMISING, -np.inf)
-    which = np.full(_PROMISING, -1)
+    """Number and tau of a condition that the whole box violates; −1 if none is found.
+
+    The four that are nearest to excluding the box are tried with multipliers of the total.
+    """
+    best = np.full(4, -np.inf)
+    which = np.full(4, -1)
     for f in range(library.shape[0]):
         value = window_bound(n, library[f], low, high, 0.0, total)
         if value > 0.0:
@@ -239,7 +240,7 @@ def excluding_window(n, library, low, high, total):  # type: ignore[no-untyped-d
         scale = library[f, 2 * n]
         for k in range(n):
             scale += library[f, n + k] * high[k]
-        at = _PROMISING - 1
+        at = best.size - 1
         value /= scale
         if value <= best[at]:
             continue
@@ -247,7 +248,7 @@ def excluding_window(n, library, low, high, total):  # type: ignore[no-untyped-d
             best[at], which[at] = best[at - 1], which[at - 1]
             at -= 1
         best[at], which[at] = value, f
-    for i in range(_PROMISING):
+    for i in range(which.size):
         f = which[i]
         if f < 0:
             break

@@ -22,12 +22,13 @@ from trajgap.nlp.optimum.rounds import fresh, solve_round
 from trajgap.nlp.optimum.rows import near_rows
 from trajgap.nlp.optimum.search import program_of
 from trajgap.nlp.optimum.starts import box_above
+from trajgap.nlp.proofs import clock as proof_clock
 from trajgap.nlp.proofs import session
 from trajgap.nlp.proofs.any_curve.estimate import estimate_any_curve
 from trajgap.nlp.proofs.exact import exact_problem
 from trajgap.nlp.proofs.outcome import Request
 from trajgap.nlp.proofs.quintic import windows
-from trajgap.nlp.proofs.session import OutOfTime, Session
+from trajgap.nlp.proofs.session import Session
 from trajgap.problem import (
     Limits,
     Problem,
@@ -38,6 +39,7 @@ from trajgap.problem import (
     three_five_three,
     uniform_cubic_b_spline,
 )
+from trajgap.verify import OutOfTime
 
 
 @dataclass
@@ -140,9 +142,9 @@ def test_the_answer_of_a_certification_has_a_share_of_the_time(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     ticks = Ticking(step=0.0)
-    monkeypatch.setattr(session, "time", ticks)
+    monkeypatch.setattr(proof_clock, "time", ticks)
     monkeypatch.setattr(clock, "time", ticks)
-    one = Session(exact_problem(NEAR), Request(seconds=100.0))
+    one = Session(exact_problem(NEAR), Request(clock=proof_clock.RunClock(100.0)))
     ticks.now = 60.0
     left: list[float] = []
     real = session.solve
@@ -153,7 +155,7 @@ def test_the_answer_of_a_certification_has_a_share_of_the_time(
 
     monkeypatch.setattr(session, "solve", looked)
     assert one.seek()
-    assert left == [session.SEEKING * 40.0]
+    assert left == [Session.seeking * 40.0]
     assert clock.seconds_left() == math.inf
 
 

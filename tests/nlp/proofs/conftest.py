@@ -6,4 +6,4 @@ from trajgap.nlp.proofs import session
 
 @pytest.fixture(autouse=True)
 def talkative(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(session, "OFTEN", 0.0)
+    monkeypatch.setattr(session.Session, "often", 0.0)

@@ -63,7 +63,7 @@ def refusing(common: str, number: int) -> int:
 @pytest.fixture
 def at_once(monkeypatch: pytest.MonkeyPatch) -> None:
     """Processes are started for the first pieces."""
-    monkeypatch.setattr(crew, "_WORTH", 0.0)
+    monkeypatch.setattr(crew.ProofCrew, "worth", 0.0)
 
 
 @pytest.mark.usefixtures("at_once")
@@ -105,10 +105,10 @@ def test_no_process_is_started_below_a_second(monkeypatch: pytest.MonkeyPatch) -
             crews.append(self)
 
     monkeypatch.setattr(certifiers, "ProofCrew", Seen)
-    monkeypatch.setattr(crew, "_WORTH", np.inf)
+    monkeypatch.setattr(crew.ProofCrew, "worth", np.inf)
     assert certify(ROUGH, gap=0.01, workers=2).outcome is Outcome.CERTIFIED
     assert [one.processes for one in crews] == [0]
-    monkeypatch.setattr(crew, "_WORTH", 0.0)
+    monkeypatch.setattr(crew.ProofCrew, "worth", 0.0)
     assert certify(ROUGH, gap=0.01, workers=2).outcome is Outcome.CERTIFIED
     assert [one.processes for one in crews] == [0, 2]
 
@@ -117,7 +117,7 @@ def test_a_program_without_a_guard_may_ask_for_processes(tmp_path: Path) -> None
     program = tmp_path / "bare.py"
     program.write_text(
         "from trajgap.nlp.proofs import crew\n"
-        "crew._WORTH = 0.0\n"
+        "crew.ProofCrew.worth = 0.0\n"
         "print('once')\n"
         "import math\n"
         "with crew.ProofCrew(2) as some:\n"

@@ -132,7 +132,7 @@ def test_no_flipped_byte_changes_an_answer(tmp_path):
     for at in range(7, len(content), max(1, len(content) // 60)):
         file.write_bytes(content[:at] + bytes([content[at] ^ 1]) + content[at + 1 :])
         exact = cold.problem
-        found = KeptProofs(tmp_path).taken(exact, Subject.DECLARED, GAP, 0, kept.Deadline.after(9))
+        found = KeptProofs(tmp_path).taken(exact, Subject.DECLARED, GAP, 0, kept.RunClock(9.0))
         if found is not None:  # a byte of the number of boxes, which proves nothing
             survived += 1
             assert (found.lower, found.upper, found.durations) == (
@@ -275,6 +275,6 @@ def test_the_oldest_proofs_make_way(tmp_path, monkeypatch):
         if not seed:
             monkeypatch.setattr(kept, "MOST_KEPT", int(2.5 * file.stat().st_size))
     assert len(list(tmp_path.glob("*.json"))) == 2
-    deadline = kept.Deadline.after(9)
-    assert store.taken(found.problem, found.subject, GAP, 3, deadline) is not None
-    assert store.taken(found.problem, found.subject, GAP, 0, deadline) is None
+    clock = kept.RunClock(9.0)
+    assert store.taken(found.problem, found.subject, GAP, 3, clock) is not None
+    assert store.taken(found.problem, found.subject, GAP, 0, clock) is None

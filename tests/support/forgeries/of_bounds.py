@@ -74,7 +74,7 @@ CLOSED = [
 _MOTION = "any_curve.check_motion: "
 _JOINT = "answer: joint {j + 1}"
 _SEGMENT = "{named} {k + 1}"
-_NONE = "any_curve.AnyCurve._least_total: _NO_LIMI"
+_NONE = "any_curve.AnyCurve.least_total: _NO_LIMI"
 PROVES = "any_curve.AnyCurve.leaf: it proves only {float(proved):.12g} s"
 CAP = "any_curve.AnyCurve.__init__: the total exceeds the cap below which the boxes lie"
 
@@ -131,7 +131,7 @@ ANY = [
     Forgery(_NONE, "any-curve", {**NO_ANSWER, "problem.limits.0.0": None,
                                  "problem.prescribed": [[], [], []]}),
     Forgery(f"{_NONE} (2)", "any-curve", {**NO_ANSWER, "problem.limits.0.1": None}),
-    Forgery("any_curve.AnyCurve._least_total: a row leans on a limit of 0", "any-curve",
+    Forgery("any_curve.AnyCurve.least_total: a row leans on a limit of 0", "any-curve",
             {**NO_ANSWER, "problem.limits.0.1": "0"}),
     Forgery(_MOTION + "answer: lower and upper limits differ, which no answer of any curve keeps",
             "any-curve", {"problem.limits.0.0": ["-3", "2.9"]}),
@@ -173,7 +173,7 @@ ANY = [
 ]  # fmt: skip
 
 _KIND, _SYSTEM, _WEIGHTS = "cubic/kind.CubicSpline.", "cubic/system.", "cubic/weights."
-_ENDS = f"{_SYSTEM}_kind_of_ends: "
+_ENDS = f"{_SYSTEM}kind_of_ends: "
 NOT_A_SIDE = f"{_KIND}step: a side is not proved"
 SPOT = "reading.whole: malformed: no integer in {low}..{high}: {shown(repr(value))}"
 

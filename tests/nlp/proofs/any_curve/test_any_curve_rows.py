@@ -15,11 +15,11 @@ from support.any_curve_proofs import certify_any, interval, proved
 from support.any_motions import verified
 from support.joint_splines import spline_problem
 from trajgap.nlp.proofs import evidence
-from trajgap.nlp.proofs.any_curve import exact
 from trajgap.nlp.proofs.any_curve.estimate import estimate_any_curve
-from trajgap.nlp.proofs.any_curve.exact import missing, question
-from trajgap.nlp.proofs.any_curve.reach import reachable
-from trajgap.nlp.proofs.any_curve.rows import BRAKE, REACH, UNIT, ReachRow, exact_row
+from trajgap.nlp.proofs.any_curve.question import missing, question
+from trajgap.nlp.proofs.any_curve.reach import furthest, reachable
+from trajgap.nlp.proofs.any_curve.search import Search
+from trajgap.nlp.proofs.any_curve.tangents import KINDS, matrix
 from trajgap.nlp.proofs.document import certificate, shipped_folder
 from trajgap.nlp.proofs.evidence import printed_problem_or_none
 from trajgap.nlp.proofs.exact import exact_problem
@@ -32,10 +32,9 @@ from trajgap.problem import (
     load_case,
     published_ids,
 )
-from trajgap.verify import Subject
+from trajgap.verify import TANGENT_UNIT, Subject
 from trajgap.verify import verify_certificate as verify
 from trajgap.verify.any_curve import _furthest as verified_reach
-from trajgap.verify.any_curve import _Row
 
 Array = NDArray[np.float64]
 
@@ -225,26 +224,38 @@ def test_more_joints_or_tighter_limits_never_lower_the_optimum() -> None:
 def test_rows_of_search_and_verifier_are_the_same(seed: int) -> None:
     """Which hold for every motion, as tests/verify asserts."""
     rng = np.random.default_rng(seed)
-    step, v, a = (Fraction(float(x)) for x in rng.uniform([-2.0, 0.3, 0.3], [2.0, 3.0, 3.0]))
-    asked = question(exact_problem(spline_problem([0.0, float(step), 1.0], float(v), float(a))))
-    box = ((Fraction(float(rng.uniform(0.1, 1.0))), Fraction(float(rng.uniform(1.0, 3.0)))),) * 2
+    step, v, a = rng.uniform([-2.0, 0.3, 0.3], [2.0, 3.0, 3.0])
+    search = Search(question(exact_problem(spline_problem([0.0, step, 1.0], v, a))), Fraction(7))
+    low, high = float(rng.uniform(0.1, 1.0)), float(rng.uniform(1.0, 3.0))
     sign = 1 if step >= 0 else -1
-    numbers = [round(float(x) * UNIT) for x in rng.uniform([-3.0, -3.0, 0.0], [3.0, 3.0, 50.0])]
-    for kind, word in ((REACH, "reach"), (BRAKE, "brake")):
-        mine = exact_row(asked, ReachRow(kind, 0, 0, sign, *numbers), box, v)
-        theirs = _Row(word, 0, 0, sign, *numbers).terms(step, v, a, box[0])
-        assert (mine.time, mine.start, mine.end, mine.right) == theirs
+    numbers = [round(x * TANGENT_UNIT) for x in rng.uniform([-3.0, -3.0, 0.0], [3.0, 3.0, 50.0])]
+    unit, angle = search.scaled.time, float(search.scaled.angle[0])
+    for kind, word in enumerate(KINDS):
+        rows = np.array([[kind, 0, 0, sign, *numbers]])
+        sides = np.full(2, low) / unit, np.full(2, high) / unit
+        left, right, size = matrix(search.scaled, rows, *sides)
+        left = left.toarray()[0] * size
+        box = (Fraction(low), Fraction(high))
+        limits = (Fraction(float(step)), Fraction(float(v)), Fraction(float(a)))
+        own = search.kind.row([word, 0, 0, sign, *numbers]).terms(*limits, box)
+        # A row of least times is one of time, the others of speeds.
+        each = unit if word == "reach" else angle / unit
+        mine = [left[0] / unit * each, *(x * each * unit / angle for x in left[2:4])]
+        assert mine == pytest.approx([float(x) for x in own[:3]], rel=1e-12, abs=1e-12)
+        assert right[0] * size[0] * each == pytest.approx(float(own[3]), rel=1e-12, abs=1e-12)
 
 
 @pytest.mark.parametrize("seed", range(20))
 def test_search_and_verifier_reach_equally_far(seed: int) -> None:
     rng = np.random.default_rng(seed)
-    h, top, bend = (Fraction(float(x)) for x in rng.uniform(0.3, 3.0, 3))
-    first = Fraction(float(rng.uniform(-1.0, 1.0))) * top
-    last = max(-top, min(top, first + Fraction(float(rng.uniform(-1.0, 1.0))) * bend * h))
-    for limit in (None, top):
-        found = exact._furthest(first, last, h, limit, bend)
-        assert found == verified_reach(first, last, h, limit, bend)
+    h, top, bend = rng.uniform(0.3, 3.0, 3)
+    first = rng.uniform(-1.0, 1.0) * top
+    last = max(-top, min(top, first + rng.uniform(-1.0, 1.0) * bend * h))
+    exact = [Fraction(float(x)) for x in (first, last, h, top, bend)]
+    for limit, given in ((np.inf, None), (top, exact[3])):
+        found = furthest(*(np.array(x) for x in (first, last, h, limit, bend)))
+        theirs = verified_reach(*exact[:3], given, exact[4])
+        assert float(found) == pytest.approx(float(theirs), rel=1e-12, abs=1e-12)
 
 
 def shipped_bounds() -> dict[str, Path]:

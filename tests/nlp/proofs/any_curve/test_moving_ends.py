@@ -198,5 +198,3 @@ def test_a_curve_in_motion_at_fixed_ratios_is_refused_in_one_sentence() -> None:
         )
         with pytest.raises(TrajgapError, match="prescribes derivatives other than 0"):
             certify(fixed, seconds=1.0)
-        with pytest.raises(TrajgapError, match="prescribes derivatives other than 0"):
-            problem.in_units([0, 0], 0)

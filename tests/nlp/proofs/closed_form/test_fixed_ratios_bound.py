@@ -8,9 +8,9 @@ from fractions import Fraction
 import numpy as np
 import pytest
 from trajgap.nlp import solve
-from trajgap.nlp.proofs.answer import keeps_limits, uniform_coefficients
+from trajgap.nlp.proofs.answer import keeps_limits
 from trajgap.nlp.proofs.certifiers import certify, covered
-from trajgap.nlp.proofs.closed_form.fixed_ratios import MOST_REBUILT
+from trajgap.nlp.proofs.closed_form.formulas import MOST_REBUILT
 from trajgap.nlp.proofs.document import certificate, fits
 from trajgap.nlp.proofs.evidence import interval_of, printed_problem_or_none
 from trajgap.nlp.proofs.exact import exact_problem
@@ -22,6 +22,7 @@ from trajgap.problem import (
     Verdict,
     check,
     cubic_spline,
+    fit,
     parse_case,
     piecewise,
     quintic_spline,
@@ -247,9 +248,12 @@ def test_no_segment_can_be_shorter(seed: int) -> None:
 
 
 def test_the_curve_is_that_of_the_verifier() -> None:
-    # From the control vertices here, from the slopes at the way-points there.
-    q = [Fraction(x) for x in ("0.3", "1.25", "-0.75", "2", "1.9")]
-    assert uniform_coefficients([[x] for x in q])[0] == _uniform(q, Clock(60))
+    # From the control vertices in floats, from the slopes at the way-points there.
+    q = ["0.3", "1.25", "-0.75", "2", "1.9"]
+    theirs = _uniform([Fraction(x) for x in q], Clock(60))
+    motion = fit(uniform_cubic_b_spline(5, "stretched"), np.array(q, float)[:, None], np.ones(4))
+    mine = [motion.derivative(k, 0, 0) for k in range(4)]
+    np.testing.assert_allclose(mine, np.array(theirs, float), rtol=1e-13, atol=1e-14)
 
 
 def test_positions_are_judged() -> None:

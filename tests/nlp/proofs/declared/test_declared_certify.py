@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import json
+import math
 from dataclasses import replace
 from fractions import Fraction
 from importlib import import_module
@@ -17,7 +18,6 @@ from support.shipped_problems import COVERED_PROBLEMS
 from support.unjudged import unjudged
 from support.unlucky import answering
 from trajgap.nlp import solve
-from trajgap.nlp.proofs.answer import exact_coefficients, never_above
 from trajgap.nlp.proofs.certifiers import certify, covered
 from trajgap.nlp.proofs.document import certificate, problem_document, shipped, shipped_folder
 from trajgap.nlp.proofs.exact import ExactProblem, decimal, exact_problem
@@ -33,8 +33,9 @@ from trajgap.problem import (
     three_five_three,
     uniform_cubic_b_spline,
 )
-from trajgap.verify import Subject
+from trajgap.verify import Clock, Subject, read_problem
 from trajgap.verify import verify_certificate as verify
+from trajgap.verify.curve import pieces
 
 module = import_module("trajgap.nlp.proofs.declared.certifier")
 
@@ -241,26 +242,17 @@ def test_what_is_not_covered_is_said() -> None:
         certify(Problem(q, Limits(), three_five_three()))
 
 
-def test_exact_coefficients_agree_with_the_fit() -> None:
+def test_exact_pieces_agree_with_the_fit() -> None:
     q = np.array([[0.3, -1.2], [1.1, 0.4], [0.6, 0.9], [-0.7, 0.1]])
     h = np.array([0.75, 1.25, 0.5])
     interpolant = three_five_three()
-    curve = exact_coefficients(
-        interpolant,
-        [[Fraction(float(x)) for x in row] for row in q],
-        [Fraction(float(x)) for x in h],
+    stated = read_problem(
+        problem_document(exact_problem(Problem(q, Limits(1.0, joints=2), interpolant)))
     )
-    assert curve is not None
+    curve = pieces(stated, [Fraction(float(x)) for x in h], Clock(math.inf))
     second = np.array(curve[1][1], dtype=float)
     expected = fit(interpolant, q, h)(0.75 + 0.5 * 1.25)[1]
-    assert second @ 0.5 ** np.arange(6) == pytest.approx(expected, rel=1e-12)
-
-
-def test_peaks_are_judged_exactly() -> None:
-    # 4s(1 − s) touches 1 in the middle.
-    parabola = [Fraction(0), Fraction(4), Fraction(-4)]
-    assert never_above(parabola, Fraction(1))
-    assert not never_above(parabola, 1 - Fraction(1, 10**15))
+    assert second @ 0.625 ** np.arange(6) == pytest.approx(expected, rel=1e-12)
 
 
 @pytest.mark.parametrize(

@@ -92,7 +92,7 @@ def test_every_kind_of_curve_is_certified(name: str) -> None:
     low = 0.6 if curve.virtual else 0.15
     problem = Problem(q, Limits([1.0, 0.9], [2.0, 3.0], [9.0, 8.0]), curve, low)
     exact = exact_problem(problem)
-    found = DECLARED.run(exact, Request(1e-3, 60.0, 0, boxes=20_000))
+    found = DECLARED.run(exact, Request(1e-3, boxes=20_000))
     assert found.outcome is Outcome.CERTIFIED
     verdict = verify(certificate(found))
     assert verdict.proves

@@ -25,7 +25,7 @@ from trajgap.verify import verify_certificate as verify
 def often(monkeypatch: pytest.MonkeyPatch, boxes: int) -> None:
     """Report after every few boxes, however fast they are."""
     monkeypatch.setattr("trajgap.verify.declared._LEAVES", boxes)
-    monkeypatch.setattr("trajgap.nlp.proofs.session.OFTEN", 0.0)
+    monkeypatch.setattr("trajgap.nlp.proofs.session.Session.often", 0.0)
 
 
 def test_a_stopped_run_goes_on_where_it_stopped(monkeypatch: pytest.MonkeyPatch) -> None:

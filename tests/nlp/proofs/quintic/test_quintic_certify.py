@@ -17,16 +17,15 @@ from support.unjudged import unjudged
 from trajgap.nlp.proofs.certifiers import certify, covered
 from trajgap.nlp.proofs.document import certificate
 from trajgap.nlp.proofs.exact import exact_problem
-from trajgap.nlp.proofs.executors import Here
 from trajgap.nlp.proofs.outcome import Certified, Outcome, Progress, Request
 from trajgap.nlp.proofs.quintic.bound import bound
 from trajgap.nlp.proofs.quintic.nodal import centre
-from trajgap.nlp.proofs.quintic.rows import PLACES, row_shape
+from trajgap.nlp.proofs.quintic.rows import row_shape
 from trajgap.nlp.proofs.quintic.windows import window, window_bound, window_terms
 from trajgap.nlp.proofs.session import Session
 from trajgap.nlp.proofs.state import state_document
 from trajgap.problem import Limits, Problem, TrajgapError, evaluate, quintic_spline
-from trajgap.verify import seal
+from trajgap.verify import QUINTIC_PLACES, seal
 from trajgap.verify import verify_certificate as verify
 from trajgap.verify.quintic import QuinticSpline
 from trajgap.verify.quintic_bound import Bound, Task
@@ -49,7 +48,7 @@ def test_the_bound_of_a_box_is_that_of_the_verifier(seed: int) -> None:
     step = np.diff(q, axis=0)
     assert centre(n, joints, r, step, matrix, inverse, x0, slope)
     segment, joint = rng.integers(0, n, count), rng.integers(0, joints, count)
-    order, spot = np.array([1, 2, 3, 1, 2]), rng.integers(0, PLACES + 1, count)
+    order, spot = np.array([1, 2, 3, 1, 2]), rng.integers(0, QUINTIC_PLACES + 1, count)
     limits = rng.uniform(0.5, 3.0, (joints, 3))
     sign, limit = rng.choice([-1, 1], count), limits[joint, order - 1]
     weight, shape = rng.integers(1, 10, count).astype(float), np.empty((count, 5))
@@ -115,11 +114,11 @@ def test_limits_falsified_on_purpose_prove_too_much_and_are_refused(
     false = unjudged(monkeypatch)
     judged = certify(small(), gap=0.01)
     assert (judged.outcome, judged.proof) == (Outcome.OPEN, None)
-    units = module._units(exact_problem(small()))
-    assert units == module.BinaryUnits((0, 0), 0)
-    session = Session(exact_problem(small()), Request(seconds=np.inf))
+    own = module.OwnUnits(exact_problem(small()))
+    assert (own.powers, own.second) == ([0, 0], 0)
+    session = Session(exact_problem(small()), Request())
     session.durations = truth.durations
-    stages = module._Search(session, Here())
+    stages = module.Stages(session)
     too_much = stages.stage(stages.rounded(truth.upper * Fraction(101, 100)))
     assert too_much.total > truth.upper
     document = certificate(false[0])
