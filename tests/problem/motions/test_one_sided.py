@@ -81,3 +81,8 @@ def test_a_joint_that_stands_neither_gains_speed_nor_loses_it(sign: float) -> No
     assert found.value == 0.0
     free = one_sided.one_sided_extreme(creeping, np.zeros((1, 4, 1)), 0, 1.0, 0.0)
     assert free.value == pytest.approx(sign * 0.15 * REST)
+    blurred = np.zeros((1, 4, 1))
+    blurred[:, 1] = 2.0 * REST
+    unsure = one_sided.one_sided_extreme(creeping, blurred, 0, 1.0, REST)
+    assert (unsure.value, unsure.sure) == (0.0, 0.0)
+    assert unsure.most == pytest.approx(0.15 * REST)
