@@ -99,10 +99,18 @@ def test_pieces_that_bounds_leave_out_change_nothing(
         looked.append(reaching(a, errors).size)
         return np.arange(a.shape[1])
 
+    curve = problem.curve.fitted(problem.waypoints, h)
+    errors = np.random.default_rng(2).lognormal(-2.0, 3.0, (130, 2))
+    some = [furthest(curve, r, errors) for r in range(4)]
     reaching = peak._reaching
     monkeypatch.setattr(peak, "_reaching", every)
     assert check(problem, h).peaks == found.peaks
     assert check(jumping, h).jumps == jumps.jumps
     assert min(looked) < 20
+    for one in some:  # a piece may count by its error alone
+        every_piece = furthest(curve, one.order, errors)
+        for key in ("pieces", "places", "values", "inner", "outer"):
+            np.testing.assert_array_equal(getattr(one, key), getattr(every_piece, key))
+        assert (errors[one.pieces, [0, 1]] < np.abs(one.outer - one.values)).any()
     assert len(jumps.jumps) > 200
     assert not found.jumps
