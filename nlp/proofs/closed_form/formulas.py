@@ -81,14 +81,16 @@ def _asking(session: Session, durations: Array) -> Iterator[tuple[Extremum, floa
                     yield e, asked
 
 
-def _proved(kind: Any, e: Extremum) -> LeastTime | None:
-    """What an extremum proves of the segment that it is in, or of the total."""
+def _proved(kind: Any, e: Extremum, share: Fraction = Fraction(1)) -> LeastTime | None:
+    """What an extremum proves of the segment that it is in, or of the total that it shares in."""
     place = round(e.s * PLACES)
     try:
         order, power = kind.at(e.joint, e.segment, e.order, place)
     except Refused:  # nothing is limited on the side of the value
         return None
-    return LeastTime(root_below(power, order), e.segment, e.joint, order, place) if power else None
+    if not power:
+        return None
+    return LeastTime(root_below(power / share**order, order), e.segment, e.joint, order, place)
 
 
 def _prove_segments(name: str, session: Session) -> bool:
@@ -125,7 +127,8 @@ def _prove_total(session: Session) -> bool:
     asking = list(_asking(session, np.array([float(x) for x in shares])))
     if asking:
         with suppress(Refused):  # the conditions determine no curve at these ratios
-            bounds.append(_proved(kind, max(asking, key=lambda one: one[1])[0]))
+            most, _ = max(asking, key=lambda one: one[1])
+            bounds.append(_proved(kind, most, shares[most.segment]))
     for b in bounds:
         if b is not None:
             _keep(session, "fixed-ratios", b.least, [b.joint, b.order, b.segment, b.place])

@@ -185,7 +185,7 @@ def test_a_verdict_does_not_depend_on_what_is_compiled(
     monkeypatch: pytest.MonkeyPatch, seconds: float
 ) -> None:
     """As of `suite:quintic-gasparetto2008`, which a cold cache left open after a minute."""
-    warm = certify(QUINTIC, gap=0.5, seconds=seconds)
+    warm = certify(QUINTIC, gap=0.5, seconds=seconds, certifier=certifier.QUINTIC)
     ticks, real, calls = Ticking(), certifier.search_part, list[int]()
 
     def compiling(*given: Any) -> Any:
@@ -195,7 +195,7 @@ def test_a_verdict_does_not_depend_on_what_is_compiled(
 
     monkeypatch.setattr(clock, "time", ticks)
     monkeypatch.setattr(certifier, "search_part", compiling)
-    cold = certify(QUINTIC, gap=0.5, seconds=seconds)
+    cold = certify(QUINTIC, gap=0.5, seconds=seconds, certifier=certifier.QUINTIC)
     assert calls == [1]
     assert cold.outcome is warm.outcome is Outcome.CERTIFIED
     assert (cold.lower, cold.upper, cold.nodes) == (warm.lower, warm.upper, warm.nodes)
