@@ -16,7 +16,13 @@ from trajgap.problem import Verdict
 
 SAME, SEED = 1e-6, 20260302
 COLUMNS = (
-    "problem", "active limits", "best known (s)", "single starts", "totals", "default", "s a start"
+    "problem",
+    "active limits",
+    "best known (s)",
+    "single starts",
+    "totals",
+    "default",
+    "s a start",
 )
 
 

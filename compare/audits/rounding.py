@@ -19,6 +19,7 @@ from ...problem import (
     TOLERANCE,
     Array,
     Check,
+    CurveError,
     Problem,
     TrajgapError,
     Verdict,
@@ -312,9 +313,12 @@ def _descend(
     trial = point
     for _ in range(_MOST_STEPS):
         there = replace(problem, waypoints=trial.waypoints)
-        rows = rows_at(there, trial.durations, _MOST_ROWS)
-        ratios = rows.ratios()
-        ratio = float(ratios.max(initial=-np.inf))
+        try:
+            rows = rows_at(there, trial.durations, _MOST_ROWS)
+            ratios = rows.ratios()
+            ratio = float(ratios.max(initial=-np.inf))
+        except CurveError:  # no spline passes these way-points at these times
+            ratio = np.inf
         if ratio < worst:
             gain, worst, point = worst - ratio, ratio, trial
             x = np.concatenate([point.durations, point.waypoints.ravel()])
@@ -333,7 +337,7 @@ def _descend(
             level = rows.ratios()
         else:
             reach *= 0.25
-        if not np.isfinite(worst) or not slope.any():
+        if not (np.isfinite(worst) and slope.any()):
             break
         with np.errstate(invalid="ignore", divide="ignore"):
             room_low = np.where(span > 0.0, (low - x) / span, 0.0)

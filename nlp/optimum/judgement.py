@@ -175,10 +175,8 @@ def still_falling(durations: Array, floor: Array) -> str | None:
 
 
 def _past_rounding(problem: Problem, local: Local) -> Local:
-    """The end of a search, moved inside limits that rounding errors blur, if that makes it pass."""
+    """The end of a search, moved inside limits that it exceeds, by rounding or by more."""
     if local.feasible or not np.isfinite(local.durations).all() or not (local.durations > 0).all():
-        return local
-    if check(problem, local.durations, local.nodal).limits is not Verdict.UNDECIDED:
         return local
     found = decided(problem, local.durations, local.nodal)
     if found is None:

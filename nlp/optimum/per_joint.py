@@ -18,8 +18,9 @@ from .solution import Evidence, Solution, Status, weakest
 from .solver import solve
 from .symbolic import ca
 
-ROUNDS = 12
-"""Rounds from one optimum: a bound against endless shrinking of the region; two to four suffice."""
+ROUNDS = 20
+"""Rounds from one optimum: a bound against endless shrinking of the region; two to four suffice
+where the first region does."""
 REGION = 0.05
 """Share by which a first round may change a duration: near an optimum the extrema hardly move."""
 LEFT = 1e-8
@@ -50,7 +51,7 @@ class Nearby:
                 check(q, d).stretch <= 1 + 1e-4 * radius
                 for q, d in zip(self._problems, new, strict=True)
             ):
-                h = new
+                h, radius = new, min(REGION, 4.0 * radius)
                 if moved < LEFT:
                     break
             else:

@@ -33,7 +33,7 @@ position that is free."""
 
 
 @dataclass(frozen=True, eq=False)
-class Conditions:
+class StatedConditions:
     """What the declaration, or a window of it, states at its breaks, shape (conditions,).
 
     Attributes
@@ -49,7 +49,7 @@ class Conditions:
     values: Array
 
     @classmethod
-    def of(cls, curve: Interpolant, joints: int) -> Conditions:
+    def of(cls, curve: Interpolant, joints: int) -> StatedConditions:
         """The conditions of a declaration; derivatives that it leaves free have none."""
         table = curve.table
         values = np.zeros((table.kinds.size, joints))
@@ -97,7 +97,7 @@ class Program:
         steps = np.abs(np.diff(problem.waypoints, axis=0)).mean(axis=0)
         self.angle = np.where(steps > 0, steps, 1.0)
         self.sides = Sides(problem, unit, self.angle)
-        whole = Conditions.of(curve, self.joints)
+        whole = StatedConditions.of(curve, self.joints)
         self._plan = whole if beyond is None else _of_window(whole, self.span, beyond)
         self._held = {r: np.flatnonzero(self.degrees >= r) for r in range(1, self.top + 1)}
         self._row = {r: _inverted(k, self.segments) for r, k in self._held.items()}
@@ -387,7 +387,9 @@ def free_values(curve: Interpolant, trajectory: Trajectory) -> Array:
     return nodal
 
 
-def _of_window(plan: Conditions, span: tuple[int, int], beyond: Trajectory) -> Conditions:
+def _of_window(
+    plan: StatedConditions, span: tuple[int, int], beyond: Trajectory
+) -> StatedConditions:
     """The conditions at and between two breaks, on the sides between them, and those of a cut.
 
     There the lower half of what is continuous is given, which is what a spline has free at an end.
@@ -406,7 +408,7 @@ def _of_window(plan: Conditions, span: tuple[int, int], beyond: Trajectory) -> C
             kinds, orders = np.append(kinds, kind), np.append(orders, r)
             breaks = np.append(breaks, b - first)
             given = np.vstack([given, value])
-    return Conditions(kinds, breaks, orders, given)
+    return StatedConditions(kinds, breaks, orders, given)
 
 
 def _inverted(held: Indices, size: int) -> Indices:

@@ -27,6 +27,9 @@ its place: to follow an extremum of which rounding decides where it is keeps rou
 With 1e-7 or 1e-5 some do not either."""
 AWAY = 0.02
 """Share of its segment from which an extremum has gone, not moved."""
+SPARSER = 0.1
+"""Share of a segment around an extremum in which no fixed place is needed: half of what fixed
+places of a quintic's acceleration lie apart."""
 POSITION_NEAR = 0.3
 """Distance to a position limit, in the joint's span, from which an extremum has a row."""
 
@@ -137,15 +140,48 @@ def with_loaded(program: AnyProgram, before: Rows, duals: Array, rows: Rows, loa
     loaded : float
         Multiplier from which a row of that round was active.
     """
-    kept = np.flatnonzero(np.abs(duals) > loaded)
-    if kept.size and rows.sign.size > 1:
-        old, new = (_lines(these, program.joints) for these in (before, rows))
-        kept = kept[np.abs(new[_nearest(new, old[kept])] - old[kept]) > AWAY]
-    if not kept.size:
+    return beside(program, rows, picked(before, np.abs(duals) > loaded), AWAY)
+
+
+def beside(program: AnyProgram, rows: Rows, others: Rows, away: float) -> Rows:
+    """Rows, and beside them others at their places that are further away from the nearest one.
+
+    Parameters
+    ----------
+    program : Program or SplineProgram
+    rows, others : Rows
+    away : float
+        Share of a segment.
+    """
+    if others.sign.size and rows.sign.size > 1:
+        old, new = (_lines(these, program.joints) for these in (others, rows))
+        others = picked(others, np.abs(new[_nearest(new, old)] - old) > away)
+    if not others.sign.size:
         return rows
-    old_rows = picked(before, kept)
-    both = together([rows, replace(old_rows, weight=np.zeros(kept.size))])
+    both = together([rows, replace(others, weight=np.zeros(others.sign.size))])
     return picked(both, program.order_of_rows(both.places))
+
+
+def grid_rows(program: Program) -> Rows:
+    """Rows at fixed places inside every segment, on both sides of every limit.
+
+    Each is a condition that every motion within the limits meets. Where derivatives are free a
+    motion changes so much between rounds that its last extrema alone say too little.
+    """
+    found = []
+    for r in (0, 1, 2, 3):
+        for k, degree in enumerate(program.degrees.tolist()):
+            if degree <= r:
+                continue
+            count = degree - r + 1  # more than its turning points
+            for s in np.arange(1, count + 1) / (count + 1):
+                found += [(j, k, r, s, x) for j in range(program.joints) for x in (1.0, -1.0)]
+    columns = np.array(found, dtype=np.float64).reshape(-1, 5).T
+    joint, segment, order = columns[:3].astype(np.int64)
+    rows = Rows(Places(joint, segment, order, columns[3]), columns[4], np.zeros(joint.size))
+    room = program.rooms(rows.places, rows.sign)
+    rows = picked(rows, np.isfinite(room))
+    return picked(rows, program.order_of_rows(rows.places))
 
 
 def near_rows(program: AnyProgram, trajectory: Trajectory, near: float, flat: float = FLAT) -> Rows:

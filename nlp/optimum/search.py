@@ -13,6 +13,7 @@ import time
 import numpy as np
 
 from ...problem import Array, CurveError, Problem, check, evaluate, fit
+from ...problem.curves import Trajectory
 from .clock import time_up
 from .decided import kept
 from .judgement import KKT_TOLERANCE
@@ -20,7 +21,18 @@ from .limit_rows import Rows
 from .optimality import KKT, Local, kkt, sparse_kkt
 from .program import Program
 from .rounds import TOLERANCES, RoundState, fresh, multipliers, solve_round
-from .rows import EVERY, FLAT, NEAR, AnyProgram, carried, near_rows, with_loaded
+from .rows import (
+    EVERY,
+    FLAT,
+    NEAR,
+    SPARSER,
+    AnyProgram,
+    beside,
+    carried,
+    grid_rows,
+    near_rows,
+    with_loaded,
+)
 from .spline_program import SplineProgram
 from .starts import DENSE, equal_start, stretching, worst_ratios
 from .windows import FEWEST, joined_windows
@@ -102,7 +114,7 @@ def program_search(
     program = program_of(problem, float(start.mean()), floor)
     trajectory = fit(problem.curve, problem.waypoints, start, nodal)
     state = fresh(program, program.pack(trajectory, start))
-    rows = near_rows(program, trajectory, EVERY)
+    rows = _rows(program, trajectory, EVERY)
     build, iterations = time.perf_counter() - began, 0
     best: tuple[Motion, KKT] | None = None
     rough: Motion | None = None
@@ -141,7 +153,7 @@ def program_search(
             back = rough or (start, nodal)
             trajectory = fit(problem.curve, problem.waypoints, *back)
             state = fresh(program, program.pack(trajectory, back[0]))
-            rows = near_rows(program, trajectory, EVERY)
+            rows = _rows(program, trajectory, EVERY)
             continue
         trajectory = fit(problem.curve, problem.waypoints, *now)
         if turn and excess <= SETTLED:
@@ -154,7 +166,7 @@ def program_search(
                     break
                 flat = min(FLATTEST, FLATTER * flat)
         loaded = LOADED * TOLERANCES[min(turn, LAST)]
-        extrema = near_rows(program, trajectory, NEAR, flat)
+        extrema = _rows(program, trajectory, NEAR, flat)
         following = with_loaded(program, rows, duals, extrema, loaded)
         state.rows, rows, turn = carried(rows, duals, following), following, turn + 1
     if best is None and rough is None:
@@ -166,6 +178,14 @@ def program_search(
     settled = found is not None and found.residual <= KKT_TOLERANCE
     total = float(h.sum())
     return Local(h, values, total, settled, passes, iterations, None, found, build)
+
+
+def _rows(program: AnyProgram, trajectory: Trajectory, near: float, flat: float = FLAT) -> Rows:
+    """Rows at extrema, and at fixed places where the declaration leaves derivatives free."""
+    rows = near_rows(program, trajectory, near, flat)
+    if not (isinstance(program, Program) and program.problem.curve.free):
+        return rows
+    return beside(program, rows, grid_rows(program), SPARSER)
 
 
 def _report(

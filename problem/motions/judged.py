@@ -25,8 +25,7 @@ _STANDING = 1e-9
 _JUMP = 1e-9
 """Relative to the terms of a derivative: what differs less at a break is rounding."""
 _ROUNDING = 32 * 2.0**-52
-"""Relative to the sum of a polynomial's absolute terms: Horner's rounding for ten coefficients is
-20 · 2⁻⁵³, and that of the place of an extremum is of second order."""
+"""Relative to a polynomial's absolute terms: Horner's rounding of ten coefficients is 20 · 2⁻⁵³."""
 _BLURRED = "What rounding may change is as large as what is left to a limit."
 """Why a motion is not decided whose numbers are taken exactly."""
 _EPS = 2.0**-52
@@ -440,13 +439,7 @@ def _jumps(motion: Motion) -> tuple[tuple[MotionJump, ...], list[tuple[str, str]
             hidden += [(motion.joints[j], ORDERS[r]) for j in np.nonzero(may)[0]]
         for j in np.nonzero(jumps.any(axis=0))[0]:
             worst = int(np.argmax(np.where(jumps[:, j], np.abs(size[:, j]), 0.0)))
-            found.append(
-                MotionJump(
-                    motion.joints[j],
-                    ORDERS[r],
-                    float(motion.breaks[worst + 1]),
-                    float(size[worst, j]),
-                    int(jumps[:, j].sum()),
-                )
-            )
+            time, step = float(motion.breaks[worst + 1]), float(size[worst, j])
+            count = int(jumps[:, j].sum())
+            found.append(MotionJump(motion.joints[j], ORDERS[r], time, step, count))
     return tuple(found), hidden

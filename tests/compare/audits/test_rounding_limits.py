@@ -197,7 +197,10 @@ def test_derivatives_over_a_box_hold_those_of_its_motions_however_time_ends(natu
         durations = h * rng.uniform(0.999, 1.001, 4)
         points = problem.waypoints + rng.uniform(-1e-3, 1e-3, problem.waypoints.shape)
         moved = fit(problem.curve, points, durations)
-        found = [moved.value(*at) for at in zip(segment, joint, order, s, strict=True)]
+        found = [
+            float(moved.values(k, j, r, np.array(at)))
+            for k, j, r, at in zip(segment, joint, order, s, strict=True)
+        ]
         away = np.abs(found - form.value.mid)
         assert (away <= 1.01 * spread + form.value.rad).all()
         assert away.max() > 0.01 * spread.max()

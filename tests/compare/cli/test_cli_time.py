@@ -12,7 +12,7 @@ from support.documents import assert_valid
 from support.shipped_problems import COVERED_PROBLEMS
 from trajgap.compare.cli import certifying, solving
 from trajgap.nlp import shipped
-from trajgap.nlp.optimum import unsearched
+from trajgap.nlp.optimum import closed_forms
 from trajgap.problem import Verdict, check, load_case
 from trajgap.verify import reading
 from trajgap.verify.ranges import MOST_BYTES
@@ -29,7 +29,7 @@ def test_a_solve_without_time_leaves_its_best_motion_and_says_so(run: Run) -> No
     assert_valid(strict(out), "solve")
     (part,) = strict(out)["results"]
     assert part["status"] == "feasible"
-    assert unsearched.CUT_SHORT in part["status_why"]
+    assert closed_forms.CUT_SHORT in part["status_why"]
     problem = load_case("mine.toml").problem()
     assert check(problem, part["segment_durations"]).limits is Verdict.PASS
     (whole,) = strict(run(*SHARED, "--json")[1])["results"]
@@ -37,7 +37,7 @@ def test_a_solve_without_time_leaves_its_best_motion_and_says_so(run: Run) -> No
     assert part["total_time"] >= whole["total_time"] * (1 - 1e-9)
     code, out, _ = run(*SHARED, "--time", "0")
     assert code == 0
-    assert unsearched.CUT_SHORT in " ".join(out.split())
+    assert closed_forms.CUT_SHORT in " ".join(out.split())
 
 
 def test_time_that_is_not_needed_changes_nothing(run: Run) -> None:

@@ -108,7 +108,7 @@ def test_a_known_motion_counts_stretched_until_it_keeps_the_limits() -> None:
     best = solve(problem)
     poor = np.array([[9.0, 0.5, 0.5]])
     for factor in (0.3, 4.0):
-        asked = solver.asked(problem, 1, 0, poor, factor * best.durations, None, None, 0.0)
+        asked = solver.asked(problem, 1, 0, poor, factor * best.durations, None, 0.0)
         worse = Solution(problem, Status.FEASIBLE, durations=poor[0])
         found = solver._with_known(problem, worse, asked)
         assert found.total_time == pytest.approx(best.total_time, rel=1e-8)

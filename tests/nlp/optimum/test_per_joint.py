@@ -102,7 +102,9 @@ def unexplained(problem: Problem, h: Array, weights: Array, cap: float) -> float
     at = rows.excess > -1e-6
     ends = [np.eye(h.size)[k] for k in np.flatnonzero(h > problem.duration_upper * (1 - 1e-8))]
     ends += [-np.eye(h.size)[k] for k in np.flatnonzero(h < problem.duration_lower * (1 + 1e-8))]
-    walls = np.vstack([rows.gradient[at], [h / h.sum()] * (h.sum() > cap * (1 - 1e-8)), *ends])
+    if h.sum() > cap * (1 - 1e-8):
+        ends.append(h / h.sum())
+    walls = np.vstack([rows.gradient[at], *ends])
     _, left = nnls(walls.T, -weights * h)
     return float(left) / cap
 

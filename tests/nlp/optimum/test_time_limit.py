@@ -12,11 +12,11 @@ from trajgap.nlp.optimum import (
     basins,
     call_cap,
     clock,
+    closed_forms,
     rounds,
     solve,
     stopping_after,
     time_up,
-    unsearched,
 )
 from trajgap.nlp.optimum.rounds import fresh, solve_round
 from trajgap.nlp.optimum.rows import near_rows
@@ -204,7 +204,7 @@ def test_a_solve_ends_soon_after_its_time_and_says_so(
     ticks.now, ticks.looks = 0.0, 0
     part = solve(problem, seconds=0.4 * needed)
     assert 0.4 * needed <= ticks.looks <= 0.4 * needed + 25 < needed
-    assert unsearched.CUT_SHORT in str(part.why)
+    assert closed_forms.CUT_SHORT in str(part.why)
     assert check(problem, part.durations).limits is Verdict.PASS
     assert part.total_time >= whole.total_time * (1 - 1e-9)
     assert clock.seconds_left() == np.inf
@@ -213,13 +213,13 @@ def test_a_solve_ends_soon_after_its_time_and_says_so(
 @pytest.mark.parametrize(
     ("status", "why", "said"),
     [
-        (Status.NONE_FOUND, "none of 4", f"none of 4; {unsearched.OUT_OF_TIME}"),
-        (Status.FAILED, None, unsearched.OUT_OF_TIME),
+        (Status.NONE_FOUND, "none of 4", f"none of 4; {closed_forms.OUT_OF_TIME}"),
+        (Status.FAILED, None, closed_forms.OUT_OF_TIME),
         (Status.INFEASIBLE, "a proof", "a proof"),
     ],
 )
 def test_the_time_proves_nothing(status: Status, why: str | None, said: str) -> None:
-    found = unsearched.cut_short(Solution(THREE, status, why))
+    found = closed_forms.cut_short(Solution(THREE, status, why))
     assert (found.status, found.why) == (status, said)
 
 

@@ -6,7 +6,8 @@ import sys
 import numpy as np
 import pytest
 from trajgap.heuristics import PSO, run
-from trajgap.nlp import Status, build, solve
+from trajgap.nlp import Status, solve
+from trajgap.nlp.optimum.search import program_of
 from trajgap.problem import Array, Limits, Problem, TrajgapError, Verdict, check, fit
 from trajgap.problem.curves import MAX_COEFFICIENTS, quintic_spline, solve_in_closed_form
 from trajgap.problem.curves.kind import Shape
@@ -82,7 +83,9 @@ class Unsolved(Chords):
 
 
 def test_a_kind_without_expressions_is_refused_by_name() -> None:
+    q = np.array([[0.1], [0.9], [-0.3], [0.4]])
+    problem = Problem(q, Limits(1.0), Unsolved())
     with pytest.raises(TrajgapError, match="curve: no NLP is known for chords; use another curve"):
-        build(Problem(np.array([[0.1], [0.9], [-0.3], [0.4]]), Limits(1.0), Unsolved()))
+        program_of(problem, 1.0, np.zeros(3))
     with pytest.raises(TrajgapError, match="not stretched"):
-        fit(Unsolved(), np.array([[0.1], [0.9], [-0.3], [0.4]]), [1.0, 1.0, 1.0])
+        fit(Unsolved(), q, [1.0, 1.0, 1.0])
