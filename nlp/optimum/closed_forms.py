@@ -17,8 +17,10 @@ from ...verify import shown_bound
 from .decided import decided, kept
 from .feasibility import SURE, apart, impossible
 from .solution import Route, Solution, Status
-from .starts import equal_start
+from .starts import equal_start, first_nodal
 
+UNLIMITED = 1e-4
+"""Share of equal durations that an unlimited motion is shown with: any would do."""
 HALVINGS = 60
 """Times that the total is halved while `check` still sees that nothing exceeds its limit."""
 
@@ -247,19 +249,35 @@ def unsearched(problem: Problem) -> Solution | None:
             check=check(problem, answer.durations),
             route=Route.CLOSED_FORM,
         )
-    straight = straight_durations(problem)
-    if straight is not None:
-        return Solution(
-            problem,
-            Status.NOT_ATTAINED,
+    why = "nothing is limited: the total falls to 0"
+    short, nodal = _unlimited(problem), first_nodal(problem)
+    if short is None:
+        why = (
             "at durations in proportion to the way nothing accelerates, and no velocity is "
-            "limited: the total falls to 0",
-            durations=straight,
-            check=check(problem, straight),
-            route=Route.CLOSED_FORM,
-            infimum=0.0,
+            "limited: the total falls to 0"
         )
-    return None
+        short = straight_durations(problem)
+    if short is None:
+        return None
+    return Solution(
+        problem,
+        Status.NOT_ATTAINED,
+        why,
+        durations=short,
+        nodal=nodal,
+        check=check(problem, short, nodal),
+        route=Route.CLOSED_FORM,
+        infimum=0.0,
+    )
+
+
+def _unlimited(problem: Problem) -> Array | None:
+    """Short durations, s, where no derivative, position or duration is limited from any side."""
+    limits, curve = problem.limits, problem.curve
+    limited = np.isfinite(limits.sides).any() or limits.limits_position
+    if limited or problem.duration_lower.any() or not curve.homogeneous:
+        return None
+    return UNLIMITED * equal_start(problem)
 
 
 def cut_short(answer: Solution) -> Solution:
