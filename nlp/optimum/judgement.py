@@ -48,6 +48,9 @@ POLISHED = 1e-11
 """KKT residual above which an answer is sharpened by Newton steps on its active set."""
 ROUNDED = 2e-9
 """Relative difference of totals that the checker's tolerance makes: of both ends at most."""
+HIDDEN = 1e-4
+"""Excess over a limit that rounding hides from a search where durations differ by many powers of
+ten: 2e-5 was seen. What exceeds its limits by more was not searched to its end."""
 BLURRED = 1e-6
 """Relative length by which rounding may set an optimum apart from the tight motion beside it."""
 _ON_FLOOR = 1.01
@@ -175,8 +178,11 @@ def still_falling(durations: Array, floor: Array) -> str | None:
 
 
 def _past_rounding(problem: Problem, local: Local) -> Local:
-    """The end of a search, moved inside limits that it exceeds, by rounding or by more."""
+    """The end of a search, moved inside limits that rounding hid from it, if that makes it pass."""
     if local.feasible or not np.isfinite(local.durations).all() or not (local.durations > 0).all():
+        return local
+    verdict = check(problem, local.durations, local.nodal)
+    if verdict.limits is not Verdict.UNDECIDED and not verdict.max_violation <= HIDDEN:
         return local
     found = decided(problem, local.durations, local.nodal)
     if found is None:
