@@ -1,8 +1,7 @@
 """A time limit that every step of a local search looks at, however deep it lies.
 
-A search that is stopped returns the best that it has. Nothing is interrupted: a stage without steps
-that is estimated to take longer than what is left is not begun. Where no limit is set, no search
-depends on the clock.
+A search that is stopped returns the best that it has. Nothing is interrupted. Where no limit is
+set, no search depends on the clock.
 """
 
 from __future__ import annotations
