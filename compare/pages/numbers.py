@@ -207,8 +207,8 @@ def _routes(solution: Solution) -> str | None:
     if solution.other_total is None:
         return _FOUND[solution.route]
     other = Route.DESCENT if solution.route is Route.NLP else Route.NLP
-    apart = abs(solution.other_total / solution.total_time - 1.0)
-    return f"{_FOUND[solution.route]};\n{_FOUND[other]}: {apart:.0e} away"
+    longer = solution.other_total / solution.total_time - 1.0  # below 0 where it is shorter
+    return f"{_FOUND[solution.route]};\n{_FOUND[other]}: {longer:+.0e} of it"
 
 
 def _answer(solution: Solution) -> tuple[Cell, ...]:
