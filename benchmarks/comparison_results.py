@@ -2,6 +2,7 @@
 
     python benchmarks/comparison_results.py run FOLDER [PAPER]    in order of importance, resumable
     python benchmarks/comparison_results.py collect FOLDER        comparisons.json and the docs page
+    python benchmarks/comparison_results.py page                  the page again, from what is kept
 
 FOLDER holds the study files of ``paper_comparisons.py``, which ``run`` writes if they are missing.
 One process runs one trial after another and keeps each row in ``FOLDER/PAPER.sqlite`` as it ends;
@@ -16,12 +17,14 @@ import json
 import sys
 import time
 from collections.abc import Iterable, Iterator, Sequence
+from functools import cache
 from itertools import combinations
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from paper_comparisons import ABLATIONS, HANDLINGS, PAPERS, SEEDS, write_studies
+from trajgap.compare.audits import Study, searched_for
 from trajgap.compare.audits.comparisons import (
     Ablated,
     Comparison,
@@ -30,6 +33,7 @@ from trajgap.compare.audits.comparisons import (
     PairShown,
     all_comparisons,
 )
+from trajgap.compare.audits.paper_runs import kept_runs
 from trajgap.compare.audits.replay_settings import LISTED, spread_settings
 from trajgap.compare.audits.rules.compared_before import comparison_words
 from trajgap.compare.gaps import (
@@ -358,9 +362,12 @@ def tables_of(one: Comparison) -> Iterator[str]:
     yield " ".join(comparison_words(one, load_case(one.case)))
     yield ""
     pair = ("95 % interval", "shorter at all")
-    yield from header("problem, reading", "handling", "runs", *medians, what, *pair)
+    yield from header("problem, reading", "handling", "optimum (s)", "runs", *medians, what, *pair)
     for cell in one.listed:
-        yield line(f"{cell.problem}, {cell.reading}", cell.handling, *pair_cells(cell.shown))
+        best = optimum_of(one.case, cell.problem, cell.reading)
+        cells = pair_cells(cell.shown, best)
+        known = "none" if best is None else f"{best:.4f}"
+        yield line(f"{cell.problem}, {cell.reading}", cell.handling, known, *cells)
     if one.ablated:
         yield ""
         medians = ("median without (s)", "median with all (s)")
@@ -380,10 +387,30 @@ def tables_of(one: Comparison) -> Iterator[str]:
             yield line(spread.problem, *counts, percent(spread.most))
 
 
-def pair_cells(pair: PairShown) -> tuple[str, ...]:
+@cache
+def optimum_of(case: str, problem: str, reading: str) -> float | None:
+    """What the runs are set against: the optimum, or what the joints' own optima give."""
+    if problem.startswith("whale"):
+        drawn = [g.optimum for g in kept_runs().groups if g.problem == problem and g.optimum]
+        return drawn[0].upper if drawn else None
+    study = Study(load_case(case))
+    whole = problem.partition(",")[0]
+    if whole != problem:
+        found = searched_for(study, whole, reading)
+        return None if found is None else found.upper
+    optimum = study.optimum(whole, reading)
+    return optimum.best if 0 < optimum.best < np.inf else None
+
+
+def pair_cells(pair: PairShown, best: float | None = None) -> tuple[str, ...]:
     return (
         f"{pair.runs[0]}, {pair.runs[1]}",
-        *("none" if total is None else f"{total:.4f}" for total in pair.medians),
+        *(
+            "none"
+            if total is None
+            else f"{total:.4f}" + (f" ({100 * (total / best - 1):+.3g} %)" if best else "")
+            for total in pair.medians
+        ),
         percent(pair.share),
         # Resampling the same runs shows no event that none of them shows.
         f"{percent(pair.lowest)} to {percent(pair.highest)}" if pair.share else "none",
@@ -396,9 +423,11 @@ def percent(share: float | None) -> str:
 
 
 if __name__ == "__main__":
-    step, where = sys.argv[1], Path(sys.argv[2])
+    step, where = sys.argv[1], Path(sys.argv[2] if len(sys.argv) > 2 else ".")
     if step == "run":
         run(where, sys.argv[3:])
+    elif step == "page":
+        write(all_comparisons())
     else:
         collected = collect(where)
         write(collected)

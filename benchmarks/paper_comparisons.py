@@ -1,12 +1,13 @@
-"""The papers' comparisons as studies: improved against standard, at the papers' budgets.
+"""The papers' algorithms as studies: how near they get, and improved against standard.
 
     python benchmarks/paper_comparisons.py FOLDER
     trajgap study FOLDER/pso-listed.toml --export FOLDER/pso-listed.parquet
     python benchmarks/comparison_results.py run FOLDER           all of them, then what they say
 
-Writes four study files for each of three papers, at the paper's budget.
+Writes study files for each paper, at its own budget; the last three where it compares two
+algorithms.
 
-``-listed``   both algorithms under the settings that the case lists: 100 seeds, every handling,
+``-listed``   its algorithms under the settings that the case lists: 100 seeds, every handling,
               the default reading.
 ``-readings`` the same under every reading, 100 or 20 seeds.
 ``-ablated``  the improved one with each "improvement" taken away, alone and in pairs: 100 seeds.
@@ -37,6 +38,7 @@ SEEDS = {"listed": 100, "readings": 20, "ablated": 100, "design": 10}
 SETS = 5  # seeded sets of way-points for the whale paper
 HANDLINGS = ("death-penalty", "stretch", "rescale")
 PUMA, IRB, Z1 = "puma560-mnam-pso-353", "irb1600-ga-cubic-bspline", "z1-woa-bspline"
+IRB460 = "irb460-pso-353"
 # What takes each improvement away, by the paper's word for it.
 ABLATIONS: dict[str, dict[str, dict[str, Any]]] = {
     "pso": {
@@ -55,11 +57,13 @@ ABLATIONS: dict[str, dict[str, dict[str, Any]]] = {
         "adaptive mutation": {"adaptive_mutation": False},
     },
 }
-# Case, its algorithms (improved, standard), and evaluations: members × (iterations + 1).
+# Case, its algorithms (improved, then standard if there is one), and evaluations:
+# members × (iterations + 1).
 PAPERS = {
     "pso": (PUMA, ("mnam-pso", "standard-pso"), 30 * 201),
     "woa": (Z1, ("improved-woa", "woa"), 30 * 501),
     "ga": (IRB, ("improved-ga", "traditional-ga"), 40 * 201),
+    "cpso": (IRB460, ("constrained-pso",), 30 * 101),
 }
 # Degrees and degrees a second, as printed by the whale paper.
 WHALE = """format = 1
@@ -108,6 +112,11 @@ def ablated(kind: str, listed: Mapping[str, Any], paper: str) -> list[dict[str, 
     return found
 
 
+def parts(paper: str) -> tuple[str, ...]:
+    """The studies of a paper."""
+    return tuple(SEEDS) if len(PAPERS[paper][1]) > 1 else ("listed",)
+
+
 def study_text(paper: str, part: str) -> str:
     source, names, budget = PAPERS[paper]
     case = load_case(source)
@@ -138,7 +147,10 @@ def study_text(paper: str, part: str) -> str:
 def problem_blocks(paper: str, part: str) -> list[str]:
     """The problems of a study."""
     if paper == "woa":
-        blocks = [[f'case = "whale-{n}.toml"'] for n in range(SETS if part == "readings" else 1)]
+        blocks = [
+            [f'case = "whale-{n}.toml"']
+            for n in range(SETS if part in ("listed", "readings") else 1)
+        ]
     else:
         source = PAPERS[paper][0]
         shown = [] if part == "readings" else [f'readings = "{default_reading(source)}"']
@@ -158,7 +170,7 @@ def write_studies(folder: Path) -> None:
         points = np.random.default_rng(number).uniform(-1.2, 1.2, (8, 6)).round(3).tolist()
         (folder / f"whale-{number}.toml").write_text(WHALE.format(number=number, rows=points))
     for paper in PAPERS:
-        for part in SEEDS:
+        for part in parts(paper):
             path = folder / f"{paper}-{part}.toml"
             path.write_text(study_text(paper, part))
             print(f"{path}: {len(load_study(path)):,} runs")

@@ -1,13 +1,14 @@
 from .card_errors import plainly
 from .case_audit import AuditReport, CaseAudit, audit
 from .fixed_ratios import at_ratios, planned_apart
+from .paper_runs import searched_for
 from .provenance import certificate_files, package_version
 from .reading_words import KEPT, segments
 from .rounding import Point, RoundingBox, RoundingVerdict, judge_rounding
 from .rules import EXPLAINED, RULES
 from .stated import asked_as, claim_text, digits_of, in_words, place, spoken
 from .study import Study
-from .waterfall import waterfalls
+from .waterfall import routes, waterfalls
 
 __all__ = [
     "EXPLAINED",
@@ -31,6 +32,8 @@ __all__ = [
     "place",
     "plainly",
     "planned_apart",
+    "routes",
+    "searched_for",
     "segments",
     "spoken",
     "waterfalls",

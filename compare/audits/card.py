@@ -11,6 +11,7 @@ from ..documents import (
     CaveatKind,
     ClaimVerdict,
     Judgement,
+    Reached,
     Severity,
     VerdictCard,
     Waterfall,
@@ -31,6 +32,7 @@ def verdict_card(
     judgements: Iterable[Judgement],
     causes: Sequence[Cause],
     waterfalls: Sequence[Waterfall],
+    runs: Sequence[Reached] = (),
 ) -> VerdictCard:
     """The card of a case, from what its audit found.
 
@@ -41,6 +43,8 @@ def verdict_card(
     causes : sequence of Cause
         The gravest first.
     waterfalls : sequence of Waterfall
+    runs : sequence of Reached
+        Of the paper's algorithms, its own way of searching first.
 
     Returns
     -------
@@ -73,14 +77,17 @@ def verdict_card(
         errors, more = _fitting(sentences, left)
     left -= sum(map(count_words, errors)) + (count_words(more_errors(more)) if more else 0)
     explanation = _explanation(causes, left)
+    left -= count_words(explanation or "")
+    near = _near(runs, left)
+    left -= count_words(near or "")
     if not more:
-        left -= count_words(explanation or "")
         warned = [c for c in causes if _warns_against(c, words) and (c.rule, c.claim) not in said]
         briefly = [plainly(study.case, cause, far, brief=True) for cause in warned]
         errors += _fitting(briefly, left)[0]
     return VerdictCard(
         limits=limits,
         optimum=optimum,
+        reached=known(near, "no run of the paper's algorithm is committed, or it has no room"),
         improvement=Why("an error says it")
         if covered
         else known(improvement, "no improvement is claimed"),
@@ -108,6 +115,12 @@ def _tells(study: Study, cause: Cause, improved: set[str]) -> bool:
     claims = [study.case.claim(one) for one in affected]
     counted = any(isinstance(c, ImprovementClaim) and c.percent is not None for c in claims)
     return cause.rule == "TG104" and counted
+
+
+def _near(runs: Sequence[Reached], room: int) -> str | None:
+    """How near the paper's algorithm gets, if there is room."""
+    said = str(runs[0]) if runs else ""
+    return said if said and count_words(said) <= room else None
 
 
 def _fitting(sentences: Sequence[str], room: int) -> tuple[tuple[str, ...], int]:

@@ -24,6 +24,7 @@ from ..documents import (
     Finding,
     Judgement,
     Named,
+    Reached,
     ReadingsSummary,
     Scope,
     Severity,
@@ -37,6 +38,7 @@ from .chosen_case import SEEDS, Pair
 from .draft import advise
 from .instances import examined_entry
 from .judging import judge, rested, weigh
+from .paper_runs import reached
 from .plausibility import implausible
 from .provenance import provenance
 from .readings import readings_summary
@@ -97,7 +99,14 @@ class CaseAudit:
     @cached_property
     def card(self) -> VerdictCard:
         """The verdict in at most 80 words."""
-        return self.made or verdict_card(self.study, self.judgements, self.causes, self.waterfalls)
+        if self.made is not None:
+            return self.made
+        return verdict_card(self.study, self.judgements, self.causes, self.waterfalls, self.reached)
+
+    @cached_property
+    def reached(self) -> tuple[Reached, ...]:
+        """How near each of the paper's algorithms gets to the optimum."""
+        return reached(self.study)
 
     @cached_property
     def advice(self) -> tuple[Advice, ...]:
@@ -138,6 +147,7 @@ class CaseAudit:
             findings=self.findings,
             verdicts=self.judgements,
             waterfalls=self.waterfalls,
+            reached=self.reached,
             readings=known(self.readings, "the case has one reading"),
             left_out=tuple(self.study.intervals.left_out),
             not_replayed=self.study.not_replayed,

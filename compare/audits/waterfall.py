@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ...nlp import Evidence, Solution, Status, printed_problem_or_none
+from ...nlp import Evidence, Route, Solution, Status, printed_problem_or_none
 from ...nlp.proofs.any_curve import estimate_any_curve
 from ...nlp.retiming import retime
 from ...problem import down, fit, up
@@ -18,9 +18,11 @@ from ...verify import shown_bound
 from ..documents import (
     EXACT,
     FREED_OPTIMUM,
+    OPTIMUM_RETIMED,
     OWN_OPTIMA,
     PUBLISHED,
     RATIOS_OPTIMUM,
+    RELAXED_RETIMED,
     SHARED_OPTIMUM,
     STAND_IN_OPTIMUM,
     Step,
@@ -58,7 +60,7 @@ def _known(name: str, solution: Solution, note: str = "") -> Step:
         return Step.missing(name, solution.why or str(solution.status))
     if solution.boundless is not None:
         return Step.missing(name, solution.boundless)
-    notes = [n for n in (note, solution.why) if n]
+    notes = [n for n in (note, solution.why, *routes(solution)) if n]
     if solution.infimum is not None:
         notes.append("approached, not attained")
     low = solution.lower_bound
@@ -77,6 +79,26 @@ def _known(name: str, solution: Solution, note: str = "") -> Step:
     )
 
 
+_FOUND = {
+    Route.NLP: "the NLP (IPOPT)",
+    Route.DESCENT: "descents",
+    Route.CLOSED_FORM: "a formula",
+}
+"""Words for what found a total."""
+
+
+def routes(solution: Solution) -> tuple[str, ...]:
+    """What found the total, and by how much the total of the other route differs."""
+    if solution.route is None:
+        return ()
+    found = f"found by {_FOUND[solution.route]}"
+    if solution.other_total is None:
+        return (found,)
+    other = Route.DESCENT if solution.route is Route.NLP else Route.NLP
+    longer = solution.other_total / solution.total_time - 1.0  # below 0 where it is shorter
+    return found, f"{_FOUND[other]}: {longer:+.0e} of it"
+
+
 def _waterfall(study: Study, pid: str, rid: str) -> Waterfall:
     problem = study.problem(pid, rid)
     claim = _starting_claim(study, pid)
@@ -88,13 +110,14 @@ def _waterfall(study: Study, pid: str, rid: str) -> Waterfall:
     shared = study.optimum(pid, rid)
     own = SHARED_OPTIMUM if problem.ratios is None else RATIOS_OPTIMUM
     steps.append(_known(STAND_IN_OPTIMUM if _stands_in(study) else own, shared))
+    steps.append(_retimed(OPTIMUM_RETIMED, shared))
     if problem.ratios is not None:
         steps.append(_known(FREED_OPTIMUM, _converged(freed(study, pid, rid))))
     relaxed = _converged(study.relaxed(pid, rid))
     steps.append(
         _known("relaxed family", relaxed, "degree 5 or more in every segment, C2, freedom used")
     )
-    steps.append(_retimed(relaxed))
+    steps.append(_retimed(RELAXED_RETIMED, relaxed))
     steps.append(_free(study, pid, rid))
     return Waterfall(
         problem=pid,
@@ -198,14 +221,14 @@ def _procedure(study: Study, pid: str, rid: str) -> Step:
     )
 
 
-def _retimed(relaxed: Solution) -> Step:
-    name = "TOPPRA on the path of the relaxed family"
-    if relaxed.durations is None:
+def _retimed(name: str, solution: Solution) -> Step:
+    """The shortest time along the path of a solution, whatever curve times it."""
+    if solution.durations is None:
         return Step.missing(name, "no path")
-    if relaxed.boundless is not None:
+    if solution.boundless is not None:
         return Step.missing(name, "no shortest motion, so no path")
-    problem = relaxed.problem
-    trajectory = fit(problem.curve, problem.waypoints, relaxed.durations, relaxed.nodal)
+    problem = solution.problem
+    trajectory = fit(problem.curve, problem.waypoints, solution.durations, solution.nodal)
     answer = retime(trajectory, problem.limits)
     if not answer.applicable or answer.extrapolated is None:
         return Step.missing(name, answer.why or "")

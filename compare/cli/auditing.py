@@ -23,12 +23,14 @@ from ..documents import (
     Urgency,
     Waterfall,
     Why,
+    by_search,
     capital,
     counted,
     facts,
     first_sentence,
     more_errors,
     qualified,
+    reached_cells,
     tally,
     worth_little,
 )
@@ -137,6 +139,13 @@ def audited(document: AuditDocument, cases: Sequence[Case]) -> list[RenderableTy
         advice = () if isinstance(case.advice, Why) else case.advice
         parts += _advised(advice) if advice else [line(one) for one in _causes(case)]
         parts += [line(""), *_time_goes(case.waterfalls, asked)]
+        for title, runs in by_search(case.reached).items():
+            shown = [(one[0], one[1], one[3], one[5], one[6]) for one in map(reached_cells, runs)]
+            parts += [
+                line(""),
+                line(f"How near its algorithms get: {title}"),
+                Columns(_RUNS, shown),
+            ]
         parts += [line(f"{words}: {value}", "dim") for words, value in facts(case)]
     return parts
 
@@ -154,6 +163,8 @@ def _rows(case: AuditedCase) -> list[tuple[str, str, str]]:
     ]
 
 
+_RUNS = ("~algorithm", "limits broken", ">median s", ">its gap", ">no answer")
+"""Of the columns that a page has, those that fit a terminal."""
 _REASONS = 3
 """Reasons that a terminal shows for claims that cannot be checked: enough for a first case, while
 those of a long one fill a page."""

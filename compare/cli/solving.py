@@ -107,8 +107,6 @@ def _retimed(answer: Solution, known: _Retimings) -> Retiming | str:
     if answer.durations is None:
         return "no durations, so no path"
     trajectory = fit(problem.curve, problem.waypoints, answer.durations, answer.nodal)
-    if not trajectory.polynomial_in_time:
-        return "time is not linear in the curve's parameter: its path is no polynomial in time"
     motion = (trajectory.durations.tobytes(), trajectory.scaled.shape, trajectory.scaled.tobytes())
     key = (*motion, problem.limits.sides.tobytes())
     if key not in known:

@@ -11,6 +11,7 @@ from .entry import Count, Document, Entry, Fact, OrWhy
 from .finding import Finding, Judgement
 from .instances import ExaminedInstances
 from .provenance import Provenance
+from .reached import Reached
 from .side_by_side import ReadingsSummary
 from .stated import StatedClaim, StatedSource
 from .waterfall import Waterfall
@@ -36,6 +37,8 @@ class AuditedCase(Entry):
     """On every claim."""
     waterfalls: tuple[Waterfall, ...]
     """Where the time goes, for each problem and reading."""
+    reached: tuple[Reached, ...]
+    """How near each of the paper's algorithms gets, from committed runs at the paper's budget."""
     readings: OrWhy[ReadingsSummary]
     """The readings side by side."""
     left_out: Annotated[tuple[str, ...], Fact("not certified")]

@@ -21,6 +21,8 @@ class VerdictCard(Entry):
     """Whether the printed durations keep the limits."""
     optimum: str
     """How far the printed total is from the optimum, or why that is not checkable."""
+    reached: OrWhy[str]
+    """How near the paper's algorithm gets when it is run many times."""
     improvement: OrWhy[str]
     """Whether the claimed improvement follows from what is printed."""
     errors: tuple[str, ...]
@@ -34,6 +36,7 @@ class VerdictCard(Entry):
     def sentences(self) -> tuple[str, ...]:
         """Everything that the card says, in order."""
         found = [self.limits, self.optimum]
+        found += [self.reached] if isinstance(self.reached, str) else []
         found += [self.improvement] if isinstance(self.improvement, str) else []
         found += self.errors
         found += [more_errors(self.more)] if self.more else []

@@ -23,6 +23,10 @@ RATIOS_OPTIMUM = "shortest total of the same curve at these ratios of the durati
 FREED_OPTIMUM = "the same curve, each duration chosen"
 """Name of the step below it: what fixing the ratios costs."""
 
+OPTIMUM_RETIMED = "TOPPRA on the path of that optimum"
+"""Name of the step that cross-checks the optimum: no timing of its path is shorter."""
+RELAXED_RETIMED = "TOPPRA on the path of the relaxed family"
+
 OPTIMA_STEPS = (SHARED_OPTIMUM, STAND_IN_OPTIMUM, RATIOS_OPTIMUM)
 """Names that the optimum of the declared curve may have."""
 

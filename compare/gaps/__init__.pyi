@@ -6,7 +6,7 @@ from .optimality_gap import gap, reference_of
 from .pairs import compare_pairs, vargha_delaney
 from .rows import Bracket, Row, RowStatus, Trial, against, canonical, checkpoints, failed, trace_of
 from .sessions import StudySession, run_study, study_rows, unfinished
-from .standings import bench_result, totals_of
+from .standings import bench_result, target_reached, totals_of
 from .statistics import (
     SETTLED,
     Spread,
@@ -24,6 +24,7 @@ from .targets import (
     TARGETS,
     band,
     expected_running_time,
+    hit,
     share_of_targets,
     share_within,
 )
@@ -61,6 +62,7 @@ __all__ = [
     "export_rows",
     "failed",
     "gap",
+    "hit",
     "load_study",
     "measure_gaps",
     "on_dask",
@@ -86,6 +88,7 @@ __all__ = [
     "share_within",
     "spread",
     "study_rows",
+    "target_reached",
     "totals_of",
     "trace_of",
     "unfinished",

@@ -140,14 +140,30 @@ def _target(rows: Sequence[Row], optimum: float, wanted: float) -> TargetReached
     hits = np.array([hit(row, optimum * (1 + wanted)) for row in rows])
     # A failed run says no longer what it spent: all of its budget, so that failing is not cheap.
     ended = [row.budget if row.status is RowStatus.FAILED else row.evaluations for row in rows]
-    spent = np.array(ended, dtype=np.float64)
+    return target_reached(wanted, hits, np.array(ended, dtype=np.float64))
+
+
+def target_reached(wanted: float, hits: Array, spent: Array) -> TargetReached:
+    """How often and how soon runs come within a gap.
+
+    Parameters
+    ----------
+    wanted : float
+        The relative gap.
+    hits, spent : ndarray, shape (runs,)
+        Evaluations until each run reaches it, inf where it does not, and those of the whole run.
+
+    Returns
+    -------
+    TargetReached
+    """
     reached = int(np.isfinite(hits).sum())
-    lowest, highest = success_interval(reached, len(rows))
+    lowest, highest = success_interval(reached, hits.size)
     low, high = running_time_interval(hits, spent)
     return TargetReached(
         gap=wanted,
         reached=reached,
-        rate=reached / len(rows),
+        rate=reached / hits.size,
         rate_lowest=lowest,
         rate_highest=highest,
         evaluations=_finite(expected_running_time(hits, spent), _NEVER),

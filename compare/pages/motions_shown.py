@@ -155,10 +155,11 @@ def searches(one: CaseAudit) -> Section:
         blocks += _convergence(study, pid, rid, runs, name)
         references, printed = _totals(study, pid, rid)
         title = f"Totals of all runs: {name}"
+        ends = {each: np.array([r.reported_time for r in one]) for each, one in runs.items()}
         caption = "Vertical strokes are medians. A reported total is not clipped at the optimum."
         blocks.append(
             _drawn(
-                file_name("totals", pid), endings(runs, references, printed, title=title), caption
+                file_name("totals", pid), endings(ends, references, printed, title=title), caption
             )
         )
         grid = Grid(REPLAY_COLUMNS, tuple(replay_rows(study, pid)))

@@ -7,15 +7,25 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from ...nlp import Evidence, PerJointSolution, Route, Solution
+from ...nlp import Evidence, PerJointSolution, Solution
 from ...problem import Case, Coupling, file_name
 from ...problem.cases import DurationsClaim
 from ...verify import shown_bound
-from ..audits import CaseAudit, Study, at_ratios, place
-from ..documents import Gap, Step, Waterfall, Why, ranged
+from ..audits import CaseAudit, Study, at_ratios, place, routes, searched_for
+from ..documents import (
+    REACHED_COLUMNS,
+    REACHED_MEANING,
+    Gap,
+    Step,
+    Waterfall,
+    Why,
+    by_search,
+    ranged,
+    reached_cells,
+)
 from ..gaps import gap, reference_of, spread
+from ..pictures import reached_picture, svg, waterfall_picture
 from ..pictures import seconds as interval
-from ..pictures import svg, waterfall_picture
 from .blocks import (
     Block,
     Cell,
@@ -79,6 +89,19 @@ def where_time_goes(one: CaseAudit) -> Section:
             title = f"Other readings, step by step: {problem_name(one, pid)}"
             blocks.append(Folded(title, (_side_by_side(one, pid, others),)))
     return Section("waterfall", "Distance from the optimum", tuple(blocks))
+
+
+def reached_runs(one: CaseAudit) -> Section:
+    """How near each of the paper's algorithms gets, with every run between optimum and print."""
+    blocks: list[Block] = []
+    for at, (title, runs) in enumerate(by_search(one.reached).items()):
+        rows = tuple((text(own[0]), *map(number, own[1:])) for own in map(reached_cells, runs))
+        picture = reached_picture(runs, one.waterfalls, title=title)
+        blocks.append(Grid(REACHED_COLUMNS, rows, title))
+        blocks.append(Drawn(file_name("reached", str(at)), svg(picture), title))
+    if blocks:
+        blocks = [Prose(str(one.reached[0]), "lead"), *blocks, Prose(REACHED_MEANING, "note")]
+    return Section("reached", "How near the paper's algorithms get", tuple(blocks))
 
 
 def _distances(waterfall: Waterfall, caption: str) -> Grid:
@@ -186,29 +209,12 @@ _KEPT = ("keeps", "consistent")
 """Verdicts over the rounding box under which durations may keep the limits."""
 _ANSWER = ("status", "total", "by", "evidence", "durations, s", "check", "KKT residual")
 """Columns that say how a solve ended."""
-_FOUND = {
-    Route.NLP: "the NLP (IPOPT)",
-    Route.DESCENT: "descents",
-    Route.CLOSED_FORM: "a formula",
-}
-"""Words for what found a total."""
 
 
 def _durations(values: list[float]) -> str:
     """Durations, a few on each line."""
     lines = [listed(values[i : i + _ON_A_LINE]) for i in range(0, len(values), _ON_A_LINE)]
     return ",\n".join(lines)
-
-
-def _routes(solution: Solution) -> str | None:
-    """What found the total, and by how much the other route's differs."""
-    if solution.route is None:
-        return None
-    if solution.other_total is None:
-        return _FOUND[solution.route]
-    other = Route.DESCENT if solution.route is Route.NLP else Route.NLP
-    longer = solution.other_total / solution.total_time - 1.0  # below 0 where it is shorter
-    return f"{_FOUND[solution.route]};\n{_FOUND[other]}: {longer:+.0e} of it"
 
 
 def _answer(solution: Solution) -> tuple[Cell, ...]:
@@ -226,7 +232,7 @@ def _answer(solution: Solution) -> tuple[Cell, ...]:
     return (
         text(solution.status + (f"\n{solution.why}" if solution.why else "")),
         number(total),
-        text(_routes(solution)),
+        text(None if solution.route is None else "\n".join(routes(solution))),
         word(solution.evidence),
         number(None if solution.durations is None else _durations(list(solution.durations))),
         word(check.verdict) if check is not None else text(None),
@@ -380,7 +386,7 @@ def sensitivities(one: CaseAudit) -> Section:
 def replay_rows(study: Study, pid: str) -> list[tuple[Cell, ...]]:
     """Totals of every algorithm over its seeds, under the listed choices and spread settings."""
     rid = study.main_reading
-    reference = reference_of(study.optimum(pid, rid))
+    reference = searched_for(study, pid, rid)
     rows = []
     for algorithm in study.case.algorithms:
         for name, runs in study.spread_runs(algorithm.id, pid, rid).items():

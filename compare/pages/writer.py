@@ -31,7 +31,7 @@ from .exhibits import exhibits_of_motion, exhibits_of_search
 from .glossary import glossary
 from .instances import other_instances
 from .markdown_text import markdown
-from .numbers import card_picture, optima, sensitivities, where_time_goes
+from .numbers import card_picture, optima, reached_runs, sensitivities, where_time_goes
 from .readings import side_by_side
 from .verdicts import findings, foundations, problems_audited
 
@@ -202,6 +202,7 @@ def case_page(one: CaseAudit) -> Page:
             advised(one),
             against(one),
             where_time_goes(one),
+            reached_runs(one),
             side_by_side(one),
             _not_computed(one),
             *folded_claims(one),
@@ -226,6 +227,7 @@ def case_page(one: CaseAudit) -> Page:
 def _card(one: CaseAudit) -> Section:
     card = one.card
     lines = [card.limits, card.optimum]
+    lines += [card.reached] if isinstance(card.reached, str) else []
     lines += [card.improvement] if isinstance(card.improvement, str) else []
     errors = (*card.errors, *([more_errors(card.more)] if card.more else []))
     beside = card.explanation if isinstance(card.explanation, str) else ""

@@ -5,7 +5,7 @@ from .instances import instances_picture
 from .jumps import jump_picture, velocity_jumps
 from .motion import motion_picture
 from .polygon import polygon_picture
-from .searches import Runs, convergence, endings
+from .searches import Runs, convergence, endings, reached_picture
 from .tent import tent_picture, tent_scatter
 from .totals_map import landscape
 from .waterfall import seconds, waterfall_picture
@@ -29,6 +29,7 @@ __all__ = [
     "motion_picture",
     "polygon_picture",
     "profile_picture",
+    "reached_picture",
     "seconds",
     "svg",
     "tent_picture",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -12,6 +12,7 @@ from matplotlib.lines import Line2D
 
 from ...heuristics import JointRuns, Run
 from ...problem import Array, TrajgapError
+from ..documents import PUBLISHED, Gap, Reached, Waterfall
 from .drawing import (
     INK,
     RED,
@@ -251,17 +252,18 @@ def _legend(
 
 
 def endings(
-    runs: Mapping[str, Runs],
+    ends: Mapping[str, Array],
     references: Mapping[str, float],
     printed: Mapping[str, float],
     *,
     title: str,
 ) -> Picture:
-    """Reported total of every run, one row per algorithm, beside references and printed totals.
+    """Total of every run, one row per algorithm, beside references and printed totals.
 
     Parameters
     ----------
-    runs : mapping of str to sequence of Run or JointRuns
+    ends : mapping of str to ndarray, shape (runs,)
+        Totals by name, s; inf for a run without a feasible answer.
     references, printed : mapping of str to float
         Totals by label, s.
     title : str
@@ -271,7 +273,6 @@ def endings(
     Picture
         Runs without a feasible answer are counted beside their row.
     """
-    ends = {name: np.array([r.reported_time for r in one]) for name, one in runs.items()}
     lines = [(label, value, INK) for label, value in references.items()]
     lines += [(f"printed: {label}", value, RED) for label, value in printed.items()]
     # Falling, so that each label stands below the ends of the lines to its right.
@@ -308,10 +309,48 @@ def endings(
         axes.set_ylim(count - 0.2 + 0.42 * len(lines), -0.65)
         _room_for_labels(axes, ends, [value for _, value, _ in lines])
         axes.spines["left"].set_visible(False)
-        axes.set_xlabel("reported total time, s")
+        axes.set_xlabel("total time, s")
         light_grid(axes, "x")
         finish(figure)
     return figure
+
+
+def reached_picture(
+    runs: Sequence[Reached], waterfalls: Iterable[Waterfall], *, title: str
+) -> Picture:
+    """Where the runs of a paper's algorithms end, between the optimum and the printed total.
+
+    Parameters
+    ----------
+    runs : sequence of Reached
+        Of one search.
+    waterfalls : iterable of Waterfall
+        Of the case, which have its printed totals.
+    title : str
+
+    Returns
+    -------
+    Picture
+    """
+    ends = {
+        f"{one.name}, {one.handling.replace('-', ' ')}": np.array(
+            [*one.totals, *([np.inf] * one.unanswered)]
+        )
+        for one in runs
+    }
+    references = {
+        one.beside.removeprefix("the "): one.gap.reference.upper
+        for one in runs
+        if isinstance(one.gap, Gap)
+    }
+    printed = {
+        waterfall.problem: step.time
+        for waterfall in waterfalls
+        if (waterfall.problem, waterfall.reading) == (runs[0].problem, runs[0].reading)
+        for step in waterfall.steps
+        if step.name == PUBLISHED and isinstance(step.time, float)
+    }
+    return endings(ends, references, printed, title=title)
 
 
 def _room_for_labels(axes: Axes, ends: Mapping[str, Array], values: Sequence[float]) -> None:

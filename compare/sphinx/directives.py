@@ -15,21 +15,26 @@ from ...problem import TrajgapError, file_name
 from ..audits import KEPT
 from ..documents import (
     OWN_OPTIMA,
+    REACHED_COLUMNS,
+    REACHED_MEANING,
     ClaimVerdict,
     Keeping,
+    Reached,
+    by_search,
     counted,
     more_errors,
     qualified,
+    reached_cells,
     same_reason,
     worth,
 )
-from ..pictures import waterfall_picture
+from ..pictures import reached_picture, waterfall_picture
 from .claim_words import none_said, wanted_words
 from .parts import badge, folded, paragraph, picture, steps, table
 from .proofs import proved_again
 from .reasons import names as reading_names
 from .reasons import reasons
-from .results import Results, distance_of, waterfall_of
+from .results import Results, distance_of, revived, waterfall_of
 from .suite import InstanceShown, SuiteTable
 
 _WORDS = tuple(map(str, ClaimVerdict))
@@ -72,7 +77,7 @@ class Card(FromResults):
         """One paragraph a sentence; errors marked."""
         card = results.case(self.arguments[0])["card"]
         box = nodes.container(classes=["trajgap-card"])
-        for key in ("limits", "optimum", "improvement"):
+        for key in ("limits", "optimum", "reached", "improvement"):
             if card[key]:
                 box += paragraph(card[key])
         for said in card["errors"]:
@@ -257,8 +262,26 @@ class WaterfallShown(FromResults):
                 found = waterfall_of(entry)
                 drawn = waterfall_picture(found, title=case["title"])
                 place = file_name("waterfall", name, entry["problem"], entry["reading"])
-                return picture(drawn, place, steps(found))
+                every = steps(found)
+                return [*picture(drawn, place, every), *folded("Step by step", every.deepcopy())]
         raise TrajgapError(f"{name}: no waterfall of {asked or 'any problem'}; look into the JSON")
+
+
+class ReachedShown(FromResults):
+    """``{trajgap-reached} CASE``: how near the paper's algorithms get, with every run drawn."""
+
+    def made(self, results: Results) -> list[nodes.Node]:
+        """For each search a table of its algorithms, and a picture of where all runs end."""
+        name = self.arguments[0]
+        case = results.case(name)
+        printed = [waterfall_of(entry) for entry in case["waterfalls"]]
+        found: list[nodes.Node] = []
+        for title, runs in by_search(revived(Reached, one) for one in case["reached"]).items():
+            rows = [reached_cells(one) for one in runs]
+            found += [paragraph(f"{title}."), table(REACHED_COLUMNS, rows)]
+            drawn = reached_picture(runs, printed, title=title)
+            found += picture(drawn, file_name("reached", name, title), paragraph(title))
+        return [*found, paragraph(REACHED_MEANING, "trajgap-beside")] if found else []
 
 
 class Papers(FromResults):
@@ -376,6 +399,7 @@ DIRECTIVES: dict[str, type[SphinxDirective]] = {
     "trajgap-claims": Claims,
     "trajgap-readings": Readings,
     "trajgap-waterfall": WaterfallShown,
+    "trajgap-reached": ReachedShown,
     "trajgap-papers": Papers,
     "trajgap-source": SourceShown,
     "trajgap-certificate": CertificateShown,

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from ...problem import TrajgapError
 from ..documents import (
@@ -16,12 +16,13 @@ from ..documents import (
     PUBLISHED,
     RATIOS_OPTIMUM,
     SHARED_OPTIMUM,
+    Entry,
     Keeping,
-    Step,
     Waterfall,
     Why,
 )
 
+Shown = TypeVar("Shown", bound=Entry)
 LOCK = "lock.json"
 """File beside the results with the hash of each, and of what they were made from."""
 
@@ -123,17 +124,25 @@ def _inside(here: Any, part: str, key: str) -> Any:
 
 def waterfall_of(entry: Mapping[str, Any]) -> Waterfall:
     """A waterfall as it was before it was printed."""
-    steps = tuple(
-        Step(**{name: _read(step, name) for name in Step.model_fields if name in step})
-        for step in entry["steps"]
-    )
-    given = {name: entry[name] for name in Waterfall.model_fields if name != "steps"}
-    return Waterfall(**given, steps=steps)
+    return revived(Waterfall, entry)
 
 
-def _read(entry: Mapping[str, Any], name: str) -> Any:
-    why = entry.get(f"{name}_why")
-    return Why(why) if entry[name] is None and why else entry[name]
+def revived(kind: type[Shown], entry: Mapping[str, Any]) -> Shown:
+    """An entry of a document as it was before it was printed, reasons in the place of values."""
+    return kind.model_validate(_with_reasons(entry))
+
+
+def _with_reasons(value: Any) -> Any:
+    if isinstance(value, list):
+        return [_with_reasons(one) for one in value]
+    if not isinstance(value, Mapping):
+        return value
+    whys = {key: value[f"{key}_why"] for key in value if f"{key}_why" in value}
+    return {
+        key: Why(whys[key]) if one is None and key in whys else _with_reasons(one)
+        for key, one in value.items()
+        if not (key.endswith("_why") and key.removesuffix("_why") in whys)
+    }
 
 
 def distance_of(case: dict[str, Any]) -> tuple[str, str, str, str]:

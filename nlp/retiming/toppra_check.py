@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -122,23 +122,27 @@ def retime(
             f"limits: given for {limits.joints} joints, trajectory has {trajectory.joints}"
         )
     total = trajectory.total_time
-    reason = not_applicable(trajectory, limits)
+    path = trajectory.path
+    reason = not_applicable(path, limits)
     if reason is not None:
         return Retiming(False, reason, total, cells)
     worst, stretch = excess(trajectory, limits)
-    parts, cuts = pieces(trajectory)
+    parts, cuts = pieces(path)
+    given = end_speeds
+    if path is not trajectory:  # its parameter grows evenly, and its end speeds are others
+        given = end_speeds or _end_speeds(trajectory)
     from .toppra_piece import optimal_speeds  # toppra takes a second to import
 
     durations = np.zeros(3)
     for i, piece in enumerate(parts):
         graded = measure(piece)
-        given = prescribed_ends(end_speeds, i, len(parts))
+        prescribed = prescribed_ends(given, i, len(parts))
         for level, n in enumerate(cells):
-            path = sample(piece, graded, n)
-            ends = path.end_speeds(given)
+            sampled = sample(piece, graded, n)
+            ends = sampled.end_speeds(prescribed)
             # No joint with a limit moves far enough to count: any scale will do.
             expected = (stretch or 1.0) * piece.duration
-            found = optimal_speeds(path, limits.velocity, limits.acceleration, ends, expected)
+            found = optimal_speeds(sampled, limits.velocity, limits.acceleration, ends, expected)
             if found is None:
                 why = f"TOPPRA found no parametrisation of piece {i + 1} on {n} cells"
                 return Retiming(False, why, total, cells, cuts=cuts)
@@ -177,14 +181,18 @@ def retime_joints(
     """
     return tuple(
         retime(
-            Trajectory(
-                trajectory.durations, trajectory.scaled[:, :, j : j + 1], trajectory.degrees
-            ),
+            replace(trajectory, scaled=trajectory.scaled[:, :, j : j + 1]),
             limits.joint(j),
             gridpoints=gridpoints,
         )
         for j in range(trajectory.joints)
     )
+
+
+def _end_speeds(trajectory: Trajectory) -> tuple[float, float]:
+    """Path speeds of a trajectory at its two ends, rad/s."""
+    first, last = np.linalg.norm(trajectory([0.0, trajectory.total_time], order=1), axis=1)
+    return float(first), float(last)
 
 
 def prescribed_ends(

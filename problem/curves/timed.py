@@ -183,6 +183,12 @@ class ClockedTrajectory(Trajectory):
         raise TrajgapError("trajectory: time is not linear here, derivatives are no polynomials")
 
     @property
+    def path(self) -> Trajectory:
+        """q(e) with a parameter that grows evenly."""
+        even = np.full(len(self.clock), self.total_time / len(self.clock))
+        return Trajectory(even, self.scaled, self.degrees)
+
+    @property
     def polynomial_in_time(self) -> bool:
         """Never: time is not linear in the parameter."""
         return False

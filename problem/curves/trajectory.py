@@ -63,6 +63,14 @@ class Trajectory:
         return True
 
     @property
+    def path(self) -> Trajectory:
+        """The same way through the joint angles, as polynomials of a parameter, in the same time.
+
+        The trajectory itself where its pieces are polynomials in time.
+        """
+        return self
+
+    @property
     def joints(self) -> int:
         """Number of joints."""
         return int(self.scaled.shape[2])

@@ -1,0 +1,115 @@
+"""How near a paper's algorithms get to the optimum at the paper's own budget, run many times."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from .benched import TargetReached
+from .entry import Count, Entry, OrWhy, Why, value_or_none
+from .finding import Gap, percent_ends
+
+_NONE = "–"
+"""A cell without a value."""
+
+
+class Reached(Entry):
+    """Where the runs of one algorithm end, under one handling of vectors that break a limit."""
+
+    problem: str
+    reading: str
+    searched: str
+    """What was searched, in words: all joints together, each by itself, or drawn way-points."""
+    algorithm: str
+    """Its id in the case."""
+    name: str
+    handling: str
+    """What happened to vectors that break a limit."""
+    budget: Count
+    """Evaluations of a run."""
+    runs: Count
+    unanswered: Count
+    """Runs without a feasible answer."""
+    best: OrWhy[float]
+    lower_quartile: OrWhy[float]
+    median: OrWhy[float]
+    upper_quartile: OrWhy[float]
+    """Totals, s. What falls between two runs is the mean of both; none if either has no answer."""
+    beside: str
+    """What the gaps are set against, in words."""
+    best_gap: OrWhy[Gap]
+    gap: OrWhy[Gap]
+    """Of the best run and of the median, as intervals and never clipped."""
+    within: tuple[TargetReached, ...]
+    """How often and how soon runs come within 1 % and 0.1 %; of joints searched by themselves,
+    until each is so near its own optimum."""
+    totals: tuple[float, ...]
+    """Of every run with an answer, in rising order, s."""
+
+    def __str__(self) -> str:
+        """The median gap of the algorithm in a sentence."""
+        name = f"{self.name[:1].upper()}{self.name[1:]}"
+        if isinstance(self.gap, Why):
+            return f"{name} finds no answer in {self.unanswered} of {self.runs} runs."
+        return f"{name} ends at a median of {apart(self.gap)} {self.beside} in {self.runs} runs."
+
+
+def apart(gap: Gap) -> str:
+    """A gap in words: how far above, or below, at least and at most."""
+    low, high = percent_ends(100 * gap.lowest, 100 * gap.highest)
+    if low == high:
+        return f"{low.removeprefix('-')} % {'below' if low.startswith('-') else 'above'}"
+    if high.startswith("-"):
+        return f"{high[1:]} to {low[1:]} % below"
+    return f"{low.replace('-', '−')} to {high} % above"
+
+
+def by_search(runs: Iterable[Reached]) -> dict[str, list[Reached]]:
+    """Algorithms that searched the same, under the words for what they searched."""
+    found: dict[str, list[Reached]] = {}
+    for one in runs:
+        words = f"{one.problem}, {one.searched}; {one.budget:,} evaluations a run"
+        found.setdefault(f"{words[:1].upper()}{words[1:]}", []).append(one)
+    return found
+
+
+REACHED_MEANING = (
+    "Each row is one algorithm at the paper's own budget, run from different seeds under the "
+    "choices that the case lists. A vector of durations that breaks a limit gets a penalty "
+    "(death penalty), counts with the shortest uniform stretch that keeps every limit (stretch), "
+    "or is scaled until one limit is tight (rescale). Every total is that of a motion that keeps "
+    "its limits. Gaps are measured from the proven interval of the optimum where there is one. "
+    "Evaluations are what restarts need on average until one run comes so near; where each joint "
+    "is planned by itself, until every joint is so near its own optimum, all joints counted. "
+    "Operators and seeds are not printed, so these runs inform and refute nothing."
+)
+"""What the table means."""
+REACHED_COLUMNS = (
+    "algorithm",
+    "limits broken in the search",
+    "best, s",
+    "median, s",
+    "gap of the best",
+    "gap of the median",
+    "no answer",
+    "evaluations to 1 %",
+    "to 0.1 %",
+)
+"""What a table says of each algorithm."""
+
+
+def reached_cells(one: Reached) -> tuple[str, ...]:
+    """The row of an algorithm, as `REACHED_COLUMNS`."""
+    return (
+        one.name,
+        one.handling.replace("-", " "),
+        *(f"{t:.4f}" if (t := value_or_none(total)) else _NONE for total in (one.best, one.median)),
+        *(_NONE if isinstance(gap, Why) else gap.percent for gap in (one.best_gap, one.gap)),
+        f"{one.unanswered} of {one.runs}",
+        *(_evaluations(target) for target in one.within),
+    )
+
+
+def _evaluations(target: TargetReached) -> str:
+    if isinstance(target.evaluations, Why):
+        return "never"
+    return f"{target.evaluations:,.0f}"
