@@ -18,6 +18,7 @@ from ..documents import (
     SHARED_OPTIMUM,
     Entry,
     Keeping,
+    Reached,
     Waterfall,
     Why,
 )
@@ -143,6 +144,14 @@ def _with_reasons(value: Any) -> Any:
         for key, one in value.items()
         if not (key.endswith("_why") and key.removesuffix("_why") in whys)
     }
+
+
+def reached_of(case: dict[str, Any]) -> str:
+    """Median gap of a paper's algorithm in its own way of searching; a dash without runs."""
+    if not case["reached"]:
+        return "–"
+    first = revived(Reached, case["reached"][0])
+    return "no answer" if isinstance(first.gap, Why) else first.gap.percent
 
 
 def distance_of(case: dict[str, Any]) -> tuple[str, str, str, str]:
