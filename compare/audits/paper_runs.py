@@ -176,9 +176,12 @@ def searched_for(study: Study, pid: str, rid: str) -> Reference | None:
 
 
 def _searched(study: Study, group: KeptRuns) -> str:
+    if not group.seal:
+        number = group.problem.rpartition("-")[2]
+        return f"drawn way-points, set {number}, since the paper prints none"
+    titles = {p.id: p.title for p in study.case.problems}
+    head = f"{titles[group.problem]}: " if len(titles) > 1 else ""
     if group.apart:
-        return "each joint by itself, longest duration per segment"
-    if not study.has_problems:
-        return "drawn way-points, since the paper prints none"
+        return f"{head}each joint by itself, longest duration per segment"
     several = len(study.problem(group.problem, group.reading).joints) > 1
-    return "all joints together" if several else "the one joint"
+    return f"{head}{'all joints together' if several else 'the one joint'}"

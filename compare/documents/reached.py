@@ -18,7 +18,7 @@ class Reached(Entry):
     problem: str
     reading: str
     searched: str
-    """What was searched, in words: all joints together, each by itself, or drawn way-points."""
+    """What was searched, in words; with its budget no other search of the case is called so."""
     algorithm: str
     """Its id in the case."""
     name: str
@@ -67,8 +67,8 @@ def by_search(runs: Iterable[Reached]) -> dict[str, list[Reached]]:
     """Algorithms that searched the same, under the words for what they searched."""
     found: dict[str, list[Reached]] = {}
     for one in runs:
-        words = f"{one.problem}, {one.searched}; {one.budget:,} evaluations a run"
-        found.setdefault(f"{words[:1].upper()}{words[1:]}", []).append(one)
+        words = f"{one.searched[:1].upper()}{one.searched[1:]}"
+        found.setdefault(f"{words}; {one.budget:,} evaluations a run", []).append(one)
     return found
 
 

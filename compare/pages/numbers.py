@@ -49,7 +49,7 @@ _MANY = 10
 _SAME = 5e-4
 """Distance, as a share, whose one decimal is 0, so that its sign would say nothing."""
 _FEW = 3
-"""Other readings of a problem that still get a picture each."""
+"""Other readings of a problem that still get a picture each, and searches that stand open."""
 
 
 def first_waterfall(one: CaseAudit) -> Waterfall | None:
@@ -97,8 +97,11 @@ def reached_runs(one: CaseAudit) -> Section:
     for at, (title, runs) in enumerate(by_search(one.reached).items()):
         rows = tuple((text(own[0]), *map(number, own[1:])) for own in map(reached_cells, runs))
         picture = reached_picture(runs, one.waterfalls, title=title)
-        blocks.append(Grid(REACHED_COLUMNS, rows, title))
-        blocks.append(Drawn(file_name("reached", str(at)), svg(picture), title))
+        own = (
+            Grid(REACHED_COLUMNS, rows, title),
+            Drawn(file_name("reached", str(at)), svg(picture), title),
+        )
+        blocks += own if at < _FEW else [Folded(title, own)]
     if blocks:
         blocks = [Prose(str(one.reached[0]), "lead"), *blocks, Prose(REACHED_MEANING, "note")]
     return Section("reached", "How near the paper's algorithms get", tuple(blocks))

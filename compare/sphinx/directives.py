@@ -41,6 +41,8 @@ _WORDS = tuple(map(str, ClaimVerdict))
 """Verdicts on claims, in the order in which a table counts them."""
 
 
+_OPEN_SEARCHES = 2
+"""Searches that stand in the open, such as that of each joint by itself and of all together."""
 _OPEN_ROWS = 8
 """Rows of readings that stand in the open; of more, those of the default reading do."""
 
@@ -276,11 +278,14 @@ class ReachedShown(FromResults):
         case = results.case(name)
         printed = [waterfall_of(entry) for entry in case["waterfalls"]]
         found: list[nodes.Node] = []
-        for title, runs in by_search(revived(Reached, one) for one in case["reached"]).items():
-            rows = [reached_cells(one) for one in runs]
-            found += [paragraph(f"{title}."), table(REACHED_COLUMNS, rows)]
+        searches = by_search(revived(Reached, one) for one in case["reached"])
+        for at, (title, runs) in enumerate(searches.items()):
             drawn = reached_picture(runs, printed, title=title)
-            found += picture(drawn, file_name("reached", name, title), paragraph(title))
+            place = file_name("reached", name, runs[0].problem, runs[0].searched)
+            rows = table(REACHED_COLUMNS, [reached_cells(one) for one in runs])
+            own = [rows, *picture(drawn, place, paragraph(title))]
+            shown = at < _OPEN_SEARCHES
+            found += [paragraph(f"{title}."), *own] if shown else folded(title, *own)
         return [*found, paragraph(REACHED_MEANING, "trajgap-beside")] if found else []
 
 
