@@ -187,10 +187,10 @@ def _answer(
     exact: Any, problem: Problem, found: Certified, declared: bool
 ) -> tuple[list[float], Fraction]:
     """The best known durations and their exact total."""
-    if declared and found.durations is not None:
+    if declared and found.found:
         return [float(h) for h in found.durations], sum(found.durations, Fraction(0))
     solution = solve(problem, starts=8)
-    assert solution.durations is not None, f"{problem.name}: {solution.status}"
+    assert solution.found, f"{problem.name}: {solution.status}"
     proved = prove_feasible(exact, solution.durations)
     assert proved is not None, f"{problem.name}: the answer is not proved feasible"
     return [float(h) for h in proved], sum(proved, Fraction(0))

@@ -425,7 +425,7 @@ def _unknown(solution: Solution) -> str:
         return f"no motion {where} keeps the limits: proved"
     if solution.problem.unscaled is not None:
         return "the shortest total at these ratios is not checkable: it is no formula of this curve"
-    if solution.durations is None:
+    if not solution.found:
         return "the optimum is not checkable: the solver found no motion within the limits"
     if solution.evidence not in (Evidence.CERTIFIED, Evidence.BEST_KNOWN):
         return "the optimum is not checkable: the solver did not converge"

@@ -55,7 +55,7 @@ def optimum_range(study: Study, claim: Claim, pid: str, rid: str) -> OptimumRang
     depends on its own two alone, for there every derivative scales with their distance.
     """
     solution = study.claim_optimum(claim, pid, rid)
-    if solution.durations is None or solution.status is Status.NOT_ATTAINED:
+    if not solution.found or solution.status is Status.NOT_ATTAINED:
         return OptimumRange(None, None)
     proved = solution.lower_bound
     if all_exact(study, claim, pid, rid):

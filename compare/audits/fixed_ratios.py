@@ -93,7 +93,7 @@ def freed(study: Study, pid: str, rid: str) -> Solution:
 
     def compute() -> Solution:
         known = study.known_motions(pid, rid)
-        if own.durations is not None:
+        if own.found:
             known = np.vstack([known, own.durations])
         one = replace(problem, ratios=None)
         try:

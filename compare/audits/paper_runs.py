@@ -172,7 +172,7 @@ def searched_for(study: Study, pid: str, rid: str) -> Reference | None:
     if not planned_apart(study.problem(pid, rid)):
         return reference_of(study.optimum(pid, rid))
     answer = study.per_joint(pid, rid)
-    return None if answer.durations is None else Reference(upper=answer.total_time)
+    return None if not answer.found else Reference(upper=answer.total_time)
 
 
 def _searched(study: Study, group: KeptRuns) -> str:

@@ -251,7 +251,7 @@ def _shorten(draft: _Draft, claim: AnyClaim, trigger: str) -> bool:
     study, rid = draft.study, draft.study.main_reading
     for pid, problem in _problems(study, claim):
         found = study.claim_optimum(claim, pid, rid)
-        if found.durations is None or found.status is Status.NOT_ATTAINED:
+        if not found.found or found.status is Status.NOT_ATTAINED:
             return False
         if isinstance(claim, TotalTimeClaim):
             best = from_si(found.best, study.case.statement(pid, rid).units.time or "s")

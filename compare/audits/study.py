@@ -177,7 +177,7 @@ class Study(ReplayedCase):
                 )
                 return Solution(relaxed, Status.FAILED, why)
             member = freed(self, pid, rid)
-            if member.durations is None or given.free:
+            if not member.found or given.free:
                 return solve(relaxed)
             curve = fit(given, problem.waypoints, member.durations)
             nodal = free_values(family, curve)[None]
@@ -352,7 +352,7 @@ class Study(ReplayedCase):
             low, high = total[1]
             longest = high + (high - low)
             best = self.claim_optimum(claim, pid, rid)
-            if best.durations is not None and best.best <= longest:
+            if best.found and best.best <= longest:
                 return False  # a motion within the limits takes no longer
             self._progress(
                 f"{self.case.id}: total of {place(claim)}; {in_words(self.case, pid, rid)}"

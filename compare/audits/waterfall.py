@@ -56,7 +56,7 @@ def _starting_claim(study: Study, pid: str) -> AnyClaim | None:
 
 
 def _known(name: str, solution: Solution, note: str = "") -> Step:
-    if solution.durations is None:
+    if not solution.found:
         return Step.missing(name, solution.why or str(solution.status))
     if solution.boundless is not None:
         return Step.missing(name, solution.boundless)
@@ -223,7 +223,7 @@ def _procedure(study: Study, pid: str, rid: str) -> Step:
 
 def _retimed(name: str, solution: Solution) -> Step:
     """The shortest time along the path of a solution, whatever curve times it."""
-    if solution.durations is None:
+    if not solution.found:
         return Step.missing(name, "no path")
     if solution.boundless is not None:
         return Step.missing(name, "no shortest motion, so no path")

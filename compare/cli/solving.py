@@ -104,7 +104,7 @@ def _solved(
 
 def _retimed(answer: Solution, known: _Retimings) -> Retiming | str:
     problem = answer.problem
-    if answer.durations is None:
+    if not answer.found:
         return "no durations, so no path"
     trajectory = fit(problem.curve, problem.waypoints, answer.durations, answer.nodal)
     motion = (trajectory.durations.tobytes(), trajectory.scaled.shape, trajectory.scaled.tobytes())

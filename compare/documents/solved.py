@@ -190,7 +190,7 @@ def _solution(answer: Solution, path: Retiming | str = NOT_ASKED) -> Answer:
     none = answer.why or str(answer.status)
     boundless = answer.boundless
     none = boundless or none
-    there = answer.durations is not None and boundless is None
+    there = answer.found and boundless is None
     toppra, extrapolated = _toppra(path)
     return Answer(
         status=answer.status,
@@ -249,7 +249,7 @@ def _procedure(answer: PerJointSolution) -> Answer:
 
 
 def _durations(answer: Solution | PerJointSolution, none: str) -> tuple[float, ...] | Why:
-    return Why(none) if answer.durations is None else tuple(map(float, answer.durations))
+    return Why(none) if not answer.found else tuple(map(float, answer.durations))
 
 
 def _longest(answer: PerJointSolution) -> LongestPerSegment:

@@ -25,7 +25,7 @@ def motions(one: CaseAudit) -> Section:
     for pid in one.study.problems:
         blocks += _printed_motions(one.study, pid, rid)
         solution = one.study.optimum(pid, rid)
-        if solution.durations is not None and solution.boundless is None:
+        if solution.found and solution.boundless is None:
             title = f"{_optimum_of(one, pid, solution)}: {solution.total_time:.6f} s"
             picture = motion_picture(
                 solution.problem,
@@ -193,7 +193,7 @@ def _convergence(
     solutions = [study.optimum(pid, rid, label) for label in problem.joints] if by_joint else [
         study.optimum(pid, rid)
     ]  # fmt: skip
-    if any(s.durations is None or not _time(s) > 0 for s in solutions):
+    if any(not s.found or not _time(s) > 0 for s in solutions):
         return  # there is nothing, or nothing positive, that a gap could be a share of
     printed: dict[str, list[float]] = {}
     widths = [0.0]
@@ -233,13 +233,13 @@ def _time(solution: Solution) -> float:
 def _totals(study: Study, pid: str, rid: str) -> tuple[dict[str, float], dict[str, float]]:
     shared = study.optimum(pid, rid)
     references = {}
-    if shared.durations is not None and shared.boundless is None:
+    if shared.found and shared.boundless is None:
         at = at_ratios(shared.problem)
         references[f"{shared.evidence} optimum, shared durations{at}"] = _time(shared)
     problem = study.problem(pid, rid)
     if planned_apart(problem):
         answer = study.per_joint(pid, rid)
-        if answer.durations is not None:
+        if answer.found:
             references[OWN_OPTIMA] = answer.total_time
     printed: dict[str, list[str]] = {}
     values: dict[str, float] = {}

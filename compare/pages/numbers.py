@@ -226,7 +226,7 @@ def _answer(solution: Solution) -> tuple[Cell, ...]:
         return (why, *(text(None) for _ in _ANSWER[1:]))
     check = solution.check
     residual = solution.kkt_residual
-    total = None if solution.durations is None else seconds(solution.total_time)
+    total = None if not solution.found else seconds(solution.total_time)
     if solution.infimum is not None:
         called = "infimum" if solution.approach_proved else "approached"
         total = f"{solution.infimum:.6f} s ({called})"
@@ -237,7 +237,7 @@ def _answer(solution: Solution) -> tuple[Cell, ...]:
         number(total),
         text(None if solution.route is None else "\n".join(routes(solution))),
         word(solution.evidence),
-        number(None if solution.durations is None else _durations(list(solution.durations))),
+        number(None if not solution.found else _durations(list(solution.durations))),
         word(check.verdict) if check is not None else text(None),
         number(None if residual is None else f"{residual:.1e}"),
     )
@@ -260,7 +260,7 @@ def optima(one: CaseAudit) -> Section:
             )
         )
         relaxed = study.relaxed(pid, rid)
-        if relaxed.durations is None:
+        if not relaxed.found:
             without[relaxed.why or str(relaxed.status)].append(rid)
         else:
             rows.append(

@@ -88,7 +88,7 @@ def landscape(
         raise TrajgapError(f"landscape: drawn for 3 segments, the problem has {problem.segments}")
     if problem.ratios is not None:
         raise TrajgapError("landscape: the ratios of the durations are fixed: there is one share")
-    if optimum.durations is None:
+    if not optimum.found:
         raise TrajgapError("landscape: the problem has no optimum to compare with")
     best = optimum.total_time if optimum.infimum is None else optimum.infimum
     if not best > 0:

@@ -237,6 +237,11 @@ class PerJointSolution:
         return Status.CONVERGED if worst is Status.OPTIMAL else worst
 
     @property
+    def found(self) -> bool:
+        """Whether every joint has durations."""
+        return self.durations is not None
+
+    @property
     def total_time(self) -> float:
         """Total of the longest durations, s; inf without an answer."""
         return float(self.durations.sum()) if self.durations is not None else float("inf")

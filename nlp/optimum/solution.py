@@ -140,6 +140,11 @@ class Solution:
     totals: tuple[float, ...] = field(default=(), repr=False)
 
     @property
+    def found(self) -> bool:
+        """Whether there is a motion."""
+        return self.durations is not None
+
+    @property
     def total_time(self) -> float:
         """Sum of the durations, s; inf without an answer, so that no comparison passes."""
         return float(self.durations.sum()) if self.durations is not None else float("inf")

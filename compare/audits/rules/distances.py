@@ -191,7 +191,7 @@ def _spread(study: Study, claim: AnyClaim, pid: str, rid: str, solution: Solutio
 
     That it is at most so much longer for any of them is proved; so much shorter is its mirror.
     """
-    if solution.durations is None or not solution.best > 0:
+    if not solution.found or not solution.best > 0:
         return None
     reached = study.reachable(claim, solution.durations, pid, rid)
     return None if reached is None else max(reached / solution.best - 1.0, 0.0)
@@ -288,7 +288,7 @@ def _weigh(study: Study, claim: AnyClaim, pid: str, rid: str, sides: _Sides) -> 
         if sides.most is None or distance.highest > sides.most.highest:
             sides.most, sides.farthest = distance, claim.id
         return
-    found = solution.durations is not None and solution.status is not Status.NOT_ATTAINED
+    found = solution.found and solution.status is not Status.NOT_ATTAINED
     # Whether a bare total is too short takes a proof, which is tried only where it may succeed.
     bare = isinstance(claim, TotalTimeClaim) and found and interval[1] >= solution.best
     proof = None if bare else broken(study, claim, pid, rid)
@@ -431,7 +431,7 @@ def _shorter(
     Where the solver proves that no motion is the shortest, none is set beside a printed total: that
     every motion can be shortened refutes no number.
     """
-    if solution.durations is None or solution.status is Status.NOT_ATTAINED:
+    if not solution.found or solution.status is Status.NOT_ATTAINED:
         return None
     shown, interval = total
     reached = study.reachable(claim, solution.durations, pid, rid)

@@ -132,7 +132,7 @@ def _at_optimum(study: Study, claims: Iterable[AnyClaim]) -> str | None:
 def _is_optimum(study: Study, claim: AnyClaim, pid: str, rid: str) -> bool:
     total = study.claim_total(claim, rid)
     solution = study.claim_optimum(claim, pid, rid)
-    if total is None or solution.durations is None or solution.infimum is not None:
+    if total is None or not solution.found or solution.infimum is not None:
         return False
     reached = study.reachable(claim, solution.durations, pid, rid)
     spread = 0.0 if reached is None else max(reached - solution.best, 0.0)
