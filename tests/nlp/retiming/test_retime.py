@@ -28,6 +28,7 @@ from trajgap.problem import (
     quintic_spline,
     rest_to_rest,
     three_five_three,
+    uniform_cubic_b_spline,
 )
 
 Array = NDArray[np.float64]
@@ -288,3 +289,25 @@ def test_the_duration_belongs_to_the_path_and_not_to_its_timing() -> None:
     one, two = (retime(c, PUMA_LIMITS) for c in (curve, slow))
     assert one.durations == pytest.approx(two.durations, rel=1e-5)
     assert two.inequality_holds
+
+
+def test_a_path_whose_parameter_is_not_linear_in_time_is_a_path_as_any_other() -> None:
+    """The control points of a timed B-spline do not depend on the durations: one path, two clocks."""
+    waypoints = np.array([[0.1, 0.5], [0.6, 0.1], [1.0, 0.4], [0.7, 1.1], [0.2, 0.9]])
+    limits = Limits(velocity=[1.2, 0.9], acceleration=[3.0, 2.5])
+    curve = uniform_cubic_b_spline(5, "timed")
+    clocks = [np.full(4, 1.0), np.array([0.9, 1.1, 1.3, 0.8])]
+    motions = [fit(curve, waypoints, durations) for durations in clocks]
+    assert not any(motion.polynomial_in_time for motion in motions)
+    ends = (0.3, 0.2)
+    answers = [retime(motion, limits, end_speeds=ends) for motion in motions]
+    assert answers[0].extrapolated == pytest.approx(answers[1].extrapolated, rel=1e-6)
+    # With equal durations the clock is even, and the motion is a polynomial in time all the same.
+    assert answers[0].extrapolated == pytest.approx(
+        retime(motions[0].path, limits, end_speeds=ends).extrapolated, rel=1e-6
+    )
+    own = retime(motions[1], limits)
+    assert own.applicable
+    speeds = np.linalg.norm(motions[1]([0.0, motions[1].total_time], order=1), axis=1)
+    again = retime(motions[1], limits, end_speeds=(float(speeds[0]), float(speeds[1])))
+    assert own.extrapolated == pytest.approx(again.extrapolated, rel=1e-6)
