@@ -292,7 +292,7 @@ def test_the_duration_belongs_to_the_path_and_not_to_its_timing() -> None:
 
 
 def test_a_path_whose_parameter_is_not_linear_in_time_is_a_path_as_any_other() -> None:
-    """The control points of a timed B-spline do not depend on the durations: one path, two clocks."""
+    """Control points of a timed B-spline do not depend on the durations: one path, two clocks."""
     waypoints = np.array([[0.1, 0.5], [0.6, 0.1], [1.0, 0.4], [0.7, 1.1], [0.2, 0.9]])
     limits = Limits(velocity=[1.2, 0.9], acceleration=[3.0, 2.5])
     curve = uniform_cubic_b_spline(5, "timed")
