@@ -3,7 +3,7 @@ from .clamped import ClampedBSpline, clamped_control_points
 from .clamped_counts import ClampedReading, Count, clamped_readings
 from .clamped_declaration import average_matrix, fractions_of
 from .clamped_knots import Knots, Parameters
-from .compilation import at_hand, compiler
+from .compilation import compiler
 from .condition import Condition, ConditionKind, Conditions, Layout, counts_in_words
 from .families import (
     cubic_spline,
@@ -67,7 +67,6 @@ __all__ = [
     "Trajectory",
     "as_curve",
     "as_durations",
-    "at_hand",
     "average_matrix",
     "bernstein",
     "clamped_control_points",

@@ -9,7 +9,6 @@ stops in its middle.
 from __future__ import annotations
 
 import hashlib
-import sys
 import threading
 from collections.abc import Callable
 from functools import update_wrapper
@@ -95,25 +94,3 @@ def _jitted(function: FunctionType) -> Any:
         return numba.njit(cache=True, nogil=True, error_model="numpy")(function)
     except RuntimeError:  # no writable place for the cache: compile in memory
         return numba.njit(nogil=True, error_model="numpy")(function)
-
-
-def at_hand(function: Any) -> bool:
-    """Whether a compiled form of a function is in this process or on disk.
-
-    What has a time limit asks it before it calls.
-
-    Parameters
-    ----------
-    function : Kernel
-
-    Returns
-    -------
-    bool
-    """
-    if not isinstance(function, Kernel) or function.signatures:
-        return True  # a plain function has nothing to wait for
-    if not hasattr(function.dispatcher, "stats"):
-        return True  # compiling is switched off: it is a plain function
-    place = function.dispatcher.stats.cache_path
-    name = f"*{function.py_func.__qualname__}-*py{sys.version_info[0]}{sys.version_info[1]}*.nbi"
-    return place is not None and any(Path(place).glob(name))

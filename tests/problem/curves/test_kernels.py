@@ -26,7 +26,6 @@ from trajgap.problem import (
 )
 from trajgap.problem.curves import (
     PERM,
-    at_hand,
     coefficients_of_many,
     compilation,
     kernel,
@@ -153,11 +152,8 @@ def test_a_kernel_is_what_numba_makes_of_it(
 ) -> None:
     monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path))
     function = compilation.Kernel(kernel._lane_turns.py_func)
-    assert not at_hand(function)
     assert function.signatures == []
     a, cuts = np.array([[-1.0], [0.0], [16.0]]), np.empty((2, 1))
     function(a, 0, PERM, 1, cuts)  # −1 + 16 s²
     assert cuts.ravel().tolist() == [0.0, 0.25]
     assert len(function.signatures) == 1
-    assert at_hand(function)
-    assert at_hand(compilation.Kernel(kernel._lane_turns.py_func))
