@@ -60,7 +60,7 @@ def optimum_line(
     str
     """
     if not study.has_problems:
-        return "The optimum is not checkable either."
+        return "No optimum can be computed."
     main = [w for w in waterfalls if w.reading == study.main_reading]
     beside = [found for w in main for found in _beside(study, w)]
     if not beside:

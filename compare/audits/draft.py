@@ -78,7 +78,7 @@ def advise(
                     where=claim.where,
                     claim=claim.id,
                     says=f"A reader cannot check this: {why}",
-                    change="Print what is missing, or say less.",
+                    change="Print what is missing, or drop the claim.",
                     edits=(),
                 )
             )

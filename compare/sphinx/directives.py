@@ -193,7 +193,7 @@ def readings_of(case: dict[str, Any]) -> list[nodes.Node]:
     if said is None:
         return [paragraph("The text leaves nothing open: there is one reading.")]
     names = said["admissible"]
-    head = paragraph(f"The text leaves open what {len(names)} readings settle. The default is ")
+    head = paragraph(f"The text can be read in {len(names)} ways. The default is ")
     labels = reading_names(case).labels
     head += nodes.Text(f"“{labels.get(said['default'], said['default'])}”. ")
     head += nodes.Text(said["default_why"] or "")

@@ -29,7 +29,7 @@ NAMES = {
     "integral-square": "integral of the square",
 }
 """Each measure in words."""
-_NO_MOTION = "No durations are printed of whose motion this could be measured."
+_NO_MOTION = "Without durations, this cannot be computed."
 """Said of a measure where nothing defines a motion."""
 
 

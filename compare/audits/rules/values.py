@@ -15,7 +15,7 @@ from .motion_numbers import SAMPLES, NumberBeside, finding_of_numbers, nearest_n
 from .peaks import each_motion, has_curve, peak_numbers
 from .wording import in_units, unit_shown
 
-_NO_MOTION = "No durations are printed of whose motion this could be a value."
+_NO_MOTION = "Without durations, this cannot be computed."
 """Said of a value where nothing defines a motion."""
 _ORDERS = {"position": 0, **{name: order for order, name in enumerate(QUANTITIES, 1)}}
 """Order of each derivative."""
