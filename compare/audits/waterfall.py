@@ -162,8 +162,8 @@ def _published(study: Study, claim: AnyClaim, pid: str, rid: str) -> list[Step]:
         time=verdict.total_time if value is None else value,
         low=low,
         high=high,
-        note=f"printed {shown}{_beside(study, claim, pid, rid)}; limits, for all that "
-        f"rounds to the digits: {rounding.verdict}",
+        note=f"printed {shown}{_beside(study, claim, pid, rid)}; limits, however "
+        f"the digits were rounded: {rounding.verdict}",
         keeping=study.claim_keeping(claim, pid, rid),
     )
     if verdict.feasible_time is None:

@@ -32,7 +32,6 @@ from .blocks import (
     Drawn,
     Folded,
     Grid,
-    Plain,
     Prose,
     Section,
     listed,
@@ -82,9 +81,10 @@ def where_time_goes(one: CaseAudit) -> Section:
             if waterfall.reading == main:
                 blocks.append(_distances(waterfall, shown))
                 blocks += [Prose(said, "note") for said in waterfall.without_optimum]
-                blocks.append(Folded(f"Picture and notes: {shown}", _drawn(one, waterfall)))
+                blocks.append(Folded(f"Picture: {shown}", (_drawn(one, waterfall),)))
             elif len(others) <= _FEW:
-                blocks.append(Folded(f"Other reading: {shown}", _drawn(one, waterfall)))
+                inside = _drawn(one, waterfall), _steps(waterfall)
+                blocks.append(Folded(f"Other reading: {shown}", inside))
         if len(others) > _FEW:
             title = f"Other readings, step by step: {problem_name(one, pid)}"
             blocks.append(Folded(title, (_side_by_side(one, pid, others),)))
@@ -111,11 +111,11 @@ def _distances(waterfall: Waterfall, caption: str) -> Grid:
     """Each step in seconds, and how far the first one lies above it."""
     first = next((s.time for s in waterfall.steps if not isinstance(s.time, Why)), None)
     rows = tuple(
-        (text(s.name), number(interval(s)), number(_above(first, s)), _evidence(s))
+        (text(s.name), number(interval(s)), number(_above(first, s)), _evidence(s), text(s.note))
         for s in waterfall.steps
         if not isinstance(s.time, Why)
     )
-    names = ("step", "total", "the first against this", "evidence")
+    names = ("step", "total", "the first against this", "evidence", "note")
     return Grid(names, rows, caption).filled
 
 
@@ -164,7 +164,7 @@ def noted(study: Study, rid: str) -> str:
     return f" Reading: {study.case.labels[rid]}." if len(study.readings) > 1 else ""
 
 
-def _drawn(one: CaseAudit, waterfall: Waterfall) -> tuple[Plain, ...]:
+def _drawn(one: CaseAudit, waterfall: Waterfall) -> Drawn:
     title = f"Where the time goes: {problem_name(one, waterfall.problem, waterfall.reading)}"
     picture = waterfall_picture(waterfall, title=title)
     caption = "Bars start at 0; best known values are hatched, certified ones solid." + (
@@ -173,7 +173,7 @@ def _drawn(one: CaseAudit, waterfall: Waterfall) -> tuple[Plain, ...]:
         else ""
     )
     name = file_name("waterfall", waterfall.problem, waterfall.reading)
-    return Drawn(name, svg(picture), title, caption), _steps(waterfall)
+    return Drawn(name, svg(picture), title, caption)
 
 
 def _side_by_side(one: CaseAudit, pid: str, waterfalls: Sequence[Waterfall]) -> Grid:
