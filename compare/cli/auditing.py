@@ -13,6 +13,7 @@ from ...problem import Case, published_ids
 from ..audits import Study, in_words
 from ..documents import (
     OPTIMA_STEPS,
+    OPTIMUM_RETIMED,
     Advice,
     AuditDocument,
     AuditedCase,
@@ -248,7 +249,9 @@ def _time_goes(waterfalls: Sequence[Waterfall], case: Case) -> list[RenderableTy
             parts.append(line(f"Where the time goes{under}"))
             parts.append(Columns(("step", ">time s", "evidence"), rows))
     notes = dict.fromkeys(said for one in first.values() for said in one.without_optimum)
-    notes |= dict.fromkeys(f"{capital(name)}: {why}." for name, why in unknown.items())
+    notes |= dict.fromkeys(
+        f"{capital(name)}: {why}." for name, why in unknown.items() if name != OPTIMUM_RETIMED
+    )
     return [*parts, *(line(said, "dim") for said in notes)]
 
 

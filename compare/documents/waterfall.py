@@ -64,8 +64,11 @@ class Waterfall(Entry):
 
     @property
     def without_optimum(self) -> tuple[str, ...]:
-        """Why the optimum of the printed curve has no time, in a sentence; empty where it has."""
+        """Why the optimum has no time, or TOPPRA says nothing of it, in a sentence."""
         why = next((s.time for s in self.steps if s.name in OPTIMA_STEPS), None)
-        if not isinstance(why, Why):
-            return ()
-        return (f"No optimum: {why}.",)
+        if isinstance(why, Why):
+            return (f"No optimum: {why}.",)
+        beside = next((s.time for s in self.steps if s.name == OPTIMUM_RETIMED), None)
+        return (
+            (f"TOPPRA says nothing of this optimum: {beside}.",) if isinstance(beside, Why) else ()
+        )
