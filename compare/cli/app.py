@@ -51,6 +51,12 @@ app.add_typer(case_app, name="case")
 
 BAD_INPUT, FAULT, CLOSED_PIPE = 2, 70, 141
 """Exit codes: that of argument parsers, EX_SOFTWARE, and what a shell says of SIGPIPE."""
+_BEGIN = """To begin:
+  trajgap audit puma560-mnam-pso-353           judge a published paper
+  trajgap new mine.toml --from table.csv       start a case file for your own (see new --help)
+  trajgap check motion.csv --urdf arm.urdf     judge a motion against limits
+"""
+"""What `trajgap` without a command says first."""
 _LONGEST = 1600
 """Characters of an error line, room for eight faults: a longer one quotes the file at length."""
 
@@ -72,7 +78,7 @@ def _trajgap(
 ) -> None:
     """Audit published time-optimal trajectories against the exact optimum of the same problem."""
     if context.invoked_subcommand is None:
-        typer.echo(context.get_help())
+        typer.echo(f"{_BEGIN}\n{context.get_help()}")
 
 
 @app.command(epilog=ENDS)
