@@ -93,6 +93,8 @@ def reached(study: Study) -> tuple[Reached, ...]:
     """
     kept = kept_runs()
     own = [group for group in kept.groups if group.case == study.case.id]
+    # A paper's own way of searching comes first.
+    own.sort(key=lambda group: not group.apart)
     return tuple(_reached(study, one, kept.within) for one in own if _about(study, one))
 
 
@@ -131,12 +133,20 @@ def _reached(study: Study, group: KeptRuns, within: tuple[float, ...]) -> Reache
                 strict=True,
             )
         },
-        beside="the joints' own optima, longest per segment" if group.apart else "the optimum",
+        beside=_beside(group, reference),
         best_gap=_gap(best, reference),
         gap=_gap(median, reference),
         within=tuple(_targets(group, within, spent)),
         totals=tuple(np.sort(totals[np.isfinite(totals)]).tolist()),
     )
+
+
+def _beside(group: KeptRuns, reference: Reference | None) -> str:
+    if group.apart:
+        return "what the joints' own optima give"
+    proved = reference is not None and not isinstance(reference.lower, Why)
+    best = "the optimum" if proved else "the best known total"
+    return best if group.seal else f"{best} on drawn way-points"
 
 
 def _gap(total: float, reference: Reference | None) -> Gap | Why:
@@ -177,7 +187,7 @@ def searched_for(study: Study, pid: str, rid: str) -> Reference | None:
 
 def _searched(study: Study, group: KeptRuns) -> str:
     if not group.seal:
-        number = group.problem.rpartition("-")[2]
+        number = int(group.problem.rpartition("-")[2]) + 1
         return f"drawn way-points, set {number}, since the paper prints none"
     titles = {p.id: p.title for p in study.case.problems}
     head = f"{titles[group.problem]}: " if len(titles) > 1 else ""

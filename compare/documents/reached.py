@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 from .benched import TargetReached
 from .entry import Count, Entry, OrWhy, Why, value_or_none
-from .finding import Gap, percent_ends
+from .finding import Gap
 
 _NONE = "–"
 """A cell without a value."""
@@ -54,13 +54,11 @@ class Reached(Entry):
 
 
 def apart(gap: Gap) -> str:
-    """A gap in words: how far above, or below, at least and at most."""
-    low, high = percent_ends(100 * gap.lowest, 100 * gap.highest)
-    if low == high:
-        return f"{low.removeprefix('-')} % {'below' if low.startswith('-') else 'above'}"
-    if high.startswith("-"):
-        return f"{high[1:]} to {low[1:]} % below"
-    return f"{low.replace('-', '−')} to {high} % above"
+    """A gap in words: how far above, or below."""
+    if gap.lowest < 0 < gap.highest:
+        return f"{gap.percent} from"
+    side = "below" if gap.highest < 0 else "above"
+    return f"{gap.percent.replace('+', '').replace('-', '')} {side}"
 
 
 def by_search(runs: Iterable[Reached]) -> dict[str, list[Reached]]:
