@@ -80,6 +80,7 @@ def kept(paper: str, folder: Path) -> Iterator[KeptRuns]:
             seal=seal(name, reading),
             handling=handling,
             budget=budget,
+            stream=next(iter(runs.values()))[0].stream,
             optimum=optima[name],
             runs=tuple(one(rows[seed], optima[name].upper) for seed in sorted(rows)),
         )
@@ -94,6 +95,7 @@ def kept(paper: str, folder: Path) -> Iterator[KeptRuns]:
             seal=seal(name, reading),
             handling=handling,
             budget=budget * len(each),
+            stream=(),
             optimum=None,
             runs=tuple(joined(each, limits[name, reading, handling, kind])),
         )

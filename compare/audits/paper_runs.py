@@ -65,6 +65,9 @@ class KeptRuns(_Strict):
     seal: str
     """`problem_seal` of the case's problem; empty for drawn way-points."""
     budget: Count
+    stream: tuple[int, ...]
+    """Spawn key of the generator under each seed; empty for joints by themselves, each of which has
+    its own."""
     optimum: KeptOptimum | None
     """What the evaluations were counted against; None for joints by themselves, each of which has
     its own."""

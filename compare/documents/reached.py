@@ -47,10 +47,11 @@ class Reached(Entry):
 
     def __str__(self) -> str:
         """The median gap of the algorithm in a sentence."""
-        name = f"{self.name[:1].upper()}{self.name[1:]}"
         if isinstance(self.gap, Why):
-            return f"{name} finds no answer in {self.unanswered} of {self.runs} runs."
-        return f"{name} ends at a median of {apart(self.gap)} {self.beside} in {self.runs} runs."
+            found = f"no answer in {self.unanswered} of {self.runs} runs"
+            return f"The {self.name} finds {found}."
+        far = f"{apart(self.gap)} {self.beside}"
+        return f"In {self.runs} runs, the {self.name} ends {far} (median)."
 
 
 def apart(gap: Gap) -> str:

@@ -61,7 +61,8 @@ def test_a_run_made_again_ends_where_it_did():
     algorithm = from_settings(block.kind, block.parameters)
     assert {g.handling for g in groups} == HANDLINGS
     for group in groups:
-        run = run_within(algorithm, problem, 3, group.budget, group.handling)
+        asked = (problem, 3, group.budget, group.handling)
+        run = run_within(algorithm, *asked, stream=group.stream)
         kept = group.runs[3]
         assert check(problem, run.durations).feasible_time == pytest.approx(kept.total, rel=1e-12)
         assert run.evaluations == kept.evaluations
