@@ -119,8 +119,8 @@ def _tells(study: Study, cause: Cause, improved: set[str]) -> bool:
 
 def _near(runs: Sequence[Reached], room: int) -> str | None:
     """How near the paper's algorithm gets, if there is room."""
-    said = str(runs[0]) if runs else ""
-    return said if said and count_words(said) <= room else None
+    said = (str(runs[0]), runs[0].briefly) if runs else ()
+    return next((one for one in said if one and count_words(one) <= room), None)
 
 
 def _fitting(sentences: Sequence[str], room: int) -> tuple[tuple[str, ...], int]:

@@ -140,13 +140,16 @@ def audited(document: AuditDocument, cases: Sequence[Case]) -> list[RenderableTy
         advice = () if isinstance(case.advice, Why) else case.advice
         parts += _advised(advice) if advice else [line(one) for one in _causes(case)]
         parts += [line(""), *_time_goes(case.waterfalls, asked)]
-        for title, runs in by_search(case.reached).items():
+        searches = list(by_search(case.reached).items())
+        for title, runs in searches[:_SEARCHES]:
             shown = [(one[0], one[1], one[3], one[5], one[6]) for one in map(reached_cells, runs)]
             parts += [
                 line(""),
                 line(f"How near its algorithms get: {title}"),
                 Columns(_RUNS, shown),
             ]
+        more = len(searches) - _SEARCHES
+        parts += [line(f"{more} more searches on the pages.", "dim")] if more > 0 else []
         parts += [line(f"{words}: {value}", "dim") for words, value in facts(case)]
     return parts
 
@@ -164,6 +167,8 @@ def _rows(case: AuditedCase) -> list[tuple[str, str, str]]:
     ]
 
 
+_SEARCHES = 2
+"""Searches that a terminal shows, such as that of each joint by itself and of all together."""
 _RUNS = ("~algorithm", "limits broken", ">median s", ">its gap", ">no answer")
 """Of the columns that a page has, those that fit a terminal."""
 _REASONS = 3

@@ -53,6 +53,13 @@ class Reached(Entry):
         far = f"{apart(self.gap)} {self.beside}"
         return f"In {self.runs} runs, the {self.name} ends {far} (median)."
 
+    @property
+    def briefly(self) -> str:
+        """The same in fewer words; empty without an answer."""
+        if isinstance(self.gap, Why):
+            return ""
+        return f"In {self.runs} runs, its algorithm ends {apart(self.gap)} {self.beside} (median)."
+
 
 def apart(gap: Gap) -> str:
     """A gap in words: how far above, or below."""
