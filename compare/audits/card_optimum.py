@@ -390,7 +390,7 @@ def _joint_by_joint(
     wide = answer.ranges[0]
     proven = answer.joint_evidence is Evidence.CERTIFIED
     # The joints' optima may be proven; the range that they leave is the widest that is found.
-    own = f"found at the joints' own {'proven' if proven else 'best known'} optima"
+    own = "obtained by optimising each joint separately" + ("" if proven else " (best known)")
     span = f"{ranged(wide.lowest, wide.highest, '.4f')} s"
     low, high = total[1]
     if low <= wide.highest and high >= wide.lowest:

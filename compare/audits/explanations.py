@@ -36,8 +36,8 @@ def explained(study: Study, root: str, finding: Finding) -> tuple[Explanation, .
         return (
             Explanation(
                 change="One table may have been printed twice by mistake.",
-                effect="Then the numbers of one of them are not in print, what is said of both can "
-                "hold together, and nothing that rests on the missing one can be checked.",
+                effect="Then the numbers of one of them are not in print, both statements can be "
+                "true, and nothing that rests on the missing numbers can be checked.",
             ),
         )
     claim = study.case.claim(finding.claim) if finding.claim else None

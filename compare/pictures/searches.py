@@ -333,7 +333,7 @@ def reached_picture(
     Picture
     """
     ends = {
-        f"{one.name}, {one.handling.replace('-', ' ')}": np.array(
+        f"{one.handling.replace('-', ' ')}: {one.name}": np.array(
             [*one.totals, *([np.inf] * one.unanswered)]
         )
         for one in runs
@@ -343,13 +343,14 @@ def reached_picture(
         for one in runs
         if isinstance(one.gap, Gap)
     }
-    printed = {
-        waterfall.problem: step.time
+    times = [
+        step.time
         for waterfall in waterfalls
         if (waterfall.problem, waterfall.reading) == (runs[0].problem, runs[0].reading)
         for step in waterfall.steps
         if step.name == PUBLISHED and isinstance(step.time, float)
-    }
+    ]
+    printed = {"total": times[0]} if times else {}
     return endings(ends, references, printed, title=title)
 
 
