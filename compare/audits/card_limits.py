@@ -28,7 +28,7 @@ from .card_optimum import limited
 from .own_result import own_results
 from .plausibility import implausible
 from .rules import blended, judge_row, meant_to_keep, said_to_keep
-from .stated import place
+from .stated import place, prints_durations
 from .study import Study
 
 _FEW = 2
@@ -69,7 +69,7 @@ def limits_line(study: Study, words: Mapping[str, Judgement]) -> tuple[str, set[
     rows = [c for c in meant if c not in elsewhere and c.id in words]
     timed = [c for c in case.claims if isinstance(c, TimeClaim) and c.other_curve is None]
     bare = timed and all(isinstance(c, TotalTimeClaim) for c in timed)
-    if bare and not about and not any(study.has_durations(c) for c in case.claims):
+    if bare and not about and not any(prints_durations(c) for c in case.claims):
         return f"{unknown}: totals are printed, durations are not.", set()
     apart = {c.id for c in elsewhere}
     if not rows and elsewhere and all(apart.issuperset(c.of) for c in about):

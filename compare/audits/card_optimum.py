@@ -21,7 +21,7 @@ from ..documents import CaveatKind, ClaimVerdict, Judgement, Keeping, Waterfall,
 from .digit_ranges import all_exact, optimum_range
 from .fixed_ratios import at_ratios, off_ratios, planned_apart
 from .own_result import own_result
-from .stated import other_objective
+from .stated import other_objective, prints_durations
 from .stated_totals import contradicts_its_parts, other_totals
 from .study import Study
 
@@ -363,7 +363,7 @@ def _kept_there(study: Study, claim: TimeClaim, pid: str, rid: str) -> str:
 
     A distance from the optimum is one of a motion only where that motion keeps its limits.
     """
-    if not study.has_durations(claim) or study.unmoved(claim, pid, rid) is not None:
+    if not prints_durations(claim) or study.unmoved(claim, pid, rid) is not None:
         return ""
     if contradicts_its_parts(study, claim, rid):
         return ""  # the total is of other durations than those beside it

@@ -26,6 +26,7 @@ from ..documents import (
     said_beside,
 )
 from .explanations import explained
+from .stated import prints_durations
 from .study import Study
 
 _AGAINST = (Severity.ERROR, Severity.WARNING)
@@ -249,7 +250,7 @@ def _jumps(study: Study, claim: AnyClaim, rid: str) -> bool:
     checked = [
         study.motion_check(one, pid, rid)
         for one in about
-        if study.has_durations(one)
+        if prints_durations(one)
         for pid, reading in study.claim_pairs(one)
         if reading == rid
     ]

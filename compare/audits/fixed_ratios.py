@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...nlp import Evidence, Solution, Status
-from ...nlp.optimum import solve
-from ...problem import Array, Coupling, Problem, TrajgapError
+from ...nlp import Evidence
+from ...problem import Array, Coupling, Problem
 from ...problem.cases import Claim
 from ..documents import Basis, Finding
 from .rounding import RoundingBox
@@ -82,26 +80,6 @@ def off_ratios(study: Study, claim: Claim, pid: str, rid: str) -> str | None:
         f"durations in the ratios {_shown(own)}, and this reading fixes {_shown(problem.shares)} "
         "(shares of the total)"
     )
-
-
-def freed(study: Study, pid: str, rid: str) -> Solution:
-    """The optimum with each duration chosen; where no ratios are fixed, that of the study."""
-    problem = study.problem(pid, rid)
-    own = study.optimum(pid, rid)
-    if problem.ratios is None:
-        return own
-
-    def compute() -> Solution:
-        known = study.known_motions(pid, rid)
-        if own.found:
-            known = np.vstack([known, own.durations])
-        one = replace(problem, ratios=None)
-        try:
-            return solve(one, known=known)
-        except TrajgapError as error:
-            return Solution(one, Status.FAILED, str(error))
-
-    return study.once(("freed", pid, rid), compute)
 
 
 def of_other_ratios(claim: Claim, pid: str, rid: str, shown: str, other: str) -> Finding:

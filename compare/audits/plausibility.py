@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import exp, isfinite, log
 
 from ...problem.cases import DurationsClaim, MaximumClaim
-from .stated import other_objective
+from .stated import other_objective, prints_durations
 from .study import Study
 
 _FAR = 10.0
@@ -46,7 +46,7 @@ def _stretch(study: Study, rid: str) -> float | None:
         for claim in study.case.claims
         if isinstance(claim, DurationsClaim | MaximumClaim)
         if claim.state != "before"
-        and study.has_durations(claim)
+        and prints_durations(claim)
         and other_objective(study.case, claim) is None
         for pid, reading in study.claim_pairs(claim)
         if reading == rid

@@ -23,7 +23,7 @@ from .changed_motions import changes_of_motion
 from .chosen_case import Pair
 from .rules import GROUPS
 from .slips import Slip, durations, misprints, of_rows, totals, values
-from .stated import place
+from .stated import place, prints_durations
 from .study import Study
 
 _OF_MOTIONS = {"TG201", "TG203", "TG208", "TG211"}
@@ -266,7 +266,7 @@ def _judge(
         if after - before:
             return None
         settled = {rule for rule, _ in before - after}
-        timed = "TG201" in settled and study.has_durations(row)
+        timed = "TG201" in settled and prints_durations(row)
         rounding = changed.claim_rounding(row, *pair).verdict if timed else None
     except TrajgapError:
         return None
@@ -278,7 +278,7 @@ def _effect(study: Study, one: _Judged, row: AnyClaim, all_kept: str) -> str:
     parts = []
     broken = [study.case.claim(c) for rule, c in sorted(one.left) if rule == "TG201" and c]
     if "TG201" in one.settled:
-        timed = broken and study.has_durations(row)
+        timed = broken and prints_durations(row)
         kept = f"the durations in {place(row)} keep every limit" if timed else all_kept
         parts.append(kept + (" within rounding" if one.rounding is Rounding.CONSISTENT else ""))
         if one.reached:

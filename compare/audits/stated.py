@@ -26,6 +26,11 @@ _TERMS = ("time-optimal", "point-to-point", "rest-to-rest", "b-spline")
 """Words of the field with a dash, which may be ids too and stay words in a message."""
 
 
+def prints_durations(claim: Claim) -> bool:
+    """Whether a claim prints durations, so that a motion can be built from it."""
+    return isinstance(claim, DurationsClaim | MaximumClaim)
+
+
 def stated_claims(case: Case) -> tuple[StatedClaim, ...]:
     """Every claim of a case: its words, place and digits."""
     return tuple(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import inf
 
 from ...problem.cases import AnyClaim, DurationsClaim, MaximumClaim, TimeClaim, TotalTimeClaim
-from .stated import place
+from .stated import place, prints_durations
 from .study import Study
 
 
@@ -25,7 +25,7 @@ def other_totals(study: Study, claim: TimeClaim, pid: str, rid: str) -> list[Tot
         Of a row with durations alone. Digits may be rounded or cut off.
     """
     own = study.claim_total(claim, rid)
-    if own is None or not study.has_durations(claim):
+    if own is None or not prints_durations(claim):
         return []
     low, high = own[1][0], max(own[1][1], study.longest_total(claim, rid))
     stated = (c for c in study.case.claims if isinstance(c, TotalTimeClaim) and c.of == claim.id)
@@ -104,7 +104,7 @@ def rounded_up_low(study: Study, claim: AnyClaim, rid: str, interval: tuple[floa
     beside durations is then the sum of what was rounded up.
     """
     low, high = interval
-    if isinstance(claim, TotalTimeClaim) or not study.has_durations(claim):
+    if isinstance(claim, TotalTimeClaim) or not prints_durations(claim):
         return low - (high - low) / 2
     box = study.case.claim_durations(claim, rid)
     return min(low, float((box.lower - (box.upper - box.lower) / 2).sum()))

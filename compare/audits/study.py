@@ -45,7 +45,6 @@ from ...problem.cases import (
 )
 from ..documents import Keeping, Rounding, noted
 from .chosen_case import Pair
-from .fixed_ratios import freed
 from .instances import InstancesResult, examined, readings_of
 from .replayed_case import ReplayedCase, Replays
 from .rounding import RoundingBox, RoundingVerdict, judge_rounding
@@ -176,7 +175,7 @@ class Study(ReplayedCase):
                     f"derivatives at the way-points settle {settled} of them"
                 )
                 return Solution(relaxed, Status.FAILED, why)
-            member = freed(self, pid, rid)
+            member = self.freed(pid, rid)
             if not member.found or given.free:
                 return solve(relaxed)
             curve = fit(given, problem.waypoints, member.durations)
@@ -184,6 +183,23 @@ class Study(ReplayedCase):
             return solve(relaxed, known=member.durations, known_nodal=nodal)
 
         return self.once(("relaxed", pid, rid), compute)
+
+    def freed(self, pid: str, rid: str) -> Solution:
+        """The optimum with each duration chosen; where no ratios are fixed, `optimum`."""
+        problem, own = self.problem(pid, rid), self.optimum(pid, rid)
+        if problem.ratios is None:
+            return own
+
+        def compute() -> Solution:
+            known = self.known_motions(pid, rid)
+            known = np.vstack([known, own.durations]) if own.found else known
+            one = replace(problem, ratios=None)
+            try:
+                return solve(one, known=known)
+            except TrajgapError as error:
+                return Solution(one, Status.FAILED, str(error))
+
+        return self.once(("freed", pid, rid), compute)
 
     def claim_pairs(self, claim: Claim) -> Iterator[Pair]:
         """Problems and readings that a claim speaks about; none where it fits none of them."""
@@ -197,11 +213,6 @@ class Study(ReplayedCase):
             return False
         printed = self.case.printed_durations(claim)
         return not printed or len(printed) == self.problem(pid, rid).segments
-
-    @staticmethod
-    def has_durations(claim: Claim) -> bool:
-        """Whether a claim prints durations, so that a motion can be built from it."""
-        return isinstance(claim, DurationsClaim | MaximumClaim)
 
     def claim_problem(
         self, claim: Claim, pid: str, rid: str, digits: Digits = Digits.PRINTED

@@ -29,7 +29,7 @@ from ..documents import (
     Waterfall,
     Why,
 )
-from .fixed_ratios import freed, off_ratios, planned_apart
+from .fixed_ratios import off_ratios, planned_apart
 from .own_result import own_result
 from .stated import other_objective
 from .study import Study
@@ -112,7 +112,7 @@ def _waterfall(study: Study, pid: str, rid: str) -> Waterfall:
     steps.append(_known(STAND_IN_OPTIMUM if _stands_in(study) else own, shared))
     steps.append(_retimed(OPTIMUM_RETIMED, shared))
     if problem.ratios is not None:
-        steps.append(_known(FREED_OPTIMUM, _converged(freed(study, pid, rid))))
+        steps.append(_known(FREED_OPTIMUM, _converged(study.freed(pid, rid))))
     relaxed = _converged(study.relaxed(pid, rid))
     steps.append(
         _known("relaxed family", relaxed, "degree 5 or more in every segment, C2, freedom used")

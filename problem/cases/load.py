@@ -11,7 +11,7 @@ from .case import Case
 from .claim_fit import check_claims
 from .data_files import PUBLISHED, case_files, check_format, validated
 from .faults import Faults
-from .joint_units import check_clues, check_kinds
+from .joint_kinds import check_clues, check_kinds
 from .references import check_kinematics, check_references
 from .schema import CaseFile
 from .sizes import check_sizes, check_values

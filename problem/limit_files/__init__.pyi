@@ -1,6 +1,7 @@
 from .flags import limits_of_flags
+from .limit_file import read_limits
 from .moveit import read_moveit
-from .precedence import StatedLimits, merge, read_limits
+from .precedence import StatedLimits, merge
 from .urdf import read_urdf
 
 __all__ = [

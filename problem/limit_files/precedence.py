@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
@@ -54,20 +53,6 @@ class StatedLimits:
             If one of them is not known here.
         """
         return merge(joints, [self])
-
-
-def read_limits(path: Path) -> StatedLimits:
-    """Read a URDF (``.urdf``, ``.xml``), or MoveIt's joint_limits.yaml.
-
-    Raises
-    ------
-    CaseError
-        If it is neither.
-    """
-    from .moveit import read_moveit
-    from .urdf import read_urdf
-
-    return (read_urdf if path.suffix.lower() in (".urdf", ".xml") else read_moveit)(path)
 
 
 def merge(joints: Sequence[str], sources: Sequence[StatedLimits]) -> JointLimits:

@@ -2,12 +2,13 @@ from .between import check_samples
 from .digits import HalfUnits
 from .floor import Floor, shortest
 from .foreign_objects import as_motion
+from .interpolation import interpolated
 from .joint_limits import BRAKING, ORDERS, JointLimits, check_range, unstated_words
 from .judged import MOTION_TOLERANCE, MotionCheck, MotionJump, MotionPeak, check_motion
 from .motion import MOST_VALUES, Motion
 from .plain_data import read_yaml
 from .reading import UNITS, ForeignFile, factors_of, read_motion
-from .samples import Interpolation, Samples, interpolated
+from .samples import Interpolation, Samples
 from .written import Evaluated, MotionForm, csv_text, motion_text, read_back, sampled
 
 __all__ = [

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,9 +11,7 @@ from numpy.typing import NDArray
 from ..arrays import Array
 from ..curves import PERM
 from .motion import Motion
-
-if TYPE_CHECKING:
-    from .samples import Samples
+from .samples import Samples
 
 _EPS = 2.0**-52
 """Spacing of float64 at 1."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,9 +10,7 @@ from numpy.typing import NDArray
 from ..arrays import Array
 from ..errors import TrajgapError
 from .motion import Motion, derivative_terms
-
-if TYPE_CHECKING:
-    from .samples import Samples
+from .samples import Samples
 
 _FINE = np.longdouble
 """For residuals; where it is no finer than float64 its own epsilon makes the bounds wider."""

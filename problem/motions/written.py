@@ -12,11 +12,12 @@ from numpy.typing import ArrayLike
 
 from ..arrays import Array
 from ..errors import TrajgapError
+from .interpolation import interpolated
 from .motion import MOST_VALUES, Motion
 from .plain_data import parse_json
 from .polynomial_file import motion_of_json, polynomial_json
 from .ros import message_of_samples, samples_of_message
-from .samples import Interpolation, Samples, interpolated
+from .samples import Interpolation, Samples
 from .tables import parse_csv
 
 _STILL = 1e-9

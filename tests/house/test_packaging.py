@@ -8,6 +8,7 @@ import inspect
 import os
 import re
 import subprocess
+import sys
 import tomllib
 from collections.abc import Iterator
 from fnmatch import fnmatch
@@ -66,10 +67,21 @@ def test_listed_packages_are_the_folders() -> None:
         for pattern in ("*.py", "*.toml")
         for path in (ROOT / folder).rglob(pattern)
     }
-    assert set(package_folders().values()) == holding
-    assert PYPROJECT["tool"]["setuptools"]["package-dir"] == {f"trajgap.{f}": f for f in MAY_IMPORT}
+    assert set(package_folders().values()) == {ROOT, *holding}
+    assert PYPROJECT["tool"]["setuptools"]["package-dir"] == {"trajgap": "."}
     assert not (ROOT / "trajgap").exists(), "would shadow the installed package"
-    assert not (ROOT / "__init__.py").exists(), "would shadow the installed package"
+
+
+def test_the_face_at_the_root() -> None:
+    """`import trajgap` has what README shows, loads it on first use, and knows its version."""
+    import trajgap
+
+    assert trajgap.__version__ == PYPROJECT["project"]["version"]
+    for name in trajgap.__all__:
+        assert getattr(trajgap, name).__module__.startswith("trajgap.")
+    asked = "import sys, trajgap; print([n for n in sys.modules if n.startswith('trajgap.')])"
+    run = subprocess.run([sys.executable, "-c", asked], capture_output=True, text=True, check=True)
+    assert run.stdout.strip() == "[]"
 
 
 def test_every_data_file_is_installed() -> None:
@@ -82,13 +94,6 @@ def test_every_data_file_is_installed() -> None:
     }
     here = {p for p in tracked_files() if p.relative_to(ROOT).parts[0] in MAY_IMPORT}
     assert {str(path.relative_to(ROOT)) for path in here - installed} == set()
-
-
-def test_typings_link_to_the_folders() -> None:
-    links = {link.name: os.readlink(link) for link in (ROOT / "typings" / "trajgap").iterdir()}
-    assert links == {folder: f"../../{folder}" for folder in MAY_IMPORT}
-    for folder in MAY_IMPORT:
-        assert (ROOT / "typings" / "trajgap" / folder / "py.typed").is_file()
 
 
 def test_constraints_pin_every_requirement() -> None:

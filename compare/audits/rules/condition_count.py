@@ -11,6 +11,7 @@ import numpy as np
 from ....problem import QUANTITIES, Curve, counts_in_words, fit
 from ....problem.cases import AnyClaim, ConditionsClaim, StatementClaim
 from ...documents import Basis, ClaimVerdict, Finding, Severity
+from ..stated import prints_durations
 from ..study import Study
 from .peaks import has_curve, largest
 from .wording import all_called, called_under, in_units, left_out, unit_shown
@@ -164,7 +165,7 @@ def _at_rest(
 ) -> Iterator[Finding]:
     """Evaluate the derivatives that are said to vanish, at both ends of printed motions."""
     named = [study.case.claim(i) for i in of]
-    motions = named or [c for c in study.case.claims if study.has_durations(c)]
+    motions = named or [c for c in study.case.claims if prints_durations(c)]
     for rid in study.readings:
         moving, judged, built = [], 0, True
         for motion in motions:

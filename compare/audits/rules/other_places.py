@@ -9,6 +9,7 @@ from math import inf, isfinite, log
 from ....problem import check
 from ....problem.cases import AnyClaim, DurationsClaim, PeakClaim, TimeClaim, motions_of
 from ...documents import Basis, Finding
+from ..stated import prints_durations
 from ..study import Study
 from .continuous_time import broken
 from .peaks import FITS, beside, peak_numbers
@@ -33,7 +34,7 @@ def judge_places(study: Study) -> Iterator[Finding]:
 
 
 def _peaks_elsewhere(study: Study, claim: PeakClaim, own: AnyClaim) -> Iterator[Finding]:
-    motions = [c for c in study.case.claims if study.has_durations(c)]
+    motions = [c for c in study.case.claims if prints_durations(c)]
     for pid, rid in study.claim_pairs(own):
         joints = study.problem(pid, rid).joints
         said = []
