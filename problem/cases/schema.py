@@ -53,6 +53,7 @@ LISTS = (
     "assumptions",
     "columns",
     "cartesian",
+    "equations",
     "not_checkable",
 )
 """Lists of blocks with ids, in the order in which their faults are listed."""
@@ -378,6 +379,26 @@ class Cartesian(Strict):
         return self
 
 
+class Equation(Strict):
+    """A kinematic equation as the text carries it, and how it may have read."""
+
+    id: Id
+    where: Text
+    printed: Text
+    """As the text carries it, in the words of `check_equation`."""
+    mended: Text | None = None
+    """With what the extraction may have lost put back."""
+    mend: Text | None = None
+    """What that is, in words; with `mended`."""
+
+    @model_validator(mode="after")
+    def _together(self) -> Self:
+        if (self.mended is None) != (self.mend is None):
+            missing = ".mend" if self.mend is None else ".mended"
+            raise fault(missing, "is missing; mended and mend stand together")
+        return self
+
+
 class NotCheckable(Strict):
     """Something that the text extraction may have damaged."""
 
@@ -417,6 +438,7 @@ class CaseFile(ProblemData):
     assumptions: tuple[Assumption, ...] = ()
     columns: tuple[Column, ...] = ()
     cartesian: tuple[Cartesian, ...] = ()
+    equations: tuple[Equation, ...] = ()
     not_checkable: tuple[NotCheckable, ...] = ()
 
 
