@@ -35,7 +35,7 @@ from ..fields import (
 )
 from ..printed import Printed
 from ..problem import Coupling
-from ..robots import DhTable
+from ..robots import DhTable, Equation
 from ..units import LengthUnit
 from .claim import AnyClaim
 from .clue import AnyClue
@@ -376,26 +376,6 @@ class Cartesian(Strict):
     def _three(self) -> Self:
         if len(self.values) != 3:
             raise fault(".values", f"has {len(self.values)} numbers; give x, y and z")
-        return self
-
-
-class Equation(Strict):
-    """A kinematic equation as the text carries it, and how it may have read."""
-
-    id: Id
-    where: Text
-    printed: Text
-    """As the text carries it, in the words of `check_equation`."""
-    mended: Text | None = None
-    """With what the extraction may have lost put back."""
-    mend: Text | None = None
-    """What that is, in words; with `mended`."""
-
-    @model_validator(mode="after")
-    def _together(self) -> Self:
-        if (self.mended is None) != (self.mend is None):
-            missing = ".mend" if self.mend is None else ".mended"
-            raise fault(missing, "is missing; mended and mend stand together")
         return self
 
 

@@ -11,7 +11,7 @@ from .closed_form import closed_form_inverse
 from .dh import DhTable
 from .inverse import IkSolution, IkStatus, inverse_kinematics
 from .nearness import Proximity, proximity
-from .printed_equations import EquationCheck, check_equation
+from .printed_equations import Equation, EquationCheck, check_equation
 from .workspace import StepKind, Workspace, sample_workspace, waypoint_sequences
 
 __all__ = [
@@ -19,6 +19,7 @@ __all__ = [
     "Chain",
     "Convention",
     "DhTable",
+    "Equation",
     "EquationCheck",
     "IkSolution",
     "IkStatus",

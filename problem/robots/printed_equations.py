@@ -6,12 +6,14 @@ import ast
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
+from pydantic import model_validator
 
 from ..arrays import Array
 from ..errors import TrajgapError
+from ..fields import Id, Strict, Text, fault
 from .chain import Chain, link_frames
 
 SAMPLES = 200
@@ -41,6 +43,26 @@ _FUNCTIONS: dict[str, tuple[int, Callable[..., Any]]] = {
     "inv": (1, np.linalg.inv),
 }
 """What may be applied, with the number of arguments."""
+
+
+class Equation(Strict):
+    """A kinematic equation as the text carries it, and how it may have read."""
+
+    id: Id
+    where: Text
+    printed: Text
+    """As the text carries it, in the words of `check_equation`."""
+    mended: Text | None = None
+    """With what the extraction may have lost put back."""
+    mend: Text | None = None
+    """What that is, in words; with `mended`."""
+
+    @model_validator(mode="after")
+    def _together(self) -> Self:
+        if (self.mended is None) != (self.mend is None):
+            missing = ".mend" if self.mend is None else ".mended"
+            raise fault(missing, "is missing; mended and mend stand together")
+        return self
 
 
 @dataclass(frozen=True)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ....problem.cases import Equation, StatementClaim
-from ....problem.robots import Chain, EquationCheck, check_equation
+from ....problem.cases import StatementClaim
+from ....problem.robots import Chain, Equation, EquationCheck, check_equation
 from ...documents import Basis, ClaimVerdict, Finding
 from ..study import Study
 
