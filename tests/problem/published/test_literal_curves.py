@@ -14,6 +14,7 @@ from trajgap.problem import (
     extrema,
     fit,
     forward_kinematics,
+    jtraj,
     load_case,
     load_robot,
     three_five_three,
@@ -193,6 +194,21 @@ def test_vertices_speeds_and_the_golden_section() -> None:
                     exact[one.segment] = max(exact[one.segment], abs(one.value))
                 np.testing.assert_array_less(found, np.array(exact) * (1 + 1e-9) + 1e-12)
                 assert max(found) == pytest.approx(max(exact), rel=1e-9)
+
+
+# --- jtraj: the baseline of irb460 and z1 ---------------------------------------------------------
+
+
+def test_the_quintic_at_rest_of_the_toolbox() -> None:
+    """q(τ) = q0 + (10 τ³ − 15 τ⁴ + 6 τ⁵) (q1 − q0), from rest to rest on each segment."""
+    q, h = np.random.default_rng(3).normal(size=(4, 2)), [0.7, 1.3, 0.4]
+    motion, start = fit(jtraj(3), q, h), 0.0
+    for i, length in enumerate(h):
+        for x in np.linspace(0.0, 1.0 - 1e-12, 9):
+            part = 10 * x**3 - 15 * x**4 + 6 * x**5
+            place = q[i] + part * (q[i + 1] - q[i])
+            np.testing.assert_allclose(motion([start + x * length])[0], place, rtol=0, atol=1e-12)
+        start += length
 
 
 # --- forward kinematics: Table 1 of z1 ------------------------------------------------------------
