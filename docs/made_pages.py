@@ -1,6 +1,8 @@
 """Pages that each build of the site makes from the code and its data; none is committed."""
 
+import json
 import re
+import tomllib
 from collections.abc import Iterator
 from importlib import import_module
 from inspect import isfunction
@@ -9,9 +11,11 @@ from typing import Any
 
 from trajgap.compare.audits import EXPLAINED, RULES
 from trajgap.compare.pages import word_groups
-from trajgap.problem import case_schema
+from trajgap.problem import case_schema, load_case
 from trajgap.problem.suite import list_instances, plain_text
 
+DOCS = Path(__file__).parent
+"""Where the committed list and the results are."""
 FACES = (
     "problem",
     "problem.motions",
@@ -34,6 +38,7 @@ def write_pages(docs: Path) -> None:
     write_changed(reference / "rules.md", rules())
     write_changed(reference / "words.md", words())
     write_changed(reference / "case-keys.md", case_keys())
+    write_changed(reference / "elements.md", elements())
     for curve in dict.fromkeys(one.curve for one in list_instances()):
         write_changed(suite / f"{slug(curve)}.md", instances(curve))
     for one in list_instances():
@@ -145,6 +150,59 @@ def taken(shape: dict[str, Any]) -> str:
     return {"integer": "whole number", "number": "number", "boolean": "true or false"}.get(
         shape.get("type", ""), "anything"
     )
+
+
+def elements() -> str:
+    """What each of the four papers contains, from the list: code, test, and what is lost."""
+    listed = tomllib.loads((DOCS / "elements.toml").read_text("utf-8"))
+    lines = ["# The four papers, element by element", ""]
+    lines += [
+        "Every numbered equation, table and figure, every algorithm and every claim: the file "
+        "that implements it, and the test that compares that with the paper's own formulas, "
+        "written once more as scalars. What the extracted text does not carry is said. Made from "
+        "[a list](../../elements.toml), of which a test counts the numbers of each paper.",
+        "",
+    ]
+    for paper in listed["papers"]:
+        case = load_case(paper["case"])
+        lines += [f"## {plain(case.title)}", "", f"[Its report](../../reports/{case.id}.md).", ""]
+        lines += [
+            "| element | what | implemented by | compared in | to know |",
+            "|---|---|---|---|---|",
+        ]
+        for one in paper["elements"]:
+            name = f"{one['kind']} {one['number'].replace('-', ' to ')}"
+            if one["kind"] == "algorithm":
+                name = one["number"]
+            test = listed["tests"].get(one.get("test", ""), one.get("test", ""))
+            cells = (name, one["says"], *map(placed, (one.get("code", ""), test)))
+            note = plain(one.get("note", ""))
+            lines.append(f"| {' | '.join((*map(plain, cells[:2]), *cells[2:], note))} |")
+        lines += ["", "| claim | where | judged by |", "|---|---|---|"]
+        rules = judging_rules(case.id)
+        for claim in case.claims:
+            judges = "; ".join(
+                f"[{rule}](rules.md#rule-{rule.lower()}), {placed(listed['rules'][rule])}"
+                for rule in rules.get(claim.id, ())
+            )
+            lines.append(f"| `{claim.id}` | {plain(claim.where)} | {judges} |")
+        lines.append("")
+    return "\n".join(lines)
+
+
+def judging_rules(case_id: str) -> dict[str, list[str]]:
+    """Rules that say something of each claim in the committed results."""
+    (case,) = json.loads((DOCS / "results" / f"{case_id}.json").read_text("utf-8"))["cases"]
+    found: dict[str, set[str]] = {}
+    for finding in case["findings"]:
+        found.setdefault(finding["claim"] or "", set()).add(finding["rule"])
+    return {claim: sorted(rules) for claim, rules in found.items()}
+
+
+def placed(place: str) -> str:
+    """A file of the checkout, with the name of a test in it."""
+    path, _, test = place.partition("::")
+    return f"`{test}` in `{path}`" if test else f"`{path}`" if path else ""
 
 
 def slug(curve: str) -> str:

@@ -31,7 +31,8 @@ def waterfall_puma560() -> str:
 EXHIBITS = {
     "jumps-irb1600": ("irb1600-ga-cubic-bspline", file_name("jumps", "nine-segments", "after")),
     "polygon-irb1600": ("irb1600-ga-cubic-bspline", "polygon-control-vertices"),
-    "workspace-irb460": ("irb460-pso-353", "workspace-modified"),
+    "workspace-irb460": ("irb460-pso-353", "workspace"),
+    "workspace-z1": ("z1-woa-bspline", "workspace"),
     "tent-z1": ("z1-woa-bspline", "tent-improved-woa"),
 }
 """Pictures of the report pages that the documents show too: case, and name in its page."""

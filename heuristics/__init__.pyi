@@ -24,7 +24,7 @@ from .loop import (
     states,
 )
 from .objective import Bounds, Counted, DeathPenalty, Objective
-from .optimizers import BASELINES, Borrowed, BorrowedTask, find_optimizer
+from .optimizers import BASELINES, Borrowed, BorrowedTask, evaluations_of, find_optimizer
 from .repair import Handling, Stretch, compile_judge, judge_of
 from .result import JointRuns, Run
 from .search_boxes import search_box
@@ -61,6 +61,7 @@ __all__ = [
     "compile_judge",
     "differential_evolution",
     "dual_annealing",
+    "evaluations_of",
     "find_optimizer",
     "from_settings",
     "in_processes",

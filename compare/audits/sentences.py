@@ -47,6 +47,7 @@ _STATEMENTS = {
     "kinematics": "joint angles and positions belong together",
     "varies_most": "joint {joint} varies most",
     "varies_much": "joint {joint} varies much",
+    "equations": "the kinematic equations hold on the printed robot",
     "above": "one position lies above another",
     "none": "a sentence that cannot be checked",
 }

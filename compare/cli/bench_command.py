@@ -41,7 +41,15 @@ def bench(
         typer.Option("--reading", metavar="ID", help="Under this reading, not the default one."),
     ] = None,
     seeds: Annotated[int, typer.Option(min=1, max=MOST, help="Runs of each optimiser.")] = 30,
-    budget: Annotated[int, typer.Option(min=1, max=10**7, help="Evaluations of each run.")] = 6000,
+    budget: Annotated[
+        int | None,
+        typer.Option(
+            min=1,
+            max=10**7,
+            help="Evaluations of each run.",
+            show_default="6000; a paper's algorithm makes its own iterations",
+        ),
+    ] = None,
     handling: Annotated[
         str,
         typer.Option(

@@ -56,7 +56,7 @@ def bench_case(
     problem: str | None,
     reading: str | None,
     seeds: int,
-    budget: int,
+    budget: int | None,
     handling: str,
     baselines: bool,
     seconds: float,
@@ -74,7 +74,7 @@ def bench_case(
     set_here = _settings(settings)
     asked = []
     for case in cases:
-        own = _own(case, chosen)
+        own = _own(case, chosen, iterations=budget is None)
         settled = own | {
             name: {**own.get(name, {}), **changed} for name, changed in set_here.items()
         }
@@ -129,12 +129,14 @@ def _settings(texts: Sequence[str]) -> dict[str, dict[str, Any]]:
     return found
 
 
-def _own(case: Case, chosen: Sequence[str]) -> dict[str, dict[str, Any]]:
-    """Settings of the paper's own algorithms; the budget takes the place of its iterations."""
+def _own(case: Case, chosen: Sequence[str], iterations: bool) -> dict[str, dict[str, Any]]:
+    """Settings of the paper's own algorithms; a budget takes the place of its iterations."""
     found: dict[str, dict[str, Any]] = {}
     for block in case.algorithms:
         if block.kind in chosen and block.kind in KINDS:
-            values = {k: v for k, v in block.parameters.items() if k != "iterations"}
+            values = dict(block.parameters)
+            if not iterations:
+                values.pop("iterations", None)
             # An infinite penalty is every algorithm's default, and JSON knows no infinity.
             found[block.kind] = {
                 k: v for k, v in values.items() if not (isinstance(v, float) and math.isinf(v))

@@ -194,7 +194,10 @@ def _tables(
     if len(plan.problems) > _ONE_BY_ONE:
         rows = [(*ids, *cells) for ids, own in found.items() for cells in own]
         notes = dict.fromkeys(
-            f"{_words(one)}: {note}" for one in plan.problems for note in one.notes
+            [
+                *plan.notes,
+                *(f"{_words(one)}: {note}" for one in plan.problems for note in one.notes),
+            ]
         )
         return [Columns(("problem", "reading", *_COLUMNS), rows), *map(line, notes)]
     parts: list[RenderableType] = []
@@ -202,7 +205,7 @@ def _tables(
         ids = (one.name, one.reading)
         parts.append(line(noted(_words(one), ", ".join(ids))))
         parts.append(Columns(_COLUMNS, found.get(ids, ())))
-        parts += [line(note, "dim") for note in one.notes] + [line("")]
+        parts += [line(note, "dim") for note in (*plan.notes, *one.notes)] + [line("")]
     return parts
 
 

@@ -87,7 +87,7 @@ class BenchResult(Entry):
     """What a reader calls case, problem and reading, with the ids that a command takes; not in
     JSON."""
     budget: Count
-    """Evaluations of each run."""
+    """Evaluations of each run, unless `notes` give a paper's algorithm its own."""
     seeds: Count
     optimum: Reference
     notes: tuple[str, ...]

@@ -1,4 +1,4 @@
-"""Optimisers on one problem: many seeds each, at one budget, against the optimum."""
+"""Optimisers on one problem: many seeds each, against the optimum."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from ...heuristics import (
     KINDS,
     Bounds,
     Handling,
+    evaluations_of,
     find_optimizer,
     from_settings,
     judge_of,
@@ -32,7 +33,7 @@ from .trials import origin_of, run_trial
 SEEDS = 30
 """Runs of each optimiser by default: as many as papers of this field report."""
 BUDGET = 6000
-"""Evaluations of each run by default: 30 particles × 200 iterations."""
+"""Evaluations of what counts no iterations, by default: as many as 30 particles take in 200."""
 SECONDS = 300.0
 """Time limit of one run by default: thousands of times what the budget usually takes."""
 
@@ -103,6 +104,7 @@ class BenchPlan:
     trials : tuple of Trial
         By entrant, then by seed.
     budget, seeds : int
+        Evaluations of a run of what has no iterations of its own; seeds of each optimiser.
     notes : tuple of str
         What was chosen so that the optimisers can run.
     """
@@ -142,7 +144,7 @@ def bench(
     progress: Callable[[Row], None] | None = None,
     **options: Any,
 ) -> Runs:
-    """Run optimisers on a problem, each with many seeds, at one budget of evaluations.
+    """Run optimisers on a problem, each with many seeds.
 
     Parameters
     ----------
@@ -174,7 +176,7 @@ def plan_bench(
     optimizers: Named | Iterable[Named],
     *,
     seeds: int = SEEDS,
-    budget: int = BUDGET,
+    budget: int | None = None,
     handling: str = Handling.DEATH_PENALTY,
     settings: Mapping[str, Mapping[str, Any]] | None = None,
     baselines: bool = True,
@@ -193,8 +195,9 @@ def plan_bench(
         As `find_optimizer` takes them; a callable must be a function of a module.
     seeds : int
         Runs of each optimiser; one of those that draw no random numbers.
-    budget : int
-        Evaluations of each run; the objective stops a run that asks for more.
+    budget : int, optional
+        Evaluations of each run; the objective stops a run that asks for more. Without it a paper's
+        algorithm makes its own iterations, printed by its paper, and anything else has 6000.
     handling : str
         "death-penalty", "stretch" or "rescale".
     settings : mapping, optional
@@ -226,7 +229,7 @@ def plan_bench(
     names = [optimizers] if isinstance(optimizers, str) or callable(optimizers) else optimizers
     box = search_box(problem)
     entrants, notes = enter(box, list(names), handling, settings or {}, baselines)
-    first = Trial(problem, name or problem.name, reading, "", budget=budget, seconds=seconds)
+    first = Trial(problem, name or problem.name, reading, "", seconds=seconds)
     trials = tuple(
         replace(
             first,
@@ -234,6 +237,7 @@ def plan_bench(
             settings=canonical(dict(one.settings)),
             handling=one.handling,
             seed=seed,
+            budget=run_budget(one.optimizer, one.settings, budget),
             stream=(one.stream,),
             origin=origin_of(one.optimizer),
         )
@@ -241,9 +245,26 @@ def plan_bench(
         for seed in range(1 if one.optimizer in WITHOUT_DRAWS else seeds)
     )
     return BenchPlan(
-        problem, first.name, reading, entrants, trials, budget, seeds,
-        (*bounds_note(problem), *notes),
+        problem, first.name, reading, entrants, trials, BUDGET if budget is None else budget, seeds,
+        (*budget_notes(entrants, budget), *bounds_note(problem), *notes),
     )  # fmt: skip
+
+
+def run_budget(name: str, settings: Mapping[str, Any], asked: int | None) -> int:
+    """Evaluations of a run: those asked for, or else the optimiser's own."""
+    if asked is not None:
+        return asked
+    return evaluations_of(find_optimizer(name, **settings)) if name in KINDS else BUDGET
+
+
+def budget_notes(entrants: Iterable[Entrant], asked: int | None) -> tuple[str, ...]:
+    """What was run where no budget was asked for: the papers' own iterations."""
+    return tuple(
+        f"{one.label}: {find_optimizer(one.optimizer, **one.settings).iterations} iterations, the "
+        f"algorithm's own, in {run_budget(one.optimizer, one.settings, None):,} evaluations."
+        for one in entrants
+        if asked is None and one.optimizer in KINDS
+    )
 
 
 def bounds_note(problem: Problem) -> tuple[str, ...]:

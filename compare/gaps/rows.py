@@ -124,7 +124,7 @@ class Trial:
     settings: str = "{}"
     handling: str = Handling.DEATH_PENALTY
     seed: int = 0
-    budget: int = 6000
+    budget: int = 6000  # of what counts no iterations; plans state it
     stream: tuple[int, ...] = ()
     origin: str = ""
     reference: Bracket | None = None

@@ -26,7 +26,14 @@ from ...problem import (
 )
 from ...problem.cases import SUITE_PREFIX, Statement, all_faults, refusal
 from ...problem.suite import instance_of, select_instances
-from .benching import WITHOUT_DRAWS, Entrant, bounds_note, first_range
+from .benching import (
+    WITHOUT_DRAWS,
+    Entrant,
+    bounds_note,
+    budget_notes,
+    first_range,
+    run_budget,
+)
 from .references import bracket_of
 from .rows import Bracket, Trial, canonical
 from .store import Store
@@ -106,8 +113,9 @@ class StudyFile(Strict):
     """Number of seeds: independent runs of each combination."""
     first_seed: Annotated[int, Field(strict=True, ge=0, le=2**62)] = 0
     """The first of them; the others follow it."""
-    budget: Annotated[int, Field(strict=True, ge=1, le=10**9)] = 6000
-    """Evaluations of each run; the objective enforces it."""
+    budget: Annotated[int, Field(strict=True, ge=1, le=10**9)] | None = None
+    """Evaluations of each run; the objective enforces it. Without it a paper's algorithm makes its
+    own iterations, and anything else has 6000."""
     seconds: Annotated[float, Field(gt=0, le=_LONGEST)] = _SECONDS
     """A run that takes longer has failed."""
 
@@ -194,7 +202,7 @@ class StudyPlan:
                     settings=canonical(own),
                     handling=handling,
                     seed=asked.first_seed,
-                    budget=asked.budget,
+                    budget=run_budget(name, own, asked.budget),
                     stream=(entrant.stream, *entry.stream),
                     origin=origin_of(name),
                     reference=reference,
@@ -202,6 +210,12 @@ class StudyPlan:
                 )
                 for seed in range(_seeds(name, asked)):
                     yield replace(first, seed=asked.first_seed + seed)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What was run where the file states no budget."""
+        entrants = [Entrant(*one, one[0]) for one in self._entrants()]
+        return tuple(dict.fromkeys(budget_notes(entrants, self.document.budget)))
 
     def _entrants(self) -> Iterator[tuple[str, dict[str, Any], str]]:
         for optimizer in self.document.optimizers:

@@ -148,7 +148,7 @@ def bench_picture(result: BenchResult, runs: Runs) -> Picture:
         _anytime(runs.by_label, upper),
         title=f"Gap to the optimum over the evaluations: {result.title}",
         uncertainty=None if lower is None else 1 - lower / upper,
-        budget=result.budget,
+        budget=max(row.budget for row in runs.rows),
         targets=len(CURVE_TARGETS),
     )
 
@@ -177,7 +177,7 @@ def _profiles(rows: Mapping[str, Sequence[Row]], optimum: float) -> dict[str, tu
 def _page(results: Sequence[tuple[BenchResult, Runs]]) -> Page:
     first = results[0][0]
     trail = (
-        f"{first.budget} evaluations a run, {first.seeds} seeds. "
+        f"{_evaluations(results)} evaluations a run, {first.seeds} seeds. "
         f"trajgap {package_version('trajgap')}."
     )
     links = (("JSON", _MARK), ("rows (CSV)", _ROWS))
@@ -194,17 +194,22 @@ def _page(results: Sequence[tuple[BenchResult, Runs]]) -> Page:
     return Page("bench", title, (*sections, _reading()), trail=trail, links=links).filled
 
 
+def _evaluations(results: Sequence[tuple[BenchResult, Runs]]) -> str:
+    """Evaluations of each run, or from how many to how many."""
+    budgets = sorted({row.budget for _, runs in results for row in runs.rows})
+    return " to ".join(f"{one:,}" for one in dict.fromkeys((budgets[0], budgets[-1])))
+
+
 def _all_sections(results: Sequence[tuple[BenchResult, Runs]]) -> list[Section]:
     """What the runs say over all problems, and a line for each problem."""
     standings = overall([result for result, _ in results])
     rows = relative_rows(results)
-    first = results[0][0]
     head = f"All {len(results)} problems"
     gaps = gap_picture(
         _anytime(rows, 1.0),
         title=f"Gap to the optimum over the evaluations: {len(results)} problems",
         uncertainty=max(_width(result) for result, _ in results),
-        budget=first.budget,
+        budget=max(row.budget for _, runs in results for row in runs.rows),
         targets=len(CURVE_TARGETS),
     )
     profile = profile_picture(

@@ -1,4 +1,4 @@
 from .borrowed import Borrowed, BorrowedTask
-from .catalogue import BASELINES, find_optimizer
+from .catalogue import BASELINES, evaluations_of, find_optimizer
 
-__all__ = ["BASELINES", "Borrowed", "BorrowedTask", "find_optimizer"]
+__all__ = ["BASELINES", "Borrowed", "BorrowedTask", "evaluations_of", "find_optimizer"]

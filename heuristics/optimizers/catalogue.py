@@ -38,7 +38,7 @@ Searching = Callable[[Mapping[str, Any], BorrowedTask], object]
 """A search with its settings."""
 
 BUDGET = 6000
-"""Evaluations by default: the papers' 30 particles × 200 iterations."""
+"""Evaluations of what counts no iterations, by default: as many as 30 particles take in 200."""
 
 _BUDGET = Annotated[int, whole(1)]
 """What a budget may be."""
@@ -65,7 +65,7 @@ BASELINES: tuple[str, ...] = tuple(_BASELINES)
 
 
 def find_optimizer(
-    name: str | Callable[..., object], budget: int = BUDGET, **settings: object
+    name: str | Callable[..., object], budget: int | None = None, **settings: object
 ) -> Algorithm[Any] | Search:
     """Optimiser of a name, ready to be run within a budget of evaluations.
 
@@ -78,9 +78,10 @@ def find_optimizer(
         function
         ``f(fun, bounds, budget, rng, **settings)``, as "module:function" or itself. Its ``fun``
         takes one vector or a batch, ``bounds`` has shape (dimensions, 2), s.
-    budget : int
-        Evaluations. An algorithm that counts iterations gets as many as use it up, unless the
-        settings name ``iterations``.
+    budget : int, optional
+        Evaluations. An algorithm of the papers gets as many iterations as use it up, unless the
+        settings name ``iterations``; without a budget it has its own, which its paper prints.
+        Anything else has 6000 evaluations then.
     **settings
         Of the optimiser; what is left out takes its own default.
 
@@ -95,19 +96,20 @@ def find_optimizer(
 
     Examples
     --------
-    >>> find_optimizer("pso", 3000, particles=20).iterations
-    149
+    >>> find_optimizer("mnam-pso").iterations, find_optimizer("mnam-pso", 6000).iterations
+    (200, 192)
     >>> find_optimizer("scipy:dual_annealing").kind
     'scipy:dual_annealing'
     """
-    budget = checked(_BUDGET, "budget", budget)
+    own = budget is None
+    budget = BUDGET if budget is None else checked(_BUDGET, "budget", budget)
     if callable(name):
         said = f"{getattr(name, '__module__', '?')}:{getattr(name, '__qualname__', name)}"
         check_call(said, name, settings)
         return _borrowed(said, partial(call_object, name), budget, settings)
     if name in KINDS:
         algorithm = from_settings(name, settings)
-        return algorithm if "iterations" in settings else _fitted(algorithm, budget)
+        return algorithm if own or "iterations" in settings else _fitted(algorithm, budget)
     if name in _BASELINES:
         return _borrowed(name, _BASELINES[name], budget, settings)
     if name == "cma":
@@ -143,12 +145,42 @@ def _borrowed(
     return Borrowed(kind, partial(searching, given), iterations=budget - 1, options=given)
 
 
+def evaluations_of(method: Algorithm[Any] | Search) -> int:
+    """Evaluations that a method takes for all its iterations.
+
+    Parameters
+    ----------
+    method : Algorithm or Search
+        From `find_optimizer`.
+
+    Returns
+    -------
+    int
+
+    Examples
+    --------
+    >>> evaluations_of(find_optimizer("constrained-pso"))
+    3030
+    """
+    if isinstance(method, Search):
+        return method.per_iteration * (method.iterations + 1)
+    first, each = _costs(method)
+    return first + each * method.iterations
+
+
 def _fitted(algorithm: Algorithm[Any], budget: int) -> Algorithm[Any]:
-    """The algorithm with as many iterations as a budget pays for, found by trying two.
+    """The algorithm with as many iterations as a budget pays for.
 
     Schedules that run over the iterations then end where the budget does. What remains of the
     budget is less than one iteration.
     """
+    first, each = _costs(algorithm)
+    iterations = max(0, (budget - first) // each)
+    return cast(Algorithm[Any], replace(cast(Any, algorithm), iterations=iterations))
+
+
+def _costs(algorithm: Algorithm[Any]) -> tuple[int, int]:
+    """Evaluations of the first population and of an iteration, found by trying one."""
     counted = Counted(_sums)
     rng = np.random.Generator(np.random.PCG64(0))
     bounds = Bounds(np.zeros(2), np.full(2, np.inf))
@@ -157,9 +189,7 @@ def _fitted(algorithm: Algorithm[Any], budget: int) -> Algorithm[Any]:
         state = two.init(bounds, rng, counted)
         first = counted.evaluations
         two.step(state, bounds, rng, counted)
-    each = max(1, counted.evaluations - first)
-    iterations = max(0, (budget - first) // each)
-    return cast(Algorithm[Any], replace(cast(Any, algorithm), iterations=iterations))
+    return first, max(1, counted.evaluations - first)
 
 
 def _sums(positions: Array) -> Array:

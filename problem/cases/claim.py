@@ -297,12 +297,14 @@ class StatementClaim(Claim):
         "varies_most",
         "varies_much",
         "above",
+        "equations",
         "none",
     ]
     """How it can be checked on the claims named in ``of``; "jumps" says that acceleration does,
     "at_rest" that velocity is 0 at both ends. Without ``of``: "kinematics" says that joint angles
     and positions belong together, "varies_most" and "varies_much" that ``joint`` does, "above" that
-    the first of ``positions`` lies above the second."""
+    the first of ``positions`` lies above the second, "equations" that those of the file hold on the
+    printed robot."""
     of: tuple[Id, ...] = ()
     """The claims whose durations it speaks about."""
     positions: tuple[Id, ...] = ()

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
+from ..errors import TrajgapError
 from ..fields import spelling_hint
-from ..robots import Chain
+from ..robots import Chain, check_equation
 from ..units import CHOICES
 from .claim import (
     Claim,
@@ -103,6 +104,8 @@ def check_references(document: CaseFile, faults: Faults) -> None:
                 known("cartesian", f"{at}.positions[{position}]", place)
             if claim.checks == "kinematics" and not document.cartesian:
                 faults.add(f"{at}.checks", "kinematics needs printed positions; add [[cartesian]]")
+            if claim.checks == "equations" and not document.equations:
+                faults.add(f"{at}.checks", "equations needs printed ones; add [[equations]]")
     _check_kinds(document, faults)
     _check_clues(document, faults, ids["claims"])
     for index, block in enumerate(document.families):
@@ -231,6 +234,16 @@ def check_kinematics(document: CaseFile, faults: Faults, chain: Chain | None) ->
                 f"robot.joints[{index}]",
                 f"joint {label!r} is not in the robot's table; it has {', '.join(labels)}",
             )
+    for index, equation in enumerate(document.equations):
+        if chain is None:
+            faults.add(f"equations[{index}]", "needs the robot's table; add robot.dh")
+            continue
+        for field, text in (("printed", equation.printed), ("mended", equation.mended)):
+            if text is not None:
+                try:
+                    check_equation(chain, text, samples=1)
+                except TrajgapError as error:
+                    faults.add(f"equations[{index}].{field}", str(error))
     for index, block in enumerate(document.families):
         if block.kind == "joint" and chain is not None and not chain.revolute.all():
             faults.add(

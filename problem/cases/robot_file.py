@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import lru_cache
 from pathlib import Path
 
-from ..robots import Chain
+from ..robots import Chain, Convention
 from ..textfile import parse_toml
 from .data_files import ROBOTS, check_format, validated
 from .schema import RobotFile
@@ -16,13 +16,15 @@ def robot_ids() -> tuple[str, ...]:
     return ROBOTS.ids()
 
 
-def load_robot(source: str | Path) -> Chain:
+def load_robot(source: str | Path, convention: Convention | None = None) -> Chain:
     """Load the chain of a robot file, as its table is printed.
 
     Parameters
     ----------
     source : str or Path
         Id of a shipped robot, or path of a TOML file.
+    convention : Convention, optional
+        "standard" or "modified", instead of the one that the file states.
 
     Returns
     -------
@@ -33,6 +35,8 @@ def load_robot(source: str | Path) -> Chain:
     CaseError
         If there is no such robot or file, or anything in it is wrong: one line naming the file,
         the field and how to fix it.
+    TrajgapError
+        If there is no such convention.
 
     Examples
     --------
@@ -40,7 +44,7 @@ def load_robot(source: str | Path) -> Chain:
     ('1', '2', '3', '4', '5', '6')
     """
     robot = robot_file(source)
-    return robot.dh.chain(robot.name)
+    return robot.dh.chain(robot.name, convention=convention)
 
 
 def robot_file(source: str | Path) -> RobotFile:

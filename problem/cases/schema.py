@@ -35,7 +35,7 @@ from ..fields import (
 )
 from ..printed import Printed
 from ..problem import Coupling
-from ..robots import DhTable
+from ..robots import DhTable, Equation
 from ..units import LengthUnit
 from .claim import AnyClaim
 from .clue import AnyClue
@@ -53,6 +53,7 @@ LISTS = (
     "assumptions",
     "columns",
     "cartesian",
+    "equations",
     "not_checkable",
 )
 """Lists of blocks with ids, in the order in which their faults are listed."""
@@ -417,6 +418,7 @@ class CaseFile(ProblemData):
     assumptions: tuple[Assumption, ...] = ()
     columns: tuple[Column, ...] = ()
     cartesian: tuple[Cartesian, ...] = ()
+    equations: tuple[Equation, ...] = ()
     not_checkable: tuple[NotCheckable, ...] = ()
 
 

@@ -7,9 +7,11 @@ from .chain import (
     geometric_jacobian,
     link_frames,
 )
+from .closed_form import closed_form_inverse
 from .dh import DhTable
 from .inverse import IkSolution, IkStatus, inverse_kinematics
 from .nearness import Proximity, proximity
+from .printed_equations import Equation, EquationCheck, check_equation
 from .workspace import StepKind, Workspace, sample_workspace, waypoint_sequences
 
 __all__ = [
@@ -17,12 +19,16 @@ __all__ = [
     "Chain",
     "Convention",
     "DhTable",
+    "Equation",
+    "EquationCheck",
     "IkSolution",
     "IkStatus",
     "JointKind",
     "Proximity",
     "StepKind",
     "Workspace",
+    "check_equation",
+    "closed_form_inverse",
     "ctraj",
     "forward_kinematics",
     "geometric_jacobian",

@@ -122,7 +122,7 @@ def inverse_kinematics(
         If the target is no pose or point, a component is unknown or not given by the target, a
         joint slides without bounds, or a number is out of range.
     """
-    goal, rows = _question(target, components)
+    goal, rows = question(target, components)
     if not (starts >= 1 and iterations >= 1 and 0 < tolerance < np.inf):
         raise TrajgapError(
             f"inverse kinematics: {starts} starts, {iterations} iterations, tolerance {tolerance}; "
@@ -154,7 +154,7 @@ def inverse_kinematics(
     )
 
 
-def _question(target: ArrayLike, components: Sequence[str] | None) -> tuple[Array, list[int]]:
+def question(target: ArrayLike, components: Sequence[str] | None) -> tuple[Array, list[int]]:
     """Target pose, and the rows of the residual that must vanish."""
     try:
         given = np.asarray(target, dtype=np.float64)

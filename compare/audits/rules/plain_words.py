@@ -279,5 +279,12 @@ EXPLAINED = {
         "extracted text.",
         "“Above the table” stands 0.30 m beside the table; with another sign of y it would be 0 m.",
     ),
+    "TG603": Explained(
+        "Do the printed kinematic equations hold on the printed robot? Both sides are computed at "
+        "random joint angles.",
+        "Supported if all hold as the text carries them. Otherwise not checkable, with what would "
+        "make each of them hold: signs, exponents and indices are easily lost in extracted text.",
+        "13 of 16 equations hold; another holds with a plus sign that the text lacks.",
+    ),
 }
 """Every rule by its permanent id."""

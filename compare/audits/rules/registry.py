@@ -22,6 +22,7 @@ from .peaks import judge_peaks
 from .peaks_and_limits import judge_peak_limits
 from .printed_chain import judge_kinematics
 from .printed_digits import judge_digits
+from .printed_equations import judge_equations
 from .printed_joints import judge_joints
 from .printed_tables import judge_tables
 from .printed_vertices import judge_vertices
@@ -154,6 +155,11 @@ GROUPS = (
     RuleGroup(
         judge_kinematics,
         {"TG601": "Joint and Cartesian way-points are consistent with the printed chain"},
+    ),
+    RuleGroup(
+        judge_equations,
+        {"TG603": "Printed kinematic equations hold on the printed chain"},
+        without_waypoints=True,
     ),
 )
 """In the order in which their findings of one severity and id stand; a new rule adds its line."""

@@ -2,23 +2,21 @@
 Where three searches end
 ========================
 
-Ten runs each of a swarm, a genetic algorithm and whales, at the settings that papers print: every
-dot is the total that a run reports, beside the optimum and the printed total.
+Ten runs each of the paper's own two swarms, with the settings and the 200 iterations that it
+prints: every dot is the total that a run reports, beside the optimum of six joints that share their
+durations and the total that the paper prints.
 """
 
 from trajgap.compare.pictures import endings
-from trajgap.heuristics import GA, PSO, WOA, run_many
+from trajgap.heuristics import from_settings, run_many
 from trajgap.nlp import solve
 from trajgap.problem import load_case
 
-problem = load_case("puma560-mnam-pso-353").problem()
+case = load_case("puma560-mnam-pso-353")
+problem = case.problem()
 best = solve(problem)
 runs = {
-    name: run_many(search, problem, seeds=range(10))
-    for name, search in {
-        "PSO": PSO(particles=20, iterations=60),
-        "GA": GA(iterations=60),
-        "WOA": WOA(iterations=60),
-    }.items()
+    paper.name: run_many(from_settings(paper.kind, paper.parameters), problem, seeds=range(10))
+    for paper in case.algorithms
 }
 endings(runs, {"optimum": best.total_time}, {"Table 3": 3.528}, title="Where ten runs end")

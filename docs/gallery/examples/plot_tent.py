@@ -2,12 +2,13 @@
 A chaotic map that dies in double precision
 ===========================================
 
-The tent map with β = 0.5 is used to spread a first population. In exact arithmetic it never
-rests; in double precision it is exactly 0 after some fifty steps, and with it most of the
-population.
+Figure 1 of the whale paper as printed: thirty points in [0, 5]², filled by the tent map with
+β = 0.5. An orbit for each coordinate spreads them. In exact arithmetic no orbit ever rests; in
+double precision each is exactly 0 after some fifty steps, so that one orbit through all the points
+leaves the last ones in a corner. The paper's search has seven coordinates, not two.
 """
 
 from trajgap.compare.pictures import tent_picture, tent_scatter
 
-scatter = tent_scatter(members=30, dimensions=6, bounds=(0.1, 3.0), beta=0.5)
-tent_picture(scatter, unit="s", title="Tent map, one orbit through the population")
+scatter = tent_scatter(members=30, dimensions=2, bounds=(0.0, 5.0), beta=0.5)
+tent_picture(scatter, unit="s", title="Tent map: 30 points in [0, 5]², β = 0.5")

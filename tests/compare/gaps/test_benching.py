@@ -269,7 +269,8 @@ def test_bounds_and_first_positions_are_said() -> None:
     plan = plan_bench(replace(TOY, duration_upper=np.full(3, np.inf)), "pso", baselines=False)
     assert np.isinf(plan.problem.duration_upper).all()  # the question stays what it was
     assert (search_box(plan.problem).upper >= EXACT).all()
-    bounds, drawn = plan.notes
+    own, bounds, drawn = plan.notes
+    assert own == "pso: 200 iterations, the algorithm's own, in 6,030 evaluations."
     assert bounds.startswith("Not every duration has an upper bound. Searched: 0.1 to ")
     assert drawn.startswith("pso: first positions drawn from 0.1 to ")
     assert plan_bench(TOY, "random", baselines=False).notes == ()

@@ -65,6 +65,18 @@ def test_every_combination_is_a_row_in_the_order_of_the_file(plan: StudyPlan, wh
     assert {row.optimizer for row in bad} == {"support.optimizers:raises"}
 
 
+def test_without_a_budget_algorithms_make_their_own_iterations(plan: StudyPlan) -> None:
+    """What MNAM-PSO, constrained PSO and the whales print: 200, 100 and 500 iterations."""
+    named = 'format = 1\nseeds = 1\n[[problems]]\ncase = "mine.toml"\n'
+    kinds = ("mnam-pso", "constrained-pso", "woa", "random")
+    text = named + "".join(f'[[optimizers]]\nname = "{kind}"\n' for kind in kinds)
+    whole = parse_study(text, "few.toml", Path(plan.file).parent)
+    budgets = {trial.optimizer: trial.budget for trial in whole.trials()}
+    assert budgets == dict(zip(kinds, (6231, 3030, 15030, 6000), strict=True))
+    assert whole.notes[0] == "mnam-pso: 200 iterations, the algorithm's own, in 6,231 evaluations."
+    assert plan.notes == ()
+
+
 def test_runs_of_different_optimisers_draw_from_different_streams(plan: StudyPlan) -> None:
     trials = list(plan.trials())
     assert len({(trial.seed, trial.stream) for trial in trials}) == RUNS

@@ -1,6 +1,5 @@
 """The further pictures of a page: jumps, control polygon, tent map, workspace, and their hooks."""
 
-import re
 from fractions import Fraction
 from itertools import combinations
 
@@ -169,16 +168,13 @@ def test_the_polishing_case_shows_jumps_and_polygon(irb1600: Study) -> None:
     assert exhibits_of_search(irb1600) == []
 
 
-def test_the_palletiser_names_positions_out_of_reach() -> None:
-    study = shipped("irb460-pso-353")
-    (workspace,) = exhibits_of_motion(study)
-    flat, full = workspace.blocks
-    assert (flat.name, full.name) == ("workspace-modified", "workspace-standard")
-    # In the modified convention every position has y = 0, so the miss is the printed |y|.
-    missed = dict(re.findall(r"(above place|place) by ([0-9.]+) m", flat.caption))
-    assert {k: float(v) for k, v in missed.items()} == pytest.approx(
-        {"above place": 0.7794, "place": 0.9}, abs=2e-3
-    )
+def test_the_palletiser_reaches_every_printed_position() -> None:
+    """By the printed transforms; that the other convention keeps two out of reach is no fault."""
+    (workspace,) = exhibits_of_motion(shipped("irb460-pso-353"))
+    (picture,) = workspace.blocks
+    assert picture.name == "workspace"
+    assert "standard convention" in picture.caption
+    assert "Some joint values reach each of them" in picture.caption
 
 
 def test_exhibits_are_sound(stretched: Problem, scatter: TentScatter) -> None:

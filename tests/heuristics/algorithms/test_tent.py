@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy.stats import qmc
 from trajgap.heuristics import DeathPenalty, ImprovedWOA
+from trajgap.heuristics.algorithms import TentRule, tent_population
 from trajgap.heuristics.algorithms.tent import exact_orbit, orbit, tent
 from trajgap.heuristics.hazards import tent_collapse
 from trajgap.problem import Limits, Problem, TrajgapError, quintic_spline
@@ -67,6 +69,25 @@ def test_a_dyadic_start_ends_exactly_too() -> None:
 def test_out_of_range(start: str, beta: Fraction, message: str) -> None:
     with pytest.raises(TrajgapError, match=message):
         tent_collapse(start, 5, beta)
+
+
+def test_the_experiment_of_figure_1() -> None:
+    """30 points in [0, 5]², β = 0.5: spread by an orbit each, no more even than uniform draws."""
+    at = {rule: [tent_population(np.random.default_rng((2, s)), 30, 2, rule, 0.5)
+                 for s in range(200)] for rule in TentRule}  # fmt: skip
+    even = [qmc.discrepancy(np.random.default_rng((1, s)).random((30, 2))) for s in range(200)]
+    found = {rule: [qmc.discrepancy(x) for x in many] for rule, many in at.items()}
+    wins = {rule: np.mean(np.less.outer(many, even)) for rule, many in found.items()}
+    assert 0.4 < wins[TentRule.COORDINATE] < 0.65
+    assert wins[TentRule.SINGLE] < 0.3
+    assert all((x > 0).all() for x in at[TentRule.COORDINATE])
+    # 60 numbers of one orbit: from step 54 on all are 0, the last three points at least.
+    assert all((x[-3:] == 0).all() for x in at[TentRule.SINGLE])
+    by_hand, x = [], np.random.default_rng((2, 0)).random(2)
+    for _ in range(30):
+        by_hand.append(list(x))
+        x = [one / 0.5 if one <= 0.5 else (1 - one) / 0.5 for one in x]
+    np.testing.assert_array_equal(at[TentRule.COORDINATE][0], by_hand)
 
 
 @pytest.mark.parametrize(("rule", "at_zero"), [("coordinate", 0), ("member", 0), ("single", 22)])

@@ -16,6 +16,7 @@ from trajgap.heuristics import (
     PSO,
     Bounds,
     DeathPenalty,
+    evaluations_of,
     find_optimizer,
     run,
     run_within,
@@ -88,6 +89,19 @@ def test_iterations_use_up_the_budget(kind: str, budget: int, iterations: int) -
     assert method.iterations == iterations
     assert run_within(method, PROBLEM, 0, budget).evaluations <= budget
     assert find_optimizer(kind, budget, iterations=4).iterations == 4
+
+
+@pytest.mark.parametrize(
+    ("kind", "iterations"),
+    [("mnam-pso", 200), ("pso", 200), ("constrained-pso", 100), ("woa", 500), ("ga", 200)],
+)
+def test_without_a_budget_an_algorithm_makes_its_own_iterations(kind: str, iterations: int) -> None:
+    method = find_optimizer(kind)
+    assert method.iterations == iterations
+    needed = evaluations_of(method)
+    assert find_optimizer(kind, needed).iterations == iterations
+    assert run_within(method, PROBLEM, 0, needed).evaluations == needed
+    assert evaluations_of(find_optimizer("random")) == 6000
 
 
 def test_one_shared_duration_is_uniform_rescaling() -> None:

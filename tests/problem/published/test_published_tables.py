@@ -167,7 +167,7 @@ def test_puma_settings_limits_and_bounds():
 def test_irb_readings_change_the_unit_of_the_waypoints_only():
     case = load_case(IRB)
     assert [c.waypoint for c in case.cartesian] == list(case.document.waypoints.labels)
-    assert case.dh.convention == "modified"
+    assert case.dh.convention == "standard"
     for limit in ("80", "110"):
         claim = case.claim(f"durations-{limit}")
         assert (claim.total, claim.problem) == (None, f"limit-{limit}")

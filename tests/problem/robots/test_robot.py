@@ -31,17 +31,6 @@ def some(chain: Chain, count: int, seed: int = 3) -> np.ndarray:
 # Hand-derived transforms
 
 
-def test_palletiser_as_printed_stays_in_a_plane():
-    # Modified, -π/2 before joint 1: the end is at 0.6 (cos, 0, -sin) of θ1 and of θ1 + θ2.
-    chain = load_robot("irb460")
-    q = some(chain, 20)
-    first, both = q[:, 0], q[:, 0] + q[:, 1]
-    expected = 0.6 * np.stack(
-        [np.cos(first) + np.cos(both), 0 * first, -np.sin(first) - np.sin(both)], axis=1
-    )
-    np.testing.assert_allclose(forward_kinematics(chain, q)[:, :3, 3], expected, atol=1e-15)
-
-
 def test_irb1600_equals_the_joint_axes_that_it_was_written_from():
     # Origins and axes of irb1600_6_12_macro.xacro, ROS-Industrial; tool0 turned by 90° about y.
     joints = [

@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 from support.checkout import ROOT
 from support.findings import study_of
-from support.made_up import entry, paper, readings
+from support.made_up import entry, paper, readings, sentence
 from trajgap.compare.audits.rules.printed_chain import judge_kinematics
+from trajgap.compare.audits.rules.printed_equations import judge_equations
 from trajgap.compare.audits.study import Study
 from trajgap.compare.documents import Basis, ClaimVerdict, Finding, Severity
 from trajgap.problem import CaseError
@@ -202,6 +203,47 @@ alpha = [0, 0, 0]
     for unit, verdict in (("mm", "supported"), ("cm", "inconsistent")):
         found = one(shown, table, column(drop.tolist(), unit=unit), units=units)
         assert found.verdict == verdict
+
+
+# Printed equations
+
+
+def test_equations_are_judged_and_never_held_against_a_paper() -> None:
+    """The arm's third joint stands between: its position from joints a, c and b by hand."""
+    right = "px = c1*(0.7*c2 + 0.4*c23)"
+    for (printed, mended), verdict, said in (
+        ((right, None), "supported", "1 of 1 equations hold at every pose tried, as the text has"),
+        (("px = s1", right), "not checkable", "Others hold once mended: (4) with all of it."),
+        (("px = s1", "px = c1"), "not checkable", "Not as the text has them: (4)."),
+        (("t1 = atan2(py, px)", "t1 = atan2(pm*py, pm*px)"), "not checkable", "of the poses as it"),
+    ):
+        keys = {"printed": printed} | ({"mended": mended, "mend": "all of it"} if mended else {})
+        equation = entry("equations", id="e", where="equation (4)", **keys)
+        claim = sentence("holds", "equations")
+        study = study_of(case_text([], EXACT, claim, equation, angle="deg"))
+        (found,) = judge_equations(study)
+        assert (found.rule, found.claim, found.verdict) == ("TG603", "holds", verdict)
+        assert found.severity is Severity.INFO
+        assert said in found.message
+        assert ("cannot be told" in found.message) == (verdict == "not checkable")
+
+
+@pytest.mark.parametrize(
+    ("table", "part", "message"),
+    [
+        ("", entry("equations", id="e", where="(4)", printed="px = py"),
+         "equations[0]: needs the robot's table; add robot.dh"),
+        (TABLE, entry("equations", id="e", where="(4)", printed="px = c4"),
+         "equations[0].printed: 'c4' is no name of this robot; see check_equation"),
+        (TABLE, entry("equations", id="e", where="(4)", printed="px = py", mend="a sign"),
+         "equations[0].mended: is missing; mended and mend stand together"),
+        (TABLE, sentence("holds", "equations"),
+         "claims[0].checks: equations needs printed ones; add [[equations]]"),
+    ],
+)  # fmt: skip
+def test_equations_that_cannot_be_judged(table: str, part: str, message: str) -> None:
+    with pytest.raises(CaseError, match=re.escape(message)):
+        findings(case_text([], table, part, angle="deg"))
 
 
 # The palletiser
