@@ -28,8 +28,10 @@ class Part:
 
     def __init__(self, leading: Array, following: Array, later: Array) -> None:
         self.leading, self.following, self.later = leading, following, later
-        # ‖Σ x_i v_i‖² ≤ Σ |v_iᵀv_j|.
-        self.first = np.sqrt(products(leading, leading))
+        # ‖Σ x_i v_i‖² ≤ Σ |v_iᵀv_j|, to which each vector adds a share.
+        each = np.abs(leading @ np.swapaxes(leading, 1, 2)).sum(axis=2)
+        self.first = np.sqrt(each.sum(axis=1) + ROUND * norms(leading) ** 2)
+        self.shares = each / np.maximum(self.first, 1e-300)[:, None]
         self.second = norms(following)
 
     @property
