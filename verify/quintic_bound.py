@@ -30,18 +30,18 @@ _AT = np.array(
     [[1, 0, 0, 0, 0, 0], [1] * 6, [0, 1, 0, 0, 0, 0], range(6), [0, 0, 2, 0, 0, 0],
      [p * (p - 1) for p in range(6)]], dtype=np.float64,
 )  # fmt: skip
-_HERMITE = np.rint(2.0 * np.linalg.inv(_AT).T) / 2.0
+HERMITE = np.rint(2.0 * np.linalg.inv(_AT).T) / 2.0
 """Its basis, inverted instead of typed: one more way than the solver's to the same numbers."""
 _JUMPS = np.array(
-    [24 * _HERMITE[:, 4], -24 * _HERMITE[:, 4] - 120 * _HERMITE[:, 5], -6 * _HERMITE[:, 3],
-     6 * _HERMITE[:, 3] + 24 * _HERMITE[:, 4] + 60 * _HERMITE[:, 5]]
+    [24 * HERMITE[:, 4], -24 * HERMITE[:, 4] - 120 * HERMITE[:, 5], -6 * HERMITE[:, 3],
+     6 * HERMITE[:, 3] + 24 * HERMITE[:, 4] + 60 * HERMITE[:, 5]]
 )  # fmt: skip
 """q'''' and q''' that a segment adds to the jumps at its ends, by (q0, q1, v0, v1, a0, a1)."""
-_STIFF, _LOAD = _JUMPS[:, 2:], -_JUMPS[:, 1]
+STIFFNESS, LOAD = _JUMPS[:, 2:], -_JUMPS[:, 1]
 """Of velocities and accelerations, and of the step (q₀ = 0, q₁ = Δq) on the other side."""
-_LOAD_POWER = np.array([4, 4, 3, 3])
+LOAD_POWERS = np.array([4, 4, 3, 3])
 """Powers of r = 1/h in the rows of b: q'''' brings r⁴, q''' brings r³."""
-_POWER = _LOAD_POWER[:, None] - np.array([1, 1, 2, 2])
+POWERS = LOAD_POWERS[:, None] - np.array([1, 1, 2, 2])
 """Powers of r in M: a velocity comes with h, an acceleration with h²."""
 
 
@@ -62,7 +62,7 @@ class Task:
     """
 
     def __init__(self, steps: Array, limits: Array, total: float) -> None:
-        self.steps, self.limits, self.total, self.basis = steps, limits, total, _HERMITE[1:]
+        self.steps, self.limits, self.total, self.basis = steps, limits, total, HERMITE[1:]
 
 
 class Centre:
@@ -110,18 +110,18 @@ class Centre:
         ]
         for k in range(n):
             for a, i in self.places[k]:
-                power = int(_LOAD_POWER[a])
+                power = int(LOAD_POWERS[a])
                 for o in range(power + 1):
-                    term = comb(power, o) * _LOAD[a] * self.r[:, k] ** (power - o)
+                    term = comb(power, o) * LOAD[a] * self.r[:, k] ** (power - o)
                     self.load[o, :, k, i] = term
-                self.load_top[:, k, i] = abs(_LOAD[a]) * top[:, k] ** power
+                self.load_top[:, k, i] = abs(LOAD[a]) * top[:, k] ** power
                 for b, j in self.places[k]:
-                    power = int(_POWER[a, b])
+                    power = int(POWERS[a, b])
                     for o in range(power + 1):
-                        term = comb(power, o) * _STIFF[a, b] * self.r[:, k] ** (power - o)
+                        term = comb(power, o) * STIFFNESS[a, b] * self.r[:, k] ** (power - o)
                         self.blocks[o, :, k, a, b] = term
                     self.m0[:, i, j] += self.blocks[0, :, k, a, b]
-                    self.stiff_top[:, i, j] += abs(_STIFF[a, b]) * top[:, k] ** power
+                    self.stiff_top[:, i, j] += abs(STIFFNESS[a, b]) * top[:, k] ** power
         try:
             self.root = np.linalg.inv(np.linalg.cholesky(self.m0))
         except np.linalg.LinAlgError:
@@ -172,7 +172,7 @@ class Centre:
             for a, i in self.places[k]:
                 for b, j in self.places[k]:
                     if a < 2 and b < 2:
-                        part[:, i, j] += _STIFF[a, b] * self.r[:, k] ** 3 * share[:, k] ** 2
+                        part[:, i, j] += STIFFNESS[a, b] * self.r[:, k] ** 3 * share[:, k] ** 2
         power, rounding = self._framed(part)
         power = 0.5 * (power + np.swapaxes(power, 1, 2))
         largest, exponent = np.ones(self.size), 1.0
@@ -217,10 +217,10 @@ class Centre:
         """
         n, r, e, task = self.n, self.r, self.e, self.task
         every, place = np.nonzero(weights)
-        own, weight = rows[every, place], weights[every, place]
-        k, j, order = own[:, 0], own[:, 1], own[:, 2]
+        used, weight = rows[every, place], weights[every, place]
+        k, j, order = used[:, 0], used[:, 1], used[:, 2]
         # Few digits: multiples of 2⁻⁵⁰ or so, every sum and product is exact.
-        shape = (shapes(own, 6, QUINTIC_PLACES) @ task.basis.T) * weight[:, None]
+        shape = (shapes(used, 6, QUINTIC_PLACES) @ task.basis.T) * weight[:, None]
         cap = task.limits[j, order - 1] * weight
         bent = np.zeros((self.size, n))
         np.add.at(bent, (every, k), shape[:, 0] * task.steps[k, j])

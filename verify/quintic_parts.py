@@ -30,7 +30,7 @@ class Part:
         self.leading, self.following, self.later = leading, following, later
         # ‖Σ x_i v_i‖² ≤ Σ |v_iᵀv_j|, to which each vector adds a share.
         each = np.abs(leading @ np.swapaxes(leading, 1, 2)).sum(axis=2)
-        self.first = np.sqrt(each.sum(axis=1) + ROUND * norms(leading) ** 2)
+        self.first: Array = np.sqrt(each.sum(axis=1) + ROUND * norms(leading) ** 2)
         self.shares = each / np.maximum(self.first, 1e-300)[:, None]
         self.second = norms(following)
 

@@ -64,6 +64,8 @@ class Curves(ABC):
 
     widest: ClassVar[float]
     """Width of a logarithm from which on a box is cut without a look at its limits."""
+    part = 2000
+    """Boxes of a part: some tenths of a second, beside which handing it out costs nothing."""
 
     def __init__(self, kind: Any, near: NearLimits) -> None:
         self.kind, self.near = kind, near
@@ -86,7 +88,7 @@ class Curves(ABC):
         return [None] * len(low)
 
 
-@dataclass(eq=False)
+@dataclass
 class Found:
     """A tree of boxes by their numbers: across which segment one is cut, or what excludes it."""
 
@@ -170,7 +172,7 @@ def search_part(curves: Curves, bundle: Bundle) -> Part:
     """
     kind, found, waiting, done = curves.kind, Found(), list(bundle.cells), 0
     directions: list[Array] = []
-    while waiting and done < BoxSearch.part:
+    while waiting and done < curves.part:
         batch, waiting = waiting[-kind.batch :], waiting[: -kind.batch]
         done += len(batch)
         full = []
@@ -285,13 +287,11 @@ class BoxSearch(Branching[Bundle]):
 
     Attributes
     ----------
-    part : int
-        Boxes of a part: about a tenth of a second, beside which handing it out costs nothing.
     least : int
         Boxes of a bundle, if there are as many: with fewer, calls cost more than what they compute.
     """
 
-    ahead, part, least = 8, 2000, 256
+    ahead, least = 8, 256
     work = staticmethod(search_part)
 
     def __init__(

@@ -117,7 +117,7 @@ class OwnUnits:
         self.low = shortest(problem, self.time)
 
     def head(self, library: list[list[int]]) -> dict[str, Any]:
-        """What a certificate says beside rows and tree, docs/explanation/certificates-quintic.md."""
+        """What a certificate states beside rows and tree."""
         return {
             "kind": _KIND,
             "total": "",
@@ -187,5 +187,6 @@ QUINTIC = Certifier(
     _missing,
     _prove,
     boxes=20_000,
+    prepares=True,
 )
 """At rest alone: the windows and the nodal equations are derived for it."""
