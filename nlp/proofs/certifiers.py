@@ -156,9 +156,10 @@ def certify(
         Relative width of the interval to reach.
     seconds : float, optional
         Time limit of all of it: proving a state again, the search, and proving the result with
-        `trajgap.verify`, for which the search leaves time. At the limit, or at Ctrl-C, the best interval proved so far is returned; a proof that could not be
-        verified in time is left in the state alone. It is kept to within a second and one step: a
-        box, or a step of the local solver. An answer whose exact proof was cut short is none;
+        `trajgap.verify`, for which the search leaves time. At the limit, or at Ctrl-C, the best
+        interval proved so far is returned; a proof that could not be verified in time is left in
+        the state alone. It is kept to within a second and one step: a part of a search, or a step
+        of the local solver. An answer whose exact proof was cut short is none;
         `Certified.left_out` says so.
     boxes : float, optional
         Boxes after which the search ends. Without ``seconds`` they alone limit it, and the result
