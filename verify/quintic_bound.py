@@ -127,14 +127,14 @@ class Centre:
         except np.linalg.LinAlgError:
             raise Refused("the matrix of a leaf is not positive definite") from None
 
-    def pick(self, leaf: NDArray[Any]) -> Centre:
-        """Some of the boxes."""
+    def pick(self, leaf: NDArray[Any], joint: int | slice = slice(None)) -> Centre:
+        """Some of the boxes, and of one joint."""
         own = copy(self)
         own.r, own.e, own.m0, own.root = (x[leaf] for x in (self.r, self.e, self.m0, self.root))
         own.load_top, own.stiff_top = self.load_top[leaf], self.stiff_top[leaf]
-        own.x0, own.rise, own.slope = self.x0[leaf], self.rise[leaf], self.slope[leaf]
+        own.x0, own.rise, own.slope = (x[:, joint][leaf] for x in (self.x0, self.rise, self.slope))
         own.blocks, own.load = self.blocks[:, leaf], self.load[:, leaf]
-        own.on_x0, own.size = self.on_x0[:, leaf], len(own.r)
+        own.on_x0, own.size = self.on_x0[:, :, :, joint][:, leaf], len(own.r)
         return own
 
     def _acting(self, vectors: Array, first: int = 0) -> Array:
@@ -255,7 +255,7 @@ class Centre:
             if not mine.any():
                 continue
             leaf, at = np.unique(every[mine], return_inverse=True)
-            own = self.pick(leaf)
+            own = self.pick(leaf, joint)
             # Of velocities times r and of accelerations, then both in absolute values.
             phi = np.zeros((4, own.size, n, 2 * n - 2))
             for segment in range(n):
@@ -264,7 +264,7 @@ class Centre:
                     each = shape[mine][on, a + 1]
                     np.add.at(phi[a // 2, :, segment, i], at[on], each)
                     np.add.at(phi[2 + a // 2, :, segment, i], at[on], np.abs(each))
-            part_of = own._joint(joint, phi)
+            part_of = own._joint(task.steps[:, joint], phi)
             alone[:, leaf] += part_of["alone"]
             first[leaf] += part_of["first"]
             second[leaf] += part_of["second"]
@@ -293,12 +293,11 @@ class Centre:
         found = value - error * (1.0 + 1e-9) - 10.0 * ROUND * size
         return np.where(np.isfinite(found), found, -np.inf)
 
-    def _joint(self, joint: int, phi: Array) -> dict[str, Any]:
+    def _joint(self, step: Array, phi: Array) -> dict[str, Any]:
         """One joint's part: F = φᵀx̃ + μᵀ(b − M x̃) + (φ − M μ)ᵀ(x − x̃), x̃ = x0 + Σ X_m δ_m."""
-        n, r, e, step = self.n, self.r, self.e, self.task.steps[:, joint]
+        n, r, e = self.n, self.r, self.e
         load = self.load * step[:, None]
-        x0, rise, slope = self.x0[:, joint], self.rise[:, joint], self.slope[:, joint]
-        on_x0 = self.on_x0[:, :, :, joint]
+        x0, on_x0, rise, slope = self.x0, self.on_x0, self.rise, self.slope
         full = phi[1] + phi[0] * r[:, :, None]
         mu = self._solve(full.sum(axis=1)[:, None])
         on_mu, mu = self._acting(mu, 1)[:, :, :, 0], mu[:, 0]

@@ -64,8 +64,8 @@ class Curves(ABC):
 
     widest: ClassVar[float]
     """Width of a logarithm from which on a box is cut without a look at its limits."""
-    part = 2000
-    """Boxes of a part: some tenths of a second, beside which handing it out costs nothing."""
+    part = 500
+    """Boxes of a part: a tenth of a second, beside which handing it out costs nothing."""
 
     def __init__(self, kind: Any, near: NearLimits) -> None:
         self.kind, self.near = kind, near
@@ -283,7 +283,7 @@ class BoxSearch(Branching[Bundle]):
     look : callable
         Called with directions that may hold a shorter answer; may raise.
     watch : callable
-        Called with the bundles that wait and the boxes done.
+        Called with the boxes that wait and those done.
 
     Attributes
     ----------
@@ -301,7 +301,7 @@ class BoxSearch(Branching[Bundle]):
         watch: Callable[[int, int], None],
     ) -> None:
         self.common, self._look, self._watch = Common(curves), look, watch
-        self.found, self._boxes = Found(), 0
+        self.found, self._left, self._done = Found(), 1, 0
 
     def order(self, box: Bundle) -> tuple[int, ...]:
         """As one stack would have it."""
@@ -317,7 +317,8 @@ class BoxSearch(Branching[Bundle]):
 
     def taken(self, box: Bundle, found: Part) -> Iterator[Bundle]:
         """What is left of a part, once its directions were looked at."""
-        self._boxes += found.boxes
+        self._left += len(found.rest) - len(box.cells)
+        self._done += found.boxes
         self.found.cuts.update(found.found.cuts)
         self.found.leaves.update(found.found.leaves)
         if found.directions:
@@ -328,4 +329,4 @@ class BoxSearch(Branching[Bundle]):
 
     def look(self, waiting: int) -> None:
         """Report."""
-        self._watch(waiting, self._boxes)
+        self._watch(self._left, self._done)

@@ -69,4 +69,5 @@ class QuinticCurves(Curves):
         norm = np.where(share > 0.0, norm, 0.0)
         least = middle.centre.least(tau, rows, share)
         excluded = least > _SPARE * (share * norm).sum(axis=1)
-        return excluded, tau, share, np.maximum(middle.centre.blame, 1e-300)
+        blame = np.where(np.isfinite(middle.centre.blame), middle.centre.blame, 1.0)
+        return excluded, tau, share, np.maximum(blame, 1e-300)
