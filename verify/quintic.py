@@ -13,8 +13,7 @@ import numpy as np
 
 from .boxes import Array, Boxes, Rows, Sides
 from .problem import StatedProblem
-from .quintic_bound import Centre, Task
-from .quintic_parts import ROUND
+from .quintic_bound import ROUND, Centre, Task
 from .ranges import (
     LEAST_TAU,
     MOST_POWER,

@@ -1,8 +1,9 @@
 """Lower bounds of weighted limits over boxes of a C4 quintic spline, many leaves at once.
 
-The argument is that of docs/explanation/certificates-quintic.md. Nothing is shared with the
-solver: the nodal equations come from the jumps of q''' and q'''' (the solver has the energy
-∫q'''²), arrays lead with the leaf. Every result is a sum of products with fewer than 2000 roundings
+The argument is that of docs/explanation/certificates-quintic.md. The nodal equations come from the
+jumps of q''' and q''''; arrays lead with the leaf. A sum Σ x_i v_i with |x_i| ≤ 1 is held by its
+vectors, so that products of theirs count: where vectors point to different sides, that is far less
+than their norms say. Every result is a sum of products with fewer than 2000 roundings
 on any path, 2.3e-13 of the same sum over absolute values: `ROUND` of that sum is taken off.
 """
 
@@ -16,10 +17,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .boxes import SLACK, Array, Rows, least_of_quadratic, most_of_cubes, shapes
-from .quintic_parts import ROUND, Part, norms
 from .ranges import QUINTIC_PLACES
 from .reading import Refused, need
 
+ROUND = 1e-12
+"""Of a sum over absolute values: four times what its roundings can amount to."""
 BRIEFEST = 1e-40
 """Durations in a leaf with limits are above it, so that nothing underflows."""
 WIDEST = 0.6
@@ -31,7 +33,7 @@ _AT = np.array(
      [p * (p - 1) for p in range(6)]], dtype=np.float64,
 )  # fmt: skip
 HERMITE = np.rint(2.0 * np.linalg.inv(_AT).T) / 2.0
-"""Its basis, inverted instead of typed: one more way than the solver's to the same numbers."""
+"""Its basis, inverted instead of typed."""
 _JUMPS = np.array(
     [24 * HERMITE[:, 4], -24 * HERMITE[:, 4] - 120 * HERMITE[:, 5], -6 * HERMITE[:, 3],
      6 * HERMITE[:, 3] + 24 * HERMITE[:, 4] + 60 * HERMITE[:, 5]]
@@ -366,3 +368,45 @@ class Centre:
             "adjoint": adjoint,
             "residual": residual,
         }
+
+
+class Part:
+    """Rπ or Rρ over each box: vectors of two orders with factors in [−1, 1], and a remainder.
+
+    Parameters
+    ----------
+    leading, following : ndarray, shape (leaf, vector, unknown)
+        Vectors of the lowest order, and of the next one.
+    later : ndarray, shape (leaf,)
+        Norm of the terms of higher order, and of what is 0 but for rounding, with all rounding.
+    """
+
+    def __init__(self, leading: Array, following: Array, later: Array) -> None:
+        self.leading, self.following, self.later = leading, following, later
+        # ‖Σ x_i v_i‖² ≤ Σ |v_iᵀv_j|, to which each vector adds a share.
+        each = np.abs(leading @ np.swapaxes(leading, 1, 2)).sum(axis=2)
+        self.first: Array = np.sqrt(each.sum(axis=1) + ROUND * norms(leading) ** 2)
+        self.shares = each / np.maximum(self.first, 1e-300)[:, None]
+        self.second = norms(following)
+
+    @property
+    def most(self) -> Array:
+        """The largest norm."""
+        return self.first + self.second + self.later
+
+    def beyond(self, other: Part) -> Array:
+        """The largest |xᵀy|, x of this part and y of the other, but for both lowest orders."""
+        found = products(self.leading, other.following) + products(self.following, other.leading)
+        found += self.second * other.second
+        return found + (self.first + self.second) * other.later + self.later * other.most
+
+
+def norms(vectors: Array) -> Array:
+    """Sum of the norms of each leaf's vectors."""
+    return np.asarray(np.linalg.norm(vectors, axis=2).sum(axis=1))
+
+
+def products(these: Array, those: Array) -> Array:
+    """Bound of |(Σ x_i v_i)ᵀ(Σ y_j w_j)| for all |x_i|, |y_j| ≤ 1."""
+    found = np.abs(these @ np.swapaxes(those, 1, 2)).sum(axis=(1, 2))
+    return np.asarray(found + ROUND * norms(these) * norms(those))

@@ -15,8 +15,7 @@ from trajgap.verify import (
 )
 from trajgap.verify.boxes import most_of_cubes
 from trajgap.verify.quintic import QuinticSpline
-from trajgap.verify.quintic_bound import Centre, Task
-from trajgap.verify.quintic_parts import Part
+from trajgap.verify.quintic_bound import Centre, Part, Task
 from trajgap.verify.reading import Clock
 
 CLOCK = Clock(1e9)

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ....problem import Array, Interpolant
+from ....problem import Interpolant
 from ....verify import (
     MOST_POWER,
     MOST_QUINTIC_JOINTS,
@@ -72,24 +72,6 @@ def _missing(problem: ExactProblem) -> str | None:
     return None
 
 
-def _limits(problem: ExactProblem) -> Array:
-    """Looser ends of the limits, shape (joints, 3); a limit of 0 takes no part."""
-    each = [[math.inf if x is None else float(x.high) for x in row] for row in problem.limits]
-    limits = np.array(each, dtype=np.float64)
-    return np.where(limits > 0.0, limits, np.inf)
-
-
-def shortest(problem: ExactProblem, unit: Fraction = Fraction(1)) -> tuple[Fraction, ...]:
-    """Least durations by their bounds and by the mean velocities, as floats, in a unit of time."""
-    q, out = problem.waypoints, []
-    for k, low in enumerate(problem.duration_lower):
-        for j, (velocity, *_) in enumerate(problem.limits):
-            if velocity is not None and velocity.high > 0:
-                low = max(low, abs(q[k + 1][j] - q[k][j]) / velocity.high)
-        out.append(below(low / unit))
-    return tuple(out)
-
-
 class OwnUnits:
     """A problem in floats, in units in which steps and total are not far from 1.
 
@@ -100,21 +82,29 @@ class OwnUnits:
     """
 
     def __init__(self, problem: ExactProblem) -> None:
-        rows = [[float(b - a) for a, b in zip(*pair, strict=True)]
-                for pair in pairwise(problem.waypoints)]  # fmt: skip
-        steps, limits = np.array(rows), _limits(problem)
+        exact = [
+            [b - a for a, b in zip(*pair, strict=True)] for pair in pairwise(problem.waypoints)
+        ]
+        # The looser ends of the limits; one of 0 takes no part.
+        caps = [[None if x is None or x.high <= 0 else x.high for x in row]
+                for row in problem.limits]  # fmt: skip
+        steps = np.array([[float(x) for x in row] for row in exact])
+        limits = np.array([[math.inf if x is None else float(x) for x in row] for row in caps])
         powers = np.array([_power(float(column.max())) for column in np.abs(steps).T])
-        least = np.array([float(x) for x in problem.duration_lower])
-        with np.errstate(divide="ignore"):
-            for order in (1, 2, 3):
-                needs = (np.abs(steps) / limits[:, order - 1]) ** (1.0 / order)
-                least = np.maximum(least, needs.max(axis=1))
-        self.powers, self.second = powers.tolist(), _power(float(least.sum()))
+        needs = np.abs(steps[:, :, None] / limits) ** (1.0 / np.arange(1, 4))
+        bounds = np.array([float(x) for x in problem.duration_lower])
+        self.powers = powers.tolist()
+        self.second = _power(float(np.maximum(bounds, needs.max(axis=(1, 2))).sum()))
         self.time = Fraction(2) ** self.second
         self.steps = steps / 2.0**powers
         times = 2.0 ** (self.second * np.array([1.0, 2.0, 3.0]))
         self.limits = limits * times / 2.0 ** powers[:, None]
-        self.low = shortest(problem, self.time)
+        # By their bounds and by the mean velocities.
+        least = [
+            max([low, *(abs(x) / v for x, (v, *_) in zip(row, caps, strict=True) if v is not None)])
+            for low, row in zip(problem.duration_lower, exact, strict=True)
+        ]
+        self.low = tuple(below(x / self.time) for x in least)
 
     def head(self, library: list[list[int]]) -> dict[str, Any]:
         """What a certificate states beside rows and tree."""
