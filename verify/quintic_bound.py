@@ -249,9 +249,9 @@ class Centre:
         # πᵀM⁻¹ρ = ½(c + s)·(Rπ)ᵀ(Rρ) + what is at most ½(c − s)·‖Rπ‖‖Rρ‖.
         small, large = self._spectrum()
         middle, spread = 0.5 * (large + small), 0.5 * (large - small) + ROUND * large
-        same, above = np.arange(n), np.triu_indices(n, 1)
+        same, (one, other) = np.arange(n), _pairs(n)
         cubes = np.zeros((self.size, n, n, n))
-        self.blame, pairs = np.zeros((self.size, n)), np.eye(n)[above[0]] + np.eye(n)[above[1]]
+        self.blame, sides = np.zeros((self.size, n)), np.eye(n)[one] + np.eye(n)[other]
         for joint in range(self.joints):
             mine = j == joint
             if not mine.any():
@@ -260,12 +260,12 @@ class Centre:
             own = self.pick(leaf, joint)
             # Of velocities times r and of accelerations, then both in absolute values.
             phi = np.zeros((4, own.size, n, 2 * n - 2))
-            for segment in range(n):
-                for a, i in self.places[segment]:
-                    on = k[mine] == segment
-                    each = shape[mine][on, a + 1]
-                    np.add.at(phi[a // 2, :, segment, i], at[on], each)
-                    np.add.at(phi[2 + a // 2, :, segment, i], at[on], np.abs(each))
+            for a in range(4):
+                node = k[mine] + a % 2
+                on = (node > 0) & (node < n)
+                where, each = (at[on], k[mine][on], 2 * node[on] - 2 + a // 2), shape[mine][on]
+                np.add.at(phi[a // 2], where, each[:, a + 1])
+                np.add.at(phi[2 + a // 2], where, np.abs(each[:, a + 1]))
             part_of = own._joint(task.steps[:, joint], phi)
             alone[:, leaf] += part_of["alone"]
             first[leaf] += part_of["first"]
@@ -273,18 +273,16 @@ class Centre:
             size[leaf] += part_of["size"]
             adjoint, residual = part_of["adjoint"], part_of["residual"]
             both = adjoint.leading @ np.swapaxes(residual.leading, 1, 2) * middle[leaf, None, None]
-            # Residuals lead with squares, then products of two.
             part = np.zeros((own.size, n, n, n))
-            part[:, :, same, same], part[:, :, *above] = both[:, :, :n], both[:, :, n:]
+            part[:, :, one, other] = both
             wide = own.e[:, :, None] ** 2 * own.e[:, None]
             part[:, same, same] += part_of["squared"] * wide
             cubes[leaf] += part
-            rounding = ROUND * norms(adjoint.leading) * norms(residual.leading)
+            rounding = ROUND * adjoint.lengths * residual.lengths
             error[leaf] += middle[leaf] * (rounding + adjoint.beyond(residual))
             error[leaf] += spread[leaf] * adjoint.most * residual.most + part_of["quartic"]
-            far = residual.shares * adjoint.most[:, None]
-            blame = adjoint.shares * residual.most[:, None] + 2.0 * far[:, :n]
-            blame += far[:, n:] @ pairs
+            blame = adjoint.shares * residual.most[:, None]
+            blame += (residual.shares * adjoint.most[:, None]) @ sides
             self.blame[leaf] += spread[leaf, None] * blame
         value += alone[0].sum(axis=1)
         first += alone[1]
@@ -326,29 +324,18 @@ class Centre:
         zero = load[0].sum(axis=1) - np.einsum("lij,lj->li", self.m0, x0)
         linear = rise - np.einsum("lij,lmj->lmi", self.m0, slope)
         loose = np.abs(zero) + np.einsum("lm,lmi->li", e, np.abs(linear)) + ROUND * reach
-        each, (k, m) = np.arange(n), np.triu_indices(n, 1)
-        own = [load[o] - pulled[o - 2][:, each, each] for o in range(2, 5)]
-        own[0] = own[0] - on_x0[2]
-        own[1] = own[1] - on_x0[3]
-        pairs = -(pulled[0] + np.swapaxes(pulled[0], 1, 2))[:, k, m]
-        k_, m_ = np.nonzero(~np.eye(n, dtype=bool))
-        later = (self._energy(own[2]) * e**4).sum(axis=1)
-        later += (self._energy(pulled[2][:, k_, m_]) * e[:, k_] ** 3 * e[:, m_]).sum(axis=1)
+        each, (k, m) = np.arange(n), _pairs(n)
+        square = -pulled[0] - np.swapaxes(pulled[0], 1, 2)
+        square[:, each, each] = load[2] - on_x0[2] - pulled[0][:, each, each]
+        third, fourth = -pulled[1], -pulled[2]
+        third[:, each, each] += load[3] - on_x0[3]
+        fourth[:, each, each] += load[4]
+        wide_3 = e[:, :, None] ** 2 * e[:, None]
+        later = (self._energy(fourth) * wide_3 * e[:, :, None]).sum(axis=(1, 2))
+        third = self._rooted(third) * wide_3[..., None]
         residual = Part(
-            np.concatenate(
-                [
-                    self._rooted(own[0]) * (e**2)[:, :, None],
-                    self._rooted(pairs) * (e[:, k] * e[:, m])[:, :, None],
-                ],
-                axis=1,
-            ),
-            np.concatenate(
-                [
-                    self._rooted(own[1]) * (e**3)[:, :, None],
-                    self._rooted(-pulled[1][:, k_, m_]) * (e[:, k_] ** 2 * e[:, m_])[:, :, None],
-                ],
-                axis=1,
-            ),
+            self._rooted(square[:, k, m]) * (e[:, k] * e[:, m])[:, :, None],
+            third.reshape(self.size, n * n, -1),
             later + np.linalg.norm(np.einsum("lij,lj->li", outer, loose), axis=1),
         )
         alone = np.zeros((5, self.size, n))
@@ -370,6 +357,12 @@ class Centre:
         }
 
 
+def _pairs(n: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Numbers k and m of all pairs: those of one number with itself, then k < m."""
+    each, (k, m) = np.arange(n), np.triu_indices(n, 1)
+    return np.concatenate([each, k]), np.concatenate([each, m])
+
+
 class Part:
     """Rπ or Rρ over each box: vectors of two orders with factors in [−1, 1], and a remainder.
 
@@ -383,11 +376,13 @@ class Part:
 
     def __init__(self, leading: Array, following: Array, later: Array) -> None:
         self.leading, self.following, self.later = leading, following, later
+        self.lengths, self.second = (
+            np.asarray(np.linalg.norm(x, axis=2).sum(axis=1)) for x in (leading, following)
+        )
         # ‖Σ x_i v_i‖² ≤ Σ |v_iᵀv_j|, to which each vector adds a share.
         each = np.abs(leading @ np.swapaxes(leading, 1, 2)).sum(axis=2)
-        self.first: Array = np.sqrt(each.sum(axis=1) + ROUND * norms(leading) ** 2)
+        self.first: Array = np.sqrt(each.sum(axis=1) + ROUND * self.lengths**2)
         self.shares = each / np.maximum(self.first, 1e-300)[:, None]
-        self.second = norms(following)
 
     @property
     def most(self) -> Array:
@@ -395,18 +390,12 @@ class Part:
         return self.first + self.second + self.later
 
     def beyond(self, other: Part) -> Array:
-        """The largest |xᵀy|, x of this part and y of the other, but for both lowest orders."""
-        found = products(self.leading, other.following) + products(self.following, other.leading)
-        found += self.second * other.second
-        return found + (self.first + self.second) * other.later + self.later * other.most
+        """The largest |xᵀy|, x of this part and y of the other, but for both lowest orders.
 
-
-def norms(vectors: Array) -> Array:
-    """Sum of the norms of each leaf's vectors."""
-    return np.asarray(np.linalg.norm(vectors, axis=2).sum(axis=1))
-
-
-def products(these: Array, those: Array) -> Array:
-    """Bound of |(Σ x_i v_i)ᵀ(Σ y_j w_j)| for all |x_i|, |y_j| ≤ 1."""
-    found = np.abs(these @ np.swapaxes(those, 1, 2)).sum(axis=(1, 2))
-    return np.asarray(found + ROUND * norms(these) * norms(those))
+        |(Σ x_i v_i)ᵀ(Σ y_j w_j)| ≤ Σ |v_iᵀw_j| for all |x_i|, |y_j| ≤ 1.
+        """
+        near = np.abs(self.leading @ np.swapaxes(other.following, 1, 2)).sum(axis=(1, 2))
+        near += np.abs(self.following @ np.swapaxes(other.leading, 1, 2)).sum(axis=(1, 2))
+        near += ROUND * (self.lengths * other.second + self.second * other.lengths)
+        near += self.second * other.second
+        return near + (self.first + self.second) * other.later + self.later * other.most
