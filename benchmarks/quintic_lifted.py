@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import linprog
 from scipy.sparse import csr_array, vstack
-from trajgap.nlp.proofs.quintic.nodal import BASIS
+from trajgap.verify.quintic_bound import HERMITE
 
 SPOTS = np.arange(1, 8) / 8.0
 """Inner places of a segment; at its ends the boxes of the nodal values say the same."""
@@ -24,7 +24,9 @@ def derivative(order, s):
     out = np.zeros(5)
     for power in range(order, 6):
         out += (
-            np.prod(np.arange(power, power - order, -1.0)) * s ** (power - order) * BASIS[:, power]
+            np.prod(np.arange(power, power - order, -1.0))
+            * s ** (power - order)
+            * HERMITE[1:, power]
         )
     return out
 

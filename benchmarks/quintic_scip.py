@@ -14,11 +14,10 @@ import time
 import numpy as np
 from pyscipopt import Model, quicksum
 from quintic_instances import instances
+from quintic_lifted import derivative
 from trajgap.nlp import solve
-from trajgap.nlp.proofs.quintic.nodal import LOAD, LOAD_POWERS, POWERS, STIFFNESS
-from trajgap.nlp.proofs.quintic.rows import row_shape
 from trajgap.problem import Limits, Problem, quintic_spline
-from trajgap.verify import QUINTIC_PLACES
+from trajgap.verify.quintic_bound import LOAD, LOAD_POWERS, POWERS, STIFFNESS
 
 
 def small():
@@ -58,9 +57,8 @@ def lower_bound(problem, upper, seconds):
                 load = float(LOAD[a] * step[k, j]) * r[k] ** int(LOAD_POWERS[a])
                 rows[k + a % 2][a // 2] += quicksum(terms) - load
             for order in (1, 2):
-                for spot in range(0, QUINTIC_PLACES + 1, QUINTIC_PLACES // 8):
-                    shape = np.empty(5)
-                    row_shape(order, 1.0, spot, shape)
+                for spot in range(9):
+                    shape = derivative(order, spot / 8.0)
                     scaled = [step[k, j] * r[k] * r[k], r[k] * ends[0], r[k] * ends[1], *ends[2:]]
                     value = quicksum(float(c) * x for c, x in zip(shape, scaled, strict=True))
                     limit = float(limits[j, order - 1]) * (r[k] if order == 1 else 1.0)

@@ -148,6 +148,19 @@ class Boxes(ProofKind[Sides]):
         """
 
 
+def shapes(rows: Rows, powers: int, places: int) -> Array:
+    """Sign times the derivative of each power of s at a row's place: (..., power)."""
+    s, order = rows[..., 4] / places, rows[..., 2]
+    factors = np.ones((4, powers))
+    for r in range(3):
+        factors[r + 1] = factors[r] * np.maximum(np.arange(powers) - r, 0)
+    power = np.ones((*s.shape, powers))
+    for p in range(1, powers):
+        # The power of s that is left of sᵖ.
+        power[..., p] = np.where(p > order, power[..., p - 1] * s, 1.0)
+    return np.asarray(rows[..., 3, None] * factors[order] * power)
+
+
 def empty(box: Sides) -> bool:
     """Whether no durations are in a box."""
     return any(a > b for a, b in zip(*box, strict=True))

@@ -178,7 +178,7 @@ class DeclaredCurve(Boxes):
 
     def least(self, sides: Array, tau: Array, ids: Rows, weights: Array) -> Array:
         """Of the curves in each box."""
-        return self.centre(sides).least(tau, self.rows[ids], weights, float(PLACES))
+        return self.centre(sides).least(tau, self.rows[ids], weights)
 
     def centre(self, sides: Array) -> Centre:
         """Boxes as an array (box, least or largest, segment)."""

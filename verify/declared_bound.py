@@ -15,8 +15,9 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from .boxes import Array, Rows, least_of_quadratic, most_of_cubes
+from .boxes import Array, Rows, least_of_quadratic, most_of_cubes, shapes
 from .declared_form import Form
+from .ranges import PLACES
 
 ROUND = 1e-12
 """Of a sum over absolute values: more than its roundings can amount to."""
@@ -60,20 +61,6 @@ class Task:
         segments = np.eye(n + 1, n)
         self.across = segments[behind] - segments[before]
         """ζ of the breaks from δ of the segments."""
-        powers = np.arange(self.powers)
-        self.factors = np.ones((4, self.powers))
-        for order in range(1, 4):
-            self.factors[order] = self.factors[order - 1] * np.maximum(powers - order + 1, 0)
-
-    def shapes(self, rows: Rows, places: float) -> Array:
-        """σ times the derivative of each power at the place: (..., power)."""
-        _, _, order, sign, place = np.moveaxis(rows, -1, 0)
-        s = place / places
-        power = np.ones((*s.shape, self.powers))
-        for p in range(1, self.powers):
-            # The power of s that is left of sᵖ.
-            power[..., p] = np.where(p > order, power[..., p - 1] * s, 1.0)
-        return np.asarray(sign[..., None] * self.factors[order] * power)
 
     def cap(self, rows: Rows) -> Array:
         """Limit of each row."""
@@ -81,7 +68,7 @@ class Task:
 
 
 class Centre:
-    """The curve at the centres of a batch of boxes, and how far the boxes reach.
+    """The curve at the centres of a batch of boxes.
 
     Parameters
     ----------
@@ -92,7 +79,7 @@ class Centre:
     def __init__(self, task: Task, low: Array, high: Array) -> None:
         self.task, form = task, task.form
         h = np.sqrt(low * high)
-        self.h, self.low = h, low
+        self.h = h
         # Logarithm and quotient are near to their last digits.
         self.e = np.log(np.maximum(high / h, h / low)) * (1.0 + ROUND) + ROUND
         self.z = self.e @ np.abs(task.across).T
@@ -115,11 +102,14 @@ class Centre:
         self.x = self.y @ s
         self.x += self.y @ (s - s_ @ self.x)
         self.g = self.d_ @ self.x - self.d
-        # What the hints leave over, with all rounding.
-        top, fixed = np.abs(ends) + np.abs(starts), np.abs(end) + np.abs(start)
-        self.top = top
-        one, hint, y = np.eye(task.unknowns), np.abs(self.hint), np.abs(self.y)
-        self.rest = np.abs(s - s_ @ self.x) + ROUND * (fixed + top @ np.abs(self.x))
+        self.top, self.fixed = np.abs(ends) + np.abs(starts), np.abs(end) + np.abs(start)
+        self.usual = (low > BRIEFEST).all(axis=1) & (low <= high).all(axis=1)
+
+    def _reach(self) -> None:
+        """What the hints leave over, with all rounding, and bounds that are to hold all over."""
+        s_, top, fixed = self.s_, self.top, self.fixed
+        one, hint, y = np.eye(self.task.unknowns), np.abs(self.hint), np.abs(self.y)
+        self.rest = np.abs(self.s - s_ @ self.x) + ROUND * (fixed + top @ np.abs(self.x))
         inverse = np.abs(one - self.y @ s_) + ROUND * (one + y @ top)
         slope = np.abs(self.d_ - self.hint @ s_) + ROUND * (top + hint @ top)
         loose = hint @ self.rest + ROUND * (fixed + top @ np.abs(self.x))
@@ -134,7 +124,7 @@ class Centre:
         more = y @ (self.rest + self.t[:, :, None] * self.v) + inverse @ self.xi
         held &= (self.xi > (1.0 + ROUND) * (more + 0.5 * SLIGHT)).all(axis=(1, 2))
         usual = np.maximum(hint, y).max(axis=(1, 2), initial=0.0) < LARGEST
-        self.held = held & usual & (low > BRIEFEST).all(axis=1) & (low <= high).all(axis=1)
+        self.held = held & usual & self.usual
         self.slack = loose + slope @ self.xi
 
     def _reached(self, from_: Array) -> Array:
@@ -149,7 +139,7 @@ class Centre:
             setattr(own, name, value if name == "task" else value[which])
         return own
 
-    def least(self, tau: Array, rows: Rows, weights: Array, places: float) -> Array:
+    def least(self, tau: Array, rows: Rows, weights: Array) -> Array:
         """Lower bound of each box's sum of weighted limits and τ (Σ h/total − 1); −inf for none.
 
         Parameters
@@ -159,9 +149,8 @@ class Centre:
             Segment, joint, order, sign, place.
         weights : ndarray, shape (box, row)
             ≥ 0; a limit of order 1 or more counts as 1 at the centre of its segment.
-        places : float
-            Of a piece.
         """
+        self._reach()
         task, form, n = self.task, self.task.form, self.task.segments
         segment, joint, order = rows[..., 0], rows[..., 1], rows[..., 2]
         box = np.arange(len(tau))[:, None]
@@ -171,7 +160,7 @@ class Centre:
         for r in range(1, 4):
             power = np.where(order >= r, power * self.h[box, segment], power)
         share = np.where(order > 0, weights / (here * power), weights)
-        shape = task.shapes(rows, places) * share[..., None]
+        shape = shapes(rows, task.powers, PLACES) * share[..., None]
         against = np.where(order > 0, weights, weights * here)
         # φ by joint, its constant, and both over absolute values.
         phi = np.zeros((len(tau), task.joints, task.unknowns))

@@ -13,8 +13,7 @@ import numpy as np
 
 from .boxes import Array, Boxes, Rows, Sides
 from .problem import StatedProblem
-from .quintic_bound import Bound, Task
-from .quintic_parts import ROUND
+from .quintic_bound import ROUND, Centre, Task
 from .ranges import (
     LEAST_TAU,
     MOST_POWER,
@@ -69,14 +68,16 @@ class QuinticSpline(Boxes):
         sizes += [x for row in limits for x in row if x is not None]
         need(all(SMALLEST < x < 1 / SMALLEST for x in sizes), "a number is of unusual size")
         stated_windows = listed(proof["windows"], "windows", MOST_WINDOWS)
-        self._windows = [_window(w, n, joints) for w in clock.each(stated_windows)]
+        read_windows = [_window(w, n, joints) for w in clock.each(stated_windows)]
         self.rows, self.most = self.read_rows(proof["rows"], 1, QUINTIC_PLACES), float(own)
-        self._task = Task(
+        self.task = Task(
             np.array([[float(x) for x in row] for row in steps]),
             np.array([[np.inf if x is None else float(x) for x in row] for row in limits]),
             self.most,
-            self.rows,
         )
+        there = np.isfinite(self.task.limits[self.rows[:, 1], self.rows[:, 2] - 1]).all()
+        need(bool(there), "a row leans on a limit that is not there")
+        self.windows = self._terms(read_windows)
         self._low = []
         for k, stated_low in enumerate(listed(proof["low"], "low", n, n)):
             x = number(stated_low)
@@ -106,48 +107,54 @@ class QuinticSpline(Boxes):
         if len(data) != 2:
             super().leaf(box, data)
             return
-        window = self._windows[whole(data[0], 0, len(self._windows) - 1)]
+        which = whole(data[0], 0, len(self.windows[0]) - 1)
         exact = number(data[1])
         usual = exact == 0 or LEAST_TAU < abs(exact) < 1 / LEAST_TAU
         need(usual, "a window's tau is of unusual size")
-        with np.errstate(all="ignore"):  # what is not finite fails every comparison
-            least = self._over_window(window, float(exact), *map(np.array, box))
-        need(least > 0.0, "it is not proved by its window")
+        least = self.over_windows(np.array(which), np.array(float(exact)), *map(np.array, box))
+        need(bool(least > 0.0), "it is not proved by its window")
 
     def least(self, sides: Array, tau: Array, ids: Rows, weights: Array) -> Array:
         """Of the splines in each box."""
-        return Bound(self._task, sides[:, 0], sides[:, 1], tau, ids, weights).least()
+        return self.centre(sides).least(tau, self.rows[ids], weights)
 
-    def _over_window(self, window: list[int], tau: float, low: Array, high: Array) -> float:
-        """Least of Σ cΔ/h − A Σ m h − V Σ|c + ψ' h| + tau (Σ h − total) over a box."""
-        n, j = low.size, window[0]
-        psi, c = np.array(window[1 : n + 2]) / WINDOW_UNIT, np.array(window[n + 2 :]) / WINDOW_UNIT
-        a, b = np.abs(psi[:-1]), np.abs(psi[1:])
+    def centre(self, sides: Array) -> Centre:
+        """Boxes as an array (box, least or largest, segment)."""
+        return Centre(self.task, sides[:, 0], sides[:, 1])
+
+    def _terms(self, windows: list[list[int]]) -> tuple[Array, Array, Array]:
+        """p, q and d of windows Σ (p_k/h_k − q_k h_k) − d ≤ 0: Σ cΔ/h − A Σ m h − V Σ|c + ψ' h|."""
+        n = self.problem.segments
+        each = np.array(windows, np.float64).reshape(-1, 2 * n + 2)
+        psi, c = each[:, 1 : n + 2] / WINDOW_UNIT, each[:, n + 2 :] / WINDOW_UNIT
+        joint = each[:, 0].astype(np.int64)
+        a, b = np.abs(psi[:, :-1]), np.abs(psi[:, 1:])
         squares = (a * a + b * b) / np.maximum(2.0 * (a + b), 1e-300)
-        mean = np.where(psi[:-1] * psi[1:] < 0.0, squares, 0.5 * (a + b))
-        left = np.abs(c + np.diff(psi))
-        velocity, acceleration = self._task.limits[j, :2]
+        mean = np.where(psi[:, :-1] * psi[:, 1:] < 0.0, squares, 0.5 * (a + b))
+        left = np.abs(c + np.diff(psi)).sum(axis=1)
+        velocity, acceleration = self.task.limits[joint, :2].T
+        there = np.isfinite(acceleration) | ~mean.any(axis=1)
         need(
-            bool(np.isfinite(acceleration)) or not mean.any(),
+            bool((there & (np.isfinite(velocity) | (left == 0.0))).all()),
             "a window leans on a limit that is not there",
         )
-        need(
-            bool(np.isfinite(velocity)) or not left.any(),
-            "a window leans on a limit that is not there",
-        )
-        pay = acceleration * mean if mean.any() else np.zeros(n)
-        fixed = velocity * left.sum() if left.any() else 0.0
-        p, q = c * self._task.steps[:, j], tau - pay
-        start = np.where(low > 0.0, p / low + q * low, np.where(p > 0.0, np.inf, 0.0))
-        start = np.where((low <= 0.0) & (p < 0.0), -np.inf, start)
-        turn = np.where((p > 0.0) & (q > 0.0), np.sqrt(p / q), -1.0)
-        bottom = 2.0 * np.sqrt(np.maximum(p * q, 0.0)) * (1.0 - 1e-12)
-        least = np.minimum(start, p / high + q * high)
-        inside = (low < turn) & (turn < high)
-        least = np.where(inside, np.minimum(least, bottom), least)
-        size = fixed + 2.0 * abs(tau) * self._task.total + ((abs(tau) + pay) * high).sum()
-        size += np.abs(least).sum()
-        return float(least.sum() - fixed - tau * self._task.total - 10.0 * ROUND * size)
+        pay = np.where(mean.any(axis=1), acceleration, 0.0)[:, None] * mean
+        return c * self.task.steps[:, joint].T, pay, np.where(left > 0.0, velocity, 0.0) * left
+
+    def over_windows(self, which: Rows, tau: Array, low: Array, high: Array) -> Array:
+        """Least of Σ (p/h − q h) − d + tau (Σ h − total) over boxes; arrays lead alike."""
+        total, (p, pay, fixed) = self.task.total, (x[which] for x in self.windows)
+        q = tau[..., None] - pay
+        with np.errstate(all="ignore"):  # what is not finite fails every comparison
+            start = np.where(low > 0.0, p / low + q * low, np.where(p > 0.0, np.inf, 0.0))
+            start = np.where((low <= 0.0) & (p < 0.0), -np.inf, start)
+            turn = np.where((p > 0.0) & (q > 0.0), np.sqrt(p / q), -1.0)
+            bottom = 2.0 * np.sqrt(np.maximum(p * q, 0.0)) * (1.0 - 1e-12)
+            least = np.minimum(start, p / high + q * high)
+            least = np.where((low < turn) & (turn < high), np.minimum(least, bottom), least)
+            size = np.abs(tau) * (2.0 * total + high.sum(axis=-1)) + (pay * high).sum(axis=-1)
+            size += fixed + np.abs(least).sum(axis=-1)
+            return np.asarray(least.sum(axis=-1) - fixed - tau * total - 10.0 * ROUND * size)
 
 
 def _covered(problem: StatedProblem) -> None:

@@ -1,8 +1,9 @@
 """Lower bounds of weighted limits over boxes of a C4 quintic spline, many leaves at once.
 
-The argument is that of docs/explanation/certificates-quintic.md. Nothing is shared with the
-solver: the nodal equations come from the jumps of q''' and q'''' (the solver has the energy
-∫q'''²), arrays lead with the leaf. Every result is a sum of products with fewer than 2000 roundings
+The argument is that of docs/explanation/certificates-quintic.md. The nodal equations come from the
+jumps of q''' and q''''; arrays lead with the leaf. A sum Σ x_i v_i with |x_i| ≤ 1 is held by its
+vectors, so that products of theirs count: where vectors point to different sides, that is far less
+than their norms say. Every result is a sum of products with fewer than 2000 roundings
 on any path, 2.3e-13 of the same sum over absolute values: `ROUND` of that sum is taken off.
 """
 
@@ -15,36 +16,39 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .boxes import SLACK, Array, Rows, least_of_quadratic, most_of_cubes
-from .quintic_parts import ROUND, Part, norms
+from .boxes import SLACK, Array, Rows, least_of_quadratic, most_of_cubes, shapes
 from .ranges import QUINTIC_PLACES
 from .reading import Refused, need
 
+ROUND = 1e-12
+"""Of a sum over absolute values: four times what its roundings can amount to."""
 BRIEFEST = 1e-40
 """Durations in a leaf with limits are above it, so that nothing underflows."""
+WIDEST = 0.6
+"""Half-width of a leaf in 1/h, as a share of the middle, is below it: at 1 there is no bound."""
 
 # Quintic with (q0, q1, v0, v1, a0, a1): rows of ascending powers; exact, entries are halves.
 _AT = np.array(
     [[1, 0, 0, 0, 0, 0], [1] * 6, [0, 1, 0, 0, 0, 0], range(6), [0, 0, 2, 0, 0, 0],
      [p * (p - 1) for p in range(6)]], dtype=np.float64,
 )  # fmt: skip
-_HERMITE = np.rint(2.0 * np.linalg.inv(_AT).T) / 2.0
-"""Its basis, inverted instead of typed: one more way than the solver's to the same numbers."""
+HERMITE = np.rint(2.0 * np.linalg.inv(_AT).T) / 2.0
+"""Its basis, inverted instead of typed."""
 _JUMPS = np.array(
-    [24 * _HERMITE[:, 4], -24 * _HERMITE[:, 4] - 120 * _HERMITE[:, 5], -6 * _HERMITE[:, 3],
-     6 * _HERMITE[:, 3] + 24 * _HERMITE[:, 4] + 60 * _HERMITE[:, 5]]
+    [24 * HERMITE[:, 4], -24 * HERMITE[:, 4] - 120 * HERMITE[:, 5], -6 * HERMITE[:, 3],
+     6 * HERMITE[:, 3] + 24 * HERMITE[:, 4] + 60 * HERMITE[:, 5]]
 )  # fmt: skip
 """q'''' and q''' that a segment adds to the jumps at its ends, by (q0, q1, v0, v1, a0, a1)."""
-_STIFF, _LOAD = _JUMPS[:, 2:], -_JUMPS[:, 1]
+STIFFNESS, LOAD = _JUMPS[:, 2:], -_JUMPS[:, 1]
 """Of velocities and accelerations, and of the step (q₀ = 0, q₁ = Δq) on the other side."""
-_LOAD_POWER = np.array([4, 4, 3, 3])
+LOAD_POWERS = np.array([4, 4, 3, 3])
 """Powers of r = 1/h in the rows of b: q'''' brings r⁴, q''' brings r³."""
-_POWER = _LOAD_POWER[:, None] - np.array([1, 1, 2, 2])
+POWERS = LOAD_POWERS[:, None] - np.array([1, 1, 2, 2])
 """Powers of r in M: a velocity comes with h, an acceleration with h²."""
 
 
 class Task:
-    """What all leaves with limits have in common: steps, limits and the table of rows.
+    """What all leaves with limits have in common.
 
     Parameters
     ----------
@@ -52,56 +56,46 @@ class Task:
     limits : ndarray, shape (joints, 3)
         inf where there is none.
     total : float
-    rows : ndarray of int, shape (row, 5)
-        Segment, joint, order, sign, place.
+
+    Attributes
+    ----------
+    basis : ndarray, shape (5, 6)
+        Powers of s in a piece with (step, v0, v1, a0, a1).
     """
 
-    def __init__(self, steps: Array, limits: Array, total: float, rows: Rows) -> None:
-        self.steps, self.limits, self.total, self.rows = steps, limits, total, rows
-        self.caps = limits[self.rows[:, 1], self.rows[:, 2] - 1]
-        need(bool(np.isfinite(self.caps).all()), "a row leans on a limit that is not there")
-        # Derivative of (step, v0, v1, a0, a1) at the place.
-        s = self.rows[:, 4] / QUINTIC_PLACES
-        self.shapes = np.zeros((len(s), 5))
-        for order in (1, 2, 3):
-            at = self.rows[:, 2] == order
-            for p in range(order, 6):
-                # Few digits: multiples of 2⁻⁵⁰ or so, every sum and product is exact.
-                factor = float(np.prod(np.arange(p - order + 1, p + 1)))
-                power = np.prod(np.repeat(s[at, None], p - order, axis=1), axis=1)
-                self.shapes[at] += factor * power[:, None] * _HERMITE[None, 1:, p]
-        self.shapes *= self.rows[:, 3:4]
+    def __init__(self, steps: Array, limits: Array, total: float) -> None:
+        self.steps, self.limits, self.total, self.basis = steps, limits, total, HERMITE[1:]
 
 
-class Bound:
-    """Weighted limits on a batch of boxes: arrays (leaf, ...) in the symbols of the docs page.
+class Centre:
+    """The splines at the centres of a batch of boxes: arrays (leaf, ...) in the docs' symbols.
 
     Parameters
     ----------
     task : Task
     low, high : ndarray, shape (leaf, segments)
-    tau : ndarray, shape (leaf,)
-    ids : ndarray of int, shape (leaf, row)
-        In the table of rows.
-    weights : ndarray, shape (leaf, row)
     """
 
-    def __init__(
-        self, task: Task, low: Array, high: Array, tau: Array, ids: Rows, weights: Array
-    ) -> None:
+    def __init__(self, task: Task, low: Array, high: Array) -> None:
         need(
             bool((low > BRIEFEST).all() and (low <= high).all()),
             "a leaf that is too wide is not proved",
         )
-        self.task, self.size = task, len(tau)
+        self.task, self.size = task, len(low)
         self.n, self.joints = task.steps.shape
         ends = 1.0 / high, 1.0 / low
         self.r = 0.5 * (ends[0] + ends[1])
         self.e = 0.5 * (ends[1] - ends[0]) + 4.0 * SLACK * ends[1]
-        need(bool((self.e < 0.6 * self.r).all()), "a leaf that is too wide is not proved")
-        self.at, place = np.nonzero(weights)
-        self.row, self.weight, self.tau = ids[self.at, place], weights[self.at, place], tau
+        need(bool((self.e < WIDEST * self.r).all()), "a leaf that is too wide is not proved")
         self._parts()
+        # x⁰ and X by joint, and how M acts on x⁰.
+        steps = task.steps.T[:, :, None]
+        load = self.load[:2, :, None] * steps
+        self.x0 = self._solve(load[0].sum(axis=2))
+        self.on_x0 = self._acting(self.x0)
+        self.rise = load[1] - np.swapaxes(self.on_x0[1], 1, 2)
+        flat = self.rise.reshape(self.size, -1, self.rise.shape[-1])
+        self.slope = self._solve(flat).reshape(self.rise.shape)
 
     def _parts(self) -> None:
         """Taylor coefficients of M and b, segment by segment, and R with RᵀR ≈ M0⁻¹."""
@@ -118,40 +112,41 @@ class Bound:
         ]
         for k in range(n):
             for a, i in self.places[k]:
-                power = int(_LOAD_POWER[a])
+                power = int(LOAD_POWERS[a])
                 for o in range(power + 1):
-                    term = comb(power, o) * _LOAD[a] * self.r[:, k] ** (power - o)
+                    term = comb(power, o) * LOAD[a] * self.r[:, k] ** (power - o)
                     self.load[o, :, k, i] = term
-                self.load_top[:, k, i] = abs(_LOAD[a]) * top[:, k] ** power
+                self.load_top[:, k, i] = abs(LOAD[a]) * top[:, k] ** power
                 for b, j in self.places[k]:
-                    power = int(_POWER[a, b])
+                    power = int(POWERS[a, b])
                     for o in range(power + 1):
-                        term = comb(power, o) * _STIFF[a, b] * self.r[:, k] ** (power - o)
+                        term = comb(power, o) * STIFFNESS[a, b] * self.r[:, k] ** (power - o)
                         self.blocks[o, :, k, a, b] = term
                     self.m0[:, i, j] += self.blocks[0, :, k, a, b]
-                    self.stiff_top[:, i, j] += abs(_STIFF[a, b]) * top[:, k] ** power
+                    self.stiff_top[:, i, j] += abs(STIFFNESS[a, b]) * top[:, k] ** power
         try:
             self.root = np.linalg.inv(np.linalg.cholesky(self.m0))
         except np.linalg.LinAlgError:
             raise Refused("the matrix of a leaf is not positive definite") from None
 
-    def _of(self, leaf: NDArray[np.int64]) -> Bound:
-        """The boxes of some leaves."""
+    def pick(self, leaf: NDArray[Any], joint: int | slice = slice(None)) -> Centre:
+        """Some of the boxes, and of one joint."""
         own = copy(self)
-        own.size, own.r, own.e = len(leaf), self.r[leaf], self.e[leaf]
-        own.blocks, own.load = self.blocks[:, leaf], self.load[:, leaf]
+        own.r, own.e, own.m0, own.root = (x[leaf] for x in (self.r, self.e, self.m0, self.root))
         own.load_top, own.stiff_top = self.load_top[leaf], self.stiff_top[leaf]
-        own.m0, own.root = self.m0[leaf], self.root[leaf]
+        own.x0, own.rise, own.slope = (x[:, joint][leaf] for x in (self.x0, self.rise, self.slope))
+        own.blocks, own.load = self.blocks[:, leaf], self.load[:, leaf]
+        own.on_x0, own.size = self.on_x0[:, :, :, joint][:, leaf], len(own.r)
         return own
 
-    def _acting(self, vectors: Array) -> Array:
-        """M_k,o v of vectors (leaf, vector, unknown): (o, leaf, segment, vector, unknown)."""
+    def _acting(self, vectors: Array, first: int = 0) -> Array:
+        """M_k,o v of vectors (leaf, vector, unknown) for o ≥ first: (o, leaf, segment, …)."""
         own = np.zeros((self.size, self.n, vectors.shape[1], 4))
         for k, places in enumerate(self.places):
             for a, i in places:
                 own[:, k, :, a] = vectors[:, :, i]
-        moved = own @ np.swapaxes(self.blocks, 3, 4)
-        found = np.zeros((4, self.size, self.n, *vectors.shape[1:]))
+        moved = own @ np.swapaxes(self.blocks[first:], 3, 4)
+        found = np.zeros((4 - first, self.size, self.n, *vectors.shape[1:]))
         for k, places in enumerate(self.places):
             for a, i in places:
                 found[:, :, k, :, i] = moved[:, :, k, :, a]
@@ -164,7 +159,7 @@ class Bound:
         return self.root @ matrix @ back, ROUND * rough.sum(axis=2).max(axis=1)
 
     def _spectrum(self) -> tuple[Array, Array]:
-        """Bounds (s, c) with s RᵀR ≼ M(r)⁻¹ ≼ c RᵀR all over each box.
+        """Bounds (s, c) with s RᵀR ≼ M(r)⁻¹ ≼ c RᵀR all over each box; nan where none is found.
 
         M_k(r) = t·T M_k(r⁰) T with t = r/r⁰, T = diag(t, t, 1, 1) on (v, v, a, a), hence
         1/c = (1 − max e/r⁰)(1 − √λ)²(1 − d) and 1/s = (1 + max e/r⁰)(1 + √λ)²(1 + d),
@@ -173,14 +168,13 @@ class Bound:
         """
         frame, rounding = self._framed(self.m0)
         off = np.abs(frame - np.eye(frame.shape[1])).sum(axis=2).max(axis=1) + rounding
-        need(bool((off < 1e-6).all()), "the matrix of a leaf is ill-conditioned")
         share = self.e / self.r
         part = np.zeros_like(self.m0)
         for k in range(self.n):
             for a, i in self.places[k]:
                 for b, j in self.places[k]:
                     if a < 2 and b < 2:
-                        part[:, i, j] += _STIFF[a, b] * self.r[:, k] ** 3 * share[:, k] ** 2
+                        part[:, i, j] += STIFFNESS[a, b] * self.r[:, k] ** 3 * share[:, k] ** 2
         power, rounding = self._framed(part)
         power = 0.5 * (power + np.swapaxes(power, 1, 2))
         largest, exponent = np.ones(self.size), 1.0
@@ -191,8 +185,8 @@ class Bound:
             power = power / norm[:, None, None]
             power = power @ power
         largest = (largest * (1.0 + 1e-9) + rounding) / (1.0 - off)
-        need(bool((largest < 1.0).all()), "a leaf that is too wide is not proved")
-        wide, root = share.max(axis=1), np.sqrt(largest)
+        found = (off < 1e-6) & (largest < 1.0)
+        wide, root = share.max(axis=1), np.sqrt(np.where(found, largest, np.nan))
         least = (1.0 - wide) * (1.0 - root) ** 2 * (1.0 - off) * (1.0 - 1e-9)
         most = (1.0 + wide) * (1.0 + root) ** 2 * (1.0 + off) * (1.0 + 1e-9)
         return 1.0 / most, 1.0 / least
@@ -210,25 +204,40 @@ class Bound:
         half = right @ np.swapaxes(self.root, 1, 2)
         return np.asarray(half @ self.root)
 
-    def least(self) -> Array:
-        """Lower bound of each leaf's weighted sum."""
+    def least(self, tau: Array, rows: Rows, weights: Array) -> Array:
+        """Lower bound of each leaf's weighted sum; −inf where there is none.
+
+        ``blame``, shape (leaf, segment), is left behind: by how much what was lost grows with the
+        sides of a box, which proves nothing and tells where to cut.
+
+        Parameters
+        ----------
+        tau : ndarray, shape (leaf,)
+        rows : ndarray of int, shape (leaf, row, 5)
+            Segment, joint, order, sign, place.
+        weights : ndarray, shape (leaf, row)
+        """
         n, r, e, task = self.n, self.r, self.e, self.task
-        k, j, order = task.rows[self.row, 0], task.rows[self.row, 1], task.rows[self.row, 2]
-        shape, cap = task.shapes[self.row] * self.weight[:, None], task.caps[self.row] * self.weight
+        every, place = np.nonzero(weights)
+        used, weight = rows[every, place], weights[every, place]
+        k, j, order = used[:, 0], used[:, 1], used[:, 2]
+        # Few digits: multiples of 2⁻⁵⁰ or so, every sum and product is exact.
+        shape = (shapes(used, 6, QUINTIC_PLACES) @ task.basis.T) * weight[:, None]
+        cap = task.limits[j, order - 1] * weight
         bent = np.zeros((self.size, n))
-        np.add.at(bent, (self.at, k), shape[:, 0] * task.steps[k, j])
+        np.add.at(bent, (every, k), shape[:, 0] * task.steps[k, j])
         against = np.zeros((3, self.size, n))  # limits: constant, times r, times 1/r
         for o, where in ((2, 0), (1, 1), (3, 2)):
-            np.add.at(against[where], (self.at[order == o], k[order == o]), cap[order == o])
+            np.add.at(against[where], (every[order == o], k[order == o]), cap[order == o])
         top, bottom = r + e, r - e
         moved = np.zeros((self.size, n))
-        np.add.at(moved, (self.at, k), np.abs(shape[:, 0] * task.steps[k, j]))
+        np.add.at(moved, (every, k), np.abs(shape[:, 0] * task.steps[k, j]))
         size = (moved * top**2 + against[0] + against[1] * top + against[2] / bottom).sum(axis=1)
-        size += np.abs(self.tau) * (task.total + (1.0 / bottom).sum(axis=1))
+        size += np.abs(tau) * (task.total + (1.0 / bottom).sum(axis=1))
         # Taylor coefficients of what depends on one duration; joints add to them below.
         # 1/(r + δ) = 1/r − δ/r² + δ²/r³ − δ³/r⁴ + δ⁴/(r⁴(r + δ)).
         alone = np.zeros((5, self.size, n))
-        change = self.tau[:, None] - against[2]
+        change = tau[:, None] - against[2]
         alone[0] = bent * r**2 - against[0] - against[1] * r + change / r
         alone[1] = 2.0 * bent * r - against[1] - change / r**2
         alone[2] = bent + change / r**3
@@ -236,66 +245,68 @@ class Bound:
         error = (np.abs(change) * e**4 / (r**4 * bottom)).sum(axis=1)
         second = np.zeros((self.size, n, n))
         first = np.zeros((self.size, n))
-        value = -self.tau * task.total
+        value = -tau * task.total
         # πᵀM⁻¹ρ = ½(c + s)·(Rπ)ᵀ(Rρ) + what is at most ½(c − s)·‖Rπ‖‖Rρ‖.
         small, large = self._spectrum()
         middle, spread = 0.5 * (large + small), 0.5 * (large - small) + ROUND * large
-        same, above = np.arange(n), np.triu_indices(n, 1)
+        same, (one, other) = np.arange(n), _pairs(n)
         cubes = np.zeros((self.size, n, n, n))
+        self.blame, sides = np.zeros((self.size, n)), np.eye(n)[one] + np.eye(n)[other]
         for joint in range(self.joints):
             mine = j == joint
             if not mine.any():
                 continue
-            leaf, at = np.unique(self.at[mine], return_inverse=True)
-            own = self._of(leaf)
+            leaf, at = np.unique(every[mine], return_inverse=True)
+            own = self.pick(leaf, joint)
             # Of velocities times r and of accelerations, then both in absolute values.
             phi = np.zeros((4, own.size, n, 2 * n - 2))
-            for segment in range(n):
-                for a, i in self.places[segment]:
-                    on = k[mine] == segment
-                    each = shape[mine][on, a + 1]
-                    np.add.at(phi[a // 2, :, segment, i], at[on], each)
-                    np.add.at(phi[2 + a // 2, :, segment, i], at[on], np.abs(each))
-            found = own._joint(task.steps[:, joint], phi)
-            alone[:, leaf] += found["alone"]
-            first[leaf] += found["first"]
-            second[leaf] += found["second"]
-            size[leaf] += found["size"]
-            adjoint, residual = found["adjoint"], found["residual"]
+            for a in range(4):
+                node = k[mine] + a % 2
+                on = (node > 0) & (node < n)
+                where, each = (at[on], k[mine][on], 2 * node[on] - 2 + a // 2), shape[mine][on]
+                np.add.at(phi[a // 2], where, each[:, a + 1])
+                np.add.at(phi[2 + a // 2], where, np.abs(each[:, a + 1]))
+            part_of = own._joint(task.steps[:, joint], phi)
+            alone[:, leaf] += part_of["alone"]
+            first[leaf] += part_of["first"]
+            second[leaf] += part_of["second"]
+            size[leaf] += part_of["size"]
+            adjoint, residual = part_of["adjoint"], part_of["residual"]
             both = adjoint.leading @ np.swapaxes(residual.leading, 1, 2) * middle[leaf, None, None]
-            # Residuals lead with squares, then products of two.
             part = np.zeros((own.size, n, n, n))
-            part[:, :, same, same], part[:, :, *above] = both[:, :, :n], both[:, :, n:]
+            part[:, :, one, other] = both
             wide = own.e[:, :, None] ** 2 * own.e[:, None]
-            part[:, same, same] += found["squared"] * wide
+            part[:, same, same] += part_of["squared"] * wide
             cubes[leaf] += part
-            rounding = ROUND * norms(adjoint.leading) * norms(residual.leading)
+            rounding = ROUND * adjoint.lengths * residual.lengths
             error[leaf] += middle[leaf] * (rounding + adjoint.beyond(residual))
-            error[leaf] += spread[leaf] * adjoint.most * residual.most + found["quartic"]
+            error[leaf] += spread[leaf] * adjoint.most * residual.most + part_of["quartic"]
+            blame = adjoint.shares * residual.most[:, None]
+            blame += (residual.shares * adjoint.most[:, None]) @ sides
+            self.blame[leaf] += spread[leaf, None] * blame
         value += alone[0].sum(axis=1)
         first += alone[1]
         cubes[:, same, same, same] += alone[3] * e**3
         error += (np.abs(alone[4]) * e**4).sum(axis=1) + most_of_cubes(cubes)
         second[:, same, same] += 2.0 * alone[2]
         value += least_of_quadratic(first, second, e)
-        return np.asarray(value - error * (1.0 + 1e-9) - 10.0 * ROUND * size)
+        found = value - error * (1.0 + 1e-9) - 10.0 * ROUND * size
+        return np.where(np.isfinite(found), found, -np.inf)
 
     def _joint(self, step: Array, phi: Array) -> dict[str, Any]:
         """One joint's part: F = φᵀx̃ + μᵀ(b − M x̃) + (φ − M μ)ᵀ(x − x̃), x̃ = x0 + Σ X_m δ_m."""
         n, r, e = self.n, self.r, self.e
         load = self.load * step[:, None]
+        x0, on_x0, rise, slope = self.x0, self.on_x0, self.rise, self.slope
         full = phi[1] + phi[0] * r[:, :, None]
-        x0 = self._solve(load[0].sum(axis=1)[:, None])[:, 0]
-        mu = self._solve(full.sum(axis=1)[:, None])[:, 0]
-        on_x0, on_mu = np.moveaxis(self._acting(np.stack([x0, mu], axis=1)), 3, 0)
-        rise = load[1] - on_x0[1]
-        slope = self._solve(rise)
+        mu = self._solve(full.sum(axis=1)[:, None])
+        on_mu, mu = self._acting(mu, 1)[:, :, :, 0], mu[:, 0]
         wide = np.abs(x0) + np.einsum("lm,lmi->li", e, np.abs(slope))
         reach = (self.load_top * np.abs(step)[:, None]).sum(axis=1)
         reach += np.einsum("lij,lj->li", self.stiff_top, wide)
         # π = φ − M μ: constant, then Taylor parts of each segment.
         rest = full.sum(axis=1) - np.einsum("lij,lj->li", self.m0, mu)
-        gain = -on_mu[1:]
+        gain = -on_mu
         gain[0] += phi[0]
         high = phi[3] + phi[2] * (r + e)[:, :, None]
         weak = high.sum(axis=1) + np.einsum("lij,lj->li", self.stiff_top, np.abs(mu))
@@ -309,33 +320,22 @@ class Bound:
         )
         # ρ = b − M x̃: constant and linear parts, which are 0 but for rounding; then, o ≥ 2,
         # (b_o − M_o x0 − M_(o−1) X_k) δ_kᵒ of each segment k, and −M_o X_m δ_kᵒ δ_m for m ≠ k.
-        pulled = self._acting(slope)[1:]
+        pulled = self._acting(slope, 1)
         zero = load[0].sum(axis=1) - np.einsum("lij,lj->li", self.m0, x0)
         linear = rise - np.einsum("lij,lmj->lmi", self.m0, slope)
         loose = np.abs(zero) + np.einsum("lm,lmi->li", e, np.abs(linear)) + ROUND * reach
-        each, (k, m) = np.arange(n), np.triu_indices(n, 1)
-        own = [load[o] - pulled[o - 2][:, each, each] for o in range(2, 5)]
-        own[0] = own[0] - on_x0[2]
-        own[1] = own[1] - on_x0[3]
-        pairs = -(pulled[0] + np.swapaxes(pulled[0], 1, 2))[:, k, m]
-        k_, m_ = np.nonzero(~np.eye(n, dtype=bool))
-        later = (self._energy(own[2]) * e**4).sum(axis=1)
-        later += (self._energy(pulled[2][:, k_, m_]) * e[:, k_] ** 3 * e[:, m_]).sum(axis=1)
+        each, (k, m) = np.arange(n), _pairs(n)
+        square = -pulled[0] - np.swapaxes(pulled[0], 1, 2)
+        square[:, each, each] = load[2] - on_x0[2] - pulled[0][:, each, each]
+        third, fourth = -pulled[1], -pulled[2]
+        third[:, each, each] += load[3] - on_x0[3]
+        fourth[:, each, each] += load[4]
+        wide_3 = e[:, :, None] ** 2 * e[:, None]
+        later = (self._energy(fourth) * wide_3 * e[:, :, None]).sum(axis=(1, 2))
+        third = self._rooted(third) * wide_3[..., None]
         residual = Part(
-            np.concatenate(
-                [
-                    self._rooted(own[0]) * (e**2)[:, :, None],
-                    self._rooted(pairs) * (e[:, k] * e[:, m])[:, :, None],
-                ],
-                axis=1,
-            ),
-            np.concatenate(
-                [
-                    self._rooted(own[1]) * (e**3)[:, :, None],
-                    self._rooted(-pulled[1][:, k_, m_]) * (e[:, k_] ** 2 * e[:, m_])[:, :, None],
-                ],
-                axis=1,
-            ),
+            self._rooted(square[:, k, m]) * (e[:, k] * e[:, m])[:, :, None],
+            third.reshape(self.size, n * n, -1),
             later + np.linalg.norm(np.einsum("lij,lj->li", outer, loose), axis=1),
         )
         alone = np.zeros((5, self.size, n))
@@ -355,3 +355,47 @@ class Bound:
             "adjoint": adjoint,
             "residual": residual,
         }
+
+
+def _pairs(n: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Numbers k and m of all pairs: those of one number with itself, then k < m."""
+    each, (k, m) = np.arange(n), np.triu_indices(n, 1)
+    return np.concatenate([each, k]), np.concatenate([each, m])
+
+
+class Part:
+    """Rπ or Rρ over each box: vectors of two orders with factors in [−1, 1], and a remainder.
+
+    Parameters
+    ----------
+    leading, following : ndarray, shape (leaf, vector, unknown)
+        Vectors of the lowest order, and of the next one.
+    later : ndarray, shape (leaf,)
+        Norm of the terms of higher order, and of what is 0 but for rounding, with all rounding.
+    """
+
+    def __init__(self, leading: Array, following: Array, later: Array) -> None:
+        self.leading, self.following, self.later = leading, following, later
+        self.lengths, self.second = (
+            np.asarray(np.linalg.norm(x, axis=2).sum(axis=1)) for x in (leading, following)
+        )
+        # ‖Σ x_i v_i‖² ≤ Σ |v_iᵀv_j|, to which each vector adds a share.
+        each = np.abs(leading @ np.swapaxes(leading, 1, 2)).sum(axis=2)
+        self.first: Array = np.sqrt(each.sum(axis=1) + ROUND * self.lengths**2)
+        self.shares = each / np.maximum(self.first, 1e-300)[:, None]
+
+    @property
+    def most(self) -> Array:
+        """The largest norm."""
+        return self.first + self.second + self.later
+
+    def beyond(self, other: Part) -> Array:
+        """The largest |xᵀy|, x of this part and y of the other, but for both lowest orders.
+
+        |(Σ x_i v_i)ᵀ(Σ y_j w_j)| ≤ Σ |v_iᵀw_j| for all |x_i|, |y_j| ≤ 1.
+        """
+        near = np.abs(self.leading @ np.swapaxes(other.following, 1, 2)).sum(axis=(1, 2))
+        near += np.abs(self.following @ np.swapaxes(other.leading, 1, 2)).sum(axis=(1, 2))
+        near += ROUND * (self.lengths * other.second + self.second * other.lengths)
+        near += self.second * other.second
+        return near + (self.first + self.second) * other.later + self.later * other.most

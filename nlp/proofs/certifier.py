@@ -34,9 +34,9 @@ class Certifier:
     boxes : int
         Boxes that an audit allows one problem by default: some ten seconds' worth, measured where
         nothing else ran.
-    compiles : bool
-        Whether the first search in an environment compiles for half a minute, too long for an
-        answer that was not asked to be proved.
+    prepares : bool
+        Whether a search begins with what takes seconds for long curves, too long for an answer that
+        was not asked to be proved.
     sided : bool
         Whether its bounds know lower and upper limits that differ in size. If not, they are proved
         within the larger of both, which is sound and wider.
@@ -51,7 +51,7 @@ class Certifier:
     subject: Subject = Subject.DECLARED
     instant: bool = False
     boxes: int = 1
-    compiles: bool = False
+    prepares: bool = False
     sided: bool = False
     moving: bool = False
 

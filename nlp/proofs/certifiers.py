@@ -94,14 +94,14 @@ def instant(problem: ExactProblem) -> bool:
 
 
 def prompt(problem: ExactProblem) -> Certifier | None:
-    """The kind that proves most of a problem in about a second, and compiles nothing.
+    """The kind that proves most of a problem in about a second, with nothing to prepare.
 
     Boxes of durations close sooner than those of values at the breaks while they are few.
     """
     if covered(problem) is not None:
         return None
     able = [
-        c for c in _able(problem, Subject.DECLARED) if not c.compiles and c.missing(problem) is None
+        c for c in _able(problem, Subject.DECLARED) if not c.prepares and c.missing(problem) is None
     ]
     if not able or able[0].instant or problem.segments > _FEW:
         return able[0] if able else None
@@ -156,10 +156,10 @@ def certify(
         Relative width of the interval to reach.
     seconds : float, optional
         Time limit of all of it: proving a state again, the search, and proving the result with
-        `trajgap.verify`, for which the search leaves time. Compiling does not count. At the limit,
-        or at Ctrl-C, the best interval proved so far is returned; a proof that could not be
-        verified in time is left in the state alone. It is kept to within a second and one step: a
-        box, or a step of the local solver. An answer whose exact proof was cut short is none;
+        `trajgap.verify`, for which the search leaves time. At the limit, or at Ctrl-C, the best
+        interval proved so far is returned; a proof that could not be verified in time is left in
+        the state alone. It is kept to within a second and one step: a part of a search, or a step
+        of the local solver. An answer whose exact proof was cut short is none;
         `Certified.left_out` says so.
     boxes : float, optional
         Boxes after which the search ends. Without ``seconds`` they alone limit it, and the result
@@ -173,7 +173,7 @@ def certify(
         Called with a `Progress` after every batch of boxes.
     workers : int
         Parts of search and judging that run at a time; the result does not depend on it. Closed
-        forms and declared polynomials such as 3-5-3 take one core: they are over in a second.
+        forms take one core: they are over at once.
     executor : concurrent.futures.Executor, optional
         Where parts run, such as processes or a Dask cluster's `get_executor()`. Without one they
         run in processes that are started after a second and end with the run.

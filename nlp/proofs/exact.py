@@ -153,16 +153,6 @@ class ExactProblem:
         each = tuple(self.unit.split(","))
         return each * len(self.joints) if len(each) == 1 else each
 
-    def end_velocities(self, side: int) -> tuple[Fraction | None, ...]:
-        """Velocities prescribed at the start (0) or the finish (1), joint by joint."""
-        if self.prescribed is not None:
-            own = dict(self.prescribed[0 if side == 0 else -1]).get(1)
-        else:
-            value = dict(self.curve.ends[side]).get(1)
-            each = value if isinstance(value, tuple) else (value,) * len(self.joints)
-            own = None if value is None else tuple(Fraction(v) for v in each if v is not None)
-        return (None,) * len(self.joints) if own is None else own
-
     def sides(self, joint: int, order: int) -> Pair:
         """Sizes of the lower and the upper limit of a derivative."""
         own = self.limits[joint][order - 1]

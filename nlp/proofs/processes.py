@@ -21,8 +21,6 @@ _BEGIN = (
 )
 """What a process runs: the modules of its parent, and nothing of the program that asked for it, so
 that no program needs a guard around its beginning."""
-_SIZE = 8
-"""Bytes of the length that stands before each message: enough for any."""
 
 
 class ProcessGone(Exception):
@@ -59,10 +57,10 @@ class Processes(ThreadPoolExecutor):
                 process = self._start()
             assert process.stdin is not None
             assert process.stdout is not None
-            _send(process.stdin, work)
-            _send(process.stdin, common)
-            return _received(process.stdout)
-        except (OSError, EOFError) as error:
+            _send(process.stdin, (work, common))
+            answer: bytes = pickle.load(process.stdout)
+            return answer
+        except (OSError, EOFError, pickle.UnpicklingError) as error:  # the last: cut off
             process = None
             raise ProcessGone(str(error)) from None
         finally:
@@ -131,25 +129,11 @@ def serve() -> None:
     os.dup2(2, 1)
     while True:
         try:
-            work, common = (_received(sys.stdin.buffer) for _ in range(2))
-            _send(answers, worked(work, common))
-        except (EOFError, OSError):
+            _send(answers, worked(*pickle.load(sys.stdin.buffer)))
+        except (EOFError, OSError, pickle.UnpicklingError):
             return
 
 
-def _send(pipe: IO[bytes], message: bytes) -> None:
-    pipe.write(len(message).to_bytes(_SIZE, "little"))
-    pipe.write(message)
+def _send(pipe: IO[bytes], message: Any) -> None:
+    pickle.dump(message, pipe)
     pipe.flush()
-
-
-def _received(pipe: IO[bytes]) -> bytes:
-    size = int.from_bytes(_exactly(pipe, _SIZE), "little")
-    return _exactly(pipe, size)
-
-
-def _exactly(pipe: IO[bytes], size: int) -> bytes:
-    found = pipe.read(size)
-    if len(found) < size:
-        raise EOFError("a process ended")
-    return found

@@ -175,7 +175,7 @@ class Session:
 
     @property
     def seconds(self) -> float:
-        """Time since the run began; compiling does not count."""
+        """Time since the run began."""
         return self.clock.used
 
     @property

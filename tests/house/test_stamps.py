@@ -10,7 +10,6 @@ from support.checkout import ROOT
 
 STAMPED = {
     "trajgap.problem.curves.kernel": (),
-    "trajgap.nlp.proofs.quintic.nodal": (),
 }
 """Modules that name a room's kernels, and the files elsewhere whose functions those call."""
 

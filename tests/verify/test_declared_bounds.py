@@ -62,7 +62,7 @@ def test_the_bound_is_below_the_exact_sum_all_over_a_box(name: str) -> None:
         rows[0, 4], rows[1, 4] = 0, PLACES
         weights, tau = rng.uniform(0.0, 1.0, 7), float(rng.normal())
         centre = kind.centre(np.array([[own * np.exp(-e), own * np.exp(e)]]))
-        least = float(centre.least(np.array([tau]), rows[None], weights[None], float(PLACES))[0])
+        least = float(centre.least(np.array([tau]), rows[None], weights[None])[0])
         if not np.isfinite(least):
             continue
         judged_boxes += 1
@@ -86,7 +86,7 @@ def test_a_box_that_the_tail_cannot_hold_is_not_bounded() -> None:
         with np.errstate(all="ignore"):
             centre = kind.centre(sides)
             row = np.array([[[0, 0, 1, 1, 5]]])
-            least = centre.least(np.array([0.0]), row, np.array([[1.0]]), float(PLACES))
+            least = centre.least(np.array([0.0]), row, np.array([[1.0]]))
         assert least[0] == -inf
 
 

@@ -15,8 +15,7 @@ from trajgap.verify import (
 )
 from trajgap.verify.boxes import most_of_cubes
 from trajgap.verify.quintic import QuinticSpline
-from trajgap.verify.quintic_bound import Bound, Task
-from trajgap.verify.quintic_parts import Part
+from trajgap.verify.quintic_bound import Centre, Part, Task
 from trajgap.verify.reading import Clock
 
 CLOCK = Clock(1e9)
@@ -45,10 +44,10 @@ def test_a_leaf_is_below_every_sampled_quintic(seed: int) -> None:
             found += w * (reached - limits[j, order - 1]) * h[k] ** (order - 2)
         return float(found)
 
-    task = Task(np.diff(q, axis=0), limits, total, np.array(rows))
-    leaf = np.array([tau]), np.arange(count)[None], np.array([weights], float)
+    task = Task(np.diff(q, axis=0), limits, total)
+    leaf = np.array([tau]), np.array([rows]), np.array([weights], float)
     low, high = h0 * np.exp(-width), h0 * np.exp(width)
-    proved = float(Bound(task, low[None], high[None], *leaf).least()[0])
+    proved = float(Centre(task, low[None], high[None]).least(*leaf)[0])
     spread = [np.exp(width * rng.uniform(-1, 1, n)) for _ in range(25)]
     corners = (np.ones(n), np.exp([-width] * n), np.exp([width] * n))
     found = [h0 * x for x in (*corners, *spread)]
@@ -68,23 +67,22 @@ def test_a_window_is_below_every_sampled_motion(seed: int) -> None:
     """Σ cΔ/h − A Σ m h − V Σ|c + ψ'h| + τ(Σh − T), m the mean of |ψ|, is what a window bounds."""
     rng = np.random.default_rng([seed, 12])
     data = altered("quintic-spline", {**NO_ANSWER, "proof.rows": []})
-    proof = data["proof"] | {"tree": [["."]]}
-    kind = QuinticSpline(read_problem(data["problem"]), proof, Fraction(proof["total"]), CLOCK)
     n, j = 3, int(rng.integers(0, 2))
     numbers = [int(x) for x in rng.integers(-(2**16), 2**16, 2 * n + 1)]
+    proof = data["proof"] | {"tree": [["."]], "windows": [[j, *numbers]]}
+    kind = QuinticSpline(read_problem(data["problem"]), proof, Fraction(proof["total"]), CLOCK)
     psi, c = np.array(numbers[: n + 1]) / 2**16, np.array(numbers[n + 1 :]) / 2**16
     tau = float(rng.choice([0.0, rng.uniform(-1, 1), rng.uniform(0, 3)]))
     low = rng.uniform(0.2, 1.0, n)
     high = low * rng.uniform(1.0, 3.0, n)
-    step, (v, a) = kind._task.steps[:, j], kind._task.limits[j, :2]
-    with np.errstate(all="ignore"):
-        found = kind._over_window([j, *numbers], tau, low, high)
+    step, (v, a) = kind.task.steps[:, j], kind.task.limits[j, :2]
+    found = float(kind.over_windows(np.array(0), np.array(tau), low, high))
 
     def value(h: np.ndarray) -> float:
         mean = [np.abs(np.linspace(x, y, 4001)).mean() for x, y in pairwise(psi)]
         left = np.abs(c + np.diff(psi)).sum()
         return float((c * step / h).sum() - a * (mean * h).sum() - v * left
-                     + tau * (h.sum() - kind._task.total))  # fmt: skip
+                     + tau * (h.sum() - kind.task.total))  # fmt: skip
 
     lowest = [np.linspace(x, y, 400) for x, y in zip(low, high, strict=True)]
     values = [value(rng.uniform(low, high)) for _ in range(50)]

@@ -9,20 +9,24 @@ from fractions import Fraction
 from functools import partial
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from ....problem import Array, Interpolant, Verdict, check
 from ....verify import (
     PLACES,
     Clock,
     Refused,
     proof_kind,
-    read_problem,
 )
 from ..certifier import Certifier
-from ..document import problem_document
+from ..document import stated_problem
+from ..driver import grow
 from ..exact import ExactProblem, decimal
 from ..rounding import down
 from ..session import Ladder, OutOfTime, Session, Shorter
-from .search import Found, TooSmall, search
+from .rows import NearLimits
+from .search import BoxSearch, Bundle, Curves, Found, Middle, TooSmall
 
 _KIND = "declared"
 """Of the proof, as documents name it."""
@@ -34,6 +38,10 @@ _LADDER = Ladder(
     growth=30.0,
 )
 """From a gap of 0.1 on, boxes grow to 2 to 6 times as many, whatever the last gap."""
+_WEIGHT = 2.0**12
+"""Sum of the weights of a leaf, about: finer ones spare no box at 1e-8, 1 in 80 at 1e-9."""
+_SAFE = 1e-12
+"""Share of the weights by which a bound is positive, so that it is in other batches too."""
 _FINE = 1e-9
 """A gap below it may be too narrow for the rounding of floats: no stage before it is left out."""
 _DIGITS = 11
@@ -55,23 +63,60 @@ _ROUNDS = 40
 """Halvings of the distance, in logarithms, to a total that equals its own least durations."""
 
 
+class DeclaredCurves(Curves):
+    """Any declared curve."""
+
+    widest = 2.4
+
+    def __init__(self, kind: Any) -> None:
+        task = kind.task
+        super().__init__(kind, NearLimits(task.segments, task.powers, task.caps, PLACES))
+        self._gain = task.half[:, None] * (task.at @ task.across)
+
+    def middle(self, sides: Array) -> Middle:
+        """At the geometric means."""
+        centre, form = self.kind.centre(sides), self.kind.task.form
+        flat = form.basis.reshape(-1, form.basis.shape[-1])
+        pieces = form.fixed + (flat @ centre.x).reshape(-1, *form.fixed.shape)
+        rate = centre.y[:, None] @ (self._gain.T[:, :, None] * centre.g[:, None])
+        moved = -(flat @ rate).reshape(*rate.shape[:2], *form.fixed.shape)
+        return Middle(centre, centre.h, centre.e, pieces, moved)
+
+    def proved(
+        self, middle: Middle, rows: NDArray[np.int64], weights: Array, tau: Array
+    ) -> tuple[NDArray[np.bool_], Array, Array, Array]:
+        """By limits that count as 1 at the centre of their segment."""
+        tau, weights = np.rint(tau * _WEIGHT), np.rint(weights * _WEIGHT)
+        excluded = middle.centre.least(tau, rows, weights) > _SAFE * _WEIGHT
+        return excluded, tau, weights, np.ones_like(middle.h)
+
+
 @dataclass(frozen=True, eq=False)
 class Tree:
-    """Boxes of durations that prove a total."""
+    """Boxes of durations that prove a total.
+
+    ``head`` is what a kind of proof states beside rows and tree, with all its keys in their order.
+    """
 
     total: Fraction
+    head: dict[str, Any]
     found: Found
 
     def document(self) -> dict[str, Any]:
-        """Kind "declared" of docs/explanation/certificates-declared.md."""
-        rows, tree = self.found.nodes()
-        return {"kind": _KIND, "total": decimal(self.total), "rows": rows, "tree": tree}
+        """Of docs/explanation/certificates.md."""
+        own = self.found.document()
+        if "windows" not in self.head:
+            del own["windows"]
+        else:
+            own["windows"] = [self.head["windows"][at] for at in own["windows"]]
+        return self.head | {"total": decimal(self.total)} | own
 
 
 def _kind(problem: ExactProblem, total: Fraction) -> Any:
     """The verifier's own kind of proof, without rows."""
-    stated = read_problem(problem_document(problem))
-    return proof_kind(_KIND)(stated, {"rows": [], "tree": []}, total, Clock(math.inf))
+    return proof_kind(_KIND)(
+        stated_problem(problem), {"rows": [], "tree": []}, total, Clock(math.inf)
+    )
 
 
 def _declares(problem: ExactProblem) -> bool:
@@ -91,29 +136,31 @@ def _missing(problem: ExactProblem) -> str | None:
     return None
 
 
-@dataclass(eq=False)
-class _Stages:
-    """What the stages share."""
+class BoxStages:
+    """What the stages of a run share, for all proofs by boxes that are computed in floats."""
 
-    session: Session
+    def __init__(self, session: Session) -> None:
+        self.session = session
+
+    def curves(self, target: Fraction) -> tuple[Curves, float, dict[str, Any]]:
+        """What is said of boxes for a total, the unit of time in s, and the head of the proof."""
+        kind = _kind(self.session.exact, target)
+        return DeclaredCurves(kind), float(kind.second), {"kind": _KIND, "total": ""}
 
     def stage(self, target: Fraction) -> Tree:
-        """Prove that no total is below ``target``."""
-        session = self.session
-        kind, before = _kind(session.exact, target), session.nodes
-        rest = session.exact.curve.homogeneous
-        signed = rest and all(x is None for x in session.exact.duration_upper)
-        second = float(kind.second)
-
-        def watch(left: int, done: int) -> None:
-            session.report(left, before + done)
-            session.check_clock()
-
+        """Prove that no total is below ``target``, s."""
+        session, before = self.session, self.session.nodes
+        curves, second, head = self.curves(target)
+        boxes = BoxSearch(
+            curves,
+            lambda h: self._look(h * second, target),
+            lambda waiting, done: session.report(waiting, before + done),
+        )
         try:
-            found = search(kind, PLACES, signed, lambda h: self._look(h * second, target), watch)
+            grow(boxes, [Bundle(((1, curves.kind.root()),))], session)
         except TooSmall:
             raise OutOfTime from None
-        return Tree(target, found)
+        return Tree(target, head, boxes.found)
 
     def _look(self, durations: Array, target: Fraction) -> None:
         """Raise `Shorter` if a direction of these durations holds a total below the one given."""
@@ -142,7 +189,7 @@ def _beyond(exact: ExactProblem) -> Found | None:
                 if ends is not None and sign * x > max(sign * y for y in ends.ends):
                     found = Found()
                     segment, place = (b, 0) if b < exact.segments else (b - 1, PLACES)
-                    found.leaves[0] = ((segment, j, 0, sign, place),)
+                    found.leaves[1] = ((segment, j, 0, sign, place),)
                     return found
     return None
 
@@ -167,12 +214,13 @@ def _prove(session: Session) -> bool:
     # A stage that was interrupted begins anew: of a stopped run only the proof counts.
     beyond = _beyond(session.exact)
     if beyond is not None:
-        session.keep(Fraction(1), Tree(Fraction(1), beyond))
+        head = {"kind": _KIND, "total": ""}
+        session.keep(Fraction(1), Tree(Fraction(1), head, beyond))
         session.infeasible = True
         return True
     session.judging = _JUDGING
     session.seek()
-    stages = _Stages(session)
+    stages = BoxStages(session)
     totals = _rising(session)
     while session.upper is None:
         total = next(totals, None)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,103 +36,102 @@ class Candidates:
 
 
 class NearLimits:
-    """What all boxes have in common, from the verifier's `Task`.
+    """What all boxes have in common.
 
     Parameters
     ----------
-    task : Task
+    segments, powers : int
+        Pieces, and coefficients of each.
+    caps : ndarray, shape (2, joints, 4)
+        Limits of orders 0 to 3 on the lower and the upper side; inf where there is none.
     places : int
         Of a piece, in which places are counted.
     """
 
-    def __init__(self, task: Any, places: int) -> None:
-        self.task, self.places = task, places
-        n = task.segments
-        self.count = 4 * (n + 1) + 8
-        orders = [r for r in range(4) if np.isfinite(task.caps[:, :, r]).any()]
-        grid = np.rint(np.arange(_GRID + 1) * (places / _GRID)).astype(np.int64)
-        self.grid = grid
-        sides = [(r, s) for r in orders for s in (0, 1)]
-        self.rows = np.array(
-            [
-                [k, j, r, 2 * s - 1]
-                for k in range(n)
-                for j in range(task.joints)
-                for r, s in sides
-                if np.isfinite(task.caps[s, j, r])
-            ],
-            np.int64,
-        ).reshape(-1, 4)
-        each = np.broadcast_to(self.rows[:, None], (len(self.rows), _GRID + 1, 4))
-        at = np.broadcast_to(grid[:, None], (len(self.rows), _GRID + 1, 1))
-        self.caps = task.cap(np.concatenate([each, at], axis=2)[:, 0])
-        self.shapes = task.shapes(np.concatenate([each, at], axis=2), float(places))
+    def __init__(self, segments: int, powers: int, caps: Array, places: int) -> None:
+        self.places, self._caps = places, caps
+        self.count = 4 * (segments + 1) + 8
+        self.grid = np.rint(np.arange(_GRID + 1) * (places / _GRID)).astype(np.int64)
+        side, joint, order = np.nonzero(np.isfinite(caps))
+        limits = np.stack([joint, order, 2 * side - 1], axis=1)
+        limits = limits[np.lexsort((side, order, joint))]
+        self.rows = np.concatenate(
+            [np.repeat(np.arange(segments), len(limits))[:, None], np.tile(limits, (segments, 1))],
+            axis=1,
+        )
+        self._factors = np.ones((6, powers))
+        for r in range(5):
+            self._factors[r + 1] = self._factors[r] * np.maximum(np.arange(powers) - r, 0)
+        each = np.repeat(self.rows[:, None], _GRID + 1, axis=1)
+        at = np.broadcast_to(self.grid[:, None], (len(self.rows), _GRID + 1, 1))
+        self.shapes = self._shapes(np.concatenate([each, at], axis=2))
 
-    def candidates(self, centre: Any) -> Candidates:
-        """The limits that are nearest to being exceeded, or exceeded most."""
-        task, form = self.task, self.task.form
-        boxes = len(centre.h)
-        pieces = form.fixed + np.einsum("kpx,lxj->lkpj", form.basis, centre.x)
+    def _cap(self, rows: NDArray[np.int64]) -> Array:
+        return np.asarray(self._caps[(1 + rows[..., 3]) // 2, rows[..., 1], rows[..., 2]])
+
+    def _shapes(self, rows: NDArray[np.int64]) -> Array:
+        """Sign times the derivative of each power at the place: (..., power)."""
+        s, order = rows[..., 4] / self.places, rows[..., 2]
+        power = np.ones((*s.shape, self._factors.shape[1]))
+        for p in range(1, power.shape[-1]):
+            # The power of s that is left of sᵖ.
+            power[..., p] = np.where(p > order, power[..., p - 1] * s, 1.0)
+        return np.asarray(rows[..., 3, None] * self._factors[order] * power)
+
+    def candidates(self, h: Array, pieces: Array, moved: Array) -> Candidates:
+        """The limits that are nearest to being exceeded, or exceeded most.
+
+        Parameters
+        ----------
+        h : ndarray, shape (box, segment)
+            Durations at the centre.
+        pieces : ndarray, shape (box, segment, power, joint)
+            The curve there, in the share of a segment.
+        moved : ndarray, shape (box, segment, segment, power, joint)
+            Its change with the logarithm of each duration, which is the first axis.
+        """
         segment, joint, order, _ = self.rows.T
         own = pieces[:, segment, :, joint]  # (row, box, power)
-        found = np.einsum("rbp,rgp->brg", own, self.shapes)
-        size = self._size(order, self.caps, centre.h[:, segment])
-        found = np.where(order[:, None] > 0, found / size[:, :, None], found - size[:, :, None] + 1)
+        found = np.swapaxes(own @ np.swapaxes(self.shapes, 1, 2), 0, 1)
+        size = (self._cap(self.rows) * h[:, segment] ** order)[:, :, None]
+        found = np.where(order[:, None] > 0, found / size, found - size + 1)
         peak = np.full(found.shape, True)
         peak[:, :, 1:] &= found[:, :, 1:] > found[:, :, :-1]
         peak[:, :, :-1] &= found[:, :, :-1] >= found[:, :, 1:]
-        flat = np.where(peak, found, -np.inf).reshape(boxes, -1)
+        flat = np.where(peak, found, -np.inf).reshape(len(h), -1)
         count = min(self.count, flat.shape[1])
-        if count == flat.shape[1]:
-            best = np.broadcast_to(np.arange(count), (boxes, count))
-        else:
-            best = np.argpartition(-flat, count - 1, axis=1)[:, :count]
-        box = np.arange(boxes)[:, None]
+        best = np.argpartition(-flat, count - 1, axis=1)[:, :count]
+        box = np.arange(len(h))[:, None]
         there = np.isfinite(flat[box, best])
         which, spot = best // (_GRID + 1), self.grid[best % (_GRID + 1)]
         rows = np.concatenate([self.rows[which], spot[:, :, None]], axis=2)
         coefficients = own[which, box]
         rows[..., 4] = self._peaks(rows, coefficients)
-        shape = task.shapes(rows, float(self.places))
-        size = size[box, which]
-        high = rows[..., 2] > 0
+        shape, high = self._shapes(rows), rows[..., 2] > 0
+        size = size[box, which, 0]
         value = (shape * coefficients).sum(axis=2)
         value = np.where(high, value / size - 1.0, value - size)
-        scale = np.where(high, 1.0 / size, 1.0)
-        phi = np.einsum("lcp,lcpx->lcx", shape * scale[:, :, None], form.basis[rows[..., 0]])
-        turn = -(phi @ centre.y) * np.swapaxes(centre.g, 1, 2)[box, rows[..., 1]] * task.half
-        slopes = (turn @ task.at) @ task.across
-        np.add.at(slopes, (box, np.arange(count)[None], rows[..., 0]), -1.0 * rows[..., 2])
+        shape *= np.where(high, 1.0 / size, 1.0)[:, :, None]
+        turned = moved.transpose(0, 2, 4, 1, 3)[box, rows[..., 0], rows[..., 1]]
+        slopes = (turned @ shape[..., None])[..., 0]
+        slopes[box, np.arange(count), rows[..., 0]] -= rows[..., 2]
         return Candidates(rows, np.where(there, value, -np.inf), slopes)
-
-    @staticmethod
-    def _size(order: NDArray[np.int64], cap: Array, h: Array) -> Array:
-        power = np.ones_like(h)
-        for r in (1, 2, 3):
-            power = np.where(order >= r, power * h, power)
-        return np.asarray(cap * power)
 
     def _peaks(self, rows: NDArray[np.int64], coefficients: Array) -> NDArray[np.int64]:
         """Places of the peaks next to those of the grid."""
-        first = rows[..., 4] / self.places
+        first, order = rows[..., 4] / self.places, rows[..., 2]
         wide = 1.0 / _GRID
         low, high = np.maximum(first - wide, 0.0), np.minimum(first + wide, 1.0)
-        powers = np.arange(coefficients.shape[-1])
-        order, sign = rows[..., 2], rows[..., 3]
-        factor = np.ones(coefficients.shape)
-        for r in range(5):
-            # (s^p) differentiated order + 1 times, then once more.
-            factor = np.where(r <= order[..., None], factor * np.maximum(powers - r, 0), factor)
-        left = powers - order[..., None] - 1
-        one = factor * coefficients * sign[..., None]
-        two = one * np.maximum(left, 0)
+        signed = coefficients * rows[..., 3, None]
+        rise, bend = signed * self._factors[order + 1], signed * self._factors[order + 2]
         s = first
         for _ in range(_NEWTON):
-            power = np.where(left >= 0, s[..., None] ** np.maximum(left, 0), 0.0)
-            rise = (one * power).sum(axis=-1)
-            power = np.where(left >= 1, s[..., None] ** np.maximum(left - 1, 0), 0.0)
-            bend = (two * power).sum(axis=-1)
-            bent = bend < 0.0
-            newton = s - rise / np.where(bent, bend, 1.0)
-            s = np.clip(np.where(bent, newton, np.where(rise > 0.0, high, low)), low, high)
+            up, bent = np.zeros_like(s), np.zeros_like(s)
+            for p in range(coefficients.shape[-1] - 1, 0, -1):
+                # From the highest power on: those above the derivative's own order.
+                up = np.where(p > order, up * s + rise[..., p], up)
+                bent = np.where(p > order + 1, bent * s + bend[..., p], bent)
+            falls = bent < 0.0
+            newton = s - up / np.where(falls, bent, 1.0)
+            s = np.clip(np.where(falls, newton, np.where(up > 0.0, high, low)), low, high)
         return np.asarray(np.rint(s * self.places), dtype=np.int64)

@@ -2,93 +2,177 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from abc import ABC, abstractmethod
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ....problem import Array
 from ....verify import LEAF
-from .rows import NearLimits
+from ...optimum import time_up
+from ..crew import Common
+from ..driver import Branching
+from .rows import Candidates, NearLimits
 from .simplex import best_weights
 
-_WEIGHT = 2.0**12
-"""Sum of the weights of a leaf, about: finer ones spare no box at 1e-8, 1 in 80 at 1e-9."""
-_WIDEST = 1.2
-"""Half-width of a logarithm from which on a box is cut without a look at its limits."""
-_SAFE = 1e-12
-"""Share of the weights by which a bound is positive, so that it is in other batches too."""
 _NARROW = 1e-8
 """Width of a logarithm at which a box is as small as it may get: what second-order terms change in
 it is below rounding."""
+_DEEPEST = 600
+"""Cuts above a box that is as small as it may get: beside 0 no logarithm says so."""
+_LOOKS = 3
+"""Directions of a batch that are looked at for a better answer: the shortest ones."""
 
-Box = tuple[list[float], list[float]]
+Sides = tuple[list[float], list[float]]
+Leaf = tuple[Any, ...]
+"""Nothing; a row; a window and its τ; or τ and rows with their weights."""
+Cell = tuple[int, Sides]
+"""A box and its number in the tree: the first is 1, those below number k are 2k and 2k + 1."""
 
 
 class TooSmall(Exception):
     """Boxes are as small as they may get."""
 
 
-@dataclass(eq=False)
-class Found:
-    """A tree of boxes: by node a cut and the first of both parts, or a leaf.
+class Middle(NamedTuple):
+    """A curve at the centres of boxes.
 
-    A leaf has nothing, a row, or τ and rows with their weights.
+    ``centre`` is the verifier's; ``h`` and ``e``, shape (box, segment), are durations and by how
+    much their logarithms differ in a box; ``pieces`` and ``moved`` are those of `NearLimits`.
     """
 
-    cuts: dict[int, tuple[int, int]] = field(default_factory=dict)
-    leaves: dict[int, tuple[Any, ...]] = field(default_factory=dict)
-
-    def nodes(self) -> tuple[list[list[int]], list[Any]]:
-        """Rows and tree of a document."""
-        table: dict[tuple[int, ...], int] = {}
-        tree: list[Any] = []
-        waiting = [0]
-        while waiting:
-            node = waiting.pop()
-            if node in self.cuts:
-                coordinate, first = self.cuts[node]
-                tree.append(coordinate)
-                waiting += [first + 1, first]
-                continue
-            leaf: list[Any] = [LEAF]
-            if len(self.leaves[node]) == 1:
-                leaf.append(table.setdefault(self.leaves[node][0], len(table)))
-            elif self.leaves[node]:
-                tau, pairs = self.leaves[node]
-                leaf.append(tau)
-                for row, weight in pairs:
-                    leaf += [table.setdefault(row, len(table)), weight]
-            tree.append(leaf)
-        return [list(row) for row in table], tree
+    centre: Any
+    h: Array
+    e: Array
+    pieces: Array
+    moved: Array
 
 
-def search(
-    kind: Any,
-    places: int,
-    signed: bool,
-    look: Callable[[Array], None],
-    watch: Callable[[int, int], None],
-) -> Found:
-    """Exclude every box, or end by an exception of ``look`` or ``watch``.
+class Curves(ABC):
+    """What a kind of proof says of its boxes, by the arithmetic of its verifier.
 
     Parameters
     ----------
-    kind : DeclaredCurve
+    kind : Boxes
         Of `trajgap.verify`, for the total to be proved and without rows.
-    places : int
-        Of a piece.
-    signed : bool
-        Whether τ may be negative.
-    look : callable
-        Called with the centres of boxes that may hold a shorter answer.
-    watch : callable
-        Called with the boxes left and those done.
+    near : NearLimits
     """
-    limits = NearLimits(kind.task, places)
-    found, waiting, made, done = Found(), [(0, kind.root())], 1, 0
-    while waiting:
+
+    widest: ClassVar[float]
+    """Width of a logarithm from which on a box is cut without a look at its limits."""
+    part = 500
+    """Boxes of a part: a tenth of a second, beside which handing it out costs nothing."""
+
+    def __init__(self, kind: Any, near: NearLimits) -> None:
+        self.kind, self.near = kind, near
+
+    @abstractmethod
+    def middle(self, sides: Array) -> Middle:
+        """At the centres of boxes (box, least or largest, segment)."""
+
+    @abstractmethod
+    def proved(
+        self, middle: Middle, rows: NDArray[np.int64], weights: Array, tau: Array
+    ) -> tuple[NDArray[np.bool_], Array, Array, Array]:
+        """Which boxes are excluded by rows of weights and τ; both as integers; and what to cut.
+
+        The last array, shape (box, segment), is large where a side is to blame for what was lost.
+        """
+
+    def without_limits(self, low: Array, high: Array) -> list[Leaf | None]:
+        """What excludes boxes whatever the curve."""
+        return [None] * len(low)
+
+
+@dataclass
+class Found:
+    """A tree of boxes by their numbers: across which segment one is cut, or what excludes it."""
+
+    cuts: dict[int, int] = field(default_factory=dict)
+    leaves: dict[int, Leaf] = field(default_factory=dict)
+
+    def document(self) -> dict[str, list[Any]]:
+        """Rows, tree and, if there are any, windows.
+
+        What is used most stands first in its table, so that its number is short.
+        """
+        preorder = list(self._preorder())
+        used = [self.leaves[node] for node in preorder if node in self.leaves]
+        windows = _places(leaf[0] for leaf in used if len(leaf) == 3)
+        rows = _places(row for leaf in used if len(leaf) < 3 for row in _rows(leaf))
+        tree: list[Any] = []
+        for node in preorder:
+            if node in self.cuts:
+                tree.append(self.cuts[node])
+                continue
+            leaf = self.leaves[node]
+            if len(leaf) == 3:
+                own = [windows[leaf[0]], repr(leaf[1]) if leaf[1] else "0"]
+            elif len(leaf) == 2:
+                own = [leaf[0], *(x for row, weight in leaf[1] for x in (rows[row], weight))]
+            else:
+                own = [rows[row] for row in leaf]
+            tree.append([LEAF, *own])
+        return {"windows": list(windows), "rows": [list(row) for row in rows], "tree": tree}
+
+    def _preorder(self) -> Iterator[int]:
+        waiting = [1]
+        while waiting:
+            node = waiting.pop()
+            yield node
+            if node in self.cuts:
+                waiting += [2 * node + 1, 2 * node]
+
+
+def _rows(leaf: Leaf) -> Iterable[Any]:
+    return (row for row, _ in leaf[1]) if len(leaf) == 2 else leaf
+
+
+def _places(used: Iterable[Any]) -> dict[Any, int]:
+    """Where each entry stands in a table: by how often it is used, then by when first."""
+    return {entry: k for k, (entry, _) in enumerate(Counter(used).most_common())}
+
+
+@dataclass(frozen=True, eq=False)
+class Bundle:
+    """Boxes to go on from, the next one last.
+
+    ``place`` is where they stand among all: sorted, bundles are worked on as one stack would be.
+    """
+
+    cells: tuple[Cell, ...]
+    place: tuple[int, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class Part:
+    """What was done below a bundle, the boxes that are left, and directions that may be shorter."""
+
+    found: Found
+    rest: list[Cell]
+    boxes: int
+    directions: list[Array]
+
+
+def search_part(curves: Curves, bundle: Bundle) -> Part:
+    """Exclude and cut boxes until none is left, a part's boxes are visited or time is up.
+
+    Returns
+    -------
+    Part
+        But for the clock, a function of its arguments alone.
+
+    Raises
+    ------
+    TooSmall
+    """
+    kind, found, waiting, done = curves.kind, Found(), list(bundle.cells), 0
+    directions: list[Array] = []
+    while waiting and done < curves.part:
         batch, waiting = waiting[-kind.batch :], waiting[: -kind.batch]
         done += len(batch)
         full = []
@@ -98,66 +182,151 @@ def search(
             else:
                 full.append((node, box))
         if full:
-            sides = np.array([box for _, box in full])
+            if max(full)[0].bit_length() > _DEEPEST:
+                raise TooSmall
             with np.errstate(all="ignore"):
-                leaves, axes = _judged(kind, limits, sides, signed, look)
+                sides = np.array([box for _, box in full])
+                leaves, axes, shorter = _judged(curves, sides)
+            directions.append(shorter)
             for (node, box), leaf, axis in zip(full, leaves, axes, strict=True):
                 if leaf is not None:
                     found.leaves[node] = leaf
                     continue
-                found.cuts[node] = axis, made
+                found.cuts[node] = axis
                 parts = kind.cut(box, axis, None)
-                waiting += [(made, parts[0]), (made + 1, parts[1])]
-                made += 2
-        watch(len(waiting), done)
-    return found
+                waiting += [(2 * node, parts[0]), (2 * node + 1, parts[1])]
+        if time_up():
+            break
+    return Part(found, waiting, done, directions)
 
 
-def _judged(
-    kind: Any, limits: NearLimits, sides: Array, signed: bool, look: Callable[[Array], None]
-) -> tuple[list[Any], list[int]]:
-    """What excludes each box, or None and the segment across which it is to be cut."""
+def _judged(curves: Curves, sides: Array) -> tuple[list[Leaf | None], list[int], Array]:
+    """What excludes each box, or None and the segment across which it is to be cut.
+
+    Also the directions among them whose totals seem to be shortest.
+    """
     low, high = sides[:, 0], sides[:, 1]
-    width = np.log(high / low)
+    width = np.log(high / np.maximum(low, 1e-6 * high))
     if (width.max(axis=1) < _NARROW).any():
         raise TooSmall
-    leaves: list[Any] = [None] * len(sides)
-    axes = width.argmax(axis=1)
-    narrow = width.max(axis=1) < 2.0 * _WIDEST
-    if not narrow.any():
-        return leaves, axes.tolist()
-    centre = kind.centre(sides[narrow])
-    own = limits.candidates(centre)
-    e = centre.e
+    leaves, axes = curves.without_limits(low, high), width.argmax(axis=1)
+    open_ = np.array([leaf is None for leaf in leaves])
+    where = np.flatnonzero(open_ & (width.max(axis=1) < curves.widest))
+    if not where.size:
+        return leaves, axes.tolist(), low[:0]
+    middle = curves.middle(sides[where])
+    own = curves.near.candidates(middle.h, middle.pieces, middle.moved)
+    total = curves.kind.most
+    change = np.abs(own.slopes) * middle.e[:, None, :]
     most, weights, tau = best_weights(
         np.where(np.isfinite(own.values), own.values, -1e3),
-        own.slopes * e[:, None, :],
-        centre.h.sum(axis=1) / kind.task.total - 1.0,
-        centre.h * e / kind.task.total,
-        signed,
+        own.slopes * middle.e[:, None, :],
+        middle.h.sum(axis=1) / total - 1.0,
+        middle.h * middle.e / total,
+        curves.kind.stretches,
     )
-    where = np.flatnonzero(narrow)
-    change = np.abs(own.slopes) * e[:, None, :]
     top = np.where(np.isfinite(own.values), np.maximum(0.0, 1.0 + own.values), 0.0)
     lean = (weights[:, :, None] * change).sum(axis=1) + (top[:, :, None] * change).max(axis=1)
-    axes[where] = (width[where] * (lean + 0.1)).argmax(axis=1)
-    good = (most > 0.0) & centre.held
+    blame = np.ones_like(lean)
+    for at, leaf in _excluded(curves, middle, own, most, weights, tau, blame):
+        leaves[where[at]] = leaf
+    axes[where] = (width[where] * (lean + 0.1) * blame).argmax(axis=1)
+    return leaves, axes.tolist(), _shortest(middle.h, own, most)
+
+
+def _shortest(h: Array, own: Candidates, most: Array) -> Array:
+    """Directions of least totals, stretched until limits are kept at the places looked at."""
+    order = own.rows[..., 2]
     # A stretch repairs every limit but those of positions.
-    inside = np.where(own.rows[..., 2] == 0, own.values, -np.inf).max(axis=1) <= 0.0
-    look(centre.h[(most <= 0.0) & inside])
-    if not good.any():
-        return leaves, axes.tolist()
-    share, whole_tau = np.rint(weights[good] * _WEIGHT), np.rint(tau[good] * _WEIGHT)
+    fit = (most <= 0.0) & (np.where(order == 0, own.values, -np.inf).max(axis=1) <= 0.0)
+    stretch = np.maximum(1.0 + own.values, 0.0) ** (1.0 / np.maximum(order, 1))
+    totals = np.where(fit, h.sum(axis=1) * stretch.max(axis=1), np.inf)
+    best = totals.argsort()[:_LOOKS]
+    return np.asarray(h[best[np.isfinite(totals[best])]])
+
+
+def _excluded(
+    curves: Curves,
+    middle: Middle,
+    own: Candidates,
+    most: Array,
+    weights: Array,
+    tau: Array,
+    blame: Array,
+) -> Iterator[tuple[int, Leaf]]:
+    """Boxes that the verifier's bound excludes, each with its leaf; of others what is to blame."""
+    good = np.flatnonzero(most > 0.0)
+    if not good.size:
+        return
     # Rows without weight take no part: the heaviest stand first, and the rest is cut off.
-    order = np.argsort(-share, axis=1, kind="stable")[:, : 1 + int((share > 0.0).sum(axis=1).max())]
-    share = np.take_along_axis(share, order, axis=1)
+    order = np.argsort(-weights[good], axis=1, kind="stable")
+    order = order[:, : 1 + int((weights[good] > 0.0).sum(axis=1).max())]
     rows = np.take_along_axis(own.rows[good], order[:, :, None], axis=1)
-    bound = centre.pick(good).least(whole_tau, rows, share, float(limits.places))
-    for at in np.flatnonzero(bound > _SAFE * _WEIGHT):
+    share = np.take_along_axis(weights[good], order, axis=1)
+    picked = Middle(middle.centre.pick(good), *(x[good] for x in middle[1:]))
+    excluded, taus, shares, blame[good] = curves.proved(picked, rows, share, tau[good])
+    for at in np.flatnonzero(excluded):
         pairs = [
             (tuple(row), int(weight))
-            for row, weight in zip(rows[at].tolist(), share[at], strict=True)
+            for row, weight in zip(rows[at].tolist(), shares[at], strict=True)
             if weight > 0.0
         ]
-        leaves[where[np.flatnonzero(good)[at]]] = (int(whole_tau[at]), pairs)
-    return leaves, axes.tolist()
+        yield int(good[at]), (int(taus[at]), pairs)
+
+
+class BoxSearch(Branching[Bundle]):
+    """Search below boxes, part by part.
+
+    Parameters
+    ----------
+    curves : Curves
+    look : callable
+        Called with directions that may hold a shorter answer; may raise.
+    watch : callable
+        Called with the boxes that wait and those done.
+
+    Attributes
+    ----------
+    least : int
+        Boxes of a bundle, if there are as many: with fewer, calls cost more than what they compute.
+    """
+
+    ahead, least = 8, 256
+    work = staticmethod(search_part)
+
+    def __init__(
+        self,
+        curves: Curves,
+        look: Callable[[Array], None],
+        watch: Callable[[int, int], None],
+    ) -> None:
+        self.common, self._look, self._watch = Common(curves), look, watch
+        self.found, self._left, self._done = Found(), 1, 0
+
+    def order(self, box: Bundle) -> tuple[int, ...]:
+        """As one stack would have it."""
+        return box.place
+
+    def wanted(self, box: Bundle) -> bool:
+        """Every box is."""
+        return True
+
+    def given(self, box: Bundle) -> tuple[Bundle]:
+        """The boxes."""
+        return (box,)
+
+    def taken(self, box: Bundle, found: Part) -> Iterator[Bundle]:
+        """What is left of a part, once its directions were looked at."""
+        self._left += len(found.rest) - len(box.cells)
+        self._done += found.boxes
+        self.found.cuts.update(found.found.cuts)
+        self.found.leaves.update(found.found.leaves)
+        if found.directions:
+            self._look(np.concatenate(found.directions))
+        size = max(self.least, -(-len(found.rest) // self.ahead))
+        for i, at in enumerate(range(len(found.rest), 0, -size)):
+            yield Bundle(tuple(found.rest[max(0, at - size) : at]), (*box.place, i))
+
+    def look(self, waiting: int) -> None:
+        """Report."""
+        self._watch(self._left, self._done)

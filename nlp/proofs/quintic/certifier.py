@@ -3,30 +3,33 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
-from ....problem import Array, Interpolant, Verdict, check
+from ....problem import Interpolant
 from ....verify import (
     MOST_POWER,
     MOST_QUINTIC_JOINTS,
     MOST_QUINTIC_SEGMENTS,
     SHORTEST_TOTAL,
     SMALLEST,
+    Clock,
+    proof_kind,
 )
 from ..certifier import Certifier
-from ..driver import grow
+from ..declared import BoxStages, Curves, Found, Tree
+from ..document import stated_problem
 from ..exact import ExactProblem, decimal
 from ..rounding import below
-from ..session import Ladder, Session, Shorter
-from .leaves import Leaves
-from .subtrees import Parts, Root, Stage, search_part
-from .windows import Windows, windows
+from ..session import Ladder, Session
+from .curves import QuinticCurves
+from .windows import windows
 
+_KIND = "quintic-spline"
+"""Of the proof, as documents name it."""
 _LADDER = Ladder(
     (0.3, 0.2, 0.1, 0.05, *(x * 10.0**-k for k in range(2, 7) for x in (2.0, 1.0, 0.5))),
     share=0.9,
@@ -36,27 +39,6 @@ _LADDER = Ladder(
 )
 """Boxes grow with a power of 1/gap: small steps keep a stopped run near its goal. From 0.2 on they
 grow to 15 to 20 times as many, and judging takes on one core as long again as the search."""
-
-
-@dataclass(frozen=True, eq=False)
-class Tree:
-    """Bisections of the simplex of durations that prove a total, in the units of the proof."""
-
-    own: OwnUnits
-    total: Fraction
-    windows: Windows
-    leaves: Leaves
-
-    def document(self) -> dict[str, Any]:
-        """Kind "quintic-spline" of docs/explanation/certificates-quintic.md."""
-        return {
-            "kind": "quintic-spline",
-            "total": decimal(self.total * self.own.time),
-            "powers": list(self.own.powers),
-            "second": self.own.second,
-            "low": [decimal(x * self.own.time) for x in self.own.low],
-            **self.leaves.document(self.windows),
-        }
 
 
 def _declares(problem: ExactProblem) -> bool:
@@ -90,24 +72,6 @@ def _missing(problem: ExactProblem) -> str | None:
     return None
 
 
-def _limits(problem: ExactProblem) -> Array:
-    """Looser ends of the limits, shape (joints, 3); a limit of 0 takes no part."""
-    each = [[math.inf if x is None else float(x.high) for x in row] for row in problem.limits]
-    limits = np.array(each, dtype=np.float64)
-    return np.where(limits > 0.0, limits, np.inf)
-
-
-def shortest(problem: ExactProblem, unit: Fraction = Fraction(1)) -> tuple[Fraction, ...]:
-    """Least durations by their bounds and by the mean velocities, as floats, in a unit of time."""
-    q, out = problem.waypoints, []
-    for k, low in enumerate(problem.duration_lower):
-        for j, (velocity, *_) in enumerate(problem.limits):
-            if velocity is not None and velocity.high > 0:
-                low = max(low, abs(q[k + 1][j] - q[k][j]) / velocity.high)
-        out.append(below(low / unit))
-    return tuple(out)
-
-
 class OwnUnits:
     """A problem in floats, in units in which steps and total are not far from 1.
 
@@ -118,73 +82,63 @@ class OwnUnits:
     """
 
     def __init__(self, problem: ExactProblem) -> None:
-        rows = [[float(b - a) for a, b in zip(*pair, strict=True)]
-                for pair in pairwise(problem.waypoints)]  # fmt: skip
-        steps, limits = np.array(rows), _limits(problem)
+        exact = [
+            [b - a for a, b in zip(*pair, strict=True)] for pair in pairwise(problem.waypoints)
+        ]
+        # The looser ends of the limits; one of 0 takes no part.
+        caps = [[None if x is None or x.high <= 0 else x.high for x in row]
+                for row in problem.limits]  # fmt: skip
+        steps = np.array([[float(x) for x in row] for row in exact])
+        limits = np.array([[math.inf if x is None else float(x) for x in row] for row in caps])
         powers = np.array([_power(float(column.max())) for column in np.abs(steps).T])
-        least = np.array([float(x) for x in problem.duration_lower])
-        with np.errstate(divide="ignore"):
-            for order in (1, 2, 3):
-                needs = (np.abs(steps) / limits[:, order - 1]) ** (1.0 / order)
-                least = np.maximum(least, needs.max(axis=1))
-        self.powers, self.second = powers.tolist(), _power(float(least.sum()))
+        needs = np.abs(steps[:, :, None] / limits) ** (1.0 / np.arange(1, 4))
+        bounds = np.array([float(x) for x in problem.duration_lower])
+        self.powers = powers.tolist()
+        self.second = _power(float(np.maximum(bounds, needs.max(axis=(1, 2))).sum()))
         self.time = Fraction(2) ** self.second
         self.steps = steps / 2.0**powers
         times = 2.0 ** (self.second * np.array([1.0, 2.0, 3.0]))
         self.limits = limits * times / 2.0 ** powers[:, None]
-        self.low = shortest(problem, self.time)
+        # By their bounds and by the mean velocities.
+        least = [
+            max([low, *(abs(x) / v for x, (v, *_) in zip(row, caps, strict=True) if v is not None)])
+            for low, row in zip(problem.duration_lower, exact, strict=True)
+        ]
+        self.low = tuple(below(x / self.time) for x in least)
+
+    def head(self, library: list[list[int]]) -> dict[str, Any]:
+        """What a certificate states beside rows and tree."""
+        return {
+            "kind": _KIND,
+            "total": "",
+            "powers": list(self.powers),
+            "second": self.second,
+            "low": [decimal(x * self.time) for x in self.low],
+            "windows": library,
+        }
 
 
-class Stages:
-    """What the stages share: numbers in the units of the proof, and windows that exclude boxes."""
+class QuinticStages(BoxStages):
+    """Windows that exclude boxes, in the units of the proof, which all stages share."""
 
     def __init__(self, session: Session) -> None:
-        self.session, self.own = session, OwnUnits(session.exact)
-        self.steps, self.limits = self.own.steps, self.own.limits
+        super().__init__(session)
+        self._own = own = OwnUnits(session.exact)
         assert session.durations is not None
-        near = np.array([float(h / self.own.time) for h in session.durations])
-        self.library = windows(self.steps, self.limits, near, clock=session.check_clock)
-        with session.clock.standing():  # the first search compiles, or loads what is compiled
-            nowhere = np.ones(len(self.own.low))
-            search_part(self._stage(1.0, 0.0), Root(nowhere, 0.0 * nowhere))
-
-    def _stage(self, total: float, look: float) -> Stage:
-        return Stage(self.steps, self.limits, total, self.library.terms, look)
+        near = np.array([float(h / own.time) for h in session.durations])
+        self._windows = windows(own.steps, own.limits, near, clock=session.check_clock)
 
     def rounded(self, total: Fraction) -> Fraction:
         """A total that is exact in floating point in the units of the proof, s."""
-        return below(total / self.own.time) * self.own.time
+        return below(total / self._own.time) * self._own.time
 
-    def stage(self, target: Fraction) -> Tree:
-        """Prove that no total is below ``target``, s."""
-        session, own = self.session, target / self.own.time
-        assert session.upper is not None
-        # Durations that are shorter by less are not worth a new start of the ladder.
-        look = float(session.upper / self.own.time) * (1.0 - 1e-7)
-        before = session.nodes
-        parts = Parts(
-            self._stage(float(own), look),
-            lambda h: self._look(h, look),
-            lambda waiting, boxes: session.report(waiting, before + boxes),
-        )
-        root = Root(
-            np.array([float(x) for x in self.own.low]), np.full(len(self.own.low), float(own))
-        )
-        grow(parts, [root], session)
-        return Tree(self.own, own, self.library, parts.leaves)
-
-    def _look(self, durations: Array, below_it: float) -> bool:
-        """Raise `Shorter` if the direction of ``durations`` holds a total below the one given.
-
-        False if it does but for bounds that stretching cannot repair: more would follow.
-        """
-        time = float(self.own.time)
-        found = self.session.stretched(durations[None] * time)[0]
-        if not found.sum() < below_it * time:
-            return True
-        if check(self.session.floats, found).verdict is Verdict.PASS:
-            raise Shorter(found)
-        return False
+    def curves(self, target: Fraction) -> tuple[Curves, float, dict[str, Any]]:
+        """Those of the verifier's own kind."""
+        head = self._own.head(self._windows)
+        proof = head | {"rows": [], "tree": []}
+        stated = stated_problem(self.session.exact)
+        kind = proof_kind(_KIND)(stated, proof, target, Clock(math.inf))
+        return QuinticCurves(kind), float(self._own.time), head
 
 
 def _power(size: float) -> int:
@@ -200,11 +154,7 @@ def _keep_mean_velocities(session: Session) -> None:
     # The first box is to be empty by far more than the verifier's slack.
     total = below(sum(low, Fraction(0)) * (1 - Fraction(1, 10**9)))
     if total > SHORTEST_TOTAL:
-        n = len(low)
-        none = Windows(
-            np.zeros(0, np.int64), np.zeros((0, n + 1)), np.zeros((0, n)), np.zeros((0, 2 * n + 1))
-        )
-        tree = Tree(own, total, none, Leaves.of_nothing())
+        tree = Tree(total * own.time, own.head([]), Found(leaves={1: ()}))
         session.keep_at_once(total * own.time, tree)
 
 
@@ -216,7 +166,7 @@ def _prove(session: Session) -> bool:
         return False
     # Judging takes as long as the search on one core: 0.9 to 1.1 times were measured.
     session.judging = 1.2
-    stages = Stages(session)
+    stages = QuinticStages(session)
     session.climb(_LADDER, stages.rounded, stages.stage)
     return True
 
@@ -227,6 +177,6 @@ QUINTIC = Certifier(
     _missing,
     _prove,
     boxes=20_000,
-    compiles=True,
+    prepares=True,
 )
 """At rest alone: the windows and the nodal equations are derived for it."""

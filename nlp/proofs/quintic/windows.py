@@ -11,129 +11,94 @@ with m_k the mean of |ψ| on segment k. Every term depends on one duration alone
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linprog
+from scipy.sparse import block_diag, eye_array, kron
 
 from ....problem import Array
 from ....verify import WINDOW_UNIT
-from .energy import ROUNDING
-from .nodal import compiled
 
 _CELLS = 6
 """Of a segment in the linear program for ψ: it only proposes, the mean of |ψ| is exact later."""
+_TRIED = 4
+"""Windows that are tried on a box with multipliers of the total: the nearest to excluding it."""
+_TURNS = (1.0, 0.7)
+"""Shares of the multiplier at which a term is least at the upper end of its duration."""
 
 
-def mean_size(psi: Array) -> Array:
-    """Mean of |ψ| on each segment, ψ linear between its nodal values.
+def _conditions(n: int) -> Array:
+    """Rows ≤ 0 in ψ, c, sizes of ψ in cells, and |c + ψ' h| in segments: absolute values."""
+    free, cells = 2 * n + 1, n * _CELLS
+    middles = np.tile((np.arange(_CELLS) + 0.5) / _CELLS, n)
+    k, of = np.repeat(np.arange(n), _CELLS), np.arange(cells)
+    sides = np.zeros((cells + n, free + cells + n))
+    sides[of, k], sides[of, k + 1] = 1.0 - middles, middles
+    each = np.arange(n)
+    sides[cells + each, n + 1 + each] = sides[cells + each, each + 1] = 1.0
+    sides[cells + each, each] = -1.0
+    sizes = np.eye(cells + n, free + cells + n, free)
+    return np.concatenate([sides - sizes, -sides - sizes])
 
-    (|a| + |b|)/2; where ψ changes its sign, two triangles: (a² + b²)/(2(|a| + |b|)).
-    """
-    a, b = np.abs(psi[:-1]), np.abs(psi[1:])
-    both = a + b
-    crossing = (a * a + b * b) / np.where(both > 0.0, 2.0 * both, 1.0)
-    return np.asarray(np.where(psi[:-1] * psi[1:] >= 0.0, 0.5 * both, crossing), np.float64)
 
-
-def window(
-    steps: Array, durations: Array, velocity: float, acceleration: float
-) -> tuple[Array, Array] | None:
-    """ψ and c of the condition that is violated most at given durations, rounded; None if none.
+def window(steps: Array, durations: Array, limits: Array) -> list[list[int]]:
+    """ψ and c of the conditions of each joint that are violated most at given durations.
 
     The largest Σ c_k Δ_k/h_k with A Σ m_k h_k + V Σ |c_k + ψ_k − ψ_{k−1}| = 1, a linear program if
     the mean m_k of |ψ| is taken over the middles of cells.
 
     Parameters
     ----------
-    steps, durations : ndarray, shape (segments,)
-        Of one joint, rad and s.
-    velocity, acceleration : float
-        Limits, rad/s and rad/s²; inf for none, not both.
+    steps : ndarray, shape (segments, joints)
+        rad.
+    durations : ndarray, shape (segments,)
+        s.
+    limits : ndarray, shape (joints, 2)
+        Of velocity and acceleration, rad/s and rad/s²; inf for none, not both.
 
     Returns
     -------
-    tuple of ndarray, shapes (segments + 1,) and (segments,)
+    list of list of int
+        The segments + 1 numbers ψ, then the segments numbers c, in units of 1/`WINDOW_UNIT`; empty
+        for a joint that has none.
     """
-    n = steps.size
-    limited_a, limited_v = np.isfinite(acceleration), np.isfinite(velocity)
-    middles = (np.arange(_CELLS) + 0.5) / _CELLS
-    free, cells = 2 * n + 1, n * _CELLS
-    size = free + cells + n  # ψ, c, |ψ| per cell, |c + ψ'h| per segment
-    rows = []
-    for k in range(n):
-        for i, s in enumerate(middles):
-            for sign in (1.0, -1.0):
-                row = np.zeros(size)
-                row[k], row[k + 1] = sign * (1.0 - s), sign * s
-                row[free + k * _CELLS + i] = -1.0
-                rows.append(row)
-        for sign in (1.0, -1.0):
-            row = np.zeros(size)
-            row[n + 1 + k], row[k + 1], row[k] = sign, sign, -sign
-            row[free + cells + k] = -1.0
-            rows.append(row)
-    price = np.zeros(size)
-    price[free : free + cells] = acceleration * np.repeat(durations, _CELLS) / _CELLS
-    price[free + cells :] = velocity
-    upper = np.full(size, np.inf)
-    if not limited_a:
-        upper[free : free + cells] = 0.0
-    if not limited_v:
-        upper[free + cells :] = 0.0
-    price[~np.isfinite(price)] = 0.0
-    gain = np.zeros(size)
-    gain[n + 1 : free] = -steps / durations
-    bounds = [(None, None)] * free + [(0.0, u if u == 0.0 else None) for u in upper[free:]]
-    found = linprog(
-        gain, A_ub=np.array(rows), b_ub=np.zeros(len(rows)), A_eq=price[None, :], b_eq=[1.0],
-        bounds=bounds, method="highs",
-    )  # fmt: skip
-    if found.status != 0:
-        return None
-    psi, weights = found.x[: n + 1], found.x[n + 1 : free]
-    top = max(float(np.abs(psi).max()), float(np.abs(weights).max()))
-    if not top > 0.0:
-        return None
-    # Dyadic numbers: the sums c + ψ' h are exact.
-    psi = np.rint(psi / top * WINDOW_UNIT) / WINDOW_UNIT
-    weights = np.rint(weights / top * WINDOW_UNIT) / WINDOW_UNIT
-    if not limited_v:  # no limit pays for what is left between them
-        weights = psi[:-1] - psi[1:]
-    if not limited_a:
-        psi = np.zeros(n + 1)
-    return psi, weights
-
-
-def window_terms(
-    psi: Array, weights: Array, steps: Array, velocity: float, acceleration: float
-) -> Array:
-    """Condition as Σ_k (p_k/h_k − q_k h_k) − d ≤ 0: (p, q, d) in one array of 2·segments + 1."""
-    left = np.abs(weights + psi[1:] - psi[:-1])
-    d = velocity * left.sum() if left.any() else 0.0
-    mean = mean_size(psi)
-    q = acceleration * mean if mean.any() else np.zeros_like(mean)
-    return np.concatenate([weights * steps, q, [d]])
-
-
-@dataclass(frozen=True, eq=False)
-class Windows:
-    """Conditions on single joints.
-
-    Attributes
-    ----------
-    joint : ndarray of int, shape (conditions,)
-    psi : ndarray, shape (conditions, segments + 1)
-    weights : ndarray, shape (conditions, segments)
-    terms : ndarray, shape (conditions, 2·segments + 1)
-        `window_terms` of each.
-    """
-
-    joint: NDArray[np.int64]
-    psi: Array
-    weights: Array
-    terms: Array
+    n, joints = steps.shape
+    rows = _conditions(n)
+    free, limited = 2 * n + 1, np.isfinite(limits)
+    pay = np.where(limited, limits, 0.0)
+    cells = pay[:, 1:] * np.repeat(durations, _CELLS) / _CELLS
+    still = np.repeat(pay[:, :1], n, axis=1)
+    price = np.concatenate([np.zeros((joints, free)), cells, still], axis=1)
+    top = np.full(price.shape, np.inf)
+    top[:, free : free + cells.shape[1]][~limited[:, 1]] = 0.0
+    top[:, free + cells.shape[1] :][~limited[:, 0]] = 0.0
+    gain = np.zeros_like(price)
+    gain[:, n + 1 : free] = -(steps / durations[:, None]).T
+    low = np.where(np.arange(price.shape[1]) < free, -np.inf, np.zeros_like(price))
+    solved = linprog(
+        gain.ravel(),
+        A_ub=kron(eye_array(joints), rows, "csr"),
+        b_ub=np.zeros(joints * len(rows)),
+        A_eq=block_diag(list(price[:, None]), "csr"),
+        b_eq=np.ones(joints),
+        bounds=np.stack([low.ravel(), top.ravel()], axis=1),
+        method="highs",
+    )
+    if solved.status != 0:
+        return [[]] * joints
+    found = []
+    for x, (limited_v, limited_a) in zip(
+        solved.x.reshape(joints, -1)[:, :free], limited, strict=True
+    ):
+        largest = np.abs(x).max()
+        whole = np.rint(x / largest * WINDOW_UNIT) if largest > 0.0 else np.zeros(free)
+        psi, weights = np.split(whole.astype(int), [n + 1])
+        if not limited_v:  # no limit pays for what is left between them
+            weights = psi[:-1] - psi[1:]
+        found.append([*(psi if limited_a else 0 * psi).tolist(), *weights.tolist()])
+    return [one if any(one) else [] for one in found]
 
 
 def windows(
@@ -143,7 +108,7 @@ def windows(
     directions: int = 50,
     deviation: float = 0.5,
     clock: Callable[[], None] = lambda: None,
-) -> Windows:
+) -> list[list[int]]:
     """Conditions that are violated at random directions, and the mean velocities.
 
     Parameters
@@ -161,101 +126,48 @@ def windows(
 
     Returns
     -------
-    Windows
+    list of list of int
+        Joint, ψ and c, as a certificate states them.
     """
     rng = np.random.default_rng(0)
     n, joints = steps.shape
-    joint, psi, weights = [], [], []
-
-    def add(j: int, bent: Array, mean: Array) -> None:
-        joint.append(j)
-        psi.append(bent)
-        weights.append(mean)
-
+    library: list[list[int]] = []
     limited = [j for j in range(joints) if np.isfinite(limits[j, :2]).any() and steps[:, j].any()]
     for d in range(directions):
         clock()
         spread = deviation * rng.standard_normal(n) if d else np.zeros(n)
         direction = durations * np.exp(spread)
         direction *= durations.sum() / direction.sum()
-        for j in limited:
-            found = window(steps[:, j], direction, limits[j, 0], limits[j, 1])
-            if found is not None:
-                add(j, *found)
+        each = window(steps[:, limited], direction, limits[limited, :2]) if limited else []
+        library += [[j, *found] for j, found in zip(limited, each, strict=True) if found]
     for j in limited:
         for k in range(n if np.isfinite(limits[j, 0]) else 0):
-            mean = np.zeros(n)
-            mean[k] = np.sign(steps[k, j])
-            add(j, np.zeros(n + 1), mean)
-    terms = [
-        window_terms(p, w, steps[:, j], limits[j, 0], limits[j, 1])
-        for j, p, w in zip(joint, psi, weights, strict=True)
-    ]
-    return Windows(
-        np.array(joint, np.int64),
-        np.array(psi).reshape(-1, n + 1),
-        np.array(weights).reshape(-1, n),
-        np.array(terms).reshape(-1, 2 * n + 1),
-    )
+            mean = np.zeros(n, int)
+            mean[k] = np.sign(steps[k, j]) * WINDOW_UNIT
+            library.append([j, *[0] * (n + 1), *mean.tolist()])
+    return library
 
 
-@compiled
-def window_bound(n, terms, low, high, tau, total):  # type: ignore[no-untyped-def]
-    """Lower bound of the condition's left side plus tau·(Σ h − total) over a box of durations."""
-    value = -terms[2 * n] - tau * total
-    absolute = abs(value) + 2.0 * abs(tau) * total
-    for k in range(n):
-        p, q = terms[k], tau - terms[n + k]
-        if low[k] > 0.0:
-            least = min(p / low[k] + q * low[k], p / high[k] + q * high[k])
-        elif p >= 0.0:
-            least = p / high[k] + min(q * high[k], 0.0)
-        else:
-            return -np.inf
-        if p > 0.0 and q > 0.0:
-            # p/h + q h ≥ 2√(p q), attained at √(p/q).
-            turn, bottom = np.sqrt(p / q), 2.0 * np.sqrt(p * q) * (1.0 - 1e-12)
-            if low[k] < turn < high[k]:
-                least = bottom
-            elif not low[k] > 0.0:
-                least = p / high[k] + q * high[k]
-        value += least
-        absolute += abs(least) + (abs(tau) + terms[n + k]) * high[k]
-    return value - 20.0 * ROUNDING * absolute
-
-
-@compiled
-def excluding_window(n, library, low, high, total):  # type: ignore[no-untyped-def]
-    """Number and tau of a condition that the whole box violates; −1 if none is found.
-
-    The four that are nearest to excluding the box are tried with multipliers of the total.
-    """
-    best = np.full(4, -np.inf)
-    which = np.full(4, -1)
-    for f in range(library.shape[0]):
-        value = window_bound(n, library[f], low, high, 0.0, total)
-        if value > 0.0:
-            return f, 0.0
-        # How far it is from excluding, relative to what it weighs.
-        scale = library[f, 2 * n]
-        for k in range(n):
-            scale += library[f, n + k] * high[k]
-        at = best.size - 1
-        value /= scale
-        if value <= best[at]:
-            continue
-        while at > 0 and best[at - 1] < value:
-            best[at], which[at] = best[at - 1], which[at - 1]
-            at -= 1
-        best[at], which[at] = value, f
-    for i in range(which.size):
-        f = which[i]
-        if f < 0:
-            break
-        for k in range(n):
-            # d/dh (p/h + (tau − q)h) = 0 at the upper end of one duration.
-            tau = library[f, n + k] + library[f, k] / (high[k] * high[k])
-            for part in (1.0, 0.7):
-                if tau > 0.0 and window_bound(n, library[f], low, high, part * tau, total) > 0.0:
-                    return f, part * tau
-    return -1, 0.0
+def excluding_windows(kind: Any, low: Array, high: Array) -> tuple[NDArray[np.int64], Array]:
+    """For each box a window of its verifier that excludes it, or −1, and its τ."""
+    (p, pay, fixed), boxes = kind.windows, np.arange(len(low))
+    which, taus = np.full(len(low), -1), np.zeros(len(low))
+    if not len(fixed):
+        return which, taus
+    # How far each is from excluding a box, relative to what it weighs there.
+    weight = high @ pay.T + fixed
+    near = ((1.0 / high) @ p.T - weight) / weight
+    count = min(_TRIED, len(fixed))
+    best = np.argpartition(-near, count - 1, axis=1)[:, :count]
+    # d/dh (p/h + (τ − q)h) = 0 at the upper end of one duration.
+    turned = pay[best] + p[best] / (high * high)[:, None]
+    tried = [np.zeros((*best.shape, 1)), *(share * turned for share in _TURNS)]
+    tau = np.maximum(0.0, np.concatenate(tried, axis=2))
+    sides = (np.broadcast_to(x[:, None, None], (*tau.shape, x.shape[1])) for x in (low, high))
+    least = kind.over_windows(np.broadcast_to(best[:, :, None], tau.shape), tau, *sides)
+    flat = np.nan_to_num(least, nan=-np.inf).reshape(len(low), -1)
+    top = flat.argmax(axis=1)
+    excluded = flat[boxes, top] > 0.0
+    which[excluded] = best[boxes, top // tau.shape[2]][excluded]
+    taus[excluded] = tau.reshape(len(low), -1)[boxes, top][excluded]
+    return which, taus

@@ -166,39 +166,15 @@ def test_the_judge_has_a_second_even_if_the_time_is_over() -> None:
     assert RunClock(-5.0).left == 0.0
 
 
-def test_compiling_does_not_count(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_share_of_the_time_is_a_clock_of_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
     ticks = Ticking()
     monkeypatch.setattr(clock, "time", ticks)
     whole = RunClock(100.0)
     ticks.now = 20.0
     part = whole.share(0.5)
     assert (part.seconds, part.left) == (40.0, 40.0)
-    with part.standing():
-        ticks.now += 1000.0
-    assert (whole.used, part.used) == (20.0, 0.0)
     ticks.now += 30.0
     assert (whole.left, part.left) == (50.0, 10.0)
-
-
-@pytest.mark.parametrize("seconds", [20.0, 400.0])
-def test_a_verdict_does_not_depend_on_what_is_compiled(
-    monkeypatch: pytest.MonkeyPatch, seconds: float
-) -> None:
-    """As of `suite:quintic-gasparetto2008`, which a cold cache left open after a minute."""
-    warm = certify(QUINTIC, gap=0.5, seconds=seconds, certifier=certifier.QUINTIC)
-    ticks, real, calls = Ticking(), certifier.search_part, list[int]()
-
-    def compiling(*given: Any) -> Any:
-        calls.append(1)
-        ticks.now += 300.0
-        return real(*given)
-
-    monkeypatch.setattr(clock, "time", ticks)
-    monkeypatch.setattr(certifier, "search_part", compiling)
-    cold = certify(QUINTIC, gap=0.5, seconds=seconds, certifier=certifier.QUINTIC)
-    assert calls == [1]
-    assert cold.outcome is warm.outcome is Outcome.CERTIFIED
-    assert (cold.lower, cold.upper, cold.nodes) == (warm.lower, warm.upper, warm.nodes)
 
 
 def test_without_a_time_limit_boxes_are_counted(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -111,7 +111,7 @@ def test_a_budget_of_boxes_leaves_the_same_interval_each_time():
     assert {one.total_time for one in answers} == {answers[0].total_time}
 
 
-def test_a_short_quintic_is_proved_without_its_compiled_search():
+def test_a_short_quintic_is_proved_with_nothing_to_prepare():
     problem = Problem([[0.0], [0.6], [1.1], [0.8]], Limits(2.0, 6.0, 40.0), quintic_spline(3))
     found = solve(problem)
     assert found.status is Status.OPTIMAL
@@ -124,4 +124,4 @@ def test_a_long_spline_has_the_sharper_kind():
     q = np.random.default_rng(2).normal(size=(10, 1))
     assert prompt(exact_problem(Problem(q, Limits(2.0, 6.0), cubic_spline(9)))).boxes == 16
     assert prompt(exact_problem(Problem(q[:4], Limits(2.0, 6.0), cubic_spline(3)))).boxes > 16
-    assert prompt(exact_problem(Problem(q, Limits(2.0, 6.0), quintic_spline(9)))).compiles is False
+    assert prompt(exact_problem(Problem(q, Limits(2.0, 6.0), quintic_spline(9)))).prepares is False

@@ -13,7 +13,7 @@ import pytest
 from support.any_curve_proofs import certify_any, proved
 from trajgap.nlp.proofs.any_curve.estimate import estimate_any_curve
 from trajgap.nlp.proofs.certifiers import certify, covered
-from trajgap.nlp.proofs.document import certificate, sealed
+from trajgap.nlp.proofs.document import certificate, sealed, stated_problem
 from trajgap.nlp.proofs.exact import exact_problem, printed_problem
 from trajgap.nlp.proofs.outcome import Certified, Outcome
 from trajgap.problem import Array, Limits, Problem, TrajgapError, cubic_spline, parse_case
@@ -158,9 +158,9 @@ interpolant = { family = "cubic-spline", end_derivatives = [[12.1, -7]], finish_
 def test_printed_ends_are_exact_in_the_unit_of_the_way_points() -> None:
     statement = parse_case(CASE, "moving.toml").statement()
     exact = printed_problem(statement)
-    assert [str(v) for v in exact.end_velocities(0)] == ["121/10", "-7"]
-    assert [str(v) for v in exact.end_velocities(1)] == ["0", "0"]
-    assert [str(v) for v in exact.joint(1).end_velocities(0)] == ["-7"]
+    ends = [[str(v) for v in side] for side in stated_problem(exact).ends]
+    assert ends == [["121/10", "-7"], ["0", "0"]]
+    assert [str(v) for v in stated_problem(exact.joint(1)).ends[0]] == ["-7"]
     result = certify_any(exact, gap=1e-4, seconds=30)
     proved(result)
     # The same in radians, from floats.

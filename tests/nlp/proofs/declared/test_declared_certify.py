@@ -91,7 +91,7 @@ def unlucky(monkeypatch: pytest.MonkeyPatch, seconds: float = 2.0) -> tuple[floa
     upper = Fraction(true["claim"]["upper"])
     worse = tuple(Fraction(h) * Fraction(21, 20) for h in true["claim"]["durations"])
     answering(monkeypatch, lambda call, initial: worse)
-    monkeypatch.setattr(module._Stages, "_look", lambda run, *_: run.session.check_clock())
+    monkeypatch.setattr(module.BoxStages, "_look", lambda run, *_: run.session.check_clock())
     return float(upper), certify(exact, seconds=seconds)
 
 

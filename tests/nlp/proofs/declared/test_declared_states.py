@@ -25,6 +25,7 @@ from trajgap.verify import verify_certificate as verify
 def often(monkeypatch: pytest.MonkeyPatch, boxes: int) -> None:
     """Report after every few boxes, however fast they are."""
     monkeypatch.setattr("trajgap.verify.declared._LEAVES", boxes)
+    monkeypatch.setattr("trajgap.nlp.proofs.declared.search.Curves.part", boxes)
     monkeypatch.setattr("trajgap.nlp.proofs.session.Session.often", 0.0)
 
 

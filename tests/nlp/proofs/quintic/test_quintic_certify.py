@@ -16,76 +16,50 @@ from support.checkout import ROOT
 from support.unjudged import unjudged
 from trajgap.nlp.proofs.certifiers import certify, covered
 from trajgap.nlp.proofs.document import certificate
-from trajgap.nlp.proofs.exact import exact_problem
+from trajgap.nlp.proofs.exact import Real, exact_problem
 from trajgap.nlp.proofs.outcome import Certified, Outcome, Progress, Request
-from trajgap.nlp.proofs.quintic.bound import bound
-from trajgap.nlp.proofs.quintic.nodal import centre
-from trajgap.nlp.proofs.quintic.rows import row_shape
-from trajgap.nlp.proofs.quintic.windows import window, window_bound, window_terms
+from trajgap.nlp.proofs.quintic.windows import excluding_windows, window
 from trajgap.nlp.proofs.session import Session
 from trajgap.nlp.proofs.state import state_document
 from trajgap.problem import Limits, Problem, TrajgapError, evaluate, quintic_spline
-from trajgap.verify import QUINTIC_PLACES, seal
+from trajgap.verify import seal
 from trajgap.verify import verify_certificate as verify
 from trajgap.verify.quintic import QuinticSpline
-from trajgap.verify.quintic_bound import Bound, Task
 
 module = import_module("trajgap.nlp.proofs.quintic.certifier")
-
-
-@pytest.mark.parametrize("seed", range(16))
-def test_the_bound_of_a_box_is_that_of_the_verifier(seed: int) -> None:
-    """Which tests/verify compares with sampled curves."""
-    rng = np.random.default_rng(seed)
-    n, joints, count = int(rng.integers(2, 6)), 3, 5
-    h0, width = np.exp(rng.uniform(-0.5, 0.5, n)), [0.01, 0.04, 0.08, 0.15][seed % 4]
-    q = rng.uniform(-1.0, 1.0, (n + 1, joints))
-    low, high = 1.0 / (h0 * np.exp(width)), 1.0 / (h0 * np.exp(-width))
-    r, e = 0.5 * (low + high), 0.5 * (high - low)
-    size = 2 * (n - 1)
-    matrix, inverse = np.empty((size, size)), np.empty((size, size))
-    x0, slope = np.empty((joints, size)), np.empty((joints, n, size))
-    step = np.diff(q, axis=0)
-    assert centre(n, joints, r, step, matrix, inverse, x0, slope)
-    segment, joint = rng.integers(0, n, count), rng.integers(0, joints, count)
-    order, spot = np.array([1, 2, 3, 1, 2]), rng.integers(0, QUINTIC_PLACES + 1, count)
-    limits = rng.uniform(0.5, 3.0, (joints, 3))
-    sign, limit = rng.choice([-1, 1], count), limits[joint, order - 1]
-    weight, shape = rng.integers(1, 10, count).astype(float), np.empty((count, 5))
-    for i in range(count):
-        row_shape(order[i], float(sign[i]), spot[i], shape[i])
-    tau, total = float(rng.integers(-9, 10)), float(h0.sum())
-
-    centred = (n, joints, r, e, step, total, matrix, inverse, x0, slope)
-    rows = (segment, joint, 2 - order, limit, shape, weight)
-    least = float(bound(*centred, *rows, tau, np.empty(n)))
-    task = Task(step, limits, total, np.stack([segment, joint, order, sign, spot], axis=1))
-    leaf = np.array([tau]), np.arange(count)[None], weight[None]
-    proved = Bound(task, (1 / high)[None], (1 / low)[None], *leaf).least()[0]
-    assert proved == pytest.approx(least, rel=1e-6, abs=1e-6)
 
 
 @pytest.mark.parametrize("limited", [(1.0, 2.0), (np.inf, 2.0), (1.0, np.inf)])
 def test_a_window_never_excludes_a_feasible_motion(limited: tuple[float, float]) -> None:
     rng = np.random.default_rng(5)
-    velocity, acceleration = limited
     for _ in range(6):
         q = rng.uniform(-1.0, 1.0, (5, 1))
-        problem = Problem(q, Limits(velocity, acceleration), quintic_spline(4))
+        problem = Problem(q, Limits(*limited), quintic_spline(4))
         shares = rng.dirichlet(3.0 * np.ones(4), 60)
         feasible = shares * evaluate(problem, shares).stretch[:, None]
-        step = np.diff(q[:, 0])
-        found = window(step, feasible[0] * 0.6, velocity, acceleration)
-        assert found is not None
-        terms = window_terms(*found, step, velocity, acceleration)
-        excluded = 0
-        for h in feasible:
-            assert window_bound(4, terms, h, h, 0.0, h.sum()) <= 0.0
-            low, high = 0.8 * h, h
-            middle = [window_bound(4, terms, x, x, 0.3, 1.0) for x in (low, high, 0.9 * h)]
-            assert window_bound(4, terms, low, high, 0.3, 1.0) <= min(middle)
-            excluded += window_bound(4, terms, 0.3 * h, 0.3 * h, 0.0, 1.0) > 0.0
-        assert excluded > 0
+        (found,) = window(np.diff(q, axis=0), feasible[0] * 0.6, np.array([limited]))
+        session = Session(exact_problem(problem), Request())
+        session.durations = tuple(Fraction(float(x)) for x in feasible[0])
+        stages = module.QuinticStages(session)
+        stages._windows = [[0, *found]]
+        kind = stages.curves(stages.rounded(Fraction(1)))[0].kind
+        one = np.zeros(len(feasible), int)
+        total = feasible.sum(axis=1)
+        # With no multiplier the total plays no part.
+        assert (kind.over_windows(one, 0.0 * total, feasible, feasible) <= 0.0).all()
+        low, high, tau = 0.8 * feasible, feasible, 0.3 + 0.0 * total
+        middle = [kind.over_windows(one, tau, x, x) for x in (low, high, 0.9 * feasible)]
+        assert (kind.over_windows(one, tau, low, high) <= np.min(middle, axis=0)).all()
+        near = 0.3 * feasible
+        assert (kind.over_windows(one, 0.0 * total, near, near) > 0.0).any()
+        which, taus = excluding_windows(kind, near, near)
+        assert (which >= 0).any()
+        excluded = kind.over_windows(which, taus, near, near)[which >= 0]
+        assert (excluded > 0.0).all()
+        for h in feasible[:3]:  # of the total that the boxes are about
+            kind = stages.curves(stages.rounded(Fraction(float(h.sum() * 1.001))))[0].kind
+            which, _ = excluding_windows(kind, 0.9 * h[None], h[None] / 0.9)
+            assert which == -1
 
 
 @pytest.mark.slow
@@ -109,8 +83,13 @@ def test_limits_falsified_on_purpose_prove_too_much_and_are_refused(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     truth = certify(small(), gap=0.01)
-    limits: Callable[[Any], np.ndarray] = module._limits
-    monkeypatch.setattr(module, "_limits", lambda problem: 0.9 * limits(problem))
+    stated: Callable[[Any], Any] = module.stated_problem
+
+    def tighter(problem: Any) -> Any:
+        limits = [[x and Real(x.rational * Fraction(9, 10)) for x in row] for row in problem.limits]
+        return stated(replace(problem, limits=tuple(map(tuple, limits))))
+
+    monkeypatch.setattr(module, "stated_problem", tighter)
     false = unjudged(monkeypatch)
     judged = certify(small(), gap=0.01)
     assert (judged.outcome, judged.proof) == (Outcome.OPEN, None)
@@ -118,7 +97,7 @@ def test_limits_falsified_on_purpose_prove_too_much_and_are_refused(
     assert (own.powers, own.second) == ([0, 0], 0)
     session = Session(exact_problem(small()), Request())
     session.durations = truth.durations
-    stages = module.Stages(session)
+    stages = module.QuinticStages(session)
     too_much = stages.stage(stages.rounded(truth.upper * Fraction(101, 100)))
     assert too_much.total > truth.upper
     document = certificate(false[0])
