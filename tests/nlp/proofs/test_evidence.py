@@ -290,11 +290,6 @@ def test_a_bound_for_any_curve_may_round_above_the_answer_and_no_more(
     assert isinstance(step.low, Why) or step.low <= step.time
 
 
-def test_what_is_proved_of_any_curve_is_called_certified_under_every_reading() -> None:
-    for waterfall in waterfalls(Study(load_case(IRB), seeds=2)):
-        assert waterfall.steps[-1].evidence is Evidence.CERTIFIED
-
-
 def test_a_problem_that_no_certificate_can_state_is_not_certified() -> None:
     """1e-300 has more digits than a certificate may write."""
     tiny = Problem([[1e-300], [0.4], [0.9]], Limits(2.0), cubic_spline(2))

@@ -91,15 +91,6 @@ def test_a_reversal_inside_a_segment_is_a_standstill_and_not_a_smooth_point() ->
     assert found.cuts == pytest.approx((0.0, turn, 1.0), abs=1e-12)
 
 
-@pytest.mark.parametrize("degree", [3, 5, 7])
-@pytest.mark.parametrize("velocity", [[3.0, 9.0, 2.0], [0.5, 9.0, 0.4]])
-def test_straight_line(degree: int, velocity: list[float]) -> None:
-    q = np.array([[0.2, -1.0, 3.0], [1.1, 1.5, 2.3]])
-    acceleration = [4.0, 9.0, 6.0]
-    found = retime(fit(rest_to_rest(1, degree), q, [2.0]), Limits(velocity, acceleration))
-    assert close(found, rest_to_rest_time(q[1] - q[0], velocity, acceleration))
-
-
 def test_circle_at_the_velocity_limit() -> None:
     # max(|sin|, |cos|) of the path speed is V, so that a full turn takes 8·(R/√2)/V.
     radius, speed = 0.8, 1.3

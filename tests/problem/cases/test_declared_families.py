@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 
 import numpy as np
 import pytest
 from support.case_texts import case_text
-from support.checkout import ROOT
 from trajgap.heuristics import PSO, run
 from trajgap.nlp import Status
 from trajgap.nlp.optimum import solve
@@ -87,15 +85,6 @@ def test_the_table_names_every_family() -> None:
 def test_a_declared_family_is_checked_solved_and_searched(name: str) -> None:
     # Segments that are stretched by themselves jump in velocity between them.
     through(declared(name), Verdict.DISCONTINUOUS if "stretched" in name else Verdict.PASS)
-
-
-def test_the_programs_of_the_page_run(capsys: pytest.CaptureFixture[str]) -> None:
-    page = (ROOT / "docs" / "reference" / "interpolants.md").read_text()
-    programs = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
-    assert len(programs) == 2
-    for program in programs:
-        exec(program, {})
-    assert re.search("optimal|converged", capsys.readouterr().out)
 
 
 def test_a_straight_line_becomes_a_case_file(tmp_path: Path) -> None:

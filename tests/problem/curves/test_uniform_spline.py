@@ -24,9 +24,7 @@ from trajgap.problem import (
     TrajgapError,
     Verdict,
     check,
-    control_vertices,
     evaluate,
-    extrema,
     fit,
     keeps_limits,
     solve_in_closed_form,
@@ -34,9 +32,6 @@ from trajgap.problem import (
 )
 from trajgap.problem.curves.stretched import segment_peaks
 from trajgap.problem.curves.uniform_matrices import vertex_matrix
-
-TIMES = (*Timing, NATURAL)
-
 
 # --- control vertices -----------------------------------------------------------------------------
 
@@ -55,11 +50,6 @@ def test_vertices_meet_the_waypoint_equations_exactly(count: int, natural: bool)
     if natural:
         return
     assert max(sum(map(abs, row)) for row in v) <= 3
-
-
-def test_vertices_agree_with_a_dense_solve() -> None:
-    w = uniform("timed")[0].waypoints
-    np.testing.assert_allclose(control_vertices(w), vertices_by_solving(w), rtol=0, atol=1e-13)
 
 
 # --- both readings --------------------------------------------------------------------------------
@@ -178,31 +168,6 @@ def test_derivatives_in_time_are_finite_differences_of_an_independent_inversion(
         np.testing.assert_allclose(trajectory(t, 3), jerk, rtol=2e-3, atol=2e-2)
 
 
-@pytest.mark.parametrize("limited", ["all", "velocity", "acceleration"])
-def test_no_piece_that_is_skipped_holds_the_peak(limited: str) -> None:
-    """Against every extremum of every piece, for durations whose neighbours differ much."""
-    problem, h = uniform("timed", 4)
-    rng = np.random.default_rng(7)
-    drawn = h * rng.uniform(0.7, 1.3, (50, h.size)) * rng.uniform(0.2, 5.0, (50, 1))
-    wanted = np.zeros((problem.waypoints.shape[1], 3), dtype=np.bool_)
-    orders = {"all": (1, 2, 3), "velocity": (1,), "acceleration": (2,)}[limited]
-    wanted[:, [order - 1 for order in orders]] = True
-    values = problem.curve.motion_values(problem.waypoints)
-    peaks = problem.curve.batch_peaks(values, drawn, wanted)
-    compared = 0
-    for one, found in zip(drawn, peaks, strict=True):
-        if not np.isfinite(found).all():
-            continue
-        trajectory = fit(problem.curve, problem.waypoints, one)
-        for j in range(wanted.shape[0]):
-            for order in orders:
-                every = max(abs(e.value) for e in extrema(trajectory, j, order))
-                assert found[j, order - 1] == pytest.approx(every, rel=1e-12)
-                compared += 1
-        assert not found[~wanted].any()
-    assert compared > 100
-
-
 @pytest.mark.parametrize("time", ["stretched", "timed"])
 @pytest.mark.parametrize("tolerance", [0.0, 5e-10])
 def test_limits_are_kept_where_all_ratios_say_so(time: str, tolerance: float) -> None:
@@ -219,17 +184,6 @@ def test_limits_are_kept_where_all_ratios_say_so(time: str, tolerance: float) ->
     assert 0.2 < kept.mean() < 0.8
     still = replace(problem, limits=Limits(np.zeros(problem.waypoints.shape[1])))
     assert not keeps_limits(still, drawn, tolerance).any()
-
-
-def test_c2_in_time_without_rest_at_the_ends() -> None:
-    problem, h = uniform("timed", 13)
-    verdict = check(problem, 9 * h)
-    assert verdict.verdict is Verdict.PASS
-    assert verdict.continuous
-    trajectory = fit(problem.curve, problem.waypoints, h)
-    end = float(h.sum())
-    np.testing.assert_allclose(trajectory([0.0, end], 2), 0.0, atol=1e-11)
-    assert (np.abs(trajectory([0.0, end], 1)) > 0.01).all()
 
 
 def test_equal_durations_are_not_uniform_in_time_near_the_ends() -> None:

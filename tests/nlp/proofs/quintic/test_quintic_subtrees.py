@@ -17,7 +17,7 @@ from trajgap.nlp.proofs.clock import RunClock
 from trajgap.nlp.proofs.crew import ProofCrew
 from trajgap.nlp.proofs.driver import grow
 from trajgap.nlp.proofs.exact import exact_problem
-from trajgap.nlp.proofs.outcome import Outcome, Request
+from trajgap.nlp.proofs.outcome import Request
 from trajgap.nlp.proofs.quintic import certifier, subtrees
 from trajgap.nlp.proofs.quintic.leaves import Leaves
 from trajgap.nlp.proofs.quintic.search import DONE, search
@@ -197,13 +197,6 @@ def test_long_splines_are_looked_at_as_often_as_short_ones() -> None:
     # A box takes time of the third power.
     assert all(k * n**3 <= boxes[0] * 8**3 for n, k in enumerate(boxes, 8))
     assert boxes[-1] >= 1
-
-
-def test_the_result_is_the_same_with_two_workers() -> None:
-    one, two = (certify(PROBLEM, gap=0.05, seconds=1e6, workers=workers) for workers in (1, 2))
-    assert one.outcome is two.outcome is Outcome.CERTIFIED
-    assert (one.lower, one.upper, one.durations) == (two.lower, two.upper, two.durations)
-    assert one.proof.document() == two.proof.document()
 
 
 def test_workers_are_counted_from_one() -> None:
