@@ -133,7 +133,6 @@ def test_timed_optimum_agrees_with_a_search_that_shares_no_code() -> None:
     "kind",
     [
         (3, "averaged-continued", "times", "timed"),
-        (7, "averaged-continued", "times", "timed"),
         (5, "averaged-continued", "chord", "timed"),
         (4, "averaged-continued", "joint-chord", "timed"),
         (5, "averaged-continued", "chord", "stretched"),

@@ -107,7 +107,7 @@ ROUNDED = 1 + 1e-9
 """Two searches that end in one optimum differ by rounding."""
 
 
-@pytest.mark.parametrize("seed", [0, 1, *(pytest.param(k, marks=pytest.mark.slow) for k in (2, 3))])
+@pytest.mark.parametrize("seed", [0, *(pytest.param(k, marks=pytest.mark.slow) for k in (1, 2, 3))])
 @pytest.mark.parametrize("name", FOUND)
 def test_the_optimum_with_a_far_shorter_segment_is_found(name: str, seed: int) -> None:
     problem, durations, other = FOUND[name]

@@ -100,4 +100,3 @@ def test_a_straight_line_becomes_a_case_file(tmp_path: Path) -> None:
     np.testing.assert_array_equal(problem.waypoints, line.waypoints)
     assert problem.curve == cubic_spline(4)
     assert problem.joints == line.chain.labels
-    through(problem)

@@ -111,7 +111,7 @@ def test_the_bound_alone_proves_and_with_other_ends_only_what_is_true() -> None:
     assert verify(sealed(without_answer())).proves
     rng = np.random.default_rng(4)
     refused, proves = 0, 0
-    for trial in range(24):
+    for trial in range(12):
         data = without_answer()
         ends = np.array([START, FINISH])
         side, joint = divmod(trial % 4, 2)
@@ -126,8 +126,8 @@ def test_the_bound_alone_proves_and_with_other_ends_only_what_is_true() -> None:
             # The grid lies above the truth by a few per cent, the estimate by rounding.
             shown = estimate_any_curve(problem_with(*own)).total_time
             assert float(verdict.lower or 0) <= min(shown * (1 + 1e-9), best_of_a_grid(*own))
-    assert refused >= 3
-    assert proves >= 3
+    assert refused >= 2
+    assert proves >= 2
 
 
 # --- what is said, and printed digits -------------------------------------------------------------

@@ -98,15 +98,6 @@ def test_feasible_splines_lie_in_every_linear_program(
         assert (point <= bounds[:, 1] + 1e-9).all()
 
 
-@pytest.mark.parametrize("nodal", [False, True])
-def test_the_reference_closes_in_on_a_small_problem(reference: dict[str, Any], nodal: bool) -> None:
-    problem = small()
-    upper = float(solve(problem).total_time)
-    lower, nodes = reference["lower_bound"](problem, upper, 20.0, 0.2, nodal=nodal)
-    assert 0.8 * upper <= lower <= upper
-    assert nodes > 0
-
-
 @pytest.mark.slow
 def test_near_the_answer_the_linear_program_says_little_more_than_the_box(
     reference: dict[str, Any],
