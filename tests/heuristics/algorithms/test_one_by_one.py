@@ -342,7 +342,7 @@ LOOPS = {"pso": swarm, "mnam-pso": swarm, "constrained-pso": swarm, "woa": whale
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_each_step_is_that_of_the_loop(kind: str) -> None:
-    for seed in range(100):
+    for seed in range(150):
         record = drawn(kind, np.random.default_rng((1, seed)))
         own, other = np.random.default_rng(seed), np.random.default_rng(seed)
 

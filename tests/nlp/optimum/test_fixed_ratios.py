@@ -6,13 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq
-from trajgap.nlp import Evidence, Route, Status, solve_per_joint, with_other_route
+from trajgap.nlp import Evidence, Status, solve_per_joint
 from trajgap.nlp.optimum import solve
 from trajgap.problem import (
     Coupling,
-    Interpolant,
     Limits,
     Problem,
     TrajgapError,
@@ -63,18 +61,6 @@ def test_it_is_the_root_of_the_largest_ratio(curve) -> None:
     problem = Problem(Q, LIMITS, curve, ratios=RATIOS)
     root = brentq(lambda total: excess(problem, total), 0.1, 100.0, xtol=1e-12, rtol=1e-13)
     assert shortest(problem) == pytest.approx(root, rel=BLURRED)
-
-
-def test_dense_samples_of_another_library_agree() -> None:
-    problem = Problem(Q, LIMITS, cubic_spline(3), ratios=RATIOS)
-    breaks = np.concatenate([[0.0], np.cumsum(RATIOS / RATIOS.sum())])
-    spline = CubicSpline(breaks, Q, bc_type="clamped")
-    dense = np.linspace(0.0, 1.0, 200_001)
-    needs = [
-        (np.abs(spline(dense, order)) / limit).max() ** (1 / order)
-        for order, limit in enumerate(LIMITS.derivatives.T, start=1)
-    ]
-    assert shortest(problem) == pytest.approx(max(needs), rel=1e-8)
 
 
 @EVERY
@@ -187,13 +173,6 @@ def test_no_formula_is_one_line(curve, said: str) -> None:
     with pytest.raises(TrajgapError, match=said) as error:
         solve(Problem(Q, LIMITS, curve, ratios="equal"))
     assert "leave the ratios out" in str(error.value)
-
-
-@pytest.mark.parametrize("curve", [cubic_spline(3), quintic_spline(3)])
-def test_the_nlp_with_fixed_ratios_ends_at_the_formula(curve: Interpolant) -> None:
-    found = with_other_route(solve(Problem(Q, LIMITS, curve, ratios=(1.0, 0.7, 1.9))))
-    assert found.route is Route.CLOSED_FORM
-    assert found.other_total == pytest.approx(found.total_time, rel=1e-8)
 
 
 def test_a_short_segment_beside_a_long_one_passes_the_check() -> None:

@@ -112,13 +112,6 @@ def test_an_audit_never_calls_best_known_what_its_own_checks_undercut() -> None:
     assert relaxed.best <= optimum.best * (1 + 1e-9)
 
 
-def test_certified_bounds_and_answers_of_nearly_coincident_points_agree() -> None:
-    from trajgap.nlp import certify
-
-    found = certify(case(NATURAL_NEAR).problem(), gap=0.05, seconds=20)
-    assert float(found.upper) < 0.6402
-
-
 def two_joints() -> Problem:
     q = np.array([[0.3, 1.0], [0.9, 0.2], [0.5, 0.4], [1.4, 0.8]])
     return Problem(q, Limits([1.0, 2.0], 3.0), three_five_three())
@@ -247,16 +240,6 @@ def test_nothing_found_is_a_word_of_its_own_with_the_least_excess() -> None:
         options={"maxfev": 300},
     ).fun
     assert 0.0 < excess <= worst * 1.001
-
-
-def test_timed_b_splines_with_jerk_limits_are_solved() -> None:
-    generator = np.random.default_rng(11)
-    q = generator.uniform(-2.0, 2.0, (8, 6))
-    curve = uniform_cubic_b_spline(8, "timed")
-    solution = solve(Problem(q, Limits(1.0, 2.0, 2.0, joints=6), curve))
-    assert solution.status is Status.CONVERGED
-    assert solution.check.verdict is Verdict.PASS
-    assert solution.total_time == pytest.approx(27.70736506, rel=1e-8)  # also by IPOPT, 2 starts
 
 
 def test_the_least_point_is_that_of_another_method() -> None:

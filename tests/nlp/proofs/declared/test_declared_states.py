@@ -101,24 +101,3 @@ def test_what_is_no_state_is_refused() -> None:
     for other in (finished, certificate(finished), {}, {"format": "trajgap-state-1"}):
         with pytest.raises(TrajgapError, match="resume: no trajgap-state-2"):
             certify(exact, resume=other)
-
-
-def test_a_proof_that_is_not_one_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    name = "irb460-pso-353.limit-80.waypoints-rad"
-    found = stopped_at(name, monkeypatch)
-    state = state_of(found)
-    total = state["proof"]["total"]
-    state["proof"]["total"] = str(found.upper)
-    with pytest.raises(TrajgapError, match=r"not proved .a leaf with limits is not proved"):
-        certify(COVERED_PROBLEMS[name], resume=state)
-    state["proof"]["total"] = total
-    state["proof"]["tree"][-1] = ["?"]
-    with pytest.raises(TrajgapError, match=r"not proved .the tree leaves a part open"):
-        certify(COVERED_PROBLEMS[name], resume=state)
-
-
-def test_a_state_is_proved_like_a_certificate(monkeypatch: pytest.MonkeyPatch) -> None:
-    found = stopped_at("irb460-pso-353.limit-80.waypoints-rad", monkeypatch)
-    verdict = verify(state_of(found))
-    assert str(verdict).startswith("proves: ")
-    assert (verdict.lower, verdict.upper) == (found.lower, found.upper)
