@@ -58,14 +58,6 @@ def test_the_stretched_optimum_is_found_by_the_solver_from_afar(units: str) -> N
     assert "jumps of velocity between them" in str(solution.why)
 
 
-@pytest.mark.parametrize("seed", range(3))
-def test_stretched_agrees_with_the_closed_form_with_jerk_limits(seed: int) -> None:
-    problem, _ = uniform("stretched", seed + 20, count=5)
-    expected = solve_in_closed_form(problem.curve, problem.waypoints, problem.limits.derivatives)
-    solution = solve(problem, starts=2)
-    assert solution.total_time == pytest.approx(expected.sum(), rel=1e-9, abs=0)
-
-
 def test_timed_optimum_of_the_polishing_paper_in_one_unit() -> None:
     problem = load_case(POLISH).problem(reading_id="angles-rad-v-rad-a-rad-timed")
     solution = solve(problem, starts=2)

@@ -406,10 +406,16 @@ def test_there_is_none_where_the_middle_turns_back() -> None:
     assert "jumps" in str(solution.why)
 
 
+BOTH = np.column_stack([ONWARDS, 0.5 - 0.4 * ONWARDS])
+
+
 def test_two_joints_have_two_equations_for_two_ratios() -> None:
-    both = np.column_stack([ONWARDS, 0.5 - 0.4 * ONWARDS])
-    assert jump_equations(problem_through(both)) == (2, 2)
-    (shared, *_) = matched(problem_through(both), 0)
+    assert jump_equations(problem_through(BOTH)) == (2, 2)
+
+
+@pytest.mark.slow
+def test_joints_whose_equations_are_the_same_share_the_shortest_motion() -> None:
+    (shared, *_) = matched(problem_through(BOTH), 0)
     assert shared[0].sum() == pytest.approx(shortest().total_time, rel=1e-5)
 
 

@@ -77,35 +77,6 @@ def test_one_rest_to_rest_segment_has_the_textbook_time(
         assert solution.total_time == pytest.approx(expected, rel=1e-10)
 
 
-DEGREE = np.pi / 180
-FANG = [
-    (
-        [[-10, 20, 15, 150, 30, 120], [55, 35, 30, 10, 70, 25]],
-        [100 * DEGREE, 95 * DEGREE, 100 * DEGREE, 150 * DEGREE, 130 * DEGREE, 110 * DEGREE],
-        [60 * DEGREE, 60 * DEGREE, 75 * DEGREE, 70 * DEGREE, 90 * DEGREE, 80 * DEGREE],
-        [60 * DEGREE, 66 * DEGREE, 85 * DEGREE, 70 * DEGREE, 75 * DEGREE, 70 * DEGREE],
-        4.7177,
-    ),
-    (  # printed as shares of π
-        [[-60, 30, 0, -72, 45, 0], [72, 60, -30, -12, -90, 45]],
-        [1.8, 2, 1.5, 2, 2.5, 2],
-        [4, 5, 3.5, 4, 5, 4],
-        [20, 25, 20, 20, 30, 25],
-        2.7998,
-    ),
-]
-
-
-@pytest.mark.parametrize(("degrees", "velocity", "acceleration", "jerk", "printed"), FANG)
-def test_the_septic_times_of_fang_2020_are_met_to_their_printed_digits(
-    degrees, velocity, acceleration, jerk, printed: float
-) -> None:
-    """Y. Fang et al., Mechanism and Machine Theory 153 (2020) 103957, tables 4 and 7."""
-    limits = Limits(velocity, acceleration, jerk)
-    solution = solve(Problem(DEGREE * np.array(degrees), limits, rest_to_rest(1, 7)))
-    assert solution.total_time == pytest.approx(printed, abs=5.1e-5)
-
-
 def test_a_segment_without_motion_is_named_and_its_infimum_is_the_rest() -> None:
     q = np.array([[0.3, 1.0], [0.9, 0.2], [0.9, 0.2], [1.4, 0.8]])
     limits = Limits([1.0, 1.5], [3.0, 4.0])

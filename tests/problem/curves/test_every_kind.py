@@ -16,7 +16,6 @@ from trajgap.problem import (
     Array,
     Check,
     ClampedBSpline,
-    Extremum,
     Limits,
     Problem,
     Timing,
@@ -250,26 +249,6 @@ def test_gradients_are_differences_at_the_same_places(name: str) -> None:
         orders = np.array([e.order for e in points])
         room = 1e-8 * (1 + np.abs(gradient.durations).max(axis=1) + size)
         assert (np.abs(gradient.durations @ h + orders * base) <= room).all()
-
-
-@pytest.mark.parametrize("name", ["quintic", "3-averaged-continued-times-timed", "timed"])
-def test_gradients_predict_the_batched_peaks(name: str) -> None:
-    problem, h, _ = motion(name)
-    whole = fit(problem.curve, problem.waypoints, h)
-
-    def top(j: int, r: int) -> Extremum:
-        return max(extrema(whole, j, r), key=lambda e: abs(e.value))
-
-    tops = [top(j, r) for j in range(3) for r in (1, 2, 3)]
-    signs = np.sign([e.value for e in tops])[:, None]
-    slope = signs * peak_gradients(problem, h, tops).durations
-    slope /= problem.limits.derivatives.ravel()[:, None]
-    for k in range(h.size):
-        change = 1e-6 * np.eye(h.size)[k]
-        ahead, behind = evaluate(problem, [h + change, h - change]).ratios
-        np.testing.assert_allclose(
-            slope[:, k], (ahead - behind).ravel() / 2e-6, rtol=1e-5, atol=1e-5
-        )
 
 
 @each

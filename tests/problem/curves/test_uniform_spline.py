@@ -13,10 +13,8 @@ from support.b_splines import (
     ByScipy,
     spline_by_scipy,
     uniform,
-    vertices_by_solving,
 )
 from trajgap.problem import (
-    ClockedTrajectory,
     CurveError,
     Limits,
     Problem,
@@ -114,36 +112,6 @@ def test_closed_form_with_a_limit_of_zero_and_with_nothing_that_moves() -> None:
         solve_in_closed_form(curve, np.ones((4, 1)), [[1.0, 1.0, 1.0]])
 
 
-def test_jumps_have_the_size_that_the_vertices_give() -> None:
-    problem, h = uniform("stretched", 9)
-    v = vertices_by_solving(problem.waypoints)
-    first, second = (v[2:] - v[:-2]) / 2, v[2:] - 2 * v[1:-1] + v[:-2]
-    jumps = {(j.break_index, j.joint, j.order): j for j in check(problem, h).jumps}
-    assert len(jumps) == 4 * 3 * 2
-    nodes = np.cumsum(h)
-    for b in range(1, 5):
-        for joint in range(3):
-            for order, node in ((1, first), (2, second)):
-                jump = jumps[b, str(joint + 1), order]
-                size = node[b, joint] * (h[b] ** -order - h[b - 1] ** -order)
-                assert jump.size == pytest.approx(size, rel=1e-9)
-                assert jump.time == pytest.approx(nodes[b - 1], rel=1e-14)
-
-
-def test_the_verdict_about_limits_stands_beside_the_jumps() -> None:
-    problem, h = uniform("stretched", 11)
-    slow, fast = check(problem, 9 * h), check(problem, 0.1 * h)
-    assert (slow.verdict, slow.limits) == (Verdict.DISCONTINUOUS, Verdict.PASS)
-    assert (fast.verdict, fast.limits) == (Verdict.VIOLATED, Verdict.VIOLATED)
-    assert len(fast.jumps) == len(slow.jumps) == 24
-    assert slow.feasible_time is None
-    assert "jumps at a break" in str(slow.feasible_why)
-    equal = check(problem, np.full(5, 9.0))
-    assert equal.verdict is equal.limits is Verdict.PASS
-    assert equal.continuous
-    assert equal.feasible_time == pytest.approx(45.0)
-
-
 # --- (b) timed ------------------------------------------------------------------------------------
 
 
@@ -184,14 +152,6 @@ def test_limits_are_kept_where_all_ratios_say_so(time: str, tolerance: float) ->
     assert 0.2 < kept.mean() < 0.8
     still = replace(problem, limits=Limits(np.zeros(problem.waypoints.shape[1])))
     assert not keeps_limits(still, drawn, tolerance).any()
-
-
-def test_equal_durations_are_not_uniform_in_time_near_the_ends() -> None:
-    trajectory = fit(uniform_cubic_b_spline(6, "timed"), np.arange(6.0)[:, None], np.ones(5))
-    # q and t are then the same function of e: the motion is q = t, although dt/de is not 1.
-    np.testing.assert_allclose(trajectory([0.3, 2.7, 4.9])[:, 0], [0.3, 2.7, 4.9], atol=1e-14)
-    assert isinstance(trajectory, ClockedTrajectory)
-    assert abs(trajectory.clock[0, 1] - 1) > 0.1
 
 
 def test_time_must_not_run_backwards() -> None:
