@@ -12,9 +12,8 @@ from typing import Any
 import numpy as np
 import pytest
 from support.cubic_problems import base_problem
-from support.cubic_problems import dense_best as dense_of_cubics
 from support.cubic_problems import random_problem as random_cubic
-from support.intervals import judged
+from support.intervals import dense_best, judged
 from support.own_kinds import own_kinds as own_kinds
 from support.unjudged import unjudged
 from support.unlucky import answering
@@ -31,7 +30,6 @@ from trajgap.problem import (
     Problem,
     TrajgapError,
     cubic_spline,
-    evaluate,
     piecewise,
     quintic_spline,
     rest_to_rest,
@@ -59,26 +57,11 @@ def random_quintic(seed: int) -> Problem:
     return Problem(waypoints, Limits(v, a, j), quintic_spline(n), shortest)
 
 
-def best_quintic(problem: Problem, count: int = 4000) -> float:
-    """Smallest total over random directions, gathered around the best again and again."""
-    rng, n = np.random.default_rng(1), problem.segments
-    shares, spread = rng.dirichlet(np.ones(n), count), 1.0
-    for _ in range(5):
-        stretch = evaluate(problem, shares).stretch
-        stretch = np.maximum(stretch, (problem.duration_lower / shares).max(axis=1))
-        totals = stretch * shares.sum(axis=1)
-        best, spread = int(totals.argmin()), 0.3 * spread
-        least, top = float(totals[best]), shares[best]
-        shares = np.vstack([top, top * np.exp(spread * rng.standard_normal((count, n)))])
-    return least
-
-
 @dataclass(frozen=True)
 class Drawn:
-    """Random problems of a kind, with a search that shares nothing with the proofs."""
+    """Random problems of a kind, which a search looks at that shares nothing with the proofs."""
 
     draw: Callable[[int], Problem]
-    dense: Callable[[Problem], float]
     quick: range
     gap: float
     seconds: float
@@ -89,17 +72,15 @@ class Drawn:
 
 
 DRAWN = {
-    "cubic": Drawn(random_cubic, dense_of_cubics, range(2), 0.1, 2.0, range(2, 204), 0.05, 150),
-    "quintic": Drawn(
-        random_quintic, best_quintic, range(6), 0.03, 600.0, range(100, 300), 0.005, 200
-    ),
+    "cubic": Drawn(random_cubic, range(2), 0.1, 2.0, range(2, 204), 0.05, 150),
+    "quintic": Drawn(random_quintic, range(6), 0.03, 600.0, range(100, 300), 0.005, 200),
 }
 
 
 def attack(kind: Drawn, seed: int, gap: float, seconds: float) -> Outcome:
     problem = kind.draw(seed)
     found = certify(problem, gap=gap, seconds=seconds)
-    best = kind.dense(problem)
+    best = dense_best(problem)
     if found.outcome is Outcome.CERTIFIED:
         assert found.gap <= gap
         assert found.upper == sum(found.durations or ())

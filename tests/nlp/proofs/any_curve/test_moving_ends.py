@@ -109,7 +109,7 @@ def without_answer() -> dict[str, Any]:
 
 def test_the_bound_alone_proves_and_with_other_ends_only_what_is_true() -> None:
     assert verify(sealed(without_answer())).proves
-    rng = np.random.default_rng(4)
+    rng = np.random.default_rng(8)
     refused, proves = 0, 0
     for trial in range(12):
         data = without_answer()
@@ -126,8 +126,8 @@ def test_the_bound_alone_proves_and_with_other_ends_only_what_is_true() -> None:
             # The grid lies above the truth by a few per cent, the estimate by rounding.
             shown = estimate_any_curve(problem_with(*own)).total_time
             assert float(verdict.lower or 0) <= min(shown * (1 + 1e-9), best_of_a_grid(*own))
-    assert refused >= 2
-    assert proves >= 2
+    assert refused >= 3
+    assert proves >= 3
 
 
 # --- what is said, and printed digits -------------------------------------------------------------

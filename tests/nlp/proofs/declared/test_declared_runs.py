@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from scipy.optimize import linprog
 from support.declared_curves import CURVES
-from support.intervals import judged
-from support.three_pieces import dense_best, random_problem
+from support.intervals import dense_best, judged
+from support.three_pieces import random_problem
 from trajgap.nlp.proofs.certifiers import certify, covered
 from trajgap.nlp.proofs.declared.certifier import DECLARED
 from trajgap.nlp.proofs.declared.simplex import best_weights
