@@ -19,7 +19,7 @@ def dense_best(problem: Problem, count: int = 20_000) -> float:
     rng, n = np.random.default_rng(1), problem.segments
     low, high = np.maximum(problem.duration_lower, 1e-3), problem.duration_upper
     h, best = np.exp(rng.uniform(np.log(0.05), np.log(12.0), (count, n))), np.inf
-    for spread in (0.3, 0.1, 0.03, 0.01):
+    for spread in (0.3, 0.1, 0.03, 0.01, 0.003):
         if problem.curve.homogeneous:
             least = (problem.duration_lower / h).max(axis=1)
             h = h * (np.maximum(evaluate(problem, h).stretch, least) * (1 + 1e-11))[:, None]

@@ -1,4 +1,4 @@
-"""The NLP of the B-splines beside closed forms, identities, and a search that shares no code."""
+"""The NLP of the B-splines beside closed forms and identities."""
 
 from __future__ import annotations
 
@@ -7,9 +7,8 @@ from functools import partial
 
 import numpy as np
 import pytest
-from scipy.optimize import minimize
-from support.b_splines import ByScipy, clamped, uniform
-from trajgap.nlp import Status, kkt, random_starts, solve_per_joint
+from support.b_splines import clamped, uniform
+from trajgap.nlp import Status, random_starts, solve_per_joint
 from trajgap.nlp.optimum import solve
 from trajgap.problem import (
     Limits,
@@ -80,37 +79,6 @@ def test_timed_optimum_under_every_unit_reading_from_random_starts(units: str) -
     assert min(solve(problem).total_time, solution.total_time) == pytest.approx(
         BEST[units][1], abs=2e-9
     )
-
-
-def dense_total(problem: Problem, log_ratios: np.ndarray) -> float:
-    """Total of durations in these ratios, stretched until densely sampled peaks keep the limits."""
-    h = np.exp(np.concatenate([[0.0], log_ratios]))
-    motion = ByScipy(problem.waypoints, h)
-    # The knots are among the samples: acceleration has kinks there.
-    e = np.minimum(np.linspace(0, 3, 6001), np.nextafter(3, 0))
-    q1, q2, t1, t2 = motion.q(e, 1), motion.q(e, 2), motion.t(e, 1), motion.t(e, 2)
-    if t1.min() <= 0:
-        return 1e6
-    velocity = np.abs(q1 / t1) / problem.limits.velocity
-    acceleration = np.abs((q2 * t1 - q1 * t2) / t1**3) / problem.limits.acceleration
-    return float(h.sum() * max(velocity.max(), np.sqrt(acceleration.max())))
-
-
-def test_timed_optimum_agrees_with_a_search_that_shares_no_code() -> None:
-    problem, _ = uniform("timed", 31, count=4, joints=2)
-    problem = replace(problem, limits=replace(problem.limits, jerk=np.full(2, np.inf)))
-    solution = solve(problem)
-    found = [
-        minimize(
-            lambda x: dense_total(problem, x),
-            start,
-            method="Nelder-Mead",
-            options={"xatol": 1e-9, "fatol": 1e-11, "maxiter": 2000},
-        ).fun
-        for start in ([0.0, 0.0], [-0.3, 0.2], [0.3, -0.2])
-    ]
-    assert solution.status is Status.CONVERGED
-    assert solution.total_time == pytest.approx(min(found), rel=2e-6)
 
 
 @pytest.mark.parametrize(
@@ -188,8 +156,3 @@ def test_each_joint_by_itself() -> None:
     assert "piecewise polynomials only" in str(answer.why)
     longest = np.max([s.durations for s in answer.joints], axis=0)
     np.testing.assert_allclose(answer.durations, longest)
-
-
-def test_kkt_residual_far_from_an_optimum_is_large() -> None:
-    problem, h = uniform("timed", 36, count=4)
-    assert kkt(problem, 3.0 * h).residual > 0.01

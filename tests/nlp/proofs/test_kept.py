@@ -2,7 +2,6 @@
 
 import json
 import os
-import shutil
 import threading
 import time
 from collections.abc import Callable
@@ -195,18 +194,6 @@ def test_a_spoiled_file_is_searched_over_and_replaced(tmp_path, searches):
         assert len(searches) == count, name
         assert alike(cold, again), name
         assert file.read_bytes() == own, name
-
-
-def test_swapped_files_are_searched_over(tmp_path, searches):
-    first = certify(shifted_problem(), gap=GAP, cache=tmp_path / "a")
-    second = certify(shifted_problem(0.01), gap=GAP, cache=tmp_path / "b")
-    one, other = only(tmp_path / "a"), only(tmp_path / "b")
-    shutil.copy(other, tmp_path / "swapped")
-    shutil.copy(one, other)
-    shutil.copy(tmp_path / "swapped", one)
-    assert alike(first, certify(shifted_problem(), gap=GAP, cache=tmp_path / "a"))
-    assert alike(second, certify(shifted_problem(0.01), gap=GAP, cache=tmp_path / "b"))
-    assert len(searches) == 4
 
 
 def test_a_file_that_is_no_regular_one_is_not_waited_for(tmp_path, searches):
