@@ -48,7 +48,7 @@ def exact_sum(problem: Problem, kind: Any, h: list[Fraction], leaf: Any, centre:
 def test_the_bound_is_below_the_exact_sum_all_over_a_box(name: str) -> None:
     rng = np.random.default_rng(sum(map(ord, name)))
     narrowest, judged_boxes = inf, 0
-    for trial in range(6):
+    for trial in range(8):
         problem = drawn(name, rng, 1 + trial % 3)
         n, joints = problem.segments, problem.limits.joints
         middle = rng.uniform(0.5, 2.0, n)
@@ -66,14 +66,14 @@ def test_the_bound_is_below_the_exact_sum_all_over_a_box(name: str) -> None:
         if not np.isfinite(least):
             continue
         judged_boxes += 1
-        for spot in range(3):
+        for spot in range(5):
             way = rng.choice((-1.0, 1.0), n) if spot % 2 else rng.uniform(-1.0, 1.0, n)
             h = [Fraction(float(x)) * kind.second for x in own * np.exp(e * way * (1 - 1e-9))]
             value = exact_sum(problem, kind, h, (tau, rows, weights), centre.h[0])
             assert value >= Fraction(least), (trial, spot)
             if e.max() < 1e-3:
                 narrowest = min(narrowest, float(value) - least)
-    assert judged_boxes >= 3
+    assert judged_boxes >= 4
     # And it is worth something: in a narrow box little is lost.
     assert narrowest < 0.1
 
