@@ -6,7 +6,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.optimize import brentq
 from trajgap.nlp import Evidence, Status, solve_per_joint
 from trajgap.nlp.optimum import solve
 from trajgap.problem import (
@@ -17,7 +16,6 @@ from trajgap.problem import (
     Verdict,
     check,
     cubic_spline,
-    evaluate,
     piecewise,
     quintic_spline,
     rest_to_rest,
@@ -36,8 +34,6 @@ CURVES = [
     uniform_cubic_b_spline(4, "stretched"),
     uniform_cubic_b_spline(4, "timed"),
 ]
-BLURRED = 2e-8
-"""The bound on rounding errors of the curve with a clock of its own, which its answer keeps."""
 EVERY = pytest.mark.parametrize("curve", CURVES, ids=lambda curve: curve.name)
 
 
@@ -49,18 +45,6 @@ def shortest(problem: Problem) -> float:
     assert check(problem, answer.durations).limits is Verdict.PASS
     np.testing.assert_allclose(answer.durations / answer.total_time, problem.shares, rtol=1e-12)
     return answer.total_time
-
-
-def excess(problem: Problem, total: float) -> float:
-    """The largest ratio of a peak to its limit less 1, by the batch evaluator."""
-    return float(evaluate(problem, total * problem.shares[None]).ratios.max()) - 1.0
-
-
-@EVERY
-def test_it_is_the_root_of_the_largest_ratio(curve) -> None:
-    problem = Problem(Q, LIMITS, curve, ratios=RATIOS)
-    root = brentq(lambda total: excess(problem, total), 0.1, 100.0, xtol=1e-12, rtol=1e-13)
-    assert shortest(problem) == pytest.approx(root, rel=BLURRED)
 
 
 @EVERY

@@ -28,7 +28,6 @@ from trajgap.problem import (
     solve_in_closed_form,
     uniform_cubic_b_spline,
 )
-from trajgap.problem.curves.stretched import segment_peaks
 from trajgap.problem.curves.uniform_matrices import vertex_matrix
 
 # --- control vertices -----------------------------------------------------------------------------
@@ -74,33 +73,6 @@ def test_declarations_are_checked() -> None:
 
 
 # --- (a) stretched --------------------------------------------------------------------------------
-
-
-def sampled_segment_peaks(q: np.ndarray) -> np.ndarray:
-    spline = spline_by_scipy(q)
-    peaks = np.empty((len(q) - 1, q.shape[1], 3))
-    for k in range(len(q) - 1):
-        e = np.clip(np.linspace(k, k + 1, 20001), k, np.nextafter(k + 1, 0))
-        for r in range(3):
-            peaks[k, :, r] = np.abs(spline(e, r + 1)).max(axis=0)
-    return peaks
-
-
-def test_closed_form_from_dense_samples() -> None:
-    problem, _ = uniform("stretched", 8)
-    peaks = sampled_segment_peaks(problem.waypoints)
-    exact = segment_peaks(problem.curve, problem.waypoints)
-    assert (peaks <= exact * (1 + 1e-12)).all()
-    np.testing.assert_allclose(peaks, exact, rtol=1e-7)
-    ratios = peaks / problem.limits.derivatives
-    expected = (ratios ** (1 / np.arange(1, 4))).max(axis=(1, 2))
-    found = solve_in_closed_form(problem.curve, problem.waypoints, problem.limits.derivatives)
-    np.testing.assert_allclose(found, expected, rtol=1e-7)
-    verdict = check(problem, found)
-    assert verdict.limits is Verdict.PASS
-    assert verdict.verdict is Verdict.DISCONTINUOUS
-    assert verdict.stretch == pytest.approx(1.0, rel=1e-12)
-    assert check(problem, found * np.array([1, 1, 0.999, 1, 1])).limits is Verdict.VIOLATED
 
 
 def test_closed_form_with_a_limit_of_zero_and_with_nothing_that_moves() -> None:
