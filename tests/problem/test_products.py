@@ -1,6 +1,6 @@
 """Every kind of limit × every derivative × every identity, beside exact rational arithmetic.
 
-`support.exact_route` fits the curve in fractions and finds its extremes to 50 digits. A limit a
+`support.exact_route` fits the curve in fractions and finds its extremes. A limit a
 millionth above or below such an extreme decides what each judge has to answer: `check`,
 `evaluate`, `keeps_limits`, `check_motion`, and the repairs that they state.
 """

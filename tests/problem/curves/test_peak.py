@@ -1,4 +1,4 @@
-"""Extrema by other routes: companion matrices, Chebyshev's polynomials, 50 digits, sampling.
+"""Extrema by other routes: companion matrices, Chebyshev's polynomials, exact fractions, sampling.
 
 The checker and the batched evaluation find peaks by two root finders written apart. Both are asked
 about the same polynomials: one segment with all its start derivatives prescribed can be any one.
