@@ -20,6 +20,10 @@ pytest.register_assert_rewrite("support")
 settings.register_profile("trajgap", deadline=None, derandomize=True)
 settings.load_profile("trajgap")
 
+# Matrices here are small: threads that multiply them together wait for each other, and long splines
+# took four times the processor time. Read once, when numpy and CasADi are loaded.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
 # No test finds what another one, or the user, has proved before; programs that tests start neither.
 os.environ["TRAJGAP_CACHE"] = ""
 

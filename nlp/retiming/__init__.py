@@ -1,4 +1,4 @@
-"""TOPPRA on the path of a trajectory, and the second solver that checks it."""
+"""TOPPRA on the path of a trajectory, and the motion that comes of it."""
 
 import lazy_loader
 

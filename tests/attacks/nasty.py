@@ -173,9 +173,21 @@ def _limits(rng: Rng, tops: Array, low: Array, high: Array, span: Array) -> Any:
     return limits
 
 
+def keeps_all(problem: Any, h: Array) -> bool:
+    """Whether `check` passes durations, and their path lies within its range to the last digit.
+
+    No stretch mends a path: what the tolerance lets pass there may be worth far more in time.
+    """
+    from trajgap.problem import check
+
+    found = check(problem, h)
+    within = all(peak.ratio <= 1.0 for peak in found.peaks if peak.quantity == "position")
+    return found.verdict == "pass" and within
+
+
 def shorter(rng: Rng, problem: Any, h: Array) -> Array:
-    """The shortest durations near these that random steps find and `check` passes."""
-    from trajgap.problem import check, evaluate
+    """The shortest durations near these that random steps find and that keep all."""
+    from trajgap.problem import evaluate
 
     best, width = h, 0.3
     for _ in range(ROUNDS):
@@ -190,7 +202,7 @@ def shorter(rng: Rng, problem: Any, h: Array) -> Array:
         totals = np.where((trial > 0).all(axis=1), trial.sum(axis=1), np.inf)
         gained = False
         for k in np.argsort(totals)[:6]:
-            if totals[k] < best.sum() * (1 - 1e-12) and check(problem, trial[k]).verdict == "pass":
+            if totals[k] < best.sum() * (1 - 1e-12) and keeps_all(problem, trial[k]):
                 best, gained = trial[k], True
                 break
         width = min(1.3 * width, 1.0) if gained else 0.6 * width
@@ -198,8 +210,8 @@ def shorter(rng: Rng, problem: Any, h: Array) -> Array:
 
 
 def searched(rng: Rng, problem: Any, h: Array) -> Array:
-    """The shorter of these and of what differential evolution finds and `check` passes."""
-    from trajgap.problem import check, evaluate
+    """The shorter of these and of what differential evolution finds that keeps all."""
+    from trajgap.problem import evaluate
 
     low = np.maximum(problem.duration_lower, h * 10.0**-DECADES)
     high = np.minimum(problem.duration_upper, h * 10.0**DECADES)
@@ -226,8 +238,8 @@ def searched(rng: Rng, problem: Any, h: Array) -> Array:
         updating="deferred", polish=False,
     )  # fmt: skip
     found = stretched(best.x)[0][0]
-    passes = (found > 0).all() and check(problem, found).verdict == "pass"
-    return found if passes and found.sum() < h.sum() else h
+    better = (found > 0).all() and found.sum() < h.sum() and keeps_all(problem, found)
+    return found if better else h
 
 
 def written(problem: Any, h: Array) -> str:

@@ -37,15 +37,6 @@ def test_equal_durations_at_the_limit(limits: Limits) -> None:
     assert durations.sum() == pytest.approx(tight, rel=1e-12)
 
 
-def test_scaling_identities() -> None:
-    slow = uniform_rescaling(two_joints(Limits(1.3, joints=2)))
-    np.testing.assert_allclose(uniform_rescaling(two_joints(Limits(2.6, joints=2))), slow / 2)
-    soft = uniform_rescaling(two_joints(Limits(np.inf, 2.0, joints=2)))
-    np.testing.assert_allclose(
-        uniform_rescaling(two_joints(Limits(np.inf, 8.0, joints=2))), soft / 2
-    )
-
-
 def test_set_to_lower_bounds() -> None:
     bounds = np.array([2.0, 2.5, 3.0])
     durations = uniform_rescaling(two_joints(Limits(6.0, 8.0, joints=2), duration_lower=bounds))

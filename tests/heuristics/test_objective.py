@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from support.two_joints import WITH_JERK, two_joints
+from support.two_joints import WAYPOINTS, WITH_JERK, two_joints
 from trajgap.heuristics import (
     PSO,
     Counted,
@@ -22,6 +22,7 @@ from trajgap.problem import (
     cubic_spline,
     evaluate,
     piecewise,
+    rest_to_rest,
     three_five_three,
 )
 from trajgap.problem.checker import TOLERANCE
@@ -70,10 +71,19 @@ def test_outside_the_bounds_is_infeasible(
     np.testing.assert_array_equal(objective.decode(batch), batch)
 
 
-def test_bounds_themselves_are_feasible_and_zero_is_not() -> None:
+@pytest.mark.parametrize("judge", [DeathPenalty, Stretch])
+def test_limits_and_bounds_themselves_are_within(judge: type) -> None:
     problem = problem_with(duration_lower=[1.5, 1.5, 1.5], duration_upper=[1.5, 2.0, 2.5])
     batch = np.array([[1.5, 1.5, 1.5], [1.5, 2.0, 2.5]])
-    np.testing.assert_array_equal(DeathPenalty(problem)(batch), [4.5, 6.0])
+    np.testing.assert_array_equal(judge(problem)(batch), [4.5, 6.0])
+    # From rest to rest no position lies beyond those of the way-points.
+    q = WAYPOINTS
+    ranged = WITH_JERK.with_positions(q.min(axis=0), q.max(axis=0))
+    problem = wide(curve=rest_to_rest(3, 5), limits=ranged)
+    np.testing.assert_array_equal(judge(problem)(np.full((1, 3), 2.5)), [7.5])
+
+
+def test_zero_is_no_duration() -> None:
     still = Problem(np.zeros((4, 1)), Limits(1.0), three_five_three())
     batch = np.array([[0.0, 1.0, 1.0], [1e-3, 1.0, 1.0]])
     np.testing.assert_array_equal(DeathPenalty(still)(batch), [np.inf, 2.001])

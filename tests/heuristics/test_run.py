@@ -84,15 +84,15 @@ PENAL = Handling.DEATH_PENALTY
 @pytest.mark.parametrize("search", SEARCHES, ids=lambda s: s.kind)
 def test_the_account_of_a_run(search: Search, handling: Handling) -> None:
     for problem in (PROBLEM, JERKY, SPLINE, LONG, SWINGING):
-        found = run(search, problem, 3, 60, objective=handling)
+        found = run(search, problem, 3, 40, objective=handling)
         assert (found.algorithm, found.objective) == (search.kind, handling)
-        assert found.iterations == found.settings.iterations == 60
-        assert found.trace.shape == (61,)
+        assert found.iterations == found.settings.iterations == 40
+        assert found.trace.shape == (41,)
         assert (found.trace[1:] <= found.trace[:-1]).all()
         judge = judge_of(problem, np.inf, handling)
         np.testing.assert_array_equal(judge.decode(found.position[None])[0], found.durations)
-        mutants = 61 if search.kind == "mnam-pso" else 0
-        most = 61 * (32 if "ga" in search.kind.split("-") else 30) + mutants
+        mutants = 41 if search.kind == "mnam-pso" else 0
+        most = 41 * (32 if "ga" in search.kind.split("-") else 30) + mutants
         assert found.evaluations == most if search in SEARCHES[:7] else found.evaluations <= most
         assert found.feasible or handling is PENAL
         if found.feasible:

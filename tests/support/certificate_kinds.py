@@ -13,9 +13,8 @@ from functools import cache
 from typing import Any
 
 import numpy as np
-from support.cubic_problems import dense_best as dense_of_cubics
 from support.forgeries.forgery import document as committed
-from support.three_pieces import dense_best
+from support.intervals import dense_best
 from trajgap.nlp import estimate_any_curve
 from trajgap.problem import (
     Curve,
@@ -62,8 +61,8 @@ def posed(curve: Curve, jerk: float, *bounds: Any, positions: Any = SIDES, **mor
     return Problem(q, limits, curve, *bounds, **more)
 
 
-def _by_directions(problem: Problem) -> float:
-    return dense_best(problem, 81)
+def _searched(problem: Problem) -> float:
+    return dense_best(problem, 2000)
 
 
 def cubic() -> Problem:
@@ -127,7 +126,7 @@ def ratios_optimum(problem: Problem) -> float:
 SHORT = (0.5, 0.1, 0.1)
 KINDS = {
     "declared": Kind(
-        lambda: posed(three_five_three(), 8.0, SHORT, (6.0, 6.0, 7.0)), 0.03, _by_directions
+        lambda: posed(three_five_three(), 8.0, SHORT, (6.0, 6.0, 7.0)), 0.03, _searched
     ),
     "rest-to-rest": Kind(
         lambda: posed(rest_to_rest(2, 5), 8.0, (0.5, 4.0), (6.0, 7.0)),
@@ -136,7 +135,7 @@ KINDS = {
         exact=True,
     ),
     "quintic-spline": Kind(
-        lambda: posed(quintic_spline(3), 9.0, SHORT, positions=()), 0.1, _by_directions
+        lambda: posed(quintic_spline(3), 9.0, SHORT, positions=()), 0.1, _searched
     ),
     "stretched": Kind(
         lambda: posed(
@@ -153,7 +152,7 @@ KINDS = {
         ratios_optimum,
         exact=True,
     ),
-    "cubic": Kind(cubic, 1e-3, lambda problem: dense_of_cubics(problem, 2000), many=100),
+    "cubic": Kind(cubic, 1e-3, _searched, many=100),
     "any-curve": Kind(any_curve, 1e-5, any_curve_optimum, exact=True, subject=Subject.ANY),
 }
 

@@ -1,4 +1,4 @@
-"""Problems of cubic splines that are certified, and a search beside them."""
+"""Problems of cubic splines that are certified."""
 
 from __future__ import annotations
 
@@ -18,7 +18,6 @@ from trajgap.problem import (
     Problem,
     cubic_spline,
     cubic_spline_virtual,
-    evaluate,
 )
 from trajgap.verify import TICKS, read_problem
 
@@ -50,27 +49,6 @@ def random_problem(seed: int) -> Problem:
     lower = rng.uniform(0.1, 1.0, curve.segments) if rng.random() < 0.4 else 0.0
     upper = rng.uniform(4.0, 9.0, curve.segments) if rng.random() < 0.3 else np.inf
     return Problem(q, Limits(v, a, j), curve, lower, upper)
-
-
-def dense_best(problem: Problem, count: int = 40_000) -> float:
-    """Smallest total over many directions, each stretched as little as it may be."""
-    rng = np.random.default_rng(1)
-    n = problem.segments
-    shares = rng.dirichlet(np.full(n, 0.8), count)
-    for width in (0.3, 0.1, 0.03):
-        totals = _totals(problem, shares)
-        near = shares[np.argsort(totals)[:50]]
-        moved = np.repeat(near, 200, axis=0) * np.exp(rng.normal(0, width, (10_000, n)))
-        shares = np.vstack([shares, moved / moved.sum(axis=1, keepdims=True)])
-    return float(_totals(problem, shares).min())
-
-
-def _totals(problem: Problem, shares: np.ndarray) -> np.ndarray:
-    shares = np.maximum(shares, 1e-9)
-    stretch = evaluate(problem, shares).stretch
-    stretch = np.maximum(stretch, (problem.duration_lower / shares).max(axis=1))
-    stretch[(shares * stretch[:, None] > problem.duration_upper).any(axis=1)] = np.inf
-    return np.asarray(stretch * shares.sum(axis=1))
 
 
 def base_problem() -> Problem:

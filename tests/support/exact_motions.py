@@ -1,8 +1,6 @@
 """Motions as rational numbers: their samples, what interpolates them, and every peak, exactly.
 
 Nothing here is the code under attack: splines are solved, and polynomials evaluated, in `Fraction`.
-Where a derivative turns is found in float64 and then evaluated exactly, so that a peak is off by
-the square of the place's error, far below the nearest limit.
 """
 
 from __future__ import annotations
@@ -14,8 +12,9 @@ from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
+from support.exact_route import braking, extremes, solved
 from support.exact_route import derived as derived
-from support.exact_route import solved
+from support.exact_route import value as value
 
 Exact = list[Fraction]
 """Numbers, or ascending coefficients of a polynomial in the time since the start of its piece."""
@@ -45,16 +44,7 @@ class Curve:
     @cached_property
     def ranges(self) -> list[tuple[Fraction, Fraction]]:
         """Least and largest value of derivatives 0 to 3."""
-        found = []
-        for order in range(4):
-            seen = [
-                value(here, place)
-                for h, c in zip(steps(self.breaks), self.pieces, strict=True)
-                for here in (derived(c, order),)
-                for place in [Fraction(0), h, *roots(derived(here, 1), h)]
-            ]
-            found.append((min(seen), max(seen)))
-        return found
+        return [extremes(self.pieces, steps(self.breaks), order) for order in range(4)]
 
     def jumps(self, order: int) -> Fraction:
         """The largest jump of a derivative at an inner break."""
@@ -69,44 +59,11 @@ class Curve:
 
         Stretches on which the speed stays below ``still`` are left out.
         """
-        most = [Fraction(0), Fraction(0)]
-        for h, c in zip(steps(self.breaks), self.pieces, strict=True):
-            v, a, j = (derived(c, order) for order in (1, 2, 3))
-            inner = {x for one in (v, a, j) for x in roots(one, h)}
-            for low, high in pairwise(sorted({Fraction(0), h, *inner})):
-                speed = value(v, (low + high) / 2)
-                grows = speed * value(a, (low + high) / 2) > 0
-                if abs(speed) > still:
-                    here = max(abs(value(a, low)), abs(value(a, high)))
-                    most[not grows] = max(most[not grows], here)
-        return most[0], most[1]
+        return braking(self.pieces, steps(self.breaks), still)
 
 
 def steps(times: Sequence[Fraction]) -> Exact:
     return [b - a for a, b in pairwise(times)]
-
-
-def value(c: Exact, x: Fraction) -> Fraction:
-    found = Fraction(0)
-    for one in reversed(c):
-        found = found * x + one
-    return found
-
-
-def roots(c: Exact, h: Fraction) -> Exact:
-    """Places in (0, h) that hold every real root, to the digits of float64; some hold none."""
-    scaled = [one * h**k for k, one in enumerate(c)]
-    while len(scaled) > 1 and scaled[-1] == 0:
-        scaled.pop()
-    if len(scaled) == 2:
-        exact = -scaled[0] / scaled[1]
-        return [exact * h] if 0 < exact < 1 else []
-    top = max(map(abs, scaled))
-    if len(scaled) < 2 or top == 0:
-        return []
-    found = np.roots([float(one / top) for one in reversed(scaled)])
-    # A double root may come as a pair that is not real.
-    return [Fraction(float(z.real)) * h for z in found if 0 < z.real < 1]
 
 
 def hermite(rows: Sequence[Row], degree: int) -> Curve:

@@ -1,14 +1,15 @@
-"""Spline fits in exact rational numbers and their peaks to 50 digits: no code of the package.
+"""Spline fits and peaks of polynomials in exact rational numbers: no code of the package.
 
 Everything is written in each segment's own time, unscaled, as the papers write it. The floats that
 go in are taken at their exact value, so what comes out is the truth that float64 has to meet.
+Where a derivative turns is found in float64 and then evaluated exactly, so that a peak is off by
+the square of the place's error.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from decimal import Decimal, localcontext
 from fractions import Fraction
 from itertools import pairwise
 
@@ -88,72 +89,67 @@ def derived(polynomial: Polynomial, order: int) -> Polynomial:
     return polynomial
 
 
-def value(polynomial: Polynomial, time: Decimal) -> Decimal:
-    """Value in the surrounding decimal precision."""
-    total = Decimal(0)
+def value(polynomial: Polynomial, time: Fraction) -> Fraction:
+    found = Fraction(0)
     for c in reversed(polynomial):
-        total = total * time + Decimal(c.numerator) / Decimal(c.denominator)
-    return total
-
-
-def _turns(polynomial: Polynomial, end: Decimal) -> list[Decimal]:
-    """Roots inside (0, ``end``): companion-matrix roots, polished by Newton to 50 digits."""
-    slope = derived(polynomial, 1)
-    scaled = np.array([float(c * Fraction(end) ** i) for i, c in enumerate(polynomial)])
-    found: list[Decimal] = []
-    if not scaled.any():
-        return found
-    scaled = scaled / np.abs(scaled).max()
-    roots = np.roots(np.trim_zeros(scaled[::-1], "f"))
-    near = roots.real[(np.abs(roots.imag) < 1e-4) & (np.abs(roots.real - 0.5) < 0.51)]
-    for start in near:
-        t = Decimal(float(start)) * end
-        for _ in range(60):
-            steep = value(slope, t)
-            step = value(polynomial, t) / steep if steep else Decimal(0)
-            t -= step
-            if abs(step) < Decimal(10) ** -50:
-                break
-        if 0 < t < end:
-            found.append(t)
+        found = found * time + c
     return found
 
 
+def roots(polynomial: Polynomial, end: Fraction) -> list[Fraction]:
+    """Places in (0, ``end``) that hold every real root, to float64; some hold none."""
+    scaled = [one * end**k for k, one in enumerate(polynomial)]
+    while len(scaled) > 1 and scaled[-1] == 0:
+        scaled.pop()
+    if len(scaled) == 2:
+        exact = -scaled[0] / scaled[1]
+        return [exact * end] if 0 < exact < 1 else []
+    top = max(map(abs, scaled))
+    if len(scaled) < 2 or top == 0:
+        return []
+    found = np.roots([float(one / top) for one in reversed(scaled)])
+    # A double root may come as a pair that is not real.
+    return [Fraction(float(z.real)) * end for z in found if 0 < z.real < 1]
+
+
 def extremes(
-    pieces: list[Polynomial], durations: Sequence[float], order: int
-) -> tuple[Decimal, Decimal]:
+    pieces: Sequence[Polynomial], durations: Sequence[float | Fraction], order: int
+) -> tuple[Fraction, Fraction]:
     """Least and largest value of a derivative over all pieces, both ends of each included."""
-    with localcontext() as context:
-        context.prec = 60
-        values = []
-        for polynomial, h in zip(pieces, durations, strict=True):
-            p, end = derived(polynomial, order), Decimal(float(h))
-            values += [value(p, t) for t in (Decimal(0), end, *_turns(derived(p, 1), end))]
-        return +min(values), +max(values)
+    seen = [
+        value(here, place)
+        for c, h in zip(pieces, map(Fraction, durations), strict=True)
+        for here in (derived(c, order),)
+        for place in (Fraction(0), h, *roots(derived(here, 1), h))
+    ]
+    return min(seen), max(seen)
 
 
-def peak(pieces: list[Polynomial], durations: Sequence[float], order: int) -> Decimal:
+def peak(pieces: Sequence[Polynomial], durations: Sequence[float], order: int) -> Fraction:
     """Largest absolute derivative."""
     least, most = extremes(pieces, durations, order)
     return max(-least, most)
 
 
-def braking(pieces: list[Polynomial], durations: Sequence[float]) -> tuple[Decimal, Decimal]:
+def braking(
+    pieces: Sequence[Polynomial],
+    durations: Sequence[float | Fraction],
+    still: Fraction = Fraction(0),
+) -> tuple[Fraction, Fraction]:
     """Largest |acceleration| while the speed grows, and while it falls.
 
     Between the roots of velocity, acceleration and jerk all three keep their sign, so that the
-    middle tells which of both it is, and |acceleration| is largest at an end.
+    middle tells which of both it is, and |acceleration| is largest at an end. Stretches on which
+    the speed stays below ``still`` are left out.
     """
-    with localcontext() as context:
-        context.prec = 60
-        most = [Decimal(0), Decimal(0)]
-        for polynomial, h in zip(pieces, durations, strict=True):
-            end = Decimal(float(h))
-            v, a = derived(polynomial, 1), derived(polynomial, 2)
-            inner = [t for p in (v, a, derived(a, 1)) for t in _turns(p, end)]
-            for left, right in pairwise(sorted([Decimal(0), end, *inner])):
-                middle = (left + right) / 2
-                falls = value(v, middle) * value(a, middle) < 0
-                sizes = [abs(value(a, t)) for t in (left, right)]
-                most[falls] = max(most[falls], *sizes)
-        return +most[0], +most[1]
+    most = [Fraction(0), Fraction(0)]
+    for c, h in zip(pieces, map(Fraction, durations), strict=True):
+        v, a, j = (derived(c, order) for order in (1, 2, 3))
+        inner = {x for one in (v, a, j) for x in roots(one, h)}
+        for low, high in pairwise(sorted({Fraction(0), h, *inner})):
+            speed = value(v, (low + high) / 2)
+            grows = speed * value(a, (low + high) / 2) > 0
+            if abs(speed) > still:
+                here = max(abs(value(a, low)), abs(value(a, high)))
+                most[not grows] = max(most[not grows], here)
+    return most[0], most[1]

@@ -1,7 +1,7 @@
-"""Small problems of three pieces, and a dense search for their least total."""
+"""Small problems of three pieces."""
 
 import numpy as np
-from trajgap.problem import Limits, Problem, Verdict, check, evaluate, fit, three_five_three
+from trajgap.problem import Limits, Problem, three_five_three
 
 
 def random_problem(seed: int) -> Problem:
@@ -21,29 +21,3 @@ def random_problem(seed: int) -> Problem:
     return Problem(
         q, Limits(v, a, j, low, np.full(joints, np.inf)), three_five_three(), lower, upper
     )
-
-
-def dense_best(problem: Problem, count: int = 161) -> float:
-    """Smallest total over a grid of directions, each stretched as little as it may be."""
-    count = min(count, 41) if problem.limits.limits_position else count
-    side = (np.arange(count) + 0.5) / count
-    a, b = (g.ravel() for g in np.meshgrid(side, side))
-    shares = np.stack([a * (1 - b), (1 - a) * (1 - b), b * (1 - a)], axis=1)
-    with np.errstate(divide="ignore"):
-        stretch = np.maximum(
-            evaluate(problem, shares).stretch, (problem.duration_lower / shares).max(axis=1)
-        )
-    totals = stretch * shares.sum(axis=1)
-    totals[(shares * stretch[:, None] > problem.duration_upper).any(axis=1)] = np.inf
-    if not problem.limits.limits_position:
-        return float(totals.min())
-    for i in np.argsort(totals):
-        if not np.isfinite(totals[i]):
-            break
-        h = shares[i] * stretch[i]
-        curve = fit(problem.curve, problem.waypoints, h)
-        angle = np.stack([curve(x) for x in np.linspace(0.0, h.sum(), 60)])
-        inside = (angle >= problem.limits.position_lower).all()
-        if inside and check(problem, h).verdict is Verdict.PASS:
-            return float(totals[i])
-    return np.inf

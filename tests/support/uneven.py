@@ -1,20 +1,16 @@
-"""Problems whose lower and upper limits differ, and dense samples of what keeps them."""
+"""Problems whose lower and upper limits differ."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
 import numpy as np
-from scipy.optimize import minimize
 from trajgap.problem import (
-    Array,
     Curve,
     Limits,
     Problem,
     Timing,
     cubic_spline,
-    evaluate,
-    fit,
     quintic_spline,
     rest_to_rest,
     three_five_three,
@@ -33,8 +29,6 @@ CURVES: dict[str, Callable[[], Curve]] = {
     "stretched": lambda: uniform_cubic_b_spline(4, Timing.STRETCHED),
 }
 """Kinds of curves through four way-points."""
-PLACES = 61
-"""Samples of a piece: between them a parabola rises by less than 1e-3 of its size."""
 
 
 def uneven_problem(curve: str, limits: Limits = LIMITS) -> Problem:
@@ -46,37 +40,3 @@ def mirrored(problem: Problem) -> Problem:
     """The same question for −q: every lower limit is an upper one."""
     limits = problem.limits.with_sides(problem.limits.sides[::-1])
     return Problem(-problem.waypoints, limits, problem.curve)
-
-
-def sampled_ratios(problem: Problem, h: Array, places: int = PLACES) -> Array:
-    """Values over the limit on their side at dense places of each piece, all in one row."""
-    motion = fit(problem.curve, problem.waypoints, h)
-    below, above = problem.limits.sides
-    found = []
-    for start, step in zip(motion.breaks[:-1], np.diff(motion.breaks), strict=True):
-        times = start + step * np.linspace(1e-9, 1.0 - 1e-9, places)
-        for r in (1, 2, 3):
-            values = motion(times, r)
-            found += [values / above[:, r - 1], -values / below[:, r - 1]]
-    return np.concatenate(found).ravel()
-
-
-def sampled_optimum(problem: Problem, tries: int = 5) -> float:
-    """Least total of several descents of SLSQP on samples: a little below the true optimum."""
-    generator, best = np.random.default_rng(0), np.inf
-    usual = np.log(evaluate(problem, np.ones((1, problem.segments))).stretch[0])
-    for _ in range(tries):
-        found = minimize(
-            lambda z: float(np.exp(z).sum()),
-            usual + generator.normal(0.0, 0.3, problem.segments),
-            jac=np.exp,
-            constraints={
-                "type": "ineq",
-                "fun": lambda z: 1.0 - sampled_ratios(problem, np.exp(z)),
-            },
-            method="SLSQP",
-            options={"maxiter": 300, "ftol": 1e-12},
-        )
-        if found.success and sampled_ratios(problem, np.exp(found.x)).max() < 1.0 + 1e-7:
-            best = min(best, float(found.fun))
-    return best

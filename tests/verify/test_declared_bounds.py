@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from support.declared_curves import CURVES, drawn
-from trajgap.nlp import solve
+from trajgap.nlp.optimum import solve
 from trajgap.nlp.proofs.document import problem_document
 from trajgap.nlp.proofs.exact import exact_problem
 from trajgap.problem import Interpolant, Limits, Problem, piecewise, three_five_three

@@ -10,9 +10,7 @@ import pytest
 from scipy.interpolate import make_interp_spline
 from scipy.optimize import minimize
 from support.forgeries.forgery import NO_ANSWER, altered
-from trajgap.verify import (
-    read_problem,
-)
+from trajgap.verify import read_problem
 from trajgap.verify.boxes import most_of_cubes
 from trajgap.verify.quintic import QuinticSpline
 from trajgap.verify.quintic_bound import Centre, Part, Task
@@ -60,6 +58,18 @@ def test_a_leaf_is_below_every_sampled_quintic(seed: int) -> None:
     else:
         # Of second order in the width.
         assert values[0] - proved < 400 * width * (1 + np.ptp(values))
+
+
+@pytest.mark.parametrize("order", [1, 2, 3])
+def test_where_nothing_moves_a_leaf_is_off_by_its_allowance_for_rounding_alone(order: int) -> None:
+    """There the weighted sum is −Σ w·limit·h^(order − 2): in rationals never below what is said."""
+    h, limit, count = np.array([0.7, 1.1, 2.3]), 3219.7, 3
+    rows = np.array([[k, 0, order, 1, 300] for k in range(count)])
+    task = Task(np.zeros((count, 1)), np.full((1, 3), limit), float(h.sum()), rows)
+    leaf = np.zeros(1), np.arange(count)[None], np.full((1, count), 3.0)
+    proved = Fraction(float(Bound(task, h[None], h[None], *leaf).least()[0]))
+    value = -sum(3 * Fraction(limit) * Fraction(x) ** (order - 2) for x in h.tolist())
+    assert value * (1 + Fraction(2, 10**11)) <= proved <= value
 
 
 @pytest.mark.parametrize("seed", range(10))

@@ -7,7 +7,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from trajgap.heuristics import GA, ImprovedGA
+from trajgap.heuristics import ImprovedGA
 from trajgap.heuristics.algorithms.genes import FitnessRule, fitness_values, roulette
 from trajgap.heuristics.algorithms.improved_ga import concentration, rank_chances, schedule
 from trajgap.heuristics.hazards import rate_branches
@@ -29,16 +29,6 @@ def test_the_edges_of_the_wheel() -> None:
     weights, draws = np.array([1.0, 0.0, 2.0, 1.0]), np.array([0.0, 0.25, 0.74, 0.75])
     np.testing.assert_array_equal(roulette(weights, draws), [0, 2, 2, 3])
     assert roulette(np.full(10, 0.1), np.array([np.nextafter(1.0, 0.0)]))[0] == 9
-
-
-@pytest.mark.parametrize(
-    ("span", "resolution", "bits"),
-    [((0.1, 2.0), 0.001, 11), ((0.0, 1.0), 1.0, 1), ((0.0, 3.0), 1.0, 2), ((0.0, 3.1), 1.0, 3)],
-)
-def test_bits_for_a_resolution(span: tuple[float, float], resolution: float, bits: int) -> None:
-    record = GA(encoding="binary", position_range=span, resolution=resolution).genetics
-    assert record.bits == bits
-    assert record.step <= resolution * (1 + 1e-9)
 
 
 # --- improved -------------------------------------------------------------------------------------

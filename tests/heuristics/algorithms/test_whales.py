@@ -9,36 +9,8 @@ import numpy as np
 import pytest
 from scipy.stats import mannwhitneyu
 from trajgap.heuristics import PSO, WOA, Bounds, states
-from trajgap.heuristics.algorithms.improved_woa import inertia_weight
-from trajgap.heuristics.algorithms.woa import encircled, spiralled
-
-X = np.array([[3.0, 1.0], [0.0, 4.0], [-1.0, 2.5], [6.0, -2.0]])
-
-
-def test_equation_22() -> None:
-    assert [inertia_weight(i, 500, 0.0) for i in (0, 125, 250, 500)] == [1.0, 0.75, 0.5, 0.0]
-    # s = 2: 0.5/(1 + 1); s = −0.5: 0.5/(1 − 0.25)
-    assert inertia_weight(250, 500, 2.0) == 0.25
-    assert inertia_weight(250, 500, -0.5) == pytest.approx(2 / 3, rel=1e-15)
-    for s in (-0.99, 0.0, 7.0):
-        weights = [inertia_weight(i, 500, s) for i in range(501)]
-        assert (weights[0], weights[-1]) == (1.0, 0.0)
-        assert (np.diff(weights) < 0).all()
-
 
 # --- not shift-invariant --------------------------------------------------------------------------
-
-SHIFT = np.array([4.0, -2.0])
-
-
-@pytest.mark.parametrize(("c", "moved"), [(1.0, 0.0), (1.5, 1.0)])
-def test_encircling_is_shift_invariant_only_without_c(c: float, moved: float) -> None:
-    best, a, c_ = np.array([2.0, 1.0]), np.full((4, 1), 0.5), np.full((4, 1), c)
-    shifted = encircled(X + SHIFT, best + SHIFT, a, c_) - SHIFT
-    assert float(np.abs(shifted - encircled(X, best, a, c_)).max()) == moved
-    g = np.full((4, 1), 0.25)
-    spiral = spiralled(X + SHIFT, best + SHIFT, g, 1.0) - SHIFT
-    np.testing.assert_allclose(spiral, spiralled(X, best, g, 1.0), atol=1e-15)
 
 
 def bowl(x: np.ndarray, shift: float) -> np.ndarray:

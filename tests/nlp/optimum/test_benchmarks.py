@@ -139,30 +139,6 @@ def test_a_run_enters_its_counts(
     assert rates.rows_printed(rows[0].code, capsys.readouterr().out) == rows
 
 
-def test_outputs_are_added_from_the_command_line(
-    rates: ModuleType,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
-) -> None:
-    (tmp_path / "one").write_text(PRINTED)
-    (tmp_path / "two").write_text("7844: wrong failed, failed, a curve, gain 1\n")
-    page = tmp_path / "page.md"
-    page.write_text(f"Before\n{rates.BEGIN}\nold\n{rates.END}\nAfter\n")
-    monkeypatch.setattr(rates, "CSV", tmp_path / "rates.csv")
-    monkeypatch.setattr(rates, "PAGE", page)
-    command = ["x", str(rates.CSV), "--code", "abc", "--add"]
-    monkeypatch.setattr(sys, "argv", [*command, str(tmp_path / "one"), str(tmp_path / "two")])
-    assert rates.main() == 1
-    assert "two: not finished, left out" in capsys.readouterr().err
-    assert {row.code for row in rates.read_rows(rates.CSV.read_text("utf-8"))} == {"abc"}
-    text = page.read_text()
-    assert text.startswith(f"Before\n{rates.BEGIN}\n| version")
-    assert text.endswith(f"{rates.END}\nAfter\n")
-    assert "old" not in text
-    assert "| `abc` | 1,000 | 6000 to 6999 |" in text
-
-
 QUINTIC = loaded("quintic_instances")
 STEPS, INSTANCES = QUINTIC.STEPS, QUINTIC.instances()
 

@@ -1,4 +1,4 @@
-"""The NLP of the B-splines beside closed forms, identities, and a search that shares no code."""
+"""The NLP of the B-splines beside closed forms and identities."""
 
 from __future__ import annotations
 
@@ -7,9 +7,8 @@ from functools import partial
 
 import numpy as np
 import pytest
-from scipy.optimize import minimize
-from support.b_splines import ByScipy, clamped, uniform
-from trajgap.nlp import Status, kkt, random_starts, solve_per_joint
+from support.b_splines import clamped, uniform
+from trajgap.nlp import Status, random_starts, solve_per_joint
 from trajgap.nlp.optimum import solve
 from trajgap.problem import (
     Limits,
@@ -39,39 +38,23 @@ UNITS = tuple(BEST)
 
 
 @pytest.mark.parametrize("units", UNITS)
-def test_stretched_agrees_with_the_closed_form_under_every_unit_reading(units: str) -> None:
-    problem = load_case(POLISH).problem(reading_id=f"{units}-stretched")
-    expected = solve_in_closed_form(problem.curve, problem.waypoints, problem.limits.derivatives)
-    solution = solve(problem, starts=2)
-    assert solution.status is Status.CONVERGED
-    assert solution.total_time == pytest.approx(expected.sum(), rel=1e-9, abs=0)
-    np.testing.assert_allclose(solution.durations, expected, rtol=1e-8)
-    assert expected.sum() == pytest.approx(BEST[units][0], abs=1e-9)
-    assert solution.check.verdict is Verdict.DISCONTINUOUS
-    assert solution.check.limits is Verdict.PASS
-    assert "jumps of velocity between them" in str(solution.why)
-    assert solution.kkt_residual <= 1e-11
-
-
-@pytest.mark.parametrize("units", UNITS)
 def test_the_stretched_optimum_is_found_by_the_solver_from_afar(units: str) -> None:
     """A stretch of the start as a whole, all that happens beside the NLP, stays far above."""
     problem = load_case(POLISH).problem(reading_id=f"{units}-stretched")
-    total = solve_in_closed_form(problem.curve, problem.waypoints, problem.limits.derivatives).sum()
+    expected = solve_in_closed_form(problem.curve, problem.waypoints, problem.limits.derivatives)
+    total = expected.sum()
+    assert total == pytest.approx(BEST[units][0], abs=1e-9)
     start = random_starts(problem, 1, np.random.default_rng(11))
     stretched = float(start.sum() * evaluate(problem, start).stretch[0])
     assert stretched > 1.5 * total
     solution = solve(problem, initial=start)
     assert solution.iterations > 3
+    assert solution.status is Status.CONVERGED
+    np.testing.assert_allclose(solution.durations, expected, rtol=1e-8)
     assert solution.total_time == pytest.approx(total, rel=1e-9, abs=0)
-
-
-@pytest.mark.parametrize("seed", range(3))
-def test_stretched_agrees_with_the_closed_form_with_jerk_limits(seed: int) -> None:
-    problem, _ = uniform("stretched", seed + 20, count=5)
-    expected = solve_in_closed_form(problem.curve, problem.waypoints, problem.limits.derivatives)
-    solution = solve(problem, starts=2)
-    assert solution.total_time == pytest.approx(expected.sum(), rel=1e-9, abs=0)
+    assert solution.check.verdict is Verdict.DISCONTINUOUS
+    assert solution.check.limits is Verdict.PASS
+    assert "jumps of velocity between them" in str(solution.why)
 
 
 def test_timed_optimum_of_the_polishing_paper_in_one_unit() -> None:
@@ -98,42 +81,10 @@ def test_timed_optimum_under_every_unit_reading_from_random_starts(units: str) -
     )
 
 
-def dense_total(problem: Problem, log_ratios: np.ndarray) -> float:
-    """Total of durations in these ratios, stretched until densely sampled peaks keep the limits."""
-    h = np.exp(np.concatenate([[0.0], log_ratios]))
-    motion = ByScipy(problem.waypoints, h)
-    # The knots are among the samples: acceleration has kinks there.
-    e = np.minimum(np.linspace(0, 3, 6001), np.nextafter(3, 0))
-    q1, q2, t1, t2 = motion.q(e, 1), motion.q(e, 2), motion.t(e, 1), motion.t(e, 2)
-    if t1.min() <= 0:
-        return 1e6
-    velocity = np.abs(q1 / t1) / problem.limits.velocity
-    acceleration = np.abs((q2 * t1 - q1 * t2) / t1**3) / problem.limits.acceleration
-    return float(h.sum() * max(velocity.max(), np.sqrt(acceleration.max())))
-
-
-def test_timed_optimum_agrees_with_a_search_that_shares_no_code() -> None:
-    problem, _ = uniform("timed", 31, count=4, joints=2)
-    problem = replace(problem, limits=replace(problem.limits, jerk=np.full(2, np.inf)))
-    solution = solve(problem)
-    found = [
-        minimize(
-            lambda x: dense_total(problem, x),
-            start,
-            method="Nelder-Mead",
-            options={"xatol": 1e-9, "fatol": 1e-11, "maxiter": 2000},
-        ).fun
-        for start in ([0.0, 0.0], [-0.3, 0.2], [0.3, -0.2])
-    ]
-    assert solution.status is Status.CONVERGED
-    assert solution.total_time == pytest.approx(min(found), rel=2e-6)
-
-
 @pytest.mark.parametrize(
     "kind",
     [
         (3, "averaged-continued", "times", "timed"),
-        (7, "averaged-continued", "times", "timed"),
         (5, "averaged-continued", "chord", "timed"),
         (4, "averaged-continued", "joint-chord", "timed"),
         (5, "averaged-continued", "chord", "stretched"),
@@ -205,8 +156,3 @@ def test_each_joint_by_itself() -> None:
     assert "piecewise polynomials only" in str(answer.why)
     longest = np.max([s.durations for s in answer.joints], axis=0)
     np.testing.assert_allclose(answer.durations, longest)
-
-
-def test_kkt_residual_far_from_an_optimum_is_large() -> None:
-    problem, h = uniform("timed", 36, count=4)
-    assert kkt(problem, 3.0 * h).residual > 0.01

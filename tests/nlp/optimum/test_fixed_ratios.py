@@ -6,20 +6,16 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.interpolate import CubicSpline
-from scipy.optimize import brentq
-from trajgap.nlp import Evidence, Route, Status, solve_per_joint, with_other_route
+from trajgap.nlp import Evidence, Status, solve_per_joint
 from trajgap.nlp.optimum import solve
 from trajgap.problem import (
     Coupling,
-    Interpolant,
     Limits,
     Problem,
     TrajgapError,
     Verdict,
     check,
     cubic_spline,
-    evaluate,
     piecewise,
     quintic_spline,
     rest_to_rest,
@@ -38,8 +34,6 @@ CURVES = [
     uniform_cubic_b_spline(4, "stretched"),
     uniform_cubic_b_spline(4, "timed"),
 ]
-BLURRED = 2e-8
-"""The bound on rounding errors of the curve with a clock of its own, which its answer keeps."""
 EVERY = pytest.mark.parametrize("curve", CURVES, ids=lambda curve: curve.name)
 
 
@@ -51,30 +45,6 @@ def shortest(problem: Problem) -> float:
     assert check(problem, answer.durations).limits is Verdict.PASS
     np.testing.assert_allclose(answer.durations / answer.total_time, problem.shares, rtol=1e-12)
     return answer.total_time
-
-
-def excess(problem: Problem, total: float) -> float:
-    """The largest ratio of a peak to its limit less 1, by the batch evaluator."""
-    return float(evaluate(problem, total * problem.shares[None]).ratios.max()) - 1.0
-
-
-@EVERY
-def test_it_is_the_root_of_the_largest_ratio(curve) -> None:
-    problem = Problem(Q, LIMITS, curve, ratios=RATIOS)
-    root = brentq(lambda total: excess(problem, total), 0.1, 100.0, xtol=1e-12, rtol=1e-13)
-    assert shortest(problem) == pytest.approx(root, rel=BLURRED)
-
-
-def test_dense_samples_of_another_library_agree() -> None:
-    problem = Problem(Q, LIMITS, cubic_spline(3), ratios=RATIOS)
-    breaks = np.concatenate([[0.0], np.cumsum(RATIOS / RATIOS.sum())])
-    spline = CubicSpline(breaks, Q, bc_type="clamped")
-    dense = np.linspace(0.0, 1.0, 200_001)
-    needs = [
-        (np.abs(spline(dense, order)) / limit).max() ** (1 / order)
-        for order, limit in enumerate(LIMITS.derivatives.T, start=1)
-    ]
-    assert shortest(problem) == pytest.approx(max(needs), rel=1e-8)
 
 
 @EVERY
@@ -187,13 +157,6 @@ def test_no_formula_is_one_line(curve, said: str) -> None:
     with pytest.raises(TrajgapError, match=said) as error:
         solve(Problem(Q, LIMITS, curve, ratios="equal"))
     assert "leave the ratios out" in str(error.value)
-
-
-@pytest.mark.parametrize("curve", [cubic_spline(3), quintic_spline(3)])
-def test_the_nlp_with_fixed_ratios_ends_at_the_formula(curve: Interpolant) -> None:
-    found = with_other_route(solve(Problem(Q, LIMITS, curve, ratios=(1.0, 0.7, 1.9))))
-    assert found.route is Route.CLOSED_FORM
-    assert found.other_total == pytest.approx(found.total_time, rel=1e-8)
 
 
 def test_a_short_segment_beside_a_long_one_passes_the_check() -> None:

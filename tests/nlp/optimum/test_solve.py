@@ -1,9 +1,11 @@
 """Optima of small problems: closed forms, other routes, printed times, and their conditions."""
 
+from fractions import Fraction
+
 import numpy as np
 import pytest
-from support import second_route
-from trajgap.nlp import Status, kkt, random_starts
+from support.shipped_problems import COVERED_PROBLEMS
+from trajgap.nlp import Status, kkt, random_starts, shipped
 from trajgap.nlp.optimum import solve
 from trajgap.nlp.optimum.polish import polish
 from trajgap.problem import (
@@ -25,51 +27,29 @@ def puma(reading: str = "durations-at-least-0.3") -> Problem:
     return load_case(PUMA).problem(reading_id=reading)
 
 
-def test_every_one_of_20_random_starts_reaches_the_shared_puma_optimum() -> None:
+def test_every_random_start_reaches_the_shared_puma_optimum() -> None:
     problem = puma()
-    starts = random_starts(problem, 20, np.random.default_rng(20260101))
+    starts = random_starts(problem, 8, np.random.default_rng(20260101))
     solution = solve(problem, initial=starts)
     best = min(solution.totals)
     assert solution.status is Status.CONVERGED
     assert all(total <= best * (1 + 1e-6) for total in solution.totals)
-    assert solution.starts_at_best == solution.starts == 20
+    assert solution.starts_at_best == solution.starts == 8
     assert solution.check.verdict is Verdict.PASS
     assert solution.check.max_violation <= 1e-9
     assert solution.kkt_residual <= 1e-8
 
 
-@pytest.mark.parametrize(
-    "reading",
-    ["durations-at-least-0.3", pytest.param("durations-positive", marks=pytest.mark.slow)],
-)
-def test_the_shared_puma_optimum_agrees_with_a_route_without_our_code(reading: str) -> None:
-    problem = puma(reading)
-    lower = float(problem.duration_lower[0])
-    starts = np.array([[1.0, 1.2, 1.1], [1.3, 1.5, 1.3]])
-    best, _ = second_route.shortest(problem.waypoints, 6.0, 8.0, lower, starts)
-    assert solve(problem).total_time == pytest.approx(best, rel=1e-9, abs=0)
-
-
-@pytest.mark.parametrize("joint", range(6))
-def test_each_puma_joint_agrees_with_a_route_without_our_code(joint: int) -> None:
-    problem = puma().joint(joint)
-    solution = solve(problem)
-    start = np.array([solution.durations * 1.05, np.array([1.0, 1.2, 0.6])])
-    best, _ = second_route.shortest(problem.waypoints, 6.0, 8.0, 0.3, start)
-    assert solution.total_time == pytest.approx(best, rel=1e-9, abs=0)
-
-
-def test_a_thin_second_basin_is_found_with_every_seed() -> None:
-    """Joint 6 with positive durations: random starts fall into the wide basin 96 % of the time."""
-    problem = puma("durations-positive").joint(5)
-    totals = [solve(problem, seed=seed).total_time for seed in range(5)]
-    grid = np.stack(np.meshgrid(*[np.geomspace(0.02, 1.3, 60)] * 3, indexing="ij"), -1)
-    from trajgap.problem import evaluate
-
-    vectors = grid.reshape(-1, 3)
-    brute = float((vectors.sum(axis=1) * evaluate(problem, vectors).stretch).min())
-    assert max(totals) <= brute
-    assert max(totals) - min(totals) <= 1e-9
+@pytest.mark.parametrize("joint", [None, *range(6)])
+@pytest.mark.parametrize("reading", ["durations-at-least-0.3", "durations-positive"])
+def test_puma_optima_lie_in_their_certified_intervals(reading: str, joint: int | None) -> None:
+    """Which the verifier proves with the standard library, to 1e-6 of the total."""
+    problem, name = puma(reading), f"{PUMA}.six-joints.{reading}"
+    if joint is not None:
+        problem, name = problem.joint(joint), f"{name}.joint-{joint + 1}"
+    claim = shipped(COVERED_PROBLEMS[name])["claim"]
+    lower, upper = (float(Fraction(claim[side])) for side in ("lower", "upper"))
+    assert lower * (1 - 1e-9) <= solve(problem).total_time <= upper * (1 + 1e-9)
 
 
 @pytest.mark.parametrize(
@@ -95,47 +75,6 @@ def test_one_rest_to_rest_segment_has_the_textbook_time(
         solution = solve(Problem(q, limits, rest_to_rest(1, degree)))
         assert solution.status is Status.CONVERGED
         assert solution.total_time == pytest.approx(expected, rel=1e-10)
-
-
-DEGREE = np.pi / 180
-FANG = [
-    (
-        [[-10, 20, 15, 150, 30, 120], [55, 35, 30, 10, 70, 25]],
-        [100 * DEGREE, 95 * DEGREE, 100 * DEGREE, 150 * DEGREE, 130 * DEGREE, 110 * DEGREE],
-        [60 * DEGREE, 60 * DEGREE, 75 * DEGREE, 70 * DEGREE, 90 * DEGREE, 80 * DEGREE],
-        [60 * DEGREE, 66 * DEGREE, 85 * DEGREE, 70 * DEGREE, 75 * DEGREE, 70 * DEGREE],
-        4.7177,
-    ),
-    (  # printed as shares of π
-        [[-60, 30, 0, -72, 45, 0], [72, 60, -30, -12, -90, 45]],
-        [1.8, 2, 1.5, 2, 2.5, 2],
-        [4, 5, 3.5, 4, 5, 4],
-        [20, 25, 20, 20, 30, 25],
-        2.7998,
-    ),
-]
-
-
-@pytest.mark.parametrize(("degrees", "velocity", "acceleration", "jerk", "printed"), FANG)
-def test_the_septic_times_of_fang_2020_are_met_to_their_printed_digits(
-    degrees, velocity, acceleration, jerk, printed: float
-) -> None:
-    """Y. Fang et al., Mechanism and Machine Theory 153 (2020) 103957, tables 4 and 7."""
-    limits = Limits(velocity, acceleration, jerk)
-    solution = solve(Problem(DEGREE * np.array(degrees), limits, rest_to_rest(1, 7)))
-    assert solution.total_time == pytest.approx(printed, abs=5.1e-5)
-
-
-def test_relaxing_the_family_never_costs_time() -> None:
-    problem = puma()
-    free = Problem(
-        problem.waypoints, problem.limits, piecewise((5, 5, 5), 2), problem.duration_lower
-    )
-    solution = solve(free)
-    assert solution.status is Status.CONVERGED
-    assert solution.total_time < solve(problem).total_time
-    judged = check(free, solution.durations, solution.nodal)
-    assert judged.verdict is Verdict.PASS
 
 
 def test_a_segment_without_motion_is_named_and_its_infimum_is_the_rest() -> None:
@@ -249,9 +188,12 @@ def test_newton_sharpens_and_never_worsens() -> None:
     assert sharp == pytest.approx(best, rel=1e-7)
 
 
-def test_free_derivatives_enter_the_conditions() -> None:
+def test_free_derivatives_cost_no_time_and_enter_the_conditions() -> None:
     problem = Problem(Q, LIMITS, piecewise((5, 5, 5), 2))
     solution = solve(problem)
+    assert solution.status is Status.CONVERGED
+    assert check(problem, solution.durations, solution.nodal).verdict is Verdict.PASS
+    assert solution.total_time < solve(Problem(Q, LIMITS, three_five_three())).total_time
     assert solution.kkt_residual <= 1e-8
     shifted = solution.nodal + np.array([[0.05], [0.0], [0.0], [0.0]])
     assert kkt(problem, solution.durations, shifted).residual > 1e-3

@@ -68,12 +68,12 @@ def assert_same(problem: Problem) -> bool:
 
 
 def test_random_problems() -> None:
-    assert sum(assert_same(random_problem(number)) for number in range(24)) >= 22
+    assert sum(assert_same(random_problem(number)) for number in range(12)) >= 11
 
 
 def test_the_suite() -> None:
     names = [one.name for one in list_instances()]
-    assert sum(assert_same(load_instance(name).problem()) for name in names[::9]) >= 10
+    assert sum(assert_same(load_instance(name).problem()) for name in names[::18]) >= 5
 
 
 NEIGHBOURS = {1114: 1.2e-4, 1426: 2.5e-4}

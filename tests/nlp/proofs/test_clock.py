@@ -272,13 +272,6 @@ def test_without_time_mean_velocities_bound_a_quintic_spline() -> None:
     assert found.left_out in (session.BARE, session.UNPROVED)
 
 
-def test_a_search_proves_more_than_mean_velocities() -> None:
-    at_once = certify(QUINTIC, gap=0.2, seconds=0.0)
-    searched = certify(QUINTIC, gap=0.2, seconds=60.0)
-    assert searched.outcome is Outcome.CERTIFIED
-    assert at_once.lower < searched.lower
-
-
 def test_an_interval_without_a_lower_bound_says_why() -> None:
     unlimited = Problem(Q[:3], Limits([np.inf] * 2, [1.9] * 2), quintic_spline(2))
     found = certify(unlimited, gap=1e-6, seconds=0.0)

@@ -95,13 +95,6 @@ def test_the_printed_numbers_are_proved_where_they_are_given():
     assert solve(statement.problem()).total_time == pytest.approx(found.total_time, rel=1e-6)
 
 
-def test_a_wide_interval_certifies_nothing():
-    problem = Problem([[0.0], [0.6], [1.1], [0.8]], Limits(2.0, 6.0), cubic_spline(3))
-    found = solve(problem, prove=0)
-    for share, evidence in ((0.98, Evidence.BEST_KNOWN), (0.995, Evidence.CERTIFIED)):
-        assert replace(found, lower_bound=share * found.total_time).evidence is evidence
-
-
 def test_a_budget_of_boxes_leaves_the_same_interval_each_time():
     q = [[0.0, 0.2], [0.6, 0.9], [1.1, 0.4], [0.8, -0.1]]
     problem = Problem(q, Limits(2.0, 6.0, 40.0), cubic_spline(3))

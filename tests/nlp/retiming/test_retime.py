@@ -1,23 +1,12 @@
-"""TOPPRA on paths of known answers, its order, the one-sided inequality and the second solver."""
+"""TOPPRA on paths of known answers, its order, and the one-sided inequality."""
 
 import numpy as np
 import pytest
-import toppra
-from numpy.typing import ArrayLike, NDArray
-from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq
-from support.path_nlp import path_nlp_duration
 from support.puma import PUMA_LIMITS
 from support.retimed import PUMA_353, close, hermite, puma, rest_to_rest_time, trajectory
-from toppra.algorithm import TOPPRA
-from toppra.constraint import (
-    DiscretizationType,
-    JointAccelerationConstraint,
-    JointVelocityConstraint,
-)
 from trajgap.nlp.retiming.toppra_check import extrapolate, retime
 from trajgap.problem import (
-    Interpolant,
     Limits,
     Problem,
     check,
@@ -30,9 +19,6 @@ from trajgap.problem import (
     three_five_three,
     uniform_cubic_b_spline,
 )
-
-Array = NDArray[np.float64]
-
 
 # --- paths of known answers -----------------------------------------------------------------------
 
@@ -92,15 +78,6 @@ def test_a_reversal_inside_a_segment_is_a_standstill_and_not_a_smooth_point() ->
     assert found.cuts == pytest.approx((0.0, turn, 1.0), abs=1e-12)
 
 
-@pytest.mark.parametrize("degree", [3, 5, 7])
-@pytest.mark.parametrize("velocity", [[3.0, 9.0, 2.0], [0.5, 9.0, 0.4]])
-def test_straight_line(degree: int, velocity: list[float]) -> None:
-    q = np.array([[0.2, -1.0, 3.0], [1.1, 1.5, 2.3]])
-    acceleration = [4.0, 9.0, 6.0]
-    found = retime(fit(rest_to_rest(1, degree), q, [2.0]), Limits(velocity, acceleration))
-    assert close(found, rest_to_rest_time(q[1] - q[0], velocity, acceleration))
-
-
 def test_circle_at_the_velocity_limit() -> None:
     # max(|sin|, |cos|) of the path speed is V, so that a full turn takes 8·(R/√2)/V.
     radius, speed = 0.8, 1.3
@@ -134,48 +111,6 @@ def test_parabola_at_the_acceleration_limit_cannot_be_done_faster(start: float) 
     assert found.inequality_holds
 
 
-def test_toppra_cpp_cubic_path() -> None:
-    # toppra, cpp/tests/test_algorithm.cpp at 730aa8a, test OutputParmetrization: not-a-knot cubic
-    # through these way-points at s = 0, 1, 2, 3; collocation on 51 points.
-    printed = [
-        0.0, 0.00799999, 0.01559927, 0.02295854, 0.03021812, 0.0375065, 0.04494723, 0.05266502,
-        0.06079176, 0.06947278, 0.07887417, 0.08890758, 0.08734253, 0.08331795, 0.07962036,
-        0.07621324, 0.0730652, 0.07014912, 0.06744149, 0.06492187, 0.06257243, 0.06037763,
-        0.05832396, 0.05639983, 0.05459562, 0.05290406, 0.05132157, 0.04985237, 0.04852316,
-        0.04745693, 0.04761904, 0.0285715, 0.05376003, 0.04275653, 0.04126188, 0.04013804,
-        0.03912958, 0.03818766, 0.03729606, 0.0364472, 0.03563649, 0.03486069, 0.03411724,
-        0.03340395, 0.03271895, 0.03206054, 0.02268897, 0.01495547, 0.00883489, 0.00394282, 0.0,
-    ]  # fmt: skip
-    knots, q = np.arange(4.0), np.array([[0, 0], [1, 3], [2, 4], [0, 0]], dtype=float)
-    limits = ([1.0, 1.0], [0.2, 0.2])
-
-    def reference(points: int, scheme: DiscretizationType) -> tuple[Array, float]:
-        grid = np.linspace(0, 3, points)
-        solver = TOPPRA(
-            [JointVelocityConstraint(limits[0]), JointAccelerationConstraint(limits[1], scheme)],
-            toppra.SplineInterpolator(knots, q),
-            gridpoints=grid,
-            solver_wrapper="seidel",
-        )
-        speed = np.asarray(solver.compute_parameterization(0, 0)[1])
-        return speed, float(np.sum(2 * np.diff(grid) / (speed[1:] + speed[:-1])))
-
-    speed, _ = reference(51, DiscretizationType.Collocation)
-    assert np.allclose(speed**2, printed, atol=1e-6)
-    x = np.sqrt(printed)
-    table = float(np.sum(2 * 0.06 / (x[1:] + x[:-1])))
-    spline = CubicSpline(knots, q)
-    curve = trajectory([spline.c[::-1, k] for k in range(3)], [1.0, 1.0, 1.0])
-    found = retime(curve, Limits(*limits), end_speeds=(0.0, 0.0))
-    assert found.extrapolated == pytest.approx(table, rel=3e-2)
-    _, fine = reference(6001, DiscretizationType.Interpolation)
-    assert found.extrapolated == pytest.approx(fine, rel=5e-4)
-    assert found.inequality_holds is None
-    assert found.why == "the end speeds are not the trajectory's"
-    second = path_nlp_duration(curve, Limits(*limits), 500, end_speeds=(0.0, 0.0))
-    assert second == pytest.approx(found.durations[0], rel=1e-4)
-
-
 def test_first_order_and_extrapolation_within_its_error() -> None:
     curve = puma(three_five_three(), PUMA_353)
     coarse = retime(curve, PUMA_LIMITS, gridpoints=(100, 200, 400))
@@ -204,25 +139,6 @@ def test_no_order_where_there_is_none(durations: list[float]) -> None:
     assert order is None
     assert error >= np.ptp(durations)
     assert abs(limit - durations[2]) <= error
-
-
-@pytest.mark.parametrize("cells", [100, 400])
-@pytest.mark.parametrize(
-    ("interpolant", "durations"),
-    [
-        (three_five_three(), PUMA_353),
-        (quintic_spline(3), [0.9, 0.8, 0.9]),
-        (rest_to_rest(3, 5), [0.9, 1.1, 0.9]),
-    ],
-)
-def test_two_solvers_agree_on_the_same_grid(
-    interpolant: Interpolant, durations: ArrayLike, cells: int
-) -> None:
-    curve = puma(interpolant, durations)
-    found = retime(curve, PUMA_LIMITS, gridpoints=(cells, 2 * cells, 4 * cells))
-    assert path_nlp_duration(curve, PUMA_LIMITS, cells) == pytest.approx(
-        found.durations[0], rel=3e-5
-    )
 
 
 # --- the one-sided inequality ---------------------------------------------------------------------

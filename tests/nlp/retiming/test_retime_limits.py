@@ -4,7 +4,6 @@ import logging
 
 import numpy as np
 import pytest
-from support.path_nlp import path_nlp_duration
 from support.puma import PUMA, PUMA_LIMITS
 from support.retimed import PUMA_353, close, hermite, puma, rest_to_rest_time, trajectory
 from trajgap.nlp.retiming.grid import measure, sample
@@ -110,8 +109,6 @@ def test_not_applicable_by_limits(limits: Limits, why: str) -> None:
     assert found.extrapolated is None
     assert found.durations == ()
     assert why in str(found)
-    with pytest.raises(TrajgapError, match=f"path NLP: not applicable, {why}"):
-        path_nlp_duration(curve, limits)
 
 
 def test_jerk_limits_of_joints_at_rest_do_not_matter() -> None:
@@ -131,8 +128,6 @@ def test_zero_limits_of_joints_at_rest_do_not_matter() -> None:
         retime(alone, Limits(6.0, 8.0, joints=2)).durations, rel=1e-5
     )
     assert found.inequality_holds
-    second = path_nlp_duration(curve, Limits([6.0, 0.0, 6.0], [8.0, 0.0, 8.0]), 500)
-    assert second == pytest.approx(found.durations[0], rel=3e-5)
 
 
 def test_not_applicable_by_shape() -> None:
@@ -145,11 +140,14 @@ def test_not_applicable_by_shape() -> None:
     assert retime(still, limits).why == "nothing moves"
 
 
-def test_end_speeds_that_cannot_be_reached() -> None:
+def test_end_speeds_that_are_not_the_trajectorys_or_cannot_be_reached() -> None:
     curve = puma(three_five_three(), PUMA_353)
     found = retime(curve, PUMA_LIMITS, end_speeds=(1000.0, 0.0))
     assert not found.applicable
     assert found.why == "TOPPRA found no parametrisation of piece 1 on 500 cells"
+    moving = retime(curve, PUMA_LIMITS, end_speeds=(0.1, 0.0))
+    assert moving.inequality_holds is None
+    assert moving.why == "the end speeds are not the trajectory's"
 
 
 def test_arguments_that_make_no_sense() -> None:

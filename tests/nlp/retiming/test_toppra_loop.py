@@ -127,8 +127,11 @@ assert len(matplotlib.pyplot.gcf().axes[-1].lines) >= 3
 
 @pytest.mark.parametrize(
     "program",
-    [RETIMED + NONE_THERE + DRAWN, DRAWN + RETIMED, "import toppra\n" + RETIMED + DRAWN],
-    ids=["before", "after", "beside"],
+    [
+        pytest.param(RETIMED + NONE_THERE + DRAWN, id="before"),
+        pytest.param(DRAWN + RETIMED, id="after", marks=pytest.mark.slow),
+        pytest.param("import toppra\n" + RETIMED + DRAWN, id="beside", marks=pytest.mark.slow),
+    ],
 )
 def test_who_draws_is_served_as_ever(program: str) -> None:
     run = subprocess.run(

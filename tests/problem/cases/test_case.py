@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import tomllib
+from functools import cache
+from typing import Any
 
 import jsonschema
 import numpy as np
@@ -17,6 +19,11 @@ from trajgap.problem.cases.load import load_case, parse_case, published_ids
 from trajgap.problem.cases.schema import case_schema
 from trajgap.problem.errors import CaseError
 from trajgap.problem.printed import Printed
+
+
+@cache
+def schema() -> dict[str, Any]:
+    return case_schema()
 
 
 def load(text: str = BASE) -> Case:
@@ -124,12 +131,12 @@ def test_the_exported_schema_is_current():
     exported = json.loads(
         (ROOT / "docs" / "reference" / "case.schema.json").read_text(encoding="utf-8")
     )
-    assert exported == json.loads(json.dumps(case_schema()))
+    assert exported == json.loads(json.dumps(schema()))
 
 
 def test_the_schema_accepts_what_loads_and_refuses_what_is_misspelt():
-    validator = jsonschema.Draft202012Validator(case_schema())
-    validator.check_schema(case_schema())
+    validator = jsonschema.Draft202012Validator(schema())
+    validator.check_schema(schema())
     # JSON has no infinity; TOML's inf is written as a string for this check.
     validator.validate(as_json(BASE.replace("4, inf]", "4, 'inf']")))
     for case_id in published_ids():
@@ -156,8 +163,7 @@ def test_documents_dump_to_the_digits_that_they_were_read_from():
 
 def test_every_key_is_in_the_documentation():
     page = (ROOT / "docs" / "reference" / "case-files.md").read_text(encoding="utf-8")
-    schema = case_schema()
-    blocks = [schema, *schema["$defs"].values()]
+    blocks = [schema(), *schema()["$defs"].values()]
     keys = {key for block in blocks for key in block.get("properties", {})}
     words = {word for block in blocks for p in block.get("properties", {}).values()
              for word in p.get("enum", ())}  # fmt: skip

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import tomllib
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from support.refusals import Refusal, each_refusal
 from support.scara import SCARA, scara
 from trajgap.problem import (
     CaseError,
+    Problem,
     compare_transcriptions,
     ctraj,
     forward_kinematics,
@@ -258,8 +260,13 @@ def line_text(first: object = FIRST, last: object = LAST, unit: str = "rad") -> 
     )
 
 
+@cache
+def line_problem() -> Problem:
+    return parse_case(line_text(), "line.toml").problem()
+
+
 def test_its_waypoints_are_those_of_ctraj_and_lie_on_the_line() -> None:
-    problem = parse_case(line_text(), "line.toml").problem()
+    problem = line_problem()
     arm = load_robot("puma560")
     poses = forward_kinematics(arm, np.array([FIRST, LAST]))
     line = ctraj(arm, *poses, 4, guess=FIRST)
@@ -273,9 +280,8 @@ def test_its_waypoints_are_those_of_ctraj_and_lie_on_the_line() -> None:
 def test_its_angles_are_in_the_unit_of_the_file() -> None:
     degrees = [np.rad2deg(ends).tolist() for ends in (FIRST, LAST)]
     case = parse_case(line_text(*degrees, unit="deg"), "line.toml")
-    other = parse_case(line_text(), "line.toml").problem()
-    np.testing.assert_allclose(case.problem().waypoints, other.waypoints, atol=1e-9)
     statement = case.statement()
+    np.testing.assert_allclose(statement.problem().waypoints, line_problem().waypoints, atol=1e-9)
     assert statement.complete
     assert statement.waypoints is case.statement().waypoints  # computed once
 

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 
 import numpy as np
 import pytest
 from support.case_texts import case_text
-from support.checkout import ROOT
 from trajgap.heuristics import PSO, run
 from trajgap.nlp import Status
 from trajgap.nlp.optimum import solve
@@ -89,15 +87,6 @@ def test_a_declared_family_is_checked_solved_and_searched(name: str) -> None:
     through(declared(name), Verdict.DISCONTINUOUS if "stretched" in name else Verdict.PASS)
 
 
-def test_the_programs_of_the_page_run(capsys: pytest.CaptureFixture[str]) -> None:
-    page = (ROOT / "docs" / "reference" / "interpolants.md").read_text()
-    programs = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
-    assert len(programs) == 2
-    for program in programs:
-        exec(program, {})
-    assert re.search("optimal|converged", capsys.readouterr().out)
-
-
 def test_a_straight_line_becomes_a_case_file(tmp_path: Path) -> None:
     arm, start = load_robot("puma560"), np.array([0.1, -0.6, 0.4, 0.2, 0.5, 0.1])
     last = forward_kinematics(arm, start)
@@ -111,4 +100,3 @@ def test_a_straight_line_becomes_a_case_file(tmp_path: Path) -> None:
     np.testing.assert_array_equal(problem.waypoints, line.waypoints)
     assert problem.curve == cubic_spline(4)
     assert problem.joints == line.chain.labels
-    through(problem)

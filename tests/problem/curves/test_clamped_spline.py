@@ -27,8 +27,6 @@ from trajgap.problem import (
     quintic_spline,
     solve_in_closed_form,
 )
-from trajgap.problem.curves import average_matrix
-from trajgap.problem.curves.clamped_knots import chord_fractions
 
 KINDS = [
     (degree, knots, parameters, time)
@@ -235,16 +233,6 @@ def test_closed_form_of_a_stretched_chord_curve(parameters: str) -> None:
         assert check(problem, shorter).limits is Verdict.VIOLATED
     alone = problem.joint(1)
     assert alone.curve.for_joint(alone.waypoints, 0) == alone.curve
-
-
-def test_the_optimum_of_chord_knots_written_out_is_that_of_chord_knots() -> None:
-    limits = Limits(2.0, 9.0)
-    chord = ClampedBSpline(5, 3, "averaged-continued", "chord")
-    inner = average_matrix(chord) @ np.array(chord_fractions(Q)[0])
-    whole = (*[0.0] * 4, *inner, *[1.0] * 4)
-    written = ClampedBSpline(5, 3, "given", "times", knot_vector=whole)
-    totals = [solve(Problem(Q, limits, one), starts=2).total_time for one in (chord, written)]
-    assert totals[0] == pytest.approx(totals[1], rel=1e-9)
 
 
 def test_an_optimum_is_found_where_equal_durations_pass_no_curve() -> None:

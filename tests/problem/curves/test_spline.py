@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from scipy.interpolate import BPoly, CubicSpline, make_interp_spline
+from scipy.interpolate import CubicSpline, make_interp_spline
 from support.samples import DECLARATIONS, FREE, sample_problem
 from support.splines_drawn import exact_scaled, waypoints
 from support.suite import benchmark
@@ -22,7 +22,6 @@ from trajgap.problem import (
     piecewise,
     quintic_spline,
     quintic_spline_virtual,
-    rest_to_rest,
     septic_spline,
     three_five_three,
 )
@@ -61,7 +60,7 @@ CURVES = {
 """Splines, and what holds at either end: one order and value, or several."""
 
 
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", range(4))
 @pytest.mark.parametrize("name", CURVES)
 def test_splines_are_scipys(name: str, seed: int) -> None:
     """Virtual breaks are knots without data; durations are within 1 : 25."""
@@ -83,35 +82,6 @@ def test_splines_are_scipys(name: str, seed: int) -> None:
         np.testing.assert_allclose(mine(inside, order), other, rtol=0, atol=room)
     alone = fit(curve.for_joint(q, 1), q[:, 1:2], h)
     np.testing.assert_allclose(alone(inside)[:, 0], mine(inside)[:, 1], atol=1e-12)
-
-
-@pytest.mark.parametrize("degree", [3, 5, 7, 9])
-def test_polynomials_between_given_derivatives_are_hermites(degree: int) -> None:
-    q, orders, t = waypoints(4), (degree - 1) // 2, np.array([0.0, 0.7, 1.2, 2.6])
-    rest = BPoly.from_derivatives(t, [[row, *[np.zeros(3)] * orders] for row in q])
-    mine = fit(rest_to_rest(3, degree), q, np.diff(t))
-    at = np.linspace(0.01, 2.59, 100)
-    for order in range(4):
-        other = rest(at, order)
-        np.testing.assert_allclose(mine(at, order), other, atol=1e-10 * np.abs(other).max())
-    first, last = np.random.default_rng(degree).normal(size=(2, orders, 3))
-    prescribed = [tuple((r + 1, tuple(v)) for r, v in enumerate(end)) for end in (first, last)]
-    curve = piecewise((degree,), 2, prescribed[0], finish=prescribed[1])
-    moving = BPoly.from_derivatives([0.0, 1.4], [[q[0], *first], [q[1], *last]])
-    at = np.linspace(0.0, 1.4, 51)
-    np.testing.assert_allclose(fit(curve, q[:2], [1.4])(at), moving(at), atol=1e-11)
-
-
-def test_353_is_the_papers_system() -> None:
-    theirs = SimpleNamespace(**benchmark("author_code"))
-    q = waypoints(4)
-    for h in np.random.default_rng(2).uniform(0.2, 3.0, (20, 3)):
-        mine = coefficients(three_five_three(), q, h)
-        for j in range(3):
-            pieces = theirs.coefficients(q[:, j], *h)
-            for k, piece in enumerate(pieces):
-                ascending = piece[::-1] * h[k] ** np.arange(piece.size)
-                np.testing.assert_allclose(mine[k, : piece.size, j], ascending, atol=1e-11)
 
 
 def test_353_peaks_are_the_author_codes() -> None:
@@ -237,16 +207,6 @@ def test_motion_values_count_from_the_first_waypoint() -> None:
     assert not peaks.any()
 
 
-def test_unwanted_peaks_are_zero() -> None:
-    problem, h = sample_problem(DECLARATIONS["quintic"], 4)
-    values = problem.curve.motion_values(problem.waypoints)
-    every = problem.curve.batch_peaks(values, h[None], np.ones((3, 3), bool))
-    assert (every > 0).all()
-    wanted = np.array([[True, False, True], [False, True, False], [False, False, False]])
-    some = problem.curve.batch_peaks(values, h[None], wanted)
-    np.testing.assert_array_equal(some, np.where(wanted, every, 0.0))
-
-
 def test_error_bound_near_a_singular_system() -> None:
     interpolant = singular_at_two_to_three()
     q = np.array([[0.3], [1.1], [-0.4]])
@@ -278,7 +238,7 @@ def test_error_bound_at_extreme_durations(
         bounded(found, error, exact_scaled(interpolant, problem, h, 0, None))
 
 
-@pytest.mark.parametrize("share", [1e-2, 1e-5, 0.0])
+@pytest.mark.parametrize("share", [1e-2, 0.0])
 @pytest.mark.parametrize("name", LONG)
 def test_rows_of_the_banded_inverse_bound_the_error_like_all_of_it(
     monkeypatch: pytest.MonkeyPatch, share: float, name: str

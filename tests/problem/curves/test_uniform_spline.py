@@ -13,10 +13,8 @@ from support.b_splines import (
     ByScipy,
     spline_by_scipy,
     uniform,
-    vertices_by_solving,
 )
 from trajgap.problem import (
-    ClockedTrajectory,
     CurveError,
     Limits,
     Problem,
@@ -24,19 +22,13 @@ from trajgap.problem import (
     TrajgapError,
     Verdict,
     check,
-    control_vertices,
     evaluate,
-    extrema,
     fit,
     keeps_limits,
     solve_in_closed_form,
     uniform_cubic_b_spline,
 )
-from trajgap.problem.curves.stretched import segment_peaks
 from trajgap.problem.curves.uniform_matrices import vertex_matrix
-
-TIMES = (*Timing, NATURAL)
-
 
 # --- control vertices -----------------------------------------------------------------------------
 
@@ -55,11 +47,6 @@ def test_vertices_meet_the_waypoint_equations_exactly(count: int, natural: bool)
     if natural:
         return
     assert max(sum(map(abs, row)) for row in v) <= 3
-
-
-def test_vertices_agree_with_a_dense_solve() -> None:
-    w = uniform("timed")[0].waypoints
-    np.testing.assert_allclose(control_vertices(w), vertices_by_solving(w), rtol=0, atol=1e-13)
 
 
 # --- both readings --------------------------------------------------------------------------------
@@ -88,33 +75,6 @@ def test_declarations_are_checked() -> None:
 # --- (a) stretched --------------------------------------------------------------------------------
 
 
-def sampled_segment_peaks(q: np.ndarray) -> np.ndarray:
-    spline = spline_by_scipy(q)
-    peaks = np.empty((len(q) - 1, q.shape[1], 3))
-    for k in range(len(q) - 1):
-        e = np.clip(np.linspace(k, k + 1, 20001), k, np.nextafter(k + 1, 0))
-        for r in range(3):
-            peaks[k, :, r] = np.abs(spline(e, r + 1)).max(axis=0)
-    return peaks
-
-
-def test_closed_form_from_dense_samples() -> None:
-    problem, _ = uniform("stretched", 8)
-    peaks = sampled_segment_peaks(problem.waypoints)
-    exact = segment_peaks(problem.curve, problem.waypoints)
-    assert (peaks <= exact * (1 + 1e-12)).all()
-    np.testing.assert_allclose(peaks, exact, rtol=1e-7)
-    ratios = peaks / problem.limits.derivatives
-    expected = (ratios ** (1 / np.arange(1, 4))).max(axis=(1, 2))
-    found = solve_in_closed_form(problem.curve, problem.waypoints, problem.limits.derivatives)
-    np.testing.assert_allclose(found, expected, rtol=1e-7)
-    verdict = check(problem, found)
-    assert verdict.limits is Verdict.PASS
-    assert verdict.verdict is Verdict.DISCONTINUOUS
-    assert verdict.stretch == pytest.approx(1.0, rel=1e-12)
-    assert check(problem, found * np.array([1, 1, 0.999, 1, 1])).limits is Verdict.VIOLATED
-
-
 def test_closed_form_with_a_limit_of_zero_and_with_nothing_that_moves() -> None:
     curve = uniform_cubic_b_spline(3, "stretched")
     assert (solve_in_closed_form(curve, np.full((3, 1), 0.4), [[1.0, 2.0, 3.0]]) == 0).all()
@@ -122,36 +82,6 @@ def test_closed_form_with_a_limit_of_zero_and_with_nothing_that_moves() -> None:
     assert np.isinf(moving).all()
     with pytest.raises(TrajgapError, match="needs 3 rows"):
         solve_in_closed_form(curve, np.ones((4, 1)), [[1.0, 1.0, 1.0]])
-
-
-def test_jumps_have_the_size_that_the_vertices_give() -> None:
-    problem, h = uniform("stretched", 9)
-    v = vertices_by_solving(problem.waypoints)
-    first, second = (v[2:] - v[:-2]) / 2, v[2:] - 2 * v[1:-1] + v[:-2]
-    jumps = {(j.break_index, j.joint, j.order): j for j in check(problem, h).jumps}
-    assert len(jumps) == 4 * 3 * 2
-    nodes = np.cumsum(h)
-    for b in range(1, 5):
-        for joint in range(3):
-            for order, node in ((1, first), (2, second)):
-                jump = jumps[b, str(joint + 1), order]
-                size = node[b, joint] * (h[b] ** -order - h[b - 1] ** -order)
-                assert jump.size == pytest.approx(size, rel=1e-9)
-                assert jump.time == pytest.approx(nodes[b - 1], rel=1e-14)
-
-
-def test_the_verdict_about_limits_stands_beside_the_jumps() -> None:
-    problem, h = uniform("stretched", 11)
-    slow, fast = check(problem, 9 * h), check(problem, 0.1 * h)
-    assert (slow.verdict, slow.limits) == (Verdict.DISCONTINUOUS, Verdict.PASS)
-    assert (fast.verdict, fast.limits) == (Verdict.VIOLATED, Verdict.VIOLATED)
-    assert len(fast.jumps) == len(slow.jumps) == 24
-    assert slow.feasible_time is None
-    assert "jumps at a break" in str(slow.feasible_why)
-    equal = check(problem, np.full(5, 9.0))
-    assert equal.verdict is equal.limits is Verdict.PASS
-    assert equal.continuous
-    assert equal.feasible_time == pytest.approx(45.0)
 
 
 # --- (b) timed ------------------------------------------------------------------------------------
@@ -178,31 +108,6 @@ def test_derivatives_in_time_are_finite_differences_of_an_independent_inversion(
         np.testing.assert_allclose(trajectory(t, 3), jerk, rtol=2e-3, atol=2e-2)
 
 
-@pytest.mark.parametrize("limited", ["all", "velocity", "acceleration"])
-def test_no_piece_that_is_skipped_holds_the_peak(limited: str) -> None:
-    """Against every extremum of every piece, for durations whose neighbours differ much."""
-    problem, h = uniform("timed", 4)
-    rng = np.random.default_rng(7)
-    drawn = h * rng.uniform(0.7, 1.3, (50, h.size)) * rng.uniform(0.2, 5.0, (50, 1))
-    wanted = np.zeros((problem.waypoints.shape[1], 3), dtype=np.bool_)
-    orders = {"all": (1, 2, 3), "velocity": (1,), "acceleration": (2,)}[limited]
-    wanted[:, [order - 1 for order in orders]] = True
-    values = problem.curve.motion_values(problem.waypoints)
-    peaks = problem.curve.batch_peaks(values, drawn, wanted)
-    compared = 0
-    for one, found in zip(drawn, peaks, strict=True):
-        if not np.isfinite(found).all():
-            continue
-        trajectory = fit(problem.curve, problem.waypoints, one)
-        for j in range(wanted.shape[0]):
-            for order in orders:
-                every = max(abs(e.value) for e in extrema(trajectory, j, order))
-                assert found[j, order - 1] == pytest.approx(every, rel=1e-12)
-                compared += 1
-        assert not found[~wanted].any()
-    assert compared > 100
-
-
 @pytest.mark.parametrize("time", ["stretched", "timed"])
 @pytest.mark.parametrize("tolerance", [0.0, 5e-10])
 def test_limits_are_kept_where_all_ratios_say_so(time: str, tolerance: float) -> None:
@@ -219,25 +124,6 @@ def test_limits_are_kept_where_all_ratios_say_so(time: str, tolerance: float) ->
     assert 0.2 < kept.mean() < 0.8
     still = replace(problem, limits=Limits(np.zeros(problem.waypoints.shape[1])))
     assert not keeps_limits(still, drawn, tolerance).any()
-
-
-def test_c2_in_time_without_rest_at_the_ends() -> None:
-    problem, h = uniform("timed", 13)
-    verdict = check(problem, 9 * h)
-    assert verdict.verdict is Verdict.PASS
-    assert verdict.continuous
-    trajectory = fit(problem.curve, problem.waypoints, h)
-    end = float(h.sum())
-    np.testing.assert_allclose(trajectory([0.0, end], 2), 0.0, atol=1e-11)
-    assert (np.abs(trajectory([0.0, end], 1)) > 0.01).all()
-
-
-def test_equal_durations_are_not_uniform_in_time_near_the_ends() -> None:
-    trajectory = fit(uniform_cubic_b_spline(6, "timed"), np.arange(6.0)[:, None], np.ones(5))
-    # q and t are then the same function of e: the motion is q = t, although dt/de is not 1.
-    np.testing.assert_allclose(trajectory([0.3, 2.7, 4.9])[:, 0], [0.3, 2.7, 4.9], atol=1e-14)
-    assert isinstance(trajectory, ClockedTrajectory)
-    assert abs(trajectory.clock[0, 1] - 1) > 0.1
 
 
 def test_time_must_not_run_backwards() -> None:

@@ -30,24 +30,6 @@ def sampled(motion: Trajectory, joint: int, sign: float) -> float:
     return best
 
 
-@pytest.mark.parametrize("part", [2, 4096])
-@pytest.mark.parametrize("sign", [1.0, -1.0])
-@pytest.mark.parametrize("seed", range(6))
-def test_the_largest_is_that_of_dense_samples(
-    seed: int, sign: float, part: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(one_sided, "_PART", part)
-    motion = drawn(seed)
-    for joint in range(2):
-        exact = one_sided.one_sided_extreme(motion, np.zeros((7, 4, 2)), joint, sign, REST)
-        due = sampled(motion, joint, sign)
-        assert due <= abs(exact.value) * (1 + 1e-12) <= due * (1 + 2e-3)
-        assert exact.sure == pytest.approx(abs(exact.value), rel=1e-12)
-        assert exact.most == pytest.approx(abs(exact.value), rel=1e-12)
-        there = motion.values(exact.piece, joint, 2, np.array([exact.s]))
-        assert there[0] == pytest.approx(exact.value, rel=1e-12)
-
-
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 @pytest.mark.parametrize("seed", range(6))
 def test_every_motion_within_the_errors_lies_between_the_bounds(seed: int, sign: float) -> None:

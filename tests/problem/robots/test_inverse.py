@@ -78,16 +78,6 @@ def test_round_trip_from_random_starts_alone(robot):
         assert max(misses(chain, found.joints, target)) < 2e-9
 
 
-def test_planar_arm_has_its_two_closed_form_solutions():
-    x, y = 0.5, 0.6
-    elbow = np.arccos((x**2 + y**2 - 0.7**2 - 0.4**2) / (2 * 0.7 * 0.4))
-    for bend in (elbow, -elbow):
-        shoulder = np.arctan2(y, x) - np.arctan2(0.4 * np.sin(bend), 0.7 + 0.4 * np.cos(bend))
-        near = [shoulder + 0.2, bend - 0.1]
-        found = inverse_kinematics(PLANAR, [x, y, 0], 0, guess=near)
-        np.testing.assert_allclose(found.joints, [shoulder, bend], atol=1e-8)
-
-
 @pytest.mark.parametrize(
     "components", [("x", "y"), POSITION, ("y", "rx", "x", "z"), (*POSITION, "rz")]
 )
@@ -235,15 +225,6 @@ def test_faults_of_a_point(point, held, message):
 
 RING = Chain(Convention.STANDARD, a=[0.7, 0.4], alpha=[0, 0], d=[0, 0])
 NAN = np.nan
-
-
-def test_a_ring_by_hand():
-    """Both joints free: the end reaches all from 0.3 to 1.1 m."""
-    for point, expected in (([0.1, 0, 0], 0.2), ([0, -1.5, 0.3], 0.5), ([0.5, -0.5, 0], 0.0)):
-        found = proximity(RING, point, [NAN, NAN])
-        assert found.lower <= expected + 1e-9
-        assert found.upper == pytest.approx(expected, abs=1e-9 if expected == 0 else 2e-4)
-        assert found.upper - found.lower <= 1e-4 * RING.reach + 1e-12
 
 
 @settings(max_examples=30, deadline=None)

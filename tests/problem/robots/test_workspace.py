@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import cache
 from itertools import pairwise
 
 import numpy as np
@@ -130,9 +131,13 @@ def ends(shift=(0.02, 0.12, 0.06), turn=(0.1, -0.2, 0.15)):
     return arm, first, last
 
 
+@cache
+def moved(points: int) -> CartesianLine:
+    return ctraj(*ends(), points, guess=START)
+
+
 def test_poses_lie_on_the_line_in_equal_steps_and_turn_about_one_axis() -> None:
-    arm, first, last = ends()
-    line = ctraj(arm, first, last, 7, guess=START)
+    (arm, first, last), line = ends(), moved(7)
     np.testing.assert_allclose(line.waypoints[0], START, atol=1e-8)
     assert line.residual <= 1e-8
     reached = forward_kinematics(arm, line.waypoints)
@@ -159,10 +164,9 @@ def test_a_deviation_is_the_distance_from_the_nearest_place_of_the_line(length) 
 
 
 def test_a_curve_through_more_points_leaves_the_line_less() -> None:
-    arm, first, last = ends()
     off = []
     for points in (2, 4, 7):
-        line = ctraj(arm, first, last, points, guess=START)
+        line = moved(points)
         curve = cubic_spline(points - 1) if points > 2 else jtraj(1)
         off.append(line.deviation(fit(curve, line.waypoints, np.full(points - 1, 0.3))))
     assert off[-1] > 1e-6

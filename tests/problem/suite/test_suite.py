@@ -36,7 +36,7 @@ from trajgap.problem.suite import (
 from trajgap.verify import Subject, verify_certificate
 
 NAMES = [one.name for one in list_instances()]
-HANDFUL = sorted(random.Random(11).sample(NAMES, 6))
+HANDFUL = sorted(random.Random(3).sample(NAMES, 4))
 """A seeded handful: the fast tests prove and solve these, the slow ones all."""
 LARGEST_SUITE = 15_000_000
 """Bytes that the certificates may take together."""

@@ -19,7 +19,6 @@ from trajgap.problem import (
     Limits,
     Problem,
     TrajgapError,
-    check,
     cubic_spline,
     cubic_spline_virtual,
     quintic_spline,
@@ -169,21 +168,6 @@ def test_reachable_displacements_have_a_curve(v0: float, v1: float, h: float, sh
 
 
 # --- beside splines -------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("seed", range(8))
-def test_random_feasible_splines_are_not_faster(seed: int) -> None:
-    generator = np.random.default_rng(seed)
-    joints, segments = int(generator.integers(1, 5)), int(generator.integers(2, 6))
-    problem = Problem(
-        generator.normal(size=(segments + 1, joints)) + generator.normal(size=joints),
-        Limits(generator.uniform(0.5, 6, joints), generator.uniform(2, 20, joints)),
-        quintic_spline(segments),
-    )
-    h = generator.uniform(0.3, 1.5, segments)
-    repaired = h * check(problem, h).stretch
-    found = estimate_any_curve(problem, starts=3, initial=repaired)
-    assert verified(problem, found) <= repaired.sum()
 
 
 def test_same_seed_same_bits() -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -20,7 +19,7 @@ from trajgap.nlp.proofs.any_curve.question import missing, question
 from trajgap.nlp.proofs.any_curve.reach import furthest, reachable
 from trajgap.nlp.proofs.any_curve.search import Search
 from trajgap.nlp.proofs.any_curve.tangents import KINDS, matrix
-from trajgap.nlp.proofs.document import certificate, shipped_folder
+from trajgap.nlp.proofs.document import certificate
 from trajgap.nlp.proofs.evidence import printed_problem_or_none
 from trajgap.nlp.proofs.exact import exact_problem
 from trajgap.nlp.proofs.outcome import Certified, Outcome
@@ -37,26 +36,6 @@ from trajgap.verify import verify_certificate as verify
 from trajgap.verify.any_curve import _furthest as verified_reach
 
 Array = NDArray[np.float64]
-
-
-def test_velocity_limits_alone_are_a_sum_of_quotients() -> None:
-    q = np.array([[0.0, 1.0], [0.5, -1.0], [0.25, 2.0]])
-    low, high = interval(spline_problem(q, [1.0, 4.0]), 1e-9)
-    assert low == pytest.approx(0.5 + 0.75, rel=1e-12)
-    assert high > 0.5 + 0.75
-
-
-def test_free_ends_are_faster_than_rest() -> None:
-    way = [0.0, 1.0, 0.4]
-    problem = spline_problem(way, 1.25, 2.0, ())
-    low, high = interval(problem)
-    assert low <= estimate_any_curve(problem).total_time <= high * (1 + 1e-9)
-    assert high < interval(spline_problem(way, 1.25, 2.0))[0]
-
-
-def test_one_joint_alone_is_no_slower() -> None:
-    two = spline_problem([[0.0, 0.5], [1.0, 0.3], [0.5, 0.9]], acceleration=[2.0, 1.0])
-    assert interval(two)[0] >= interval(two.joint(0))[0] * (1 - 1e-6)
 
 
 def test_a_joint_that_brakes_for_another_needs_boxes() -> None:
@@ -92,7 +71,7 @@ def grid_feasible(problem: Problem, h: Array, speeds: Array) -> NDArray[np.bool_
     return good
 
 
-@pytest.mark.parametrize("seed", range(9))
+@pytest.mark.parametrize("seed", range(5))
 def test_dense_grids_never_beat_the_bound_and_come_near_it(seed: int) -> None:
     rng = np.random.default_rng(seed)
     problem = random_problem(rng, 2, 1 + seed % 3)
@@ -106,17 +85,6 @@ def test_dense_grids_never_beat_the_bound_and_come_near_it(seed: int) -> None:
     good = grid_feasible(problem, h, np.linspace(-1, 1, 201))
     best = float(h[good].sum(axis=1).min())
     assert low <= best <= 1.03 * high
-
-
-@pytest.mark.parametrize("seed", range(3))
-def test_grids_of_three_segments(seed: int) -> None:
-    rng = np.random.default_rng(100 + seed)
-    problem = random_problem(rng, 3, 2)
-    low, high = interval(problem)
-    known = estimate_any_curve(problem).durations
-    h = np.concatenate([np.exp(rng.normal(0, 0.2, (300, 3))) * known, [known * 1.02]])
-    good = grid_feasible(problem, h, np.linspace(-1, 1, 61))
-    assert low <= float(h[good].sum(axis=1).min()) <= 1.05 * high
 
 
 @pytest.mark.parametrize("seed", [700, 701])
@@ -150,7 +118,7 @@ def discrete_motion(problem: Problem, h: Array, cells: int) -> bool:
     return True
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(2))
 def test_fixed_durations_agree_with_a_linear_program(seed: int) -> None:
     rng = np.random.default_rng(40 + seed)
     problem = random_problem(rng, 3, 2)
@@ -182,39 +150,6 @@ def test_too_short_upper_bounds_are_infeasible() -> None:
     half = certify_any(spline_problem([0.0, 1.0, 0.0], 1.0, 2.0, duration_upper=[1.2, np.inf]))
     assert half.outcome is Outcome.OPEN
     assert half.proof is None
-
-
-@pytest.mark.parametrize("seed", range(4))
-def test_identities(seed: int) -> None:
-    rng = np.random.default_rng(70 + seed)
-    problem = random_problem(rng, 3, 3)
-    limits = problem.limits
-    first = interval(problem, 1e-5)
-
-    def same(other: Problem, factor: float) -> None:
-        low, high = interval(other, 1e-5)
-        assert low <= factor * first[1]
-        assert factor * first[0] <= high
-
-    same(replace(problem, waypoints=-problem.waypoints + 3.0), 1.0)
-    same(replace(problem, waypoints=problem.waypoints[::-1].copy()), 1.0)
-    order = rng.permutation(3)
-    swapped = Limits(limits.velocity[order], limits.acceleration[order])
-    same(replace(problem, waypoints=problem.waypoints[:, order], limits=swapped), 1.0)
-    slow = Limits(limits.velocity / 3, limits.acceleration / 9)
-    same(replace(problem, limits=slow), 3.0)
-    units = np.array([57.3, 1e-3, 1.0])
-    scaled = Limits(limits.velocity * units, limits.acceleration * units)
-    same(replace(problem, waypoints=problem.waypoints * units, limits=scaled), 1.0)
-
-
-def test_more_joints_or_tighter_limits_never_lower_the_optimum() -> None:
-    problem = random_problem(np.random.default_rng(5), 3, 3)
-    whole = interval(problem)
-    for j in range(3):
-        assert interval(problem.joint(j))[0] <= whole[1]
-    tight = Limits(problem.limits.velocity * 0.8, problem.limits.acceleration)
-    assert interval(replace(problem, limits=tight))[1] >= whole[0]
 
 
 # --- rows -----------------------------------------------------------------------------------------
@@ -256,10 +191,6 @@ def test_search_and_verifier_reach_equally_far(seed: int) -> None:
         found = furthest(*(np.array(x) for x in (first, last, h, limit, bend)))
         theirs = verified_reach(*exact[:3], given, exact[4])
         assert float(found) == pytest.approx(float(theirs), rel=1e-12, abs=1e-12)
-
-
-def shipped_bounds() -> dict[str, Path]:
-    return {path.stem: path for path in sorted(shipped_folder().glob("*.any-curve.json"))}
 
 
 def test_every_shipped_question_has_a_bound_that_is_proved() -> None:

@@ -22,7 +22,6 @@ from trajgap.problem import (
     Verdict,
     check,
     cubic_spline,
-    fit,
     parse_case,
     piecewise,
     quintic_spline,
@@ -31,9 +30,8 @@ from trajgap.problem import (
     three_five_three,
     uniform_cubic_b_spline,
 )
-from trajgap.verify import STATE_FORMAT, Clock, Subject, verify_certificate
+from trajgap.verify import STATE_FORMAT, Subject, verify_certificate
 from trajgap.verify import verify_certificate as verify
-from trajgap.verify.curve import _uniform
 
 Q = np.array([[0.25, -0.5], [1.0, 0.125], [-0.375, 0.75], [0.5, 0.25]])
 LIMITS = Limits([1.0, 0.9], [2.0, 1.5], [12.0, 9.0])
@@ -234,26 +232,6 @@ def test_the_interval_holds_the_closed_form(seed: int) -> None:
     verdict = verify(certificate(found))
     assert str(verdict).startswith("proves")
     assert (verdict.lower, verdict.upper) == (found.lower, found.upper)
-
-
-@pytest.mark.parametrize("seed", range(6))
-def test_no_segment_can_be_shorter(seed: int) -> None:
-    problem = random_problem(seed)
-    found = certify(problem)
-    assert found.durations is not None
-    for k in range(problem.segments):
-        shorter = list(found.durations)
-        shorter[k] *= 1 - Fraction(1, 10**9)
-        assert not keeps_limits(exact_problem(problem), shorter)
-
-
-def test_the_curve_is_that_of_the_verifier() -> None:
-    # From the control vertices in floats, from the slopes at the way-points there.
-    q = ["0.3", "1.25", "-0.75", "2", "1.9"]
-    theirs = _uniform([Fraction(x) for x in q], Clock(60))
-    motion = fit(uniform_cubic_b_spline(5, "stretched"), np.array(q, float)[:, None], np.ones(4))
-    mine = [motion.derivative(k, 0, 0) for k in range(4)]
-    np.testing.assert_allclose(mine, np.array(theirs, float), rtol=1e-13, atol=1e-14)
 
 
 def test_positions_are_judged() -> None:

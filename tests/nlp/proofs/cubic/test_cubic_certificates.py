@@ -67,34 +67,6 @@ def test_a_natural_spline_along_a_line_has_constant_speed() -> None:
     assert float(found.lower) <= 4.5 / 1.5 <= float(found.upper or 0) * (1 + 1e-12)
 
 
-def meets(one: Certified, other: Certified, factor: float) -> bool:
-    low, high = float(other.lower) / factor, float(other.upper) / factor
-    return low <= float(one.upper) * (1 + 1e-9) and float(one.lower) <= high * (1 + 1e-9)
-
-
-def test_scaling_angles_and_time_scales_the_interval() -> None:
-    p = base_problem()
-    v, a, j = p.limits.derivatives.T
-    slow = Problem(p.waypoints * 3, Limits(v * 3 / 7, a * 3 / 49, j * 3 / 343), p.curve)
-    found = certify(slow, gap=0.02)
-    assert found.outcome is Outcome.CERTIFIED
-    assert meets(base(), found, 7.0)
-    assert float(found.upper or 0) == pytest.approx(7 * float(base().upper or 0), rel=1e-6)
-
-
-def test_the_way_back_takes_as_long_and_a_turned_joint_too() -> None:
-    p = base_problem()
-    back = Problem(p.waypoints[::-1] * [1.0, -1.0], p.limits, p.curve)
-    assert meets(base(), certify(back, gap=0.02), 1.0)
-
-
-def test_a_joint_alone_is_not_slower() -> None:
-    exact = exact_problem(base_problem())
-    for j in range(2):
-        alone = certify(exact.joint(j), gap=0.1)
-        assert alone.lower <= (base().upper or 0)
-
-
 # --- solver and verifier --------------------------------------------------------------------------
 
 

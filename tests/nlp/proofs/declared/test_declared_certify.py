@@ -158,29 +158,6 @@ def test_no_time_gives_no_lower_bound() -> None:
         certificate(found)
 
 
-def test_velocity_limits_alone_scale_the_optimum() -> None:
-    # With velocity limits only, T·V is constant: 80 against 110 °/s.
-    slow, fast = (
-        shipped(COVERED_PROBLEMS[f"irb460-pso-353.limit-{v}.waypoints-rad"]) for v in (80, 110)
-    )
-    assert slow is not None
-    assert fast is not None
-    product = [Fraction(x["claim"]["upper"]) * v for x, v in ((slow, 80), (fast, 110))]
-    assert float(product[0]) == pytest.approx(float(product[1]), rel=1e-9)
-
-
-def test_limits_that_no_duration_meets_are_proved_infeasible() -> None:
-    q = np.array([[0.2], [1.1], [-0.4], [0.7]])
-    problem = Problem(q, Limits(1.0, 2.0), three_five_three(), 0.1, (4.0, 1.4, 4.0))
-    found = certify(problem)
-    assert found.outcome is Outcome.INFEASIBLE
-    verdict = verify(certificate(found))
-    assert verdict.proves
-    assert verdict.upper is None
-    assert "infeasible" in str(verdict)
-    assert "proved" in str(found)
-
-
 @pytest.mark.parametrize("degree", [3, 5, 7, 9])
 def test_rest_to_rest_is_certified_in_closed_form(degree: int) -> None:
     q = np.array([[0.3, -0.2], [1.4, 0.1], [1.4, 2.3], [0.9, 2.2]])
@@ -204,16 +181,6 @@ def test_rest_to_rest_is_certified_in_closed_form(degree: int) -> None:
         assert not verify(wrong).proves
     document["claim"]["lower"] = decimal(found.lower * (1 + Fraction(1, 10**12)))
     assert "exceeds the total" in verify(document).reason
-
-
-def test_a_rest_to_rest_segment_that_is_too_short_is_proved_infeasible() -> None:
-    problem = Problem([[0.0], [1.0]], Limits(1.0), rest_to_rest(1, 5), 0.1, 1.8)
-    found = certify(problem)
-    assert found.outcome is Outcome.INFEASIBLE
-    document = certificate(found)
-    assert verify(document).proves
-    document["problem"]["duration_upper"] = ["1.9"]
-    assert not verify(document).proves
 
 
 @pytest.mark.parametrize("curve", [three_five_three(), piecewise((4, 3, 4))])

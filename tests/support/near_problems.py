@@ -1,0 +1,20 @@
+"""Problems whose way-points nearly coincide, each with durations that keep all its limits.
+
+Differential evolution found these: a far shorter segment has an optimum of its own, or rounding
+blurs the tight motion. "three joints" and "one joint" are seeds 6324 and 6821 of
+`benchmarks/solver_errors.py`; "twice" has two short ways, one a hundred thousandth of the other;
+"entering" enters and leaves in motion. Of the tight "quintic" velocity is known to 1.3e-7 only;
+short ways are 2.2e-8 long in "rest", 4.7e-11 in "slow" and 4e-8 in "five".
+"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+from attacks.nasty import rebuilt
+
+NEAR = {
+    one["name"]: rebuilt(one)
+    for one in json.loads(Path(__file__).with_suffix(".json").read_text("utf-8"))
+}
