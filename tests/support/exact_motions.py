@@ -1,8 +1,7 @@
 """Motions as rational numbers: their samples, what interpolates them, and every peak, exactly.
 
-Nothing here is the code under attack: splines are solved, and polynomials evaluated, in `Fraction`.
-Where a derivative turns is found in float64 and then evaluated exactly, so that a peak is off by
-the square of the place's error, far below the nearest limit.
+Nothing here is the code under attack: splines are solved, and polynomials evaluated, in `Fraction`;
+`exact_route` finds where a derivative turns to 50 digits.
 """
 
 from __future__ import annotations
@@ -14,6 +13,7 @@ from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
+from support import exact_route
 from support.exact_route import derived as derived
 from support.exact_route import solved
 
@@ -45,16 +45,8 @@ class Curve:
     @cached_property
     def ranges(self) -> list[tuple[Fraction, Fraction]]:
         """Least and largest value of derivatives 0 to 3."""
-        found = []
-        for order in range(4):
-            seen = [
-                value(here, place)
-                for h, c in zip(steps(self.breaks), self.pieces, strict=True)
-                for here in (derived(c, order),)
-                for place in [Fraction(0), h, *roots(derived(here, 1), h)]
-            ]
-            found.append((min(seen), max(seen)))
-        return found
+        every = (exact_route.extremes(self.pieces, steps(self.breaks), r) for r in range(4))
+        return [(Fraction(low), Fraction(high)) for low, high in every]
 
     def jumps(self, order: int) -> Fraction:
         """The largest jump of a derivative at an inner break."""
@@ -65,21 +57,9 @@ class Curve:
         return most
 
     def one_sided(self, still: Fraction) -> tuple[Fraction, Fraction]:
-        """Largest |acceleration| while the speed grows, and while it falls.
-
-        Stretches on which the speed stays below ``still`` are left out.
-        """
-        most = [Fraction(0), Fraction(0)]
-        for h, c in zip(steps(self.breaks), self.pieces, strict=True):
-            v, a, j = (derived(c, order) for order in (1, 2, 3))
-            inner = {x for one in (v, a, j) for x in roots(one, h)}
-            for low, high in pairwise(sorted({Fraction(0), h, *inner})):
-                speed = value(v, (low + high) / 2)
-                grows = speed * value(a, (low + high) / 2) > 0
-                if abs(speed) > still:
-                    here = max(abs(value(a, low)), abs(value(a, high)))
-                    most[not grows] = max(most[not grows], here)
-        return most[0], most[1]
+        """Largest |acceleration| while the speed grows, and while it falls; not below ``still``."""
+        grows, falls = exact_route.braking(self.pieces, steps(self.breaks), still)
+        return Fraction(grows), Fraction(falls)
 
 
 def steps(times: Sequence[Fraction]) -> Exact:
@@ -91,22 +71,6 @@ def value(c: Exact, x: Fraction) -> Fraction:
     for one in reversed(c):
         found = found * x + one
     return found
-
-
-def roots(c: Exact, h: Fraction) -> Exact:
-    """Places in (0, h) that hold every real root, to the digits of float64; some hold none."""
-    scaled = [one * h**k for k, one in enumerate(c)]
-    while len(scaled) > 1 and scaled[-1] == 0:
-        scaled.pop()
-    if len(scaled) == 2:
-        exact = -scaled[0] / scaled[1]
-        return [exact * h] if 0 < exact < 1 else []
-    top = max(map(abs, scaled))
-    if len(scaled) < 2 or top == 0:
-        return []
-    found = np.roots([float(one / top) for one in reversed(scaled)])
-    # A double root may come as a pair that is not real.
-    return [Fraction(float(z.real)) * h for z in found if 0 < z.real < 1]
 
 
 def hermite(rows: Sequence[Row], degree: int) -> Curve:

@@ -16,6 +16,7 @@ import numpy as np
 from trajgap.problem import Interpolant
 
 Polynomial = list[Fraction]
+Number = float | Fraction
 
 
 def solved(matrix: list[list[Fraction]], right: list[Fraction]) -> list[Fraction]:
@@ -35,8 +36,8 @@ def solved(matrix: list[list[Fraction]], right: list[Fraction]) -> list[Fraction
 
 def fitted(
     interpolant: Interpolant,
-    positions: Sequence[float],
-    durations: Sequence[float],
+    positions: Sequence[Number],
+    durations: Sequence[Number],
     extra: dict[tuple[int, int], float] | None = None,
 ) -> list[Polynomial]:
     """Ascending coefficients in time of every segment of one joint.
@@ -45,7 +46,7 @@ def fitted(
     """
     degrees, n = interpolant.degrees, len(interpolant.degrees)
     first = [sum(d + 1 for d in degrees[:k]) for k in range(n + 1)]
-    h = [Fraction(float(x)) for x in durations]
+    h = [Fraction(x) for x in durations]
     waypoints = iter(positions)
     matrix: list[list[Fraction]] = []
     right: list[Fraction] = []
@@ -66,7 +67,7 @@ def fitted(
             order: Fraction(float(value)) for (at, order), value in (extra or {}).items() if at == b
         }
         if b not in interpolant.virtual:
-            given[0] = Fraction(float(next(waypoints)))
+            given[0] = Fraction(next(waypoints))
         for order, value in given.items():
             if b > 0:
                 state(derivative(b - 1, order, h[b - 1]), value)
@@ -88,11 +89,16 @@ def derived(polynomial: Polynomial, order: int) -> Polynomial:
     return polynomial
 
 
+def _decimal(number: Number) -> Decimal:
+    exact = Fraction(number)
+    return Decimal(exact.numerator) / Decimal(exact.denominator)
+
+
 def value(polynomial: Polynomial, time: Decimal) -> Decimal:
     """Value in the surrounding decimal precision."""
     total = Decimal(0)
     for c in reversed(polynomial):
-        total = total * time + Decimal(c.numerator) / Decimal(c.denominator)
+        total = total * time + _decimal(c)
     return total
 
 
@@ -120,26 +126,30 @@ def _turns(polynomial: Polynomial, end: Decimal) -> list[Decimal]:
 
 
 def extremes(
-    pieces: list[Polynomial], durations: Sequence[float], order: int
+    pieces: list[Polynomial], durations: Sequence[Number], order: int
 ) -> tuple[Decimal, Decimal]:
     """Least and largest value of a derivative over all pieces, both ends of each included."""
     with localcontext() as context:
         context.prec = 60
         values = []
         for polynomial, h in zip(pieces, durations, strict=True):
-            p, end = derived(polynomial, order), Decimal(float(h))
+            p, end = derived(polynomial, order), _decimal(h)
             values += [value(p, t) for t in (Decimal(0), end, *_turns(derived(p, 1), end))]
         return +min(values), +max(values)
 
 
-def peak(pieces: list[Polynomial], durations: Sequence[float], order: int) -> Decimal:
+def peak(pieces: list[Polynomial], durations: Sequence[Number], order: int) -> Decimal:
     """Largest absolute derivative."""
     least, most = extremes(pieces, durations, order)
     return max(-least, most)
 
 
-def braking(pieces: list[Polynomial], durations: Sequence[float]) -> tuple[Decimal, Decimal]:
+def braking(
+    pieces: list[Polynomial], durations: Sequence[Number], still: Number = 0
+) -> tuple[Decimal, Decimal]:
     """Largest |acceleration| while the speed grows, and while it falls.
+
+    Stretches on which the speed stays below ``still`` are left out.
 
     Between the roots of velocity, acceleration and jerk all three keep their sign, so that the
     middle tells which of both it is, and |acceleration| is largest at an end.
@@ -148,12 +158,14 @@ def braking(pieces: list[Polynomial], durations: Sequence[float]) -> tuple[Decim
         context.prec = 60
         most = [Decimal(0), Decimal(0)]
         for polynomial, h in zip(pieces, durations, strict=True):
-            end = Decimal(float(h))
+            end = _decimal(h)
             v, a = derived(polynomial, 1), derived(polynomial, 2)
             inner = [t for p in (v, a, derived(a, 1)) for t in _turns(p, end)]
             for left, right in pairwise(sorted([Decimal(0), end, *inner])):
                 middle = (left + right) / 2
-                falls = value(v, middle) * value(a, middle) < 0
-                sizes = [abs(value(a, t)) for t in (left, right)]
-                most[falls] = max(most[falls], *sizes)
+                speed = value(v, middle)
+                if abs(speed) > _decimal(still):
+                    falls = speed * value(a, middle) < 0
+                    sizes = [abs(value(a, t)) for t in (left, right)]
+                    most[falls] = max(most[falls], *sizes)
         return +most[0], +most[1]
