@@ -6,8 +6,7 @@ from typing import Any
 
 import pytest
 from support.findings import audited_text
-from support.made_up import CUBIC, Numbers, claim, entry, paper, readings, row, sentence
-from support.one_joint import one_joint
+from support.made_up import CUBIC, Numbers, claim, entry, one_joint, paper, readings, row, sentence
 from support.studies import audited
 from trajgap.compare import audit
 from trajgap.compare.audits.case_audit import CaseAudit

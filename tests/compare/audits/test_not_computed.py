@@ -10,8 +10,7 @@ from typing import Any
 import pytest
 from support.base_case import BASE
 from support.findings import audited_text, study_of, verdicts
-from support.made_up import claim, entry, paper, readings, row, sentence
-from support.one_joint import one_joint
+from support.made_up import claim, entry, one_joint, paper, readings, row, sentence
 from trajgap.compare.audits import CaseAudit, Study, audit, case_audit
 from trajgap.compare.audits.case_audit import AuditReport
 from trajgap.compare.audits.rules.registry import RuleGroup

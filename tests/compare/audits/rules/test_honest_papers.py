@@ -7,8 +7,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from support.findings import audited_text, finding, said_of, study_of
-from support.made_up import algorithms, entry, gain, paper, peak, row, sentence, total
-from support.one_joint import UNITS, one_joint
+from support.made_up import (
+    TWO_UNITS,
+    algorithms,
+    entry,
+    gain,
+    one_joint,
+    paper,
+    peak,
+    row,
+    sentence,
+    total,
+)
 from support.papers.apart import apart
 from trajgap.compare import audit
 from trajgap.compare.audits.rules.condition_count import judge_counts
@@ -340,7 +350,7 @@ UNCLEAR = ("0.962", Severity.WARNING, Scope.SOME)
 def test_a_proof_is_an_error_only_where_every_reading_is_against_the_claim(
     time: str, severity: Severity, scope: Scope
 ) -> None:
-    one = audited_text(one_joint("0, 1", "1.9496", time, "within_limits", UNITS))
+    one = audited_text(one_joint("0, 1", "1.9496", time, "within_limits", TWO_UNITS))
     against = [f for f in one.findings if f.verdict is ClaimVerdict.REFUTED]
     assert {f.claim for f in against} == {"d", "s"}
     assert {(f.severity, f.scope) for f in against} == {(severity, scope)}

@@ -7,8 +7,7 @@ from itertools import product
 
 import pytest
 from support.findings import finding, said_of, study_of
-from support.made_up import algorithms, claim, gain, row, total
-from support.one_joint import one_joint
+from support.made_up import algorithms, claim, gain, one_joint, row, total
 from trajgap.compare.audits.rules.printed_digits import span
 from trajgap.compare.documents import ClaimVerdict, Finding, Severity
 from trajgap.problem import Interval

@@ -6,8 +6,7 @@ from typing import Any
 
 import pytest
 from support.findings import audited_text, finding, said_of, study_of, verdicts
-from support.made_up import claim, entry, paper, peak, row, sentence
-from support.one_joint import one_joint
+from support.made_up import claim, entry, one_joint, paper, peak, row, sentence
 from trajgap.compare.audits.card_errors import plainly
 from trajgap.compare.audits.rules.condition_count import meets
 from trajgap.compare.documents import ClaimVerdict, Severity
@@ -89,7 +88,7 @@ def test_a_broken_limit_refutes_without_an_optimum(points: Any, time: str, verdi
 
 
 def test_a_table_of_another_length_loads_and_is_the_finding() -> None:
-    one = audited_text(one_joint("0, 1", "1.9", '0.5", "0.4', "within_limits"))
+    one = audited_text(one_joint("0, 1", "1.9", "0.5 0.4", "within_limits"))
     (found,) = [f for f in one.findings if f.claim == "d" and f.rule == "TG109"]
     assert (found.verdict, found.severity) == (ClaimVerdict.INCONSISTENT, Severity.WARNING)
     assert not [f for f in one.findings if f.claim == "d" and f.rule == "TG201"]
