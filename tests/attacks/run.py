@@ -12,6 +12,7 @@ import traceback
 from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -138,6 +139,7 @@ def run_each(
     return accounts
 
 
+@cache
 def warm() -> None:
     """Import and compile once what every child needs."""
     import matplotlib.pyplot  # noqa: F401
