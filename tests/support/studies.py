@@ -11,6 +11,8 @@ from functools import cache
 from importlib.resources import files
 
 import pytest
+from support.drawn import sketched
+from support.findings import OwnCurve
 from trajgap.compare.audits.case_audit import CaseAudit, audit_case
 from trajgap.compare.audits.reworded import Reworded
 from trajgap.compare.audits.study import Study
@@ -31,7 +33,7 @@ def source(case_id: str) -> str:
 @cache
 def shipped(case_id: str) -> Study:
     """The case as shipped."""
-    return Study(parse_case(source(case_id), f"{case_id}.toml"), seeds=SEEDS)
+    return OwnCurve(parse_case(source(case_id), f"{case_id}.toml"), seeds=SEEDS)
 
 
 @cache
@@ -73,8 +75,9 @@ def audited_alone(case_id: str) -> CaseAudit:
 
 @cache
 def page_alone(case_id: str) -> Page:
-    """The page of `audited_alone`, its pictures drawn."""
-    return case_page(audited_alone(case_id))
+    """The page of `audited_alone`."""
+    with sketched():
+        return case_page(audited_alone(case_id))
 
 
 QUICKLY = ("irb460-pso-353", "z1-woa-bspline")

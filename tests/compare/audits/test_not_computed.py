@@ -61,7 +61,7 @@ def replays(one: CaseAudit) -> dict[str, str]:
 
 
 def test_a_relaxed_family_that_is_not_solved_is_a_step_without_a_time(tmp_path: Path) -> None:
-    one = audited_text(text(SEPTIC))
+    one = audited_text(text(SEPTIC), Study)
     write_report(AuditReport((one,)), tmp_path)
     steps = {step.name: step for step in one.waterfalls[0].steps}
     assert steps["relaxed family"].time == Why(
