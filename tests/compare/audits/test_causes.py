@@ -5,10 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
-from support.findings import audited_text
+from support.findings import audited_text, report_of
 from support.made_up import CUBIC, Numbers, claim, entry, one_joint, paper, readings, row, sentence
 from support.studies import audited
-from trajgap.compare import audit
 from trajgap.compare.audits.case_audit import CaseAudit
 from trajgap.compare.documents import CaveatKind, ClaimVerdict, Severity, qualified
 from trajgap.problem import Printed, parse_case
@@ -203,8 +202,7 @@ def test_a_misprint_is_found_where_the_reading_takes_the_number(
         row("d", "1.500", problem="slow"),
         sentence("s", "within_limits", "d"),
     )
-    case = parse_case(text, "made-up.toml")
-    found = audit(case, seeds=2, certify_seconds=0, reading="other").cases[0]
+    (found,) = report_of(parse_case(text, "made-up.toml"), reading="other").cases
     (cause,) = (c for c in found.causes if c.rule == "TG201")
     said = [e.effect for e in cause.explanations if e.change.startswith(named)]
     assert len(said) == 1
