@@ -210,7 +210,7 @@ ATTACKS = (
         "exit code 0 or 2; one printable line that names the file; bounded in time and memory",
         damaged_case,
         share=3.0,
-        quick=25,
+        quick=12,
     ),
     Attack(
         "damaged case files, solved",
@@ -225,7 +225,7 @@ ATTACKS = (
         "random bytes, other encodings, cut files, deep nesting, long digits; `show`",
         "the same",
         raw_bytes,
-        quick=20,
+        quick=10,
     ),
     Attack(
         "valid case files",
@@ -233,7 +233,7 @@ ATTACKS = (
         "nothing is refused, every problem and reading is answered, strict JSON",
         valid_case,
         share=1.5,
-        quick=3,
+        quick=2,
     ),
     Attack(
         "valid case files, audited",

@@ -88,7 +88,7 @@ def test_every_fault_is_seen_where_the_digits_show_it_clearly(fault: str) -> Non
     assert all(contradicted(audited_text(one.draft.text())) for one in clear)
 
 
-@pytest.mark.parametrize("seed", [1, 5, *slow(range(6, 28))])
+@pytest.mark.parametrize("seed", [5, *slow(range(6, 28))])
 @pytest.mark.parametrize("made", [apart, moving])
 def test_no_card_accuses_a_paper_whose_totals_are_kept_apart(
     made: Callable[[int], str], seed: int
@@ -126,7 +126,7 @@ def holds(said: str, true: float) -> bool:
 
 
 @pytest.mark.parametrize("kind", HONEST)
-@pytest.mark.parametrize("seed", [*range(3), 8, *slow([*range(3, 8), *range(9, 14)])])
+@pytest.mark.parametrize("seed", [1, 8, *slow([0, *range(2, 8), *range(9, 14)])])
 def test_honest_rows_are_accused_of_nothing(kind: str, seed: int) -> None:
     """No accusation, and no sentence on the card that is false of what the paper computed."""
     paper = row_paper(kind, seed)
@@ -142,7 +142,7 @@ def test_honest_rows_are_accused_of_nothing(kind: str, seed: int) -> None:
 
 
 @pytest.mark.parametrize("kind", FAULTY)
-@pytest.mark.parametrize("seed", [*range(3), *slow(range(3, 8))])
+@pytest.mark.parametrize("seed", [0, *slow(range(1, 8))])
 def test_the_fault_of_a_row_is_named(kind: str, seed: int) -> None:
     """The fault is found, and its rule and row are named."""
     paper = row_paper(kind, seed)

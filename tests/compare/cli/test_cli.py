@@ -190,20 +190,17 @@ def test_solve_shared(run: Run) -> None:
 
 
 def test_solve_by_joint_and_shared(run: Run) -> None:
-    code, out, _ = run("solve", "mine.toml", "--json", "--out", "answer.json")
+    code, out, _ = run("solve", "mine.toml", "--out", "answer.json")
     assert code == 0
-    document = strict(out)
+    document = strict(Path("answer.json").read_text("utf-8"))
     assert_valid(document, "solve")
-    assert strict(Path("answer.json").read_text("utf-8")) == document
     apart = document["results"][0]
+    assert f"{apart['longest_per_segment']['total_time']:.6f}" in out
     shared = strict(run("solve", "mine.toml", "--coupling", "shared", "--json")[1])["results"][0]
     assert shared["toppra"]
     assert shared["coupling"] == "shared"
     for one in apart["joints"]:
         assert one["total_time"] <= shared["total_time"] * (1 + 1e-9)
-    code, out, _ = run("solve", "mine.toml")
-    assert code == 0
-    assert f"{apart['longest_per_segment']['total_time']:.6f}" in out
 
 
 @pytest.mark.usefixtures("pages")
