@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from functools import cache, partial
 from pathlib import Path
 
+from support.made_up import entry, paper, row
 from trajgap.nlp.proofs.document import shipped_folder
 
 from attacks.attack import Attack, Trial, demand, keep
@@ -18,39 +19,6 @@ from attacks.cases import Rng
 from attacks.reading import well_ended
 from attacks.sandbox import Ended, Plan, at_once, command
 
-_CASE = """format = 1
-id = "kept"
-title = "Two joints"
-coupling = "{coupling}"
-[source]
-[robot]
-name = "r"
-joints = ["1", "2"]
-[units]
-position = "rad"
-velocity = "rad/s"
-acceleration = "rad/s^2"
-time = "s"
-[waypoints]
-joint_rows = [["0.10", "0.90", "-0.30", "0.40"], ["1.0", "0.2", "0.3", "-0.5"]]
-[limits]
-velocity = [2.0, 1.5]
-acceleration = [9.0, 8.0]
-[interpolant]
-family = "{family}"
-[[algorithms]]
-id = "pso"
-name = "PSO"
-kind = "pso"
-settings = {{ particles = 6, iterations = 8 }}
-[[claims]]
-id = "d"
-quantity = "durations"
-where = "Table 1"
-algorithm = "pso"
-durations = ["0.91", "1.02", "0.93"]
-"""
-"""A case with a replay, so that an audit has something to lose."""
 _TABLE = "a,b\n0.10,1.0\n0.90,0.2\n-0.30,0.3\n0.40,-0.5\n"
 """The way-points of that case as a table."""
 _DRAFTS = (".trajgap", ".tmp", ".old")
@@ -149,7 +117,17 @@ WORKS: dict[str, Work] = {
 
 
 def _prepared(work: Work, folder: Path) -> None:
-    text = _CASE.format(family=work.family, coupling=work.coupling)
+    # A case with a replay, so that an audit has something to lose.
+    settings = {"particles": 6, "iterations": 8}
+    text = paper(
+        ["0.10 0.90 -0.30 0.40", "1.0 0.2 0.3 -0.5"],
+        entry("algorithms", id="pso", name="PSO", kind="pso", settings=settings),
+        row("d", "0.91 1.02 0.93", where="Table 1", algorithm="pso"),
+        curve={"family": work.family},
+        head={"id": "kept", "coupling": work.coupling},
+        velocity=[2.0, 1.5],
+        acceleration=[9.0, 8.0],
+    )
     keep(folder, case=text)
     (folder / "table.csv").write_text(_TABLE, encoding="utf-8")
     if work.earlier:
@@ -306,7 +284,7 @@ def closed_pipe(rng: Rng, folder: Path) -> str | None:
         ("show", "case.toml"),
         ("check", "case.toml", "--durations", "1,1,1"),
         ("solve", "case.toml", "--json", "--out", "out.json"),
-        ("audit", "case.toml", "--seeds", "2"),
+        ("verify", _SHIPPED, "--json"),
     ]
     arguments = every[rng.integers(len(every))]
     ran = command(arguments, folder, _SECONDS, plan=Plan(close_output=True))
@@ -372,6 +350,6 @@ ATTACKS = (
         "exit code 141, nothing on standard error",
         closed_pipe,
         0.3,
-        1,
+        4,
     ),
 )

@@ -113,7 +113,6 @@ def run(
     seed: int,
     seconds: float,
     say: Callable[[str], None],
-    first: int = 0,
 ) -> list[Account]:
     """Run trials until the time is up; each attack gets its share of it."""
     warm()
@@ -122,7 +121,7 @@ def run(
     while time.monotonic() < end:
         # Whichever is furthest behind its share is next.
         next_one = min(accounts, key=lambda a: a.seconds / a.attack.share)
-        tried(next_one, seed, first + next_one.tried, say)
+        tried(next_one, seed, next_one.tried, say)
     return accounts
 
 
