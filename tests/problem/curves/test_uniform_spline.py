@@ -8,13 +8,8 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from support.b_splines import (
-    NATURAL,
-    ByScipy,
-    spline_by_scipy,
-    uniform,
-    vertices_by_solving,
-)
+from support.b_splines import NATURAL, ByScipy, spline_by_scipy, uniform
+from support.papers.motions import vertices
 from trajgap.problem import (
     ClockedTrajectory,
     CurveError,
@@ -59,7 +54,7 @@ def test_vertices_meet_the_waypoint_equations_exactly(count: int, natural: bool)
 
 def test_vertices_agree_with_a_dense_solve() -> None:
     w = uniform("timed")[0].waypoints
-    np.testing.assert_allclose(control_vertices(w), vertices_by_solving(w), rtol=0, atol=1e-13)
+    np.testing.assert_allclose(control_vertices(w), vertices(w), rtol=0, atol=1e-13)
 
 
 # --- both readings --------------------------------------------------------------------------------
@@ -126,7 +121,7 @@ def test_closed_form_with_a_limit_of_zero_and_with_nothing_that_moves() -> None:
 
 def test_jumps_have_the_size_that_the_vertices_give() -> None:
     problem, h = uniform("stretched", 9)
-    v = vertices_by_solving(problem.waypoints)
+    v = vertices(problem.waypoints)
     first, second = (v[2:] - v[:-2]) / 2, v[2:] - 2 * v[1:-1] + v[:-2]
     jumps = {(j.break_index, j.joint, j.order): j for j in check(problem, h).jumps}
     assert len(jumps) == 4 * 3 * 2

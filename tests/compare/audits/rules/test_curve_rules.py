@@ -8,9 +8,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from support.b_splines import uniform, vertices_by_solving
+from support.b_splines import uniform
 from support.findings import judged, said_of, study_of
 from support.made_up import claim, paper, readings
+from support.papers.motions import vertices as solved
 from support.studies import changed, shipped
 from trajgap.compare.audits.rules.continuous_time import judge_motions
 from trajgap.compare.audits.rules.distances import judge_distances
@@ -67,7 +68,7 @@ def test_every_printed_control_vertex_is_inside_what_rounding_allows() -> None:
     assert max(v.width for v in every) <= Fraction(2, 10**4)
     assert max(v.width for v in every) > Fraction(199, 10**6)
     w = load_case(POLISH).problem().waypoints
-    computed = vertices_by_solving(w).T.ravel()
+    computed = solved(w).T.ravel()
     middle = [float(v.allowed.lower + v.allowed.upper) / 2 for v in every]
     np.testing.assert_allclose(middle, computed, rtol=0, atol=1e-12)
     off = np.abs(computed - [v.printed.value for v in every])
