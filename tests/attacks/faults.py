@@ -285,6 +285,7 @@ def closed_pipe(rng: Rng, folder: Path) -> str | None:
         "check case.toml --durations 1,1,1",
         "solve case.toml --json --out out.json",
         f"verify {_SHIPPED} --json",
+        "audit case.toml --seeds 2 --certify-seconds 0",
     )
     arguments = shlex.split(every[rng.integers(len(every))])
     ran = command(arguments, folder, _SECONDS, plan=Plan(close_output=True))
