@@ -7,7 +7,7 @@ one that the written numbers are; both are what the file may stand for.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise
 from pathlib import Path
@@ -50,40 +50,33 @@ _STILL = Fraction(1, 10**6)
 # --- limits ---------------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True)
-class Limits:
-    """Of a check, with what rational arithmetic says of them."""
-
-    given: JointLimits
-
-    def excess(self, curves: list[Curve], still: Fraction, slower: Fraction) -> Fraction:
-        """Largest peak over its limit, less 1; of positions over half of their range."""
-        most = Fraction(-1)
-        for j, curve in enumerate(curves):
-            ranges = curve.ranges
-            braking = float(self.given.deceleration[j])
-            for r, (low, high) in enumerate(ranges):
-                lower, upper = float(self.given.lower[j, r]), float(self.given.upper[j, r])
-                if r == 2 and np.isfinite(braking):
-                    top = max(abs(x) for x in ranges[1])
-                    grows, falls = curve.one_sided(still * top)
-                    for peak, limit in ((grows, upper), (falls, braking)):
-                        if np.isfinite(limit):
-                            most = max(most, peak / slower**2 / Fraction(limit) - 1)
+def excess(given: JointLimits, curves: list[Curve], still: Fraction, slower: Fraction) -> Fraction:
+    """Largest peak over its limit, less 1; of positions over half of their range."""
+    most = Fraction(-1)
+    for j, curve in enumerate(curves):
+        ranges = curve.ranges
+        braking = float(given.deceleration[j])
+        for r, (low, high) in enumerate(ranges):
+            lower, upper = float(given.lower[j, r]), float(given.upper[j, r])
+            if r == 2 and np.isfinite(braking):
+                top = max(abs(x) for x in ranges[1])
+                sides = zip(curve.one_sided(still * top), (upper, braking), strict=True)
+                for peak, limit in sides:
+                    if np.isfinite(limit):
+                        most = max(most, peak / slower**2 / Fraction(limit) - 1)
+                continue
+            for end, limit, sign in ((high, upper, 1), (low, lower, -1)):
+                if not np.isfinite(limit):
                     continue
-                for end, limit, sign in ((high, upper, 1), (low, lower, -1)):
-                    if not np.isfinite(limit):
-                        continue
-                    if r == 0:
-                        half = (Fraction(upper) - Fraction(lower)) / 2
-                        most = max(most, sign * (end - Fraction(limit)) / half)
-                    else:
-                        over = sign * end / slower**r
-                        most = max(most, over / abs(Fraction(limit)) - 1)
-        return most
+                if r == 0:
+                    half = (Fraction(upper) - Fraction(lower)) / 2
+                    most = max(most, sign * (end - Fraction(limit)) / half)
+                else:
+                    most = max(most, sign * end / slower**r / abs(Fraction(limit)) - 1)
+    return most
 
 
-def _limits(rng: Rng, curves: list[Curve], factor: Fraction) -> Limits | None:
+def _limits(rng: Rng, curves: list[Curve], factor: Fraction) -> JointLimits | None:
     """One limit near its peak, the others some way off or none, one-sided ones among them."""
     count = len(curves)
     lower, upper = np.full((count, 4), -np.inf), np.full((count, 4), np.inf)
@@ -126,7 +119,7 @@ def _limits(rng: Rng, curves: list[Curve], factor: Fraction) -> Limits | None:
             upper[j, 2], braking[j] = grows * scale[0], falls * scale[1]
             lower[j, 2] = -upper[j, 2]
     names = tuple(f"j{k + 1}" for k in range(count))
-    return Limits(JointLimits(names, lower, upper, braking))
+    return JointLimits(names, lower, upper, braking)
 
 
 # --- the trial ------------------------------------------------------------------------------------
@@ -186,12 +179,10 @@ def verdicts(rng: Rng, folder: Path) -> str | None:
     limits = _limits(rng, aim, Fraction(1))
     if limits is None:
         return None
-    keep(folder, limits=f"{limits.given.lower}\n{limits.given.upper}\n{limits.given.deceleration}")
+    keep(folder, limits=f"{limits.lower}\n{limits.upper}\n{limits.deceleration}")
     try:
         content = read_motion(path, (units,), **stated).content  # type: ignore[arg-type]
-        asked = JointLimits(
-            content.joints, limits.given.lower, limits.given.upper, limits.given.deceleration
-        )
+        asked = replace(limits, joints=content.joints)
         if isinstance(content, Motion):
             found = check_motion(content, asked)
         elif how == "none":
@@ -202,14 +193,14 @@ def verdicts(rng: Rng, folder: Path) -> str | None:
         return f"{reader} {how}: refused"
     word = f"{reader} {how}: {found.verdict}"
     for curves in meant:
-        over = limits.excess(curves, _STILL, Fraction(1)) > _TOLERANCE + _DIGIT
-        kept = limits.excess(curves, Fraction(0), Fraction(1)) <= _TOLERANCE - _DIGIT
+        over = excess(limits, curves, _STILL, Fraction(1)) > _TOLERANCE + _DIGIT
+        kept = excess(limits, curves, Fraction(0), Fraction(1)) <= _TOLERANCE - _DIGIT
         demand(not (over and found.limits is Verdict.PASS), f"{word}, and a peak exceeds")
         demand(not (kept and found.limits is Verdict.VIOLATED), f"{word}, and every peak keeps")
         _continuous(curves, how, found.verdict, word)
         if found.feasible_time is not None:
             slow = Fraction(found.stretch)
-            left = limits.excess(curves, _STILL, slow)
+            left = excess(limits, curves, _STILL, slow)
             demand(left <= 3 * _TOLERANCE, f"{word}, and the repair leaves {float(left):.3g}")
     demand(not (how == "none" and found.verdict is Verdict.PASS), "samples alone pass")
     return word

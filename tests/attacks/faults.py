@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shlex
 import signal
 import tempfile
 import tomllib
@@ -11,6 +12,7 @@ from dataclasses import dataclass, replace
 from functools import cache, partial
 from pathlib import Path
 
+from support.made_up import entry, paper, row
 from trajgap.nlp.proofs.document import shipped_folder
 
 from attacks.attack import Attack, Trial, demand, keep
@@ -18,39 +20,6 @@ from attacks.cases import Rng
 from attacks.reading import well_ended
 from attacks.sandbox import Ended, Plan, at_once, command
 
-_CASE = """format = 1
-id = "kept"
-title = "Two joints"
-coupling = "{coupling}"
-[source]
-[robot]
-name = "r"
-joints = ["1", "2"]
-[units]
-position = "rad"
-velocity = "rad/s"
-acceleration = "rad/s^2"
-time = "s"
-[waypoints]
-joint_rows = [["0.10", "0.90", "-0.30", "0.40"], ["1.0", "0.2", "0.3", "-0.5"]]
-[limits]
-velocity = [2.0, 1.5]
-acceleration = [9.0, 8.0]
-[interpolant]
-family = "{family}"
-[[algorithms]]
-id = "pso"
-name = "PSO"
-kind = "pso"
-settings = {{ particles = 6, iterations = 8 }}
-[[claims]]
-id = "d"
-quantity = "durations"
-where = "Table 1"
-algorithm = "pso"
-durations = ["0.91", "1.02", "0.93"]
-"""
-"""A case with a replay, so that an audit has something to lose."""
 _TABLE = "a,b\n0.10,1.0\n0.90,0.2\n-0.30,0.3\n0.40,-0.5\n"
 """The way-points of that case as a table."""
 _DRAFTS = (".trajgap", ".tmp", ".old")
@@ -63,20 +32,24 @@ _SECONDS = 120.0
 class Work:
     """A command that writes, and how to tell that what it wrote is whole."""
 
-    arguments: tuple[str, ...]
+    line: str
     whole: Callable[[Path], bool]
     """Whether everything that is there is whole; what is absent does not count."""
     codes: tuple[int, ...] = (0,)
     quick: bool = False
     """Whether it takes less than a second or two."""
-    earlier: tuple[str, ...] = ()
+    earlier: str = ""
     """A command whose result is there before and must not be lost."""
     family: str = "jtraj"
     coupling: str = "shared"
 
+    @property
+    def arguments(self) -> list[str]:
+        return shlex.split(self.line)
 
-def _json(name: str) -> Callable[[Path], bool]:
-    return lambda folder: _parsed(folder / name)
+
+def _answer(folder: Path) -> bool:
+    return _parsed(folder / "out.json")
 
 
 def _parsed(path: Path) -> bool:
@@ -114,42 +87,47 @@ def _toml(folder: Path) -> bool:
     return path.read_text("utf-8").endswith("\n")
 
 
-_AUDIT = ("audit", "case.toml", "--seeds", "2", "--certify-seconds", "1", "--out", "pages")
-_NEW = ("new", "new.toml", "--from", "table.csv", "--position-unit", "rad", "--velocity", "2")
-_NEW_UNITS = ("--velocity-unit", "rad/s", "--time-unit", "s")
-_CERTIFY = ("solve", "case.toml", "--certify", "--certificates", "proofs", "--gap")
-_RENEWED = (*_CERTIFY, "1e-3", "--time", "2")
-_SHIPPED = str(shipped_folder() / "irb460-pso-353.limit-80.waypoints-deg.json")
+_AUDIT = "audit case.toml --seeds 2 --certify-seconds 1 --out pages"
+_NEW = "new new.toml --from table.csv --position-unit rad --velocity 2 --velocity-unit rad/s"
+_CERTIFY = "solve case.toml --certify --certificates proofs --gap"
+_RENEWED = f"{_CERTIFY} 1e-3 --time 2"
+_SHIPPED = shlex.quote(str(shipped_folder() / "irb460-pso-353.limit-80.waypoints-deg.json"))
 """A certificate that is proved again in a moment."""
 WORKS: dict[str, Work] = {
     "audit": Work(_AUDIT, _pages),
     "audit again": Work(_AUDIT, _pages, earlier=_AUDIT),
-    "cases --out": Work(("cases", "--out", "out.json"), _json("out.json"), quick=True),
-    "show --out": Work(("show", "case.toml", "--out", "out.json"), _json("out.json"), quick=True),
+    "cases --out": Work("cases --out out.json", _answer, quick=True),
+    "show --out": Work("show case.toml --out out.json", _answer, quick=True),
     "check --out": Work(
-        ("check", "case.toml", "--durations", "0.9,1.0,0.9", "--out", "out.json"),
-        _json("out.json"),
-        quick=True,
+        "check case.toml --durations 0.9,1.0,0.9 --out out.json", _answer, quick=True
     ),
-    "solve --out": Work(("solve", "case.toml", "--out", "out.json"), _json("out.json"), quick=True),
-    "solve --certify": Work(
-        (*_CERTIFY, "1e-3", "--time", "3"), _proofs, (0, 3), family="cubic-spline"
-    ),
+    "solve --out": Work("solve case.toml --out out.json", _answer, quick=True),
+    "solve --certify": Work(f"{_CERTIFY} 1e-3 --time 3", _proofs, (0, 3), family="cubic-spline"),
     "solve --certify, each joint": Work(
-        (*_CERTIFY, "1e-6", "--time", "3", "--out", "out.json"),
-        lambda folder: _proofs(folder) and _parsed(folder / "out.json"),
+        f"{_CERTIFY} 1e-6 --time 3 --out out.json",
+        lambda folder: _proofs(folder) and _answer(folder),
         (0, 3),
         coupling="per-joint",
     ),
     "solve --certify again": Work(_RENEWED, _proofs, (0, 3), earlier=_RENEWED),
-    "verify --out": Work(("verify", _SHIPPED, "--out", "out.json"), _json("out.json"), quick=True),
-    "new": Work((*_NEW, *_NEW_UNITS), _toml, quick=True),
+    "verify --out": Work(f"verify {_SHIPPED} --out out.json", _answer, quick=True),
+    "new": Work(f"{_NEW} --time-unit s", _toml, quick=True),
 }
 """Every command that writes files."""
 
 
 def _prepared(work: Work, folder: Path) -> None:
-    text = _CASE.format(family=work.family, coupling=work.coupling)
+    # A case with a replay, so that an audit has something to lose.
+    settings = {"particles": 6, "iterations": 8}
+    text = paper(
+        ["0.10 0.90 -0.30 0.40", "1.0 0.2 0.3 -0.5"],
+        entry("algorithms", id="pso", name="PSO", kind="pso", settings=settings),
+        row("d", "0.91 1.02 0.93", where="Table 1", algorithm="pso"),
+        curve={"family": work.family},
+        head={"id": "kept", "coupling": work.coupling},
+        velocity=[2.0, 1.5],
+        acceleration=[9.0, 8.0],
+    )
     keep(folder, case=text)
     (folder / "table.csv").write_text(_TABLE, encoding="utf-8")
     if work.earlier:
@@ -163,8 +141,8 @@ def _earlier(work: Work) -> dict[str, bytes]:
     """The files that the earlier command leaves."""
     with tempfile.TemporaryDirectory(prefix="attack-") as place:
         folder = Path(place)
-        _prepared(replace(work, earlier=()), folder)
-        ran = command(work.earlier, folder, _SECONDS)
+        _prepared(replace(work, earlier=""), folder)
+        ran = command(shlex.split(work.earlier), folder, _SECONDS)
         demand(ran.code in work.codes, f"the earlier command: {ran.code}, {ran.err[-300:]}")
         return {
             str(p.relative_to(folder)): p.read_bytes() for p in folder.rglob("*.*") if p.is_file()
@@ -190,7 +168,7 @@ def _chosen(rng: Rng, folder: Path, name: str | None = None) -> tuple[str, Work]
     name = str(rng.choice(list(WORKS))) if name is None else name
     _usual(name)
     _prepared(WORKS[name], folder)
-    keep(folder, arguments=" ".join(WORKS[name].arguments))
+    keep(folder, arguments=WORKS[name].line)
     return name, WORKS[name]
 
 
@@ -287,7 +265,7 @@ def together(rng: Rng, folder: Path) -> str | None:
     """The same command two or three times at once, all writing the same files."""
     name, work = _chosen(rng, folder)
     runs = at_once(work.arguments, folder, int(rng.integers(2, 4)), _SECONDS)
-    new = "--out out.json" in " ".join(work.arguments) or name == "new"
+    new = "--out out.json" in work.line or name == "new"
     for ran in runs:
         well_ended(ran, (2, *work.codes) if new else work.codes, f"{name}, at once")
     done = [ran for ran in runs if ran.code != 2]
@@ -300,15 +278,16 @@ def together(rng: Rng, folder: Path) -> str | None:
 def closed_pipe(rng: Rng, folder: Path) -> str | None:
     """Nobody reads standard output."""
     _prepared(WORKS["new"], folder)
-    every: list[tuple[str, ...]] = [
-        ("cases", "--json"),
-        ("show", "case.toml", "--json"),
-        ("show", "case.toml"),
-        ("check", "case.toml", "--durations", "1,1,1"),
-        ("solve", "case.toml", "--json", "--out", "out.json"),
-        ("audit", "case.toml", "--seeds", "2"),
-    ]
-    arguments = every[rng.integers(len(every))]
+    every = (
+        "cases --json",
+        "show case.toml --json",
+        "show case.toml",
+        "check case.toml --durations 1,1,1",
+        "solve case.toml --json --out out.json",
+        f"verify {_SHIPPED} --json",
+        "audit case.toml --seeds 2 --certify-seconds 0",
+    )
+    arguments = shlex.split(every[rng.integers(len(every))])
     ran = command(arguments, folder, _SECONDS, plan=Plan(close_output=True))
     what = f"{arguments[0]}, nobody reads"
     demand(ran.code == 141, f"{what}: exit code {ran.code}")
@@ -372,6 +351,6 @@ ATTACKS = (
         "exit code 141, nothing on standard error",
         closed_pipe,
         0.3,
-        1,
+        4,
     ),
 )

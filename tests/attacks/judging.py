@@ -272,7 +272,7 @@ ATTACKS = (
         "*undecided* where it is clear",
         verdict,
         1.0,
-        40,
+        20,
     ),
     _attack(
         "peaks",
@@ -280,7 +280,7 @@ ATTACKS = (
         "each is the peak in rational arithmetic, or that of scipy's B-spline",
         ratios,
         1.0,
-        25,
+        12,
     ),
     _attack(
         "rounding boxes",
@@ -296,6 +296,6 @@ ATTACKS = (
         "the same way-points, limits, bounds, ends and coupling to the last bits; true verdicts",
         readings,
         0.7,
-        20,
+        10,
     ),
 )

@@ -149,6 +149,6 @@ ATTACKS = (
         "*violated* where every peak keeps; the repair repairs",
         verdicts,
         share=2.0,
-        quick=60,
+        quick=30,
     ),
 )

@@ -340,7 +340,7 @@ ATTACKS = (
         "the same",
         optima,
         share=3.0,
-        quick=4,
+        quick=3,
         inside=True,
     ),
 )

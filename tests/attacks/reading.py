@@ -105,16 +105,8 @@ def damaged_solve(rng: Rng, folder: Path) -> str:
     (folder / "case.toml").write_text(text, encoding="utf-8", newline="")
     arguments = ["solve", "case.toml", "--json"]
     if rng.random() < 0.3:
-        arguments = [
-            "audit",
-            "case.toml",
-            "--seeds",
-            "2",
-            "--certify-seconds",
-            "1",
-            "--json",
-            "--strict",
-        ]
+        short = ["--seeds", "2", "--certify-seconds", "1"]
+        arguments = ["audit", "case.toml", *short, "--json", "--strict"]
     ran = command(arguments, folder, _CPU[arguments[0]])
     well_ended(ran, (0, 1, 2), f"{arguments[0]} ({done})")
     if ran.code == 2:
@@ -171,11 +163,8 @@ def audited_case(rng: Rng, folder: Path) -> str:
     """A valid case file is audited; the pages hold together."""
     drawn = draw_case(rng, small=True)
     (folder / "case.toml").write_text(drawn.text, encoding="utf-8")
-    ran = command(
-        ["audit", "case.toml", "--seeds", "2", "--certify-seconds", "1", "--out", "pages"],
-        folder,
-        _CPU["audit"],
-    )
+    arguments = ["audit", "case.toml", "--seeds", "2", "--certify-seconds", "1", "--out", "pages"]
+    ran = command(arguments, folder, _CPU["audit"])
     if ran.code == 2 and "coincide, chord parameters" in ran.err:
         return "refused in one line"
     well_ended(ran, (0,), "audit")
@@ -210,7 +199,7 @@ ATTACKS = (
         "exit code 0 or 2; one printable line that names the file; bounded in time and memory",
         damaged_case,
         share=3.0,
-        quick=25,
+        quick=12,
     ),
     Attack(
         "damaged case files, solved",
@@ -225,7 +214,7 @@ ATTACKS = (
         "random bytes, other encodings, cut files, deep nesting, long digits; `show`",
         "the same",
         raw_bytes,
-        quick=20,
+        quick=10,
     ),
     Attack(
         "valid case files",
@@ -233,7 +222,7 @@ ATTACKS = (
         "nothing is refused, every problem and reading is answered, strict JSON",
         valid_case,
         share=1.5,
-        quick=3,
+        quick=2,
     ),
     Attack(
         "valid case files, audited",

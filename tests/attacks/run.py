@@ -12,6 +12,7 @@ import traceback
 from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -112,7 +113,6 @@ def run(
     seed: int,
     seconds: float,
     say: Callable[[str], None],
-    first: int = 0,
 ) -> list[Account]:
     """Run trials until the time is up; each attack gets its share of it."""
     warm()
@@ -121,7 +121,7 @@ def run(
     while time.monotonic() < end:
         # Whichever is furthest behind its share is next.
         next_one = min(accounts, key=lambda a: a.seconds / a.attack.share)
-        tried(next_one, seed, first + next_one.tried, say)
+        tried(next_one, seed, next_one.tried, say)
     return accounts
 
 
@@ -138,6 +138,7 @@ def run_each(
     return accounts
 
 
+@cache
 def warm() -> None:
     """Import and compile once what every child needs."""
     import matplotlib.pyplot  # noqa: F401

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from itertools import pairwise
+from itertools import accumulate
 from typing import Any
 
 import numpy as np
 from support import exact_route
+from support.exact_motions import Curve
 from support.papers import motions
 
 from attacks.cases import Array, Asked, NoCurve
@@ -84,20 +85,12 @@ def _exact(asked: Asked, form: Any, h: Array) -> Truth:
             pieces = exact_route.fitted(replace(form, prescribed=own), q.tolist(), lengths)
         except StopIteration:
             raise NoCurve from None
-        ends.append([exact_route.extremes(pieces, lengths, r) for r in range(4)])
-        jumps.append([_jump(pieces, lengths, r) for r in (1, 2)])
+        motion = Curve([Fraction(0), *accumulate(map(Fraction, lengths))], pieces)
+        ends.append(motion.ranges)
+        jumps.append([float(motion.jumps(r)) for r in (1, 2)])
     found = np.array(ends, dtype=float).transpose(1, 0, 2)
     size = np.abs(found[1:3]).max(axis=2)
     return Truth(found, over(np.array(jumps).T, size), 0.0)
-
-
-def _jump(pieces: list[list[Fraction]], lengths: list[float], order: int) -> float:
-    most = Fraction(0)
-    for (left, right), h in zip(pairwise(pieces), lengths, strict=False):
-        ended = exact_route.derived(left, order)
-        there = sum(c * Fraction(h) ** k for k, c in enumerate(ended))
-        most = max(most, abs(exact_route.derived(right, order)[0] - there))
-    return float(most)
 
 
 def _by_scipy(asked: Asked, h: Array) -> Truth:

@@ -11,7 +11,7 @@ import re
 from pathlib import Path
 
 import pytest
-from support.one_joint import UNITS, one_joint
+from support.made_up import TWO_UNITS, one_joint
 from trajgap.compare import CaseAudit, audit
 from trajgap.compare.cli import main
 from trajgap.compare.documents import (
@@ -53,7 +53,7 @@ CASES = {
     "optimal": one_joint("0, 1", "1", "1.875", "optimal"),
     "too short": one_joint("0, 1", "1", "1.2", "within_limits"),
     "not optimal": one_joint("0, 1", "1", "2.5", "optimal", BEFORE),
-    "one limit in two units": one_joint("0, 1", "1", "1.875", "within_limits", UNITS),
+    "one limit in two units": one_joint("0, 1", "1", "1.875", "within_limits", TWO_UNITS),
 }
 COMMANDS = (
     "show case.toml",

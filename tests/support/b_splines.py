@@ -3,6 +3,7 @@
 import numpy as np
 from scipy.interpolate import BSpline, CubicSpline
 from scipy.optimize import brentq
+from support.papers.motions import vertices
 from trajgap.problem import ClampedBSpline, Limits, Problem, uniform_cubic_b_spline
 
 NATURAL = "timed, with natural ends of time"
@@ -69,21 +70,10 @@ def printed(degree: int) -> ClampedBSpline:
     )
 
 
-def vertices_by_solving(w: np.ndarray) -> np.ndarray:
-    """(2) and (3) as a dense system in all m + 2 vertices, closing conditions included."""
-    m = w.shape[0]
-    matrix = np.zeros((m + 2, m + 2))
-    for i in range(m):
-        matrix[i, i : i + 3] = np.array([1, 4, 1]) / 6
-    matrix[m, :2] = (1, -1)
-    matrix[m + 1, -2:] = (1, -1)
-    return np.linalg.solve(matrix, np.vstack([w, np.zeros((2, w.shape[1]))]))
-
-
 def spline_by_scipy(w: np.ndarray) -> BSpline:
     """The same curve over e in [0, m − 1] as scipy's B-spline on integer knots."""
     m = w.shape[0]
-    return BSpline(np.arange(-3.0, m + 3.0), vertices_by_solving(w), 3)
+    return BSpline(np.arange(-3.0, m + 3.0), vertices(w), 3)
 
 
 class ByScipy:

@@ -1,12 +1,18 @@
 """What is drawn: durations, a waterfall, and its steps."""
 
+import io
 import re
 import xml.etree.ElementTree as ElementTree
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 
 import matplotlib
 import numpy as np
+import pytest
+from matplotlib.backends.backend_svg import FigureCanvasSVG
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 from trajgap.compare.documents import Step, Waterfall
+from trajgap.compare.pictures import drawing as pictures
 from trajgap.compare.pictures.drawing import Picture, svg
 from trajgap.nlp import Evidence
 
@@ -52,3 +58,26 @@ STEPS = (
     Step.missing("retimed", "jerk is limited"),
     Step(name="any curve", time=0.012, evidence=Evidence.BEST_KNOWN),
 )
+
+
+def _marks() -> str:
+    """The document of one small picture, as matplotlib writes it."""
+    figure, text = Picture("Marks", "of a small one", 4.0, 3.0), io.StringIO()
+    figure.subplots().plot([0, 1], [1, 0], label="line")
+    FigureCanvasSVG(figure).print_svg(text)
+    return text.getvalue()
+
+
+@contextmanager
+def sketched() -> Iterator[None]:
+    """Every picture has the marks of one small one, and its own words: pages are about words."""
+    marks = _marks()
+
+    class Sketch(FigureCanvasSVG):
+        def print_svg(self, file: io.StringIO, **_: object) -> None:
+            file.write(marks)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(pictures, "FigureCanvasSVG", Sketch)
+        patch.setattr(ConstrainedLayoutEngine, "execute", lambda *_: None)
+        yield

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from support.toml_text import block
+from support.toml_text import Bare, block
 
 QUINTIC = {"family": "rest-to-rest", "degree": 5}
 """Peaks at 15 d/(8 h) for a way d in h."""
@@ -87,3 +87,14 @@ def paper(
         *([block("[durations]", dict(bounds))] if bounds else []),
     ]
     return "\n".join(blocks).strip() + "\n" + "".join(parts)
+
+
+def one_joint(points: str, limit: str, time: str, checks: str, *parts: str) -> str:
+    """One joint from rest to rest, a row, and a sentence on it; points and limit as in the file."""
+    claims = row("d", time, where="Table 2"), sentence("s", checks, "d", where="abstract")
+    head = {"id": "fair", "title": "one joint from rest to rest"}
+    return paper([[Bare(points)]], *claims, *parts, head=head, velocity=Bare(limit))
+
+
+TWO_UNITS = readings(header={}, degrees={"units": {"velocity": "deg/s"}})
+"""The unit of a limit as printed, and another one."""

@@ -46,7 +46,7 @@ def boxes(durations: np.ndarray, half: float, waypoints: np.ndarray, angle: floa
 
 
 def sampled_worst(
-    problem: Problem, h: RoundingBox, q: RoundingBox, rng, groups: int = 40, each: int = 50
+    problem: Problem, h: RoundingBox, q: RoundingBox, rng, groups: int = 12, each: int = 50
 ):
     """Worst ratios at random points of the box, a quarter of them at its corners."""
     worst = []
@@ -60,7 +60,8 @@ def sampled_worst(
         share = rng.uniform(size=(each, h.value.size))
         share[::4] = np.round(share[::4])
         durations = np.clip(low + share * (high - low), low, high)
-        worst.append(evaluate(there, durations).ratios.max(axis=(1, 2)))
+        found = evaluate(there, durations)
+        worst.append(np.maximum(found.ratios.max(axis=(1, 2)), found.positions.max(axis=1)))
     return np.concatenate(worst)
 
 

@@ -11,6 +11,8 @@ from functools import cache
 from importlib.resources import files
 
 import pytest
+from support.drawn import sketched
+from support.findings import OwnCurve
 from trajgap.compare.audits.case_audit import CaseAudit, audit_case
 from trajgap.compare.audits.reworded import Reworded
 from trajgap.compare.audits.study import Study
@@ -31,19 +33,41 @@ def source(case_id: str) -> str:
 @cache
 def shipped(case_id: str) -> Study:
     """The case as shipped."""
-    return Study(parse_case(source(case_id), f"{case_id}.toml"), seeds=SEEDS)
+    return OwnCurve(parse_case(source(case_id), f"{case_id}.toml"), seeds=SEEDS)
+
+
+PUMA = "puma560-mnam-pso-353"
+
+
+def without(case: Case, *blocks: str) -> Case:
+    """The case without what some blocks list; one reading stays."""
+    document = case.document
+    left = {name: getattr(document, name)[: name == "readings"] for name in blocks}
+    return replace(case, document=document.model_copy(update=left))
+
+
+def briefly(case: Case) -> Case:
+    """The case; the PUMA paper under its default reading alone, since each takes seconds."""
+    return without(case, "readings") if case.id == PUMA else case
+
+
+@cache
+def original(case_id: str) -> Study:
+    """The case as most tests know it."""
+    whole = shipped(case_id)
+    return OwnCurve(briefly(whole.case), seeds=SEEDS) if case_id == PUMA else whole
 
 
 @cache
 def changed(case_id: str, *swaps: tuple[str, str], tail: str = "") -> Study:
     """The case with a few places of its file changed, and more at its end."""
     if not swaps and not tail:
-        return shipped(case_id)
+        return original(case_id)
     text = source(case_id)
     for old, new in swaps:
         assert old in text, old
         text = text.replace(old, new)
-    return Reworded(parse_case(text + tail, f"{case_id}.toml"), shipped(case_id))
+    return Reworded(briefly(parse_case(text + tail, f"{case_id}.toml")), original(case_id))
 
 
 def hurried(case_id: str) -> Case:
@@ -58,23 +82,23 @@ def hurried(case_id: str) -> Case:
 @cache
 def audited(case_id: str) -> CaseAudit:
     """The audit of a case, with hurried replays."""
-    return audit_case(Reworded(hurried(case_id), shipped(case_id)))
+    return audit_case(Reworded(briefly(hurried(case_id)), original(case_id)))
 
 
 @cache
 def audited_alone(case_id: str) -> CaseAudit:
-    """The audit of a case without families of instances, which take minutes."""
+    """The audit of all readings, without families of instances, which take minutes."""
     case = hurried(case_id)
-    if not case.document.families:
+    if not case.document.families and case_id != PUMA:
         return audited(case_id)
-    alone = replace(case, document=case.document.model_copy(update={"families": ()}))
-    return audit_case(Reworded(alone, shipped(case_id)))
+    return audit_case(Reworded(without(case, "families"), shipped(case_id)))
 
 
 @cache
 def page_alone(case_id: str) -> Page:
-    """The page of `audited_alone`, its pictures drawn."""
-    return case_page(audited_alone(case_id))
+    """The page of `audited_alone`."""
+    with sketched():
+        return case_page(audited_alone(case_id))
 
 
 QUICKLY = ("irb460-pso-353", "z1-woa-bspline")

@@ -37,7 +37,7 @@ def judge_improvements(study: Study) -> Iterator[Finding]:
             yield _percentage(study, claim, claim.percent, slower, faster, what, root)
         if claim.seconds is not None:
             cut = _difference(slower.truncated, faster.truncated)
-            mixed = _difference(*_allowed(study, claim, slower, faster))
+            mixed = _difference(*_allowed(study, claim))
             unit = study.time_unit
             said = claim, claim.seconds, seconds, cut, what, unit, root
             yield compared("TG103", *said, mixed=mixed)
@@ -48,7 +48,7 @@ def judge_improvements(study: Study) -> Iterator[Finding]:
         apart = tables[0] is not tables[1]
         totals = [printed_total(t) for t in tables if t is not None and apart]
         if claim.percent is not None and len(totals) == 2 and None not in totals:
-            fits = _meets(study, claim, claim.percent, slower, faster)
+            fits = _meets(study, claim, claim.percent)
             own = f"{between} give {claim.percent} %, but from" if fits else "From"
             yield from _against_tables(study, claim, claim.percent, tables, totals, own)
 
@@ -83,22 +83,22 @@ def allowed_bases(claim: ImprovementClaim) -> tuple[str, ...]:
     return tuple(_SHARE_OF) if claim.base is None else (claim.base,)
 
 
-def _allowed(
-    study: Study, claim: ImprovementClaim, slower: Printed, faster: Printed
-) -> tuple[Interval, Interval]:
-    """Both totals, rounded or cut off, or the sum of digits that were; positive ones."""
-    a, b = (total_allowed(study, study.case.claim(i)) for i in (claim.slower, claim.faster))
-    if a.lower > 0 and b.lower > 0:
-        return a, b
-    return slower.interval, faster.interval
+def _divides(base: str, faster: Interval) -> bool:
+    """Whether a total is more than nothing, so that something may be a share of it."""
+    return base == "slower" or faster.lower > 0
 
 
-def _meets(
-    study: Study, claim: ImprovementClaim, percent: Printed, slower: Printed, faster: Printed
-) -> bool:
+def _allowed(study: Study, claim: ImprovementClaim) -> tuple[Interval, Interval]:
+    """Both totals, rounded or cut off, or the sum of digits that were."""
+    slower, faster = (study.case.claim(one) for one in (claim.slower, claim.faster))
+    return total_allowed(study, slower), total_allowed(study, faster)
+
+
+def _meets(study: Study, claim: ImprovementClaim, percent: Printed) -> bool:
     """Whether the claim's own two totals give its percentage."""
-    allowed = _allowed(study, claim, slower, faster)
-    return any(meet(hull(percent), _share(*allowed, base)) for base in allowed_bases(claim))
+    allowed = _allowed(study, claim)
+    bases = [base for base in allowed_bases(claim) if _divides(base, allowed[1])]
+    return any(meet(hull(percent), _share(*allowed, base)) for base in bases)
 
 
 def _percentage(
@@ -111,11 +111,10 @@ def _percentage(
     root: str,
 ) -> Finding:
     """The percentage under each base that is admissible; the first that fits is taken."""
-    zero = Fraction(0)
-    bases = [b for b in allowed_bases(claim) if b == "slower" or faster.truncated.lower > zero]
-    tried = []
     # A total may be the sum of digits cut off, and the percentage that of the whole numbers.
-    wide = _allowed(study, claim, slower, faster)
+    wide = _allowed(study, claim)
+    bases = [base for base in allowed_bases(claim) if _divides(base, wide[1])]
+    tried = []
     for base in bases or ["slower"]:
         share = f"{what}, as a share of {_SHARE_OF[base]},"
         rounded = _share(slower.interval, faster.interval, base)
@@ -140,8 +139,9 @@ def _of_the_other(
 ) -> Finding:
     """A finding on a percentage, with the base that the file does not state where that one fits."""
     for base, words in _SHARE_OF.items():
-        fits = claim.percent is not None and meet(hull(claim.percent), _share(*totals, base))
-        if base not in allowed_bases(claim) and fits:
+        if base in allowed_bases(claim) or not _divides(base, totals[1]):
+            continue
+        if claim.percent is not None and meet(hull(claim.percent), _share(*totals, base)):
             fits_there = f" As a share of {words} it would be {claim.percent} %."
             return found.model_copy(update={"message": found.message + fits_there})
     return found

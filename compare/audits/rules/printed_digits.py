@@ -216,9 +216,9 @@ def _lengths(study: Study) -> Iterator[Finding]:
             continue
         for rid in study.readings:
             segments = study.case.statement(claim.problem, rid).curve().segments
-            count = len(claim.durations)
-            if count == segments:
+            if len(claim.durations) == segments:
                 continue
+            count = _many(len(claim.durations), "duration")
             yield Finding(
                 rule="TG109",
                 severity=Severity.WARNING,
@@ -226,12 +226,16 @@ def _lengths(study: Study) -> Iterator[Finding]:
                 basis=Basis.COUNT,
                 claim=claim.id,
                 reading=rid,
-                printed=f"{count} durations",
-                computed=f"{segments} segment{'s' * (segments > 1)}",
-                message=f"{claim.where} prints {count} durations, and the curve through the "
-                f"way-points has {segments} segments, so no motion can be built from them. If the "
-                "paper prints another number, correct the case file.",
+                printed=count,
+                computed=_many(segments, "segment"),
+                message=f"{claim.where} prints {count}, and the curve through the way-points has "
+                f"{_many(segments, 'segment')}, so no motion can be built from them. If the paper "
+                "prints another number, correct the case file.",
             )
+
+
+def _many(count: int, word: str) -> str:
+    return f"{count} {word}{'s' * (count != 1)}"
 
 
 def _maxima(study: Study) -> Iterator[Finding]:

@@ -134,7 +134,7 @@ def applied(text: str) -> tuple[CaseAudit, CaseAudit]:
     """A draft's audit, and that of the draft with every edit of its advice made."""
     case = parse_case(text, "draft.toml")
     first = audited(case)
-    edits = [edit for advice in first.document.advice for edit in advice.edits]
+    edits = [edit for advice in first.advice for edit in advice.edits]
     return first, audited(edited(case, edits))
 
 

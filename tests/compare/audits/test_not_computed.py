@@ -10,8 +10,7 @@ from typing import Any
 import pytest
 from support.base_case import BASE
 from support.findings import audited_text, study_of, verdicts
-from support.made_up import claim, entry, paper, readings, row, sentence
-from support.one_joint import one_joint
+from support.made_up import claim, entry, one_joint, paper, readings, row, sentence
 from trajgap.compare.audits import CaseAudit, Study, audit, case_audit
 from trajgap.compare.audits.case_audit import AuditReport
 from trajgap.compare.audits.rules.registry import RuleGroup
@@ -62,7 +61,7 @@ def replays(one: CaseAudit) -> dict[str, str]:
 
 
 def test_a_relaxed_family_that_is_not_solved_is_a_step_without_a_time(tmp_path: Path) -> None:
-    one = audited_text(text(SEPTIC))
+    one = audited_text(text(SEPTIC), Study)
     write_report(AuditReport((one,)), tmp_path)
     steps = {step.name: step for step in one.waterfalls[0].steps}
     assert steps["relaxed family"].time == Why(

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from support.drawn import sketched
 from support.findings import audited_text, finding, study_of, verdicts
 from support.made_up import claim, paper, peak, readings, row, sentence, total
 from trajgap.compare import ClaimVerdict, write_report
@@ -39,7 +40,8 @@ CASE = paper(
 def one(tmp_path_factory: pytest.TempPathFactory) -> CaseAudit:
     found = audited_text(CASE)
     folder: Path = tmp_path_factory.mktemp("pages")
-    write_report(AuditReport((found,)), folder)
+    with sketched():
+        write_report(AuditReport((found,)), folder)
     return found
 
 

@@ -13,8 +13,7 @@ import pytest
 from rich.console import Console
 from support.documents import assert_reasons, assert_valid, plain
 from support.findings import study_of
-from support.made_up import paper, readings, row
-from support.one_joint import UNITS, one_joint
+from support.made_up import TWO_UNITS, one_joint, paper, readings, row
 from support.studies import shipped
 from trajgap.compare.audits.case_audit import AuditReport, CaseAudit
 from trajgap.compare.audits.reading_words import answers, holding, segments
@@ -288,7 +287,7 @@ def test_a_single_reading_needs_no_comparison() -> None:
 )
 def test_digits_rounded_or_cut_off_are_given_their_due(time: str, keeping: Keeping) -> None:
     """The shortest time is 0.961736 s: 0.961 is its digits cut off."""
-    text = one_joint("0, 1", "1.9496", time, "within_limits", UNITS)
+    text = one_joint("0, 1", "1.9496", time, "within_limits", TWO_UNITS)
     found = summary_of(summed(study_of(text), {"main": "d"}))
     outcome = next(o for o in found.outcomes if o.reading == "header")
     assert outcome.keeping is keeping

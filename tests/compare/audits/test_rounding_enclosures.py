@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-import math
 from fractions import Fraction
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from support.exact_route import fitted
 from support.rounding_boxes import MOVING_ENDS, rounded_problem
 from trajgap.nlp.enclosure import balls as interval
 from trajgap.nlp.enclosure.balls import Ball, enclose_spline
 from trajgap.problem import Interpolant, cubic_spline_virtual, quintic_spline, three_five_three
-from trajgap.problem.curves.condition import ConditionKind
 
 # --- enclosures against exact arithmetic ----------------------------------------------------------
 
@@ -21,35 +20,11 @@ from trajgap.problem.curves.condition import ConditionKind
 def exact_coefficients(
     interpolant: Interpolant, durations: list[Fraction], waypoints: list[Fraction]
 ) -> list[Fraction]:
-    """One joint's scaled coefficients by Gaussian elimination on fractions."""
-    first = [0]
-    for d in interpolant.degrees:
-        first.append(first[-1] + d + 1)
-    angle = dict(zip(interpolant.waypoint_breaks, waypoints, strict=True))
-    system = []
-    for row in interpolant.rows:
-        b, r = row.at, row.order
-        line = [Fraction(0)] * (first[-1] + 1)
-        if row.kind != ConditionKind.RIGHT_VALUE:
-            for p in range(r, interpolant.degrees[b - 1] + 1):
-                line[first[b - 1] + p] = Fraction(math.perm(p, r)) / durations[b - 1] ** r
-        if row.kind != ConditionKind.LEFT_VALUE and r <= interpolant.degrees[b]:
-            sign = 1 if row.kind == ConditionKind.RIGHT_VALUE else -1
-            line[first[b] + r] = sign * math.factorial(r) / durations[b] ** r
-        if row.kind != ConditionKind.MATCH:
-            prescribed = dict(interpolant.prescribed[b])
-            line[-1] = angle[b] if r == 0 else Fraction(prescribed[r])
-        system.append(line)
-    size = first[-1]
-    for c in range(size):
-        pivot = next(i for i in range(c, size) if system[i][c])
-        system[c], system[pivot] = system[pivot], system[c]
-        system[c] = [x / system[c][c] for x in system[c]]
-        for i in range(size):
-            if i != c and system[i][c]:
-                factor = system[i][c]
-                system[i] = [x - factor * y for x, y in zip(system[i], system[c], strict=True)]
-    return [line[-1] for line in system]
+    """One joint's coefficients in the share of each segment."""
+    pieces = fitted(interpolant, waypoints, durations)
+    return [
+        c * h**p for piece, h in zip(pieces, durations, strict=True) for p, c in enumerate(piece)
+    ]
 
 
 def escaped(ball: Ball, exact: list[Fraction]) -> float:

@@ -5,16 +5,13 @@ The rates, over many more, are those of docs/measurements/auditor-errors.md.
 
 from __future__ import annotations
 
-import importlib.util
 import re
-import sys
 from collections.abc import Callable, Iterable
-from types import ModuleType
 
 import numpy as np
 import pytest
 from _pytest.mark import ParameterSet
-from support.checkout import ROOT
+from support.benchmarks import loaded
 from support.findings import audited_text
 from support.papers.apart import apart, moving
 from support.papers.claims import draw
@@ -38,18 +35,6 @@ def slow(seeds: Iterable[int]) -> list[ParameterSet]:
 def contradicted(one: CaseAudit) -> dict[str, str]:
     """What speaks against each claim that is refuted or inconsistent."""
     return {j.claim: j.why for j in one.judgements if j.verdict in AGAINST}
-
-
-@pytest.fixture(scope="module")
-def errors() -> ModuleType:
-    path = ROOT / "benchmarks" / "auditor_errors.py"
-    spec = importlib.util.spec_from_file_location("auditor_errors", path)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[spec.name] = module  # dataclasses look their module up
-    spec.loader.exec_module(module)
-    return module
 
 
 @pytest.mark.parametrize("name", FAMILIES)
@@ -103,7 +88,7 @@ def test_every_fault_is_seen_where_the_digits_show_it_clearly(fault: str) -> Non
     assert all(contradicted(audited_text(one.draft.text())) for one in clear)
 
 
-@pytest.mark.parametrize("seed", [1, 5, *slow(range(6, 28))])
+@pytest.mark.parametrize("seed", [5, *slow(range(6, 28))])
 @pytest.mark.parametrize("made", [apart, moving])
 def test_no_card_accuses_a_paper_whose_totals_are_kept_apart(
     made: Callable[[int], str], seed: int
@@ -141,7 +126,7 @@ def holds(said: str, true: float) -> bool:
 
 
 @pytest.mark.parametrize("kind", HONEST)
-@pytest.mark.parametrize("seed", [*range(3), 8, *slow([*range(3, 8), *range(9, 14)])])
+@pytest.mark.parametrize("seed", [1, 8, *slow([0, *range(2, 8), *range(9, 14)])])
 def test_honest_rows_are_accused_of_nothing(kind: str, seed: int) -> None:
     """No accusation, and no sentence on the card that is false of what the paper computed."""
     paper = row_paper(kind, seed)
@@ -157,7 +142,7 @@ def test_honest_rows_are_accused_of_nothing(kind: str, seed: int) -> None:
 
 
 @pytest.mark.parametrize("kind", FAULTY)
-@pytest.mark.parametrize("seed", [*range(3), *slow(range(3, 8))])
+@pytest.mark.parametrize("seed", [0, *slow(range(1, 8))])
 def test_the_fault_of_a_row_is_named(kind: str, seed: int) -> None:
     """The fault is found, and its rule and row are named."""
     paper = row_paper(kind, seed)
@@ -172,7 +157,8 @@ def test_the_fault_of_a_row_is_named(kind: str, seed: int) -> None:
         assert "Every printed total agrees" not in j.why or kind != "another total in the abstract"
 
 
-def test_the_page_shows_the_committed_rows(errors: ModuleType) -> None:
+def test_the_page_shows_the_committed_rows() -> None:
+    errors = loaded("auditor_errors")
     page = errors.PAGE.read_text("utf-8")
     assert errors.page_with(page, errors.tables()) == page
     for path in (errors.CLEAN, errors.FAULTY):

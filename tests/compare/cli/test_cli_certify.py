@@ -16,6 +16,7 @@ import pytest
 from support.checkout import ROOT
 from support.command_line import CASE, Run, strict
 from support.documents import assert_valid
+from support.made_up import paper
 from support.shipped_problems import COVERED_PROBLEMS
 from trajgap.compare.cli import certifying as cli_certify
 from trajgap.compare.documents import Uncovered
@@ -344,17 +345,14 @@ def test_a_bound_over_any_curve_is_certified_verified_and_named(run: Run) -> Non
     assert len(list(folder.iterdir())) == 2, "another question, another file"
 
 
-MOVING = """
-format = 1
-id = "moving"
-title = "Moving"
-source = { year = 2020 }
-robot = { name = "arm", joints = ["a", "b"] }
-units = { position = "rad", velocity = "rad/s", acceleration = "rad/s^2", time = "s" }
-waypoints = { joint_rows = [["0", "1", "0.4"], ["0.2", "-0.3", "0.5"]] }
-limits = { velocity = [2, 1.5], acceleration = [5, 4] }
-interpolant = { family = "cubic-spline", end_derivatives = [[0.5, -0.2]], finish_derivatives = [0] }
-"""
+MOVING = paper(
+    ["0 1 0.4", "0.2 -0.3 0.5"],
+    curve={
+        "family": "cubic-spline", "end_derivatives": [[0.5, -0.2]], "finish_derivatives": [0],
+    },
+    velocity=[2, 1.5],
+    acceleration=[5, 4],
+)  # fmt: skip
 """A joint that starts forwards and one that starts backwards."""
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 from support.command_line import IRB, PUMA, Run
-from support.one_joint import QUESTION
+from support.made_up import claim, paper, total
 from trajgap.compare.audits import Study, asked_as, in_words
 from trajgap.problem import load_case
 
@@ -17,34 +17,17 @@ NAMED = f"{WORDS} (problem limit-80, reading waypoints-rad)"
 IDS = ("limit-80", "limit-110", "waypoints-rad", "waypoints-deg")
 ONCE = dict.fromkeys(IDS, 1)
 CHECK = f"check {IRB} --durations 0.6445,0.5858,0.6387"
-MEANS = "".join(
-    f"""
-[[claims]]
-id = "mean-{name}"
-quantity = "measure"
-where = "Table 4"
-derivative = "{name}"
-measure = "mean"
-value = "1.5"
-"""
-    for name in ("velocity", "acceleration")
+ARM = {"id": "arm", "title": "arm"}
+COMPROMISE = paper(
+    [[0, 1]],
+    total("total", "18.0", where="abstract"),
+    *(
+        claim(f"mean-{name}", "measure", derivative=name, measure="mean", value="1.5", where="T")
+        for name in ("velocity", "acceleration")
+    ),
+    head=ARM | {"objective": "time and jerk, weighted"},
+    velocity=2,
 )
-TOTAL = """
-[[claims]]
-id = "total"
-quantity = "total_time"
-where = "abstract"
-value = "18.0"
-"""
-ARM = (
-    QUESTION.format(points="0, 1", limit=2)
-    .replace('"fair"', '"arm"')
-    .replace("one joint from rest to rest", "arm")
-    .replace("year = 2024", 'note = "Made up."')
-)
-COMPROMISE = ARM.replace(
-    "\n[source]", '\nobjective = "time and jerk, weighted"\n[source]', 1
-).replace('"rad/s"', '"rad/s"\nacceleration = "rad/s^2"', 1)
 FEW = """format = 1
 seeds = 1
 budget = 5
@@ -52,8 +35,8 @@ problems = [{ case = "CASE", coupling = "per-joint" }]
 optimizers = [{ name = "random" }]
 """
 FILES = {
-    "arm.toml": ARM,
-    "c.toml": COMPROMISE + TOTAL + MEANS,
+    "arm.toml": paper([[0, 1]], head=ARM, velocity=2),
+    "c.toml": COMPROMISE,
     "few.toml": FEW.replace("CASE", IRB),
     "one.json": '{"joints": ["1"], "breaks": [0, 1, 2], "coefficients": '
     "[[[-1], [1.5], [0], [0]], [[0], [0], [0], [0.5]]]}",

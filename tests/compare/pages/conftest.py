@@ -3,20 +3,23 @@
 from pathlib import Path
 
 import pytest
+from support.drawn import sketched
+from support.findings import report_of
 from support.hostile import ID, hostile_case
 from support.page_tree import Tree
-from trajgap.compare import AuditReport, audit, write_report
+from trajgap.compare import AuditReport, write_report
 
 
 @pytest.fixture(scope="session")
 def report() -> AuditReport:
-    return audit(hostile_case(), seeds=2, certify_seconds=0)
+    return report_of(hostile_case())
 
 
 @pytest.fixture(scope="session")
 def folder(report: AuditReport, tmp_path_factory: pytest.TempPathFactory) -> Path:
     out = tmp_path_factory.mktemp("report") / "deep" / "audit"
-    write_report(report, out)
+    with sketched():
+        write_report(report, out)
     return out
 
 

@@ -6,48 +6,33 @@ from collections import Counter
 from pathlib import Path
 
 import pytest
-from trajgap.compare import audit, write_report
+from support.drawn import sketched
+from support.findings import report_of
+from support.made_up import entry, paper, row
+from support.toml_text import block
+from trajgap.compare import write_report
 from trajgap.compare.pages import foreign
 from trajgap.compare.pages.blocks import Cell, Grid, Page, Prose, Section, Terms
 from trajgap.compare.pages.markdown_text import markdown
 from trajgap.problem import file_name, parse_case
 
-DASH = """
-format = 1
-id = "dash"
-title = "t"
-source = {}
-robot = { name = "r", joints = ["1"] }
-units = { position = "rad", velocity = "rad/s", time = "s" }
-waypoints = { joint_rows = [[0, 1, 2, 3]] }
-limits = { velocity = 1 }
-interpolant = { family = "3-5-3" }
-[[problems]]
-id = "a"
-[[problems]]
-id = "a-b"
-limits = {velocity = 5}
-[[readings]]
-id = "b-c"
-why = "x"
-default = true
-[[readings]]
-id = "c"
-why = "y"
-limits = {velocity = 2}
-[[claims]]
-id = "x"
-quantity = "durations"
-where = "T"
-problem = "a"
-durations = ["1.5","1.5","1.5"]
-[[claims]]
-id = "y"
-quantity = "durations"
-where = "T"
-problem = "a-b"
-durations = ["2.5","2.5","2.5"]
-"""
+
+def dash(case: str, text: str = "t") -> str:
+    """Problems and readings whose ids joined by dashes are the same."""
+    return paper(
+        [[0, 1, 2, 3]],
+        entry("problems", id="a"),
+        entry("problems", id="a-b", limits={"velocity": 5}),
+        entry("readings", id="b-c", why=text, default=True),
+        entry("readings", id="c", why="y", limits={"velocity": 2}),
+        row("x", "1.5 1.5 1.5", problem="a", where=text),
+        row("y", "2.5 2.5 2.5", problem="a-b", where=text),
+        curve={"family": "3-5-3"},
+        head={"id": case, "title": text},
+        velocity=1,
+    ).replace('name = "arm"', block("", {"name": text}).strip())
+
+
 HIDDEN = "total \u202e5.1\u202c\u2066x\u2069\u200e\u200f\u061c\x1b[31m\x07\x9b\x7f s"
 SHOWN = (
     "total <U+202E>5.1<U+202C><U+2066>x<U+2069><U+200E><U+200F><U+061C><U+001B>[31m<U+0007>"
@@ -59,14 +44,10 @@ HIDES = re.compile("[\u202a-\u202e\u2066-\u2069\u200e\u200f\u061c\x00-\x08\x0b-\
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Report of two cases whose names joined by dashes are the same, with hidden characters."""
-    hidden = "".join(f"\\u{ord(c):04x}" if ord(c) > 126 or ord(c) < 32 else c for c in HIDDEN)
-    text = DASH.replace('"t"', f'"{hidden}"', 1).replace('where = "T"', f'where = "{hidden}"')
-    text = text.replace('why = "x"', f'why = "{hidden}"').replace('"r"', f'"{hidden}"')
-    other = DASH.replace('id = "dash"', 'id = "dash-waterfall"', 1)
+    cases = [parse_case(dash("dash", HIDDEN), "f"), parse_case(dash("dash-waterfall"), "g")]
     out = tmp_path_factory.mktemp("names") / "audit"
-    write_report(
-        audit([parse_case(text, "f"), parse_case(other, "g")], seeds=2, certify_seconds=0), out
-    )
+    with sketched():
+        write_report(report_of(*cases), out)
     return out
 
 

@@ -10,7 +10,7 @@ import pytest
 from support.page_tree import Tree
 from support.studies import EVERY, audited_alone, page_alone
 from trajgap.compare.audits import KEPT
-from trajgap.compare.audits.case_audit import CaseAudit, audit
+from trajgap.compare.audits.case_audit import CaseAudit
 from trajgap.compare.audits.study import Study
 from trajgap.compare.documents import ClaimVerdict, Keeping, Step, Waterfall, Why
 from trajgap.compare.pages.blocks import Cell, Claimed, Folded, Grid, Page, Prose, Section, word
@@ -19,7 +19,6 @@ from trajgap.compare.pages.markdown_text import markdown
 from trajgap.compare.pages.numbers import where_time_goes
 from trajgap.compare.pages.said_once import shown_once
 from trajgap.compare.pages.units import both_units
-from trajgap.compare.pages.writer import case_page
 from trajgap.nlp import Evidence
 from trajgap.problem import load_case
 
@@ -96,10 +95,7 @@ def test_a_section_that_holds_nothing_is_left_out() -> None:
 
 
 def test_a_case_without_waypoints_says_once_what_is_not_computed() -> None:
-    whale = load_case("z1-woa-bspline")
-    alone = replace(whale, document=whale.document.model_copy(update={"families": ()}))
-    (one,) = audit(alone, seeds=2, certify_seconds=0).cases
-    page = case_page(one)
+    page = page_alone("z1-woa-bspline")
     ids = [s.id for s in page.sections]
     assert "not-computed" in ids
     assert not {"waterfall", "optima", "sensitivities", "motions", "landscapes"} & set(ids)

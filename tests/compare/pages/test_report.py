@@ -7,6 +7,7 @@ from urllib.parse import unquote
 
 import pytest
 from support.checkout import ROOT
+from support.drawn import sketched
 from support.hostile import ID, IMAGE
 from support.page_tree import Tree
 from trajgap.compare import AuditReport
@@ -141,12 +142,10 @@ def test_every_claim_stands_with_its_digits_and_verdict(
     one = report.cases[0]
     anchors = {a.get("id") for a in page.found}
     written = (folder / f"{ID}.md").read_text(encoding="utf-8")
-    shown = {
-        block.id: block
-        for section in case_page(one).sections
-        for block in section.blocks
-        if isinstance(block, Claimed)
-    }
+    with sketched():
+        sections = case_page(one).sections
+    blocks = [block for section in sections for block in section.blocks]
+    shown = {block.id: block for block in blocks if isinstance(block, Claimed)}
     assert shown.keys() == {claim.id for claim in one.case.claims}
     for judgement in one.judgements:
         claim = one.case.claim(judgement.claim)

@@ -12,14 +12,16 @@ from pathlib import Path
 import pytest
 from rocrate.rocrate import ROCrate
 from support.checkout import ROOT
+from support.drawn import sketched
+from support.findings import report_of
 from support.hostile import ID, hostile_case
 from support.studies import source
-from trajgap.compare import AuditReport, audit, write_report
+from trajgap.compare import AuditReport, write_report
 from trajgap.compare.pages import crate_of
 from trajgap.compare.pages.blocks import Cell, Drawn, Grid, Page, Prose, Section, Terms
 from trajgap.compare.pages.markdown_text import markdown
 from trajgap.compare.pages.writer import MARK, report_files
-from trajgap.problem import TrajgapError
+from trajgap.problem import TrajgapError, load_case
 from trajgap.verify import verify_certificate
 
 
@@ -31,7 +33,8 @@ def content(folder: Path) -> dict[str, bytes]:
 
 @pytest.mark.slow
 def test_a_second_audit_writes_the_same_bytes(folder: Path, tmp_path: Path) -> None:
-    write_report(audit(hostile_case(), seeds=2, certify_seconds=0), tmp_path / "again")
+    with sketched():
+        write_report(report_of(hostile_case()), tmp_path / "again")
     first, second = content(folder), content(tmp_path / "again")
     assert first.keys() == second.keys()
     assert [name for name in first if first[name] != second[name]] == []
@@ -160,25 +163,26 @@ def test_what_is_null_alone_is_named_in_the_documents(folder: Path) -> None:
     assert {"claim", "problem", "printed"} <= alone <= set(re.findall(r"`([a-z]+)`", named))
 
 
-def quick_file(folder: Path) -> Path:
+@pytest.fixture(scope="module")
+def file(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The case with replays of three iterations, as a file."""
     text = source(ID)
     assert "{ iterations = 100 }" in text
-    file = folder / f"{ID}.toml"
+    file = tmp_path_factory.mktemp("case") / f"{ID}.toml"
     file.write_text(text.replace("{ iterations = 100 }", "{ iterations = 3 }"), encoding="utf-8")
     return file
 
 
 @pytest.fixture(scope="module")
-def quick(tmp_path_factory: pytest.TempPathFactory) -> AuditReport:
-    file = quick_file(tmp_path_factory.mktemp("case"))
-    return audit(file, seeds=2, certify_seconds=0, problem="limit-80", reading="waypoints-rad")
+def quick(file: Path) -> AuditReport:
+    return report_of(load_case(file), problem="limit-80", reading="waypoints-rad")
 
 
 @pytest.fixture(scope="module")
 def archive(quick: AuditReport, tmp_path_factory: pytest.TempPathFactory) -> Path:
     file = tmp_path_factory.mktemp("crate") / "audit.zip"
-    file.write_bytes(crate_of(quick))
+    with sketched():
+        file.write_bytes(crate_of(quick))
     return file
 
 
@@ -216,9 +220,10 @@ def test_certificates_in_a_crate_prove_again(archive: Path) -> None:
         assert verify_certificate(json.loads(packed.read(name))).proves, name
 
 
-def test_a_case_file_that_has_changed_is_refused(tmp_path: Path) -> None:
-    file = quick_file(tmp_path)
-    made = audit(file, seeds=2, certify_seconds=0, problem="limit-80", reading="waypoints-rad")
+def test_a_case_file_that_has_changed_is_refused(
+    quick: AuditReport, archive: Path, file: Path
+) -> None:
+    del archive  # made before
     file.write_text(file.read_text("utf-8") + "\n# later\n", encoding="utf-8")
     with pytest.raises(TrajgapError, match=r"has changed since the audit began; audit it again"):
-        crate_of(made)
+        crate_of(quick)

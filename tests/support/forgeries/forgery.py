@@ -64,6 +64,36 @@ class Forgery:
     spread: Any = None
 
 
+WHOLE = "reading.whole: malformed: no integer in {low}..{high}: {shown(repr(value))}"
+
+
+def beyond(base: str, ranges: dict[str, tuple[int, int]]) -> list[Forgery]:
+    """One below and one above the least and the largest of each whole number."""
+    return [
+        Forgery(WHOLE, base, {path: value})
+        for path, (low, high) in ranges.items()
+        for value in (low - 1, high + 1)
+    ]
+
+
+def spline(n: int, degree: int = 3, joints: int = 1) -> Callable[[Document], None]:
+    """A spline of so many equal segments, as smooth as its degree allows, without an answer."""
+
+    def altered(data: Document) -> None:
+        rest = [[order, "0"] for order in range(1, (degree + 1) // 2)]
+        data["problem"] |= {
+            "degrees": [degree] * n, "continuity": [degree - 1] * (n - 1),
+            "prescribed": [rest, *[[]] * (n - 1), rest], "virtual": [],
+            "joints": [str(j) for j in range(joints)], "limits": [["1", "2", None]] * joints,
+            "position_lower": [None] * joints, "position_upper": [None] * joints,
+            "waypoints": [[str(k)] * joints for k in range(n + 1)],
+            "duration_lower": ["0"] * n, "duration_upper": [None] * n,
+        }  # fmt: skip
+        data["claim"] |= {"durations": None, "upper": None}
+
+    return altered
+
+
 @cache
 def _kept(name: str) -> str:
     return (KEPT / f"{name}.json").read_text("utf-8")

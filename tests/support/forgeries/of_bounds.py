@@ -2,7 +2,16 @@
 
 from __future__ import annotations
 
-from support.forgeries.forgery import B_SPLINE_AT_RATIOS, NO_ANSWER, Document, Forgery, document
+from support.forgeries.forgery import (
+    B_SPLINE_AT_RATIOS,
+    NO_ANSWER,
+    WHOLE,
+    Document,
+    Forgery,
+    beyond,
+    document,
+    spline,
+)
 
 ONE_LEAF = "a proof in closed form has one leaf"
 CUTS = ([0, ["."], ["."]], [["/", 0, "1"], ["."], ["."]])
@@ -97,14 +106,10 @@ def _still_below(data: Document) -> None:
 ANY = [
     Forgery("any_curve._Row.read: a row of an unknown kind", "any-curve",
             {"proof.rows.0.0": "magic"}),
-    *(Forgery("reading.whole: malformed: no integer in {low}..{high}: {shown(repr(value))}",
-              "any-curve", {path: value})
-      for path, value in (
-          ("proof.rows.0.1", 2), ("proof.rows.0.1", -1), ("proof.rows.0.2", 2),
-          ("proof.rows.0.2", -1), ("proof.rows.0.4", 10**18 + 1), ("proof.rows.0.4", -(10**18) - 1),
-          ("proof.rows.0.5", 10**18 + 1), ("proof.rows.0.5", -(10**18) - 1),
-          ("proof.rows.0.6", -1), ("proof.rows.0.6", 10**18 + 1),
-          ("proof.tree.1.1", 5), ("proof.tree.1.1", -1), ("proof.tree.0.1", 2))),
+    *beyond("any-curve", {
+        "proof.rows.0.1": (0, 1), "proof.rows.0.2": (0, 1), "proof.rows.0.4": (-(10**18), 10**18),
+        "proof.rows.0.5": (-(10**18), 10**18), "proof.rows.0.6": (0, 10**18),
+        "proof.tree.1.1": (0, 4), "proof.tree.0.1": (0, 1)}),
     Forgery("any_curve._Row.terms: a row looks the wrong way", "any-curve", {"proof.rows.1.3": -1}),
     Forgery("any_curve._Row.terms: a row looks the wrong way", "any-curve", {"proof.rows.0.3": -1}),
     Forgery("any_curve._Row.terms: a row leans on a least duration that is 0", "any-curve",
@@ -175,19 +180,6 @@ ANY = [
 _KIND, _SYSTEM, _WEIGHTS = "cubic/kind.CubicSpline.", "cubic/system.", "cubic/weights."
 _ENDS = f"{_SYSTEM}kind_of_ends: "
 NOT_A_SIDE = f"{_KIND}step: a side is not proved"
-SPOT = "reading.whole: malformed: no integer in {low}..{high}: {shown(repr(value))}"
-
-
-def _long(data: Document) -> None:
-    """65 segments."""
-    n = 65
-    data["problem"] |= {
-        "degrees": [3] * n, "continuity": [2] * (n - 1),
-        "prescribed": [[[1, "0"]], *[[]] * (n - 1), [[1, "0"]]],
-        "waypoints": [[str(k), "0"] for k in range(n + 1)],
-        "duration_lower": ["0"] * n, "duration_upper": [None] * n,
-    }  # fmt: skip
-    data["claim"] |= {"durations": None, "upper": None}
 
 
 def _other_curve(data: Document) -> None:
@@ -214,7 +206,8 @@ CUBICS = [
             {"proof.tree": [["."]]}),
     Forgery(_SYSTEM + "Cubic.__init__: the curve is no declared piecewise polynomial",
             "stretched", _other_curve),
-    Forgery(_SYSTEM + "Cubic.__init__: more than {MOST_CUBIC_SEGMENTS} segments", "cubic", _long),
+    Forgery(_SYSTEM + "Cubic.__init__: more than {MOST_CUBIC_SEGMENTS} segments",
+            "cubic", spline(65)),
     *(Forgery(_SYSTEM + "Cubic.condition: a bound of a duration that is not there", kind,
               {"proof.rows.0": ["upper", -1, 0, 1, 0], "problem.duration_upper.0": None})
       for kind in ("cubic", "cubic-virtual")),
@@ -229,22 +222,18 @@ CUBICS = [
       for kind, k, side in (("cubic", 0, 25165825), ("cubic", 1, 50331649), ("cubic", 2, 29360129),
                             ("cubic-virtual", 0, 25165825), ("cubic-virtual", 3, 3355444),
                             ("cubic-virtual", 4, 6710887), ("cubic-virtual", 1, 50331649))),
-    *(Forgery(SPOT, "cubic", {path: value}) for path, value in (
-        ("proof.powers.0", 61), ("proof.powers.0", -61), ("proof.second", 61),
-        ("proof.second", -61), ("proof.cap", 0), ("proof.cap", 2**28 + 1), ("proof.root.0", -1),
-        ("proof.root.0", 2**28 + 1), ("proof.rows.1.1", 2), ("proof.rows.1.1", -1),
-        ("proof.rows.1.2", 3), ("proof.rows.1.2", -1), ("proof.rows.1.4", 65),
-        ("proof.rows.1.4", -1), ("proof.rows.0", ["upper", -1, 3, 1, 0]),
-        ("proof.rows.0", ["jerk", 0, 3, 1, 0]), ("proof.rows.0", ["lower", -1, -1, 1, 0]),
-        ("proof.rows.0", ["jerk", 0, -1, 1, 0]),
-        ("proof.tree.1.1", 3), ("proof.tree.1.1", -1), ("proof.tree.1.3", 2**28 + 1),
-        ("proof.tree.1.3", -(2**28) - 1), ("proof.tree.1.4", 0), ("proof.tree.1.4", 2**28 + 1),
-        ("proof.tree.12.1", -1), ("proof.tree.12.1", 2**28 + 1), ("proof.tree.12.2", 0),
-        ("proof.tree.12.2", 2**28 + 1), ("proof.tree.1.5.0", 3), ("proof.tree.1.5.0", -1),
-        ("proof.tree.1.5.1", -1), ("proof.tree.1.5.1", 2**28 + 1), ("proof.tree.1.6.0", -1),
-        ("proof.tree.1.6.0", 16), ("proof.tree.1.6.1", 2**28 + 1),
-        ("proof.tree.1.6.1", -(2**28) - 1), ("proof.tree", [3]), ("proof.tree", [["/", 0, -1]]),
-        ("proof.tree", [["/", 0, 2**28 + 1]]))),
+    *beyond("cubic", {
+        "proof.powers.0": (-60, 60), "proof.second": (-60, 60), "proof.cap": (1, 2**28),
+        "proof.root.0": (0, 2**28), "proof.rows.1.1": (0, 1), "proof.rows.1.2": (0, 2),
+        "proof.rows.1.4": (0, 64), "proof.tree.1.1": (0, 2), "proof.tree.1.3": (-(2**28), 2**28),
+        "proof.tree.1.4": (1, 2**28), "proof.tree.12.1": (0, 2**28), "proof.tree.12.2": (1, 2**28),
+        "proof.tree.1.5.0": (0, 2), "proof.tree.1.5.1": (0, 2**28), "proof.tree.1.6.0": (0, 15),
+        "proof.tree.1.6.1": (-(2**28), 2**28)}),
+    *(Forgery(WHOLE, "cubic", {"proof.rows.0": row}) for row in (
+        ["upper", -1, 3, 1, 0], ["jerk", 0, 3, 1, 0], ["lower", -1, -1, 1, 0],
+        ["jerk", 0, -1, 1, 0])),
+    *(Forgery(WHOLE, "cubic", {"proof.tree": tree})
+      for tree in ([3], [["/", 0, -1]], [["/", 0, 2**28 + 1]])),
     *(Forgery(_ENDS + "no C2 cubic spline", "cubic", {**NO_ANSWER, path: value})
       for path, value in (("problem.continuity", [2, 1]), ("problem.degrees", [3, 3, 4]))),
     *(Forgery(_ENDS + "conditions inside", "cubic", {**NO_ANSWER, path: value})

@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from support.forgeries.forgery import GONE, NO_ANSWER, Document, Forgery
+from support.forgeries.forgery import GONE, NO_ANSWER, WHOLE, Document, Forgery, beyond, spline
 
 _KIND, _COVERED, _BOXES = "declared.DeclaredCurve.", "declared.covered: ", "boxes.Boxes."
 NOT_PROVED = _BOXES + "end: a leaf with limits is not proved"
 UNDETERMINED = "declared_form.linear_form: the conditions do not determine the curve"
-WHOLE = "reading.whole: malformed: no integer in {low}..{high}: {shown(repr(value))}"
 NOT_THERE = _KIND + "__init__: a row leans on a limit that is not there"
 
 
@@ -29,27 +28,10 @@ def _turned(leaf: list[Any]) -> None:
     leaf[1] = -leaf[1]
 
 
-def _size(n: int, degree: int = 3, smooth: int = 2) -> Callable[[Document], None]:
-    """A spline of so many equal segments."""
-
-    def altered(data: Document) -> None:
-        rest = [[order, "0"] for order in range(1, (degree + 1) // 2)]
-        data["problem"] |= {
-            "degrees": [degree] * n, "continuity": [smooth] * (n - 1),
-            "prescribed": [rest, *[[]] * (n - 1), rest], "virtual": [],
-            "joints": ["1"], "limits": [["1", "2", None]], "position_lower": [None],
-            "position_upper": [None], "waypoints": [[str(k)] for k in range(n + 1)],
-            "duration_lower": ["0"] * n, "duration_upper": [None] * n,
-        }  # fmt: skip
-        data["claim"] |= {"durations": None, "upper": None}
-
-    return altered
-
-
 FORGERIES = [
     Forgery(_KIND + "__init__: the total is not positive", "declared",
             {"proof.total": "0", "claim.lower": "0"}),
-    Forgery(_KIND + "_task: the curve has too many unknowns", "declared", _size(12, 9, 8)),
+    Forgery(_KIND + "_task: the curve has too many unknowns", "declared", spline(12, 9)),
     *(Forgery(NOT_THERE, "declared", {**NO_ANSWER, **changes}) for changes in (
         {"proof.rows.0": [0, 0, 3, 1, 0]}, {"proof.rows.0": [0, 0, 0, 1, 0]},
         {"proof.rows.0": [0, 1, 0, -1, 0]}, {"problem.limits.0.0": "0"},
@@ -108,8 +90,8 @@ FORGERIES = [
     *(Forgery(_KIND + "_task: a prescribed derivative is of unusual size", "declared",
               {**NO_ANSWER, f"problem.prescribed.{end}": [[1, value], [2, "0"]]})
       for end in (0, 3) for value in ("1e16", ["0", "-1e-17"])),
-    Forgery(_COVERED + "one segment alone has no inner break", "declared", _size(1)),
-    Forgery(_COVERED + "more than {MOST_DECLARED_SEGMENTS} segments", "declared", _size(13)),
+    Forgery(_COVERED + "one segment alone has no inner break", "declared", spline(1)),
+    Forgery(_COVERED + "more than {MOST_DECLARED_SEGMENTS} segments", "declared", spline(13)),
     *(Forgery(UNDETERMINED, "declared", {**NO_ANSWER, path: value}) for path, value in (
         ("problem.degrees.0", 4), ("problem.degrees.1", 3), ("problem.continuity.0", 1),
         ("problem.prescribed.0", [[1, "0"]]))),
@@ -117,16 +99,13 @@ FORGERIES = [
     *(Forgery("curve.eliminated: the conditions contradict each other", "declared",
               {**NO_ANSWER, path: value})
       for path, value in (("problem.degrees.0", 1), ("problem.prescribed.1", [[1, "0"]]))),
-    *(Forgery(WHOLE, "declared", {path: value}) for path, value in (
-        ("proof.rows.0.0", 3), ("proof.rows.0.0", -1), ("proof.rows.0.1", 2),
-        ("proof.rows.0.1", -1), ("proof.rows.0.2", 4), ("proof.rows.0.2", -1),
-        ("proof.rows.0.4", 2**20 + 1), ("proof.rows.0.4", -1), ("proof.tree", [3]),
-        ("proof.tree", [[".", 99]]), ("proof.tree", [[".", -1]]),
-        # Only a total that answers may be stretched to lets τ be negative.
-        ("proof.tree", [[".", -1, 0, 1]]), ("proof.tree", [[".", 0, 0, -1]]),
-        ("proof.tree", [[".", 0, 99, 1]]), ("proof.tree", [[".", 0, -1, 1]]),
-        ("proof.tree", [[".", "1", 0, 1]]), ("proof.tree", [[".", 2**52 + 1, 0, 1]]),
-        ("proof.tree", [[".", 0, 0, 2**52 + 1]]))),
+    *beyond("declared", {
+        "proof.rows.0.0": (0, 2), "proof.rows.0.1": (0, 1), "proof.rows.0.2": (0, 3),
+        "proof.rows.0.4": (0, 2**20)}),
+    # Only a total that answers may be stretched to lets τ be negative.
+    *(Forgery(WHOLE, "declared", {"proof.tree": [node]}) for node in (
+        3, [".", 99], [".", -1], [".", -1, 0, 1], [".", 0, 0, -1], [".", 0, 99, 1],
+        [".", 0, -1, 1], [".", "1", 0, 1], [".", 2**52 + 1, 0, 1], [".", 0, 0, 2**52 + 1])),
     Forgery(WHOLE, "declared-free", {"proof.tree": [[".", -(2**52) - 1, 0, 1]]}),
     # Where ends move, no answer may be stretched to the total either.
     Forgery(WHOLE, "declared-free", {

@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from support.forgeries.forgery import NO_ANSWER, Document, Forgery
+from support.forgeries.forgery import NO_ANSWER, WHOLE, Document, Forgery, beyond, spline
 from trajgap.verify import quintic_bound
 
 _KIND, _BOUND, _BOXES = "quintic.QuinticSpline.", "quintic_bound.", "boxes.Boxes."
 WIDE = "a leaf that is too wide is not proved"
 NOT_COVERED = "quintic._covered: declaration not covered: no C4 quintic spline at rest at the ends"
-WHOLE = "reading.whole: malformed: no integer in {low}..{high}: {shown(repr(value))}"
 
 
 def _first_leaf(change: Callable[[list[Any]], Any]) -> Callable[[Document], None]:
@@ -23,27 +22,11 @@ def _first_leaf(change: Callable[[list[Any]], Any]) -> Callable[[Document], None
     return altered
 
 
-def _size(n: int, joints: int) -> Callable[[Document], None]:
-    def altered(data: Document) -> None:
-        rest = [[1, "0"], [2, "0"]]
-        data["problem"] |= {
-            "degrees": [5] * n, "continuity": [4] * (n - 1),
-            "prescribed": [rest, *[[]] * (n - 1), rest],
-            "joints": [str(j) for j in range(joints)], "limits": [["1", "2", None]] * joints,
-            "position_lower": [None] * joints, "position_upper": [None] * joints,
-            "waypoints": [[str(k)] * joints for k in range(n + 1)],
-            "duration_lower": ["0"] * n, "duration_upper": [None] * n,
-        }  # fmt: skip
-        data["claim"] |= {"durations": None, "upper": None}
-
-    return altered
-
-
 def _narrow(*durations: str, total: str, leaf: list[Any]) -> Callable[[Document], None]:
     """One box from these durations on, which are the lower bounds of the problem."""
 
     def altered(data: Document) -> None:
-        _size(len(durations), 1)(data)
+        spline(len(durations), 5)(data)
         data["problem"]["duration_lower"] = list(durations)
         data["proof"] |= {
             "powers": [0], "low": list(durations), "total": total, "rows": [[0, 0, 1, 1, 512]],
@@ -101,24 +84,22 @@ FORGERIES = [
     Forgery(NOT_COVERED, "stretched", lambda data: data.update(
         proof={"kind": "quintic-spline", "total": data["proof"]["total"], "tree": [["."]],
                "powers": [0, 0], "second": 0, "low": ["0"] * 3, "windows": [], "rows": []})),
-    Forgery(NOT_COVERED, "quintic-spline", _size(1, 1)),
+    Forgery(NOT_COVERED, "quintic-spline", spline(1, 5)),
     Forgery("quintic._covered: more than {MOST_QUINTIC_SEGMENTS} segments",
-            "quintic-spline", _size(27, 1)),
+            "quintic-spline", spline(27, 5)),
     Forgery("quintic._covered: more than {MOST_QUINTIC_JOINTS} joints",
-            "quintic-spline", _size(3, 13)),
+            "quintic-spline", spline(3, 5, 13)),
     *(Forgery("reading.sign_of: malformed: a sign is neither 1 nor -1", "quintic-spline",
               {"proof.rows.0.3": sign}) for sign in (0, 2, -2)),
     *(Forgery(_KIND + "__init__: a row leans on a limit that is not there",
               "quintic-spline", changes)
       for changes in ({"proof.rows.0.2": 3}, {**NO_ANSWER, "problem.limits.0.0": "0"},
                       {**NO_ANSWER, "problem.limits.0.0": ["-1", None]})),
+    *beyond("quintic-spline", {
+        "proof.rows.0.0": (0, 2), "proof.rows.0.1": (0, 1), "proof.rows.0.2": (1, 3),
+        "proof.rows.0.4": (0, 1024), "proof.powers.0": (-60, 60), "proof.second": (-60, 60)}),
     *(Forgery(WHOLE, "quintic-spline", {path: value}) for path, value in (
-        ("proof.rows.0.0", 3), ("proof.rows.0.0", -1), ("proof.rows.0.1", 2),
-        ("proof.rows.0.1", -1), ("proof.rows.0.2", 0), ("proof.rows.0.2", 4),
-        ("proof.rows.0.4", 1025), ("proof.rows.0.4", -1),
-        ("proof.powers.0", 61), ("proof.powers.0", -61),
-        ("proof.second", 61), ("proof.second", -61), ("proof.tree", [[".", 0, "1"]]),
-        ("proof.tree", [3]), ("proof.windows", [[2, *[0] * 7]]),
+        ("proof.tree", [[".", 0, "1"]]), ("proof.tree", [3]), ("proof.windows", [[2, *[0] * 7]]),
         ("proof.windows", [[0, 2**20 + 1, *[0] * 6]]),
         ("proof.windows", [[0, -(2**20) - 1, *[0] * 6]]))),
     *(Forgery(WHOLE, "quintic-spline",

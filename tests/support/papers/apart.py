@@ -10,8 +10,8 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from support.made_up import entry, paper
 from support.papers.printing import printed
-from support.toml_text import toml_text
 
 _APART: tuple[dict[str, str], ...] = (
     {"algorithm": "old"},
@@ -28,11 +28,7 @@ _APART: tuple[dict[str, str], ...] = (
 def apart(seed: int) -> str:
     """A case file whose every claim is true."""
     rng = np.random.default_rng([20261124, seed])
-    count, joints, places = (
-        int(rng.integers(3, 6)),
-        int(rng.integers(1, 4)),
-        int(rng.integers(1, 4)),
-    )
+    count, joints, places = (int(rng.integers(low, high)) for low, high in ((3, 6), (1, 4), (1, 4)))
     texts = [[printed(x, places) for x in row] for row in rng.uniform(-170, 170, (joints, count))]
     ways = np.abs(np.diff(np.array(texts, dtype=float), axis=1))
     speeds, sizes = rng.uniform(40, 200, (2, joints)).round(1)
@@ -58,8 +54,7 @@ def apart(seed: int) -> str:
     claims.append(_profile(rng, ways, speeds, sizes, places))
     claims.append({"id": "kept", "quantity": "statement", "checks": "within_limits"})
     claims[-1]["of"] = ["fast"]
-    limits = {"velocity": [float(v) for v in speeds], "acceleration": [float(a) for a in sizes]}
-    return _written(seed, texts, limits, claims, "rest-to-rest", {"degree": 5})
+    return _written(texts, claims, velocity=speeds.tolist(), acceleration=sizes.tolist())
 
 
 def moving(seed: int) -> str:
@@ -72,12 +67,13 @@ def moving(seed: int) -> str:
     ramps = (top**2 - at**2 + top**2) / (2 * size)
     total = (2 * top - at) / size + (way - ramps) / top
     where = str(rng.choice(["end", "finish"]))
-    ends = {"degrees": [3], "end_orders": [1], "end_derivatives": [at if where == "end" else 0]}
-    ends["finish_derivatives"] = [0 if where == "end" else at]
+    curve = {"family": "polynomials", "degrees": [3], "end_orders": [1]}
+    curve["end_derivatives"] = [at if where == "end" else 0]
+    curve["finish_derivatives"] = [0 if where == "end" else at]
     claim = {"id": "profile", "quantity": "total_time", "value": printed(total, 3)}
     claim |= {"other_curve": "trapezoid", "profile": "trapezoidal"}
-    limits = {"velocity": [speed], "acceleration": [size]}
-    return _written(seed, [["0.00", printed(way, 2)]], limits, [claim], "polynomials", ends)
+    points = [["0.00", printed(way, 2)]]
+    return _written(points, [claim], curve=curve, velocity=speed, acceleration=size)
 
 
 def _profile(
@@ -91,32 +87,9 @@ def _profile(
     return claim | {"other_curve": "trapezoids", "profile": "trapezoidal", "algorithm": "old"}
 
 
-def _written(
-    seed: int,
-    points: list[list[str]],
-    limits: dict[str, list[float]],
-    claims: list[dict[str, Any]],
-    family: str,
-    keys: dict[str, Any],
-) -> str:
+def _written(points: list[list[str]], claims: list[dict[str, Any]], **keys: Any) -> str:
     places = ("Table 2", "Figure 5", "conclusion", "abstract", "Table 6", "section 4")
-    return toml_text(
-        {
-            "format": 1,
-            "id": f"apart-{seed}",
-            "title": "totals kept apart",
-            "source": {"year": 2021},
-            "robot": {"name": "arm", "joints": [str(j + 1) for j in range(len(points))]},
-            "units": {
-                "position": "deg", "velocity": "deg/s", "acceleration": "deg/s^2", "time": "s",
-            },
-            "waypoints": {"where": "Table 1", "joint_rows": points},
-            "limits": {"where": "Table 1"} | limits,
-            "interpolant": {"family": family} | keys,
-            "algorithms": [{"id": name, "name": name} for name in ("old", "new")],
-            "tables": [
-                {"id": f"table-{k}", "where": f"Table {k}", "title": "t"} for k in (2, 6)
-            ],
-            "claims": [{"where": w} | c for w, c in zip(places, claims, strict=False)],
-        }
-    )  # fmt: skip
+    named = (entry("algorithms", id=name, name=name) for name in ("old", "new"))
+    tables = (entry("tables", id=f"table-{k}", where=f"Table {k}", title="t") for k in (2, 6))
+    stated = (entry("claims", where=w, **c) for w, c in zip(places, claims, strict=False))
+    return paper(points, *named, *tables, *stated, angle="deg", **keys)

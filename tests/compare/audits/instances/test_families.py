@@ -36,15 +36,11 @@ from trajgap.nlp import Evidence
 from trajgap.problem import (
     Case,
     CaseError,
-    ClampedBSpline,
-    Problem,
     TrajgapError,
     evaluate,
     forward_kinematics,
-    jtraj,
     load_case,
     parse_case,
-    quintic_spline,
 )
 from trajgap.problem.cases.instances import instance_waypoints
 
@@ -182,25 +178,6 @@ def test_no_answer_is_below_the_best_known_optimum_of_its_curve(result: Instance
         assert (s.totals[:, 1:] >= s.faster.total * (1 - 1e-8)).all()
 
 
-@pytest.mark.slow
-def test_the_faster_form_of_a_clamped_spline_is_the_same_curve() -> None:
-    rng = np.random.default_rng(4)
-    points, durations = rng.normal(size=(5, 2)), rng.uniform(0.4, 2.0, (9, 4))
-    limits = small().statement("spline").data()[1]
-    for degree, orders in ((5, (1, 2)), (3, (1,))):
-        clamped = ClampedBSpline(5, degree, end_orders=orders)
-        fast = clamped.polynomial_form()
-        one, other = (evaluate(Problem(points, limits, c), durations) for c in (clamped, fast))
-        np.testing.assert_allclose(other.ratios, one.ratios, rtol=1e-9)
-    assert ClampedBSpline(5, 5).polynomial_form() == quintic_spline(4)
-    averaged = ClampedBSpline(5, 5, "averaged-continued")
-    assert averaged.polynomial_form() is averaged
-    chord = ClampedBSpline(5, 5, "waypoints", "chord")
-    assert chord.polynomial_form() is chord
-    stops = jtraj(3)
-    assert stops.polynomial_form() is stops
-
-
 def test_failures_are_kept_and_counted() -> None:
     found = examined(*UNSOLVED)
     assert np.isinf([s.totals for s in found.samples]).all()
@@ -280,31 +257,16 @@ def test_findings_inform_and_decide_nothing() -> None:
     for f in found:
         assert (f.rule, f.severity, f.verdict) == ("TG404", "info", "not checkable")
         assert not f.decides
-        assert "refuted" not in f.message
-        # Readings are named and never counted.
-        assert not re.search(r"in \d+ of \d+ readings", f.message)
-    for one, said in (
-        (0, "On 4 instances drawn from the robot's workspace, the reduction of "),
-        (0, "These are not the paper's instances, so they decide nothing"),
-        (1, "4 instances, at steps of 0.3, 0.9 rad, with 2 runs each"),
-        (1, "95 % interval, instances resampled"),
-        (1, "Where 2.00 s is printed, the procedure"),
-        (2, "at the best known optima: median 0.0 % (0.0 to 0.0 %)."),
-        (3, "By iteration 10 of 12"),
-        (3, "% under “as-printed”, "),
-    ):
-        assert said in found[one].message
     words = verdicts(audit_case(study))
     names = ("old-total", "new-total", "better", "settles")
     assert words == dict.fromkeys(names, ClaimVerdict.NOT_CHECKABLE)
 
 
-def test_without_a_pair_of_answers_the_words_say_so() -> None:
+def test_without_a_pair_of_answers_nothing_is_computed() -> None:
     case = small(*UNSOLVED, ("instances = 2", "instances = 1"))
     found = list(judge_instances(Study(case, seeds=2)))
-    assert "unusual under “as-printed”, “quintic spline” (no pair of answers)" in found[0].message
     assert found[0].computed == "no pair of answers"
-    assert "12 runs found nothing that keeps its limits" in found[1].message
+    assert "12 runs found nothing" in found[1].message
 
 
 def test_one_problem_or_reading_selects() -> None:

@@ -6,8 +6,7 @@ from typing import Any
 
 import pytest
 from support.findings import audited_text, said_of, study_of
-from support.made_up import algorithms, entry, gain, paper, row, sentence, total
-from support.one_joint import one_joint
+from support.made_up import algorithms, entry, gain, one_joint, paper, row, sentence, total
 from trajgap.compare.audits import study as study_module
 from trajgap.compare.audits.card_errors import plainly
 from trajgap.compare.audits.case_audit import audit_case

@@ -8,22 +8,20 @@ from typing import Any
 
 import numpy as np
 import pytest
-from support.b_splines import clamped, uniform, vertices_by_solving
+from support.b_splines import uniform
 from support.findings import judged, said_of, study_of
 from support.made_up import claim, paper, readings
+from support.papers.motions import vertices as solved
 from support.studies import changed, shipped
-from trajgap.compare.audits.rounding import RoundingBox, judge_rounding
 from trajgap.compare.audits.rules.continuous_time import judge_motions
 from trajgap.compare.audits.rules.distances import judge_distances
 from trajgap.compare.audits.rules.open_points import list_open_points
 from trajgap.compare.audits.rules.printed_vertices import judge_vertices, vertices
-from trajgap.compare.documents import Basis, ClaimVerdict, Finding, Rounding, Severity
+from trajgap.compare.documents import Basis, ClaimVerdict, Finding, Severity
 from trajgap.nlp.enclosure.balls import Ball
 from trajgap.nlp.enclosure.uniform import centred_stretched, centred_timed
 from trajgap.problem import (
     CaseError,
-    check,
-    evaluate,
     extrema,
     fit,
     load_case,
@@ -70,7 +68,7 @@ def test_every_printed_control_vertex_is_inside_what_rounding_allows() -> None:
     assert max(v.width for v in every) <= Fraction(2, 10**4)
     assert max(v.width for v in every) > Fraction(199, 10**6)
     w = load_case(POLISH).problem().waypoints
-    computed = vertices_by_solving(w).T.ravel()
+    computed = solved(w).T.ravel()
     middle = [float(v.allowed.lower + v.allowed.upper) / 2 for v in every]
     np.testing.assert_allclose(middle, computed, rtol=0, atol=1e-12)
     off = np.abs(computed - [v.printed.value for v in every])
@@ -169,57 +167,6 @@ def test_balls_hold_values_and_gradients_all_over_the_box(time: str) -> None:
         assert (excess <= 1e-9 * np.abs(slope).max()).all()
     central = peak_gradients(problem, h, points)
     np.testing.assert_allclose(form.by_waypoint.mid, central.waypoints, rtol=1e-9, atol=1e-11)
-
-
-@pytest.mark.parametrize("time", TIMES)
-def test_a_proof_lies_below_every_point_of_the_box(time: str) -> None:
-    case = load_case(POLISH)
-    rid = f"angles-rad-v-rad-a-rad-{time}"
-    problem = case.problem(reading_id=rid)
-    box = case.claim_durations(case.claim("after"), rid)
-    lower, upper = case.waypoint_box(reading_id=rid)
-    verdict = judge_rounding(
-        problem,
-        RoundingBox(box.value, box.lower, box.upper),
-        RoundingBox(problem.waypoints, lower, upper),
-    )
-    assert verdict.verdict is Rounding.BREAKS
-    bound = {"stretched": 1.728, "timed": 1.156}[time]
-    assert verdict.lower_bound_of_worst == pytest.approx(bound, abs=1e-3)
-    rng = np.random.default_rng(1)
-    worst = []
-    for _ in range(20):
-        q = rng.uniform(lower, upper)
-        there = rng.uniform(box.lower, box.upper, (200, 9))
-        there[0] = box.upper
-        found = evaluate(replace(problem, waypoints=q), there).ratios
-        worst.append(found.max(axis=(1, 2)).min())
-    assert min(worst) >= verdict.lower_bound_of_worst
-    assert min(worst) <= 1.02 * verdict.lower_bound_of_worst
-
-
-@pytest.mark.parametrize("time", TIMES)
-def test_durations_printed_short_are_consistent_or_broken(time: str) -> None:
-    problem, _ = uniform(time, 42, count=4)
-    equal = np.ones(3)
-    h = equal * check(problem, equal).stretch
-    loose = RoundingBox(h * 0.999, h * 0.99, h * 1.01)
-    tight = RoundingBox(h * 0.99, h * 0.985, h * 0.995)
-    assert judge_rounding(problem, loose).verdict is Rounding.CONSISTENT
-    assert judge_rounding(problem, tight).verdict is Rounding.BREAKS
-    assert judge_rounding(problem, RoundingBox.exact(h * (1 + 1e-12))).verdict is Rounding.KEEPS
-
-
-def test_clamped_splines_are_kept_consistent_or_undecided() -> None:
-    problem, h = clamped((5, "averaged-continued", "times", "timed"), 43, count=5)
-    tight = h * check(problem, h).stretch
-    assert judge_rounding(problem, RoundingBox.exact(tight * (1 + 1e-9))).verdict is Rounding.KEEPS
-    near = RoundingBox(tight * 0.999, tight * 0.99, tight * 1.01)
-    assert judge_rounding(problem, near).verdict is Rounding.CONSISTENT
-    short = RoundingBox(tight * 0.98, tight * 0.979, tight * 0.981)
-    assert judge_rounding(problem, short).verdict is Rounding.UNDECIDED
-    hasty = RoundingBox(tight * 0.1, tight * 0.099, tight * 0.101)
-    assert judge_rounding(problem, hasty).verdict is Rounding.BREAKS
 
 
 # --- jumps ----------------------------------------------------------------------------------------

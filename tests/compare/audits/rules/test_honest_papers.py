@@ -2,15 +2,23 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from support.findings import audited_text, finding, said_of, study_of
-from support.made_up import algorithms, entry, gain, paper, peak, row, sentence, total
-from support.one_joint import UNITS, one_joint
+from support.made_up import (
+    TWO_UNITS,
+    algorithms,
+    entry,
+    gain,
+    one_joint,
+    paper,
+    peak,
+    row,
+    sentence,
+    total,
+)
 from support.papers.apart import apart
-from trajgap.compare import audit
+from support.studies import audited_alone
 from trajgap.compare.audits.rules.condition_count import judge_counts
 from trajgap.compare.audits.rules.continuous_time import judge_motions
 from trajgap.compare.audits.rules.distances import judge_distances
@@ -23,7 +31,6 @@ from trajgap.compare.audits.rules.profiles import judge_profiles
 from trajgap.compare.audits.rules.scaling_law import judge_scaling
 from trajgap.compare.documents import Basis, ClaimVerdict, Finding, Scope, Severity
 from trajgap.nlp import Evidence, Status
-from trajgap.problem import load_case
 
 # A quintic from rest to rest over d rad in h s peaks at 15 d/(8 h) rad/s.
 PEAK = 15 / 8
@@ -340,7 +347,7 @@ UNCLEAR = ("0.962", Severity.WARNING, Scope.SOME)
 def test_a_proof_is_an_error_only_where_every_reading_is_against_the_claim(
     time: str, severity: Severity, scope: Scope
 ) -> None:
-    one = audited_text(one_joint("0, 1", "1.9496", time, "within_limits", UNITS))
+    one = audited_text(one_joint("0, 1", "1.9496", time, "within_limits", TWO_UNITS))
     against = [f for f in one.findings if f.verdict is ClaimVerdict.REFUTED]
     assert {f.claim for f in against} == {"d", "s"}
     assert {(f.severity, f.scope) for f in against} == {(severity, scope)}
@@ -374,9 +381,7 @@ def test_a_percentage_of_a_refuted_total_says_why_it_is_not_checkable() -> None:
 
 
 def test_the_order_of_two_totals_that_cannot_be_computed_supports_nothing() -> None:
-    whale = load_case("z1-woa-bspline")
-    alone = replace(whale, document=whale.document.model_copy(update={"families": ()}))
-    one = audit(alone, seeds=2).cases[0]
-    better = next(j for j in one.judgements if j.claim == "improvement")
+    judged = audited_alone("z1-woa-bspline").judgements
+    better = next(j for j in judged if j.claim == "improvement")
     assert better.verdict is ClaimVerdict.NOT_CHECKABLE
     assert "13.08 and 11.71 s, in the order that is claimed" in better.why

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from fractions import Fraction
 from itertools import product
+from typing import Any
 
 import pytest
 from support.findings import finding, said_of, study_of
-from support.made_up import algorithms, claim, gain, row, total
-from support.one_joint import one_joint
+from support.made_up import algorithms, claim, gain, one_joint, row, total
 from trajgap.compare.audits.rules.printed_digits import span
 from trajgap.compare.documents import ClaimVerdict, Finding, Severity
 from trajgap.problem import Interval
@@ -17,7 +17,7 @@ SHARES = {"slower": lambda a, b: 100 * (a - b) / a, "faster": lambda a, b: 100 *
 PAIRS = [("1.2", "0.8"), ("3.1", "2.9"), ("0.9", "0.8"), ("2.25", "2.10"), ("1.05", "0.95")]
 
 
-def judged(slow: str, fast: str, **stated: str) -> Finding:
+def judged(slow: str, fast: Any, **stated: str) -> Finding:
     """What is found on an improvement between two totals."""
     tail = total("slow", slow) + total("fast", fast) + gain("slow", "fast", **stated)
     text = one_joint("0, 1", "9", "0.99", "optimal", tail)
@@ -106,6 +106,13 @@ def test_a_percentage_may_be_a_share_of_either_total(
         said = f"As a share of the {other} total it would be"
         assert found.message.count("As a share of") == bool(other)
         assert (said in found.message) == bool(other)
+
+
+@pytest.mark.parametrize("keys", [{}, {"base": "slower"}, {"base": "faster"}])
+@pytest.mark.parametrize("fast", ["0", "0.0", 0])
+def test_nothing_is_a_share_of_a_total_of_nothing(fast: Any, keys: dict[str, str]) -> None:
+    for percent, verdict in (("100", "supported"), ("40", "refuted")):
+        assert judged("3", fast, percent=percent, **keys).verdict == verdict
 
 
 def test_an_interval_whose_ends_print_alike_is_one_number() -> None:

@@ -6,8 +6,7 @@ from typing import Any
 
 import pytest
 from support.findings import audited_text, finding, said_of, study_of, verdicts
-from support.made_up import claim, entry, paper, peak, row, sentence
-from support.one_joint import one_joint
+from support.made_up import claim, entry, one_joint, paper, peak, row, sentence
 from trajgap.compare.audits.card_errors import plainly
 from trajgap.compare.audits.rules.condition_count import meets
 from trajgap.compare.documents import ClaimVerdict, Severity
@@ -88,15 +87,21 @@ def test_a_broken_limit_refutes_without_an_optimum(points: Any, time: str, verdi
     assert found.verdict == verdict
 
 
-def test_a_table_of_another_length_loads_and_is_the_finding() -> None:
-    one = audited_text(one_joint("0, 1", "1.9", '0.5", "0.4', "within_limits"))
+@pytest.mark.parametrize(
+    ("points", "times", "said"),
+    [("0, 1", "0.5 0.4", "2 durations, and the curve has 1 segment"),
+     ("0, 1, 2", "0.5", "1 duration, and the curve has 2 segments")],
+)  # fmt: skip
+def test_a_table_of_another_length_loads_and_is_the_finding(
+    points: str, times: str, said: str
+) -> None:
+    one = audited_text(one_joint(points, "1.9", times, "within_limits"))
     (found,) = [f for f in one.findings if f.claim == "d" and f.rule == "TG109"]
     assert (found.verdict, found.severity) == (ClaimVerdict.INCONSISTENT, Severity.WARNING)
     assert not [f for f in one.findings if f.claim == "d" and f.rule == "TG201"]
     # A wrong count is no proof.
     (cause,) = (c for c in one.causes if c.rule == "TG109")
-    said = "Table 2 prints 2 durations, and the curve has 1 segment."
-    assert plainly(one.case, cause, brief=True) == said
+    assert plainly(one.case, cause, brief=True) == f"Table 2 prints {said}."
 
 
 @pytest.mark.parametrize(

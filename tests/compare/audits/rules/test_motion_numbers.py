@@ -13,11 +13,13 @@ from scipy.interpolate import CubicSpline
 from support.findings import finding, study_of
 from support.made_up import Numbers, claim, paper, peak, row
 from trajgap.compare.audits.rules.measures import NAMES, measured
+from trajgap.compare.audits.rules.motion_numbers import NumberBeside
 from trajgap.compare.audits.rules.norms import _top, largest_norm
 from trajgap.compare.documents import ClaimVerdict, Confidence
 from trajgap.problem import (
     CaseError,
     Curve,
+    Printed,
     cubic_spline,
     fit,
     parse_case,
@@ -193,6 +195,24 @@ def test_one_number_of_several_joints_may_be_their_norm_largest_or_mean() -> Non
         " of the largest joint": pytest.approx(2.0),
         " of the joints in the mean": pytest.approx(1.75),
     }
+
+
+@pytest.mark.parametrize(
+    ("exact", "reach", "far", "sampled", "said"),
+    [
+        # 2.0 is rounded from 1.95 to 2.05, or cut off from up to 2.1.
+        (1.90, 0.06, 0.12, 1.90, "equal"), (2.10, 0.06, 0.12, 2.10, "equal"),
+        (1.90, 0.04, 0.08, 1.90, "cut off"), (2.16, 0.04, 0.08, 2.16, "cut off"),
+        (1.60, 0.00, 0.30, 1.60, ""), (2.45, 0.00, 0.30, 2.45, ""),
+        (3.00, 0.00, 0.30, 1.70, "samples"), (3.00, 0.00, 0.30, 2.30, "samples"),
+        (3.00, 0.00, 0.30, 1.60, ""), (3.00, 0.00, 0.30, 2.45, ""),
+    ],
+)  # fmt: skip
+def test_a_number_agrees_as_far_as_its_digits_and_those_of_the_motion_reach(
+    exact: float, reach: float, far: float, sampled: float, said: str
+) -> None:
+    one = NumberBeside(Printed("2.0"), "", exact, reach, far, sampled, sampled)
+    assert (said in one.fits) if said else (one.fits == "")
 
 
 QUINTIC = {"family": "quintic-spline"}

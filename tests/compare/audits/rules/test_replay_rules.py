@@ -60,12 +60,12 @@ def test_the_interval_of_a_probability_is_that_of_independent_runs() -> None:
     generator = np.random.default_rng(3)
     truth = share_of_pairs(generator.normal(10, 1, 4000), generator.normal(9.5, 1, 4000), 0.0)
     held = 0
-    for _ in range(60):
+    for _ in range(30):
         slower, faster = generator.normal(10, 1, 40), generator.normal(9.5, 1, 40)
         low, high = share_interval(slower, faster, 0.0)
         assert low <= share_of_pairs(slower, faster, 0.0) <= high
         held += low <= truth <= high
-    assert held >= 50
+    assert held >= 25
     assert np.isnan(share_interval(np.array([np.inf, np.inf]), np.ones(2), 0.1)).all()
 
 
