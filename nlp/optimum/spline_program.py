@@ -28,9 +28,7 @@ from ...problem.curves import (
     numerators,
     shape_matrix,
 )
-from .limit_rows import REACH, Rows, Sides
-from .optimality import along
-from .program import Indices
+from .limit_rows import REACH, Indices, Rows, Sides, along
 from .symbolic import ca
 
 Polynomial = list[Any]
