@@ -8,7 +8,7 @@ import numpy as np
 
 from ...problem import Array, Problem, Verdict, check
 from .decided import BLURRED, decided, kept, longer_than_tight
-from .optimality import KKT, KKT_TOLERANCE, UNKNOWN, Local, kkt, sharpened, unmet
+from .optimality import KKT, KKT_TOLERANCE, SHARP, UNKNOWN, Local, kkt, sharpened, unmet
 from .solution import Route, Solution, Status
 from .starts import DENSE
 
@@ -41,8 +41,6 @@ def settled(solution: Solution) -> bool:
 
 SAME = 1e-6
 """Relative difference below which two totals count as the same."""
-SHARP = 1e-11
-"""KKT residual above which an answer is sharpened by Newton steps on its active set."""
 ROUNDED = 2e-9
 """Relative difference of totals that the checker's tolerance makes: of both ends at most."""
 HIDDEN = 1e-4

@@ -83,6 +83,39 @@ class Sides:
         self.high = np.where(limited, above / size, np.inf)
 
 
+class Scaled:
+    """What the NLPs of all curves share: units of order one, and the limits in them.
+
+    Parameters
+    ----------
+    problem : Problem
+    unit : float
+        Time unit, s. That of angles is each joint's mean way between way-points.
+    floor : ndarray, shape (segments,)
+        Least durations, s.
+    """
+
+    def __init__(self, problem: Problem, unit: float, floor: Array) -> None:
+        self.problem, self.unit, self._floor = problem, unit, floor
+        self.segments, self.joints = problem.segments, problem.waypoints.shape[1]
+        steps = np.abs(np.diff(problem.waypoints, axis=0)).mean(axis=0)
+        self.angle = np.where(steps > 0, steps, 1.0)
+        self.sides = Sides(problem, unit, self.angle)
+
+    def duration_bounds(self) -> tuple[Array, Array]:
+        """Bounds on the durations, in units."""
+        low = np.maximum(self.problem.duration_lower, self._floor) / self.unit
+        return low, np.maximum(self.problem.duration_upper / self.unit, low)
+
+    def rooms(self, places: Places, sign: Array) -> Array:
+        """Limits of rows: derivatives in shares of the larger side, positions in angles."""
+        limits, first, j = self.problem.limits, self.problem.waypoints[0], places.joint
+        r = np.clip(places.order, 1, 3) - 1
+        at = np.where(sign > 0, limits.position_upper[j], limits.position_lower[j])
+        side = np.where(sign > 0, self.sides.high[j, r], self.sides.low[j, r])
+        return np.asarray(np.where(places.order == 0, (at - first[j]) / self.angle[j], side))
+
+
 @dataclass(frozen=True, eq=False)
 class ExactRows:
     """Limits to first order about one duration vector, in log durations.

@@ -203,6 +203,8 @@ def kkt(
     return KKT(max(stationarity, slack, violation), tuple(reached))
 
 
+SHARP = 1e-12
+"""Residual that `sharpened` leaves as it is: rounding of gradients."""
 SHARPENINGS = 4
 """Newton steps of `sharpened`: few are needed from near by, since it is quadratic."""
 DIFFERENCE = 1e-6
@@ -247,6 +249,8 @@ def sharpened(problem: Problem, durations: Array) -> Array | None:
         if now is None or time_up():
             return None
         slope, excess, columns = now
+        if max(np.abs(slope[free]).max(initial=0.0), np.abs(excess).max(initial=0.0)) <= SHARP:
+            break
         bends = []
         for k in np.flatnonzero(free):
             step = np.exp(DIFFERENCE * one[k])

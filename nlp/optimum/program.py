@@ -20,7 +20,7 @@ import numpy as np
 
 from ...problem import QUANTITIES, Array, Interpolant, Problem
 from ...problem.curves import ConditionKind, Places, Trajectory
-from .limit_rows import REACH, Indices, Rows, Sides, along
+from .limit_rows import REACH, Indices, Rows, Scaled, along
 from .symbolic import ca
 
 
@@ -52,7 +52,7 @@ class StatedConditions:
         return cls(table.kinds, table.breaks, table.orders, values)
 
 
-class Program:
+class Program(Scaled):
     """The NLP of a declared curve, in units of order one, with its expressions.
 
     Parameters
@@ -66,14 +66,10 @@ class Program:
     """
 
     def __init__(self, problem: Problem, unit: float, floor: Array) -> None:
+        super().__init__(problem, unit, floor)
         curve = problem.piecewise
-        self.problem, self.unit, self._floor = problem, unit, floor
-        self.segments = problem.segments
         self.degrees = np.array(curve.degrees, dtype=np.int64)
-        self.joints, self.top = problem.waypoints.shape[1], int(self.degrees.max())
-        steps = np.abs(np.diff(problem.waypoints, axis=0)).mean(axis=0)
-        self.angle = np.where(steps > 0, steps, 1.0)
-        self.sides = Sides(problem, unit, self.angle)
+        self.top = int(self.degrees.max())
         self._plan = StatedConditions.of(curve, self.joints)
         self._held = {r: np.flatnonzero(self.degrees >= r) for r in range(1, self.top + 1)}
         self._row = {r: _inverted(k, self.segments) for r, k in self._held.items()}
@@ -229,8 +225,7 @@ class Program:
     def bounds(self) -> tuple[Array, Array]:
         """Bounds on the variables: durations, limits at left ends, given derivatives."""
         problem, plan, unit = self.problem, self._plan, self.unit
-        low = [np.maximum(problem.duration_lower, self._floor) / unit]
-        high = [np.maximum(problem.duration_upper / unit, low[0])]
+        low, high = ([bound] for bound in self.duration_bounds())
         right = plan.kinds == ConditionKind.RIGHT_VALUE
         for r, held in self._held.items():
             edges = (np.full(self.joints, -np.inf), np.full(self.joints, np.inf))
@@ -250,14 +245,6 @@ class Program:
         ):
             out.append(np.tile((bound - first) / self.angle, (self._virtual.size, 1)).ravel("F"))
         return np.concatenate(low), np.concatenate(high)
-
-    def rooms(self, places: Places, sign: Array) -> Array:
-        """Limits of rows: derivatives in shares of the larger side, positions in angles."""
-        limits, first = self.problem.limits, self.problem.waypoints[0]
-        j, r = places.joint, np.maximum(places.order, 1) - 1
-        at = np.where(sign > 0, limits.position_upper[j], limits.position_lower[j])
-        side = np.where(sign > 0, self.sides.high[j, r], self.sides.low[j, r])
-        return np.asarray(np.where(places.order == 0, (at - first[j]) / self.angle[j], side))
 
     def pack(self, trajectory: Trajectory, durations: Array) -> Array:
         """Variables at a motion with these durations."""

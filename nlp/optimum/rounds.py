@@ -263,7 +263,7 @@ ITERATIONS = 250
 """IPOPT's most iterations in a round: what settles takes 10 to 60, seldom up to 170."""
 TOLERANCES = (1e-2, 1e-5, 1e-9, 1e-11)
 """IPOPT's tolerances in the first round, the second, the third and the later ones: the first rows
-are not the last, and with 1e-3 and 1e-6 a thousand quintic segments take half as long again. The last
+are not the last: with 1e-3 and 1e-6 a thousand quintic segments take half as long again. The last
 one is for short segments, whose high derivatives carry a small residual far: to 8e-7 of the total
 where the third was reached."""
 BARRIERS = (1e-2, 1e-3, 1e-9, 1e-11)

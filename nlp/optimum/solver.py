@@ -126,16 +126,12 @@ def solve(
 
 def _solve(problem: Problem, ask: Ask) -> Solution:
     """`solve` where no elementary argument decides."""
-    if problem.segments > DENSE and _sparse(problem):
-        answer = _with_known(problem, _programmed(problem, ask), ask)
-        if answer.durations is not None:
-            return answer
     smooth = smoother(problem)
     if smooth is not None:
         found = as_answer(problem, _solve_smoother(problem, smooth, ask))
         if found is not None:
             return found
-    return _solve_moving(problem, ask)
+    return _solve_itself(problem, ask)
 
 
 def _sparse(problem: Problem) -> bool:
@@ -163,7 +159,7 @@ def _solve_smoother(problem: Problem, smooth: Problem, ask: Ask) -> Solution:
     )
 
 
-def _solve_moving(problem: Problem, ask: Ask) -> Solution:
+def _solve_itself(problem: Problem, ask: Ask) -> Solution:
     """`solve` where no smoother declaration has the same motions."""
     if problem.curve.free or problem.segments > DENSE:
         solution = _programmed(problem, ask)
