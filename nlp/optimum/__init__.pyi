@@ -1,7 +1,7 @@
 from .clock import call_cap, seconds_left, stopping_after, time_up
 from .feasibility import apart
-from .judgement import KKT_TOLERANCE, SAME
-from .optimality import KKT, Active, kkt
+from .judgement import SAME
+from .optimality import KKT, KKT_TOLERANCE, Active, kkt
 from .other_route import with_other_route
 from .per_joint import OPTIMUM_SLACK, PerJointSolution, Range, solve_per_joint
 from .program import Program, free_values

@@ -15,7 +15,7 @@ from ...problem import Array, CurveError, Problem, TrajgapError, check, evaluate
 from ...problem.curves import coefficients_of_many
 from .clock import seconds_left, time_up
 from .decided import kept, tolerated
-from .descent import KEPT, Descent, descend, restored
+from .descent import Descent, descend
 from .optimality import Local
 from .starts import ROUND, LogBox, box_above, equal_start, made_up, stretching
 
@@ -312,15 +312,8 @@ def tolerated_search(problem: Problem, count: int, seed: int, share: float) -> l
 SHORT = 0.02
 """Largest way of a segment, in what each joint covers in all, at which its duration may have two
 optima that lie decades apart: with random way-points all that were found had less than 1e-3."""
-SHORTER = 3.0
-"""Factor by which the segment is shorter in another basin: at least what two basins that the wide
-search tells apart differ by."""
-PROMISING = 1.05
-"""Total of a start over the answer's from which it is left: a descent seldom gains as much."""
-
-BAND = math.log(10.0)
-"""Log durations of the short segment that one search looks at: over the whole range a search falls
-for the wide basins, where the limits that it keeps may leave a ten thousandth of a band."""
+DECADE = 10.0
+"""Factor between the starts: a descent that goes down in a basin reaches over one."""
 
 
 def _reaches(problem: Problem) -> Array:
@@ -358,12 +351,11 @@ def short_ways(problem: Problem) -> list[int]:
     ]
 
 
-def shortened(problem: Problem, durations: Array, floor: Array, seed: int) -> Array:
-    """For each short way, the best motions of wide searches in which that segment is much shorter.
+def shortened(problem: Problem, durations: Array, floor: Array) -> Array:
+    """Motions in which a segment of a short way is shorter by powers of ten.
 
     A wide search over the whole box seldom ends in such a basin: it is decades away in one
-    duration, and a few per cent deep. So there is one over the shorter durations, and one in each
-    decade of them; what does not keep the limits at its end is brought to them.
+    duration, and a few per cent deep.
 
     Parameters
     ----------
@@ -372,54 +364,21 @@ def shortened(problem: Problem, durations: Array, floor: Array, seed: int) -> Ar
         The answer, s.
     floor : ndarray, shape (segments,)
         Least durations that are tried, s.
-    seed : int
 
     Returns
     -------
     ndarray, shape (starts, segments)
-        s; none where nothing comes near the answer.
+        s.
     """
     found = []
-    whole = box_above(problem, floor)
-    most = PROMISING * float(durations.sum())
+    low = np.exp(box_above(problem, floor).low)
     for segment in short_ways(problem):
-        kept: list[Array] = []
-        boxes = _boxes(whole, segment, math.log(durations[segment] / SHORTER), most)
-        for k, box in enumerate(boxes):
-            base = durations.copy()
-            base[segment] = np.exp(0.5 * (box.low[segment] + box.high[segment]))
-            best = basins(problem, base, box, 1, np.random.default_rng(seed))[0]
-            if best.excess > 0.0:
-                # Nothing was minimised but the excess: how long the basin's bottom is, is not
-                # known before the descent.
-                rows = restored(problem, best.durations, box)
-                if rows.worst <= KEPT:
-                    found.append(rows.durations)
-            elif best.total < most:
-                (kept if k else found).append(best.durations)
-        if kept:
-            found.append(min(kept, key=lambda h: float(h.sum())))
-    apart: list[Array] = []
-    for h in found:
-        if all(np.abs(np.log(h / other)).max() > APART for other in apart):
-            apart.append(h)
-    return np.array(apart).reshape(-1, problem.segments)
-
-
-def _boxes(whole: LogBox, segment: int, top: float, most: float) -> list[LogBox]:
-    """The box with the segment's log duration below ``top``, as a whole and by bands."""
-    high = np.maximum(np.minimum(whole.high, math.log(most)), whole.low)
-    least = whole.low[segment]
-    sides = [(least, top)] if top > least else []
-    while top > least:
-        sides.append((max(least, top - BAND), top))
-        top -= BAND
-    boxes = []
-    for below, above in sides:
-        box = LogBox(whole.low.copy(), high.copy())
-        box.low[segment], box.high[segment] = below, above
-        boxes.append(box)
-    return boxes
+        shorter = durations[segment] / DECADE
+        while shorter > low[segment]:
+            found.append(durations.copy())
+            found[-1][segment] = shorter
+            shorter /= DECADE
+    return np.array(found).reshape(-1, problem.segments)
 
 
 def moving_at_floor(problem: Problem, durations: Array, floor: Array) -> bool:

@@ -24,6 +24,10 @@ DEEPER_INSIDE = 2.0
 """By how many bounds on rounding errors limits are narrowed where no stretch is possible."""
 
 
+BLURRED = 1e-6
+"""Relative length by which rounding may set an optimum apart from the tight motion beside it."""
+
+
 def kept(problem: Problem, verdict: Check) -> bool:
     """Whether a motion counts as feasible: curves that always jump are judged by their limits."""
     if problem.curve.piecewise is not None:
@@ -80,6 +84,11 @@ def decided(problem: Problem, h: Array, nodal: Array | None = None) -> Local | N
         return None
     durations, values = found
     return Local(durations, values, float(durations.sum()), True, True, 0, (h, nodal))
+
+
+def longer_than_tight(beyond: float) -> str:
+    """Why an answer is longer than a tight motion, by that share."""
+    return f"longer by {beyond:.1e} (relative) than a tight motion, which rounding errors blur"
 
 
 def _blur(problem: Problem, verdict: Check) -> Array:

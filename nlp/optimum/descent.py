@@ -248,13 +248,8 @@ def _curved(hessian: Array, before: ExactRows, after: ExactRows, weights: Array)
     total = float(before.durations.sum())
     change = (after.durations - before.durations) / total
     for i in np.flatnonzero(weights > 0):
-        e, best, twin = before.points[i], np.inf, -1
-        for k, other in enumerate(after.points):
-            same = (other.joint, other.order, other.segment) == (e.joint, e.order, e.segment)
-            ends = (other.s in (0.0, 1.0)) == (e.s in (0.0, 1.0))
-            if same and ends and after.signs[k] == before.signs[i] and abs(other.s - e.s) < best:
-                best, twin = abs(other.s - e.s), k
-        if best > 0.3:
+        twin = after.twin(before.points[i], before.signs[i])
+        if twin is None:
             return hessian
         change += weights[i] * (after.gradient[twin] - before.gradient[i])
     image = hessian @ step

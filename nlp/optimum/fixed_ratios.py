@@ -9,9 +9,8 @@ import numpy as np
 
 from ...problem import QUANTITIES, TOLERANCE, Array, Check, Problem, TrajgapError, Verdict, check
 from ...verify import shown_bound
-from .decided import decided, kept
-from .judgement import BLURRED, KKT_TOLERANCE, longer_than_tight, unmet
-from .optimality import kkt
+from .decided import BLURRED, decided, kept, longer_than_tight
+from .optimality import KKT_TOLERANCE, kkt, unmet
 from .solution import Route, Solution, Status
 
 FORMULA = "at fixed ratios the total is the one unknown, in closed form"

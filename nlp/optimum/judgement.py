@@ -7,9 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from ...problem import Array, Problem, Verdict, check
-from .decided import decided, kept
-from .optimality import UNKNOWN, Local, kkt
-from .polish import polish
+from .decided import BLURRED, decided, kept, longer_than_tight
+from .optimality import KKT, KKT_TOLERANCE, SHARP, UNKNOWN, Local, kkt, sharpened, unmet
 from .solution import Route, Solution, Status
 from .starts import DENSE
 
@@ -42,32 +41,14 @@ def settled(solution: Solution) -> bool:
 
 SAME = 1e-6
 """Relative difference below which two totals count as the same."""
-KKT_TOLERANCE = 1e-8
-"""Scaled KKT residual up to which an answer is called converged: IPOPT's own usual tolerance."""
-POLISHED = 1e-11
-"""KKT residual above which an answer is sharpened by Newton steps on its active set."""
 ROUNDED = 2e-9
 """Relative difference of totals that the checker's tolerance makes: of both ends at most."""
 HIDDEN = 1e-4
 """Excess over a limit that rounding hides from a search where durations differ by many powers of
 ten: 2e-5 was seen. What exceeds its limits by more was not searched to its end."""
-BLURRED = 1e-6
-"""Relative length by which rounding may set an optimum apart from the tight motion beside it."""
 _ON_FLOOR = 1.01
 """Durations over a made-up least one up to which it counts as met: interior points end beside it,
 and floors lie orders of magnitude below durations that any limit asks for."""
-
-
-def unmet(residual: float) -> str:
-    """Why an answer is not called converged, of its KKT residual."""
-    if np.isinf(residual):
-        return "the search ended before it met the conditions of an optimum"
-    return f"KKT residual {residual:.1e}, above {KKT_TOLERANCE:g}"
-
-
-def longer_than_tight(beyond: float) -> str:
-    """Why an answer is longer than a tight motion, by that share."""
-    return f"longer by {beyond:.1e} (relative) than a tight motion, which rounding errors blur"
 
 
 def judged(
@@ -113,8 +94,8 @@ def judged(
     dense = problem.segments <= DENSE
     if report is None:
         report = kkt(problem, durations, nodal) if dense else UNKNOWN
-    if report.residual > POLISHED and dense:
-        durations, report = polish(problem, durations, report)
+    if report.residual > SHARP and dense and not problem.curve.free:
+        durations, report = _sharper(problem, durations, report)
     # Where rounding decides, the conditions hold at the tight motion, and a longer one passes.
     passing, beyond = (durations, nodal), 0.0
     if not kept(problem, check(problem, durations, nodal)):
@@ -153,6 +134,22 @@ def judged(
         build_seconds=sum(local.build_seconds for local in found),
         totals=tuple(local.total if local.feasible else float("inf") for local in found),
     )
+
+
+def _sharper(problem: Problem, durations: Array, report: KKT) -> tuple[Array, KKT]:
+    """An answer sharpened by Newton steps, where that keeps the limits and the residual falls."""
+    h = sharpened(problem, durations)
+    if h is None:
+        return durations, report
+    stretch = check(problem, h).stretch
+    if not stretch <= 1 + ROUNDED:
+        return durations, report
+    h = np.clip(h * max(1.0, stretch), problem.duration_lower, problem.duration_upper)
+    better = kkt(problem, h)
+    allowed = max(1e-15, check(problem, durations).max_violation)
+    if better.residual < report.residual and check(problem, h).max_violation <= allowed:
+        return h, better
+    return durations, report
 
 
 def still_falling(durations: Array, floor: Array) -> str | None:

@@ -9,10 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...problem import Array, CurveError, Extremum, Problem, extrema, fit, peak_gradients
-from ...problem.curves import Places
+from ...problem.curves import PERM, Places, Trajectory
+
+Indices = NDArray[np.int64]
 
 NEAR = 0.3
 """Extrema below this share of their limit are left out: no step of a trust region reaches it."""
+MOVED = 0.3
+"""Share of its segment by which an extremum moves at most: further away is another one."""
 STILL = 1e-13
 """Share of a joint's mean rate below which a derivative whose side is 0 counts as 0: rounding."""
 INSIDE = 1e-11
@@ -44,6 +48,17 @@ class Rows:
     weight: Array
 
 
+def along(trajectory: Trajectory, places: Places, further: int) -> Array:
+    """Derivatives in s of order ``places.order + further`` at places."""
+    a = trajectory.scaled[places.segment, :, places.joint]
+    r = places.order + further
+    out = np.zeros(places.s.size)
+    for p in range(min(a.shape[1], len(PERM)) - 1, -1, -1):
+        factor = PERM[p, np.minimum(r, PERM.shape[1] - 1)]
+        out = np.where(p >= r, out * places.s + factor * a[:, p], out)
+    return out
+
+
 class Sides:
     """Limits of derivatives in units of order one, as shares of the larger side.
 
@@ -66,6 +81,39 @@ class Sides:
         self.scale = np.where(limited, size, np.inf)
         self.low = np.where(limited, -below / size, -np.inf)
         self.high = np.where(limited, above / size, np.inf)
+
+
+class Scaled:
+    """What the NLPs of all curves share: units of order one, and the limits in them.
+
+    Parameters
+    ----------
+    problem : Problem
+    unit : float
+        Time unit, s. That of angles is each joint's mean way between way-points.
+    floor : ndarray, shape (segments,)
+        Least durations, s.
+    """
+
+    def __init__(self, problem: Problem, unit: float, floor: Array) -> None:
+        self.problem, self.unit, self._floor = problem, unit, floor
+        self.segments, self.joints = problem.segments, problem.waypoints.shape[1]
+        steps = np.abs(np.diff(problem.waypoints, axis=0)).mean(axis=0)
+        self.angle = np.where(steps > 0, steps, 1.0)
+        self.sides = Sides(problem, unit, self.angle)
+
+    def duration_bounds(self) -> tuple[Array, Array]:
+        """Bounds on the durations, in units."""
+        low = np.maximum(self.problem.duration_lower, self._floor) / self.unit
+        return low, np.maximum(self.problem.duration_upper / self.unit, low)
+
+    def rooms(self, places: Places, sign: Array) -> Array:
+        """Limits of rows: derivatives in shares of the larger side, positions in angles."""
+        limits, first, j = self.problem.limits, self.problem.waypoints[0], places.joint
+        r = np.clip(places.order, 1, 3) - 1
+        at = np.where(sign > 0, limits.position_upper[j], limits.position_lower[j])
+        side = np.where(sign > 0, self.sides.high[j, r], self.sides.low[j, r])
+        return np.asarray(np.where(places.order == 0, (at - first[j]) / self.angle[j], side))
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,12 +152,25 @@ class ExactRows:
         """The largest excess."""
         return float(self.excess.max(initial=-np.inf))
 
+    def twin(self, e: Extremum, sign: float) -> int | None:
+        """The row whose extremum continues one of another motion: the nearest of its segment."""
+        found = [
+            (abs(other.s - e.s), k)
+            for k, other in enumerate(self.points)
+            if (other.joint, other.order, other.segment) == (e.joint, e.order, e.segment)
+            and (other.s in (0.0, 1.0)) == (e.s in (0.0, 1.0))
+            and self.signs[k] == sign
+        ]
+        away, k = min(found, default=(np.inf, 0))
+        return k if away <= MOVED else None
+
 
 @dataclass(frozen=True)
 class Near:
     """An extremum near its limit."""
 
     extremum: Extremum
+    limit: float
     sign: float
     excess: float
     size: float
@@ -118,10 +179,18 @@ class Near:
     """Whether a stretch of all durations repairs it."""
 
 
-def _limited(problem: Problem, h: Array) -> list[Near]:
-    """Extrema near a limit."""
+def limited(problem: Problem, h: Array, nodal: Array | None = None) -> list[Near]:
+    """Extrema near a limit.
+
+    Parameters
+    ----------
+    problem : Problem
+    h : ndarray, shape (segments,)
+        s.
+    nodal : ndarray, shape (free, joints), optional
+    """
     curve, limits, sizes = problem.curve, problem.limits, problem.limits.sides
-    trajectory = fit(curve, problem.waypoints, h)
+    trajectory = fit(curve, problem.waypoints, h, nodal)
     every_break = len(curve.waypoint_breaks) == curve.segments + 1
     span = np.ptp(problem.waypoints, axis=0)
     found: list[Near] = []
@@ -133,14 +202,15 @@ def _limited(problem: Problem, h: Array) -> list[Near]:
                 repeated = e.s == 0.0 and e.segment > 0 and curve.smooth_order(e.segment) >= r
                 if repeated:
                     continue
-                found += beyond_nothing(e, sizes[:, j, r - 1], float(span[j]) / h.sum() ** r)
+                found += _beyond_nothing(e, sizes[:, j, r - 1], float(span[j]) / h.sum() ** r)
                 limit = float(sizes[int(e.value > 0.0), j, r - 1])
                 if not np.isfinite(limit) or limit == 0.0:
                     continue
                 size = abs(e.value) / limit
                 if size > NEAR:
                     excess = float(np.log(size)) / r
-                    found.append(Near(e, float(np.sign(e.value)), excess, r * abs(e.value), True))
+                    sign, size = float(np.sign(e.value)), r * abs(e.value)
+                    found.append(Near(e, limit, sign, excess, size, True))
         sides = ((float(limits.position_lower[j]), -1.0), (float(limits.position_upper[j]), 1.0))
         if not any(np.isfinite(limit) for limit, _ in sides):
             continue
@@ -151,11 +221,11 @@ def _limited(problem: Problem, h: Array) -> list[Near]:
             for limit, sign in sides:
                 excess = sign * (e.value - limit) / size
                 if np.isfinite(limit) and excess > NEAR - 1.0:
-                    found.append(Near(e, sign, excess, size, False))
+                    found.append(Near(e, limit, sign, excess, size, False))
     return found
 
 
-def beyond_nothing(e: Extremum, sides: Array, rate: float) -> Iterator[Near]:
+def _beyond_nothing(e: Extremum, sides: Array, rate: float) -> Iterator[Near]:
     """The extremum of a derivative that must not leave 0 to one side, in shares of a mean rate.
 
     Parameters
@@ -172,7 +242,7 @@ def beyond_nothing(e: Extremum, sides: Array, rate: float) -> Iterator[Near]:
     for side, sign in ((0, -1.0), (1, 1.0)):
         excess = sign * e.value / rate + (INSIDE if sides[1 - side] > 0.0 else 0.0)
         if sides[side] == 0.0 and excess > NEAR - 1.0:
-            yield Near(e, sign, excess, rate, False)
+            yield Near(e, 0.0, sign, excess, rate, False)
 
 
 def exact_rows(problem: Problem, h: Array) -> ExactRows:
@@ -190,7 +260,7 @@ def exact_rows(problem: Problem, h: Array) -> ExactRows:
     ExactRows
     """
     try:
-        found = _limited(problem, h)
+        found = limited(problem, h)
         points = [near.extremum for near in found]
         slope = np.zeros((0, h.size))
         if points:

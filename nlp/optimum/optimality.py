@@ -11,21 +11,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ...problem import (
-    QUANTITIES,
-    Array,
-    CurveError,
-    Extremum,
-    Problem,
-    extrema,
-    fit,
-    peak_gradients,
-)
-from ...problem.curves import PERM, Places, Trajectory
-from .limit_rows import beyond_nothing
+from ...problem import QUANTITIES, Array, CurveError, Extremum, Problem, fit, peak_gradients
+from ...problem.curves import Places, Trajectory
+from .clock import time_up
+from .limit_rows import ExactRows, along, exact_rows, limited
 
 ACTIVE = 1e-7
 """Relative distance to a limit within which a peak counts as active."""
+KKT_TOLERANCE = 1e-8
+"""Scaled KKT residual up to which an answer is called converged: IPOPT's own usual tolerance."""
 MORE = 0.1
 """Sensitivities say what this much more of a limit would buy, to first order."""
 
@@ -72,13 +66,20 @@ class KKT:
     active: tuple[Active, ...]
 
 
+def unmet(residual: float) -> str:
+    """Why an answer is not called converged, of its KKT residual."""
+    if np.isinf(residual):
+        return "the search ended before it met the conditions of an optimum"
+    return f"KKT residual {residual:.1e}, above {KKT_TOLERANCE:g}"
+
+
 UNKNOWN = KKT(np.inf, ())
 """Of durations at which rounding hides the curve or its gradients: no condition is met."""
 
 
 @dataclass(frozen=True)
 class _Constraint:
-    extremum: Extremum | None
+    extremum: Extremum
     label: tuple[str | None, str, int, float | None]
     excess: float
     sign: float
@@ -90,45 +91,20 @@ class _Constraint:
 def _peaks_near_limit(
     problem: Problem, durations: Array, nodal: Array | None, near: float
 ) -> list[_Constraint]:
-    trajectory = fit(problem.curve, problem.waypoints, durations, nodal)
-    limits, sides = problem.limits, problem.limits.sides
-    curve = problem.curve
-    every_break = len(curve.waypoint_breaks) == curve.segments + 1
-    span = np.ptp(problem.waypoints, axis=0)
     found: list[_Constraint] = []
-    for j, name in enumerate(problem.joints):
-        for r, quantity in enumerate(QUANTITIES, start=1):
-            if not np.isfinite(sides[:, j, r - 1]).any():
-                continue
-            for e in extrema(trajectory, j, r):
-                repeated = e.s == 0.0 and e.segment > 0 and curve.smooth_order(e.segment) >= r
-                if repeated:
-                    continue
-                label = (name, quantity, curve.segment_of(durations, e), e.time)
-                rate = float(span[j]) / float(durations.sum()) ** r
-                for at in beyond_nothing(e, sides[:, j, r - 1], rate):
-                    if at.excess >= -near:
-                        found.append(_Constraint(e, label, at.excess, at.sign, at.size, 0.0))
-                limit = float(sides[int(e.value > 0.0), j, r - 1])
-                if not np.isfinite(limit) or limit == 0:
-                    continue
-                excess = abs(e.value) / limit - 1
-                if excess >= -near:
-                    sign = float(np.sign(e.value))
-                    found.append(_Constraint(e, label, excess, sign, limit, 1.0))
-        low, high = float(limits.position_lower[j]), float(limits.position_upper[j])
-        if np.isfinite(low) or np.isfinite(high):
-            for e in extrema(trajectory, j, 0):
-                given = e.s in (0.0, 1.0) and every_break
-                for limit, sign in ((low, -1.0), (high, 1.0)):
-                    if given or not np.isfinite(limit):
-                        continue
-                    scale = max(1.0, abs(limit))
-                    excess = sign * (e.value - limit) / scale
-                    if excess >= -near:
-                        label = (name, "position", curve.segment_of(durations, e), e.time)
-                        size = abs(limit) / scale
-                        found.append(_Constraint(e, label, excess, sign, scale, size))
+    for one in limited(problem, durations, nodal):
+        e, quantity = one.extremum, ("position", *QUANTITIES)[one.extremum.order]
+        if one.stretched:  # its excess is the logarithm of the stretch that it asks for
+            excess, scale, size = float(np.expm1(e.order * one.excess)), one.limit, 1.0
+        elif e.order == 0:
+            scale = max(1.0, abs(one.limit))
+            excess, size = one.excess * one.size / scale, abs(one.limit) / scale
+        else:
+            excess, scale, size = one.excess, one.size, 0.0
+        if excess >= -near:
+            segment = problem.curve.segment_of(durations, e)
+            label = (problem.joints[e.joint], quantity, segment, e.time)
+            found.append(_Constraint(e, label, excess, one.sign, scale, size))
     return found
 
 
@@ -171,8 +147,7 @@ def kkt(
     free = problem.curve.free
     try:
         rows = _peaks_near_limit(problem, durations, nodal, active)
-        points = [c.extremum for c in rows if c.extremum is not None]
-        gradients = peak_gradients(problem, durations, points, nodal)
+        gradients = peak_gradients(problem, durations, [c.extremum for c in rows], nodal)
     except CurveError:
         return UNKNOWN
     columns = np.zeros((n + free * joints, len(rows)))
@@ -183,7 +158,7 @@ def kkt(
             nodal_scale[i] = np.where(np.isfinite(limit), limit, 1.0)
     for i, c in enumerate(rows):
         columns[:n, i] = c.sign * gradients.durations[i] * durations / c.scale
-        if c.extremum is not None and free:
+        if free:
             block = np.zeros((free, joints))
             block[:, c.extremum.joint] = c.sign * gradients.nodal[i] / c.scale
             columns[n:, i] = (block * nodal_scale).ravel()
@@ -228,6 +203,86 @@ def kkt(
     return KKT(max(stationarity, slack, violation), tuple(reached))
 
 
+SHARP = 1e-12
+"""Residual that `sharpened` leaves as it is: rounding of gradients."""
+SHARPENINGS = 4
+"""Newton steps of `sharpened`: few are needed from near by, since it is quadratic."""
+DIFFERENCE = 1e-6
+"""Step of its central differences in log durations: they err by 1e-12, their rounding by 1e-10."""
+NEAR_BY = 1e-3
+"""Log durations by which one of its steps changes a duration at most: an answer is very near."""
+
+
+def sharpened(problem: Problem, durations: Array) -> Array | None:
+    """Newton steps on stationarity and the active limits; None where they lead nowhere.
+
+    A search ends where rounding hides what it gains, before the gradient vanishes as far as it can.
+
+    Parameters
+    ----------
+    problem : Problem
+        With a determined curve.
+    durations : ndarray, shape (segments,)
+        s.
+    """
+    from scipy.optimize import nnls  # a quarter of a second; a check does without
+
+    first = exact_rows(problem, durations)
+    near = np.flatnonzero(first.excess > -ACTIVE)
+    one = np.eye(durations.size)
+    low = (durations <= problem.duration_lower * (1 + ACTIVE)).nonzero()[0]
+    high = (durations >= problem.duration_upper * (1 - ACTIVE)).nonzero()[0]
+    walls = np.vstack([-one[low], one[high]])
+    slopes = np.vstack([first.gradient[near], walls])
+    if not slopes.size:
+        return None
+    try:
+        weights, _ = nnls(slopes.T, -durations / durations.sum())
+    except RuntimeError:  # rounding hides which limits hold the motion
+        return None
+    loaded = weights[: near.size] > 0
+    active, weights, held = near[loaded], weights[: near.size][loaded], weights[near.size :] > 0
+    free = ~walls[held].any(axis=0)
+    h, n, z = durations, int(free.sum()), active.size
+    for _ in range(SHARPENINGS):
+        now = _conditions(problem, h, first, active, weights)
+        if now is None or time_up():
+            return None
+        slope, excess, columns = now
+        if max(np.abs(slope[free]).max(initial=0.0), np.abs(excess).max(initial=0.0)) <= SHARP:
+            break
+        bends = []
+        for k in np.flatnonzero(free):
+            step = np.exp(DIFFERENCE * one[k])
+            ahead, behind = (
+                _conditions(problem, x, first, active, weights) for x in (h * step, h / step)
+            )
+            if ahead is None or behind is None:
+                return None
+            bends.append((ahead[0] - behind[0])[free] / (2 * DIFFERENCE))
+        block = columns[:, free]
+        system = np.block([[np.reshape(bends, (n, n)).T, block.T], [block, np.zeros((z, z))]])
+        try:
+            change = np.linalg.lstsq(system, -np.append(slope[free], excess), rcond=1e-12)[0]
+        except np.linalg.LinAlgError:
+            return None
+        h = h * np.exp(one[free].T @ np.clip(change[:n], -NEAR_BY, NEAR_BY))
+        weights = weights + change[n:]
+    return h
+
+
+def _conditions(
+    problem: Problem, h: Array, first: ExactRows, active: NDArray[np.int64], weights: Array
+) -> tuple[Array, Array, Array] | None:
+    """Slope of the Lagrangian in log durations, excess of the active limits, and their slopes."""
+    rows = exact_rows(problem, h)
+    twins = [rows.twin(first.points[i], first.signs[i]) for i in active]
+    if None in twins:
+        return None
+    at = np.array(twins, dtype=np.int64)
+    return h / h.sum() + weights @ rows.gradient[at], rows.excess[at], rows.gradient[at]
+
+
 NEWTON_STEPS = 4
 """Steps by which a place inside a segment is brought onto its extremum; it starts very near."""
 COUNTS = 1e-6
@@ -257,17 +312,6 @@ class Multipliers:
     follows: NDArray[np.bool_]
     limits: Array
     walls: Array
-
-
-def along(trajectory: Trajectory, places: Places, further: int) -> Array:
-    """Derivatives in s of order ``places.order + further`` at places."""
-    a = trajectory.scaled[places.segment, :, places.joint]
-    r = places.order + further
-    out = np.zeros(places.s.size)
-    for p in range(min(a.shape[1], len(PERM)) - 1, -1, -1):
-        factor = PERM[p, np.minimum(r, PERM.shape[1] - 1)]
-        out = np.where(p >= r, out * places.s + factor * a[:, p], out)
-    return out
 
 
 def on_extrema(trajectory: Trajectory, places: Places) -> Places:

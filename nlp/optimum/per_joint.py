@@ -12,8 +12,8 @@ import numpy as np
 from ...problem import Array, Check, Problem, check, fit
 from .clock import time_up
 from .program import Program
+from .rounds import NEAR, constraints, near_rows
 from .rounds import OPTIONS as OPTIONS_OF_ROUNDS
-from .rows import NEAR, constraints, near_rows
 from .solution import Evidence, Solution, Status, weakest
 from .solver import solve
 from .symbolic import ca
@@ -155,25 +155,11 @@ def longest_per_segment_range(
             h = _kept(problem, alone.reached([optimum], weights)[0])
             if h.sum() <= cap * (1 + 1e-8):
                 reach[j, subset] = max(reach[j, subset], float(h[chosen].sum()))
-    return lowest, max(given, _best_assignment(reach, len(problems), n))
-
-
-def _best_assignment(
-    reach: dict[tuple[int, tuple[int, ...]], float], joints: int, segments: int
-) -> float:
-    """Largest total over all ways to give each segment to one joint (dynamic programme)."""
-    best: dict[tuple[int, ...], float] = {(): 0.0}
-    for j in range(joints):
-        extended = dict(best)
-        for done, total in best.items():
-            left = [k for k in range(segments) if k not in done]
-            for size in range(1, len(left) + 1):
-                for subset in itertools.combinations(left, size):
-                    key = tuple(sorted(done + subset))
-                    value = total + reach[j, subset]
-                    extended[key] = max(extended.get(key, -np.inf), value)
-        best = extended
-    return best[tuple(range(segments))]
+    highest = max(
+        sum(reach[j, tuple(k for k in range(n) if setting[k] == j)] for j in set(setting))
+        for setting in itertools.product(range(len(problems)), repeat=n)
+    )
+    return lowest, max(given, highest)
 
 
 OPTIMUM_SLACK = 1e-6

@@ -17,24 +17,16 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...problem import QUANTITIES, Array, Interpolant, Problem
 from ...problem.curves import ConditionKind, Places, Trajectory
-from .limit_rows import REACH, Rows, Sides
-from .optimality import along
+from .limit_rows import REACH, Indices, Rows, Scaled, along
 from .symbolic import ca
-
-Indices = NDArray[np.int64]
-
-LABELS = 11
-"""Quantities of a segment that are told apart: its duration, derivatives up to the ninth, and a
-position that is free."""
 
 
 @dataclass(frozen=True, eq=False)
 class StatedConditions:
-    """What the declaration, or a window of it, states at its breaks, shape (conditions,).
+    """What the declaration states at its breaks, shape (conditions,).
 
     Attributes
     ----------
@@ -60,7 +52,7 @@ class StatedConditions:
         return cls(table.kinds, table.breaks, table.orders, values)
 
 
-class Program:
+class Program(Scaled):
     """The NLP of a declared curve, in units of order one, with its expressions.
 
     Parameters
@@ -71,38 +63,17 @@ class Program:
         Time unit, s.
     floor : ndarray, shape (segments,)
         Least durations, s.
-    span : tuple of int, optional
-        Segments from the first to before the second alone: a window, between breaks that carry
-        way-points. Places, variables and conditions then count from the first. All by default.
-    beyond : Trajectory, optional
-        Of all segments: gives the derivatives at the ends of a window.
     """
 
-    def __init__(
-        self,
-        problem: Problem,
-        unit: float,
-        floor: Array,
-        span: tuple[int, int] | None = None,
-        beyond: Trajectory | None = None,
-    ) -> None:
+    def __init__(self, problem: Problem, unit: float, floor: Array) -> None:
+        super().__init__(problem, unit, floor)
         curve = problem.piecewise
-        self.problem, self.unit = problem, unit
-        self.span = span or (0, problem.segments)
-        self.segments = self.span[1] - self.span[0]
-        self._own = slice(*self.span)
-        self._floor = floor[self._own]
-        self.degrees = np.array(curve.degrees, dtype=np.int64)[self._own]
-        self.joints, self.top = problem.waypoints.shape[1], int(self.degrees.max())
-        steps = np.abs(np.diff(problem.waypoints, axis=0)).mean(axis=0)
-        self.angle = np.where(steps > 0, steps, 1.0)
-        self.sides = Sides(problem, unit, self.angle)
-        whole = StatedConditions.of(curve, self.joints)
-        self._plan = whole if beyond is None else _of_window(whole, self.span, beyond)
+        self.degrees = np.array(curve.degrees, dtype=np.int64)
+        self.top = int(self.degrees.max())
+        self._plan = StatedConditions.of(curve, self.joints)
         self._held = {r: np.flatnonzero(self.degrees >= r) for r in range(1, self.top + 1)}
         self._row = {r: _inverted(k, self.segments) for r, k in self._held.items()}
-        virtual = np.array(curve.virtual, dtype=np.int64) - self.span[0]
-        self._virtual = virtual[(virtual > 0) & (virtual < self.segments)]
+        self._virtual = np.array(curve.virtual, dtype=np.int64)
         self._declare()
         self.equalities = self._equalities()
         self.ends = self._end_places()
@@ -114,9 +85,8 @@ class Program:
         free = ca.MX.sym("q", self._virtual.size, joints)
         breaks = list(self.problem.curve.waypoint_breaks)
         shifted = (self.problem.waypoints - self.problem.waypoints[0]) / self.angle
-        fixed = np.zeros((self.problem.segments + 1, joints))
-        fixed[breaks] = shifted
-        self._fixed = fixed[self.span[0] : self.span[1] + 1]
+        self._fixed = np.zeros((n + 1, joints))
+        self._fixed[breaks] = shifted
         self._q = ca.MX(ca.DM(self._fixed))
         if self._virtual.size:
             self._q[self._virtual.tolist(), :] = free
@@ -168,7 +138,7 @@ class Program:
         plan, unit = self._plan, self.unit
         rows = np.flatnonzero(plan.kinds != ConditionKind.RIGHT_VALUE)
         keys = np.stack([plan.kinds[rows], plan.orders[rows], self.degrees[plan.breaks[rows] - 1]])
-        found, labels = [], []
+        found = []
         for kind, r, degree in np.unique(keys, axis=1).T.tolist():
             i = rows[(keys == np.array([[kind], [r], [degree]])).all(axis=0)]
             b = plan.breaks[i]
@@ -186,23 +156,11 @@ class Program:
                     if there.any():
                         wanted[np.flatnonzero(there).tolist(), :] = self._left(r, b[there])
             found.append(ca.vec(value - wanted))
-            labels.append(self._labels(b - 1, r))
         shares = self.problem.shares
         if shares is not None:
             h = self.durations
             found.append(h[1:] * shares[0] - ca.DM(shares[1:]) * h[0])
-            labels.append(np.full(self.segments - 1, -1))  # windows have free durations
-        self.equality_labels = np.concatenate(labels)
         return ca.vertcat(*found)
-
-    def _labels(self, k: Indices, order: int) -> Indices:
-        """Numbers of one quantity of some segments, the same in every window, joint by joint.
-
-        Multiples of `LABELS` times the number of joints lie between segments.
-        """
-        joint = np.repeat(np.arange(self.joints), k.size)
-        base = (np.tile(k, self.joints) + self.span[0]) * LABELS + order
-        return np.asarray(base * self.joints + joint)
 
     def _end_places(self) -> Places:
         """Right ends at which a limited derivative is neither given nor bounded on the left."""
@@ -210,11 +168,10 @@ class Program:
         found: list[tuple[int, int, int]] = []
         for r in (1, 2, 3):
             joints = np.flatnonzero(np.isfinite(self.sides.scale[:, r - 1]))
-            smooth = np.array([*curve.continuity, -1])[self._own]
-            smooth[-1] = -1  # nothing bounds the right end of a window but rows
+            smooth = np.array([*curve.continuity, -1])  # nothing bounds the last right end but rows
             open_ = (self.degrees > r) & (smooth < r)
             for k in np.flatnonzero(open_).tolist():
-                given = any(order == r for order, _ in curve.prescribed_at(self.span[0] + k + 1))
+                given = any(order == r for order, _ in curve.prescribed_at(k + 1))
                 found += [] if given else [(int(j), k, r) for j in joints]
         whole = np.array(found, dtype=np.int64).reshape(-1, 3)
         places = Places(whole[:, 0], whole[:, 1], whole[:, 2], np.ones(len(whole)))
@@ -268,8 +225,7 @@ class Program:
     def bounds(self) -> tuple[Array, Array]:
         """Bounds on the variables: durations, limits at left ends, given derivatives."""
         problem, plan, unit = self.problem, self._plan, self.unit
-        low = [np.maximum(problem.duration_lower[self._own], self._floor) / unit]
-        high = [np.maximum(problem.duration_upper[self._own] / unit, low[0])]
+        low, high = ([bound] for bound in self.duration_bounds())
         right = plan.kinds == ConditionKind.RIGHT_VALUE
         for r, held in self._held.items():
             edges = (np.full(self.joints, -np.inf), np.full(self.joints, np.inf))
@@ -289,14 +245,6 @@ class Program:
         ):
             out.append(np.tile((bound - first) / self.angle, (self._virtual.size, 1)).ravel("F"))
         return np.concatenate(low), np.concatenate(high)
-
-    def rooms(self, places: Places, sign: Array) -> Array:
-        """Limits of rows: derivatives in shares of the larger side, positions in angles."""
-        limits, first = self.problem.limits, self.problem.waypoints[0]
-        j, r = places.joint, np.maximum(places.order, 1) - 1
-        at = np.where(sign > 0, limits.position_upper[j], limits.position_lower[j])
-        side = np.where(sign > 0, self.sides.high[j, r], self.sides.low[j, r])
-        return np.asarray(np.where(places.order == 0, (at - first[j]) / self.angle[j], side))
 
     def pack(self, trajectory: Trajectory, durations: Array) -> Array:
         """Variables at a motion with these durations."""
@@ -327,20 +275,6 @@ class Program:
         curve, trajectory = self.problem.piecewise, self.trajectory(x)
         nodal = free_values(curve, trajectory) if curve.free else None
         return trajectory.durations, nodal
-
-    def labels(self) -> tuple[Indices, Indices, Indices]:
-        """Numbers of variables, of equalities and of rows at right ends, the same in every window.
-
-        Divided by `LABELS` times the number of joints they tell the segment, counted from the
-        first of all.
-        """
-        h = (np.arange(self.segments) + self.span[0]) * LABELS * self.joints
-        parts = [h]
-        parts += [self._labels(held, r) for r, held in self._held.items()]
-        parts.append(self._labels(self._virtual, LABELS - 1))
-        at = self.ends
-        ends = ((at.segment + self.span[0]) * LABELS + at.order) * self.joints + at.joint
-        return np.concatenate(parts), self.equality_labels, ends
 
     def left_places(self) -> tuple[Places, Indices]:
         """Limits that are bounds on variables, as places, and the variables' numbers."""
@@ -385,30 +319,6 @@ def free_values(curve: Interpolant, trajectory: Trajectory) -> Array:
             side = trajectory.derivative(min(b, n - 1), j, order)
             nodal[i, j] = side[0] if b < n else side.sum()
     return nodal
-
-
-def _of_window(
-    plan: StatedConditions, span: tuple[int, int], beyond: Trajectory
-) -> StatedConditions:
-    """The conditions at and between two breaks, on the sides between them, and those of a cut.
-
-    There the lower half of what is continuous is given, which is what a spline has free at an end.
-    """
-    first, last = span
-    right, left = plan.kinds == ConditionKind.RIGHT_VALUE, plan.kinds == ConditionKind.LEFT_VALUE
-    match = plan.kinds == ConditionKind.MATCH
-    own = np.where(right, plan.breaks >= first, plan.breaks > first)
-    own &= np.where(left, plan.breaks <= last, plan.breaks < last)
-    kinds, orders = plan.kinds[own], plan.orders[own]
-    breaks, given = plan.breaks[own] - first, plan.values[own]
-    for b, kind in ((first, ConditionKind.RIGHT_VALUE), (last, ConditionKind.LEFT_VALUE)):
-        smooth = np.sort(plan.orders[match & (plan.breaks == b) & (plan.orders > 0)])
-        for r in smooth[: smooth.size // 2].tolist():
-            value = beyond.scaled[b, r] * math.factorial(r) / beyond.durations[b] ** r
-            kinds, orders = np.append(kinds, kind), np.append(orders, r)
-            breaks = np.append(breaks, b - first)
-            given = np.vstack([given, value])
-    return StatedConditions(kinds, breaks, orders, given)
 
 
 def _inverted(held: Indices, size: int) -> Indices:

@@ -2,8 +2,7 @@
 
 The first round has rows at all interior extrema of its start, each later one at those of the motion
 before it that come near their limit; an exact search over all pieces says where they are, so that
-no sampled place decides. Where there are very many segments, windows of some dozen are solved
-first and joined.
+no sampled place decides.
 """
 
 from __future__ import annotations
@@ -16,33 +15,33 @@ from ...problem import Array, CurveError, Problem, check, evaluate, fit
 from ...problem.curves import Trajectory
 from .clock import time_up
 from .decided import kept
-from .judgement import KKT_TOLERANCE
 from .limit_rows import Rows
-from .optimality import KKT, Local, kkt, sparse_kkt
+from .optimality import KKT, KKT_TOLERANCE, Local, kkt, sparse_kkt
 from .program import Program
-from .rounds import TOLERANCES, RoundState, fresh, multipliers, solve_round
-from .rows import (
+from .rounds import (
     EVERY,
     FLAT,
     NEAR,
     SPARSER,
+    TOLERANCES,
     AnyProgram,
+    RoundState,
     beside,
     carried,
+    fresh,
     grid_rows,
+    multipliers,
     near_rows,
+    solve_round,
     with_loaded,
 )
 from .spline_program import SplineProgram
 from .starts import DENSE, equal_start, stretching, worst_ratios
-from .windows import FEWEST, joined_windows
 
 ROUNDS = 12
 """Most rounds of one attempt; three to six suffice where any number does."""
 LAST = 2
 """Round, counted from 0, from which the answer is judged: its tolerance is that of an answer."""
-JOINED = LAST
-"""Round that joined windows take the place of those before."""
 FAILURES = 3
 """Rounds without success after which a search is given up; each begins again from the best motion
 with rows at all its extrema."""
@@ -120,15 +119,6 @@ def program_search(
     rough: Motion | None = None
     turn = failures = done = 0
     flat = FLAT
-    if isinstance(program, Program) and problem.segments >= FEWEST and problem.shares is None:
-        joined = joined_windows(program, trajectory, floor)
-        if joined is not None:
-            state, turn = joined.state, JOINED
-            iterations, build = joined.iterations, build + joined.build_seconds
-            now = program.motion(state.x)
-            rough = within(problem, now, _excess(problem, now))
-            rows = near_rows(program, fit(problem.curve, problem.waypoints, *now), NEAR)
-            state.rows = carried(joined.rows, joined.duals, rows)
     while done < ROUNDS:
         if iterations and time_up():
             break

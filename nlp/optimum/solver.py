@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...problem import Array, Problem, check
-from .asked import Ask, asked
 from .basins import (
     Basin,
     exact_search,
@@ -25,7 +24,6 @@ from .closed_forms import cut_short, unsearched
 from .decided import decided, kept, stretched
 from .feasibility import apart
 from .fixed_ratios import at_ratios
-from .idle import idle_segments, with_least_idle
 from .judgement import BETTER, ROUNDED, better_of, judged
 from .jumps import as_answer, carried_over, jump_equations, matched, smoother
 from .optimality import Local
@@ -33,7 +31,9 @@ from .search import program_search
 from .solution import Route, Solution, Status
 from .starts import (
     DENSE,
+    Ask,
     anywhere,
+    asked,
     equal_start,
     first_nodal,
     made_up,
@@ -126,19 +126,12 @@ def solve(
 
 def _solve(problem: Problem, ask: Ask) -> Solution:
     """`solve` where no elementary argument decides."""
-    if problem.segments > DENSE and _sparse(problem):
-        answer = _with_known(problem, _programmed(problem, ask), ask)
-        if answer.durations is not None:
-            return answer
     smooth = smoother(problem)
     if smooth is not None:
         found = as_answer(problem, _solve_smoother(problem, smooth, ask))
         if found is not None:
             return found
-    idle = idle_segments(problem)
-    if idle:
-        return _with_idle(problem, idle, ask)
-    return _solve_moving(problem, ask)
+    return _solve_itself(problem, ask)
 
 
 def _sparse(problem: Problem) -> bool:
@@ -166,8 +159,8 @@ def _solve_smoother(problem: Problem, smooth: Problem, ask: Ask) -> Solution:
     )
 
 
-def _solve_moving(problem: Problem, ask: Ask) -> Solution:
-    """`solve` for a problem without idle segments."""
+def _solve_itself(problem: Problem, ask: Ask) -> Solution:
+    """`solve` where no smoother declaration has the same motions."""
     if problem.curve.free or problem.segments > DENSE:
         solution = _programmed(problem, ask)
     elif (near := _proved(problem, ask)) is not None:
@@ -343,14 +336,12 @@ def _shortened(problem: Problem, solution: Solution, ask: Ask) -> Solution:
         return solution
     assert solution.durations is not None
     floor = made_up(problem, DEEPER[-1])
-    for point in shortened(problem, solution.durations, floor, ask.seed):
-        if time_up():
-            break
-        # One by one: a start that ends above a floor says nothing of one that ends at it.
-        found = _searched(problem, replace(ask, initial=point[None]), shares=DEEPER)
-        starts = solution.starts + found.starts
-        solution = replace(better_of(solution, found), starts=starts)
-    return solution
+    ends = exact_search(problem, shortened(problem, solution.durations, floor), floor)
+    found = judged(problem, ends, floor, len(ends))
+    if found.status is Status.NOT_ATTAINED:
+        assert found.durations is not None
+        found = _searched(problem, replace(ask, initial=found.durations[None]), shares=DEEPER)
+    return replace(better_of(solution, found), starts=solution.starts + len(ends))
 
 
 def _with_known(problem: Problem, solution: Solution, ask: Ask) -> Solution:
@@ -380,24 +371,6 @@ def _with_known(problem: Problem, solution: Solution, ask: Ask) -> Solution:
     route = Route.DESCENT if dense else Route.NLP
     answer = judged(problem, found, floor, solution.starts, route)
     return answer if answer.best < solution.best else solution
-
-
-def _with_idle(problem: Problem, idle: list[int], ask: Ask) -> Solution:
-    """Solve with idle segments held at an ordinary duration, then give them their least one."""
-    held = equal_start(problem)
-    low, high = problem.duration_lower.copy(), problem.duration_upper.copy()
-    low[idle] = high[idle] = held[idle]
-    if len(idle) == problem.segments:
-        h, solution = low.copy(), Solution(problem, Status.CONVERGED)
-    else:
-        core = replace(problem, duration_lower=low, duration_upper=high)
-        known = ask.known.copy()
-        known[:, idle] = held[idle]
-        solution = _solve_moving(core, replace(ask, known=known))
-        if solution.durations is None:
-            return replace(solution, problem=problem)
-        h = solution.durations.copy()
-    return with_least_idle(problem, idle, held, replace(solution, durations=h))
 
 
 def _approached(

@@ -28,9 +28,7 @@ from ...problem.curves import (
     numerators,
     shape_matrix,
 )
-from .limit_rows import REACH, Rows, Sides
-from .optimality import along
-from .program import Indices
+from .limit_rows import REACH, Indices, Rows, Scaled, along
 from .symbolic import ca
 
 Polynomial = list[Any]
@@ -61,7 +59,7 @@ class Piece:
     scale: Callable[[int, Any], Any]
 
 
-class SplineProgram:
+class SplineProgram(Scaled):
     """The NLP of a B-spline, in units of order one, with its expressions: as `program.Program`.
 
     Parameters
@@ -80,11 +78,7 @@ class SplineProgram:
     """
 
     def __init__(self, problem: Problem, unit: float, floor: Array) -> None:
-        self.problem, self.unit, self._floor = problem, unit, floor
-        self.segments, self.joints = problem.segments, problem.waypoints.shape[1]
-        steps = np.abs(np.diff(problem.waypoints, axis=0)).mean(axis=0)
-        self.angle = np.where(steps > 0, steps, 1.0)
-        self.sides = Sides(problem, unit, self.angle)
+        super().__init__(problem, unit, floor)
         self.durations = ca.SX.sym("h", self.segments)
         self._control = ca.SX(0, self.joints)
         self._speeds: list[Polynomial] = []
@@ -289,19 +283,14 @@ class SplineProgram:
 
     def bounds(self) -> tuple[Array, Array]:
         """Bounds on the variables: those of the durations."""
-        problem, free = self.problem, np.full(self._control.numel(), np.inf)
-        low = np.maximum(problem.duration_lower, self._floor) / self.unit
-        high = np.maximum(problem.duration_upper / self.unit, low)
+        low, high = self.duration_bounds()
+        free = np.full(self._control.numel(), np.inf)
         return np.concatenate([low, -free]), np.concatenate([high, free])
 
     def rooms(self, places: Places, sign: Array) -> Array:
-        """Limits of rows: derivatives in shares of the larger side, positions in angles."""
-        limits, first, j = self.problem.limits, self.problem.waypoints[0], places.joint
-        r = np.clip(places.order, 1, 3) - 1
-        at = np.where(sign > 0, limits.position_upper[j], limits.position_lower[j])
-        side = np.where(sign > 0, self.sides.high[j, r], self.sides.low[j, r])
-        room = np.where(places.order == 0, (at - first[j]) / self.angle[j], side)
-        return np.where(places.order == CLOCK, np.where(sign > 0, np.inf, SLOWEST), room)
+        """As of every NLP; a clock keeps going."""
+        going = np.where(sign > 0, np.inf, SLOWEST)
+        return np.asarray(np.where(places.order == CLOCK, going, super().rooms(places, sign)))
 
     def pack(self, trajectory: Trajectory, durations: Array) -> Array:
         """Variables at a motion with these durations."""

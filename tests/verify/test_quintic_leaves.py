@@ -65,9 +65,9 @@ def test_where_nothing_moves_a_leaf_is_off_by_its_allowance_for_rounding_alone(o
     """There the weighted sum is −Σ w·limit·h^(order − 2): in rationals never below what is said."""
     h, limit, count = np.array([0.7, 1.1, 2.3]), 3219.7, 3
     rows = np.array([[k, 0, order, 1, 300] for k in range(count)])
-    task = Task(np.zeros((count, 1)), np.full((1, 3), limit), float(h.sum()), rows)
-    leaf = np.zeros(1), np.arange(count)[None], np.full((1, count), 3.0)
-    proved = Fraction(float(Bound(task, h[None], h[None], *leaf).least()[0]))
+    task = Task(np.zeros((count, 1)), np.full((1, 3), limit), float(h.sum()))
+    leaf = np.zeros(1), rows[None], np.full((1, count), 3.0)
+    proved = Fraction(float(Centre(task, h[None], h[None]).least(*leaf)[0]))
     value = -sum(3 * Fraction(limit) * Fraction(x) ** (order - 2) for x in h.tolist())
     assert value * (1 + Fraction(2, 10**11)) <= proved <= value
 

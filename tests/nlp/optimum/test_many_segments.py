@@ -1,5 +1,6 @@
 """Many segments: the sparse search beside the tracked NLP, identities, every status."""
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -12,8 +13,9 @@ from trajgap.nlp.optimum.closed_forms import CUT_SHORT
 from trajgap.nlp.optimum.limit_rows import Rows
 from trajgap.nlp.optimum.optimality import kkt
 from trajgap.nlp.optimum.program import Program
+from trajgap.nlp.optimum.rounds import carried, near_rows, with_loaded
 from trajgap.nlp.optimum.search import program_search
-from trajgap.nlp.optimum.starts import way_start
+from trajgap.nlp.optimum.starts import way_start, worst_ratios
 from trajgap.problem import (
     Interpolant,
     Limits,
@@ -21,10 +23,12 @@ from trajgap.problem import (
     Verdict,
     check,
     cubic_spline,
+    evaluate,
     extrema,
     fit,
     quintic_spline,
 )
+from trajgap.problem.curves import Places
 
 SEGMENTS = 26
 
@@ -179,3 +183,52 @@ def test_a_round_that_fails_begins_again_from_the_best_motion(
     assert again.status is Status.CONVERGED
     # From another start it may end at a neighbouring optimum: these two are 1.6e-7 apart.
     assert again.total_time == pytest.approx(total, rel=1e-6)
+
+
+def test_multipliers_go_to_the_rows_that_continue_theirs() -> None:
+    def rows(*places: tuple[int, int, int, float, float]) -> Rows:
+        j, k, r, s, sign = (np.array(column) for column in zip(*places, strict=True))
+        return Rows(Places(j, k, r, s), sign, np.zeros(len(places)))
+
+    before = rows((0, 3, 1, 0.2, 1.0), (0, 3, 1, 0.8, 1.0), (1, 3, 1, 0.5, 1.0), (0, 4, 2, 0.9, -1))
+    duals = np.array([1.0, 2.0, 3.0, 4.0])
+    after = rows(
+        (0, 3, 1, 0.75, 1.0), (0, 3, 1, 0.95, 1.0), (0, 3, 1, 0.75, -1.0), (1, 3, 2, 0.5, 1.0),
+        (0, 4, 2, 0.1, -1), (0, 5, 2, 0.9, -1), (1, 3, 1, 0.51, 1.0),
+    )  # fmt: skip
+    assert carried(before, duals, after).tolist() == [2.0, 0.0, 0.0, 0.0, 4.0, 0.0, 3.0]
+    none = rows((0, 0, 1, 0.5, 1.0))
+    none = replace(none, sign=none.sign[:0], places=Places(*(np.zeros(0, int),) * 3, np.zeros(0)))
+    assert carried(none, np.zeros(0), after).tolist() == [0.0] * 7
+    assert carried(before, duals, none).size == 0
+
+
+def test_a_row_with_a_multiplier_stays_until_an_extremum_is_beside_it() -> None:
+    problem = long_problem(CURVES["cubic"])
+    program = Program(problem, 1.0, np.zeros(SEGMENTS))
+
+    def rows(*places: tuple[int, int, float, float]) -> Rows:
+        k, r, s, sign = (np.array(column) for column in zip(*places, strict=True))
+        return Rows(Places(np.zeros_like(k), k, r, s), sign, np.full(len(places), 0.5))
+
+    before = rows((1, 1, 0.2, 1.0), (3, 1, 0.2, 1.0), (4, 1, 0.2, 1.0), (5, 1, 0.2, -1.0))
+    now = rows((0, 1, 0.9, 1.0), (3, 1, 0.21, 1.0), (4, 1, 0.7, 1.0), (5, 1, 0.2, 1.0))
+    duals = np.array([2e-3, 2e-3, 2e-3, -2e-3])
+    found = with_loaded(program, before, duals, now, 1e-3)
+    rows_found = zip(found.places.segment, found.places.s, found.sign, found.weight, strict=True)
+    assert sorted(tuple(map(float, one)) for one in rows_found) == [
+        (0, 0.9, 1, 0.5), (1, 0.2, 1, 0), (3, 0.21, 1, 0.5), (4, 0.2, 1, 0), (4, 0.7, 1, 0.5),
+        (5, 0.2, -1, 0), (5, 0.2, 1, 0.5),
+    ]  # fmt: skip
+    assert with_loaded(program, before, duals, now, 1e-2) is now
+
+
+def test_the_excess_is_that_of_the_batch_evaluator() -> None:
+    for name, curve in CURVES.items():
+        problem = long_problem(curve)
+        h = way_start(problem) * np.random.default_rng(2).uniform(0.5, 1.1, SEGMENTS)
+        stretch = float(evaluate(problem, h[None]).stretch[0])
+        worst = worst_ratios(problem, fit(curve, problem.waypoints, h)).max()
+        assert worst == pytest.approx(stretch, rel=1e-9), name
+    program = Program(problem, 1.0, np.zeros(SEGMENTS))
+    assert near_rows(program, fit(problem.curve, problem.waypoints, h), 0.0).sign.size > 10

@@ -13,7 +13,7 @@ from support.small_problems import FAMILIES, small_problem
 from support.uneven import CURVES as UNEVEN
 from support.uneven import uneven_problem
 from trajgap.nlp import build
-from trajgap.nlp.optimum.rows import near_rows
+from trajgap.nlp.optimum.rounds import near_rows
 from trajgap.nlp.optimum.search import program_of
 from trajgap.nlp.optimum.starts import first_nodal
 from trajgap.problem import (

@@ -18,8 +18,7 @@ from trajgap.nlp.optimum import (
     stopping_after,
     time_up,
 )
-from trajgap.nlp.optimum.rounds import fresh, solve_round
-from trajgap.nlp.optimum.rows import near_rows
+from trajgap.nlp.optimum.rounds import fresh, near_rows, solve_round
 from trajgap.nlp.optimum.search import program_of
 from trajgap.nlp.optimum.starts import box_above
 from trajgap.nlp.proofs import clock as proof_clock
