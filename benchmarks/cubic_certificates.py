@@ -113,7 +113,6 @@ def by_gap(name: str, exact: ExactProblem) -> str:
 
 def by_width(name: str, found: Certified) -> str:
     """Gap that one relaxation proves over a box of relative half-width w around the answer."""
-    assert found.found
     assert found.upper is not None
     stated = stated_problem(found.problem)
     near = cubic_system(stated, found.upper)

@@ -14,6 +14,7 @@ from __future__ import annotations
 import json
 import sys
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -21,6 +22,8 @@ from comparison_results import JOINT, together
 from paper_comparisons import PAPERS, write_studies
 from trajgap.compare.audits.paper_runs import RUNS_FORMAT, KeptOptimum, KeptRun, KeptRuns
 from trajgap.compare.gaps import Row, Trial, canonical, hit, load_study, run_trial
+from trajgap.compare.gaps.rows import settings_of
+from trajgap.heuristics import evaluations_of, find_optimizer
 from trajgap.nlp import certify, problem_seal, solve
 from trajgap.problem import Problem, load_case
 
@@ -39,7 +42,10 @@ Group = tuple[str, str, str, str]
 def rows_of(paper: str, folder: Path) -> dict[Group, dict[int, tuple[Trial, Row]]]:
     """Every run of a paper's study of its listed settings, by group and seed."""
     found: dict[Group, dict[int, tuple[Trial, Row]]] = {}
-    for trial in load_study(folder / f"{paper}-listed.toml").trials():
+    for asked in load_study(folder / f"{paper}-listed.toml").trials():
+        # The study gives both algorithms one budget; here each makes its own iterations.
+        own = evaluations_of(find_optimizer(asked.optimizer, **settings_of(asked)))
+        trial = replace(asked, budget=own)
         group = (trial.name, trial.reading, trial.handling, trial.optimizer)
         found.setdefault(group, {})[trial.seed] = trial, run_trial(trial)
     return found
@@ -47,7 +53,7 @@ def rows_of(paper: str, folder: Path) -> dict[Group, dict[int, tuple[Trial, Row]
 
 def kept(paper: str, folder: Path) -> Iterator[KeptRuns]:
     """The groups of a paper as they are committed; joints searched apart are one group."""
-    source, algorithms, budget = PAPERS[paper]
+    source, algorithms, _ = PAPERS[paper]
     case = load_case(source)
     ids = {next(a.kind for a in case.algorithms if a.id == one): one for one in algorithms}
     settings = {a.id: canonical(a.parameters) for a in case.algorithms}
@@ -60,7 +66,7 @@ def kept(paper: str, folder: Path) -> Iterator[KeptRuns]:
     apart: dict[Group, list[dict[int, Row]]] = {}
     limits: dict[Group, list[float]] = {}
     for (name, reading, handling, kind), runs in rows_of(paper, folder).items():
-        problem = next(iter(runs.values()))[0].problem
+        problem = runs[0][0].problem
         if name not in optima:
             optima[name] = optimum(problem, drawn=not name.startswith(source))
         rows = {seed: row for seed, (_, row) in runs.items()}
@@ -79,8 +85,8 @@ def kept(paper: str, folder: Path) -> Iterator[KeptRuns]:
             settings=settings[ids[kind]],
             seal=seal(name, reading),
             handling=handling,
-            budget=budget,
-            stream=next(iter(runs.values()))[0].stream,
+            budget=runs[0][0].budget,
+            stream=runs[0][0].stream,
             optimum=optima[name],
             runs=tuple(one(rows[seed], optima[name].upper) for seed in sorted(rows)),
         )
@@ -94,7 +100,7 @@ def kept(paper: str, folder: Path) -> Iterator[KeptRuns]:
             settings=settings[ids[kind]],
             seal=seal(name, reading),
             handling=handling,
-            budget=budget * len(each),
+            budget=sum(joint[0].budget for joint in each),
             stream=(),
             optimum=None,
             runs=tuple(joined(each, limits[name, reading, handling, kind])),

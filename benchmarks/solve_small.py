@@ -40,12 +40,10 @@ def main() -> int:
     def ours() -> np.ndarray:
         answer = solve(problem)
         assert answer.status == optimum.Status.CONVERGED
-        assert answer.found
         return answer.durations
 
     def certified() -> np.ndarray:
         answer = solve_with_certificate(problem)
-        assert answer.found
         return answer.durations
 
     ways = {

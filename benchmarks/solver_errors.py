@@ -196,7 +196,7 @@ def brute_force(problem: Problem, seed: int) -> Brute:
 def judged(solution: Solution, brute: Brute) -> str:
     """What is wrong with an answer, in a word; empty if nothing is."""
     if not solution.found:
-        return f"wrong {solution.status}" if brute.found else ""
+        return f"wrong {solution.status}" if brute.durations is not None else ""
     kept = check(solution.problem, solution.durations, solution.nodal).verdict
     if kept is not Verdict.PASS:
         return "answer does not pass"

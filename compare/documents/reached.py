@@ -18,7 +18,7 @@ class Reached(Entry):
     problem: str
     reading: str
     searched: str
-    """What was searched, in words; with its budget no other search of the case is called so."""
+    """What was searched, in words; no other search of the case is called so."""
     algorithm: str
     """Its id in the case."""
     name: str
@@ -73,8 +73,7 @@ def by_search(runs: Iterable[Reached]) -> dict[str, list[Reached]]:
     """Algorithms that searched the same, under the words for what they searched."""
     found: dict[str, list[Reached]] = {}
     for one in runs:
-        words = f"{one.searched[:1].upper()}{one.searched[1:]}"
-        found.setdefault(f"{words}; {one.budget:,} evaluations a run", []).append(one)
+        found.setdefault(f"{one.searched[:1].upper()}{one.searched[1:]}", []).append(one)
     return found
 
 
@@ -84,8 +83,9 @@ REACHED_MEANING = (
     "(death penalty), counts with the shortest uniform stretch that keeps every limit (stretch), "
     "or is scaled until one limit is tight (rescale). Every total is that of a motion that keeps "
     "its limits. Gaps are measured from the proven interval of the optimum where there is one. "
-    "Evaluations are what restarts need on average until one run comes so near; where each joint "
-    "is planned by itself, until every joint is so near its own optimum, all joints counted. "
+    "Evaluations are those of a run, and those that restarts need on average until one run comes "
+    "so near; where each joint is planned by itself, until every joint is so near its own optimum, "
+    "all joints counted. "
     "Operators and seeds are not printed, so these runs inform and refute nothing."
 )
 """What the table means."""
@@ -97,8 +97,9 @@ REACHED_COLUMNS = (
     "gap of the best",
     "gap of the median",
     "no answer",
-    "evaluations to 1 %",
-    "to 0.1 %",
+    "evaluations",
+    "until 1 %",
+    "until 0.1 %",
 )
 """What a table says of each algorithm."""
 
@@ -111,6 +112,7 @@ def reached_cells(one: Reached) -> tuple[str, ...]:
         *(f"{t:.4f}" if (t := value_or_none(total)) else _NONE for total in (one.best, one.median)),
         *(_NONE if isinstance(gap, Why) else gap.percent for gap in (one.best_gap, one.gap)),
         f"{one.unanswered} of {one.runs}",
+        f"{one.budget:,}",
         *(_evaluations(target) for target in one.within),
     )
 

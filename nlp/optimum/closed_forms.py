@@ -245,7 +245,7 @@ def unsearched(problem: Problem) -> Solution | None:
             problem,
             Status.CONVERGED,
             "the least durations without a jump, in closed form",
-            durations=answer.durations,
+            vector=answer.durations,
             check=check(problem, answer.durations),
             route=Route.CLOSED_FORM,
         )
@@ -263,7 +263,7 @@ def unsearched(problem: Problem) -> Solution | None:
         problem,
         Status.NOT_ATTAINED,
         why,
-        durations=short,
+        vector=short,
         nodal=nodal,
         check=check(problem, short, nodal),
         route=Route.CLOSED_FORM,
@@ -294,5 +294,5 @@ def cut_short(answer: Solution) -> Solution:
     """
     if answer.status is Status.INFEASIBLE:
         return answer
-    said = OUT_OF_TIME if answer.durations is None else CUT_SHORT
+    said = OUT_OF_TIME if not answer.found else CUT_SHORT
     return replace(answer, why=said if answer.why is None else f"{answer.why}; {said}")

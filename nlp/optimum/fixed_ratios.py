@@ -61,7 +61,7 @@ def _answer(problem: Problem, shares: Array) -> Solution:
     h = shares * (least or min(1.0, most))
     h = np.clip(h, problem.duration_lower, problem.duration_upper)
     answer = _judged(problem, h)
-    if least > 0.0 or answer.durations is None:
+    if least > 0.0 or not answer.found:
         return answer
     why = "nothing that moves is limited, so that the total falls to 0"
     return replace(
@@ -119,7 +119,7 @@ def _judged(problem: Problem, h: Array) -> Solution:
         problem,
         Status.CONVERGED if optimal else Status.FEASIBLE,
         "; ".join(notes),
-        durations=passing,
+        vector=passing,
         check=check(problem, passing),
         route=Route.CLOSED_FORM,
         kkt_residual=report.residual,

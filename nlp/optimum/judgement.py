@@ -24,11 +24,11 @@ def better_of(one: Solution, other: Solution) -> Solution:
     one, other : Solution
         The time to build of the first, and iterations of both, go with the second.
     """
-    if other.durations is None:
+    if not other.found:
         return one
     shorter = other.best < one.best * (1 - BETTER)
     founded = other.best <= one.best * (1 + BETTER) and settled(other) and not settled(one)
-    if one.durations is not None and not shorter and not founded:
+    if one.found and not shorter and not founded:
         return one
     iterations = one.iterations + other.iterations
     return replace(other, build_seconds=one.build_seconds, iterations=iterations)
@@ -122,7 +122,7 @@ def judged(
         problem,
         status,
         why,
-        durations=durations,
+        vector=durations,
         nodal=nodal,
         check=verdict,
         route=route,

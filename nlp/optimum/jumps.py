@@ -106,7 +106,7 @@ def as_answer(problem: Problem, found: Solution) -> Solution | None:
     -------
     Solution or None
     """
-    if found.durations is None:
+    if not found.found:
         proved = found.status is Status.INFEASIBLE
         return replace(found, problem=problem) if proved and same_motions(problem) else None
     none = np.zeros((0, len(problem.joints)))

@@ -34,7 +34,7 @@ def with_other_route(solution: Solution) -> Solution:
     Solution
         With `other_total`, where the other route knows the curve and ends within the limits.
     """
-    if solution.durations is None or solution.infimum is not None:
+    if not solution.found or solution.infimum is not None:
         return solution
     total = _descended(solution) if solution.route is Route.NLP else _programmed(solution)
     return solution if total is None else replace(solution, other_total=total)

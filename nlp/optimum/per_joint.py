@@ -14,7 +14,7 @@ from .clock import time_up
 from .program import Program
 from .rounds import NEAR, constraints, near_rows
 from .rounds import OPTIONS as OPTIONS_OF_ROUNDS
-from .solution import Evidence, Solution, Status, weakest
+from .solution import Evidence, Solution, Status, no_motion, weakest
 from .solver import solve
 from .symbolic import ca
 
@@ -189,8 +189,9 @@ class PerJointSolution:
     problem : Problem
     joints : tuple of Solution
         One per joint.
-    durations : ndarray, shape (segments,), or None
-        Longest of the joints' durations, per segment.
+    vector : ndarray, shape (segments,), or None
+        Longest of the joints' durations, per segment; None where some joint has none. `durations`
+        is what users read.
     check : Check or None
         That vector judged with all joints.
     ranges : tuple of Range
@@ -200,7 +201,7 @@ class PerJointSolution:
 
     problem: Problem
     joints: tuple[Solution, ...]
-    durations: Array | None
+    vector: Array | None
     check: Check | None
     ranges: tuple[Range, ...]
     why: str | None
@@ -225,12 +226,25 @@ class PerJointSolution:
     @property
     def found(self) -> bool:
         """Whether every joint has durations."""
-        return self.durations is not None
+        return self.vector is not None
+
+    @property
+    def durations(self) -> Array:
+        """Longest of the joints' durations, s, shape (segments,).
+
+        Raises
+        ------
+        TrajgapError
+            If some joint has none, with the reason; `found` tells.
+        """
+        if self.vector is None:
+            raise no_motion(self.status, self.why)
+        return self.vector
 
     @property
     def total_time(self) -> float:
         """Total of the longest durations, s; inf without an answer."""
-        return float(self.durations.sum()) if self.durations is not None else float("inf")
+        return float(self.durations.sum()) if self.vector is not None else float("inf")
 
     @property
     def joint_evidence(self) -> Evidence:
@@ -240,16 +254,16 @@ class PerJointSolution:
     @property
     def evidence(self) -> Evidence:
         """Of the output, which is no optimum: best known at most, where every search converged."""
-        if self.durations is None:
+        if self.vector is None:
             return Evidence.NONE
         return weakest([Evidence.BEST_KNOWN, self.joint_evidence])
 
     def __str__(self) -> str:
         lines = [f"{self.problem.name}: each joint by itself, then the longest per segment"]
         for label, s in zip(self.problem.joints, self.joints, strict=True):
-            shown = ", ".join(f"{d:.4f}" for d in s.durations) if s.durations is not None else s.why
+            shown = ", ".join(f"{d:.4f}" for d in s.durations) if s.found else s.why
             lines.append(f"joint {label:<9} {s.total_time:.6f} s  ({shown})  {s.status}")
-        if self.durations is not None and self.check is not None:
+        if self.vector is not None and self.check is not None:
             lines.append(f"longest         {self.total_time:.6f} s, {self.check.verdict}")
         for r in self.ranges:
             lines.append(
@@ -288,14 +302,14 @@ def solve_per_joint(
     began = time.perf_counter()
     singles = [problem.joint(j) for j in range(problem.waypoints.shape[1])]
     solutions = tuple(map(solver, singles))
-    answers = [s.durations for s in solutions if s.durations is not None]
+    answers = [s.durations for s in solutions if s.found]
     ranges: list[Range] = []
     if len(answers) < len(solutions):
         durations, verdict = None, None
         why = "some joint has no feasible durations: " + "; ".join(
             f"joint {label}: {s.why}"
             for label, s in zip(problem.joints, solutions, strict=True)
-            if s.durations is None
+            if not s.found
         )
     elif problem.curve.free:
         durations, verdict = None, None

@@ -84,6 +84,11 @@ def weakest(evidence: Iterable[Evidence]) -> Evidence:
     return max(evidence, key=order.index, default=Evidence.NONE)
 
 
+def no_motion(status: Status, why: str | None) -> TrajgapError:
+    """The error of whoever asks an answer without a motion for it."""
+    return TrajgapError(f"no motion: {status}" + (f", {why}" if why else ""))
+
+
 @dataclass(frozen=True, eq=False)
 class Solution:
     """Answer of the exact side to a `Problem` with shared durations.
@@ -94,7 +99,8 @@ class Solution:
     status : Status
     why : str or None
         The reason, where the status needs one.
-    durations : ndarray, shape (segments,), or None
+    vector : ndarray, shape (segments,), or None
+        The durations, or None where there is no motion; `durations` is what users read.
     nodal : ndarray, shape (free, joints), or None
         Free derivatives of an under-determined curve.
     check : Check or None
@@ -123,7 +129,7 @@ class Solution:
     problem: Problem
     status: Status
     why: str | None = None
-    durations: Array | None = None
+    vector: Array | None = None
     nodal: Array | None = None
     check: Check | None = None
     route: Route | None = None
@@ -142,12 +148,25 @@ class Solution:
     @property
     def found(self) -> bool:
         """Whether there is a motion."""
-        return self.durations is not None
+        return self.vector is not None
+
+    @property
+    def durations(self) -> Array:
+        """Durations of the segments, s, shape (segments,).
+
+        Raises
+        ------
+        TrajgapError
+            If there is no motion, with the reason; `found` tells.
+        """
+        if self.vector is None:
+            raise no_motion(self.status, self.why)
+        return self.vector
 
     @property
     def total_time(self) -> float:
         """Sum of the durations, s; inf without an answer, so that no comparison passes."""
-        return float(self.durations.sum()) if self.durations is not None else float("inf")
+        return float(self.durations.sum()) if self.vector is not None else float("inf")
 
     @property
     def best(self) -> float:
@@ -178,7 +197,7 @@ class Solution:
     @property
     def evidence(self) -> Evidence:
         """Certified with a lower bound within 1 %; best known only where the search converged."""
-        if self.durations is None:
+        if self.vector is None:
             return Evidence.NONE
         if self.lower_bound is not None and close(self.lower_bound, self.best):
             return Evidence.CERTIFIED
@@ -194,8 +213,6 @@ class Solution:
         TrajgapError
             If there are no durations.
         """
-        if self.durations is None:
-            raise TrajgapError(f"no motion: {self.status}" + (f", {self.why}" if self.why else ""))
         return fit(self.problem.curve, self.problem.waypoints, self.durations, self.nodal)
 
     def sample(self, dt: float) -> Samples:
@@ -219,7 +236,7 @@ class Solution:
 
     def __str__(self) -> str:
         lines = [f"{self.problem.name}: {self.status}" + (f" ({self.why})" if self.why else "")]
-        if self.durations is not None and self.check is not None:
+        if self.vector is not None and self.check is not None:
             shown = ", ".join(f"{d:.6f}" for d in self.durations)
             lines += [
                 f"total time      {self.total_time:.9f} s  [{self.evidence}]",

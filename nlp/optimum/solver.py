@@ -170,9 +170,9 @@ def _solve_itself(problem: Problem, ask: Ask) -> Solution:
     else:
         solution = _shortened(problem, _widely(problem, ask), ask)
     solution = _finished(problem, _with_known(problem, solution, ask))
-    if solution.durations is None:
+    if not solution.found:
         solution = _without_jumps(problem, solution, ask.seed)
-    if solution.durations is None:
+    if not solution.found:
         solution = _stretched_start(problem, solution)
     return solution
 
@@ -182,7 +182,6 @@ def _finished(problem: Problem, solution: Solution) -> Solution:
     short = solution.status is Status.FEASIBLE and solution.route is Route.DESCENT
     if not (short and _sparse(problem)) or time_up():
         return solution
-    assert solution.durations is not None
     floor = np.minimum(made_up(problem, FLOORS[-1]), 0.5 * solution.durations)
     found = _rounds(problem, solution.durations[None], floor, None)
     return better_of(solution, judged(problem, found, floor, solution.starts, Route.NLP))
@@ -238,7 +237,7 @@ def _widely(problem: Problem, ask: Ask) -> Solution:
     wide = usual_basins(problem, ask.starts, ask.seed, floor)
     points = np.array([way_start(problem), *(basin.durations for basin in wide)])
     found = judged(problem, _rounds(problem, points, floor, None), floor, len(points), Route.NLP)
-    if found.durations is not None and found.status is not Status.NOT_ATTAINED:
+    if found.found and found.status is not Status.NOT_ATTAINED:
         shortest = min((basin.total for basin in wide if basin.excess <= 0.0), default=np.inf)
         if found.status is Status.CONVERGED and shortest >= found.total_time * (1 - BETTER):
             return found
@@ -271,16 +270,16 @@ def _searched(
         points = np.vstack([points, carried])
         found = exact_search(problem, points, floor)
         solution = judged(problem, found, floor, len(points))
-        if solution.durations is None and coarse is not None:
+        if not solution.found and coarse is not None:
             return coarse  # further down, rounding hides the limits
-        if solution.durations is None and ask.initial is None:
+        if not solution.found and ask.initial is None:
             more = anywhere(problem, ANYWHERE, ask.seed, floor)
             found += exact_search(problem, more, floor)
             solution = judged(problem, found, floor, len(found))
-            if solution.durations is None:
+            if not solution.found:
                 found += tolerated_search(problem, ask.starts, ask.seed, DEEPER[0])
                 least = judged(problem, found, made_up(problem, DEEPER[0]), len(found))
-                none = least.durations is None
+                none = not least.found
                 why = ONLY_TOLERANCE
                 return solution if none else replace(least, status=Status.FEASIBLE, why=why)
         if coarse is not None and solution.total_time > coarse.total_time * (1 + BETTER):
@@ -295,11 +294,9 @@ def _searched(
             return coarse if (h < made_up(problem, shares[k - 1])).any() else solution
         if coarse is not None:
             solution = _approached(problem, coarse, solution, shares[k - 1], share)
-            assert solution.durations is not None
             near = solution.total_time - solution.best <= APPROACHED * solution.total_time
             if near and not moving_at_floor(problem, solution.durations, floor):
                 return solution
-        assert solution.durations is not None
         coarse, carried = solution, solution.durations[None]
     assert coarse is not None
     return coarse
@@ -334,12 +331,10 @@ def _shortened(problem: Problem, solution: Solution, ask: Ask) -> Solution:
         return solution
     if not short_ways(problem):
         return solution
-    assert solution.durations is not None
     floor = made_up(problem, DEEPER[-1])
     ends = exact_search(problem, shortened(problem, solution.durations, floor), floor)
     found = judged(problem, ends, floor, len(ends))
     if found.status is Status.NOT_ATTAINED:
-        assert found.durations is not None
         found = _searched(problem, replace(ask, initial=found.durations[None]), shares=DEEPER)
     return replace(better_of(solution, found), starts=solution.starts + len(ends))
 
@@ -377,7 +372,6 @@ def _approached(
     problem: Problem, coarser: Solution, finer: Solution, wide: float, narrow: float
 ) -> Solution:
     """The infimum by extrapolating the totals at two floors to 0, along one basin."""
-    assert finer.durations is not None
     totals = [coarser.total_time]
     if problem.segments <= DENSE:
         again = exact_search(problem, finer.durations[None], made_up(problem, wide))

@@ -181,4 +181,4 @@ def _proved_answer(solution: Solution, durations: tuple[Fraction, ...]) -> Solut
     found = check(solution.problem, h)
     if found.verdict is not Verdict.PASS:
         return solution
-    return replace(solution, durations=h, check=found)
+    return replace(solution, vector=h, check=found)

@@ -104,7 +104,7 @@ def _searched(
     found: Solution, exact: ExactProblem | None, prove: float, seconds: float
 ) -> ProvedInterval | None:
     """What a branch and bound proves of an answer's problem, within a budget of boxes."""
-    if found.durations is None or found.infimum is not None or seconds <= 0:
+    if not found.found or found.infimum is not None or seconds <= 0:
         return None
     try:
         exact = exact or exact_problem(found.problem)

@@ -293,7 +293,7 @@ def answered(problem: Any, h: Array) -> str:
     known = float(h.sum())
     said = f"{answer.status} ({answer.why})"
     demand(answer.status != "infeasible", f"{said}, but durations of {known:.9g} s keep all")
-    demand(answer.durations is not None, f"{said}, but durations of {known:.9g} s keep all")
+    demand(answer.found, f"{said}, but durations of {known:.9g} s keep all")
     verdict = check(problem, answer.durations).verdict
     demand(verdict == "pass", f"{said}, but its durations are {verdict}")
     worse = answer.best > known * (1 + BEATEN)

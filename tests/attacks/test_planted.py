@@ -71,7 +71,7 @@ def longer(answer: Any) -> Any:
     """By one per mille."""
     both = (answer.durations, answer.infimum)
     durations, infimum = (None if x is None else x * 1.001 for x in both)
-    return replace(answer, durations=durations, infimum=infimum)
+    return replace(answer, vector=durations, infimum=infimum)
 
 
 def fails(*_: Any, **__: Any) -> Any:
@@ -126,7 +126,7 @@ FAULTS: dict[str, dict[str, Any]] = {
     "one per mille long": {"trajgap.nlp.solve": after(SOLVE, longer)},
     "all infeasible": {
         "trajgap.nlp.solve": after(
-            SOLVE, lambda one: replace(one, status=Status.INFEASIBLE, durations=None)
+            SOLVE, lambda one: replace(one, status=Status.INFEASIBLE, vector=None)
         )
     },
     "a fault": {

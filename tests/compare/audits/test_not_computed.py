@@ -237,11 +237,9 @@ def test_limits_that_hold_nothing_back_are_not_called_missing() -> None:
     """The total of a motion found is 0.01 s, what it approaches is 0, and a limit is stated."""
     limits = Limits(velocity=float("inf"), acceleration=2.0)
     problem = Problem([[0.0], [1.0]], limits, rest_to_rest(1, 5))
-    found = Solution(problem, Status.NOT_ATTAINED, durations=problem.duration_lower + 0.01)
+    found = Solution(problem, Status.NOT_ATTAINED, vector=problem.duration_lower + 0.01)
     assert found.boundless is None
-    none = Solution(
-        problem, Status.NOT_ATTAINED, durations=problem.duration_lower + 0.01, infimum=0.0
-    )
+    none = Solution(problem, Status.NOT_ATTAINED, vector=problem.duration_lower + 0.01, infimum=0.0)
     assert none.boundless is not None
     assert "without limits" not in none.boundless
 
@@ -249,7 +247,7 @@ def test_limits_that_hold_nothing_back_are_not_called_missing() -> None:
 def test_no_total_is_set_beside_an_infimum_that_rounding_keeps_from_zero() -> None:
     problem = Problem([[0.0], [1.0]], Limits(velocity=float("inf")), rest_to_rest(1, 5))
     found = Solution(
-        problem, Status.NOT_ATTAINED, durations=problem.duration_lower + 0.01, infimum=3.3e-14
+        problem, Status.NOT_ATTAINED, vector=problem.duration_lower + 0.01, infimum=3.3e-14
     )
     assert found.best == 0.0
     assert reference_of(found) is None

@@ -83,7 +83,7 @@ def test_position_limits_hold_for_virtual_breaks_and_between() -> None:
     wide = Problem(Q, LIMITS, curve, duration_lower=0.2)
     tight = Problem(Q, LIMITS.with_positions(LOW, HIGH), curve, duration_lower=0.2)
     free, held = solve(wide), solve(tight)
-    assert held.durations is not None
+    assert held.found
     assert free.nodal is not None
     beyond = check(tight, free.durations, free.nodal)
     assert beyond.verdict is Verdict.VIOLATED
@@ -111,7 +111,7 @@ def test_a_segment_at_a_virtual_break_that_shrinks_is_no_optimum() -> None:
     """Jerk is limited and snap is not: both ends may shrink until float64 loses the curve."""
     curve = quintic_spline_virtual(3)
     solution = solve(Problem(Q[:3, :1], Limits(1.1, 3.0, 20.0), curve), starts=2)
-    assert solution.durations is not None
+    assert solution.found
     assert solution.check.verdict is Verdict.PASS
     assert solution.status is Status.NOT_ATTAINED
     assert solution.why == "the total falls as the duration of segment 1, 4 goes to 0"

@@ -352,8 +352,8 @@ def test_the_benchmark_sees_wrong_words_and_improvable_answers() -> None:
     brute = errors.brute_force(problem, 0)
     good = solve(problem)
     assert errors.judged(good, brute) == ""
-    longer = replace(good, durations=1.01 * good.durations)
+    longer = replace(good, vector=1.01 * good.durations)
     assert errors.judged(longer, brute) == "improvable"
-    assert errors.judged(replace(good, durations=0.9 * good.durations), brute) != ""
+    assert errors.judged(replace(good, vector=0.9 * good.durations), brute) != ""
     lost = Solution(problem, Status.INFEASIBLE, "wrong")
     assert errors.judged(lost, brute) == "wrong infeasible"

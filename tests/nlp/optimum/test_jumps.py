@@ -95,7 +95,7 @@ def test_higher_degrees(curve: Interpolant, same: Interpolant) -> None:
     solution, other = solve(free_speeds(curve)), solve(free_speeds(same))
     assert solution.status is other.status is Status.CONVERGED
     assert solution.total_time == pytest.approx(other.total_time, rel=1e-12)
-    assert solution.durations is not None
+    assert solution.found
     assert check(free_speeds(curve), solution.durations, solution.nodal).verdict is Verdict.PASS
 
 
@@ -136,7 +136,7 @@ def test_infeasible_is_a_proof_for_the_first_problem_where_the_motions_are_the_s
     some = replace(free_speeds(jerk=np.array([6.3, np.inf])), duration_upper=np.full(3, 2.0))
     smooth = smoother(some)
     assert smooth is not None
-    found = replace(solve(smooth), status=Status.INFEASIBLE, durations=None, why="not this one")
+    found = replace(solve(smooth), status=Status.INFEASIBLE, vector=None, why="not this one")
     assert as_answer(some, found) is None
     alike = replace(free_speeds(), duration_upper=np.full(3, 2.0))
     answer = as_answer(alike, found)
@@ -391,7 +391,7 @@ def test_the_shortest_motion_without_a_jump_is_found() -> None:
     assert solution.status is Status.FEASIBLE
     assert "at which the motion does not jump" in str(solution.why)
     assert check(problem, solution.durations, solution.nodal).verdict is Verdict.PASS
-    assert solution.durations is not None
+    assert solution.found
     h = solution.durations
     assert mismatch(h, ONWARDS) == pytest.approx(0.0, abs=1e-8)
     assert tight_total(h, ONWARDS, V, A, J) == pytest.approx(h.sum(), rel=1e-8)

@@ -116,7 +116,7 @@ def test_a_search_among_singular_splines_ends() -> None:
 
 def test_a_value_approached_is_called_infimum_only_where_that_is_proved() -> None:
     problem = two_joints()
-    open_ = Solution(problem, Status.NOT_ATTAINED, durations=np.ones(3), infimum=2.5)
+    open_ = Solution(problem, Status.NOT_ATTAINED, vector=np.ones(3), infimum=2.5)
     assert "infimum" not in str(open_)
     assert "approached      2.500000000 s as a duration goes to 0: an estimate" in str(open_)
     assert "infimum" not in str(replace(open_, lower_bound=2.4))
@@ -131,7 +131,7 @@ def test_a_known_motion_counts_stretched_until_it_keeps_the_limits() -> None:
     poor = np.array([[9.0, 0.5, 0.5]])
     for factor in (0.3, 4.0):
         asked = solver.asked(problem, 1, 0, poor, factor * best.durations, None, 0.0)
-        worse = Solution(problem, Status.FEASIBLE, durations=poor[0])
+        worse = Solution(problem, Status.FEASIBLE, vector=poor[0])
         found = solver._with_known(problem, worse, asked)
         assert found.total_time == pytest.approx(best.total_time, rel=1e-8)
         assert found.check.verdict is Verdict.PASS

@@ -42,8 +42,8 @@ def test_the_procedure_is_the_longest_of_each_joints_own_optimum(reading: str) -
 def test_a_curve_with_free_derivatives_has_joint_optima_but_no_longest_motion() -> None:
     q = np.array([[0.2, -1.0], [0.9, 0.3], [0.4, 1.1], [1.3, 0.6]])
     answer = solve_per_joint(Problem(q, Limits(1.5, 4.0, joints=2), piecewise((5, 5, 5), 2)))
-    assert answer.durations is None
-    assert all(s.durations is not None for s in answer.joints)
+    assert not answer.found
+    assert all(s.found for s in answer.joints)
     assert "leaves 4 derivatives of each joint free" in answer.why
 
 
@@ -51,7 +51,7 @@ def test_a_joint_without_answer_leaves_the_procedure_without_one() -> None:
     q = np.array([[0.0, 0.0], [1.0, 1.0]])
     answer = solve_per_joint(Problem(q, Limits([1.0, 0.0], 2.0), rest_to_rest(1, 5)))
     assert answer.status is Status.INFEASIBLE
-    assert answer.durations is None
+    assert not answer.found
     assert "joint 2" in answer.why
     assert "joint 2" in str(answer)
 
@@ -61,7 +61,7 @@ def test_the_longest_of_searches_that_did_not_converge_is_not_called_best_known(
     with stopping_after(0.0):
         stopped = solve_per_joint(problem)
     assert {s.evidence for s in stopped.joints} == {Evidence.UNCONVERGED}
-    assert stopped.durations is not None
+    assert stopped.found
     assert stopped.evidence is Evidence.UNCONVERGED
     assert answered().evidence is Evidence.BEST_KNOWN
 

@@ -191,7 +191,7 @@ def test_an_answer_beyond_the_interval(factor: float, evidence: Evidence) -> Non
     """Below it it is not certified, and above it that of the certificate takes its place."""
     answer = known_study().optimum(*PAIR)
     h = answer.durations * factor
-    other = replace(answer, status=Status.CONVERGED, durations=h, lower_bound=None)
+    other = replace(answer, status=Status.CONVERGED, vector=h, lower_bound=None)
     found = with_interval(other, proved(COVERED_PROBLEMS[f"{IRB}.limit-80.waypoints-rad"]))
     assert found.evidence is evidence
     if factor > 1.0:
@@ -205,12 +205,12 @@ def test_an_answer_that_rounding_puts_below_the_bound_takes_the_proved_durations
     answer = solve(problem)
     bound = float(found.lower)
     below = answer.durations * (bound / answer.durations.sum()) * (1 - 1e-14)
-    kept = with_interval(replace(answer, durations=below, lower_bound=None), proved(exact))
+    kept = with_interval(replace(answer, vector=below, lower_bound=None), proved(exact))
     assert kept.evidence is Evidence.CERTIFIED
     assert sum(map(Fraction, kept.durations.tolist())) >= found.lower
     assert kept.check.peaks == check(problem, kept.durations).peaks
     farther = below * (1 - 1e-11)
-    short = with_interval(replace(answer, durations=farther, lower_bound=None), proved(exact))
+    short = with_interval(replace(answer, vector=farther, lower_bound=None), proved(exact))
     assert short.evidence is Evidence.BEST_KNOWN
 
 

@@ -104,14 +104,14 @@ def test_a_motion_that_starts_later_is_written_from_0():
 
 def test_a_solution_gives_its_motion():
     problem = Problem(WAYPOINTS, Limits(3.0, 9.0), three_five_three(), joints=NAMES)
-    answer = Solution(problem, Status.CONVERGED, durations=H)
+    answer = Solution(problem, Status.CONVERGED, vector=H)
     np.testing.assert_array_equal(answer.trajectory.breaks, motion().breaks)
     rows = answer.sample(0.05)
     assert rows.joints == NAMES
     np.testing.assert_array_equal(rows.position, motion()(rows.time))
     curve, nodal = piecewise((5, 5)), np.array([[0.4, -0.3], [0.2, 0.1]])
     free = Problem(WAYPOINTS[:3], Limits(3.0, 9.0), curve, joints=NAMES)
-    rows = Solution(free, Status.FEASIBLE, durations=H[:2], nodal=nodal).sample(0.1)
+    rows = Solution(free, Status.FEASIBLE, vector=H[:2], nodal=nodal).sample(0.1)
     truth = fit(curve, WAYPOINTS[:3], H[:2], nodal)
     np.testing.assert_array_equal(rows.velocity, truth(rows.time, 1))
     nothing = Solution(problem, Status.INFEASIBLE, "the reason")
