@@ -170,7 +170,7 @@ def test_links_inside_the_documents_resolve() -> None:
     broken = []
     for document in documents:
         for link in links(document.read_text(encoding="utf-8")):
-            if re.match(r"[a-z]+:", link) or link.startswith("generated/"):  # made by Sphinx
+            if re.match(r"[a-z]+:", link) or "generated/" in link:  # made by Sphinx
                 continue
             target, _, fragment = link.partition("#")
             path = document.parent / target if target else document
