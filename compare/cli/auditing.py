@@ -142,7 +142,7 @@ def audited(document: AuditDocument, cases: Sequence[Case]) -> list[RenderableTy
         parts += [line(""), *_time_goes(case.waterfalls, asked)]
         searches = list(by_search(case.reached).items())
         for title, runs in searches[:_SEARCHES]:
-            shown = [(one[0], one[1], one[3], one[5], one[6]) for one in map(reached_cells, runs)]
+            shown = [(one[0], one[1], one[3], one[6], one[7]) for one in map(reached_cells, runs)]
             parts += [
                 line(""),
                 line(f"How near its algorithms get: {title}"),

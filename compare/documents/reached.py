@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from .benched import TargetReached
-from .entry import Count, Entry, OrWhy, Why, value_or_none
+from .entry import Count, Entry, OrWhy, Why
 from .finding import Gap
 
 _NONE = "–"
@@ -94,6 +94,7 @@ REACHED_COLUMNS = (
     "limits broken in the search",
     "best, s",
     "median, s",
+    "quartiles, s",
     "gap of the best",
     "gap of the median",
     "no answer",
@@ -109,12 +110,17 @@ def reached_cells(one: Reached) -> tuple[str, ...]:
     return (
         one.name,
         one.handling.replace("-", " "),
-        *(f"{t:.4f}" if (t := value_or_none(total)) else _NONE for total in (one.best, one.median)),
+        *map(_seconds, (one.best, one.median)),
+        f"{_seconds(one.lower_quartile)} to {_seconds(one.upper_quartile)}",
         *(_NONE if isinstance(gap, Why) else gap.percent for gap in (one.best_gap, one.gap)),
         f"{one.unanswered} of {one.runs}",
         f"{one.budget:,}",
         *(_evaluations(target) for target in one.within),
     )
+
+
+def _seconds(total: float | Why) -> str:
+    return _NONE if isinstance(total, Why) else f"{total:.4f}"
 
 
 def _evaluations(target: TargetReached) -> str:
