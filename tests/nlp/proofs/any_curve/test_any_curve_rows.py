@@ -1,15 +1,13 @@
-"""The bound over all motions: dense grids, a linear program, identities, rows."""
+"""The bound over all motions: dense grids, identities, rows."""
 
 from __future__ import annotations
 
-from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from scipy.optimize import linprog
 from support.any_curve_proofs import certify_any, interval, proved
 from support.any_motions import verified
 from support.joint_splines import spline_problem
@@ -22,7 +20,7 @@ from trajgap.nlp.proofs.any_curve.tangents import KINDS, matrix
 from trajgap.nlp.proofs.document import certificate
 from trajgap.nlp.proofs.evidence import printed_problem_or_none
 from trajgap.nlp.proofs.exact import exact_problem
-from trajgap.nlp.proofs.outcome import Certified, Outcome
+from trajgap.nlp.proofs.outcome import Outcome
 from trajgap.problem import (
     ClampedBSpline,
     Knots,
@@ -36,15 +34,6 @@ from trajgap.verify import verify_certificate as verify
 from trajgap.verify.any_curve import _furthest as verified_reach
 
 Array = NDArray[np.float64]
-
-
-def test_a_joint_that_brakes_for_another_needs_boxes() -> None:
-    # Joint 1 would fly through the first segment, but joint 2 makes it last.
-    problem = spline_problem([[0.0, 0.0], [0.2, 1.0], [3.0, 1.1]], [3.0, 1.4], [2.0, 4.0])
-    found = certify_any(problem, gap=1e-7)
-    assert found.outcome is Outcome.CERTIFIED
-    assert found.nodes > 1
-    proved(found)
 
 
 def random_problem(rng: np.random.Generator, segments: int, joints: int) -> Problem:
@@ -90,54 +79,6 @@ def test_dense_grids_never_beat_the_bound_and_come_near_it(seed: int) -> None:
 @pytest.mark.parametrize("seed", [700, 701])
 def test_seven_segments_and_six_joints(seed: int) -> None:
     interval(random_problem(np.random.default_rng(seed), 7, 6), 1e-6)
-
-
-def discrete_motion(problem: Problem, h: Array, cells: int) -> bool:
-    """Whether a velocity that is linear on every cell keeps the limits: a linear program."""
-    steps = np.repeat(h / cells, cells)
-    n = len(steps)
-    areas = np.zeros((len(h), n + 1))
-    for i in range(n):
-        areas[i // cells, i : i + 2] += steps[i] / 2
-    change = np.eye(n + 1)[1:] - np.eye(n + 1)[:-1]
-    for j, (v, a) in enumerate(
-        zip(problem.limits.velocity, problem.limits.acceleration, strict=True)
-    ):
-        bounds = [(0, 0), *[(-v, v)] * (n - 1), (0, 0)]
-        found = linprog(
-            np.zeros(n + 1),
-            A_ub=np.vstack([change, -change]),
-            b_ub=np.tile(a * steps, 2),
-            A_eq=areas,
-            b_eq=np.diff(problem.waypoints[:, j]),
-            bounds=bounds,
-        )
-        if found.status == 2:
-            return False
-        assert found.status == 0
-    return True
-
-
-@pytest.mark.parametrize("seed", range(2))
-def test_fixed_durations_agree_with_a_linear_program(seed: int) -> None:
-    rng = np.random.default_rng(40 + seed)
-    problem = random_problem(rng, 3, 2)
-    shares = rng.uniform(0.5, 1.5, 3)
-    low, high = 0.1, 40.0
-    while high - low > 0.002 * high:
-        middle = (low + high) / 2
-        feasible = discrete_motion(problem, middle * shares, 48)
-        low, high = (low, middle) if feasible else (middle, high)
-
-    def fixed(scale: float) -> Certified:
-        h = scale * shares
-        found = certify_any(replace(problem, duration_lower=h, duration_upper=h))
-        proved(found)
-        return found
-
-    # The linear program is a restriction: its motions are motions.
-    assert fixed(high).outcome is Outcome.CERTIFIED
-    assert fixed(0.97 * low).outcome is Outcome.INFEASIBLE
 
 
 def test_too_short_upper_bounds_are_infeasible() -> None:
