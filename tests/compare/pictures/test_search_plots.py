@@ -82,7 +82,12 @@ def test_runs_without_an_answer_are_counted_not_drawn(runs: dict[str, list[Run]]
     picture = convergence({"swarm": [one, lost], "lost": [lost]}, 1.0, {}, title="Runs")
     assert "1 without answer" in picture.description
     assert "lost: no feasible answer in 1 runs" in picture.description
-    picture = endings({"swarm": [one, lost], "lost": [lost]}, {}, {}, title="Ends")
+    picture = endings(
+        {"swarm": np.array([one.reported_time, np.inf]), "lost": np.array([np.inf])},
+        {},
+        {},
+        title="Ends",
+    )
     assert "2 runs" in words(picture)
     assert "1 without answer" in words(picture)
     assert "1 runs, none with an answer" in words(picture)
