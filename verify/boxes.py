@@ -43,7 +43,7 @@ class Boxes(ProofKind[Sides]):
         Leaves that are judged together.
     """
 
-    apart = True
+    apart = 500  # a batch of leaves
     most: float
     stretches = True
     rows: Rows

@@ -263,9 +263,9 @@ class Centre:
             for a in range(4):
                 node = k[mine] + a % 2
                 on = (node > 0) & (node < n)
-                where, each = (at[on], k[mine][on], 2 * node[on] - 2 + a // 2), shape[mine][on]
-                np.add.at(phi[a // 2], where, each[:, a + 1])
-                np.add.at(phi[2 + a // 2], where, np.abs(each[:, a + 1]))
+                spots, each = (at[on], k[mine][on], 2 * node[on] - 2 + a // 2), shape[mine][on]
+                np.add.at(phi[a // 2], spots, each[:, a + 1])
+                np.add.at(phi[2 + a // 2], spots, np.abs(each[:, a + 1]))
             part_of = own._joint(task.steps[:, joint], phi)
             alone[:, leaf] += part_of["alone"]
             first[leaf] += part_of["first"]
@@ -376,9 +376,8 @@ class Part:
 
     def __init__(self, leading: Array, following: Array, later: Array) -> None:
         self.leading, self.following, self.later = leading, following, later
-        self.lengths, self.second = (
-            np.asarray(np.linalg.norm(x, axis=2).sum(axis=1)) for x in (leading, following)
-        )
+        self.lengths: Array = np.linalg.norm(leading, axis=2).sum(axis=1)
+        self.second: Array = np.linalg.norm(following, axis=2).sum(axis=1)
         # ‖Σ x_i v_i‖² ≤ Σ |v_iᵀv_j|, to which each vector adds a share.
         each = np.abs(leading @ np.swapaxes(leading, 1, 2)).sum(axis=2)
         self.first: Array = np.sqrt(each.sum(axis=1) + ROUND * self.lengths**2)
@@ -398,4 +397,5 @@ class Part:
         near += np.abs(self.following @ np.swapaxes(other.leading, 1, 2)).sum(axis=(1, 2))
         near += ROUND * (self.lengths * other.second + self.second * other.lengths)
         near += self.second * other.second
-        return near + (self.first + self.second) * other.later + self.later * other.most
+        near += (self.first + self.second) * other.later + self.later * other.most
+        return np.asarray(near)

@@ -21,9 +21,6 @@ Spread = Callable[[Callable[..., Any], Any, Iterable[tuple[Any, ...]]], Iterable
 _PARTS = 12
 """Parts of a tree, about: some for each of a few cores. One process walks what is above them, so
 that more would keep the others waiting."""
-_LEAST = 8
-"""Nodes of a part at least: fewer are not worth handing out."""
-
 CUT, LEAF, OPEN = "/", ".", "?"
 """Tags of a cut at a stated place, of a leaf, and of a leaf that nothing proves yet.
 
@@ -62,9 +59,9 @@ class ProofKind(ABC, Generic[B]):
     subject: ClassVar[Subject] = Subject.DECLARED
     keys: ClassVar[tuple[str, ...]] = ()
     """Of ``proof``, besides the three that all have."""
-    apart: ClassVar[bool] = False
-    """Whether what is below a box is judged by itself, so that parts of a tree may be judged in any
-    order and elsewhere: worth it where judging can take seconds."""
+    apart: ClassVar[int] = 0
+    """Nodes of a part at least where what is below a box is judged by itself, so that parts of a
+    tree may be judged in any order and elsewhere: fewer are not worth handing out. 0 without."""
 
     def __init__(
         self, problem: StatedProblem, proof: dict[str, Any], total: Fraction, clock: Clock
@@ -199,7 +196,7 @@ def _walked_above(
     kind: ProofKind[B], nodes: list[Any], sizes: list[int], clock: Clock
 ) -> Iterator[tuple[B, list[Any], int, float]]:
     """Walk through the nodes above the parts, and give each part with its box when it is due."""
-    most = max(_LEAST, len(nodes) // _PARTS)
+    most = max(kind.apart, len(nodes) // _PARTS)
     waiting, at = [kind.root()], 0
     while waiting:
         clock.check()

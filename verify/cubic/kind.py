@@ -22,7 +22,7 @@ class CubicSpline(ProofKind[Box]):
     """Boxes of durations, which steps narrow."""
 
     keys = ("powers", "second", "cap", "root", "rows")
-    apart = True
+    apart = 8  # each node is rational arithmetic
 
     def __init__(
         self, problem: StatedProblem, proof: dict[str, Any], total: Fraction, clock: Clock

@@ -23,6 +23,8 @@ from ....verify import WINDOW_UNIT
 
 _CELLS = 6
 """Of a segment in the linear program for ψ: it only proposes, the mean of |ψ| is exact later."""
+_TOGETHER = 12
+"""Linear programs in one: with more the solver is slower, with fewer what stands around it."""
 _TRIED = 4
 """Windows that are tried on a box with multipliers of the total: the nearest to excluding it."""
 _TURNS = (1.0, 0.7)
@@ -53,8 +55,8 @@ def window(steps: Array, durations: Array, limits: Array) -> list[list[int]]:
     ----------
     steps : ndarray, shape (segments, joints)
         rad.
-    durations : ndarray, shape (segments,)
-        s.
+    durations : ndarray, shape (segments, joints)
+        s; of a joint that comes twice they may differ.
     limits : ndarray, shape (joints, 2)
         Of velocity and acceleration, rad/s and rad/s²; inf for none, not both.
 
@@ -68,14 +70,14 @@ def window(steps: Array, durations: Array, limits: Array) -> list[list[int]]:
     rows = _conditions(n)
     free, limited = 2 * n + 1, np.isfinite(limits)
     pay = np.where(limited, limits, 0.0)
-    cells = pay[:, 1:] * np.repeat(durations, _CELLS) / _CELLS
+    cells = pay[:, 1:] * np.repeat(durations.T, _CELLS, axis=1) / _CELLS
     still = np.repeat(pay[:, :1], n, axis=1)
     price = np.concatenate([np.zeros((joints, free)), cells, still], axis=1)
     top = np.full(price.shape, np.inf)
     top[:, free : free + cells.shape[1]][~limited[:, 1]] = 0.0
     top[:, free + cells.shape[1] :][~limited[:, 0]] = 0.0
     gain = np.zeros_like(price)
-    gain[:, n + 1 : free] = -(steps / durations[:, None]).T
+    gain[:, n + 1 : free] = -(steps / durations).T
     low = np.where(np.arange(price.shape[1]) < free, -np.inf, np.zeros_like(price))
     solved = linprog(
         gain.ravel(),
@@ -122,7 +124,7 @@ def windows(
     deviation : float
         Of their log durations: within a factor of about e of the answer's.
     clock : callable, optional
-        Called before each direction; may raise.
+        Called now and then; may raise.
 
     Returns
     -------
@@ -133,13 +135,17 @@ def windows(
     n, joints = steps.shape
     library: list[list[int]] = []
     limited = [j for j in range(joints) if np.isfinite(limits[j, :2]).any() and steps[:, j].any()]
+    asked: list[tuple[int, Array]] = []
     for d in range(directions):
-        clock()
         spread = deviation * rng.standard_normal(n) if d else np.zeros(n)
         direction = durations * np.exp(spread)
-        direction *= durations.sum() / direction.sum()
-        each = window(steps[:, limited], direction, limits[limited, :2]) if limited else []
-        library += [[j, *found] for j, found in zip(limited, each, strict=True) if found]
+        asked += [(j, direction * durations.sum() / direction.sum()) for j in limited]
+    for at in range(0, len(asked), _TOGETHER):
+        clock()
+        which, near = zip(*asked[at : at + _TOGETHER], strict=True)
+        own = list(which)
+        found = window(steps[:, own], np.stack(near, axis=1), limits[own, :2])
+        library += [[j, *one] for j, one in zip(own, found, strict=True) if one]
     for j in limited:
         for k in range(n if np.isfinite(limits[j, 0]) else 0):
             mean = np.zeros(n, int)

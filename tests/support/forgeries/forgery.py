@@ -11,7 +11,6 @@ from contextlib import contextmanager
 from copy import deepcopy
 from dataclasses import dataclass, field
 from functools import cache
-from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -142,8 +141,7 @@ def judged(forgery: Forgery, folder: Path, patch: pytest.MonkeyPatch) -> Certifi
     else:
         source = altered(forgery.base, source)
     for name, value in forgery.patch.items():
-        module, _, what = name.rpartition(".")
-        patch.setattr(import_module(f"trajgap.verify.{module}"), what, value)
+        patch.setattr(f"trajgap.verify.{name}", value)
     return verify_certificate(source, spread=forgery.spread)
 
 

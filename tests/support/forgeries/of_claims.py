@@ -201,10 +201,10 @@ TREES = [
     Forgery("tree._walked_above: the tree is too deep", "cubic", _deep, spread=_here),
     Forgery("tree._walk_parts: why or ", "cubic-virtual",
             {"proof.tree.-1": ["?"]}, spread=_here),
-    # The cubic tree is one part below a chain of steps.
+    # Both trees are one part, the cubic one below a chain of steps.
     *(Forgery("tree._walk_parts: a part of the tree was not judged", kind, {}, spread=spread)
-      for kind, spread in (("cubic-virtual", _none), ("cubic-virtual", _lost),
-                           ("quintic-spline", _none), ("quintic-spline", _first),
-                           ("quintic-spline", _lost))),
+      for kind in ("cubic-virtual", "quintic-spline") for spread in (_none, _lost)),
+    Forgery("tree._walk_parts: a part of the tree was not judged", "quintic-spline", {},
+            {"boxes.Boxes.apart": 8}, spread=_first),
 ]  # fmt: skip
 FORGERIES = [*ANSWERS, *CLAIMS, *TREES]

@@ -37,7 +37,7 @@ def test_a_window_never_excludes_a_feasible_motion(limited: tuple[float, float])
         problem = Problem(q, Limits(*limited), quintic_spline(4))
         shares = rng.dirichlet(3.0 * np.ones(4), 60)
         feasible = shares * evaluate(problem, shares).stretch[:, None]
-        (found,) = window(np.diff(q, axis=0), feasible[0] * 0.6, np.array([limited]))
+        (found,) = window(np.diff(q, axis=0), feasible[0][:, None] * 0.6, np.array([limited]))
         session = Session(exact_problem(problem), Request())
         session.durations = tuple(Fraction(float(x)) for x in feasible[0])
         stages = module.QuinticStages(session)
