@@ -7,7 +7,7 @@ where durations are few, and a search in each decade of a segment between near w
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -130,51 +130,26 @@ def _first(problem: Problem, h: Array, box: LogBox) -> tuple[Array, Array, Array
     return np.concatenate(z), np.concatenate(excess), np.concatenate(total)
 
 
-@dataclass(frozen=True, eq=False)
-class Basin:
-    """One of the mutually distant best members.
-
-    Attributes
-    ----------
-    durations : ndarray, shape (segments,)
-        s.
-    excess : float
-        0 if the limits are kept.
-    total : float
-        s.
-    """
-
-    durations: Array
-    excess: float
-    total: float
-
-
-def usual_basins(problem: Problem, count: int, seed: int, floor: Array) -> list[Basin]:
-    """`basins` around equal durations, in the problem's whole box above the floors."""
-    generator = np.random.default_rng(seed)
-    return basins(problem, equal_start(problem), box_above(problem, floor), count, generator)
-
-
-def basins(
-    problem: Problem, base: Array, box: LogBox, count: int, generator: np.random.Generator
-) -> list[Basin]:
+def basins(problem: Problem, count: int, seed: int, floor: Array) -> Array:
     """The best mutually distant members of a differential evolution, best first.
 
     Parameters
     ----------
     problem : Problem
         With a determined curve of any kind.
-    base : ndarray, shape (segments,)
-        Usual durations, s, in the middle of the first population.
-    box : LogBox
     count : int
-        Most basins.
-    generator : numpy.random.Generator
+        Most members.
+    seed : int
+    floor : ndarray, shape (segments,)
+        Least durations, s.
 
     Returns
     -------
-    list of Basin
+    ndarray, shape (members, segments)
+        Durations, s.
     """
+    base, box = equal_start(problem), box_above(problem, floor)
+    generator = np.random.default_rng(seed)
     n = problem.segments
     size = min(MEMBERS * n, MOST_MEMBERS)
     z = np.log(base) + USUAL * generator.uniform(-1.0, 1.0, (size, n))
@@ -217,7 +192,7 @@ def basins(
             break
         if all(np.abs(z[i] - z[c]).max() > APART for c in chosen):
             chosen.append(int(i))
-    return [Basin(np.exp(z[i]), float(excess[i]), float(total[i])) for i in chosen]
+    return np.exp(z[chosen])
 
 
 def _grid_minima(problem: Problem, base: Array, box: LogBox) -> Array:
@@ -304,8 +279,7 @@ def tolerated_search(problem: Problem, count: int, seed: int, share: float) -> l
     descent needs room to move in: it is given half the tolerance, and `check` judges its end.
     """
     wide, floor = tolerated(problem), made_up(problem, share)
-    points = [basin.durations for basin in usual_basins(wide, count, seed, floor)]
-    ends = exact_search(wide, np.array(points), floor)
+    ends = exact_search(wide, basins(wide, count, seed, floor), floor)
     return [replace(end, feasible=kept(problem, check(problem, end.durations))) for end in ends]
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from ...problem import QUANTITIES, Array, Check, Problem, Verdict, check, half_range
 from .descent import descend
 from .optimality import Local
-from .starts import DENSE, LogBox
+from .starts import DENSE, LogBox, slowed
 
 ROUNDS = 6
 """Stretches that are tried: the bound on rounding errors changes little with each."""
@@ -133,9 +133,7 @@ def stretched(problem: Problem, h: Array, nodal: Array | None) -> tuple[Array, A
             return None
         if (longer > problem.duration_upper).any():
             return None
-        if nodal is not None:
-            orders = np.array([r for _, r in problem.piecewise.free_derivatives])[:, None]
-            nodal = nodal / factor**orders
+        nodal = None if nodal is None else slowed(problem, nodal, factor)
         h = longer
     return None
 

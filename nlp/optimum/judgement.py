@@ -137,19 +137,19 @@ def judged(
 
 
 def _sharper(problem: Problem, durations: Array, report: KKT) -> tuple[Array, KKT]:
-    """An answer sharpened by Newton steps, where that keeps the limits and the residual falls."""
+    """An answer sharpened by Newton steps, where it stays as short, within limits, and smooth."""
     h = sharpened(problem, durations)
-    if h is None:
-        return durations, report
-    stretch = check(problem, h).stretch
-    if not stretch <= 1 + ROUNDED:
+    stretch = np.inf if h is None else check(problem, h).stretch
+    if h is None or not stretch <= 1 + ROUNDED:
         return durations, report
     h = np.clip(h * max(1.0, stretch), problem.duration_lower, problem.duration_upper)
-    better = kkt(problem, h)
-    allowed = max(1e-15, check(problem, durations).max_violation)
-    if better.residual < report.residual and check(problem, h).max_violation <= allowed:
-        return h, better
-    return durations, report
+    before, after, better = check(problem, durations), check(problem, h), kkt(problem, h)
+    alike = (
+        h.sum() <= durations.sum() * (1 + ROUNDED)
+        and after.max_violation <= max(1e-15, before.max_violation)
+        and (kept(problem, after) or not kept(problem, before))
+    )
+    return (h, better) if alike and better.residual < report.residual else (durations, report)
 
 
 def still_falling(durations: Array, floor: Array) -> str | None:

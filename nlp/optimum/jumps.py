@@ -21,6 +21,7 @@ from .decided import decided, kept
 from .feasibility import apart
 from .program import free_values
 from .solution import Solution, Status
+from .starts import slowed
 
 
 def smoother(problem: Problem) -> Problem | None:
@@ -304,10 +305,7 @@ def _stretched(problem: Problem, places: list[tuple[int, int, int]], ratios: Arr
     nodal = None if found is None else found[0]
     stretch = float(check(problem, h, nodal).stretch)
     factor = float(np.max(problem.duration_lower / h, initial=stretch))
-    if nodal is None:
-        return h * factor, None
-    orders = np.array([r for _, r in problem.piecewise.free_derivatives])[:, None]
-    return h * factor, nodal / factor**orders
+    return h * factor, None if nodal is None else slowed(problem, nodal, factor)
 
 
 def _total(problem: Problem, places: list[tuple[int, int, int]], ratios: Array) -> float:

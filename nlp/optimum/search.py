@@ -36,7 +36,7 @@ from .rounds import (
     with_loaded,
 )
 from .spline_program import SplineProgram
-from .starts import DENSE, equal_start, stretching, worst_ratios
+from .starts import DENSE, equal_start, slowed, stretching, worst_ratios
 
 ROUNDS = 12
 """Most rounds of one attempt; three to six suffice where any number does."""
@@ -223,7 +223,4 @@ def within(problem: Problem, motion: Motion, excess: float) -> Motion:
         return motion
     factor = 1.0 + excess
     longer = np.clip(h * factor, problem.duration_lower, problem.duration_upper)
-    if nodal is not None:
-        orders = np.array([r for _, r in problem.piecewise.free_derivatives])[:, None]
-        nodal = nodal / factor**orders
-    return longer, nodal
+    return longer, None if nodal is None else slowed(problem, nodal, factor)

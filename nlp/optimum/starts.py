@@ -58,6 +58,12 @@ def first_nodal(problem: Problem) -> Array | None:
     return nodal
 
 
+def slowed(problem: Problem, nodal: Array, factor: float) -> Array:
+    """Free derivatives of a motion that is stretched in time by a factor."""
+    orders = np.array([r for _, r in problem.piecewise.free_derivatives])[:, None]
+    return nodal / factor**orders
+
+
 @lru_cache(maxsize=16)
 def stretching(problem: Problem) -> Problem:
     """The problem without the limits that no stretch repairs: sides of 0."""
@@ -241,12 +247,13 @@ def _with_tight(problem: Problem, known: Array, nodal: Array | None) -> tuple[Ar
         each = zip(known, nodal, strict=True)
         stretch = np.array([evaluate(problem, h[None], v).stretch[0] for h, v in each])
     usable = np.isfinite(stretch) & (stretch > 0) & (stretch != 1.0)
-    factor = stretch[usable, None]
-    inside = np.clip(known[usable] * factor, problem.duration_lower, problem.duration_upper)
+    factor = stretch[usable]
+    inside = np.clip(
+        known[usable] * factor[:, None], problem.duration_lower, problem.duration_upper
+    )
     if nodal is not None:
-        orders = np.array([r for _, r in problem.piecewise.free_derivatives])
-        values = nodal[usable] / (factor**orders)[:, :, None]
-        nodal = np.concatenate([nodal, values])
+        each = zip(nodal[usable], factor.tolist(), strict=True)
+        nodal = np.concatenate([nodal, *([slowed(problem, v, c)] for v, c in each)])
     return np.vstack([known, inside]), nodal
 
 

@@ -63,8 +63,8 @@ def test_the_answer_is_optimal_by_the_dense_conditions(name: str) -> None:
 def test_sensitivities_of_position_limits_are_differences_of_totals(
     monkeypatch: pytest.MonkeyPatch, shift: float, sparsely: bool
 ) -> None:
-    if not sparsely:
-        monkeypatch.setattr(solver, "SPARSE", 25)
+    if sparsely:
+        monkeypatch.setattr(solver, "SPARSE", 9)
     q = np.array([[0.0], [1.0], [0.95], [0.2], [0.25], [1.0], [0.9], [0.0], [0.1], [0.7]]) + shift
     low, high = np.array([shift - 0.003]), np.array([shift + 1.003])
     limits = Limits(3.0, 5.0, position_lower=low, position_upper=high)

@@ -40,6 +40,18 @@ def test_the_optimum_with_a_far_shorter_segment_is_found(name: str, seed: int) -
     assert solution.check.verdict is Verdict.PASS
 
 
+def test_a_way_of_a_four_thousandth_does_not_double_the_total() -> None:
+    """A wide search and one in each decade ended at 11.0149 s and called it converged."""
+    q = np.array(
+        [[1.484778779903787], [2.4527124613154476], [2.453231749977215], [3.635560953069724]]
+    )
+    limits = Limits(4.18091532271024, 1.5164655868293293, joints=1)
+    problem = Problem(q, limits, three_five_three())
+    h = np.array([2.508573678, 0.000448553, 3.063363273])
+    assert check(problem, h).verdict is Verdict.PASS
+    assert solve(problem).total_time <= h.sum()
+
+
 def test_the_same_reversed_in_time() -> None:
     problem, h = NEAR["one joint"]
     turned = replace(problem, waypoints=problem.waypoints[::-1])
