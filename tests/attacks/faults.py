@@ -351,6 +351,6 @@ ATTACKS = (
         "exit code 141, nothing on standard error",
         closed_pipe,
         0.3,
-        4,
+        2,
     ),
 )
