@@ -94,7 +94,7 @@ def papers_table() -> str:
     results = Results(RESULTS)
     lines = [
         "| paper | printed, s | optimum or best known, s | above it | evidence "
-        "| its algorithm, median of 100 runs | limits |",
+        "| its algorithm ends | limits |",
         "|---|---|---|---|---|---|---|",
     ]
     for name in results.names:

@@ -142,7 +142,7 @@ def audited(document: AuditDocument, cases: Sequence[Case]) -> list[RenderableTy
         parts += [line(""), *_time_goes(case.waterfalls, asked)]
         searches = list(by_search(case.reached).items())
         for title, runs in searches[:_SEARCHES]:
-            shown = [(one[0], one[1], one[3], one[6], one[7]) for one in map(reached_cells, runs)]
+            shown = [(*one[:3], one[5]) for one in map(reached_cells, runs)]
             parts += [
                 line(""),
                 line(f"How near its algorithms get: {title}"),
@@ -169,7 +169,7 @@ def _rows(case: AuditedCase) -> list[tuple[str, str, str]]:
 
 _SEARCHES = 2
 """Searches that a terminal shows, such as that of each joint by itself and of all together."""
-_RUNS = ("~algorithm", "limits broken", ">median s", ">its gap", ">no answer")
+_RUNS = ("~algorithm", "limits broken", ">median, its gap", ">no answer")
 """Of the columns that a page has, those that fit a terminal."""
 _REASONS = 3
 """Reasons that a terminal shows for claims that cannot be checked: enough for a first case, while

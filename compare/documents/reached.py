@@ -8,6 +8,8 @@ from .benched import TargetReached
 from .entry import Count, Entry, OrWhy, Why
 from .finding import Gap
 
+NO_BREAK = "\N{NO-BREAK SPACE}"
+"""The unit stays with its number on the narrowest screen."""
 _NONE = "–"
 """A cell without a value."""
 
@@ -92,11 +94,9 @@ REACHED_MEANING = (
 REACHED_COLUMNS = (
     "algorithm",
     "limits broken in the search",
-    "best, s",
-    "median, s",
+    "median, its gap",
+    "best, its gap",
     "quartiles, s",
-    "gap of the best",
-    "gap of the median",
     "no answer",
     "evaluations",
     "until 1 %",
@@ -110,13 +110,18 @@ def reached_cells(one: Reached) -> tuple[str, ...]:
     return (
         one.name,
         one.handling.replace("-", " "),
-        *map(_seconds, (one.best, one.median)),
+        _with_gap(one.median, one.gap),
+        _with_gap(one.best, one.best_gap),
         f"{_seconds(one.lower_quartile)} to {_seconds(one.upper_quartile)}",
-        *(_NONE if isinstance(gap, Why) else gap.percent for gap in (one.best_gap, one.gap)),
         f"{one.unanswered} of {one.runs}",
         f"{one.budget:,}",
         *(_evaluations(target) for target in one.within),
     )
+
+
+def _with_gap(total: float | Why, gap: Gap | Why) -> str:
+    beside = "" if isinstance(gap, Why) else f" s, {gap.percent.replace(' %', NO_BREAK + '%')}"
+    return f"{_seconds(total)}{beside}"
 
 
 def _seconds(total: float | Why) -> str:

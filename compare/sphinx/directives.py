@@ -316,7 +316,7 @@ class Papers(FromResults):
             known = [*best, word, reached_of(case), case["card"]["limits"], _counted(case)]
             rows.append([paper, *known])
         best_known = "optimum or best known, s"
-        above = ("above it", "evidence", "its algorithm, median of 100 runs")
+        above = ("above it", "evidence", "its algorithm ends")
         columns = ("paper", "printed, s", best_known, *above, "limits", "claims")
         return [table(columns, rows, "trajgap-sortable", "trajgap-papers")]
 
