@@ -1,0 +1,132 @@
+"""The path of a trajectory timed anew with limited jerk: a cross-check where TOPPRA says nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import casadi as ca
+import numpy as np
+
+from ...problem import Array, Limits, Trajectory
+from .path import jump
+
+CELLS = 240
+"""Cells of a path, shared out evenly over its segments: twice as many change the time by less than
+0.2 %, and take three times as long."""
+_STILL = 1e-9
+"""Speed at an end, beside the largest on the path, below which the motion is at rest there."""
+
+
+def retime_third_order(
+    trajectory: Trajectory, limits: Limits, cells: int = CELLS
+) -> tuple[float | None, int]:
+    """Shortest time along a path, s(t), with limits of velocity, acceleration and jerk.
+
+    The path is q(s) by the trajectory's own time s. On each cell s''' is constant; with v = s' and
+    a = s'' at its ends and its duration h
+
+        v₁ = v₀ + (a₀ + a₁) h/2,    Δs = v₀ h + (2 a₀ + a₁) h²/6,
+
+    and the limits hold at the ends of the cells, from inside:
+
+        |q′ v| ≤ V,   |q′ a + q″ v²| ≤ A,   |q′ s''' + 3 q″ v a + q‴ v³| ≤ J.
+
+    s(t) = t is one of the timings it chooses from, so that it ends at no more than the trajectory's
+    time wherever the trajectory keeps its limits. The ends keep their speed and acceleration.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        Polynomial in time, shared by all joints, without jumps of position and velocity.
+    limits : Limits
+    cells : int
+
+    Returns
+    -------
+    time : float or None
+        A local optimum, s; None where IPOPT finds none.
+    cells : int
+        How many there are.
+
+    Notes
+    -----
+    Between the ends of cells limits may be exceeded: the time informs and proves nothing.
+    """
+    each = max(2, cells // trajectory.durations.size)
+    count = each * trajectory.durations.size
+    sizes = np.repeat(trajectory.durations / each, each)
+    v, a, h = (ca.SX.sym(name, size) for name, size in (("v", count + 1), ("a", count + 1), ("h", count)))
+    jerk = (a[1:] - a[:-1]) / h
+    rows = [
+        v[1:] - v[:-1] - (a[:-1] + a[1:]) * h / 2,
+        (v[:-1] * h + (2 * a[:-1] + a[1:]) * h**2 / 6 - sizes) / sizes,
+    ]
+    equal = 2 * count
+    for first, second, third, at in _sides(trajectory, each):
+        v_, a_ = v[at : at + count], a[at : at + count]
+        for j in range(trajectory.joints):
+            q1, q2, q3 = (ca.DM(one[:, j]) for one in (first, second, third))
+            values = (q1 * v_, q1 * a_ + q2 * v_**2, q1 * jerk + 3 * q2 * v_ * a_ + q3 * v_**3)
+            caps = limits.derivatives[j]
+            rows += [value / cap for value, cap in zip(values, caps, strict=True) if np.isfinite(cap)]
+    g = ca.vertcat(*rows)
+    bound = np.concatenate([np.zeros(equal), np.ones(g.numel() - equal)])
+    solver = ca.nlpsol(
+        "third_order",
+        "ipopt",
+        {"x": ca.vertcat(v, a, h), "f": ca.sum1(h) / trajectory.total_time, "g": g},
+        {"ipopt.print_level": 0, "print_time": False, "ipopt.sb": "yes", "ipopt.max_iter": 500},
+    )
+    lower, upper = _bounds(trajectory, count)
+    start = np.concatenate([np.ones(count + 1), np.zeros(count + 1), sizes])
+    found = solver(x0=start, lbx=lower, ubx=upper, lbg=-bound, ubg=bound)
+    if not solver.stats()["success"]:
+        return None, count
+    return float(found["f"]) * trajectory.total_time, count
+
+
+def applies(trajectory: Trajectory, limits: Limits) -> bool:
+    """Whether a path can be timed so: equal limits of jerk, and a motion that does not jump."""
+    limited = np.isfinite(limits.jerk).any()
+    return bool(
+        limited
+        and not limits.uneven
+        and (limits.derivatives > 0).all()
+        and trajectory.polynomial_in_time
+        and trajectory.scaled[:, 1:].any()
+        and jump(trajectory) is None
+    )
+
+
+def _sides(trajectory: Trajectory, each: int) -> Iterator[tuple[Array, Array, Array, int]]:
+    """Derivatives by the path's parameter at the left and the right ends of all cells."""
+    edges = np.linspace(0.0, 1.0, each + 1)
+    for at, places in ((0, edges[:-1]), (1, edges[1:])):
+        by_order = [
+            np.concatenate(
+                [
+                    np.stack(
+                        [trajectory.values(k, j, r, places) for j in range(trajectory.joints)],
+                        axis=1,
+                    )
+                    for k in range(trajectory.durations.size)
+                ]
+            )
+            for r in (1, 2, 3)
+        ]
+        yield by_order[0], by_order[1], by_order[2], at
+
+
+def _bounds(trajectory: Trajectory, count: int) -> tuple[Array, Array]:
+    """Bounds of speeds, accelerations and durations; a moving end keeps v = 1 and a = 0."""
+    size = 2 * (count + 1) + count
+    lower, upper = np.full(size, -np.inf), np.full(size, np.inf)
+    lower[: count + 1] = 0.0
+    lower[2 * (count + 1) :] = 1e-6 * trajectory.total_time / count
+    speeds = np.abs(trajectory([0.0, trajectory.total_time], order=1)).max(axis=1)
+    top = max(float(np.abs(trajectory.derivatives(1)).sum(axis=0).max()), 1e-300)
+    for at, speed in ((0, speeds[0]), (count, speeds[1])):
+        if speed > _STILL * top:
+            lower[at] = upper[at] = 1.0
+            lower[count + 1 + at] = upper[count + 1 + at] = 0.0
+    return lower, upper
