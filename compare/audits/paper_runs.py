@@ -17,14 +17,18 @@ from .fixed_ratios import planned_apart
 from .study import Study
 
 RUNS_FORMAT: Literal["trajgap-paper-runs-1"] = "trajgap-paper-runs-1"
+"""Of the file of committed runs."""
 _RUNS = "paper_runs.json"
 """The committed runs: written by benchmarks/paper_runs.py, never by hand."""
 _ENDS = (0.0, 0.25, 0.5, 0.75)
 """Best, lower quartile, median, upper quartile."""
 _NO_ANSWER = "as many runs found no feasible answer"
+"""Why a quantile is missing."""
 _NO_OPTIMUM = "no optimum is known"
+"""Why a gap is missing."""
 
 Count = Annotated[int, Field(ge=0)]
+"""How many."""
 
 
 class _Strict(BaseModel):

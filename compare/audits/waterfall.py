@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from ...nlp import Evidence, Route, Solution, Status, printed_problem_or_none
 from ...nlp.proofs.any_curve import estimate_any_curve
-from ...nlp.retiming import retime
+from ...nlp.retiming import jerk_limited_path, retime, retime_third_order
 from ...problem import down, fit, up
 from ...problem.cases import (
     AnyClaim,
@@ -25,6 +25,7 @@ from ..documents import (
     RELAXED_RETIMED,
     SHARED_OPTIMUM,
     STAND_IN_OPTIMUM,
+    THIRD_ORDER,
     Step,
     Waterfall,
     Why,
@@ -229,6 +230,16 @@ def _retimed(name: str, solution: Solution) -> Step:
         return Step.missing(name, "no shortest motion, so no path")
     problem = solution.problem
     trajectory = fit(problem.curve, problem.waypoints, solution.durations, solution.nodal)
+    if name == OPTIMUM_RETIMED and jerk_limited_path(trajectory, problem.limits):
+        time, cells = retime_third_order(trajectory, problem.limits)
+        if time is None:
+            return Step.missing(name, "jerk is limited, and no timing of its path was found")
+        return Step(
+            name=THIRD_ORDER,
+            time=time,
+            evidence=Evidence.BEST_KNOWN,
+            note=f"an estimate: limits hold at the ends of {cells} cells, not between them",
+        )
     answer = retime(trajectory, problem.limits)
     if not answer.applicable or answer.extrapolated is None:
         return Step.missing(name, answer.why or "")

@@ -162,6 +162,7 @@ from .waterfall import (
     RELAXED_RETIMED,
     SHARED_OPTIMUM,
     STAND_IN_OPTIMUM,
+    THIRD_ORDER,
     Step,
     Waterfall,
 )
@@ -206,6 +207,7 @@ __all__ = [
     "SHARED_OPTIMUM",
     "STAND_IN_OPTIMUM",
     "TERMS",
+    "THIRD_ORDER",
     "TIMES",
     "UNCERTIFIED",
     "UNDECIDED",

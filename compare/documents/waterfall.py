@@ -25,7 +25,10 @@ FREED_OPTIMUM = "the same curve, each duration chosen"
 
 OPTIMUM_RETIMED = "TOPPRA on the path of that optimum"
 """Name of the step that cross-checks the optimum: no timing of its path is shorter."""
+THIRD_ORDER = "the path of that optimum, timed anew with limited jerk"
+"""Name of that step where jerk is limited, of which TOPPRA knows nothing."""
 RELAXED_RETIMED = "TOPPRA on the path of the relaxed family"
+"""Name of the same step below the relaxed family."""
 
 OPTIMA_STEPS = (SHARED_OPTIMUM, STAND_IN_OPTIMUM, RATIOS_OPTIMUM)
 """Names that the optimum of the declared curve may have."""

@@ -239,7 +239,7 @@ class Session:
             return True
         with self.sharing_the_time():
             solution = solve(self.floats, seed=self.request.seed, initial=initial)
-        tries = [h for h in (solution.durations, initial) if h is not None]
+        tries = [h for h in (solution.vector, initial) if h is not None]
         shorter = [self.offer(h) for h in tries]
         return any(shorter)
 

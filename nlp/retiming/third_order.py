@@ -1,13 +1,13 @@
-"""The path of a trajectory timed anew with limited jerk: a cross-check where TOPPRA says nothing."""
+"""A path timed anew with limited jerk: a cross-check where TOPPRA says nothing."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
-import casadi as ca
 import numpy as np
 
 from ...problem import Array, Limits, Trajectory
+from ..optimum.symbolic import ca
 from .path import jump
 
 CELLS = 240
@@ -55,7 +55,8 @@ def retime_third_order(
     each = max(2, cells // trajectory.durations.size)
     count = each * trajectory.durations.size
     sizes = np.repeat(trajectory.durations / each, each)
-    v, a, h = (ca.SX.sym(name, size) for name, size in (("v", count + 1), ("a", count + 1), ("h", count)))
+    v, a = (ca.SX.sym(name, count + 1) for name in "va")
+    h = ca.SX.sym("h", count)
     jerk = (a[1:] - a[:-1]) / h
     rows = [
         v[1:] - v[:-1] - (a[:-1] + a[1:]) * h / 2,
@@ -67,15 +68,22 @@ def retime_third_order(
         for j in range(trajectory.joints):
             q1, q2, q3 = (ca.DM(one[:, j]) for one in (first, second, third))
             values = (q1 * v_, q1 * a_ + q2 * v_**2, q1 * jerk + 3 * q2 * v_ * a_ + q3 * v_**3)
-            caps = limits.derivatives[j]
-            rows += [value / cap for value, cap in zip(values, caps, strict=True) if np.isfinite(cap)]
+            pairs = zip(values, limits.derivatives[j], strict=True)
+            rows += [value / cap for value, cap in pairs if np.isfinite(cap)]
     g = ca.vertcat(*rows)
     bound = np.concatenate([np.zeros(equal), np.ones(g.numel() - equal)])
     solver = ca.nlpsol(
         "third_order",
         "ipopt",
         {"x": ca.vertcat(v, a, h), "f": ca.sum1(h) / trajectory.total_time, "g": g},
-        {"ipopt.print_level": 0, "print_time": False, "ipopt.sb": "yes", "ipopt.max_iter": 500},
+        {
+            "ipopt.print_level": 0,
+            "print_time": False,
+            "ipopt.sb": "yes",
+            "ipopt.max_iter": 500,
+            # With the monotone strategy one random path in twelve ends nowhere.
+            "ipopt.mu_strategy": "adaptive",
+        },
     )
     lower, upper = _bounds(trajectory, count)
     start = np.concatenate([np.ones(count + 1), np.zeros(count + 1), sizes])
@@ -85,7 +93,7 @@ def retime_third_order(
     return float(found["f"]) * trajectory.total_time, count
 
 
-def applies(trajectory: Trajectory, limits: Limits) -> bool:
+def jerk_limited_path(trajectory: Trajectory, limits: Limits) -> bool:
     """Whether a path can be timed so: equal limits of jerk, and a motion that does not jump."""
     limited = np.isfinite(limits.jerk).any()
     return bool(

@@ -46,7 +46,7 @@ def fitted(
     """
     degrees, n = interpolant.degrees, len(interpolant.degrees)
     first = [sum(d + 1 for d in degrees[:k]) for k in range(n + 1)]
-    h = [Fraction(float(x)) for x in durations]
+    h = [Fraction(x) for x in durations]
     waypoints = iter(positions)
     matrix: list[list[Fraction]] = []
     right: list[Fraction] = []
@@ -63,11 +63,9 @@ def fitted(
 
     for b in range(n + 1):
         given = {order: Fraction(value) for order, value in interpolant.prescribed[b]}
-        given |= {
-            order: Fraction(float(value)) for (at, order), value in (extra or {}).items() if at == b
-        }
+        given |= {order: Fraction(value) for (at, order), value in (extra or {}).items() if at == b}
         if b not in interpolant.virtual:
-            given[0] = Fraction(float(next(waypoints)))
+            given[0] = Fraction(next(waypoints))
         for order, value in given.items():
             if b > 0:
                 state(derivative(b - 1, order, h[b - 1]), value)

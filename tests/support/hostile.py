@@ -29,6 +29,8 @@ def hostile_case(case_id: str = ID) -> Case:
     raw["source"]["note"] = IMAGE
     raw["source"]["doi"] = f"10.1/{IMAGE}"
     raw["robot"] = {"name": f"Arm {LINK}", "joints": [joint]}
+    del raw["equations"]  # they are about the robot's table
+    raw["claims"] = [claim for claim in raw["claims"] if claim.get("checks") != "equations"]
     for claim in raw["claims"]:
         claim["text"] = f"{claim['text']} {SCRIPT}{IMAGE}{LINK}\n# heading\n- item"
         claim["where"] = f"{claim['where']} {SCRIPT}|"

@@ -133,7 +133,7 @@ def _prove_total(session: Session) -> bool:
         if b is not None:
             _keep(session, "fixed-ratios", b.least, [b.joint, b.order, b.segment, b.place])
     answer = solve(session.floats)
-    if answer.durations is None or not session.offer(answer.durations):
+    if not answer.found or not session.offer(answer.durations):
         session.infeasible = any(
             top is not None and session.lower * share > top
             for share, top in zip(shares, exact.duration_upper, strict=True)

@@ -95,8 +95,10 @@ def test_a_crate_never_takes_the_place_of_a_file(
     assert not (tmp_path / "new.zip").exists()
 
 
-def test_no_command_prints_the_help(run: Run) -> None:
-    assert run() == run("--help")
+def test_no_command_says_how_to_begin_and_prints_the_help(run: Run) -> None:
+    begin, _, help_ = run()[1].partition("\n\n")
+    assert re.findall(r"^  trajgap (\w+)", begin, re.MULTILINE) == ["audit", "new", "check"]
+    assert help_ == run("--help")[1]
 
 
 def test_version(run: Run) -> None:

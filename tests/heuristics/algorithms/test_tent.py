@@ -9,9 +9,17 @@ from hypothesis import strategies as st
 from scipy.stats import qmc
 from trajgap.heuristics import DeathPenalty, ImprovedWOA
 from trajgap.heuristics.algorithms import TentRule, tent_population
-from trajgap.heuristics.algorithms.tent import exact_orbit, orbit
+from trajgap.heuristics.algorithms.tent import exact_orbit, orbit, tent
 from trajgap.heuristics.hazards import tent_collapse
 from trajgap.problem import Limits, Problem, TrajgapError, quintic_spline
+
+
+def test_equation_23_by_hand() -> None:
+    # β = 0.5, then β = 0.25: 0.125/0.25 = 0.5; 0.25/0.25 = 1; (1 − 0.4)/0.75 = 0.8.
+    assert tent(np.array([0.0, 0.125, 0.5, 0.75, 1.0])).tolist() == [0.0, 0.25, 1.0, 0.5, 0.0]
+    np.testing.assert_allclose(
+        tent(np.array([0.125, 0.25, 0.4, 1.0]), 0.25), [0.5, 1.0, 0.8, 0.0], rtol=1e-15
+    )
 
 
 @given(st.integers(0, 2**53 - 1))
