@@ -92,7 +92,7 @@ def routes(solution: Solution) -> tuple[str, ...]:
     """What found the total, and by how much the total of the other route differs."""
     if solution.route is None:
         return ()
-    found = f"found by {_FOUND[solution.route]}"
+    found = f"by {_FOUND[solution.route]}"
     if solution.other_total is None:
         return (found,)
     other = Route.DESCENT if solution.route is Route.NLP else Route.NLP

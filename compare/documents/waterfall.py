@@ -72,6 +72,4 @@ class Waterfall(Entry):
         if isinstance(why, Why):
             return (f"No optimum: {why}.",)
         beside = next((s.time for s in self.steps if s.name == OPTIMUM_RETIMED), None)
-        return (
-            (f"TOPPRA says nothing of this optimum: {beside}.",) if isinstance(beside, Why) else ()
-        )
+        return (f"TOPPRA is not asked: {beside}.",) if isinstance(beside, Why) else ()

@@ -13,8 +13,11 @@ from ...problem.cases import DurationsClaim
 from ...verify import shown_bound
 from ..audits import CaseAudit, Study, at_ratios, place, routes, searched_for
 from ..documents import (
+    OPTIMA_STEPS,
+    OPTIMUM_RETIMED,
     REACHED_COLUMNS,
     REACHED_MEANING,
+    THIRD_ORDER,
     Gap,
     Step,
     Waterfall,
@@ -47,6 +50,8 @@ _MANY = 10
 """Distance, as a share, beyond which a multiple says more than a percentage."""
 _SAME = 5e-4
 """Distance, as a share, whose one decimal is 0, so that its sign would say nothing."""
+_NOTED = (*OPTIMA_STEPS, OPTIMUM_RETIMED, THIRD_ORDER)
+"""Steps whose note stands in the open: the optimum, its proof and routes, and its cross-check."""
 _FEW = 3
 """Other readings of a problem that still get a picture each, and searches that stand open."""
 
@@ -80,8 +85,10 @@ def where_time_goes(one: CaseAudit) -> Section:
             shown = problem_name(one, pid, waterfall.reading)
             if waterfall.reading == main:
                 blocks.append(_distances(waterfall, shown))
-                blocks += [Prose(said, "note") for said in waterfall.without_optimum]
-                blocks.append(Folded(f"Picture: {shown}", (_drawn(one, waterfall),)))
+                notes = [Prose(said, "note") for said in waterfall.without_optimum]
+                blocks += [one for one in notes if one not in blocks]
+                inside = _drawn(one, waterfall), _steps(waterfall)
+                blocks.append(Folded(f"Picture and notes: {shown}", inside))
             elif len(others) <= _FEW:
                 inside = _drawn(one, waterfall), _steps(waterfall)
                 blocks.append(Folded(f"Other reading: {shown}", inside))
@@ -103,7 +110,8 @@ def reached_runs(one: CaseAudit) -> Section:
         )
         blocks += own if at < _FEW else [Folded(title, own)]
     if blocks:
-        blocks = [Prose(str(one.reached[0]), "lead"), *blocks, Prose(REACHED_MEANING, "note")]
+        meaning = Folded("How to read this", (Prose(REACHED_MEANING, "note"),))
+        blocks = [Prose(str(one.reached[0]), "lead"), *blocks, meaning]
     return Section("reached", "How near the paper's algorithms get", tuple(blocks))
 
 
@@ -111,11 +119,17 @@ def _distances(waterfall: Waterfall, caption: str) -> Grid:
     """Each step in seconds, and how far the first one lies above it."""
     first = next((s.time for s in waterfall.steps if not isinstance(s.time, Why)), None)
     rows = tuple(
-        (text(s.name), number(interval(s)), number(_above(first, s)), _evidence(s), text(s.note))
+        (
+            text(s.name),
+            number(interval(s)),
+            number(_above(first, s)),
+            _evidence(s),
+            text(s.note if s.name in _NOTED else None),
+        )
         for s in waterfall.steps
         if not isinstance(s.time, Why)
     )
-    names = ("step", "total", "the first against this", "evidence", "note")
+    names = ("step", "total", "the first against this", "evidence", "found how")
     return Grid(names, rows, caption).filled
 
 
