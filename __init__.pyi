@@ -1,6 +1,15 @@
-from .compare import AuditReport, audit, bench, write_report
+from .compare import AuditReport, audit, bench, gap, write_report
 from .nlp import Solution, certify, solve
-from .problem import Check, Limits, Problem, check, load_case
+from .problem import (
+    Check,
+    Limits,
+    Problem,
+    check,
+    cubic_spline,
+    load_case,
+    quintic_spline,
+    three_five_three,
+)
 from .verify import verify_certificate
 
 __version__: str
@@ -14,8 +23,12 @@ __all__ = [
     "bench",
     "certify",
     "check",
+    "cubic_spline",
+    "gap",
     "load_case",
+    "quintic_spline",
     "solve",
+    "three_five_three",
     "verify_certificate",
     "write_report",
 ]

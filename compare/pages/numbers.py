@@ -434,6 +434,6 @@ REPLAY_COLUMNS = (
     "shortest",
     "median",
     "longest",
-    "median beside the optimum",
+    "gap of the median",
 )
 """Columns of `replay_rows`."""
