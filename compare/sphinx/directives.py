@@ -14,6 +14,7 @@ from sphinx.util.docutils import SphinxDirective
 from ...problem import TrajgapError, file_name
 from ..audits import KEPT
 from ..documents import (
+    OPTIMA_STEPS,
     OWN_OPTIMA,
     REACHED_COLUMNS,
     REACHED_MEANING,
@@ -265,7 +266,11 @@ class WaterfallShown(FromResults):
                 drawn = waterfall_picture(found, title=case["title"])
                 place = file_name("waterfall", name, entry["problem"], entry["reading"])
                 every = steps(found)
-                return [*picture(drawn, place, every), *folded("Step by step", every.deepcopy())]
+                said = [f"{s.name}: {s.note}." for s in found.steps if s.name in OPTIMA_STEPS]
+                said = [one[:1].upper() + one[1:] for one in (*said, *found.without_optimum)]
+                notes = [paragraph(one, "trajgap-beside") for one in said]
+                shown = picture(drawn, place, every)
+                return [*shown, *notes, *folded("Step by step", every.deepcopy())]
         raise TrajgapError(f"{name}: no waterfall of {asked or 'any problem'}; look into the JSON")
 
 
