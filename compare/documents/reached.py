@@ -98,9 +98,7 @@ REACHED_COLUMNS = (
     "best, its gap",
     "quartiles, s",
     "no answer",
-    "evaluations",
-    "until 1 %",
-    "until 0.1 %",
+    "evaluations; until 1 %; 0.1 %",
 )
 """What a table says of each algorithm."""
 
@@ -114,8 +112,7 @@ def reached_cells(one: Reached) -> tuple[str, ...]:
         _with_gap(one.best, one.best_gap),
         f"{_seconds(one.lower_quartile)} to {_seconds(one.upper_quartile)}",
         f"{one.unanswered} of {one.runs}",
-        f"{one.budget:,}",
-        *(_evaluations(target) for target in one.within),
+        "; ".join([f"{one.budget:,}", *(_evaluations(target) for target in one.within)]),
     )
 
 
