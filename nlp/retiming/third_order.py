@@ -7,7 +7,6 @@ from collections.abc import Iterator
 import numpy as np
 
 from ...problem import Array, Limits, Trajectory
-from ..optimum.symbolic import ca
 from .path import jump
 
 CELLS = 240
@@ -52,6 +51,8 @@ def retime_third_order(
     -----
     Between the ends of cells limits may be exceeded: the time informs and proves nothing.
     """
+    import casadi as ca  # few need it, and it takes a while
+
     each = max(2, cells // trajectory.durations.size)
     count = each * trajectory.durations.size
     sizes = np.repeat(trajectory.durations / each, each)
