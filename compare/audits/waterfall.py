@@ -13,6 +13,7 @@ from ...problem.cases import (
     DurationsClaim,
     MaximumClaim,
     TimeClaim,
+    TotalTimeClaim,
 )
 from ...verify import shown_bound
 from ..documents import (
@@ -44,7 +45,10 @@ def waterfalls(study: Study) -> tuple[Waterfall, ...]:
 
 
 def _starting_claim(study: Study, pid: str) -> AnyClaim | None:
-    """The printed durations for all joints that the paper calls its result."""
+    """The printed durations for all joints that the paper calls its result.
+
+    None where those are of the state before an optimisation alone, and its result is a bare total.
+    """
     whole = [
         c
         for c in study.case.claims
@@ -52,7 +56,22 @@ def _starting_claim(study: Study, pid: str) -> AnyClaim | None:
         and study.fits(c, pid, study.main_reading)
         and (c.joint is None or len(study.problem(pid, study.main_reading).joints) == 1)
     ]
-    return own_result(study.case, whole)
+    found = own_result(study.case, whole)
+    if found is None or found.state != "before":
+        return found
+    printed_after = any(c.state is None and c.of is None for c in bare_totals(study, pid))
+    return None if printed_after else found
+
+
+def bare_totals(study: Study, pid: str) -> list[TotalTimeClaim]:
+    """Totals of all joints on the problem's own curve, printed apart from durations."""
+    return [
+        c
+        for c in study.case.claims
+        if isinstance(c, TotalTimeClaim)
+        and (c.joint, c.other_curve) == (None, None)
+        and c.problem in (None, pid)
+    ]
 
 
 def _known(name: str, solution: Solution, note: str = "") -> Step:
