@@ -99,7 +99,7 @@ def test_five_jerks_printed_after_are_those_before() -> None:
 
 
 def test_the_jerk_of_joint_4_is_above_its_limit_as_printed() -> None:
-    """133.0 °/s³. Its way is the longest: rounding of the points to 0.01 rad changes its jerk least.
+    """133.0 °/s³. Its way is the longest, so that rounding of the points to 0.01 rad matters least.
 
     Some motion within the rounding of all keeps every limit, so that the claim is supported.
     """
