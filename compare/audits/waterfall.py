@@ -45,9 +45,9 @@ def waterfalls(study: Study) -> tuple[Waterfall, ...]:
 
 
 def _starting_claim(study: Study, pid: str) -> AnyClaim | None:
-    """The printed durations for all joints that the paper calls its result.
+    """The printed time of all joints that the paper calls its result.
 
-    None where those are of the state before an optimisation alone, and its result is a bare total.
+    Durations where they are printed of a result; else a bare total, which says nothing of limits.
     """
     whole = [
         c
@@ -57,10 +57,10 @@ def _starting_claim(study: Study, pid: str) -> AnyClaim | None:
         and (c.joint is None or len(study.problem(pid, study.main_reading).joints) == 1)
     ]
     found = own_result(study.case, whole)
-    if found is None or found.state != "before":
+    if found is not None and found.state != "before":
         return found
-    printed_after = any(c.state is None and c.of is None for c in bare_totals(study, pid))
-    return None if printed_after else found
+    bare = [c for c in bare_totals(study, pid) if c.state is None and c.of is None]
+    return own_result(study.case, bare) or found
 
 
 def bare_totals(study: Study, pid: str) -> list[TotalTimeClaim]:
@@ -166,6 +166,10 @@ def _published(study: Study, claim: AnyClaim, pid: str, rid: str) -> list[Step]:
     total = study.claim_total(claim, rid)
     assert total is not None
     shown, (low, high) = total
+    if isinstance(claim, TotalTimeClaim):
+        time = study.case.measured(claim.value, "time", pid, rid).value
+        note = f"printed {shown} without durations{_beside(study, claim, pid, rid)}"
+        return [Step(name=PUBLISHED, time=time, low=low, high=high, note=note)]
     number = claim.total if isinstance(claim, DurationsClaim | MaximumClaim) else None
     value = None if number is None else study.case.measured(number, "time", pid, rid).value
     why = study.unmoved(claim, pid, rid)

@@ -197,7 +197,10 @@ def test_the_state_before_is_no_result_where_a_bare_total_is() -> None:
     ):
         one = audited_text(asked(*parts))
         assert one.card.optimum.startswith(said)
-        assert one.document.waterfalls[0].claim == (None if len(parts) > 2 else "before")
+        (found,) = one.document.waterfalls
+        assert (found.claim, found.steps[0].time) == (
+            ("after", 2.5) if len(parts) > 2 else ("before", 4.0)
+        )
 
 
 def test_a_row_on_another_curve_is_named_by_its_place_alone() -> None:
