@@ -24,6 +24,7 @@ from .own_result import own_result
 from .stated import other_objective, prints_durations
 from .stated_totals import contradicts_its_parts, other_totals
 from .study import Study
+from .waterfall import bare_totals
 
 _FEW = 2
 """Totals that are each set beside their optimum; more are counted."""
@@ -436,11 +437,4 @@ def _totalled(study: Study, waterfall: Waterfall) -> AnyClaim | None:
     """The printed total beside an optimum: that of the waterfall, else a bare one."""
     if waterfall.claim is not None:
         return study.case.claim(waterfall.claim)
-    bare = [
-        c
-        for c in study.case.claims
-        if isinstance(c, TotalTimeClaim)
-        and (c.joint, c.other_curve) == (None, None)
-        and c.problem in (None, waterfall.problem)
-    ]
-    return own_result(study.case, bare)
+    return own_result(study.case, bare_totals(study, waterfall.problem))

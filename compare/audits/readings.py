@@ -9,7 +9,7 @@ from math import exp, isfinite, log
 import numpy as np
 
 from ...problem import QUANTITIES, extrema, fit
-from ...problem.cases import AnyClaim
+from ...problem.cases import AnyClaim, TotalTimeClaim
 from ..documents import (
     Excess,
     Fit,
@@ -107,14 +107,14 @@ def _outcome(study: Study, waterfall: Waterfall) -> ReadingOutcome:
     if waterfall.claim is not None:
         claim = study.case.claim(waterfall.claim)
         unmoved = study.unmoved(claim, pid, rid)
-        if unmoved is None:
+        if unmoved is not None:
+            keeping, held = Why(unmoved), Why(unmoved)
+        elif not isinstance(claim, TotalTimeClaim):  # a total alone is no motion
             found = study.claim_check(claim, pid, rid)
             keeping = study.claim_keeping(claim, pid, rid)
             jumps = sum(jump.order == 1 for jump in found.jumps)
             held = held_otherwise(study, claim, pid, rid)
             stretch = found.stretch if isfinite(found.stretch) and found.stretch > 0 else None
-        else:
-            keeping, held = Why(unmoved), Why(unmoved)
         if keeping is Keeping.BREAKS:
             excesses = _excesses(study, claim, pid, rid)
         total = study.claim_total(claim, rid)

@@ -13,6 +13,7 @@ from ...problem.cases import (
     DurationsClaim,
     MaximumClaim,
     TimeClaim,
+    TotalTimeClaim,
 )
 from ...verify import shown_bound
 from ..documents import (
@@ -45,7 +46,10 @@ def waterfalls(study: Study) -> tuple[Waterfall, ...]:
 
 
 def _starting_claim(study: Study, pid: str) -> AnyClaim | None:
-    """The printed durations for all joints that the paper calls its result."""
+    """The printed time of all joints that the paper calls its result.
+
+    Durations where they are printed of a result; else a bare total, which says nothing of limits.
+    """
     whole = [
         c
         for c in study.case.claims
@@ -53,7 +57,22 @@ def _starting_claim(study: Study, pid: str) -> AnyClaim | None:
         and study.fits(c, pid, study.main_reading)
         and (c.joint is None or len(study.problem(pid, study.main_reading).joints) == 1)
     ]
-    return own_result(study.case, whole)
+    found = own_result(study.case, whole)
+    if found is not None and found.state != "before":
+        return found
+    bare = [c for c in bare_totals(study, pid) if c.state is None and c.of is None]
+    return own_result(study.case, bare) or found
+
+
+def bare_totals(study: Study, pid: str) -> list[TotalTimeClaim]:
+    """Totals of all joints on the problem's own curve, printed apart from durations."""
+    return [
+        c
+        for c in study.case.claims
+        if isinstance(c, TotalTimeClaim)
+        and (c.joint, c.other_curve) == (None, None)
+        and c.problem in (None, pid)
+    ]
 
 
 def _known(name: str, solution: Solution, note: str = "") -> Step:
@@ -148,6 +167,10 @@ def _published(study: Study, claim: AnyClaim, pid: str, rid: str) -> list[Step]:
     total = study.claim_total(claim, rid)
     assert total is not None
     shown, (low, high) = total
+    if isinstance(claim, TotalTimeClaim):
+        time = study.case.measured(claim.value, "time", pid, rid).value
+        note = f"printed {shown} without durations{_beside(study, claim, pid, rid)}"
+        return [Step(name=PUBLISHED, time=time, low=low, high=high, note=note)]
     number = claim.total if isinstance(claim, DurationsClaim | MaximumClaim) else None
     value = None if number is None else study.case.measured(number, "time", pid, rid).value
     why = study.unmoved(claim, pid, rid)

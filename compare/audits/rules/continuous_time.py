@@ -218,7 +218,7 @@ def _jumps(study: Study, claim: AnyClaim) -> Iterator[Finding]:
 def _limits_statement(study: Study, claim: StatementClaim) -> Iterator[Finding]:
     about = [study.case.claim(i) for i in claim.of]
     for rid in study.readings:
-        judged = [
+        judged: list[tuple[AnyClaim, str | None, _Judged]] = [
             (c, pid, _judged(study, c, pid, rid))
             for c in about
             for pid, reading in study.claim_pairs(c)
@@ -267,7 +267,9 @@ def _limits_statement(study: Study, claim: StatementClaim) -> Iterator[Finding]:
         )
 
 
-def _elsewhere(study: Study, claim: AnyClaim, rid: str) -> Iterator[tuple[AnyClaim, str, _Judged]]:
+def _elsewhere(
+    study: Study, claim: AnyClaim, rid: str
+) -> Iterator[tuple[AnyClaim, str | None, _Judged]]:
     """What is known of the limits where no motion is built: rows with blends have a rule."""
     rows = [row for row in judge_row(study, claim) if row.reading == rid]
     for row in rows:
@@ -277,7 +279,7 @@ def _elsewhere(study: Study, claim: AnyClaim, rid: str) -> Iterator[tuple[AnyCla
     if not rows:
         said = "No motion is built from these durations here, so that they are not judged."
         judged = _Judged(ClaimVerdict.NOT_CHECKABLE, Severity.INFO, said, _ELSEWHERE)
-        yield claim, str(claim.problem), judged
+        yield claim, claim.problem, judged
 
 
 def _continuity(study: Study, claim: StatementClaim) -> Iterator[Finding]:

@@ -103,7 +103,7 @@ def called(claim: AnyClaim) -> str:
     return claim.where.split(";")[0].strip()
 
 
-def called_under(claim: AnyClaim, pid: str) -> str:
+def called_under(claim: AnyClaim, pid: str | None) -> str:
     """A claim by its place, and the problem in brackets where the claim is about several."""
     return called(claim) if claim.problem == pid else f"{called(claim)} ({pid})"
 

@@ -187,6 +187,31 @@ def test_a_rival_is_not_where_it_starts(parts: tuple[str, ...], claim: str) -> N
     assert [one.claim for one in waterfalls(study_of(asked(*parts)))] == [claim]
 
 
+def test_the_state_before_is_no_result_where_a_bare_total_is() -> None:
+    """Yang et al. 2024 print durations before the optimisation, and a total alone after it."""
+    before, after = row("before", "4.00", state="before"), total("after", "2.50", algorithm="a")
+    for parts, said in (
+        ((before, algorithms("a"), after, gain("before", "after")), "2.50 s is "),
+        ((before,), "4.00 s is "),
+        ((before, total("again", "4.00", of="before")), "4.00 s is "),
+    ):
+        one = audited_text(asked(*parts))
+        assert one.card.optimum.startswith(said)
+        (found,) = one.document.waterfalls
+        assert (found.claim, found.steps[0].time) == (
+            ("after", 2.5) if len(parts) > 2 else ("before", 4.0)
+        )
+
+
+def test_a_row_on_another_curve_is_named_by_its_place_alone() -> None:
+    """Where a claim names no problem, no problem is named."""
+    rival = total("rival", "2.50", other_curve="cubic, set-up not stated")
+    one = audited_text(asked(OWN, rival, sentence("kept", "within_limits", "own", "rival")))
+    (said,) = [f for f in one.findings if f.claim == "kept"]
+    assert said.verdict is ClaimVerdict.NOT_CHECKABLE
+    assert "None" not in said.message
+
+
 def test_a_wrong_sum_breaks_no_limit() -> None:
     """1.00 and 1.00 s keep the limit of 2; that they do not sum to 3.00 is another fault."""
     for times, said in (
