@@ -21,8 +21,8 @@ from trajgap.compare.pages import write_report
 from trajgap.nlp import Solution, Status, solve
 from trajgap.problem import (
     CaseError,
-    Limits,
     Interpolant,
+    Limits,
     Problem,
     ProcessError,
     TrajgapError,

@@ -1,7 +1,7 @@
 """Exams, a library and papers, set beside what was computed apart from this project.
 
-The truths are those of the records that the case files were typed from: `scipy`'s splines, closed forms of
-the trapezoid and sums, each to the digits given here. Sources: the `[source]` of each case file.
+The truths are those of the records that the case files were typed from: splines of `scipy`, closed
+forms of the trapezoid, and sums, each to the digits given here. The files name their sources.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from trajgap.compare import CaseAudit, ClaimVerdict, audit
 from trajgap.compare.documents import Finding, Severity
 from trajgap.nlp import solve
 from trajgap.problem import load_case
+from trajgap.problem.cases import ValueClaim
 
 OPEN = {
     "feng2020-mopso-bspline": {"time-bound", "limits-kept"},
@@ -57,7 +58,13 @@ def said(name: str, rule: str) -> dict[str | None, Finding]:
     return {f.claim: f for f in examined(name).findings if f.rule == rule}
 
 
-@pytest.mark.parametrize("name", OPEN)
+SLOW = "sun2024-segment-assembly"
+"""Four optima of septic and quintic B-splines; one of them stands in a quick test."""
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[pytest.mark.slow] * (name == SLOW)) for name in OPEN]
+)
 def test_verdicts_are_those_of_the_record(name: str) -> None:
     one = examined(name)
     wanted = dict.fromkeys((claim.id for claim in one.case.claims), ClaimVerdict.SUPPORTED)
@@ -99,14 +106,14 @@ def test_the_spline_over_a_path_parameter() -> None:
 
 def test_the_library_prints_its_cubic_to_the_last_digit() -> None:
     case = examined("modern-robotics-joint-trajectory").case
+    values = {c.id: c for c in case.claims if isinstance(c, ValueClaim)}
     first, last = case.problem("trajectory").waypoints
     for u in (0.2, 0.4, 0.6, 0.8):
-        printed = [float(str(x)) for x in case.claim(f"after-{4 * u:.1f}-s").values]
-        np.testing.assert_allclose(
-            first + (last - first) * u * u * (3 - 2 * u), printed, atol=1e-12
-        )
+        printed = [float(str(x)) for x in values[f"after-{4 * u:.1f}-s"].values or ()]
+        truth = first + (last - first) * u * u * (3 - 2 * u)
+        np.testing.assert_allclose(truth, printed, rtol=0, atol=1e-12)
     u = 0.3
-    quintic = float(str(case.claim("quintic-after-0.6-s").value))
+    quintic = float(str(values["quintic-after-0.6-s"].value))
     assert quintic == pytest.approx(u**3 * (10 - 15 * u + 6 * u * u), abs=1e-12)
 
 
@@ -120,9 +127,12 @@ def test_ten_sums_are_their_totals_and_the_eleventh_is_not() -> None:
     assert found["comprehensive"].printed == "7.5786 s"
 
 
-def test_multi_objective_totals_lie_above_the_shortest_known() -> None:
-    """22.271 and 27.744 s are compromises: the shortest times stand beside them as information."""
-    found = said("sun2024-segment-assembly", "TG302")
-    assert set(found) == {"stage-1-shortest-time", "stage-2-shortest-time"}
-    for one in found.values():
-        assert float(str(one.computed).split()[0]) < float(str(one.printed).split()[0])
+def test_a_multi_objective_total_lies_above_the_shortest_known() -> None:
+    """27.744 s is a compromise: the shortest known time stands beside it as information."""
+    path = ROOT / "docs" / "examples" / f"{SLOW}.toml"
+    one = audit(path, seeds=2, certify_seconds=0, problem="stage-2", reading="degree-7").cases[0]
+    (beside,) = (f for f in one.findings if f.rule == "TG302")
+    assert (beside.claim, beside.printed) == ("stage-2-shortest-time", "27.744 s")
+    assert float(str(beside.computed).split()[0]) == pytest.approx(21.9238, rel=1e-4)
+    assert verdicts(one)["stage-2-shortest-time"] == ClaimVerdict.NOT_CHECKABLE
+    assert one.errors == 0
