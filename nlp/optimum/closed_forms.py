@@ -273,9 +273,9 @@ def unsearched(problem: Problem) -> Solution | None:
 
 def _unlimited(problem: Problem) -> Array | None:
     """Short durations, s, where no derivative, position or duration is limited from any side."""
-    limits, curve = problem.limits, problem.curve
+    limits = problem.limits
     limited = np.isfinite(limits.sides).any() or limits.limits_position
-    if limited or problem.duration_lower.any() or not curve.homogeneous:
+    if limited or problem.duration_lower.any():
         return None
     return UNLIMITED * equal_start(problem)
 

@@ -79,7 +79,7 @@ def clamped_readings(
     -------
     tuple of ClampedReading
         By degree, then knots, then parameters; stretched ones only where parameters come from
-        chords.
+        chords. Degrees not above the highest of `end_orders` are left out.
 
     Raises
     ------
@@ -96,7 +96,8 @@ def clamped_readings(
         raise TrajgapError("interpolant: at least two way-points are needed")
     found = []
     sources = [one for one in Parameters if one is not Parameters.GIVEN]
-    for degree, knots, parameters, time in product(degrees, RULES, sources, Timing):
+    able = [degree for degree in degrees if degree > max(end_orders, default=0)]
+    for degree, knots, parameters, time in product(able, RULES, sources, Timing):
         if time is Timing.STRETCHED and parameters is Parameters.TIMES:
             continue
         found.append(_read(waypoints, degree, knots, parameters, time, end_orders))

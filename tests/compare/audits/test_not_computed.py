@@ -21,6 +21,7 @@ from trajgap.compare.pages import write_report
 from trajgap.nlp import Solution, Status, solve
 from trajgap.problem import (
     CaseError,
+    Interpolant,
     Limits,
     Problem,
     ProcessError,
@@ -222,6 +223,15 @@ def test_terminal_pages_and_json_say_that_there_is_no_shortest_motion(
     shown = capsys.readouterr().out
     assert SAID in shown
     assert "0.000000" not in shown
+
+
+@pytest.mark.parametrize("degree", [3, 5])
+def test_ends_in_motion_need_no_time_either(degree: int) -> None:
+    """A cubic is determined; a quintic has coefficients left, as the relaxed family does."""
+    ends = ((1, -3.2),), (), ((1, 1.3),)
+    curve = Interpolant((degree,) * 2, (2,), ends)
+    free = solve(Problem([[1.2], [-0.8], [0.3]], Limits(), curve))
+    assert free.boundless == SAID
 
 
 def test_an_infimum_above_zero_keeps_its_number() -> None:

@@ -160,6 +160,13 @@ def test_other_end_conditions_are_counted_too() -> None:
             np.testing.assert_allclose(mine, other(at, order), rtol=0, atol=1e-10)
 
 
+def test_degrees_too_low_for_the_end_conditions_are_no_readings() -> None:
+    """A cubic has no second derivative to prescribe beside the first, nor a quartic a third one."""
+    assert {r.degree for r in clamped_readings(7, (1, 2, 3))} == {4, 5, 6, 7}
+    readings = clamped_readings(8, (1, 2, 3))
+    assert {r.degree for r in readings if r.knots == "waypoints" and r.curve} == {7}
+
+
 def test_few_waypoints() -> None:
     with pytest.raises(TrajgapError, match="at least two way-points"):
         clamped_readings(1)
