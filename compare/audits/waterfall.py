@@ -260,7 +260,6 @@ def _retimed(name: str, solution: Solution) -> Step:
         return Step(
             name=THIRD_ORDER,
             time=time,
-            evidence=Evidence.BEST_KNOWN,
             note=f"an estimate: limits hold at the ends of {cells} cells, not between them",
         )
     answer = retime(trajectory, problem.limits)

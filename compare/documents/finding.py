@@ -67,6 +67,13 @@ def percent_ends(low: float, high: float) -> tuple[str, str]:
     return shown_bound(low, "lower", places=places), shown_bound(high, "upper", places=places)
 
 
+def percent_digits(low: float, high: float) -> tuple[str, ...]:
+    """A range of percentages: one number where its three digits show no width, or both ends."""
+    if high - low < max(0.005 * abs(low), 5e-4):
+        return (f"{(low + high) / 2:.3g}",)
+    return percent_ends(low, high)
+
+
 class Gap(Entry):
     """Relative distance of a time from the optimum, never clipped."""
 
@@ -87,12 +94,7 @@ class Gap(Entry):
         """The interval in percent; a factor instead where the time is many times the reference."""
         if self.many_times:
             return f"{shown_bound(1 + self.lowest, 'lower', digits=4)} times the reference"
-        low, high = 100 * self.lowest, 100 * self.highest
-        narrow = high - low < max(0.005 * abs(low), 5e-4)
-        middle = (low + high) / 2
-        if narrow:
-            return f"{middle:+.3g} %"
-        ends = percent_ends(low, high)
+        ends = percent_digits(100 * self.lowest, 100 * self.highest)
         return f"{' to '.join(one if one.startswith('-') else f'+{one}' for one in ends)} %"
 
     def __str__(self) -> str:

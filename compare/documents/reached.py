@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 from .benched import TargetReached
 from .entry import Count, Entry, OrWhy, Why
-from .finding import Gap
+from .finding import Gap, percent_digits
 
 NO_BREAK = "\N{NO-BREAK SPACE}"
 """The unit stays with its number on the narrowest screen."""
@@ -49,9 +49,12 @@ class Reached(Entry):
 
     def __str__(self) -> str:
         """The median gap of the algorithm in a sentence."""
-        if isinstance(self.gap, Why):
+        if isinstance(self.median, Why):
             found = f"no answer in {self.unanswered} of {self.runs} runs"
             return f"The {self.name} finds {found}."
+        if isinstance(self.gap, Why):
+            end = f"ends at {self.median:.4f} s (median); {self.gap}"
+            return f"In {self.runs} runs, the {self.name} {end}."
         far = f"{apart(self.gap)} {self.beside}"
         return f"In {self.runs} runs, the {self.name} ends {far} (median)."
 
@@ -67,8 +70,9 @@ def apart(gap: Gap) -> str:
     """A gap in words: how far above, or below."""
     if gap.lowest < 0 < gap.highest:
         return f"{gap.percent} from"
-    side = "below" if gap.highest < 0 else "above"
-    return f"{gap.percent.replace('+', '').replace('-', '')} {side}"
+    side = "below" if gap.lowest < 0 else "above"
+    low, high = sorted((abs(100 * gap.lowest), abs(100 * gap.highest)))
+    return f"{' to '.join(percent_digits(low, high))} % {side}"
 
 
 def by_search(runs: Iterable[Reached]) -> dict[str, list[Reached]]:

@@ -338,11 +338,7 @@ def reached_picture(
         )
         for one in runs
     }
-    references = {
-        one.beside.removeprefix("the "): one.gap.reference.upper
-        for one in runs
-        if isinstance(one.gap, Gap)
-    }
+    references = {one.beside: one.gap.reference.upper for one in runs if isinstance(one.gap, Gap)}
     times = [
         step.time
         for waterfall in waterfalls

@@ -19,7 +19,7 @@ _STILL = 1e-9
 def retime_third_order(
     trajectory: Trajectory, limits: Limits, cells: int = CELLS
 ) -> tuple[float | None, int]:
-    """Shortest time along a path, s(t), with limits of velocity, acceleration and jerk.
+    """A locally shortest time along a path, s(t), with limits of velocity, acceleration and jerk.
 
     The path is q(s) by the trajectory's own time s. On each cell s''' is constant; with v = s' and
     a = s'' at its ends and its duration h
@@ -30,8 +30,8 @@ def retime_third_order(
 
         |q′ v| ≤ V,   |q′ a + q″ v²| ≤ A,   |q′ s''' + 3 q″ v a + q‴ v³| ≤ J.
 
-    s(t) = t is one of the timings it chooses from, so that it ends at no more than the trajectory's
-    time wherever the trajectory keeps its limits. The ends keep their speed and acceleration.
+    The search begins at s(t) = t, which is one of the timings that it chooses from wherever the
+    trajectory keeps its limits. An end in motion keeps its speed and acceleration.
 
     Parameters
     ----------
