@@ -8,24 +8,21 @@ from toppra import SplineInterpolator
 from toppra.algorithm import TOPPRA
 from toppra.constraint import JointAccelerationConstraint, JointVelocityConstraint
 from trajgap.compare.audits.study import Study
-from trajgap.compare.audits.waterfall import waterfalls
 from trajgap.compare.pages.blocks import Drawn
 from trajgap.compare.pages.exhibits import exhibits_of_motion, exhibits_of_search
 from trajgap.compare.pictures import ArmMotion, arm_picture
-from trajgap.compare.pictures.drawing import svg
-from trajgap.compare.pictures.waterfall import waterfall_picture
+from trajgap.compare.pictures.drawing import svg, themed
+from trajgap.compare.sphinx import Results, paper_rows, papers_drawn
 from trajgap.nlp import solve
 from trajgap.problem import Limits, Problem, Trajectory, file_name, fit, load_case, load_robot
 
 PICTURES = Path(__file__).parent / "pictures"
 
 
-def waterfall_puma560() -> str:
-    """Where the time goes in the puma560 paper, under its default reading."""
-    case = load_case("puma560-mnam-pso-353")
-    study = Study(case, seeds=2, reading=case.default_reading.id)
-    (waterfall,) = waterfalls(study)
-    return svg(waterfall_picture(waterfall, title="PUMA 560, 3-5-3: where the time goes"))
+def papers() -> str:
+    """Every audited paper that minimises time alone, beside its optimum."""
+    rows = paper_rows(Results(PICTURES.parent / "results"), "paper")
+    return themed(svg(papers_drawn(rows)))
 
 
 EXHIBITS = {
@@ -103,6 +100,6 @@ def arm() -> str:
 if __name__ == "__main__":
     (PICTURES / "arm-puma560.html").write_text(arm(), encoding="utf-8")
     PICTURES.mkdir(exist_ok=True)
-    (PICTURES / "waterfall-puma560.svg").write_text(waterfall_puma560(), encoding="utf-8")
+    (PICTURES / "papers.svg").write_text(papers(), encoding="utf-8")
     for name, document in exhibits():
         (PICTURES / f"{name}.svg").write_text(document, encoding="utf-8")

@@ -15,7 +15,7 @@ from pathlib import Path
 
 from trajgap.compare.audits import audit
 from trajgap.compare.documents import AuditDocument, json_text
-from trajgap.compare.sphinx import Results, distance_of, reached_of
+from trajgap.compare.sphinx import COLUMNS, Results, paper_rows
 from trajgap.problem import file_name, published_ids
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -91,20 +91,10 @@ def _said(text: str) -> None:
 
 def papers_table() -> str:
     """The table of the audited papers as the README shows it."""
-    results = Results(RESULTS)
-    lines = [
-        "| paper | printed, s | optimum or best known, s | above it | evidence "
-        "| its algorithm ends | limits |",
-        "|---|---|---|---|---|---|---|",
-    ]
-    for name in results.names:
-        case = results.case(name)
-        if case["source"]["kind"] != "paper":
-            continue
-        printed = " | ".join((*distance_of(case), reached_of(case)))
-        lines.append(
-            f"| [{case['title']}](docs/reports/{name}.md) | {printed} | {case['card']['limits']} |"
-        )
+    lines = [f"| {' | '.join(COLUMNS)} |", "|---" * len(COLUMNS) + "|"]
+    for row in paper_rows(Results(RESULTS), "paper"):
+        paper = f"[{row.cited or row.title}](docs/reports/{row.name}.md)"
+        lines.append(f"| {' | '.join((paper, *row.cells))} |")
     return "\n".join(lines) + "\n"
 
 

@@ -14,8 +14,17 @@ from ...problem.cases import (
     TotalTimeClaim,
 )
 from ...verify import shown_bound
-from ..documents import Cause, ClaimVerdict, Finding, Gap, Severity, among, first_sentence, quoted
-from .card_optimum import at_least_percent
+from ..documents import (
+    Cause,
+    ClaimVerdict,
+    Finding,
+    Gap,
+    Severity,
+    among,
+    at_least_percent,
+    first_sentence,
+    quoted,
+)
 from .roots import TABLES
 from .stated import place, spoken
 
@@ -80,12 +89,12 @@ def _plain(
     where = " and ".join(dict.fromkeys(map(place, claims)))
     printed, computed = head.printed or "", head.computed or ""
     sentence = {
-        "TG101": f"In {where} the parts add up to {computed}, not {printed}",
+        "TG101": f"{_inside(where)} the parts add up to {computed}, not {printed}",
         "TG102": f"The longest durations in {where} are not those of its rows",
         "TG103": f"From the printed totals {_claimed(claim)} would be {computed}, not {printed}",
         "TG105": f"{place(claim)} prints {printed} for a total that {_other(case, head)} gives as "
         f"{computed}",
-        "TG107": f"In {where} there are {computed}{f', not {printed}' if printed else ''}",
+        "TG107": f"{_inside(where)} there are {computed}{f', not {printed}' if printed else ''}",
         "TG109": f"{where} prints {printed}, and the curve has {computed}",
         "TG201": f"The total in {where} is shorter than any motion within the limits"
         if isinstance(claim, TotalTimeClaim)
@@ -173,6 +182,11 @@ def _other(case: Case, head: Finding) -> str:
     """The other place of a contradiction."""
     places = [place(case.claim(one)) for one in head.between if one != head.claim]
     return places[0] if places else "another place"
+
+
+def _inside(where: str) -> str:
+    """A place as the beginning of a sentence."""
+    return f"{'On' if where.startswith('page') else 'In'} {where}"
 
 
 def _capital(text: str) -> str:

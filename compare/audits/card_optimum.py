@@ -17,7 +17,16 @@ from ...problem.cases import (
     TotalTimeClaim,
 )
 from ...verify import shown_bound
-from ..documents import CaveatKind, ClaimVerdict, Judgement, Keeping, Waterfall, count_words, ranged
+from ..documents import (
+    CaveatKind,
+    ClaimVerdict,
+    Judgement,
+    Keeping,
+    Waterfall,
+    at_least_percent,
+    count_words,
+    ranged,
+)
 from .digit_ranges import all_exact, optimum_range
 from .fixed_ratios import at_ratios, off_ratios, planned_apart
 from .own_result import own_result
@@ -328,14 +337,6 @@ def _bounded(least: float, share: float, most: float | None) -> tuple[str, str]:
     if share >= _MANY_TIMES:
         return "at least ", f"{shown_bound(1 + least, 'lower', places=1)} times"
     return "at least ", at_least_percent(least)
-
-
-def at_least_percent(share: float) -> str:
-    """A share as a percentage that is not larger: a decimal, or two digits below 1 %."""
-    percent = 100 * share
-    if percent >= 1:
-        return f"{shown_bound(percent, 'lower', places=1)} %"
-    return f"{shown_bound(percent, 'lower', digits=2)} %"
 
 
 def _printed_range(

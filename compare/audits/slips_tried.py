@@ -83,11 +83,13 @@ class _Judged:
     """Of the durations that the explained finding is about."""
     reached: bool
     """Whether these durations use a limit up, as their digits go."""
+    cut: bool
+    """Whether the numbers fit only if digits were cut off or rounded up."""
 
     @property
-    def rank(self) -> tuple[int, bool, int]:
-        """The better explanation first: less left, a limit reached, fewer slips."""
-        return len(self.left), not self.reached, self.slip.slips
+    def rank(self) -> tuple[int, bool, bool, int]:
+        """The better explanation first: less left, digits rounded, a limit reached, fewer slips."""
+        return len(self.left), self.cut, not self.reached, self.slip.slips
 
 
 def explained_by_slips(
@@ -259,7 +261,8 @@ def _judge(
         touched = _touched(changed.case, finding, slip)
         # Most changes leave the finding as it is, which its own rule says without all others.
         own = [c for c in touched if c.id == finding.claim]
-        if (finding.rule, finding.claim) in _of(_findings(changed, pair, own, {finding.rule})):
+        alone = _findings(changed, pair, own, {finding.rule})
+        if (finding.rule, finding.claim) in _of(alone):
             return None
         after = _of(_findings(changed, pair, touched, _rules(finding)))
         after |= {one for one in before if one[1] not in {c.id for c in touched}}
@@ -270,7 +273,8 @@ def _judge(
         rounding = changed.claim_rounding(row, *pair).verdict if timed else None
     except TrajgapError:
         return None
-    return _Judged(slip, tuple(sorted(settled)), after, rounding, reached)
+    cut = finding.rule in _OF_DIGITS and any(f.severity is not Severity.INFO for f in alone)
+    return _Judged(slip, tuple(sorted(settled)), after, rounding, reached, cut)
 
 
 def _effect(study: Study, one: _Judged, row: AnyClaim, all_kept: str) -> str:
@@ -286,6 +290,7 @@ def _effect(study: Study, one: _Judged, row: AnyClaim, all_kept: str) -> str:
     parts += [_SETTLED[rule] for rule in one.settled if rule in _SETTLED]
     *most, last = parts
     said = f"Then {', '.join(most)} and {last}" if most else f"Then {last}"
+    said += " if digits were cut off or rounded up" if one.cut else ""
     if broken and row not in broken:
         places = " and ".join(dict.fromkeys(place(c) for c in broken))
         said += f"; those in {places} still break one"

@@ -30,7 +30,9 @@ from ..documents import (
     Step,
     Waterfall,
     Why,
+    known,
 )
+from .digit_ranges import optimum_range
 from .fixed_ratios import off_ratios, planned_apart
 from .own_result import own_result
 from .stated import other_objective
@@ -144,7 +146,12 @@ def _waterfall(study: Study, pid: str, rid: str) -> Waterfall:
         reading=rid,
         claim=claim.id if claim is not None else None,
         steps=tuple(steps),
+        longest_optimum=known(_longest_optimum(study, claim, pid, rid), "not bounded"),
     )
+
+
+def _longest_optimum(study: Study, claim: AnyClaim | None, pid: str, rid: str) -> float | None:
+    return None if claim is None else optimum_range(study, claim, pid, rid).upper
 
 
 def _stands_in(study: Study) -> bool:

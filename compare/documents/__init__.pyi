@@ -55,6 +55,7 @@ from .finding import (
     Gap,
     Judgement,
     Reference,
+    at_least_percent,
     percent_ends,
 )
 from .instances import (
@@ -322,6 +323,7 @@ __all__ = [
     "WrittenMotion",
     "among",
     "apart",
+    "at_least_percent",
     "bench_cells",
     "built_remark",
     "by_search",

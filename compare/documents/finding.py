@@ -74,6 +74,14 @@ def percent_digits(low: float, high: float) -> tuple[str, ...]:
     return percent_ends(low, high)
 
 
+def at_least_percent(share: float) -> str:
+    """A share as a percentage that is not larger: a decimal, or two digits below 1 %."""
+    percent = 100 * share
+    if percent >= 1:
+        return f"{shown_bound(percent, 'lower', places=1)} %"
+    return f"{shown_bound(percent, 'lower', digits=2)} %"
+
+
 class Gap(Entry):
     """Relative distance of a time from the optimum, never clipped."""
 

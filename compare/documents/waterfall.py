@@ -64,6 +64,8 @@ class Waterfall(Entry):
     claim: str | None
     """The printed durations for all joints of the problem; null if none are printed."""
     steps: tuple[Step, ...]
+    longest_optimum: OrWhy[float] = Why("not bounded")
+    """Longest optimum of all problems whose way-points and limits round to the digits, s."""
 
     @property
     def without_optimum(self) -> tuple[str, ...]:

@@ -4,6 +4,7 @@ from .gap_bands import Anytime, gap_picture, profile_picture
 from .instances import instances_picture
 from .jumps import jump_picture, velocity_jumps
 from .motion import motion_picture
+from .papers import PaperBar, papers_picture
 from .polygon import polygon_picture
 from .searches import Runs, convergence, endings, reached_picture
 from .tent import tent_picture, tent_scatter
@@ -16,6 +17,7 @@ __all__ = [
     "THEME",
     "Anytime",
     "ArmMotion",
+    "PaperBar",
     "Picture",
     "Runs",
     "arm_picture",
@@ -27,6 +29,7 @@ __all__ = [
     "jump_picture",
     "landscape",
     "motion_picture",
+    "papers_picture",
     "polygon_picture",
     "profile_picture",
     "reached_picture",

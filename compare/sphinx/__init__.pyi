@@ -1,4 +1,13 @@
 from .extension import setup
-from .results import Results, distance_of, reached_of
+from .papers import COLUMNS, distance_of, paper_row, paper_rows, papers_drawn
+from .results import Results
 
-__all__ = ["Results", "distance_of", "reached_of", "setup"]
+__all__ = [
+    "COLUMNS",
+    "Results",
+    "distance_of",
+    "paper_row",
+    "paper_rows",
+    "papers_drawn",
+    "setup",
+]

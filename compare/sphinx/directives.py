@@ -11,6 +11,7 @@ from docutils import nodes
 from docutils.parsers.rst import directives
 from sphinx.util.docutils import SphinxDirective
 
+from ...nlp import Evidence
 from ...problem import TrajgapError, file_name
 from ..audits import KEPT
 from ..documents import (
@@ -22,7 +23,6 @@ from ..documents import (
     Keeping,
     Reached,
     by_search,
-    counted,
     more_errors,
     qualified,
     reached_cells,
@@ -31,17 +31,16 @@ from ..documents import (
 )
 from ..pictures import reached_picture, waterfall_picture
 from .claim_words import none_said, wanted_words
+from .papers import COLUMNS, PaperRow, paper_rows, papers_drawn, reference
 from .parts import badge, folded, paragraph, picture, steps, table
 from .proofs import proved_again
 from .reasons import names as reading_names
 from .reasons import reasons
-from .results import Results, distance_of, reached_of, revived, waterfall_of
+from .results import Results, revived, waterfall_of
 from .suite import InstanceShown, SuiteTable
 
-_WORDS = tuple(map(str, ClaimVerdict))
-"""Verdicts on claims, in the order in which a table counts them."""
-
-
+_EVIDENCE = frozenset(map(str, Evidence))
+"""Words that stand as badges in a table."""
 _OPEN_SEARCHES = 2
 """Searches that stand in the open, such as that of each joint by itself and of all together."""
 _OPEN_ROWS = 8
@@ -73,12 +72,22 @@ class FromResults(SphinxDirective, ABC):
         """What the directive puts into the page."""
 
 
+def _reference(source: Mapping[str, Any]) -> nodes.paragraph:
+    """The paper in full, with its DOI as a link."""
+    said = paragraph(f"{reference(source)} ", "trajgap-beside")
+    if source.get("doi"):
+        link = f"https://doi.org/{source['doi']}"
+        said += nodes.reference("", f"doi:{source['doi']}", refuri=link)
+    return said
+
+
 class Card(FromResults):
-    """``{trajgap-card} CASE``: the verdict in at most 80 words."""
+    """``{trajgap-card} CASE``: the paper, and the verdict in at most 80 words."""
 
     def made(self, results: Results) -> list[nodes.Node]:
         """One paragraph a sentence; errors marked."""
-        card = results.case(self.arguments[0])["card"]
+        case = results.case(self.arguments[0])
+        card = case["card"]
         box = nodes.container(classes=["trajgap-card"])
         for key in ("limits", "optimum", "reached", "improvement"):
             if card[key]:
@@ -89,7 +98,7 @@ class Card(FromResults):
             box += paragraph(more_errors(card["more"]), "trajgap-against")
         if card["explanation"]:
             box += paragraph(card["explanation"], "trajgap-beside")
-        return [box]
+        return [_reference(case["source"]), box]
 
 
 class Claims(FromResults):
@@ -301,29 +310,29 @@ class Papers(FromResults):
     option_spec: ClassVar[dict[str, Any]] = {
         "pages": directives.unchanged,
         "kinds": directives.unchanged,
+        "drawn": directives.flag,
     }
 
     def made(self, results: Results) -> list[nodes.Node]:
-        """Claimed total, whether limits are kept, optimum, distance, evidence; sortable."""
-        rows = []
-        for name in results.names:
-            document = results.document(name)
-            if "cases" not in document:
-                continue
-            self.env.note_dependency(str(results.folder / f"{name}.json"))
-            case = results.case(name)
-            kind = case["source"]["kind"]
-            if kind not in self.options.get("kinds", kind).split():
-                continue
-            *best, evidence = distance_of(case)
-            word = badge(evidence) if evidence else ""
-            paper = self._linked(name, case["title"])
-            known = [*best, word, reached_of(case), case["card"]["limits"], _counted(case)]
-            rows.append([paper, *known])
-        best_known = "optimum or best known, s"
-        above = ("above it", "evidence", "its algorithm ends")
-        columns = ("paper", "printed, s", best_known, *above, "limits", "claims")
-        return [table(columns, rows, "trajgap-sortable", "trajgap-papers")]
+        """A picture of the distances, and a sortable table of what was found."""
+        rows = paper_rows(results, self.options.get("kinds", ""))
+        for row in rows:
+            self.env.note_dependency(str(results.folder / f"{row.name}.json"))
+        found: list[nodes.Node] = []
+        if "drawn" in self.options:
+            drawn = papers_drawn(rows)
+            found += picture(drawn, "papers", paragraph(drawn.description))
+        return [
+            *found,
+            table(COLUMNS, map(self._cells, rows), "trajgap-sortable", "trajgap-papers"),
+        ]
+
+    def _cells(self, row: PaperRow) -> list[nodes.Node | str]:
+        """The paper as one cites it above what it is about, and its numbers."""
+        paper = nodes.inline()
+        paper += self._linked(row.name, row.cited or row.title)
+        paper += nodes.inline("", f" {row.title}" if row.cited else "", classes=["trajgap-beside"])
+        return [paper, *(badge(one) if one in _EVIDENCE else one for one in row.cells)]
 
     def _linked(self, name: str, title: str) -> nodes.Node:
         pages = self.options.get("pages")
@@ -338,12 +347,6 @@ class Papers(FromResults):
         return target
 
 
-def _counted(case: dict[str, Any]) -> str:
-    words = [v["verdict"] for v in case["verdicts"]]
-    counts = {word: words.count(word) for word in _WORDS if word in words}
-    return ", ".join(counted(word, count) for word, count in counts.items())
-
-
 class SourceShown(FromResults):
     """``{trajgap-source} CASE``: what was read, and how to cite the audit and make it again."""
 
@@ -351,12 +354,7 @@ class SourceShown(FromResults):
         """Source, date, versions, hashes, command and BibTeX entry."""
         case = results.case(self.arguments[0])
         source, made = case["source"], case["provenance"]
-        parts = (source["authors"], source["title"], source["journal"], source["year"])
-        printed = ", ".join(str(p) for p in parts if p)
-        said = paragraph(f"{printed or 'Source not named in the text'}. ")
-        if source.get("doi"):
-            link = f"https://doi.org/{source['doi']}"
-            said += nodes.reference("", f"doi:{source['doi']}", refuri=link)
+        said = _reference(source)
         rows = [
             ["audited", f"{made['date']} with trajgap {made['trajgap']}"],
             ["case file, SHA-256", str(made["case_sha256"])],

@@ -11,17 +11,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from ...problem import TrajgapError
-from ..documents import (
-    OWN_OPTIMA,
-    PUBLISHED,
-    RATIOS_OPTIMUM,
-    SHARED_OPTIMUM,
-    Entry,
-    Keeping,
-    Reached,
-    Waterfall,
-    Why,
-)
+from ..documents import Entry, Waterfall, Why
 
 Shown = TypeVar("Shown", bound=Entry)
 LOCK = "lock.json"
@@ -144,49 +134,3 @@ def _with_reasons(value: Any) -> Any:
         for key, one in value.items()
         if not (key.endswith("_why") and key.removesuffix("_why") in whys)
     }
-
-
-def reached_of(case: dict[str, Any]) -> str:
-    """Median gap of a paper's algorithm in its own way of searching; a dash without runs."""
-    if not case["reached"]:
-        return "–"
-    first = revived(Reached, case["reached"][0])
-    return "no answer" if isinstance(first.gap, Why) else first.gap.percent
-
-
-def distance_of(case: dict[str, Any]) -> tuple[str, str, str, str]:
-    """Printed total, optimum, distance and evidence, of the first problem.
-
-    The optimum is that of shared durations; where the paper plans each joint by itself, it is what
-    the joints' own optima give.
-
-    Parameters
-    ----------
-    case : dict
-        As `Results.case` returns it.
-
-    Returns
-    -------
-    tuple of str
-        Dashes where no problem is complete, or no total is printed; and in place of the distance,
-        where the total was minimised for something else than time alone.
-    """
-    otherwise = {c["claim"] for c in case["claims"] if c.get("objective")}
-    for entry in case["waterfalls"]:
-        steps = {step["name"]: step for step in entry["steps"] if step["time"] is not None}
-        own = next((n for n in (SHARED_OPTIMUM, RATIOS_OPTIMUM) if n in steps), None)
-        if PUBLISHED in steps and own is not None:
-            printed, best = steps[PUBLISHED]["time"], steps.get(OWN_OPTIMA, steps[own])
-            ends = [best["time"] if OWN_OPTIMA not in steps else best.get(end) or best["time"]
-                    for end in ("low", "high")]  # fmt: skip
-            known = " to ".join(dict.fromkeys(f"{one:.4f}" for one in ends))
-            # A total rounded to just below its optimum is at no distance, and at none below.
-            shares = sorted(printed / one - 1 for one in ends)
-            if shares[0] < 0 < shares[1]:
-                shares = [0.0]
-            share = " to ".join(dict.fromkeys(f"{one:z.1%}" for one in shares))
-            if steps[PUBLISHED].get("keeping") == Keeping.BREAKS:
-                share += ", but breaks a limit"
-            share = share if entry["claim"] not in otherwise else "–"
-            return f"{printed:g}", known, share, best["evidence"]
-    return "–", "–", "–", ""

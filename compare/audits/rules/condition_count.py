@@ -176,7 +176,7 @@ def _at_rest(
                 judged += 1
                 built &= _prescribed(study.claim_problem(motion, pid, rid).curve, orders)
                 moving += [
-                    f"{called_under(motion, pid)}: {said}"
+                    f"{said} ({called_under(motion, pid)})"
                     for said in _moving(study, motion, pid, rid, orders)
                 ]
         if not judged:
@@ -193,7 +193,7 @@ def _at_rest(
             basis=Basis.CHECK,
             claim=claim.id,
             reading=rid,
-            message="The motion is said to be at rest at both ends, but not on the stated curve: "
+            message="The motion is said to be at rest at both ends, but on the stated curve "
             f"{'; '.join(moving)}."
             if moving
             else f"On the stated curve {names} 0 at both ends of every printed motion.{unknown}",

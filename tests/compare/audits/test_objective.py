@@ -9,7 +9,7 @@ from support.findings import audited_text, verdicts
 from support.made_up import entry, paper, row, sentence
 from trajgap.compare.audits.case_audit import CaseAudit
 from trajgap.compare.documents import ClaimVerdict, Severity, json_text
-from trajgap.compare.sphinx import distance_of
+from trajgap.compare.sphinx import paper_row
 from trajgap.problem import CaseError
 
 AIM = "time and jerk, weighted"
@@ -76,9 +76,12 @@ def test_the_shortest_time_is_given_as_information(weighted: CaseAudit, plain: C
 
 
 def test_the_table_of_papers_shows_no_distance(weighted: CaseAudit, plain: CaseAudit) -> None:
-    shown, best, share, _ = distance_of(json.loads(json_text(weighted.document)))
+    shown, best, share = paper_row("", json.loads(json_text(weighted.document))).cells[:3]
     assert (shown, share) == ("18", "–")
-    assert distance_of(json.loads(json_text(plain.document)))[:3] == (shown, best, "36.0%")
+    own = paper_row("", json.loads(json_text(plain.document)))
+    assert own.cells[:2] == (shown, best)
+    assert own.distance is not None
+    assert own.distance.shares == pytest.approx([0.36, 0.36], abs=0.0005)
 
 
 def test_a_claim_may_have_an_objective_of_its_own() -> None:

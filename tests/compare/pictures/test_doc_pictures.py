@@ -19,7 +19,7 @@ def described(svg: str) -> str:
 @pytest.mark.slow
 def test_pictures_in_the_documents_carry_todays_numbers() -> None:
     programs = runpy.run_path(str(ROOT / "docs/make_pictures.py"))
-    made = {**dict(programs["exhibits"]()), "waterfall-puma560": programs["waterfall_puma560"]()}
+    made = {**dict(programs["exhibits"]()), "papers": programs["papers"]()}
     pages = "".join(page.read_text(encoding="utf-8") for page in (ROOT / "docs").rglob("*.md"))
     pages += (ROOT / "README.md").read_text(encoding="utf-8")
     for name, document in made.items():

@@ -1,0 +1,306 @@
+"""The audited papers side by side: printed total, optimum, distance, and what was found."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from ...nlp import Evidence
+from ..documents import (
+    OWN_OPTIMA,
+    PUBLISHED,
+    RATIOS_OPTIMUM,
+    SHARED_OPTIMUM,
+    ClaimVerdict,
+    Keeping,
+    Reached,
+    Why,
+    at_least_percent,
+)
+from ..pictures import PaperBar, Picture, papers_picture
+from .results import Results, revived
+
+_NONE = "–"
+"""A cell without a value."""
+_OPEN = ClaimVerdict.NOT_CHECKABLE
+COLUMNS = (
+    "paper",
+    "printed, s",
+    "optimum or best known, s",
+    "above it",
+    "evidence",
+    "its algorithm ends",
+    "what was found",
+)
+"""What a row of the table says."""
+
+
+@dataclass(frozen=True)
+class Distance:
+    """A printed total beside the optimum of its own problem, at the printed digits.
+
+    Attributes
+    ----------
+    printed : float
+        s.
+    interval : tuple of float
+        All totals that round to its digits, s.
+    lowest, highest : float
+        The optimum, s; an interval where each joint is planned by itself.
+    least : float or None
+        How far above its optimum the total is at least, however the digits were rounded: 0 where
+        rounding may explain all of it, None where nothing bounds it.
+    evidence : str
+    broken : bool
+        Whether the printed motion breaks a limit.
+    timed : bool
+        Whether time alone was minimised, so that the distance is one from the optimum.
+    """
+
+    printed: float
+    interval: tuple[float, float]
+    lowest: float
+    highest: float
+    least: float | None
+    evidence: str
+    broken: bool
+    timed: bool
+
+    @property
+    def shares(self) -> tuple[float, float]:
+        """How far above the optimum the total is; 0 where the optimum rounds to the total."""
+        if self.interval[0] <= self.highest and self.lowest <= self.interval[1]:
+            return 0.0, 0.0
+        return self.printed / self.highest - 1, self.printed / self.lowest - 1
+
+    @property
+    def above(self) -> str:
+        """The same in words; a dash where something else than time alone was minimised."""
+        if not self.timed:
+            return _NONE
+        if not any(self.shares):
+            said = "the optimum"
+        elif self.least:
+            said = f"at least {at_least_percent(self.least)}"
+        else:
+            percents = dict.fromkeys(f"{100 * one:z.1f}" for one in self.shares)
+            said = f"{' to '.join(percents)} %"
+            said += "" if self.least is None else ", which rounding may explain"
+        return f"{said}, but breaks a limit" if self.broken else said
+
+    @property
+    def best(self) -> str:
+        """The optimum in seconds."""
+        return " to ".join(dict.fromkeys(f"{one:.4f}" for one in (self.lowest, self.highest)))
+
+
+@dataclass(frozen=True)
+class PaperRow:
+    """One audited paper.
+
+    Attributes
+    ----------
+    name : str
+        Of its result.
+    cited, title : str
+    distance : Distance or None
+        None where no problem is complete, or no total is printed.
+    reached : str
+        Median gap of the paper's algorithm in its own way of searching.
+    found : str
+        What the audit found, in one sentence.
+    decided : int
+        Claims on which there is a verdict.
+    against : bool
+        Whether something printed is refuted, contradicted or depends on the reading.
+    """
+
+    name: str
+    cited: str
+    title: str
+    distance: Distance | None
+    reached: str
+    found: str
+    decided: int
+    against: bool
+
+    @property
+    def order(self) -> tuple[bool, bool, int, str]:
+        """What is worth reading first: something found, then nothing, then nothing to check."""
+        return not self.decided, not self.against, -self.decided, self.name
+
+    @property
+    def cells(self) -> tuple[str, ...]:
+        """What stands behind the paper's name, in the order of `COLUMNS`."""
+        one = self.distance
+        if one is None:
+            return _NONE, _NONE, _NONE, "", self.reached, self.found
+        return f"{one.printed:g}", one.best, one.above, one.evidence, self.reached, self.found
+
+
+def paper_rows(results: Results, kinds: str = "") -> tuple[PaperRow, ...]:
+    """Audited cases, what is worth reading first.
+
+    Parameters
+    ----------
+    results : Results
+    kinds : str
+        Kinds of source, separated by spaces; all if empty.
+
+    Returns
+    -------
+    tuple of PaperRow
+    """
+    cases = {n: results.case(n) for n in results.names if "cases" in results.document(n)}
+    chosen = (
+        paper_row(name, case)
+        for name, case in cases.items()
+        if case["source"]["kind"] in (kinds.split() or [case["source"]["kind"]])
+    )
+    return tuple(sorted(chosen, key=lambda row: row.order))
+
+
+def paper_row(name: str, case: Mapping[str, Any]) -> PaperRow:
+    """One audited case as a row of the table.
+
+    Parameters
+    ----------
+    name : str
+    case : mapping
+        As `Results.case` returns it.
+
+    Returns
+    -------
+    PaperRow
+    """
+    counts = Counter(ClaimVerdict(one["verdict"]) for one in case["verdicts"])
+    decided = counts.total() - counts[_OPEN]
+    against = decided > counts[ClaimVerdict.SUPPORTED]
+    return PaperRow(
+        name,
+        cited(case["source"]),
+        case["title"],
+        distance_of(case),
+        reached_of(case),
+        _found(case, counts, against),
+        decided,
+        against,
+    )
+
+
+def _found(case: Mapping[str, Any], counts: Counter[ClaimVerdict], against: bool) -> str:
+    """The gravest thing that was found, in one sentence."""
+    supported, every = counts[ClaimVerdict.SUPPORTED], counts.total()
+    if case["card"]["errors"]:
+        return str(case["card"]["errors"][0])
+    if against:
+        found = every - supported - counts[_OPEN]
+        return f"{found} of {every} claims do not hold as printed or depend on the reading."
+    if not supported:
+        return "No claim can be checked from the text."
+    if supported == every:
+        return f"Clean: all {every} claims are supported."
+    return f"Clean: {supported} of {every} claims are supported, the others are not checkable."
+
+
+def cited(source: Mapping[str, Any]) -> str:
+    """A source as a sentence cites it, such as "Fan and Tang 2024"; empty without authors."""
+    authors, year = source["authors"], source["year"]
+    if not authors:
+        return ""
+    names = [one.strip() for one in re.split(r",| and ", authors) if one.strip()]
+    # Initials and "et al." are no part of the name that a sentence gives.
+    plain = [re.sub(r"( [A-Z]\.)+$", "", one.removesuffix("et al.").strip()) for one in names]
+    plain = [one for one in plain if one]
+    many = len(plain) > 2 or "et al." in authors
+    who = f"{plain[0]} et al." if many else " and ".join(plain)
+    return f"{who} {year}" if year else who
+
+
+def reference(source: Mapping[str, Any]) -> str:
+    """A source in full, without its DOI; what the text lacks is said."""
+    parts = (source["authors"], source["title"], source["journal"], source["year"])
+    printed = ", ".join(str(one) for one in parts if one)
+    if not printed:
+        return "The text that was read names neither authors nor title."
+    lacks = "" if source["authors"] else " The text that was read names no authors."
+    return f"{printed}.{lacks}"
+
+
+def reached_of(case: Mapping[str, Any]) -> str:
+    """Median gap of a paper's algorithm in its own way of searching; a dash without runs."""
+    if not case["reached"]:
+        return _NONE
+    first = revived(Reached, case["reached"][0])
+    return "no answer" if isinstance(first.gap, Why) else first.gap.percent
+
+
+def distance_of(case: Mapping[str, Any]) -> Distance | None:
+    """The printed total of the first problem beside its optimum.
+
+    The optimum is that of shared durations; where the paper plans each joint by itself, it is what
+    the joints' own optima give.
+
+    Parameters
+    ----------
+    case : mapping
+        As `Results.case` returns it.
+
+    Returns
+    -------
+    Distance or None
+        None where no problem is complete, or no total is printed.
+    """
+    otherwise = {c["claim"] for c in case["claims"] if c.get("objective")}
+    for entry in case["waterfalls"]:
+        steps = {step["name"]: step for step in entry["steps"] if step["time"] is not None}
+        own = next((n for n in (SHARED_OPTIMUM, RATIOS_OPTIMUM) if n in steps), None)
+        if PUBLISHED not in steps or own is None:
+            continue
+        printed, best = steps[PUBLISHED], steps.get(OWN_OPTIMA, steps[own])
+        # A certified interval is narrower than what is shown; that of the joints' optima is not.
+        ends = [best.get(end) or best["time"] for end in ("low", "high")]
+        own_optima = OWN_OPTIMA in steps
+        low, high = ends if own_optima else [best["time"]] * 2
+        longest = None if own_optima else entry["longest_optimum"]
+        interval = tuple(printed.get(end) or printed["time"] for end in ("low", "high"))
+        return Distance(
+            printed["time"],
+            interval,
+            low,
+            high,
+            None if longest is None else max(0.0, interval[0] / longest - 1),
+            best["evidence"],
+            printed.get("keeping") == Keeping.BREAKS,
+            entry["claim"] not in otherwise,
+        )
+    return None
+
+
+def papers_drawn(rows: Iterable[PaperRow]) -> Picture:
+    """The papers that minimise time alone and print a total, each beside its optimum.
+
+    Parameters
+    ----------
+    rows : iterable of PaperRow
+
+    Returns
+    -------
+    Picture
+    """
+    bars = [
+        PaperBar(
+            row.cited or row.title.split(",")[0],
+            1 + one.shares[0],
+            1 + one.shares[1],
+            f"{one.printed:g} s: {one.above}",
+            one.evidence == Evidence.CERTIFIED,
+            one.least is None or one.least > 0,
+        )
+        for row in rows
+        for one in ([row.distance] if row.distance and row.distance.timed else [])
+    ]
+    return papers_picture(bars, title="How far each printed total is from its own optimum")
