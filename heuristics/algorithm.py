@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import ClassVar, Protocol, TypeVar, runtime_checkable
+from typing import Protocol, TypeVar, runtime_checkable
 
 import numpy as np
 
@@ -28,8 +28,13 @@ S = TypeVar("S", bound=State)
 class Algorithm(Protocol[S]):
     """A frozen record of settings that starts a search and moves it on."""
 
-    kind: ClassVar[str]
-    open_choices: ClassVar[tuple[str, ...]]
+    @property
+    def kind(self) -> str:
+        """Name of the algorithm, by which case files call it."""
+
+    @property
+    def open_choices(self) -> tuple[str, ...]:
+        """What the paper leaves open, and what was chosen."""
 
     @property
     def iterations(self) -> int:

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
+from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from .arrays import Array
 from .curves import Curve, Interpolant, as_curve
@@ -76,6 +78,22 @@ class Problem:
     name: str = "problem"
     ratios: Array | RatioWord | None = None
     linear: tuple[bool, ...] = ()
+
+    if TYPE_CHECKING:  # fields hold arrays; what is given may be anything that makes one
+
+        def __init__(
+            self,
+            waypoints: ArrayLike,
+            limits: Limits,
+            curve: Curve,
+            duration_lower: ArrayLike = 0.0,
+            duration_upper: ArrayLike = np.inf,
+            coupling: Coupling = Coupling.SHARED,
+            joints: tuple[str, ...] = (),
+            name: str = "problem",
+            ratios: ArrayLike | RatioWord | None = None,
+            linear: tuple[bool, ...] = (),
+        ) -> None: ...
 
     def __post_init__(self) -> None:
         try:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, Self, TypeVar, cast
 
 from ...problem import Case, Problem, TrajgapError
-from ...problem.cases import AnyClaim
+from ...problem.cases import AnyClaim, Claim, DurationsClaim, MaximumClaim, TotalTimeClaim
 from .intervals import Intervals
 
 T = TypeVar("T")
@@ -113,3 +113,27 @@ class ChosenCase:
     def problem(self, pid: str, rid: str) -> Problem:
         """Problem of the case, with its coupling."""
         return self.once(("problem", pid, rid), lambda: self.case.problem(pid, rid))
+
+    @property
+    def time_unit(self) -> str:
+        """The unit that times are printed in."""
+        return self.case.statement().units.time or "s"
+
+    def claim_total(self, claim: Claim, rid: str) -> tuple[str, tuple[float, float]] | None:
+        """A claim's total as printed (or as summed), and its interval in seconds."""
+        if isinstance(claim, DurationsClaim | MaximumClaim):
+            box = self.case.claim_durations(claim, rid)
+            summed = (float(box.lower.sum()), float(box.upper.sum()))
+            if claim.total is None:
+                plain = sum(number.decimal for number in self.case.printed_durations(claim))
+                return f"{plain} {self.time_unit} (sum of the printed durations)", summed
+            total = self.case.measured(claim.total, "time", claim.problem, rid)
+            both = (max(summed[0], total.lower), min(summed[1], total.upper))
+            return f"{claim.total} {self.time_unit}", both if both[0] <= both[1] else (
+                total.lower,
+                total.upper,
+            )
+        if not isinstance(claim, TotalTimeClaim):
+            return None
+        total = self.case.measured(claim.value, "time", claim.problem, rid)
+        return f"{claim.value} {self.time_unit}", (total.lower, total.upper)

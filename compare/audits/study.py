@@ -55,11 +55,6 @@ from .total_bound import BOXES, excludes_total
 class Study(ReplayedCase):
     """Lazily computed, cached results of one case; the parameters are those of `ChosenCase`."""
 
-    @property
-    def time_unit(self) -> str:
-        """The unit that times are printed in."""
-        return self.case.statement().units.time or "s"
-
     def optimum(self, pid: str, rid: str, joint: str | None = None) -> Solution:
         """Best known answer with shared durations, of all joints or of one; certified if proved."""
 
@@ -400,25 +395,6 @@ class Study(ReplayedCase):
             total = self.case.measured(number, "time", claim.problem, rid)
             found.append(max(total.upper, total.cut_off().upper))
         return min(found, default=float("inf"))
-
-    def claim_total(self, claim: Claim, rid: str) -> tuple[str, tuple[float, float]] | None:
-        """A claim's total as printed (or as summed), and its interval in seconds."""
-        if isinstance(claim, DurationsClaim | MaximumClaim):
-            box = self.case.claim_durations(claim, rid)
-            summed = (float(box.lower.sum()), float(box.upper.sum()))
-            if claim.total is None:
-                plain = sum(number.decimal for number in self.case.printed_durations(claim))
-                return f"{plain} {self.time_unit} (sum of the printed durations)", summed
-            total = self.case.measured(claim.total, "time", claim.problem, rid)
-            both = (max(summed[0], total.lower), min(summed[1], total.upper))
-            return f"{claim.total} {self.time_unit}", both if both[0] <= both[1] else (
-                total.lower,
-                total.upper,
-            )
-        if not isinstance(claim, TotalTimeClaim):
-            return None
-        total = self.case.measured(claim.value, "time", claim.problem, rid)
-        return f"{claim.value} {self.time_unit}", (total.lower, total.upper)
 
     @property
     def instance_blocks(self) -> tuple[InstancesBlock, ...]:

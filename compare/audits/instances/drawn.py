@@ -4,36 +4,34 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, cast
+from typing import Any, cast
 
 from ....heuristics import Algorithm
 from ....problem import CaseError, TrajgapError
 from ....problem.cases import Claim, ImprovementClaim, InstancesBlock, instance_waypoints
 from ...documents import Procedure
+from ..replayed_case import ReplayedCase
 from .result import InstancesResult
 from .study import Task, examine
 
-if TYPE_CHECKING:
-    from ..study import Study
 
-
-def _claimed(study: Study, block: InstancesBlock) -> ImprovementClaim:
+def _claimed(study: ReplayedCase, block: InstancesBlock) -> ImprovementClaim:
     return cast(ImprovementClaim, study.case.claim(block.claim))
 
 
-def _sides(study: Study, block: InstancesBlock) -> tuple[Claim, Claim]:
+def _sides(study: ReplayedCase, block: InstancesBlock) -> tuple[Claim, Claim]:
     claim = _claimed(study, block)
     return study.case.claim(claim.slower), study.case.claim(claim.faster)
 
 
-def _procedure(study: Study, side: Claim) -> Procedure:
+def _procedure(study: ReplayedCase, side: Claim) -> Procedure:
     # A case file names both; the problem may be its only one.
     return Procedure(
         problem=side.problem or study.case.problems[0].id, algorithm=cast(str, side.algorithm)
     )
 
 
-def readings_of(study: Study, block: InstancesBlock) -> tuple[str, ...]:
+def readings_of(study: ReplayedCase, block: InstancesBlock) -> tuple[str, ...]:
     """Selected readings of a design; none if an algorithm is not implemented."""
     sides = [_procedure(study, side) for side in _sides(study, block)]
     if any(study.algorithm(side.algorithm) is None for side in sides):
@@ -42,12 +40,12 @@ def readings_of(study: Study, block: InstancesBlock) -> tuple[str, ...]:
     return tuple(r for r in wanted if all((side.problem, r) in study.selected for side in sides))
 
 
-def printed_reduction(study: Study, block: InstancesBlock) -> tuple[float, float] | None:
+def printed_reduction(study: ReplayedCase, block: InstancesBlock) -> tuple[float, float] | None:
     """Smallest and largest reduction that the printed digits allow, as shares of the slower total.
 
     Parameters
     ----------
-    study : Study
+    study : ReplayedCase
     block : InstancesBlock
 
     Returns
@@ -66,19 +64,21 @@ def printed_reduction(study: Study, block: InstancesBlock) -> tuple[float, float
     return 1 - fast_high / slow_low, 1 - fast_low / slow_high
 
 
-def _printed_totals(study: Study, block: InstancesBlock, rid: str) -> tuple[str | None, str | None]:
+def _printed_totals(
+    study: ReplayedCase, block: InstancesBlock, rid: str
+) -> tuple[str | None, str | None]:
     slow, fast = (study.claim_total(side, rid) for side in _sides(study, block))
     return slow and slow[0], fast and fast[0]
 
 
 def examined(
-    study: Study, block: InstancesBlock, progress: Callable[[str], None] | None = None
+    study: ReplayedCase, block: InstancesBlock, progress: Callable[[str], None] | None = None
 ) -> InstancesResult:
     """Draw instances, make their problems under their readings, and examine them.
 
     Parameters
     ----------
-    study : Study
+    study : ReplayedCase
     block : InstancesBlock
         For which `readings_of` names some reading.
     progress : callable, optional
