@@ -3,10 +3,10 @@ from .case_audit import AuditReport, CaseAudit, audit
 from .fixed_ratios import at_ratios, planned_apart
 from .paper_runs import searched_for
 from .provenance import certificate_files, package_version
-from .reading_words import KEPT, segments
+from .reading_words import KEPT, answers, segments
 from .rounding import Point, RoundingBox, RoundingVerdict, judge_rounding
 from .rules import EXPLAINED, RULES
-from .stated import asked_as, claim_text, digits_of, in_words, place, spoken
+from .stated import asked_as, claim_text, digits_of, in_words, place
 from .study import Study
 from .waterfall import routes, waterfalls
 
@@ -20,6 +20,7 @@ __all__ = [
     "RoundingBox",
     "RoundingVerdict",
     "Study",
+    "answers",
     "asked_as",
     "at_ratios",
     "audit",
@@ -35,6 +36,5 @@ __all__ = [
     "routes",
     "searched_for",
     "segments",
-    "spoken",
     "waterfalls",
 ]

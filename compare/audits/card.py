@@ -66,11 +66,13 @@ def verdict_card(
     alike: dict[tuple[str, str], list[Cause]] = {}
     for cause in grave:
         alike.setdefault((cause.rule, cause.says), []).append(cause)
-    sentences = [plainly(study.case, first, far, also=also) for first, *also in alike.values()]
+    sentences = [
+        " ".join(plainly(study.case, first, far, also=also)) for first, *also in alike.values()
+    ]
     left = CARD_WORDS - sum(map(count_words, (limits, optimum)))
     errors, more = _fitting(sentences, left)
     # Where an error on the card says which percentage it refutes, no line says so again.
-    tells = {plainly(study.case, c, far) for c in grave if _tells(study, c, improved)}
+    tells = {" ".join(plainly(study.case, c, far)) for c in grave if _tells(study, c, improved)}
     covered = not tells.isdisjoint(errors)
     if improvement is not None and not covered:
         left -= count_words(improvement)
@@ -82,7 +84,7 @@ def verdict_card(
     left -= count_words(near or "")
     if not more:
         warned = [c for c in causes if _warns_against(c, words) and (c.rule, c.claim) not in said]
-        briefly = [plainly(study.case, cause, far, brief=True) for cause in warned]
+        briefly = [" ".join(plainly(study.case, cause, far, brief=True)) for cause in warned]
         errors += _fitting(briefly, left)[0]
     return VerdictCard(
         limits=limits,

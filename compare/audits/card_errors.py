@@ -22,16 +22,11 @@ from ..documents import (
     Severity,
     among,
     at_least_percent,
-    first_sentence,
+    capital,
     quoted,
 )
 from .roots import TABLES
-from .stated import place, spoken
-
-_UNDER = "under "
-"""How a sentence says under how many readings it holds."""
-_EVERY = "every reading"
-"""How it says that something speaks against a claim under each of them, if not the same."""
+from .stated import place
 
 
 def plainly(
@@ -41,8 +36,8 @@ def plainly(
     *,
     also: Sequence[Cause] = (),
     brief: bool = False,
-) -> str:
-    """A cause as one plain sentence.
+) -> tuple[str, ...]:
+    """A cause as one plain sentence, or in the words of its finding.
 
     Parameters
     ----------
@@ -57,36 +52,37 @@ def plainly(
 
     Returns
     -------
-    str
+    tuple of str
         By claims' texts and places, never by ids. What holds under some readings alone says so.
     """
-    sentence = _plain(case, cause, far, also, brief)
+    (first, *others), named = _plain(case, cause, far, also, brief)
     count, every = len(cause.readings), len(case.readings)
-    if not 0 < count < every or any(
-        said in sentence for said in (f"{_UNDER}{count} of", f"{_EVERY} allows")
-    ):
-        return sentence
+    if named or not 0 < count < every:
+        return first, *others
     which = among(cause.readings, every, far)
     if count == 1:
         mark = "the implausible " if cause.readings[0] in far else ""
         which = f"{mark}{quoted(cause.readings[0], case.labels)}"
-    return f"{_UNDER.capitalize()}{which}: {sentence}"
+    return f"Under {which}: {first}", *others
 
 
 def _plain(
     case: Case, cause: Cause, far: Collection[str], also: Sequence[Cause], brief: bool
-) -> str:
-    """The sentence, without the readings unless they stand within it."""
+) -> tuple[tuple[str, ...], bool]:
+    """The sentences, and whether they name the readings."""
     head, claim = cause.head, case.claim(cause.claim) if cause.claim else None
     if head is not None and head.root.startswith(f"{TABLES} "):
-        return _tables_alike(case, cause, head.root.split(" ")[1:])
+        return (_tables_alike(case, cause, head.root.split(" ")[1:]),), False
+    own = (cause.says,) if head is None else head.sentences
     if claim is None or head is None:
-        return spoken(case, first_sentence(cause.says) + ".")
+        return own[:1], False
     if cause.severity is not Severity.ERROR and cause.rule != "TG201" and not brief:
         # A warning proves nothing: it keeps its own words.
-        return spoken(case, cause.says)
-    claims = [claim, *(case.claim(one.claim) for one in also if one.claim)]
-    where = " and ".join(dict.fromkeys(map(place, claims)))
+        return own, False
+    if cause.rule == "TG302":
+        said, named = _not_optimal(case, head, cause, far)
+        return (f"Called optimal in {_places(claim, also, case)}, but {said}.",), named
+    where = _places(claim, also, case)
     printed, computed = head.printed or "", head.computed or ""
     sentence = {
         "TG101": f"{_inside(where)} the parts add up to {computed}, not {printed}",
@@ -109,32 +105,38 @@ def _plain(
         "TG205": f"Control vertices in {where} do not follow from the way-points",
         "TG301": "Under velocity limits alone, times scale inversely: the printed two "
         "cannot both be shortest",
-        "TG302": f"Called optimal in {where}, but {_not_optimal(case, head, cause, far)}",
         "TG304": f"The total in {where} is not that of the shortest profile",
         "TG601": "Printed joint angles and positions do not fit the printed robot",
     }.get(cause.rule)
     if cause.rule == "TG103" and not computed:
         sentence = f"Of {printed}, {where} calls the longer total the better one"
-    if sentence is None:
-        return spoken(case, first_sentence(cause.says) + ".")
-    return f"{_capital(sentence)}."
+    return (own[:1] if sentence is None else (f"{capital(sentence)}.",)), False
 
 
-def _not_optimal(case: Case, head: Finding, cause: Cause, far: Collection[str]) -> str:
-    """Why a time is not the shortest, and how much longer it is under every reading, if it is."""
+def _places(claim: AnyClaim, also: Sequence[Cause], case: Case) -> str:
+    """Where a claim and those of other causes stand."""
+    claims = [claim, *(case.claim(one.claim) for one in also if one.claim)]
+    return " and ".join(dict.fromkeys(map(place, claims)))
+
+
+def _not_optimal(case: Case, head: Finding, cause: Cause, far: Collection[str]) -> tuple[str, bool]:
+    """Why a time is not the shortest, and how much longer it is under every reading, if it is.
+
+    Beside it whether it says under which readings.
+    """
     if head.kind == "breaks":
-        return "no answer within the limits"
+        return "no answer within the limits", False
     readings, every = cause.readings, len(case.readings)
     if not isinstance(head.gap, Gap):
         if cause.elsewhere:
-            return f"{_EVERY} allows a faster motion or finds {cause.elsewhere}"
-        where = f"{_UNDER}{among(readings, every, far)} " if 0 < len(readings) < every else ""
-        return f"{where}the same curve is faster within the limits"
+            return f"every reading allows a faster motion or finds {cause.elsewhere}", True
+        where = f"under {among(readings, every, far)} " if 0 < len(readings) < every else ""
+        return f"{where}the same curve is faster within the limits", bool(where)
     # Rounded down, for it is a bound: way-points that round to the digits allow other optima.
     share = f"{at_least_percent(head.gap.lowest)} longer than"
     if head.gap.many_times:
         share = f"{shown_bound(1 + head.gap.lowest, 'lower', places=1)} times as long as"
-    return f"{_whose(case, head)}at least {share} a motion within the limits"
+    return f"{_whose(case, head)}at least {share} a motion within the limits", False
 
 
 def _whose(case: Case, head: Finding) -> str:
@@ -187,7 +189,3 @@ def _other(case: Case, head: Finding) -> str:
 def _inside(where: str) -> str:
     """A place as the beginning of a sentence."""
     return f"{'On' if where.startswith('page') else 'In'} {where}"
-
-
-def _capital(text: str) -> str:
-    return text[:1].upper() + text[1:]

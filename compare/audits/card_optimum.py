@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -11,7 +11,6 @@ from ...nlp import Evidence, Solution, Status
 from ...problem import Coupling
 from ...problem.cases import (
     AnyClaim,
-    DurationsClaim,
     MaximumClaim,
     TimeClaim,
     TotalTimeClaim,
@@ -95,10 +94,11 @@ def _side_by_side(parts: Sequence[_Part]) -> str:
     agreeing = [part for part in parts if isinstance(part, _Agrees)]
     unknown = [part for part in parts if isinstance(part, _Unknown)]
     others = [part for part in parts if part not in agreeing and part not in unknown]
-    differing = list(dict.fromkeys(map(str, others)))
-    said = differing[:_FEW]
+    differing = list({str(part): part for part in others}.values())
+    *most, last = differing[:_FEW] or [""]
     # What may explain several distances is said once, of the last of them.
-    said = [one.removesuffix(_MAY) for one in said[:-1]] + said[-1:]
+    said = [str(replace(one, may=False) if isinstance(one, _AtPrint) else one) for one in most]
+    said += [str(last)] if differing else []
     if len(differing) > _FEW:
         said.append(f"{len(differing) - _FEW} more below")
     said += [_agreement(agreeing, bool(others), len(parts))] if agreeing else []
@@ -191,9 +191,21 @@ class _Agrees:
         return f"{self.said} agrees with the {self.best}"
 
 
+@dataclass(frozen=True)
+class _AtPrint:
+    """A distance that rounding of way-points and limits may change, or explain altogether."""
+
+    said: str
+    may: bool
+
+    def __str__(self) -> str:
+        explained = ", whose rounding may explain it" if self.may else ""
+        return f"{self.said} at the printed digits{explained}"
+
+
 _EMPTY = (np.inf, -np.inf)
 """Stands for the times of a total that is not printed."""
-_Part = str | _Above | _Agrees | _Unknown
+_Part = str | _Above | _AtPrint | _Agrees | _Unknown
 """What is said of one problem; plain words where a total differs otherwise."""
 
 
@@ -261,8 +273,7 @@ def _one_beside(
     total = study.claim_total(claim, rid)
     if total is None:
         return None
-    shown, (low, high) = total
-    shown = shown.split(" (")[0]
+    shown, (low, high) = study.total_digits(claim), total[1]
     if off_ratios(study, claim, pid, rid) is not None:
         return f"{shown} is of durations in other ratios than the reading fixes"
     seconds = _seconds(study, claim, rid)
@@ -294,8 +305,8 @@ def _one_beside(
     ends = optimum_range(study, claim, pid, rid)
     if share > 0:
         if ends.upper is None or not low > ends.upper:
-            may = "" if ends.upper is None else _MAY
-            return f"{said} is {_far(share, 'above')} the {best}{_AT_PRINT}{may}"
+            far = f"{said} is {_far(share, 'above')} the {best}"
+            return _AtPrint(far, ends.upper is not None)
         most = None if ends.lower is None else high / ends.lower - 1
         bound, far = _bounded(low / ends.upper - 1, share, most)
         if share >= _MANY_TIMES:
@@ -307,14 +318,8 @@ def _one_beside(
         return f"{said} is {bound}{far} below the {best}"
     # To first order the digits shorten the optimum by no more than they are proved to lengthen it.
     reach = 0.0 if ends.upper is None else ends.upper / solution.best - 1
-    may = _MAY if high >= solution.best * (1 - reach) and reach > 0 else ""
-    return f"{said} is {_far(-share, 'below')} the {best}{_AT_PRINT}{may}"
-
-
-_AT_PRINT = " at the printed digits"
-"""What is said of a distance that rounding of way-points and limits may change."""
-_MAY = ", whose rounding may explain it"
-"""What is added where it may be none."""
+    may = high >= solution.best * (1 - reach) and reach > 0
+    return _AtPrint(f"{said} is {_far(-share, 'below')} the {best}", may)
 
 
 def _size(share: float) -> str:
@@ -399,23 +404,25 @@ def _joint_by_joint(
         return f"agrees with {span}, {own}"
     longer = seconds > wide.highest
     shares = sorted(abs(seconds / one - 1) for one in (wide.highest, wide.lowest))
-    shown = list(dict.fromkeys(_percent(share).removesuffix(" %") for share in shares))
-    return f"is {' to '.join(shown)} % {'above' if longer else 'below'} {span}, {own}"
+    shown = " to ".join(dict.fromkeys(map(_percent_digits, shares)))
+    return f"is {shown} % {'above' if longer else 'below'} {span}, {own}"
 
 
 def _seconds(study: Study, claim: TimeClaim, rid: str) -> float:
     """A printed total; the sum of the printed durations where none is printed."""
-    number = claim.value if isinstance(claim, TotalTimeClaim) else None
-    if isinstance(claim, DurationsClaim | MaximumClaim):
-        number = claim.total
+    number = claim.value if isinstance(claim, TotalTimeClaim) else getattr(claim, "total", None)
     if number is None:
         return float(study.case.claim_durations(claim, rid).value.sum())
     return study.case.measured(number, "time", claim.problem, rid).value
 
 
 def _percent(share: float) -> str:
+    return f"{_percent_digits(share)} %"
+
+
+def _percent_digits(share: float) -> str:
     percent = 100 * share
-    return f"{percent:.1f} %" if percent >= 1 else f"{percent:.2g} %"
+    return f"{percent:.1f}" if percent >= 1 else f"{percent:.2g}"
 
 
 def _unknown(solution: Solution) -> str:

@@ -44,7 +44,7 @@ from .provenance import provenance
 from .readings import readings_summary
 from .revision import revise
 from .rules import GROUPS, NOT_COMPUTED
-from .stated import spoken, stated_claims, stated_source
+from .stated import stated_claims, stated_source
 from .study import Study
 from .waterfall import waterfalls
 
@@ -277,7 +277,6 @@ def audit_case(study: Study) -> CaseAudit:
     groups = [group for group in GROUPS if study.has_problems or group.without_waypoints]
     found = [finding for group in groups for finding in _judged(group.judge, study)]
     found = [f for at, f in enumerate(found) if f.rule != NOT_COMPUTED.id or f not in found[:at]]
-    found = [f.model_copy(update={"message": spoken(study.case, f.message)}) for f in found]
     scoped = _with_scopes(found, study)
     by_rule = sorted(scoped, key=_weight)
     admissible = [reading.id for reading in study.case.readings]
@@ -345,7 +344,8 @@ def _not_computed(
         claim=None if claim is None else claim.id,
         problem=problem,
         reading=reading,
-        message=f"Not computed: {str(error).removesuffix('.')}.",
+        kind="not computed",
+        sentences=(f"Not computed: {str(error).removesuffix('.')}.",),
     )
 
 

@@ -21,7 +21,6 @@ from ..documents import (
     Severity,
     Why,
     built_remark,
-    first_sentence,
     nature_caveat,
     said_beside,
 )
@@ -136,7 +135,13 @@ def with_caveats(
     found = list(findings)
     against = _contradictions(found)
     return tuple(
-        j.model_copy(update={"caveats": caveats, "beside": said_beside(j.verdict, caveats)})
+        j.model_copy(
+            update={
+                "caveats": caveats,
+                "caveats_in_short": tuple(caveat.says for caveat in caveats),
+                "beside": said_beside(j.verdict, caveats),
+            }
+        )
         for j in judgements
         for caveats in (tuple(_caveats(study, j, against, found)),)
     )
@@ -183,7 +188,7 @@ def _caveats(
     if doubts:
         partly = _without_points(judgement, own)
         kind = CaveatKind.SOME_POINTS if partly else CaveatKind.POINTS
-        yield Caveat(kind, f"{'partly ' if partly else ''}{POINTS}: {' '.join(doubts)}")
+        yield Caveat(kind, f"{'partly ' if partly else ''}{POINTS}", " ".join(doubts))
     rests = {claim.id, *_rests_on(claim)}
     # What holds whatever the numbers are rests on none of them.
     if built or judgement.verdict is ClaimVerdict.INCONSISTENT:
@@ -191,7 +196,7 @@ def _caveats(
     for message, (sides, of_motions) in against.items():
         # A percentage rests on printed totals, whatever the peaks of their motions are.
         if rests & sides and not (of_motions and isinstance(claim, ImprovementClaim)):
-            yield Caveat(CaveatKind.DOUBTED, f"{DOUBTED}: {message}")
+            yield Caveat(CaveatKind.DOUBTED, DOUBTED, message)
 
 
 def _jumping(jumping: int, held: int, readings: int) -> str:
@@ -218,11 +223,7 @@ def _doubts(
         return []
     about = {study.case.claim(i).joint for i in _rests_on(claim)} | {claim.joint}
     joints = about - {None} or set(study.case.robot.joints)
-    return list(
-        dict.fromkeys(
-            f"{first_sentence(f.message)}." for f in findings if joints.intersection(f.doubts)
-        )
-    )
+    return list(dict.fromkeys(f.sentences[0] for f in findings if joints.intersection(f.doubts)))
 
 
 def _through_points(finding: Finding) -> bool:

@@ -8,7 +8,14 @@ from pathlib import Path
 from typing import Any, Self, TypeVar, cast
 
 from ...problem import Case, Problem, TrajgapError
-from ...problem.cases import AnyClaim, Claim, DurationsClaim, MaximumClaim, TotalTimeClaim
+from ...problem.cases import (
+    AnyClaim,
+    Claim,
+    DurationsClaim,
+    MaximumClaim,
+    TimeClaim,
+    TotalTimeClaim,
+)
 from .intervals import Intervals
 
 T = TypeVar("T")
@@ -119,21 +126,26 @@ class ChosenCase:
         """The unit that times are printed in."""
         return self.case.statement().units.time or "s"
 
+    def total_digits(self, claim: TimeClaim) -> str:
+        """A total as printed, or else the sum of the printed durations, with its unit."""
+        printed = (
+            claim.value if isinstance(claim, TotalTimeClaim) else getattr(claim, "total", None)
+        )
+        summed = (number.decimal for number in self.case.printed_durations(claim))
+        return f"{sum(summed) if printed is None else printed} {self.time_unit}"
+
     def claim_total(self, claim: Claim, rid: str) -> tuple[str, tuple[float, float]] | None:
         """A claim's total as printed (or as summed), and its interval in seconds."""
-        if isinstance(claim, DurationsClaim | MaximumClaim):
-            box = self.case.claim_durations(claim, rid)
-            summed = (float(box.lower.sum()), float(box.upper.sum()))
-            if claim.total is None:
-                plain = sum(number.decimal for number in self.case.printed_durations(claim))
-                return f"{plain} {self.time_unit} (sum of the printed durations)", summed
-            total = self.case.measured(claim.total, "time", claim.problem, rid)
-            both = (max(summed[0], total.lower), min(summed[1], total.upper))
-            return f"{claim.total} {self.time_unit}", both if both[0] <= both[1] else (
-                total.lower,
-                total.upper,
-            )
-        if not isinstance(claim, TotalTimeClaim):
+        if isinstance(claim, TotalTimeClaim):
+            total = self.case.measured(claim.value, "time", claim.problem, rid)
+            return self.total_digits(claim), (total.lower, total.upper)
+        if not isinstance(claim, DurationsClaim | MaximumClaim):
             return None
-        total = self.case.measured(claim.value, "time", claim.problem, rid)
-        return f"{claim.value} {self.time_unit}", (total.lower, total.upper)
+        box = self.case.claim_durations(claim, rid)
+        summed = (float(box.lower.sum()), float(box.upper.sum()))
+        shown = self.total_digits(claim)
+        if claim.total is None:
+            return f"{shown} (sum of the printed durations)", summed
+        total = self.case.measured(claim.total, "time", claim.problem, rid)
+        both = (max(summed[0], total.lower), min(summed[1], total.upper))
+        return shown, both if both[0] <= both[1] else (total.lower, total.upper)

@@ -9,7 +9,7 @@ from ...problem.cases import AnyClaim, MaximumClaim, StatementClaim
 from ..documents import Advice, Cause, ClaimVerdict, Edit, Judgement, Severity, Urgency
 from .card_errors import plainly
 from .edits import CLAIM
-from .stated import claim_text, spoken
+from .stated import claim_text
 from .study import Study
 
 _FIXES = {
@@ -71,13 +71,12 @@ def advise(
         if judgement.verdict is ClaimVerdict.DEPENDS:
             found.append(_of_readings(study, claim, judgement, taken(claim.id)))
         elif judgement.verdict is ClaimVerdict.NOT_CHECKABLE:
-            why = spoken(study.case, judgement.why).removeprefix(f"{claim.where}: ")
             found.append(
                 Advice(
                     urgency=Urgency.OPEN,
                     where=claim.where,
                     claim=claim.id,
-                    says=f"A reader cannot check this: {why}",
+                    says=f"A reader cannot check this: {judgement.why}",
                     change="Print what is missing, or drop the claim.",
                     edits=(),
                 )
@@ -99,7 +98,7 @@ def _of_cause(study: Study, cause: Cause, edits: tuple[Edit, ...]) -> Advice:
         urgency=Urgency.CONTRADICTED if against else Urgency.DOUBTFUL,
         where=where,
         claim=cause.claim,
-        says=plainly(study.case, cause),
+        says=" ".join(plainly(study.case, cause)),
         change=change or _UNKNOWN,
         edits=edits,
     )

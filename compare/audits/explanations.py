@@ -60,12 +60,13 @@ def _at_samples(
 ) -> Iterator[Explanation]:
     """Limits that were held at some times only."""
     held = held_otherwise(study, claim, str(finding.problem), str(finding.reading))
+    effect = "Then they are broken between the samples, and the samples do not show it"
     if isinstance(held, HeldOtherwise) and held.sampled <= 1.0 < held.everywhere:
         yield Explanation(
             change="The limits may have been held at sampled times only: at ten steps a segment "
             "none is broken.",
-            effect="Then they are broken between the samples, and the samples do not show it"
-            f"{under}.",
+            effect=f"{effect}{under}.",
+            in_any=f"{effect}.",
         )
 
 

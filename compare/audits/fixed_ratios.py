@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from .study import Study
 
 BELOW_AT_RATIOS = (
-    " The whole printed interval lies below it: other ratios of the durations, other limits, "
+    "The whole printed interval lies below it: other ratios of the durations, other limits, "
     "another reading or other digits explain that."
 )
 """What is said of a printed total below the shortest one at fixed ratios: it accuses nobody."""
@@ -106,9 +106,11 @@ def of_other_ratios(claim: Claim, pid: str, rid: str, shown: str, other: str) ->
         problem=pid,
         reading=rid,
         printed=shown,
-        message=(
-            f"Printed are {other}. They answer another question than the shortest total at these "
-            "ratios, and are not set beside it."
+        kind="other ratios",
+        sentences=(
+            f"Printed are {other}.",
+            "They answer another question than the shortest total at these ratios, and are not set "
+            "beside it.",
         ),
         decides=False,
     )

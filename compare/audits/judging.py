@@ -65,9 +65,11 @@ def judge(
     words = list(dict.fromkeys(each.values()))
     verdict = words[0] if len(words) == 1 else ClaimVerdict.DEPENDS
     if verdict is ClaimVerdict.NOT_CHECKABLE:
-        beside = [f"{f.message} ({f.rule}, informational)" for f in about if not f.decides]
-        informs = not own and bool(beside)
-        why = next((f.message for f in own), next(iter(beside), "no rule applies to this claim"))
+        informs = not own and bool(about)
+        sentences = next(
+            (f.sentences if f.decides else _informing(f) for f in (*own, *about)),
+            ("no rule applies to this claim",),
+        )
         scope, evidence = Scope.NO, Evidence.NONE
         confidence: Confidence | Why = UNDECIDED
     else:
@@ -76,11 +78,12 @@ def judge(
         scope = Scope.SOME if partial else Scope.ALL
         behind = [f for f in own if f.verdict in words and f.verdict in DECIDING]
         evidence = max((f.evidence for f in behind), key=_RANK.index, default=Evidence.NONE)
-        said = (Said(f.verdict, f.message, f.rule, f.reading) for f in behind)
+        said = (Said(f.verdict, f.rule, f.kind, f.sentences, f.reading) for f in behind)
         depends = verdict is ClaimVerdict.DEPENDS
-        behind_it = grouped(said, tuple(each), named)
-        why = " ".join(
-            with_readings(one, tuple(each), named, word=depends, why=True) for one in behind_it
+        sentences = tuple(
+            sentence
+            for one in grouped(said, tuple(each), named)
+            for sentence in with_readings(one, tuple(each), named, word=depends, why=True)
         )
         confidence = _confidence(behind, verdict)
     return Judgement(
@@ -89,10 +92,16 @@ def judge(
         scope=scope,
         evidence=evidence,
         confidence=confidence,
-        why=why,
+        sentences=sentences,
         readings=each,
         informs=informs,
     )
+
+
+def _informing(finding: Finding) -> tuple[str, ...]:
+    """What a finding says that decides nothing, marked as such."""
+    *most, last = finding.sentences
+    return *most, f"{last} ({finding.rule}, informational)"
 
 
 def rested(case: Case, judgements: Iterable[Judgement]) -> tuple[Judgement, ...]:
@@ -132,15 +141,14 @@ def rested(case: Case, judgements: Iterable[Judgement]) -> tuple[Judgement, ...]
 
 def _open(judgement: Judgement, where: str) -> Judgement:
     """A judgement taken back, for what it rests on is refuted at some place."""
-    return judgement.model_copy(
-        update={
-            "verdict": ClaimVerdict.NOT_CHECKABLE,
-            "scope": Scope.NO,
-            "evidence": Evidence.NONE,
-            "confidence": UNDECIDED,
-            "why": f"It rests on what {where} prints, which is refuted. {judgement.why}",
-            "readings": dict.fromkeys(judgement.readings, ClaimVerdict.NOT_CHECKABLE),
-        }
+    return Judgement(
+        claim=judgement.claim,
+        verdict=ClaimVerdict.NOT_CHECKABLE,
+        scope=Scope.NO,
+        evidence=Evidence.NONE,
+        confidence=UNDECIDED,
+        sentences=(f"It rests on what {where} prints, which is refuted.", *judgement.sentences),
+        readings=dict.fromkeys(judgement.readings, ClaimVerdict.NOT_CHECKABLE),
     )
 
 

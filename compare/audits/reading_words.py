@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from math import log
 
 from ...nlp import Evidence, weakest
@@ -29,9 +29,22 @@ KEPT = {
 """What the words say of limits, within a sentence; what is open has the word that the claim has."""
 
 
-def answers(summary: ReadingsSummary) -> tuple[str, ...]:
-    """What the readings make of the printed answers, and which of them fit best."""
-    return (*_of_answers(summary), *_of_fit(summary))
+def answers(
+    summary: ReadingsSummary, called: Callable[[str, str], str] = "{} ({})".format
+) -> tuple[str, ...]:
+    """What the readings make of the printed answers, and which of them fit best.
+
+    Parameters
+    ----------
+    summary : ReadingsSummary
+    called : callable
+        What a claim of a problem is called; by their ids if left out.
+
+    Returns
+    -------
+    tuple of str
+    """
+    return (*_of_answers(summary, called), *_of_fit(summary, called))
 
 
 def holding(summary: ReadingsSummary) -> tuple[str, ...]:
@@ -51,7 +64,7 @@ def segments(excesses: Sequence[Excess]) -> str:
     return ", ".join(f"{r[0]}–{r[-1]}" if len(r) > 2 else ", ".join(map(str, r)) for r in runs)
 
 
-def _of_answers(summary: ReadingsSummary) -> Iterable[str]:
+def _of_answers(summary: ReadingsSummary, called: Callable[[str, str], str]) -> Iterable[str]:
     if not summary.outcomes:
         yield (
             f"Under none of {len(summary.admissible)} readings can limits, optimum or gap be "
@@ -73,7 +86,7 @@ def _of_answers(summary: ReadingsSummary) -> Iterable[str]:
         said = ", ".join(
             f"{KEPT[k]} {under(found[k], summary.admissible, named, why=True)}" for k in words
         )
-        yield f"{claim} ({problem}): the limits are {said}.{_of_gaps(own, summary)}"
+        yield f"{called(claim, problem)}: the limits are {said}.{_of_gaps(own, summary)}"
 
 
 def _names(summary: ReadingsSummary) -> Named:
@@ -121,13 +134,13 @@ def _end(gap: float) -> tuple[str, str]:
     return f"{100 * abs(gap):.1f}", f"% {'below' if gap < 0 else 'above'} it"
 
 
-def _of_fit(summary: ReadingsSummary) -> Iterable[str]:
+def _of_fit(summary: ReadingsSummary, called: Callable[[str, str], str]) -> Iterable[str]:
     nearest = summary.nearest
     if len(summary.fits) < 2:
         return
     own = [o for o in summary.outcomes if o.reading == nearest[0]]
     stretches = [
-        (o.stretch, f"{o.claim} ({o.problem})") for o in own if not isinstance(o.stretch, Why)
+        (o.stretch, called(str(o.claim), o.problem)) for o in own if not isinstance(o.stretch, Why)
     ]
     worst, claim = max(stretches, key=lambda one: abs(log(one[0])))
     there = [

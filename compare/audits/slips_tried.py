@@ -155,6 +155,7 @@ def explained_by_slips(
         Explanation(
             change=one.slip.change,
             effect=f"{effect}{under}.{note}",
+            in_any=f"{effect}.{note}",
             brief=f"{on_card}." if default and on_card != effect else f"{effect}{under}.",
         )
         for one, note in named

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import re
-
 from ...problem import Case
 from ...problem.cases import (
     AnyClaim,
@@ -22,8 +20,6 @@ from .sentences import sentence_of, with_units
 
 _TIME = "time"
 """The objective of a claim that was minimised for time alone, in a file that says another one."""
-_TERMS = ("time-optimal", "point-to-point", "rest-to-rest", "b-spline")
-"""Words of the field with a dash, which may be ids too and stay words in a message."""
 
 
 def prints_durations(claim: Claim) -> bool:
@@ -116,31 +112,6 @@ def digits_of(case: Case, claim: AnyClaim) -> str:
     return ""
 
 
-def spoken(case: Case, text: str) -> str:
-    """A message that calls things as a reader knows them: no id stands for a name.
-
-    Claims are called by their places, algorithms by their names, problems by their titles. An id
-    that is a word of its own, of the field or of the paper ("time-optimal"), is
-    replaced only where a problem stands behind it in brackets.
-    """
-    texts = [claim.text for claim in case.claims]
-    words = " ".join([*_TERMS, case.title, case.source.title, *texts])
-    places = {claim.id: place(claim) for claim in case.claims}
-    places |= {one.id: f"the {one.name}" for one in case.algorithms}
-    problems = "|".join(re.escape(p.id) for p in case.problems)
-    for one, where in sorted(places.items(), key=lambda pair: -len(pair[0])):
-        literal = where.replace("\\", "\\\\")
-        known = rf"(?<![\w-]){re.escape(one)}"
-        text = re.sub(rf"{known} \((?:{problems})\)", literal, text)
-        if "-" in one and one not in words:
-            text = re.sub(rf"{known}(?![\w-])", literal, text)
-    for problem in case.problems:
-        # Where there is one problem, its name tells nothing.
-        name = f" ({problem.title or problem.id})" if len(case.problems) > 1 else ""
-        text = text.replace(f" ({problem.id})", name)
-    return text[:1].upper() + text[1:]
-
-
 def in_words(case: Case, problem: str, reading: str) -> str:
     """A problem and a reading in words, each where the case has several; else the problem."""
     only = case.title if len(case.problems) == 1 else problem
@@ -165,11 +136,10 @@ def asked_as(case: Case, problem: str, reading: str) -> str:
 
 def place(claim: Claim) -> str:
     """Where a claim stands, as short as it can be found: the first place that it names."""
-    first = claim.where.split(";")[0].strip()
     # A title names its field as often as it claims: what stands elsewhere too is found there.
-    first = re.sub(r"^title, ", "", first)
+    first = claim.where.split(";")[0].strip().removeprefix("title, ")
     for part in ("abstract", "title", "introduction", "conclusion"):
-        if re.match(rf"{part}\b", first):
+        if first.startswith(part):
             return f"the {part}"
     head = first.split(", above")[0].split(", below")[0].split(" and ")[0]
     return ", ".join(head.split(", ")[:2])

@@ -28,7 +28,6 @@ from ..documents import (
     capital,
     counted,
     facts,
-    first_sentence,
     more_errors,
     qualified,
     reached_cells,
@@ -191,8 +190,7 @@ def _unchecked(case: AuditedCase) -> list[str]:
     for one in case.verdicts:
         # What only informs stands with the claim on its page: it is no reason.
         if one.verdict is ClaimVerdict.NOT_CHECKABLE and not one.informs:
-            first = first_sentence(one.why)
-            reasons.setdefault(first, []).append(places[one.claim])
+            reasons.setdefault(one.sentences[0].rstrip("."), []).append(places[one.claim])
     lines = [
         f"not checkable, {where[0] if len(where) == 1 else f'{len(where)} claims'}: {why}."
         for why, where in list(reasons.items())[:_REASONS]

@@ -97,7 +97,6 @@ from .remarks import (
     same_reason,
     worth_little,
 )
-from .sentence_ends import first_sentence, sentences_of
 from .side_by_side import (
     Excess,
     Fit,
@@ -179,6 +178,7 @@ from .why_judged import (
     implausibly,
     in_full,
     noted,
+    opened,
     quoted,
     ranged,
     under,
@@ -337,7 +337,6 @@ __all__ = [
     "evident",
     "facts",
     "filled",
-    "first_sentence",
     "gap_cell",
     "grouped",
     "implausibly",
@@ -350,6 +349,7 @@ __all__ = [
     "more_errors",
     "nature_caveat",
     "noted",
+    "opened",
     "output_schema",
     "overall_cells",
     "percent",
@@ -362,7 +362,6 @@ __all__ = [
     "said_beside",
     "same_reason",
     "schema_text",
-    "sentences_of",
     "show_document",
     "si_unit",
     "solve_result",

@@ -29,6 +29,8 @@ class Explanation(Entry):
     """What that would settle, and what it would leave."""
     settles: bool = True
     """Whether it would settle the whole of it."""
+    in_any: str = Field(default="", exclude=True)
+    """The effect without its reading; the effect itself if empty; not in JSON."""
     brief: str = Field(default="", exclude=True)
     """The effect in fewer words, for a card; the effect itself if empty; not in JSON."""
 

@@ -7,12 +7,13 @@ from dataclasses import dataclass
 from enum import Enum, auto
 from typing import Annotated, Any
 
-from pydantic import Field, PlainSerializer, WithJsonSchema
+from pydantic import AfterValidator, Field, PlainSerializer, WithJsonSchema
 
 from ...nlp import Evidence
 from ...verify import shown_bound
-from .entry import Entry, OrWhy, Real, Why
+from .entry import Entry, OrLeftOut, OrWhy, Real, Why
 from .vocabulary import Basis, ClaimVerdict, Confidence, GapKind, Scope, Severity
+from .why_judged import capital, opened
 
 UNCERTIFIED = Why("not certified")
 """Why there is no lower bound, where no certificate proves one."""
@@ -22,12 +23,23 @@ def _evidence(data: dict[str, Any]) -> Evidence:
     return Evidence.BEST_KNOWN if isinstance(data.get("lower"), Why) else Evidence.CERTIFIED
 
 
+_OPEN_WORDS = 60
+"""Words of the opening of a reason: a verdict and its numbers have room."""
 UNDECIDED = Why("it decides nothing")
 """Why a finding that is not checkable has no confidence."""
 
 
 _DIGITS_ALONE = (Basis.DIGITS, Basis.COUNT, Basis.IDENTITY, Basis.TEXT)
 """What needs no curve and no motion: under no reading in particular, digits alone decide."""
+
+
+def _severity(data: dict[str, Any]) -> Severity:
+    """What a verdict weighs, unless its rule says otherwise."""
+    weights = {
+        ClaimVerdict.REFUTED: Severity.ERROR,
+        ClaimVerdict.INCONSISTENT: Severity.WARNING,
+    }
+    return weights.get(data["verdict"], Severity.INFO)
 
 
 def _confidence(data: dict[str, Any]) -> Confidence | Why:
@@ -44,6 +56,21 @@ def _confidence(data: dict[str, Any]) -> Confidence | Why:
         return Confidence.COMPUTED
     own = data.get("reading") is None and data.get("basis") in _DIGITS_ALONE
     return Confidence.DIGITS if own else Confidence.PROVEN
+
+
+def _begun(parts: tuple[str, ...]) -> tuple[str, ...]:
+    """Sentences without empty ones, the first with a capital, whatever place it begins with."""
+    first, *others = filter(None, parts)
+    return capital(first), *others
+
+
+def _whole(data: dict[str, Any]) -> str:
+    return " ".join(data["sentences"])
+
+
+def _opening(data: dict[str, Any]) -> str | None:
+    shown, rest = opened(data["sentences"], _OPEN_WORDS)
+    return " ".join(shown) if rest else None
 
 
 class Reference(Entry):
@@ -114,8 +141,8 @@ class Finding(Entry):
 
     rule: Annotated[str, Field(pattern=r"^TG[0-9]{3}$")]
     """Permanent id, e.g. "TG101"."""
-    severity: Severity = Severity.INFO
     verdict: ClaimVerdict = ClaimVerdict.NOT_CHECKABLE
+    severity: Severity = Field(default_factory=_severity)
     scope: Scope = Scope.NO
     """Under how many admissible readings the verdict of this finding holds; the audit says."""
     evidence: Evidence = Evidence.NONE
@@ -136,10 +163,12 @@ class Finding(Entry):
     computed: str | None = None
     """What was computed, with units."""
     gap: OrWhy[Gap] = Why("no time is set beside an optimum")
-    message: str
-    """One or two sentences with the numbers."""
-    kind: str = Field(default="", exclude=True)
-    """What findings of a rule have in common that say the same in other numbers; not in JSON."""
+    kind: Annotated[str, Field(min_length=1)]
+    """What findings of a rule have in common that say the same in other numbers."""
+    sentences: Annotated[tuple[str, ...], AfterValidator(_begun)] = Field(exclude=True)
+    """The result, then conditions and what was tried, all with their numbers; not in JSON."""
+    message: str = Field(default_factory=_whole)
+    """All sentences in one text."""
     root: str = Field(default="", exclude=True)
     """What it shows, as a key that findings of one cause share; by itself if empty; not in JSON."""
     follows: tuple[str, ...] = Field(default=(), exclude=True)
@@ -152,6 +181,11 @@ class Finding(Entry):
     """Joints whose printed way-points it puts in doubt; not in JSON."""
     farthest: str = Field(default="", exclude=True)
     """Claim whose total lies as far from a shorter motion as `gap` says; not in JSON."""
+
+    def adding(self, *sentences: str) -> Finding:
+        """The same finding with more to say."""
+        said = (*self.sentences, *sentences)
+        return self.model_copy(update={"sentences": said, "message": " ".join(said)})
 
 
 class CaveatKind(Enum):
@@ -179,13 +213,22 @@ class CaveatKind(Enum):
 
 @dataclass(frozen=True)
 class Caveat:
-    """What goes with a word: its kind for the code, its text for the reader and for JSON."""
+    """What goes with a word: its kind for the code, its text for the reader and for JSON.
+
+    Attributes
+    ----------
+    kind : CaveatKind
+    says : str
+    why : str
+        Empty where nothing needs saying.
+    """
 
     kind: CaveatKind
-    text: str
+    says: str
+    why: str = ""
 
     def __str__(self) -> str:
-        return self.text
+        return f"{self.says}: {self.why}" if self.why else self.says
 
 
 class Judgement(Entry):
@@ -197,11 +240,18 @@ class Judgement(Entry):
     evidence: Evidence
     confidence: OrWhy[Confidence] = Why("nothing decides it")
     """How it is known: a contradiction as its strongest finding, support as its weakest."""
-    why: str
+    sentences: tuple[str, ...] = Field(default=(), exclude=True)
+    """What decides, or why nothing does; not in JSON."""
+    why: str = Field(default_factory=_whole)
+    """All sentences in one text."""
+    opening: OrLeftOut[str] = Field(default_factory=_opening)
+    """The first sentences of a long reason, where it has no room; left out of a shorter one."""
     caveats: tuple[
         Annotated[Caveat, PlainSerializer(str), WithJsonSchema({"type": "string"})], ...
     ] = ()
     """What goes with the word: a curve whose velocity jumps, a contradiction in print."""
+    caveats_in_short: tuple[str, ...] = ()
+    """Each of them without its reason."""
     beside: str = ""
     """What stands beside the word wherever it is shown, such as "but on doubted numbers"."""
     readings: dict[str, ClaimVerdict]

@@ -59,7 +59,7 @@ def nature_caveat(nature: Nature) -> Caveat:
         Nature.JUDGEMENT: "no measure is named that could be computed",
     }
     kind = _KINDS[nature]
-    return Caveat(kind, f"{_BESIDE[kind][1]}: {why[nature]}")
+    return Caveat(kind, _BESIDE[kind][1], why[nature])
 
 
 def qualified(verdict: str, beside: str) -> str:
@@ -91,14 +91,18 @@ def said_beside(verdict: ClaimVerdict, caveats: Iterable[Caveat]) -> str:
     str
         Such as "but on doubted numbers"; empty where nothing does.
     """
+    doubts, *others = _beside(verdict, caveats)
+    joins = "and" if verdict is ClaimVerdict.DEPENDS else "but"
+    return ", ".join([*([f"{joins} {doubts}"] if doubts else []), *others])
+
+
+def _beside(verdict: ClaimVerdict, caveats: Iterable[Caveat]) -> list[str]:
+    """What a verdict rests on that is doubted, empty where nothing is; then what else it is."""
     kinds = {caveat.kind for caveat in caveats}
     found = {k: said for k, (word, said) in _BESIDE.items() if word is verdict and k in kinds}
     doubts = [what for k, (words, what) in _DOUBTS.items() if verdict in words and k in kinds]
-    said = list(found.values())
-    if doubts and CaveatKind.BUILT not in found:
-        joins = "and" if verdict is ClaimVerdict.DEPENDS else "but"
-        said.insert(0, f"{joins} on doubted {' and '.join(doubts)}")
-    return ", ".join(said)
+    doubted = bool(doubts) and CaveatKind.BUILT not in found
+    return [f"on doubted {' and '.join(doubts)}" if doubted else "", *found.values()]
 
 
 def worth_little(judgements: Sequence[Judgement]) -> str:
@@ -114,11 +118,11 @@ def worth_little(judgements: Sequence[Judgement]) -> str:
         Such as "18 on doubted numbers, 2 by construction".
     """
     counts = Counter(
-        judgement.beside.removeprefix("but ")
+        ", ".join(filter(None, _beside(judgement.verdict, judgement.caveats)))
         for judgement in judgements
-        if judgement.verdict is ClaimVerdict.SUPPORTED and judgement.beside
+        if judgement.verdict is ClaimVerdict.SUPPORTED
     )
-    parts = [f"{count} {said}" for said, count in counts.items()]
+    parts = [f"{count} {said}" for said, count in counts.items() if said]
     return ", ".join(parts)
 
 

@@ -5,9 +5,9 @@ Terminal, JSON, pages and site tell reasons in the words of this module.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import accumulate
 
 from .vocabulary import ClaimVerdict
 
@@ -15,11 +15,6 @@ DECIDING = (ClaimVerdict.REFUTED, ClaimVerdict.INCONSISTENT, ClaimVerdict.SUPPOR
 """What decides, the strongest first: a proof outweighs what only agrees."""
 _FEW = 2
 """Readings that a sentence names; of more it gives the number."""
-_NUMBERS = re.compile(
-    r"[-−+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?"
-    r"|(?:\brad\b|\bdeg\b|°)(?:/s[²³]?|/min\b)?|\brpm\b|\b[cm]?m/(?:s[²³]?|min\b)|\b[cm]m\b"
-)
-"""Numbers and the units behind them: what reasons that are alike may differ in."""
 
 
 @dataclass(frozen=True)
@@ -28,14 +23,16 @@ class Said:
 
     Attributes
     ----------
-    verdict, message, rule : str
+    verdict, rule, kind : str
+    sentences : tuple of str
     reading : str or None
         None where it depends on none.
     """
 
     verdict: str
-    message: str
     rule: str
+    kind: str
+    sentences: tuple[str, ...]
     reading: str | None = None
 
 
@@ -68,20 +65,24 @@ class Reason:
 
     Attributes
     ----------
-    verdict, message : str
-        As the first of its readings has it.
-    rules : tuple of str
-    readings : tuple of str
-        Every reading under which it holds.
-    each : tuple of (str, tuple of str)
-        Every message, with the readings under which it is that to the digit.
+    verdict, rule : str
+    each : tuple of (tuple of str, tuple of str)
+        Sentences, with the readings under which they are these to the digit.
     """
 
     verdict: str
-    message: str
-    rules: tuple[str, ...]
-    readings: tuple[str, ...]
-    each: tuple[tuple[str, tuple[str, ...]], ...]
+    rule: str
+    each: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...]
+
+    @property
+    def sentences(self) -> tuple[str, ...]:
+        """As the first of its readings has them."""
+        return self.each[0][0]
+
+    @property
+    def readings(self) -> tuple[str, ...]:
+        """Every reading under which it holds."""
+        return tuple(reading for _, where in self.each for reading in where)
 
 
 def grouped(said: Iterable[Said], computed: Sequence[str], named: Named = NAMELESS) -> list[Reason]:
@@ -101,26 +102,19 @@ def grouped(said: Iterable[Said], computed: Sequence[str], named: Named = NAMELE
         The strongest word first; of one word those of the default reading first, and those of
         implausible readings last.
     """
-    messages: dict[tuple[str, str], tuple[dict[str, None], dict[str, None]]] = {}
+    texts: dict[tuple[str, str, str, int], dict[tuple[str, ...], dict[str, None]]] = {}
     for one in said:
         if one.verdict in DECIDING:
-            rules, where = messages.setdefault((one.verdict, one.message), ({}, {}))
-            rules[one.rule] = None
-            under_them = computed if one.reading is None else (one.reading,)
-            where.update(dict.fromkeys(under_them))
+            # What names more things has more sentences.
+            key = one.verdict, one.rule, one.kind, len(one.sentences)
+            alike = texts.setdefault(key, {})
+            where = computed if one.reading is None else (one.reading,)
+            alike.setdefault(one.sentences, {}).update(dict.fromkeys(where))
     # The default reading is the first of those under which it holds.
-    for key, (rules, where) in messages.items():
-        first = [reading for reading in where if reading == named.default]
-        messages[key] = (rules, dict.fromkeys([*first, *where]))
     found = [
-        Reason(
-            verdict=group[0][0],
-            message=group[0][1],
-            rules=tuple(dict.fromkeys(r for key in group for r in messages[key][0])),
-            readings=tuple(r for key in group for r in messages[key][1]),
-            each=tuple((key[1], tuple(messages[key][1])) for key in group),
-        )
-        for group in _alike({key: where for key, (_, where) in messages.items()}, named)
+        Reason(verdict, rule, tuple((text, _first(named.default, alike[text])) for text in group))
+        for (verdict, rule, *_), alike in texts.items()
+        for group in _disjoint(alike, named.default)
     ]
     words = list(map(str, DECIDING))
     return sorted(
@@ -133,21 +127,24 @@ def grouped(said: Iterable[Said], computed: Sequence[str], named: Named = NAMELE
     )
 
 
-def _alike(
-    messages: Mapping[tuple[str, str], Mapping[str, None]], named: Named
-) -> list[list[tuple[str, str]]]:
-    """Messages that differ in numbers alone, as long as no reading gives two of them."""
-    found: dict[tuple[str, str], list[list[tuple[str, str]]]] = {}
-    # The sort is stable: those of the default reading lead, the others keep their order.
-    for key in sorted(messages, key=lambda key: named.default not in messages[key]):
-        groups = found.setdefault((key[0], _NUMBERS.sub("#", key[1])), [])
+def _first(default: str, readings: Iterable[str]) -> tuple[str, ...]:
+    """Readings in their order, the default one in front."""
+    return tuple(sorted(readings, key=lambda reading: reading != default))
+
+
+def _disjoint(
+    alike: Mapping[tuple[str, ...], Mapping[str, None]], default: str
+) -> list[list[tuple[str, ...]]]:
+    """Texts in groups in which no reading gives two; that of the default reading leads."""
+    groups: list[list[tuple[str, ...]]] = []
+    for text in sorted(alike, key=lambda text: default not in alike[text]):
         for group in groups:
-            if not any(reading in messages[other] for other in group for reading in messages[key]):
-                group.append(key)
+            if all(alike[text].keys().isdisjoint(alike[other]) for other in group):
+                group.append(text)
                 break
         else:
-            groups.append([key])
-    return [group for groups in found.values() for group in groups]
+            groups.append([text])
+    return groups
 
 
 def with_readings(
@@ -157,8 +154,8 @@ def with_readings(
     *,
     word: bool = False,
     why: bool = False,
-) -> str:
-    """A reason with the readings under which it holds, in one text.
+) -> tuple[str, ...]:
+    """The sentences of a reason, the first with the readings under which it holds.
 
     Parameters
     ----------
@@ -173,7 +170,7 @@ def with_readings(
 
     Returns
     -------
-    str
+    tuple of str
     """
     text, notes = _under(one.readings, computed, named, _FEW, why=why)
     if len(one.each) > 1:
@@ -181,8 +178,9 @@ def with_readings(
         first = quoted(one.readings[0], named.labels)
         notes += ["numbers of the first" if first in text else f"numbers of {first}"]
     elif len(one.readings) == len(computed) and not word:
-        return one.message
-    return f"{capital(_worded(one, noted(text, *notes), computed, word))}: {one.message}"
+        return one.sentences
+    first, *others = one.sentences
+    return f"{capital(_worded(one, noted(text, *notes), computed, word))}: {first}", *others
 
 
 def _worded(one: Reason, where: str, computed: Sequence[str], word: bool) -> str:
@@ -196,12 +194,19 @@ def _worded(one: Reason, where: str, computed: Sequence[str], word: bool) -> str
 def in_full(
     one: Reason, computed: Sequence[str], named: Named = NAMELESS, *, word: bool = False
 ) -> list[str]:
-    """Every message of a reason with all its readings named; nothing is left out."""
+    """Every text of a reason with all its readings named; nothing is left out."""
     return [
-        f"{capital(_worded(one, where, computed, word))}: {message}"
-        for message, readings in one.each
+        f"{capital(_worded(one, where, computed, word))}: {' '.join(sentences)}"
+        for sentences, readings in one.each
         for where in (under(readings, computed, named, most=len(computed)),)
     ]
+
+
+def opened(sentences: tuple[str, ...], words: int) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """As many sentences as have room in so many words, one at least; and the rest."""
+    ends = accumulate(len(sentence.split()) for sentence in sentences)
+    shown = max(1, sum(end <= words for end in ends))
+    return sentences[:shown], sentences[shown:]
 
 
 def under(

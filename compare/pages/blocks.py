@@ -10,6 +10,7 @@ from typing import ClassVar, TypeAlias
 from urllib.parse import quote
 
 from ...problem import file_name
+from ..documents import Caveat
 
 GLOSSARY = "glossary.html"
 """The page that explains every word, once for a report."""
@@ -159,7 +160,8 @@ class Claimed:
     why : tuple of str
     more : tuple of str
         The rest of the reasons, for a fold.
-    caveats : tuple of str
+    caveats : tuple of Caveat
+        Each begins and ends as a sentence does.
     answer : str
         What the authors say; empty where they were not asked.
     anchor : str
@@ -175,7 +177,7 @@ class Claimed:
     holds: str
     why: tuple[str, ...]
     more: tuple[str, ...]
-    caveats: tuple[str, ...]
+    caveats: tuple[Caveat, ...]
     anchor: str
     id: str
     answer: str = ""

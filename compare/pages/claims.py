@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import groupby
@@ -10,7 +9,7 @@ from itertools import groupby
 from ...nlp import Evidence
 from ...problem import file_name
 from ...problem.cases import AnyClaim
-from ..audits import CaseAudit, claim_text, digits_of, place, plainly, spoken
+from ..audits import CaseAudit, claim_text, digits_of, place, plainly
 from ..documents import (
     Cause,
     Caveat,
@@ -24,9 +23,8 @@ from ..documents import (
     Severity,
     capital,
     grouped,
+    opened,
     qualified,
-    quoted,
-    sentences_of,
     under,
     with_readings,
     worth_little,
@@ -49,10 +47,6 @@ _KNOWN = {
     Confidence.REPLAY: "by replays",
 }
 """How a verdict is known, beside its claim."""
-
-
-_CITED = re.compile(r"\(TG[^()]*\)")
-"""The rules and readings that stand behind a reason."""
 
 
 def against(one: CaseAudit) -> Section:
@@ -85,9 +79,7 @@ def folded_claims(one: CaseAudit) -> Iterator[Section]:
 def claimed(one: CaseAudit, judgement: Judgement) -> Claimed:
     """One claim with its verdict and why."""
     claim = one.case.claim(judgement.claim)
-    # The place of the claim stands above its reasons.
-    said = (reason.removeprefix(f"{claim.where}: ") for reason in _why(one, judgement))
-    why, more = _opened([spoken(one.case, reason) for reason in said])
+    why, more = _opened(_why(one, judgement))
     return Claimed(
         text=claim_text(one.case, claim),
         where=claim.where,
@@ -97,8 +89,8 @@ def claimed(one: CaseAudit, judgement: Judgement) -> Claimed:
         ),
         holds=_holds(judgement, names(one)),
         why=why,
-        more=(*more, *(_in_full(one, c) for c in judgement.caveats if c.kind in _POINTS)),
-        caveats=tuple(_caveats(one, judgement)),
+        more=(*more, *(str(_sentence(c)) for c in judgement.caveats if c.kind in _POINTS)),
+        caveats=tuple(_caveats(judgement)),
         anchor=file_name("claim", claim.id),
         id=claim.id,
         answer=answered(claim),
@@ -109,17 +101,20 @@ _POINTS = (CaveatKind.POINTS, CaveatKind.SOME_POINTS)
 """Doubted way-points: in full behind a fold."""
 
 
-def _caveats(one: CaseAudit, judgement: Judgement) -> Iterator[str]:
+def _caveats(judgement: Judgement) -> Iterator[Caveat]:
     """What goes with the word; of doubted way-points the word has said so, or a short line does."""
     for caveat in judgement.caveats:
         if caveat.kind not in _POINTS:
-            yield _in_full(one, caveat)
+            yield _sentence(caveat)
         elif caveat.kind is CaveatKind.SOME_POINTS:
-            yield f"{capital(caveat.text.partition(':')[0])}."
+            yield _sentence(replace(caveat, why=""))
 
 
-def _in_full(one: CaseAudit, caveat: Caveat) -> str:
-    return f"{spoken(one.case, caveat.text).rstrip('.')}."
+def _sentence(caveat: Caveat) -> Caveat:
+    """A caveat that begins and ends as a sentence does."""
+    if caveat.why:
+        return Caveat(caveat.kind, capital(caveat.says), f"{caveat.why.rstrip('.')}.")
+    return Caveat(caveat.kind, f"{capital(caveat.says)}.")
 
 
 def answered(claim: AnyClaim) -> str:
@@ -132,23 +127,20 @@ def answered(claim: AnyClaim) -> str:
     return f"{said}: {answer.outcome}" if answer.outcome else f"{said}."
 
 
-def _opened(reasons: Sequence[str]) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Whole sentences of the first reason up to `_OPEN_WORDS` words, at least one; and the rest."""
-    shown: list[str] = []
-    room = _OPEN_WORDS
-    for reason in reasons[:1]:
-        for sentence in sentences_of(reason):
-            count = len(sentence.split())
-            if shown and count > room:
-                break
-            shown.append(sentence)
-            room -= count
-    opened = " ".join(shown)
-    if reasons and _CITED.fullmatch(reasons[0].removeprefix(opened).strip()):
-        # What is left over names the rules alone: it stays with its sentence.
-        opened = reasons[0]
-    rest = [reason.removeprefix(opened).strip() for reason in reasons[:1]] + list(reasons[1:])
-    return ((opened,) if opened else ()), tuple(reason for reason in rest if reason)
+def _opened(
+    reasons: Sequence[tuple[tuple[str, ...], str]],
+) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Sentences of the first reason that stand in the open, and the rest; each with its rule."""
+    if not reasons:
+        return (), ()
+    (first, rule), *others = reasons
+    shown, rest = opened(first, _OPEN_WORDS)
+    if not rest:
+        shown = (*shown, rule)
+    else:
+        rest = (*rest, rule)
+    after = [" ".join(filter(None, (*one, behind))) for one, behind in others]
+    return (" ".join(filter(None, shown)),), tuple(filter(None, (" ".join(rest).strip(), *after)))
 
 
 def _holds(judgement: Judgement, named: Named) -> str:
@@ -180,20 +172,19 @@ def names(one: CaseAudit) -> Named:
     return Named(one.case.labels, far, one.study.main_reading)
 
 
-def _why(one: CaseAudit, judgement: Judgement) -> Iterator[str]:
-    """What decides: each reason once, with the rules and the readings that say it."""
+def _why(one: CaseAudit, judgement: Judgement) -> list[tuple[tuple[str, ...], str]]:
+    """The sentences of what decides, each reason once, and the rule that says it in brackets."""
     said = [
-        Said(f.verdict, f.message, f.rule, f.reading)
+        Said(f.verdict, f.rule, f.kind, f.sentences, f.reading)
         for f in one.findings
         if f.claim == judgement.claim and f.decides
     ]
-    found = grouped(said, tuple(judgement.readings), names(one))
-    if not found:
-        yield judgement.why
-    depends = judgement.verdict is ClaimVerdict.DEPENDS
-    for reason in found:
-        text = with_readings(reason, tuple(judgement.readings), names(one), word=depends)
-        yield f"{text} ({', '.join(reason.rules)})"
+    every, depends = tuple(judgement.readings), judgement.verdict is ClaimVerdict.DEPENDS
+    found = grouped(said, every, names(one))
+    return [
+        (with_readings(reason, every, names(one), word=depends), f"({reason.rule})")
+        for reason in found
+    ] or [(judgement.sentences, "")]
 
 
 # --- causes ---------------------------------------------------------------------------------------
@@ -207,18 +198,18 @@ def _covered(one: CaseAudit, cause: Cause) -> bool:
 
 
 def _behind(one: CaseAudit, cause: Cause) -> Behind:
-    says = plainly(one.case, cause, names(one).implausible)
-    says, *_ = _opened([says])[0] or (says,)
+    says, _ = opened(plainly(one.case, cause, names(one).implausible), _OPEN_WORDS)
     # The one reading of a cause stands in front of it already.
-    only = [quoted(reading, one.case.labels) for reading in cause.readings]
-    known = f", under {only[0]}" if len(only) == 1 else "\0"
+    known = len(cause.readings) == 1
     hit = dict.fromkeys(c.claim for c in cause.consequences if c.claim and c.claim != cause.claim)
     return Behind(
         weight=word(cause.severity),
-        says=says,
+        says=" ".join(says),
         explanations=tuple(
-            f"{' Or: '.join(e.change for e in alike)} {effect}".replace(known, "")
-            for effect, alike in groupby(cause.explanations, lambda e: e.effect)
+            f"{' Or: '.join(e.change for e in alike)} {effect}"
+            for effect, alike in groupby(
+                cause.explanations, lambda e: (known and e.in_any) or e.effect
+            )
         ),
         follows=tuple(_to(one, claim) for claim in hit),
     )

@@ -47,7 +47,7 @@ def _examined(study: Study, result: InstancesResult, examined: ExaminedInstances
         "are drawn from the robot's workspace and are not the paper's."
     )
     return [
-        *(Prose(said) for said in (placed(result), attributed(result)) if said),
+        *(Prose(said) for said in (placed(result), " ".join(attributed(result))) if said),
         Prose(
             "The instances are not the paper's: they inform and decide nothing, and the absolute "
             "times stay not checkable.",

@@ -80,7 +80,7 @@ def _claimed(block: Claimed) -> str:
     place = "; ".join(x for x in (block.where, block.printed, block.holds) if x)
     head = f"- **{plain(block.verdict.text)}**: {_line(block.text)} ({_line(place)})"
     answer = [block.answer] if block.answer else []
-    reasons = (*block.why, *block.more, *block.caveats, *answer)
+    reasons = (*block.why, *block.more, *map(str, block.caveats), *answer)
     return "\n".join([head, *(f"  - {_line(reason)}" for reason in reasons)])
 
 

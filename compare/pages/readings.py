@@ -8,8 +8,8 @@ from dataclasses import replace
 from ...problem import Case
 from ...problem.cases import Statement
 from ...problem.curves import ClampedBSpline, Knots, Parameters, clamped_readings
-from ..audits import CaseAudit, place, segments, spoken
-from ..documents import ClaimVerdict, Keeping, ReadingOutcome, ReadingsSummary, Why
+from ..audits import CaseAudit, answers, place, segments
+from ..documents import ClaimVerdict, Keeping, ReadingOutcome, ReadingsSummary, Why, capital
 from .blocks import (
     Block,
     Cell,
@@ -39,11 +39,13 @@ def side_by_side(one: CaseAudit) -> Section:
         tables = _outcomes(one, summary) if summary.outcomes else [_without_problems(one)]
         rows = sum(len(t.rows) for t in tables if isinstance(t, Grid))
         title = f"{len(summary.admissible)} readings side by side"
+        found = answers(summary, lambda claim, _: place(one.case.claim(claim)))
+        said = [Prose(capital(answer)) for answer in found]
         if rows > _FEW:
-            blocks += [Prose(spoken(one.case, said)) for said in summary.answers]
+            blocks += said
             blocks.append(Folded(title, tuple(tables)))
         else:
-            blocks += [*(Prose(spoken(one.case, said)) for said in summary.answers[-1:]), *tables]
+            blocks += [*said[-1:], *tables]
         blocks += _argued(one, summary)
     blocks += _determined(one.case)
     return Section("side-by-side", "What depends on the reading", tuple(blocks))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-from ..documents import same_reason
+from ..documents import Caveat, same_reason
 from .blocks import Claimed
 
 
@@ -26,17 +26,16 @@ def shown_once(found: Sequence[Claimed]) -> Iterator[Claimed]:
     for one in found:
         groups.setdefault((one.text, one.verdict.text, one.holds), []).append(one)
     first: dict[tuple[str, ...], Claimed] = {}
-    seen: set[str] = set()
+    seen: set[Caveat] = set()
     for group in groups.values():
         one = _joined(group)
         before = first.setdefault((*one.why, *one.more), one)
         if before is not one:
             one = replace(one, why=(same_reason(before.text, before.where, one.where),), more=())
         caveats = tuple(
-            f"{caveat.partition(':')[0]} (see above)." if caveat in seen else caveat
-            for caveat in one.caveats
+            Caveat(c.kind, f"{c.says} (see above).") if c in seen else c for c in one.caveats
         )
-        seen.update(caveat for caveat in one.caveats if ":" in caveat)
+        seen.update(caveat for caveat in one.caveats if caveat.why)
         yield replace(one, caveats=caveats)
 
 

@@ -114,12 +114,14 @@ def _evidence(step: Step) -> str:
     return step.note if isinstance(step.time, Why) else _WORDS[step.evidence]
 
 
-def seconds(step: Step) -> str:
-    """A step's value, with its interval where it is one.
+def seconds(step: Step, ends: bool = True) -> str:
+    """A step's value, with the ends of its interval where it is one.
 
     Parameters
     ----------
     step : Step
+    ends : bool
+        Whether there is room for them.
 
     Returns
     -------
@@ -131,15 +133,12 @@ def seconds(step: Step) -> str:
     digits = 4 if step.time >= 0.1 else 6
     text = f"{step.time:.{digits}f} s"
     low, high = step.low, step.high
-    if not isinstance(low, Why) and not isinstance(high, Why):
+    if ends and not isinstance(low, Why) and not isinstance(high, Why):
         width = high - low
         if width > 1e-9:
             digits = min(9, max(digits, math.ceil(1 - math.log10(width))))
-            ends = (
-                shown_bound(low, "lower", places=digits),
-                shown_bound(high, "upper", places=digits),
-            )
-            text += f" ({' to '.join(ends)})"
+            least = shown_bound(low, "lower", places=digits)
+            text += f" ({least} to {shown_bound(high, 'upper', places=digits)})"
     return text
 
 
@@ -158,7 +157,7 @@ def _bar(axes: Axes, row: int, step: Step, top: float, narrow: bool) -> None:
     axes.text(
         0.015 * top if step.time > 0.5 * top else end + 0.015 * top,
         row,
-        seconds(step).split(" (")[0] if narrow else seconds(step),
+        seconds(step, ends=not narrow),
         va="center",
         weight="bold",
         zorder=5,

@@ -141,9 +141,9 @@ class Claims(FromResults):
                     box += paragraph(f"{stated[one['claim']]['where']}: {one['why']}")
             for one in (verdict, *others):
                 box += [paragraph(said) for said in innocent.get(one["claim"], ())]
-            for caveat in verdict["caveats"]:
+            for caveat, head in zip(verdict["caveats"], verdict["caveats_in_short"], strict=True):
                 # One long reason is given once.
-                short = f"{caveat.partition(':')[0]} (see above)." if caveat in seen else caveat
+                short = f"{head} (see above)." if caveat in seen and head != caveat else caveat
                 seen.add(caveat)
                 box += paragraph(f"{short[:1].upper()}{short[1:]}", "trajgap-beside")
             found.append(box)

@@ -135,9 +135,9 @@ def test_phrases() -> None:
     """Verdicts with each caveat and two of them, readings from one to all, lists without a row."""
     caveats = {
         "none": (),
-        "doubted": (Caveat(CaveatKind.DOUBTED, f"{DOUBTED}: two tables are alike."),),
-        "points": (Caveat(CaveatKind.POINTS, f"{POINTS}: they repeat digits."),),
-        "some points": (Caveat(CaveatKind.SOME_POINTS, f"partly {POINTS}: digits repeat."),),
+        "doubted": (Caveat(CaveatKind.DOUBTED, DOUBTED, "two tables are alike."),),
+        "points": (Caveat(CaveatKind.POINTS, POINTS, "they repeat digits."),),
+        "some points": (Caveat(CaveatKind.SOME_POINTS, f"partly {POINTS}", "digits repeat."),),
         "jumping": (Caveat(CaveatKind.JUMPING, "the velocity of the curve jumps"),),
         "built": (Caveat(CaveatKind.BUILT, built_remark()),),
         **{str(nature): (nature_caveat(nature),) for nature in Nature},

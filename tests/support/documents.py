@@ -111,7 +111,8 @@ def report() -> AuditReport:
         printed="1.869 s",
         computed="1.817 s",
         gap=gap((1.8, 1.9), Reference(upper=1.85), feasible=False),
-        message="text",
+        kind="distance",
+        sentences=("Text",),
     )
     steps = (
         Step(name="published", time=1.9, low=1.8, high=2.0, note="printed"),

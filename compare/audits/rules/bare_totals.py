@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ....problem.cases import TotalTimeClaim
-from ...documents import Basis, ClaimVerdict, Finding, Severity
+from ...documents import Basis, ClaimVerdict, Finding
 from ..roots import LIMITS
 from ..study import Study
 from .continuous_time import broken
@@ -26,14 +26,13 @@ def judge_bare_totals(study: Study) -> Iterator[Finding]:
             if proof is not None:
                 yield Finding(
                     rule="TG201",
-                    severity=Severity.ERROR,
                     verdict=ClaimVerdict.REFUTED,
                     basis=Basis.ENCLOSURE,
                     claim=claim.id,
                     problem=pid,
                     reading=rid,
                     printed=f"{claim.value} {study.time_unit}",
-                    message=proof,
+                    sentences=proof,
                     kind="total excluded",
                     root=f"{LIMITS} {claim.id}",
                 )

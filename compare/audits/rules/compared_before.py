@@ -29,12 +29,16 @@ def cite_comparisons(study: Study) -> Iterator[Finding]:
             claim=claim.id,
             printed=known.printed,
             computed=f"shows in {_percent(first.shown.share)} of the pairs",
-            message=" ".join(comparison_words(known, study.case)),
+            kind="study",
+            sentences=tuple(comparison_words(known, study.case)),
         )
 
 
 def comparison_words(known: Comparison, case: Case) -> Iterator[str]:
     """What a comparison came to, in sentences; its problems are called as the case calls them."""
+    names = {one.id: f"the {one.name}" for one in case.algorithms}
+    both = {"improved": names[known.improved], "standard": names[known.standard]}
+    known = known.model_copy(update=both)
     what = f"at least {100 * known.advantage:.4g} % shorter" if known.advantage else "shorter"
     runs = known.listed[0].shown.runs
     yield (

@@ -66,21 +66,20 @@ def _counted(study: Study, claim: ConditionsClaim) -> Finding:
     degrees = "-".join(map(str, claim.degrees))
     computed = counts_in_words(wanted, available)
     printed = None if claim.count is None else str(claim.count)
-    verdict, severity = ClaimVerdict.SUPPORTED, Severity.INFO
-    message = f"{degrees} polynomials: {computed} per joint."
+    verdict, severity, kind = ClaimVerdict.SUPPORTED, Severity.INFO, "count"
+    said, more = f"{degrees} polynomials: {computed} per joint", ""
     if claim.count is not None and claim.count.fraction != wanted:
-        verdict, severity = ClaimVerdict.REFUTED, Severity.ERROR
-        message = f"{degrees} polynomials: {computed} per joint; the paper prints {printed}."
+        verdict, severity, kind = ClaimVerdict.REFUTED, Severity.ERROR, "other count"
+        said += f"; the paper prints {printed}"
     elif impossible := _impossible_segments(study, claim):
-        verdict, severity = ClaimVerdict.REFUTED, Severity.ERROR
-        message = (
-            f"{degrees} polynomials: {computed} per joint. No polynomial of that degree meets "
-            f"them in segment{'s' if len(impossible) > 1 else ''} "
+        verdict, severity, kind = ClaimVerdict.REFUTED, Severity.ERROR, "impossible"
+        more = (
+            f"No polynomial of that degree meets them in segment{'s' * (len(impossible) > 1)} "
             f"{' and '.join(map(str, impossible))}, where the way-points differ."
         )
     elif wanted > available:
-        verdict, severity = ClaimVerdict.NOT_CHECKABLE, Severity.WARNING
-        message += " They can hold together only for special way-points."
+        verdict, severity, kind = ClaimVerdict.NOT_CHECKABLE, Severity.WARNING, "too many"
+        more = "They can hold together only for special way-points."
     return Finding(
         rule="TG107",
         severity=severity,
@@ -89,7 +88,8 @@ def _counted(study: Study, claim: ConditionsClaim) -> Finding:
         claim=claim.id,
         printed=printed,
         computed=computed,
-        message=message,
+        kind=kind,
+        sentences=(f"{said}.", more),
         # A printed count may be wrong; that the declared curve meets its own conditions cannot.
         built=verdict is ClaimVerdict.SUPPORTED and claim.count is None,
     )
@@ -176,7 +176,7 @@ def _at_rest(
                 judged += 1
                 built &= _prescribed(study.claim_problem(motion, pid, rid).curve, orders)
                 moving += [
-                    f"{said} ({called_under(motion, pid)})"
+                    f"{said} ({called_under(study, motion, pid)})"
                     for said in _moving(study, motion, pid, rid, orders)
                 ]
         if not judged:
@@ -184,19 +184,21 @@ def _at_rest(
         derivatives = [QUANTITIES[r - 1] for r in orders if r <= len(QUANTITIES)]
         names = f"{' and '.join(derivatives)} {'is' if len(derivatives) == 1 else 'are'}"
         others = left_out(study, named, rid)
-        unknown = f" No motion is built from {all_called(others)}." if others else ""
+        unknown = f"No motion is built from {all_called(others)}." if others else ""
         verdict = ClaimVerdict.NOT_CHECKABLE if others else ClaimVerdict.SUPPORTED
         yield Finding(
             rule="TG207",
-            severity=Severity.WARNING if moving else Severity.INFO,
             verdict=ClaimVerdict.INCONSISTENT if moving else verdict,
             basis=Basis.CHECK,
             claim=claim.id,
             reading=rid,
-            message="The motion is said to be at rest at both ends, but on the stated curve "
-            f"{'; '.join(moving)}."
+            kind="moving" if moving else "in part" if others else "at rest",
+            sentences=(
+                "The motion is said to be at rest at both ends, but on the stated curve "
+                f"{'; '.join(moving)}.",
+            )
             if moving
-            else f"On the stated curve {names} 0 at both ends of every printed motion.{unknown}",
+            else (f"On the stated curve {names} 0 at both ends of every printed motion.", unknown),
             built=built and not moving and not others,
         )
 

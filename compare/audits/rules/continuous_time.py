@@ -43,7 +43,7 @@ class _Judged:
 
     verdict: ClaimVerdict
     severity: Severity
-    message: str
+    sentences: tuple[str, ...]
     kind: str
 
 
@@ -111,14 +111,14 @@ def _judged(study: Study, claim: AnyClaim, pid: str, rid: str) -> _Judged:
             f"segments, and the velocity jumps {jumps} times between them, which takes an infinite "
             "acceleration"
         )
-    message = f"{explained}. At the printed numbers {at_print}."
+    said = [f"{explained}.", f"At the printed numbers {at_print}."]
     loose = study.case.statement(pid, rid).declaration.loose
     if rounding.verdict is Rounding.UNDECIDED and loose:
-        message += f" {loose} are printed numbers, and no proof covers their rounding."
+        said.append(f"{loose} are printed numbers, and no proof covers their rounding.")
     bound = rounding.lower_bound_of_worst
     if rounding.verdict is Rounding.BREAKS and bound is not None:
-        message += (
-            f" Whatever the rounding, a limit is exceeded by a factor of at least "
+        said.append(
+            f"Whatever the rounding, a limit is exceeded by a factor of at least "
             f"{shown_bound(bound, 'lower')}."
         )
     if rounding.verdict is Rounding.BREAKS:
@@ -126,29 +126,30 @@ def _judged(study: Study, claim: AnyClaim, pid: str, rid: str) -> _Judged:
         if cut is not Rounding.BREAKS:
             kept = cut is not Rounding.UNDECIDED
             verdict = ClaimVerdict.SUPPORTED if kept else ClaimVerdict.NOT_CHECKABLE
-            message += f" With digits cut off instead of rounded: {cut}."
-            return _Judged(verdict, Severity.WARNING, message, kind)
-        message += " The same holds with digits cut off instead of rounded."
-    return _Judged(verdict, severity, message, kind)
+            said.append(f"With digits cut off instead of rounded: {cut}.")
+            return _Judged(verdict, Severity.WARNING, tuple(said), kind)
+        said.append("The same holds with digits cut off instead of rounded.")
+    return _Judged(verdict, severity, tuple(said), kind)
 
 
 def _judged_total(study: Study, claim: TotalTimeClaim, pid: str, rid: str) -> _Judged:
     """A total without its durations: refuted where no motion that short keeps the limits."""
     printed = f"{claim.value} {study.time_unit}"
     if study.excluded_total(claim, pid, rid):
-        message = (
+        excluded = (
             f"No motion within the limits takes {printed} or less, however the digits were rounded "
             "or cut off."
         )
-        return _Judged(ClaimVerdict.REFUTED, Severity.ERROR, message, "total excluded")
-    message = (
+        return _Judged(ClaimVerdict.REFUTED, Severity.ERROR, (excluded,), "total excluded")
+    said = (
         f"Only the total is printed, {printed}, and no durations: whether its motion keeps the "
-        "limits cannot be computed. That none of that length does was not shown."
+        "limits cannot be computed.",
+        "That none of that length does was not shown.",
     )
-    return _Judged(ClaimVerdict.NOT_CHECKABLE, Severity.INFO, message, "total open")
+    return _Judged(ClaimVerdict.NOT_CHECKABLE, Severity.INFO, said, "total open")
 
 
-def broken(study: Study, claim: AnyClaim, pid: str, rid: str) -> str | None:
+def broken(study: Study, claim: AnyClaim, pid: str, rid: str) -> tuple[str, ...] | None:
     """What shows that a limit is broken, for all values rounded or cut off to the digits; or None.
 
     For a total without its durations: that no motion so short keeps the limits.
@@ -158,7 +159,7 @@ def broken(study: Study, claim: AnyClaim, pid: str, rid: str) -> str | None:
     if study.unmoved(claim, pid, rid) is not None:
         return None
     judged = _judged(study, claim, pid, rid)
-    return judged.message if judged.verdict is ClaimVerdict.REFUTED else None
+    return judged.sentences if judged.verdict is ClaimVerdict.REFUTED else None
 
 
 def _limits(study: Study, claim: AnyClaim) -> Iterator[Finding]:
@@ -176,9 +177,12 @@ def _limits(study: Study, claim: AnyClaim) -> Iterator[Finding]:
             reading=rid,
             printed=durations_text(study, claim),
             computed=_ratio(study, claim, pid, rid),
-            message=judged.message + ("" if verdict is ClaimVerdict.SUPPORTED else unsaid),
-            decides=meant_to_keep(study, claim),
             kind=judged.kind,
+            sentences=(
+                *judged.sentences,
+                "" if verdict is ClaimVerdict.SUPPORTED else unsaid,
+            ),
+            decides=meant_to_keep(study, claim),
             root=f"{LIMITS} {claim.id}" if judged.verdict is ClaimVerdict.REFUTED else "",
         )
 
@@ -207,9 +211,11 @@ def _jumps(study: Study, claim: AnyClaim) -> Iterator[Finding]:
             reading=rid,
             printed=durations_text(study, claim),
             computed=f"{len(velocity)} jumps of velocity, up to {' and '.join(sizes)}",
-            message=(
+            kind="velocity jumps",
+            sentences=(
                 f"The motion is discontinuous under this reading: velocity jumps {len(velocity)} "
-                f"times at the via-points, most {most}. Limits are judged apart from jumps."
+                f"times at the via-points, most {most}.",
+                "Limits are judged apart from jumps.",
             ),
             decides=False,
         )
@@ -229,42 +235,49 @@ def _limits_statement(study: Study, claim: StatementClaim) -> Iterator[Finding]:
             continue
         breaking = [one for one in judged if one[2].verdict is ClaimVerdict.REFUTED]
         if breaking:
-            verdict, severity = ClaimVerdict.REFUTED, Severity.ERROR
-            message = " ".join(f"{called_under(c, pid)}: {one.message}" for c, pid, one in breaking)
+            verdict = ClaimVerdict.REFUTED
+            sentences = [x for one in breaking for x in _placed(study, claim, *one)]
         elif all(one.verdict is ClaimVerdict.SUPPORTED for _, _, one in judged):
-            verdict, severity = ClaimVerdict.SUPPORTED, Severity.INFO
+            verdict = ClaimVerdict.SUPPORTED
             every = all_called(c for c, _, _ in judged)
             which = (
                 f"The printed durations ({every}) keep"
                 if len(judged) == 1
                 else f"Every printed set of durations ({every}) keeps"
             )
-            message = (
+            sentences = [
                 f"{which} the limits for all t, as printed or for some values that are rounded or "
                 f"cut off to {'their' if len(judged) == 1 else 'its'} digits."
-            )
+            ]
         else:
-            verdict, severity = ClaimVerdict.NOT_CHECKABLE, Severity.INFO
+            verdict = ClaimVerdict.NOT_CHECKABLE
             undecided = [one for one in judged if one[2].verdict is ClaimVerdict.NOT_CHECKABLE]
             names = all_called(c for c, _, _ in undecided)
-            message = f"The printed digits do not decide whether the limits are kept: {names}."
-            why = [
-                f"{called_under(c, pid)}: {one.message}"
-                for c, pid, one in undecided
-                if one.kind in (str(Verdict.DISCONTINUOUS), "total open", _ELSEWHERE)
-            ]
-            message = " ".join(why) or message
+            sentences = [
+                x
+                for one in undecided
+                if one[2].kind in (str(Verdict.DISCONTINUOUS), "total open", _ELSEWHERE)
+                for x in _placed(study, claim, *one)
+            ] or [f"The printed digits do not decide whether the limits are kept: {names}."]
         yield Finding(
             rule="TG201",
-            severity=severity,
             verdict=verdict,
             basis=Basis.ENCLOSURE,
             claim=claim.id,
             reading=rid,
-            message=message,
             kind=str(verdict),
+            sentences=tuple(sentences),
             follows=tuple(f"{BLENDS if blended(c) else LIMITS} {c.id}" for c, _, _ in breaking),
         )
+
+
+def _placed(
+    study: Study, statement: StatementClaim, claim: AnyClaim, pid: str | None, judged: _Judged
+) -> tuple[str, ...]:
+    """What is said of durations, behind their place where the statement stands at another."""
+    first, *others = judged.sentences
+    where = called_under(study, claim, pid)
+    return first if where == statement.where else f"{where}: {first}", *others
 
 
 def _elsewhere(
@@ -274,11 +287,11 @@ def _elsewhere(
     rows = [row for row in judge_row(study, claim) if row.reading == rid]
     for row in rows:
         if row.verdict is not None:
-            judged = _Judged(row.verdict, row.severity, row.message, _ELSEWHERE)
+            judged = _Judged(row.verdict, row.severity, row.sentences, _ELSEWHERE)
             yield claim, str(row.problem), judged
     if not rows:
         said = "No motion is built from these durations here, so that they are not judged."
-        judged = _Judged(ClaimVerdict.NOT_CHECKABLE, Severity.INFO, said, _ELSEWHERE)
+        judged = _Judged(ClaimVerdict.NOT_CHECKABLE, Severity.INFO, (said,), _ELSEWHERE)
         yield claim, claim.problem, judged
 
 
@@ -295,25 +308,22 @@ def _continuity(study: Study, claim: StatementClaim) -> Iterator[Finding]:
                     jumps += [(pid, jump) for jump in study.claim_check(other, pid, rid).jumps]
         if not judged:
             continue
+        which = {1: "the motion", 2: "both motions"}.get(judged, f"all {judged} motions")
+        verdict, kind, more = ClaimVerdict.SUPPORTED, "continuous", ""
         message = (
-            "In the motion rebuilt from the printed durations, position, velocity and acceleration "
+            f"In {which} rebuilt from the printed durations, position, velocity and acceleration "
             "agree on both sides of every via-point."
-            if judged == 1
-            else f"In {'both' if judged == 2 else f'all {judged}'} motions rebuilt from the "
-            "printed durations, position, velocity and acceleration agree on both sides of every "
-            "via-point."
         )
-        verdict, severity = ClaimVerdict.SUPPORTED, Severity.INFO
         if others := left_out(study, map(study.case.claim, claim.of), rid):
-            verdict = ClaimVerdict.NOT_CHECKABLE
-            message += f" No motion is built from {all_called(others)}, which it names too."
+            verdict, kind = ClaimVerdict.NOT_CHECKABLE, "in part"
+            more = f"No motion is built from {all_called(others)}, which it names too."
         if jumps and all(
             _may_be_smooth(study, study.case.claim(i), pid, rid)
             for i in claim.of
             for pid, reading in study.claim_pairs(study.case.claim(i))
             if reading == rid
         ):
-            verdict = ClaimVerdict.NOT_CHECKABLE
+            verdict, kind, more = ClaimVerdict.NOT_CHECKABLE, "may be smooth", ""
             message = (
                 "The motion jumps at the printed durations; what rounds to them or is cut off to "
                 "them may have the proportions of the parameters, with which it is smooth."
@@ -324,18 +334,18 @@ def _continuity(study: Study, claim: StatementClaim) -> Iterator[Finding]:
                 f"{jump_size(study, where, rid, top):.6g} {jump_unit(study, where, rid, top)}"
                 for where, top in largest_of_each_kind(study, rid, jumps)
             )
-            verdict, severity = ClaimVerdict.INCONSISTENT, Severity.WARNING
+            verdict, kind, more = ClaimVerdict.INCONSISTENT, "jumps", ""
             message = (
                 f"The motion is discontinuous: {len(jumps)} jumps, the largest {largest_ones}."
             )
         yield Finding(
             rule="TG202",
-            severity=severity,
             verdict=verdict,
             basis=Basis.CHECK,
             claim=claim.id,
             reading=rid,
-            message=message,
+            kind=kind,
+            sentences=(message, more),
             built=built and verdict is ClaimVerdict.SUPPORTED,
         )
 
@@ -372,13 +382,13 @@ def _said_to_jump(study: Study, claim: StatementClaim) -> Iterator[Finding]:
                 f"{jump_unit(study, where, rid, top)}"
                 for where, top in largest_of_each_kind(study, rid, jumps)
             )
-            verdict = ClaimVerdict.SUPPORTED
+            verdict, kind = ClaimVerdict.SUPPORTED, "jumps"
             message = (
                 f"Under this reading the acceleration{whose} jumps at {len(jumps)} breaks, most "
                 f"{most}."
             )
         else:
-            verdict = ClaimVerdict.NOT_CHECKABLE
+            verdict, kind = ClaimVerdict.NOT_CHECKABLE, "agrees"
             message = (
                 f"Under this reading the acceleration{whose} agrees on both sides of every break; "
                 "steep is not the same as discontinuous, and the figures are not in the text."
@@ -389,7 +399,8 @@ def _said_to_jump(study: Study, claim: StatementClaim) -> Iterator[Finding]:
             basis=Basis.CHECK,
             claim=claim.id,
             reading=rid,
-            message=message,
+            kind=kind,
+            sentences=(message,),
         )
 
 
@@ -426,8 +437,10 @@ def _used_up(study: Study, claim: AnyClaim) -> Iterator[Finding]:
                 reading=rid,
                 printed=durations_text(study, claim),
                 computed="; ".join(tight),
-                message="To first order in the rounding of the printed inputs, a limit is reached: "
-                + "; ".join(tight)
-                + ".",
+                kind="reached",
+                sentences=(
+                    "To first order in the rounding of the printed inputs, a limit is reached: "
+                    f"{'; '.join(tight)}.",
+                ),
                 decides=False,
             )

@@ -47,10 +47,10 @@ from ..study import Study
 from .continuous_time import broken
 from .wording import called, called_under, left_out
 
-_BELOW = " All of it is below the best known total: a misprint or a better optimum may explain it."
+_BELOW = "All of it is below the best known total: a misprint or a better optimum may explain it."
 """What is said of a printed total below a best known one."""
 _BELOW_BOUND = (
-    " The whole printed interval lies below the proved lower bound of this problem as printed: "
+    "The whole printed interval lies below the proved lower bound of this problem as printed: "
     "a misprinted total, limit or way-point, or another reading, may explain it."
 )
 """What is said of a printed total below a proved bound."""
@@ -105,37 +105,37 @@ def _distance(
     distance = gap(interval, reference, feasible=kept)
     whole = " with shared durations" if solution.problem.ratios is None else ""
     which = whole if shared or claim.joint is None else f" of joint {claim.joint}"
-    message = (
+    said = [
         f"Printed {shown} {set_beside(distance)} the "
         f"{optimum_called(solution.problem, reference.evidence)}{which}, "
         f"{reference.upper:.6f} s{_bounded(reference)}."
-    )
+    ]
     minimised = other_objective(study.case, claim)
     informs = minimised is not None and distance.lowest > 0
     if informs:
-        message = (
+        said = [
             f"Printed {shown} was not minimised for time alone ({minimised}): as information, the "
             f"shortest motion{which}{at_ratios(solution.problem)} takes {reference.upper:.6f} s, "
             f"{reference.evidence}{_bounded(reference)}."
-        )
+        ]
     timed = not isinstance(claim, TotalTimeClaim) and study.unmoved(claim, pid, rid) is None
     if timed and not informs:
         verdict = study.claim_check(claim, pid, rid)
         if verdict.feasible_time is not None:
             repaired = gap(verdict.feasible_time, reference)
-            message += (
-                f" Feasible time of the printed durations {verdict.feasible_time:.6f} s "
+            said.append(
+                f"Feasible time of the printed durations {verdict.feasible_time:.6f} s "
                 f"({repaired.percent})."
             )
     severity = Severity.INFO
     if distance.highest < 0:
         explained = _below(study, claim, pid, rid, solution, interval)
         if explained is not None:
-            message += explained
+            said.append(explained)
         else:
             before = isinstance(claim, TimeClaim) and claim.state == "before"
             severity = Severity.INFO if before else Severity.WARNING
-            message += _BELOW if isinstance(reference.lower, Why) else _BELOW_BOUND
+            said.append(_BELOW if isinstance(reference.lower, Why) else _BELOW_BOUND)
     agrees = kept and interval[0] <= solution.best <= interval[1]
     return Finding(
         rule="TG303" if shared else "TG302",
@@ -149,7 +149,8 @@ def _distance(
         printed=shown,
         computed=f"{reference.upper:.6f} s",
         gap=distance,
-        message=message,
+        kind="other objective" if informs else "distance",
+        sentences=tuple(said),
         decides=False,
     )
 
@@ -166,21 +167,21 @@ def _below(
     timed = not isinstance(claim, TotalTimeClaim)
     if timed and study.claim_rounding(claim, pid, rid).verdict is Rounding.CONSISTENT:
         return (
-            " The rounding of the printed digits explains it: some values that round to them keep "
+            "The rounding of the printed digits explains it: some values that round to them keep "
             "every limit with these durations."
         )
     if timed and broken(study, claim, pid, rid) is not None:
         return (
-            f" Below the {solution.evidence} total, which keeps the limits; these durations do not."
+            f"Below the {solution.evidence} total, which keeps the limits; these durations do not."
         )
     if loose := study.case.statement(pid, rid).declaration.loose:
-        return f" {loose} are rounded numbers, which may explain it."
+        return f"{loose} are rounded numbers, which may explain it."
     if solution.problem.ratios is not None:
         return BELOW_AT_RATIOS
     share = _spread(study, claim, pid, rid, solution)
     if share is not None and interval[1] >= solution.best * (1.0 - share):
         return (
-            " To first order the rounding of way-points and limits explains it: they move the "
+            "To first order the rounding of way-points and limits explains it: they move the "
             f"optimum by up to {shown_bound(100 * share, 'upper', digits=2)} %."
         )
     return None
@@ -245,7 +246,8 @@ def _beside_procedure(
         reading=rid,
         printed=shown,
         computed=f"{ranged(wide.lowest, wide.highest, '.6f')} s",
-        message=message,
+        kind="joint by joint",
+        sentences=(message,),
         decides=False,
     )
 
@@ -272,7 +274,7 @@ def _weigh(study: Study, claim: AnyClaim, pid: str, rid: str, sides: _Sides) -> 
     if total is None:
         return
     shown, interval = total
-    name = called_under(claim, pid)
+    name = called_under(study, claim, pid)
     other = off_ratios(study, claim, pid, rid)
     if other is not None:
         sides.open.append(f"{name}: printed are {other}, so that it is not of this question")
@@ -293,8 +295,9 @@ def _weigh(study: Study, claim: AnyClaim, pid: str, rid: str, sides: _Sides) -> 
     bare = isinstance(claim, TotalTimeClaim) and found and interval[1] >= solution.best
     proof = None if bare else broken(study, claim, pid, rid)
     below = None if apart else below_certified(study, claim, pid, rid, solution)
-    if proof is not None or below is not None:
-        sides.breaking.append(f"{name}: {proof or below}")
+    if (shown_so := proof or below) is not None:
+        first, *others = shown_so
+        sides.breaking += [f"{name}: {first}", *others]
         sides.roots.append(f"{LIMITS} {claim.id}")
         return
     if apart:
@@ -348,7 +351,7 @@ def below_certified(
     pid: str,
     rid: str,
     solution: Solution,
-) -> str | None:
+) -> tuple[str, ...] | None:
     """That a total lies below a certified bound, which speaks only where the problem is exact."""
     bound = solution.lower_bound
     if bound is None or study.longest_total(claim, rid) >= bound:
@@ -356,7 +359,7 @@ def below_certified(
     if not all_exact(study, claim, pid, rid):
         return None
     shown = shown_bound(bound, "lower", places=6)
-    return f"The printed total lies below the certified lower bound {shown} s."
+    return (f"The printed total lies below the certified lower bound {shown} s.",)
 
 
 def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Finding]:
@@ -373,8 +376,8 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
             for pid, reading in study.claim_pairs(claim):
                 if reading == rid and minimised is not None:
                     sides.open.append(
-                        f"{called_under(claim, pid)}: minimised for {minimised}, not for time "
-                        "alone, so that a shorter motion contradicts nothing"
+                        f"{called_under(study, claim, pid)}: minimised for {minimised}, not for "
+                        "time alone, so that a shorter motion contradicts nothing"
                     )
                 elif reading == rid:
                     _weigh(study, claim, pid, rid, sides)
@@ -386,30 +389,30 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
         longer, breaking = sides.longer, sides.breaking
         if longer or breaking:
             # What refutes is a motion or a broken limit: no optimum, known or certified, is needed.
-            evidence, verdict, severity = Evidence.NONE, ClaimVerdict.REFUTED, Severity.ERROR
+            evidence, verdict = Evidence.NONE, ClaimVerdict.REFUTED
             every = "however the digits were rounded"
-            said = [f"Not the shortest, {every}: {'; '.join(longer)}."] if longer else []
-            said += [f"Not an answer within the limits. {' '.join(breaking)}"] if breaking else []
-            message = " ".join(said)
+            said = [f"{one}." for one in longer]
+            if longer:
+                said[0] = f"Not the shortest, {every}: {said[0]}"
+            said += ["Not an answer within the limits.", *breaking] if breaking else []
         elif sides.open:
-            verdict, severity = ClaimVerdict.NOT_CHECKABLE, Severity.INFO
-            message = f"Not decided: {'; '.join(sides.open)}."
+            verdict = ClaimVerdict.NOT_CHECKABLE
+            said = [f"Not decided: {'; '.join(sides.open)}."]
         else:
-            verdict, severity = ClaimVerdict.SUPPORTED, Severity.INFO
+            verdict = ClaimVerdict.SUPPORTED
             called_so = {optimum_called(one.problem, evidence) for one in sides.solutions}
             rounded = ", digits rounded up so that the limits are kept" if sides.rounded_up else ""
             which = " or the ".join(sorted(called_so))
             whose = what_agrees(len(sides.agreeing), sides.summed)
-            message = f"{whose} the {which}{rounded}."
+            said = [f"{whose} the {which}{rounded}."]
         yield Finding(
             rule="TG302",
-            severity=severity,
             verdict=verdict,
             evidence=evidence,
             basis=Basis.ENCLOSURE if breaking and not longer else Basis.OPTIMUM,
             claim=statement.id,
             reading=rid,
-            message=message,
+            sentences=tuple(said),
             gap=known(sides.most, "no time is set beside a motion"),
             farthest=sides.farthest,
             kind="longer" if longer else "breaks" if breaking else str(evidence),

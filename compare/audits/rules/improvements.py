@@ -128,10 +128,10 @@ def _percentage(
     if len(tried) < 2 or (best == 0 and found.severity is Severity.INFO):
         return found if found.severity is not Severity.ERROR else _of_the_other(found, claim, wide)
     other = 1 - best
-    rest = f" As a share of {_SHARE_OF[bases[other]]} it would be {tried[other].computed}."
+    rest = [f"As a share of {_SHARE_OF[bases[other]]} it would be {tried[other].computed}."]
     if found.verdict is not ClaimVerdict.REFUTED:
-        rest += " The text leaves open which is meant."
-    return found.model_copy(update={"message": found.message + rest})
+        rest.append("The text leaves open which is meant.")
+    return found.adding(*rest)
 
 
 def _of_the_other(
@@ -142,8 +142,7 @@ def _of_the_other(
         if base in allowed_bases(claim) or not _divides(base, totals[1]):
             continue
         if claim.percent is not None and meet(hull(claim.percent), _share(*totals, base)):
-            fits_there = f" As a share of {words} it would be {claim.percent} %."
-            return found.model_copy(update={"message": found.message + fits_there})
+            return found.adding(f"As a share of {words} it would be {claim.percent} %.")
     return found
 
 
@@ -162,43 +161,52 @@ def _unquantified(
     unit = study.time_unit
     between = f"{slower} and {faster} {unit}"
     sides = [study.case.claim(i) for i in (claim.slower, claim.faster)]
+    verdict, more = ClaimVerdict.NOT_CHECKABLE, ""
     if slower.text == faster.text:
-        message = (
-            f"Both tables print the same total, {faster} {unit}: an improvement, if there is "
-            f"one, is below {shown(seconds.upper)} {unit}."
+        kind, message = (
+            "same total",
+            (
+                f"Both tables print the same total, {faster} {unit}: an improvement, if there is "
+                f"one, is below {shown(seconds.upper)} {unit}."
+            ),
         )
         # An improvement below the last digit is one. Only tables alike that are said to differ
         # speak against it.
-        verdict, severity = ClaimVerdict.NOT_CHECKABLE, Severity.INFO
         if contradicted(study, sides):
-            verdict, severity = ClaimVerdict.INCONSISTENT, Severity.WARNING
-            message += (
-                " Their tables agree in every number, and elsewhere in print the two results "
-                "differ."
+            verdict = ClaimVerdict.INCONSISTENT
+            more = (
+                "Their tables agree in every number, and elsewhere in print the two results differ."
             )
     elif seconds.lower > 0 and not study.has_problems:
-        message = (
-            f"The printed totals are {between}, in the order that is claimed; neither can be "
-            "computed from the text."
+        kind, message = (
+            "as claimed",
+            (
+                f"The printed totals are {between}, in the order that is claimed; neither can be "
+                "computed from the text."
+            ),
         )
-        verdict, severity = ClaimVerdict.NOT_CHECKABLE, Severity.INFO
     elif seconds.lower > 0:
-        message = f"The printed totals are {between}."
-        verdict, severity = ClaimVerdict.SUPPORTED, Severity.INFO
+        kind, message = "as claimed", f"The printed totals are {between}."
+        verdict = ClaimVerdict.SUPPORTED
     elif hull(slower).upper < hull(faster).lower:
-        message = f"The printed totals are {between}: the one called better is the longer."
-        verdict, severity = ClaimVerdict.REFUTED, Severity.ERROR
+        kind, message = (
+            "longer",
+            (f"The printed totals are {between}: the one called better is the longer."),
+        )
+        verdict = ClaimVerdict.REFUTED
     else:
-        message = f"The printed totals {between} do not differ by more than their rounding."
-        verdict, severity = ClaimVerdict.NOT_CHECKABLE, Severity.INFO
+        kind, message = (
+            "within rounding",
+            (f"The printed totals {between} do not differ by more than their rounding."),
+        )
     return Finding(
         rule="TG103",
-        severity=severity,
         verdict=verdict,
         basis=Basis.DIGITS,
         claim=claim.id,
         printed=between,
-        message=message,
+        kind=kind,
+        sentences=(message, more),
         follows=doubted(study, sides),
     )
 
@@ -229,8 +237,11 @@ def _against_tables(
         claim=claim.id,
         printed=f"{percent} %",
         computed=f"{span(allowed, 3)} %",
-        message=f"{own} the totals printed in the tables ({where}: {slower} and {faster}) the "
-        f"reduction is {span(allowed, 3)} %, whatever was rounded or cut off, not {percent} %.",
+        kind="of the tables",
+        sentences=(
+            f"{own} the totals printed in the tables ({where}: {slower} and {faster}) the "
+            f"reduction is {span(allowed, 3)} %, whatever was rounded or cut off, not {percent} %.",
+        ),
         follows=doubted(study, [t for t in tables if t is not None]),
         between=(claim.id, *(t.id for t in tables if t is not None)),
     )

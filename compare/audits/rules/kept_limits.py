@@ -13,7 +13,7 @@ from ....problem.cases import (
 from ...documents import ClaimVerdict, Severity
 from ..study import Study
 
-UNSAID = " Nothing printed says that these durations keep the limits."
+UNSAID = "Nothing printed says that these durations keep the limits."
 """What follows a broken limit where no word of the paper is contradicted by it."""
 
 

@@ -58,7 +58,7 @@ def _beside(study: Study, claim: DurationsClaim, pid: str, rid: str) -> Finding:
     problem = study.claim_problem(claim, pid, rid)
     segments = len(problem.waypoints) - 1
     verdict, severity = ClaimVerdict.NOT_CHECKABLE, Severity.INFO
-    computed = ""
+    computed, at_print, passes = "", "", ""
     if len(claim.durations) != segments:
         message = (
             f"{len(claim.durations)} durations are printed, and {segments} straight segments join "
@@ -70,6 +70,10 @@ def _beside(study: Study, claim: DurationsClaim, pid: str, rid: str) -> Finding:
         worst = list(dict.fromkeys(one.worst for one in found))
         computed = "; ".join(worst)
         at_print = f"At the printed numbers {worst[0]}."
+        passes = (
+            "Such a motion passes via-points at a distance, so that no optimum of a curve through "
+            "them is set beside it, and its acceleration steps, so that its jerk is not judged."
+        )
         if len(worst) > 1:
             at_print = (
                 f"At the printed numbers, with end blends that reach beyond the durations, "
@@ -80,32 +84,26 @@ def _beside(study: Study, claim: DurationsClaim, pid: str, rid: str) -> Finding:
             verdict, severity = ClaimVerdict.REFUTED, Severity.ERROR
             message = (
                 "Linear segments with parabolic blends break a limit with these durations"
-                f"{wherever}, however the digits were rounded or cut off. {at_print}"
+                f"{wherever}, however the digits were rounded or cut off."
             )
         elif all(one.keeps for one in found):
             verdict = ClaimVerdict.SUPPORTED
             message = (
                 "Linear segments with parabolic blends keep the limits on velocity and "
-                f"acceleration with these durations{wherever}. {at_print}"
+                f"acceleration with these durations{wherever}."
             )
         elif any(one.breaks for one in found):
             message = (
                 "Whether linear segments with parabolic blends keep the limits with these "
-                f"durations depends on where the end blends lie. {at_print}"
+                "durations depends on where the end blends lie."
             )
         else:
             message = (
                 "The printed digits do not decide whether linear segments with parabolic blends "
-                f"keep the limits with these durations. {at_print}"
+                "keep the limits with these durations."
             )
-        message += (
-            " Such a motion passes via-points at a distance, so that no optimum of a curve through "
-            "them is set beside it, and its acceleration steps, so that its jerk is not judged."
-        )
     found_verdict = verdict
     verdict, severity = said_of(study, claim, verdict, severity)
-    if verdict is not found_verdict:
-        message += UNSAID
     return Finding(
         rule="TG210",
         severity=severity,
@@ -116,9 +114,9 @@ def _beside(study: Study, claim: DurationsClaim, pid: str, rid: str) -> Finding:
         reading=rid,
         printed=durations_text(study, claim),
         computed=computed,
-        message=message,
-        decides=meant_to_keep(study, claim),
         kind=str(found_verdict),
+        sentences=(message, at_print, passes, UNSAID if verdict is not found_verdict else ""),
+        decides=meant_to_keep(study, claim),
         root=f"{BLENDS} {claim.id}" if verdict is ClaimVerdict.REFUTED else "",
     )
 

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from ...documents import ClaimVerdict, Severity
+from ...documents import ClaimVerdict
 from ..study import Study
 
-FITTING = ClaimVerdict.SUPPORTED, Severity.INFO, ""
-"""What it says that a printed number fits: verdict, severity and no note."""
+FITTING = ClaimVerdict.SUPPORTED, ""
+"""What it says that a printed number fits: verdict and no note."""
 
 
-def misfit(study: Study, pid: str, rid: str) -> tuple[ClaimVerdict, Severity, str]:
+def misfit(study: Study, pid: str, rid: str) -> tuple[ClaimVerdict, str]:
     """What it says that a printed number does not fit the motion.
 
     What rounds to derivatives at the ends, knots and parameters is not looked at, and may be why.
@@ -23,12 +23,10 @@ def misfit(study: Study, pid: str, rid: str) -> tuple[ClaimVerdict, Severity, st
     Returns
     -------
     verdict : ClaimVerdict
-    severity : Severity
     note : str
-        To be added to the message; may be empty.
+        A further sentence; may be empty.
     """
     loose = study.case.statement(pid, rid).declaration.loose
     if not loose:
-        return ClaimVerdict.INCONSISTENT, Severity.WARNING, ""
-    note = f" {loose} are rounded numbers, which may explain it."
-    return ClaimVerdict.NOT_CHECKABLE, Severity.INFO, note
+        return ClaimVerdict.INCONSISTENT, ""
+    return ClaimVerdict.NOT_CHECKABLE, f"{loose} are rounded numbers, which may explain it."

@@ -189,11 +189,10 @@ def finding_of_numbers(
         f"{one.fits or UNEXPLAINED}"
         for joint, one in (wrong or found)
     ]
-    verdict, severity, note = misfit(study, *pair) if wrong else FITTING
+    verdict, note = misfit(study, *pair) if wrong else FITTING
     clash = verdict is ClaimVerdict.INCONSISTENT
     return Finding(
         rule=rule,
-        severity=severity,
         verdict=verdict,
         basis=Basis.CHECK if all(one.met for _, one in found) else Basis.COMPUTED,
         claim=claim.id,
@@ -203,7 +202,8 @@ def finding_of_numbers(
         computed="; ".join(
             f"{one.exact:.6g} ± {one.reach:.1g} {unit(joint)}" for joint, one in found
         ),
-        message=f"Of the printed durations ({called(motion)}): {'; '.join(said)}.{note}",
+        kind=", ".join("fits" if one.fits else "off" for _, one in (wrong or found)),
+        sentences=(f"Of the printed durations ({called(motion)}): {'; '.join(said)}.", note),
         root=f"{claim.quantity}s of {motion.id}" if clash else "",
         between=(claim.id, motion.id) if clash else (),
     )

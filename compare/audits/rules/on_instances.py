@@ -32,8 +32,13 @@ def judge_instances(study: Study) -> Iterator[Finding]:
     for block in study.case.instances:
         why = study.unexamined(block) if readings_of(study, block) else None
         if why is not None:
-            message = f"Family {block.id} is not examined: {why}."
-            yield Finding(rule="TG404", basis=Basis.REPLAY, decides=False, message=message)
+            yield Finding(
+                rule="TG404",
+                basis=Basis.REPLAY,
+                decides=False,
+                kind="not examined",
+                sentences=(f"Family {block.id} is not examined: {why}.",),
+            )
     for block in study.instance_blocks:
         result = study.instances(block)
         yield _summary(result)
@@ -72,24 +77,23 @@ def placed(result: InstancesResult) -> str:
     return f"{said}{'; it is '.join(parts)}."
 
 
-def attributed(result: InstancesResult) -> str:
-    """What the reduction is due to: medians over the readings; empty if there are none."""
+def attributed(result: InstancesResult) -> Iterator[str]:
+    """What the reduction is due to: medians over the readings; nothing if there are none."""
     both, curve = medians(result, Effect.BOTH), medians(result, Effect.CURVE)
     if both is None or curve is None:
-        return ""
-    said = [
+        return
+    yield (
         f"Median reduction, from the smallest to the largest over the readings: curve and "
         f"algorithm together {percent_range(*both, digits=1)}; the curve alone, at the best known "
         f"optima, {percent_range(*curve, digits=1)}."
-    ]
+    )
     for at, objective in enumerate(result.block.objectives):
         span = medians(result, Effect.ALGORITHM, at)
         if span is not None:
-            said.append(
+            yield (
                 f"The algorithm alone, where {HANDLED[objective]}: "
                 f"{percent_range(*span, digits=1)}."
             )
-    return " ".join(said)
 
 
 def _aside(result: InstancesResult, reading: str) -> str:
@@ -110,13 +114,6 @@ def medians(result: InstancesResult, effect: Effect, at: int = 0) -> tuple[float
 def _summary(result: InstancesResult) -> Finding:
     block = result.block
     span = medians(result, Effect.BOTH)
-    said = (
-        placed(result),
-        attributed(result),
-        block.why,
-        "These are not the paper's instances, so they decide nothing about its totals.",
-    )
-    message = " ".join(sentence for sentence in said if sentence)
     printed = None if result.printed is None else percent_range(*result.printed)
     computed = f"medians {percent_range(*span, digits=1)}" if span else "no pair of answers"
     return Finding(
@@ -126,7 +123,13 @@ def _summary(result: InstancesResult) -> Finding:
         claim=block.claim,
         printed=printed,
         computed=computed,
-        message=message,
+        kind="over the readings",
+        sentences=(
+            placed(result),
+            *attributed(result),
+            block.why,
+            "These are not the paper's instances, so they decide nothing about its totals.",
+        ),
     )
 
 
@@ -185,7 +188,8 @@ def _under(result: InstancesResult, reading: str) -> Finding:
         reading=reading,
         printed=printed,
         computed=str(both),
-        message=" ".join(parts),
+        kind="under a reading",
+        sentences=tuple(parts),
     )
 
 
@@ -213,12 +217,6 @@ def _convergence(result: InstancesResult, claim: ConvergenceClaim) -> Finding:
         f"{100 * share:.3g} % under {quoted(reading, result.labels)}"
         for share, reading in zip(shares, result.readings, strict=True)
     )
-    message = (
-        f"By iteration {claim.iterations} of {result.iterations} the search has converged in "
-        f"{ranged(low, high, '.3g')} % of the runs on {result.instances} drawn instances: its best "
-        f"total is then within {100 * SETTLED:g} % of the final one ({each}). The instances are "
-        "not the paper's."
-    )
     return Finding(
         rule="TG404",
         basis=Basis.REPLAY,
@@ -226,5 +224,11 @@ def _convergence(result: InstancesResult, claim: ConvergenceClaim) -> Finding:
         claim=claim.id,
         printed=f"{claim.iterations} iterations",
         computed=f"{ranged(low, high, '.3g')} % of the runs",
-        message=message,
+        kind="convergence",
+        sentences=(
+            f"By iteration {claim.iterations} of {result.iterations} the search has converged in "
+            f"{ranged(low, high, '.3g')} % of the runs on {result.instances} drawn instances: its "
+            f"best total is then within {100 * SETTLED:g} % of the final one ({each}).",
+            "The instances are not the paper's.",
+        ),
     )

@@ -14,11 +14,11 @@ def list_open_points(study: Study) -> Iterator[Finding]:
     for claim in study.claims:
         if isinstance(claim, StatementClaim) and claim.not_checkable:
             why = claim.not_checkable.removesuffix(".")
-            yield _listed(claim.id, f"{why[:1].upper()}{why[1:]}.")
+            yield _listed(claim.id, "claim", f"{why}.")
     if not study.has_problems:
         yield from _without_waypoints(study)
     for item in study.case.not_checkable:
-        yield _listed(None, f"{item.where}: {item.what} {item.why}")
+        yield _listed(None, "passage", f"{item.where}: {item.what}", item.why)
 
 
 def _without_waypoints(study: Study) -> Iterator[Finding]:
@@ -28,11 +28,9 @@ def _without_waypoints(study: Study) -> Iterator[Finding]:
         if said or isinstance(claim, ImprovementClaim):
             continue
         why = (study.case.statement(claim.problem).waypoints.not_printed or "").removesuffix(".")
-        yield _listed(
-            claim.id,
-            f"Without the way-points there is nothing to compute: {why}.",
-        )
+        sentence = f"Without the way-points there is nothing to compute: {why}."
+        yield _listed(claim.id, "way-points", sentence)
 
 
-def _listed(claim: str | None, message: str) -> Finding:
-    return Finding(rule="TG501", basis=Basis.TEXT, claim=claim, message=message)
+def _listed(claim: str | None, kind: str, *sentences: str) -> Finding:
+    return Finding(rule="TG501", basis=Basis.TEXT, claim=claim, kind=kind, sentences=sentences)

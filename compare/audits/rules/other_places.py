@@ -67,8 +67,11 @@ def _peaks_elsewhere(study: Study, claim: PeakClaim, own: AnyClaim) -> Iterator[
                 problem=pid,
                 reading=rid,
                 printed=", ".join(map(str, claim.printed)),
-                message="Printed peaks fit another place better than their own, as if numbers "
-                f"had been exchanged in print: {'; '.join(said)}.",
+                kind="peaks",
+                sentences=(
+                    "Printed peaks fit another place better than their own, as if numbers had been "
+                    f"exchanged in print: {'; '.join(said)}.",
+                ),
                 decides=False,
             )
 
@@ -95,9 +98,13 @@ def _row_elsewhere(study: Study, claim: DurationsClaim) -> Iterator[Finding]:
                 claim=claim.id,
                 problem=pid,
                 reading=rid,
-                message=f"The durations printed for joint {claim.joint} ({called(claim)}) would "
-                f"have to be stretched by {100 * own:.2g} % for its own limits and fit those of "
-                f"joint {joint} within {100 * best:.2g} %, as if rows had been exchanged in print.",
+                kind="rows",
+                sentences=(
+                    f"The durations printed for joint {claim.joint} ({called(claim)}) would have "
+                    f"to be stretched by {100 * own:.2g} % for its own limits and fit those of "
+                    f"joint {joint} within {100 * best:.2g} %, as if rows had been exchanged in "
+                    "print.",
+                ),
                 decides=False,
             )
 
@@ -123,8 +130,11 @@ def _equal_rows(study: Study) -> Iterator[Finding]:
             basis=Basis.DIGITS,
             claim=second.id,
             printed=", ".join(texts[1]),
-            message=f"{called(first)} and {called(second)} print the same {len(texts[0])} "
-            "durations for different things, distance 0.",
+            kind="equal rows",
+            sentences=(
+                f"{called(first)} and {called(second)} print the same {len(texts[0])} durations "
+                "for different things, distance 0.",
+            ),
             decides=False,
         )
 

@@ -329,7 +329,13 @@ def each_motion(
             for motion in meant:
                 yield from judge(study, claim, motion)
             if not meant:
-                yield Finding(rule=rule, basis=Basis.TEXT, claim=claim.id, message=without)
+                yield Finding(
+                    rule=rule,
+                    basis=Basis.TEXT,
+                    claim=claim.id,
+                    kind="no motion",
+                    sentences=(without,),
+                )
 
 
 def judge_peaks(study: Study) -> Iterator[Finding]:
@@ -353,10 +359,9 @@ def _peaks(study: Study, claim: PeakClaim, motion: AnyClaim) -> Iterator[Finding
             continue
         wrong = [(joint, one) for joint, one in found if one.kind not in FITS]
         said = [described(study, claim, joint, one, pid, rid) for joint, one in (wrong or found)]
-        verdict, severity, note = misfit(study, pid, rid) if wrong else FITTING
+        verdict, note = misfit(study, pid, rid) if wrong else FITTING
         yield Finding(
             rule="TG203",
-            severity=severity,
             verdict=verdict,
             basis=Basis.CHECK if all(one.met for _, one in found) else Basis.COMPUTED,
             claim=claim.id,
@@ -364,8 +369,8 @@ def _peaks(study: Study, claim: PeakClaim, motion: AnyClaim) -> Iterator[Finding
             reading=rid,
             printed=", ".join(map(str, claim.printed)),
             computed="; ".join(_exact(study, claim, joint, one, pid, rid) for joint, one in found),
-            message=f"Of the printed durations ({called(motion)}): {'; '.join(said)}.{note}",
-            kind=", ".join(dict.fromkeys(one.kind for _, one in wrong)),
+            kind=", ".join(one.kind for _, one in (wrong or found)),
+            sentences=(f"Of the printed durations ({called(motion)}): {'; '.join(said)}.", note),
             root=f"peaks of {motion.id}" if verdict is ClaimVerdict.INCONSISTENT else "",
             between=(claim.id, motion.id) if verdict is ClaimVerdict.INCONSISTENT else (),
         )

@@ -8,7 +8,7 @@ import numpy as np
 
 from ....problem import QUANTITIES
 from ....problem.cases import AnyClaim, Digits, PeakClaim, StatementClaim, motions_of
-from ...documents import Basis, ClaimVerdict, Finding, Severity, capital
+from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..stated import place
 from ..study import Study
 from .peaks import peak_numbers
@@ -43,7 +43,8 @@ def _beyond(study: Study, claim: StatementClaim, peak: PeakClaim) -> Iterator[Fi
                     problem=pid,
                     reading=rid,
                     printed=", ".join(map(str, peak.printed)),
-                    message=f"{capital(place(peak))} prints {'; '.join(said)}.",
+                    kind="beyond",
+                    sentences=(f"{place(peak)} prints {'; '.join(said)}.",),
                     root=f"peaks beyond limits {claim.id}",
                     between=(claim.id, peak.id),
                 )

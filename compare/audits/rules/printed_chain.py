@@ -12,7 +12,7 @@ from ....problem import Array, Measured, is_linear, to_si
 from ....problem.cases import Cartesian, Column, Statement, StatementClaim
 from ....problem.robots import Chain, Convention, DhTable, JointKind, Proximity, proximity
 from ....verify import shown_bound
-from ...documents import Basis, ClaimVerdict, Finding, Severity
+from ...documents import Basis, ClaimVerdict, Finding
 from ..study import Study
 
 _NEGLIGIBLE = 1e-9
@@ -284,11 +284,12 @@ def _judged(
     fitting = next((m for m in matches if m.fits), None)
     if fitting is not None:
         far = max(n.upper for n in fitting.near)
-        verdict, severity = ClaimVerdict.SUPPORTED, Severity.INFO
-        message = (
+        verdict, kind = ClaimVerdict.SUPPORTED, "meets"
+        said: tuple[str, ...] = (
             f"The end meets every printed position within {_up(far)} m "
             f"({fitting.convention} convention), and rounding explains {_up(max(fitting.slack))} "
-            f"m. {given}"
+            "m.",
+            given,
         )
     else:
         listed = "; ".join(
@@ -298,44 +299,57 @@ def _judged(
         )
         rounding = ", ".join(_up(s) for s in matches[0].slack)
         nearest = (
-            f"{given} The end then comes no nearer to the printed positions than {listed}. "
-            f"Rounding explains at most {rounding} m."
+            given,
+            f"The end then comes no nearer to the printed positions than {listed}.",
+            f"Rounding explains at most {rounding} m.",
         )
         lost = any(m.signed and m.misses and m.unsigned is None for m in matches)
         if all(m.misses for m in matches) and not lost:
-            verdict, severity = ClaimVerdict.INCONSISTENT, Severity.WARNING
+            verdict, kind = ClaimVerdict.INCONSISTENT, "misses"
             do = "does" if len(free) == 1 else "do"
             whatever = f", whatever {_named(free)} {do}" if free else ""
-            message = (
+            said = (
                 f"On the robot as printed, the printed {numbers} do not lead to the printed "
-                f"positions{whatever}. {nearest}{_whatever(matches, names)} The base frame, the "
-                "zeros of the angles and the origin of the last frame as the end are those of the "
-                "table."
+                f"positions{whatever}.",
+                *nearest,
+                *_whatever(matches, names),
+                "The base frame, the zeros of the angles and the origin of the last frame as the "
+                "end are those of the table.",
             )
         else:
-            verdict, severity = ClaimVerdict.NOT_CHECKABLE, Severity.INFO
+            verdict = ClaimVerdict.NOT_CHECKABLE
             signed = any(_fits(near, m.slack) for m in matches for near in m.signed)
-            message = (
-                "With other signs of the twists, the angles or the positions, which the text may "
-                "have lost, no printed position is shown to be out of reach."
+            kind, first = (
+                (
+                    "any signs",
+                    "With other signs of the twists, the angles or the positions, which the text "
+                    "may have lost, no printed position is shown to be out of reach.",
+                )
                 if lost
-                else "With other signs of the twists, which the text may have lost, the end meets "
-                "every printed position."
+                else (
+                    "other twists",
+                    "With other signs of the twists, which the text may have lost, the end meets "
+                    "every printed position.",
+                )
                 if signed
-                else "Whether rounding explains the distances to the printed positions is not "
-                "decided."
-            ) + f" {nearest}"
+                else (
+                    "undecided",
+                    "Whether rounding explains the distances to the printed positions is not "
+                    "decided.",
+                )
+            )
+            said = first, *nearest
     worst = "; ".join(f"{_down(m.worst)} m ({m.convention})" for m in matches)
     return Finding(
         rule="TG601",
-        severity=severity,
         verdict=verdict,
         basis=Basis.KINEMATICS,
         problem=pid,
         reading=rid,
         printed="; ".join(dict.fromkeys(place.where for _, place in places)),
         computed=f"farthest position, as near as it gets: {worst}",
-        message=message,
+        kind=kind,
+        sentences=said,
         doubts=tuple(printed) if verdict is ClaimVerdict.INCONSISTENT else (),
     )
 
@@ -355,25 +369,23 @@ def _named(labels: list[str]) -> str:
     )
 
 
-def _whatever(matches: list[_Match], names: list[str]) -> str:
+def _whatever(matches: list[_Match], names: list[str]) -> Iterator[str]:
     """What holds whatever the signs that the text may have lost, and the axes of the base."""
-    said = ""
     missed = [(m, *m.unsigned) for m in matches if m.unsigned is not None]
     if missed:
         worst = _listed([f"{names[at]} {_down(far)} m ({m.convention})" for m, at, far in missed])
-        said += (
-            " Whatever signs the twists, the angles and the positions have, the end stays away "
+        yield (
+            "Whatever signs the twists, the angles and the positions have, the end stays away "
             f"from them: {worst} at least."
         )
     turned = [f"{_down(m.radial)} m ({m.convention})" for m in matches if m.radial > 0]
     if turned:
-        said += (
-            " With any other axes of the base, the distance from its origin still misses by up to "
-            f"{_listed(turned)}"
-        )
         met = [str(m.convention) for m in matches if not m.radial > 0]
-        said += f"; in the {_listed(met)} convention it need not." if met else "."
-    return said
+        besides = f"; in the {_listed(met)} convention it need not" if met else ""
+        yield (
+            "With any other axes of the base, the distance from its origin still misses by up to "
+            f"{_listed(turned)}{besides}."
+        )
 
 
 def _listed(parts: list[str]) -> str:
@@ -392,4 +404,10 @@ def _up(metres: float) -> str:
 
 
 def _not_checkable(rid: str | None, message: str) -> Finding:
-    return Finding(rule="TG601", basis=Basis.KINEMATICS, reading=rid, message=message)
+    return Finding(
+        rule="TG601",
+        basis=Basis.KINEMATICS,
+        reading=rid,
+        kind="not set beside",
+        sentences=(message,),
+    )

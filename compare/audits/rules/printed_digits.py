@@ -139,8 +139,8 @@ def compared(
         claim=claim.id,
         printed=digits,
         computed=computed,
-        message=message,
         kind=f"{kind} in {unit}",
+        sentences=(message,),
         root="" if verdict is ClaimVerdict.SUPPORTED else root,
     )
 
@@ -221,16 +221,18 @@ def _lengths(study: Study) -> Iterator[Finding]:
             count = _many(len(claim.durations), "duration")
             yield Finding(
                 rule="TG109",
-                severity=Severity.WARNING,
                 verdict=ClaimVerdict.INCONSISTENT,
                 basis=Basis.COUNT,
                 claim=claim.id,
                 reading=rid,
                 printed=count,
                 computed=_many(segments, "segment"),
-                message=f"{claim.where} prints {count}, and the curve through the way-points has "
-                f"{_many(segments, 'segment')}, so no motion can be built from them. If the paper "
-                "prints another number, correct the case file.",
+                kind="other length",
+                sentences=(
+                    f"{claim.where} prints {count}, and the curve through the way-points has "
+                    f"{_many(segments, 'segment')}, so no motion can be built from them.",
+                    "If the paper prints another number, correct the case file.",
+                ),
             )
 
 
@@ -249,19 +251,17 @@ def _maxima(study: Study) -> Iterator[Finding]:
             longest = Interval(max(c.lower for c in column), max(c.upper for c in column))
             if not meet(hull(printed), longest):
                 wrong.append(f"segment {k + 1}: printed {printed}, longest {span(longest)}")
-        verdict, severity = ClaimVerdict.SUPPORTED, Severity.INFO
         message = f"The printed longest durations are those of the {len(rows)} rows."
         if wrong:
-            verdict, severity = ClaimVerdict.REFUTED, Severity.ERROR
             message = "The printed longest durations are not those of the rows: " + "; ".join(wrong)
         yield Finding(
             rule="TG102",
-            severity=severity,
-            verdict=verdict,
+            verdict=ClaimVerdict.REFUTED if wrong else ClaimVerdict.SUPPORTED,
             basis=Basis.DIGITS,
             claim=claim.id,
             printed=", ".join(str(d) for d in claim.durations),
-            message=message,
+            kind="others" if wrong else "longest",
+            sentences=(message,),
         )
 
 
@@ -291,10 +291,13 @@ def _repeated_digits(study: Study) -> Iterator[Finding]:
                     decides=False,
                     doubts=(label,),
                     printed=", ".join(repeated),
-                    message=f"{len(repeated)} of the {len(entries)} way-points of joint {label} "
-                    f"({statement.waypoints.where}: {', '.join(repeated)}) repeat digits of "
-                    f"{where}, a quantity of another kind. The digits alone do not say which "
-                    "column, if any, is meant otherwise.",
+                    kind="repeated digits",
+                    sentences=(
+                        f"{len(repeated)} of the {len(entries)} way-points of joint {label} "
+                        f"({statement.waypoints.where}: {', '.join(repeated)}) repeat digits of "
+                        f"{where}, a quantity of another kind.",
+                        "The digits alone do not say which column, if any, is meant otherwise.",
+                    ),
                 )
 
 

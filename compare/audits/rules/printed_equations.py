@@ -33,16 +33,17 @@ def _judged(claim: StatementClaim, equations: tuple[Equation, ...], chain: Chain
             mended.append(f"{_name(equation)} {_partly(found)}with {equation.mend}")
         else:
             apart.append(_name(equation))
-    said = (
+    listed = f": {', '.join(held)}" if held else ""
+    said = [
         f"{len(held)} of {len(equations)} equations hold at every pose tried, as the text has them"
-    )
-    said += f": {', '.join(held)}." if held else "."
+        f"{listed}."
+    ]
     if mended:
-        said += f" Others hold once mended: {'; '.join(mended)}."
+        said.append(f"Others hold once mended: {'; '.join(mended)}.")
     if apart:
-        said += f" Not as the text has them: {', '.join(apart)}."
+        said.append(f"Not as the text has them: {', '.join(apart)}.")
     if mended or apart:
-        said += " Whether the paper or the extraction lost what is missing cannot be told."
+        said.append("Whether the paper or the extraction lost what is missing cannot be told.")
     return Finding(
         rule="TG603",
         verdict=ClaimVerdict.NOT_CHECKABLE if mended or apart else ClaimVerdict.SUPPORTED,
@@ -50,7 +51,8 @@ def _judged(claim: StatementClaim, equations: tuple[Equation, ...], chain: Chain
         claim=claim.id,
         printed="; ".join(equation.where for equation in equations),
         computed=f"{len(held)} hold as they are, {len(mended)} once mended",
-        message=said,
+        kind="in part" if mended or apart else "all",
+        sentences=tuple(said),
     )
 
 

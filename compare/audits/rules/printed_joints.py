@@ -9,7 +9,7 @@ from math import sqrt
 
 from ....problem import Printed
 from ....problem.cases import Cartesian, Statement, StatementClaim
-from ...documents import Basis, ClaimVerdict, Finding, Severity
+from ...documents import Basis, ClaimVerdict, Finding
 from ..study import Study
 
 
@@ -34,45 +34,46 @@ def _varies(study: Study, claim: StatementClaim) -> Finding:
     ranges = {label: _range(numbers) for label, numbers in printed.items() if numbers}
     own = ranges.pop(str(claim.joint), None)
     if own is None:
-        message = f"No angles of joint {claim.joint} are printed."
-        return Finding(rule="TG110", basis=Basis.DIGITS, claim=claim.id, message=message)
+        return Finding(
+            rule="TG110",
+            basis=Basis.DIGITS,
+            claim=claim.id,
+            kind="not printed",
+            sentences=(f"No angles of joint {claim.joint} are printed.",),
+        )
     if claim.joint is not None and statement.unit("position") is None:
         return _in_other_units(claim, statement, own)
     shown = " and ".join(
         f"{_middle(least, most):.2f} of joint {label}" for label, (least, most) in ranges.items()
     )
-    message = (
+    said = [
         f"The printed angles of joint {claim.joint} span "
         f"{_middle(*own):.2f}, beside {shown or 'no other joint in print'} (printed unit)."
-    )
+    ]
     chain = study.case.chain()
     missing = [] if chain is None else [one for one in chain.labels if one not in printed]
     several = len(missing) > 1
-    aside = (
-        f" Joint{'s' * several} {' and '.join(missing)} {'are' if several else 'is'} not printed."
-    )
-    aside = aside if missing else ""
+    are = "are" if several else "is"
+    aside = [f"Joint{'s' * several} {' and '.join(missing)} {are} not printed."] if missing else []
+    kind, verdict = "spans", ClaimVerdict.NOT_CHECKABLE
     if claim.checks == "varies_much":
         # "Much" has no measure, and a joint that turns less may vary much in another sense.
-        verdict, severity = ClaimVerdict.NOT_CHECKABLE, Severity.INFO
-        aside += " The text does not say how much “much” is, so nothing is decided."
+        aside.append("The text does not say how much “much” is, so nothing is decided.")
     elif any(least > own[1] for least, _ in ranges.values()):
         more = [label for label, (least, _) in ranges.items() if least > own[1]]
         plural = "s" if len(more) > 1 else ""
-        verdict, severity = ClaimVerdict.INCONSISTENT, Severity.WARNING
-        message += f" Joint{plural} {', '.join(more)} var{'y' if plural else 'ies'} more."
-    elif missing or not ranges or any(most > own[0] for _, most in ranges.values()):
-        verdict, severity = ClaimVerdict.NOT_CHECKABLE, Severity.INFO
-    else:
-        verdict, severity = ClaimVerdict.SUPPORTED, Severity.INFO
+        kind, verdict = "others more", ClaimVerdict.INCONSISTENT
+        said.append(f"Joint{plural} {', '.join(more)} var{'y' if plural else 'ies'} more.")
+    elif not missing and ranges and all(most <= own[0] for _, most in ranges.values()):
+        verdict = ClaimVerdict.SUPPORTED
     return Finding(
         rule="TG110",
-        severity=severity,
         verdict=verdict,
         basis=Basis.DIGITS,
         claim=claim.id,
         computed=f"{_middle(*own):.2f} in the printed unit",
-        message=message + aside,
+        kind=kind,
+        sentences=(*said, *aside),
     )
 
 
@@ -84,13 +85,16 @@ def _in_other_units(
     listed = ", ".join(dict.fromkeys(units)) if isinstance(units, tuple) else str(units)
     return Finding(
         rule="TG110",
-        verdict=ClaimVerdict.NOT_CHECKABLE,
         basis=Basis.DIGITS,
         claim=claim.id,
         computed=f"{_middle(*own):.2f} in the printed unit",
-        message=f"Joints are printed in different units ({listed}), so that nothing says which of "
-        f"them varies more. The printed positions of joint {claim.joint} span "
-        f"{_middle(*own):.2f} (printed unit).",
+        kind="other units",
+        sentences=(
+            f"Joints are printed in different units ({listed}), so that nothing says which of them "
+            "varies more.",
+            f"The printed positions of joint {claim.joint} span {_middle(*own):.2f} (printed "
+            "unit).",
+        ),
     )
 
 
@@ -118,21 +122,26 @@ def _above(study: Study, claim: StatementClaim) -> Finding:
     floor = lower.values[2].interval
     names = f"{upper.label or upper.id} stands {{}} {upper.unit} beside {lower.label or lower.id}"
     height = float(upper.values[2].fraction - lower.values[2].fraction)
-    message = f"{names.format(f'{beside[0]:.4g}')} and {height:.4g} {upper.unit} above it."
+    said = [f"{names.format(f'{beside[0]:.4g}')} and {height:.4g} {upper.unit} above it."]
     if _meets(upper, lower) and rise.lower > floor.upper:
-        return _finding(claim, ClaimVerdict.SUPPORTED, message)
+        return _finding(claim, ClaimVerdict.SUPPORTED, said)
     least = min(_beside(upper, lower, signs) for signs in product((1, -1), repeat=2))
     if least[0] < beside[0]:
-        message += (
-            f" With another sign of {' and '.join(least[1])} it would be {least[0]:.4g} "
+        said.append(
+            f"With another sign of {' and '.join(least[1])} it would be {least[0]:.4g} "
             f"{upper.unit}; signs may be lost in the text, so that nothing is decided."
         )
-    return _finding(claim, ClaimVerdict.NOT_CHECKABLE, message)
+    return _finding(claim, ClaimVerdict.NOT_CHECKABLE, said)
 
 
-def _finding(claim: StatementClaim, verdict: ClaimVerdict, message: str) -> Finding:
+def _finding(claim: StatementClaim, verdict: ClaimVerdict, said: list[str]) -> Finding:
     return Finding(
-        rule="TG602", verdict=verdict, basis=Basis.DIGITS, claim=claim.id, message=message
+        rule="TG602",
+        verdict=verdict,
+        basis=Basis.DIGITS,
+        claim=claim.id,
+        kind="beside and above",
+        sentences=tuple(said),
     )
 
 

@@ -147,25 +147,22 @@ def _tables_alike(study: Study) -> Iterator[Finding]:
         count = sum(len(_all_digits(claim)) for claim in rows[0])
         apart = _apart(case, first, second)
         optimal = None if apart else _at_optimum(study, rows[0])
-        message = (
-            f"{first.where} ({first.title}) and {second.where} ({second.title}) agree in all "
-            f"{count} numbers, digit by digit"
+        besides = "; elsewhere the two results differ" if apart else ""
+        explained = (
+            "Their totals are the optimum within the rounding of the digits (reading "
+            f"{optimal}), which explains it: two algorithms that both find it print the same."
         )
-        if apart:
-            message += "; elsewhere the two results differ."
-        elif optimal is not None:
-            message += (
-                ". Their totals are the optimum within the rounding of the digits (reading "
-                f"{optimal}), which explains it: two algorithms that both find it print the same."
-            )
-        else:
-            message += "."
         yield Finding(
             rule="TG104",
             severity=Severity.ERROR if apart else Severity.INFO if optimal else Severity.WARNING,
             verdict=ClaimVerdict.NOT_CHECKABLE if optimal else ClaimVerdict.INCONSISTENT,
             basis=Basis.OPTIMUM if optimal else Basis.DIGITS,
-            message=message,
+            kind="differ elsewhere" if apart else "optimum" if optimal else "alike",
+            sentences=(
+                f"{first.where} ({first.title}) and {second.where} ({second.title}) agree in all "
+                f"{count} numbers, digit by digit{besides}.",
+                explained if optimal is not None else "",
+            ),
             root=f"{TABLES} {first.id} {second.id}",
             between=tuple(
                 c.id
@@ -306,8 +303,10 @@ def _rival(claim: TotalTimeClaim) -> Finding:
         basis=Basis.DIGITS,
         claim=claim.id,
         printed=str(claim.value),
-        message="The total of a named method, printed once: nothing in print can be set against "
-        "it.",
+        kind="printed once",
+        sentences=(
+            "The total of a named method, printed once: nothing in print can be set against it.",
+        ),
     )
 
 
@@ -329,11 +328,11 @@ def _same_total(study: Study) -> Iterator[Finding]:
         whose = "" if claim.algorithm is None else f" ({study.called(claim.algorithm)})"
         message = f"{claim.where} prints {printed} and {other.where} prints {shown} for the same "
         message += f"total{whose}."
-        verdict, severity = ClaimVerdict.SUPPORTED, Severity.INFO
+        verdict, severity, kind = ClaimVerdict.SUPPORTED, Severity.INFO, "same total"
         # Two totals by themselves may be a mean and a best: nothing says that they are one.
         alone = isinstance(other, TotalTimeClaim) or weight is None
         if not agreeing and (len(others) > 1 or alone):
-            verdict = ClaimVerdict.NOT_CHECKABLE
+            verdict, kind = ClaimVerdict.NOT_CHECKABLE, "none of them"
             places = "; ".join(f"{c.where}: {_total_shown(study, c)[0]}" for c in others)
             message = (
                 f"{claim.where} prints {printed}, which is none of the totals printed elsewhere "
@@ -350,7 +349,8 @@ def _same_total(study: Study) -> Iterator[Finding]:
             claim=claim.id,
             printed=printed,
             computed=shown,
-            message=message,
+            kind=kind,
+            sentences=(message,),
             follows=doubted(study, [other]) if clash else (),
             between=(claim.id, other.id) if clash else (),
         )

@@ -86,9 +86,10 @@ def _found(claim: ControlVerticesClaim, statement: Statement) -> Finding:
         rule="TG205",
         basis=Basis.DIGITS,
         claim=claim.id,
-        message=(
+        kind="other curve",
+        sentences=(
             "Control vertices are computed for the uniform cubic B-spline alone, and the curve of "
-            f"the case is another one ({statement.declaration.family})."
+            f"the case is another one ({statement.declaration.family}).",
         ),
     )
 
@@ -124,7 +125,7 @@ def _judged(claim: ControlVerticesClaim, found: tuple[Vertex, ...], apart: bool)
     widest = f", at most {most} either side of the value"
     widest = "" if apart else widest + " computed from the digits"
     if beyond:
-        verdict, severity = ClaimVerdict.REFUTED, Severity.ERROR
+        verdict, severity, kind = ClaimVerdict.REFUTED, Severity.ERROR, "outside"
         shown = "; ".join(
             f"V{v.index} of joint {v.joint} printed {v.printed}, allowed "
             f"{ranged(float(v.allowed_cut.lower), float(v.allowed_cut.upper), '.6f')}"
@@ -135,14 +136,14 @@ def _judged(claim: ControlVerticesClaim, found: tuple[Vertex, ...], apart: bool)
             f"way-points allow on the uniform cubic B-spline, digits rounded or cut off: {shown}."
         )
     elif outside:
-        verdict, severity = ClaimVerdict.SUPPORTED, Severity.WARNING
+        verdict, severity, kind = ClaimVerdict.SUPPORTED, Severity.WARNING, "cut off"
         names = ", ".join(f"V{v.index} of joint {v.joint}" for v in outside[:5])
         message = (
             f"{len(outside)} of {len(found)} printed control vertices ({names}) follow from the "
             "printed way-points only if digits are cut off instead of rounded."
         )
     else:
-        verdict, severity = ClaimVerdict.SUPPORTED, Severity.INFO
+        verdict, severity, kind = ClaimVerdict.SUPPORTED, Severity.INFO, "inside"
         message = (
             f"All {len(found)} printed control vertices lie inside the interval that the rounding "
             f"of the printed way-points allows on the uniform cubic B-spline{widest}."
@@ -154,5 +155,6 @@ def _judged(claim: ControlVerticesClaim, found: tuple[Vertex, ...], apart: bool)
         basis=Basis.DIGITS,
         claim=claim.id,
         computed=f"{len(found) - len(outside)} of {len(found)} inside",
-        message=message,
+        kind=kind,
+        sentences=(message,),
     )

@@ -9,7 +9,7 @@ import numpy as np
 
 from ....problem import Array, CaseError, Problem
 from ....problem.cases import Digits, TotalTimeClaim
-from ...documents import Basis, ClaimVerdict, Finding, Severity
+from ...documents import Basis, ClaimVerdict, Finding
 from ..study import Study
 
 _SLACK = 1e-12
@@ -188,33 +188,31 @@ def _beside(study: Study, claim: TotalTimeClaim, profile: str, pid: str, rid: st
     if why:
         return Finding(
             rule="TG304",
-            severity=Severity.INFO,
-            verdict=ClaimVerdict.NOT_CHECKABLE,
             basis=Basis.CHECK,
             claim=claim.id,
             problem=pid,
             reading=rid,
-            message=why,
+            kind="other profile",
+            sentences=(why,),
         )
     straight = claim.path == "straight"
     plain, fits = _fitted(study, claim, profile, pid, rid, straight)
     number = study.case.measured(claim.value, "time", claim.problem, rid)
-    verdict, severity = ClaimVerdict.SUPPORTED, Severity.INFO
-    said = "which fits"
+    verdict, kind, said = ClaimVerdict.SUPPORTED, "fits", "which fits"
     if plain == 0.0:
-        verdict, said = ClaimVerdict.NOT_CHECKABLE, "and no joint moves"
+        verdict, kind, said = ClaimVerdict.NOT_CHECKABLE, "at rest", "and no joint moves"
     elif plain == inf:
-        verdict, said = ClaimVerdict.NOT_CHECKABLE, "and a joint moves whose limit is 0"
+        verdict, kind = ClaimVerdict.NOT_CHECKABLE, "limit 0"
+        said = "and a joint moves whose limit is 0"
     elif not fits and not straight and _fitted(study, claim, profile, pid, rid, True)[1]:
-        verdict = ClaimVerdict.NOT_CHECKABLE
+        verdict, kind = ClaimVerdict.NOT_CHECKABLE, "straight"
         said = 'which fits where the joints stay on a straight line: path = "straight" if they do'
     elif not fits:
-        verdict, severity = ClaimVerdict.INCONSISTENT, Severity.WARNING
+        verdict, kind = ClaimVerdict.INCONSISTENT, "other total"
         said = f"which is {100 * abs(number.value / plain - 1):.2f} % "
         said += "shorter" if number.value < plain else "longer"
     return Finding(
         rule="TG304",
-        severity=severity,
         verdict=verdict,
         basis=Basis.CHECK,
         claim=claim.id,
@@ -222,8 +220,11 @@ def _beside(study: Study, claim: TotalTimeClaim, profile: str, pid: str, rid: st
         reading=rid,
         printed=f"{claim.value} {study.time_unit}",
         computed=f"{plain:.6g} s",
-        message=f"The shortest {profile} profile from rest to rest, {_PATHS[straight]}, takes "
-        f"{plain:.6g} s; printed is {claim.value} {study.time_unit}, {said}.",
+        kind=kind,
+        sentences=(
+            f"The shortest {profile} profile from rest to rest, {_PATHS[straight]}, takes "
+            f"{plain:.6g} s; printed is {claim.value} {study.time_unit}, {said}.",
+        ),
     )
 
 

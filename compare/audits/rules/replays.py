@@ -104,22 +104,23 @@ def _improvement(study: Study, claim: ImprovementClaim) -> Iterator[Finding]:
             for b, y in totals[1].items()
         }
         most = max(each, key=lambda pair: -1.0 if np.isnan(each[pair]) else each[pair])
-        message = (
+        said = [
             f"In {study.seeds} independent runs each, {one} reaches {spread(slower)} and "
-            f"{other} {spread(faster)} under the listed choices. One run of {other} is "
-            f"shorter than one of {one} by at least {100 * least:.4g} % with probability "
-            f"{_percent(shows)} ({sure}); one run of {one} than another of its own with "
-            f"{_percent(luck)}."
-        )
+            f"{other} {spread(faster)} under the listed choices.",
+            f"One run of {other} is shorter than one of {one} by at least {100 * least:.4g} % "
+            f"with probability {_percent(shows)} ({sure}); one run of {one} than another of its "
+            f"own with {_percent(luck)}.",
+        ]
         if len(each) > 1:
-            message += (
-                f" With all that the text leaves open varied together ({len(totals[0])} and "
+            said.append(
+                f"With all that the text leaves open varied together ({len(totals[0])} and "
                 f"{len(totals[1])} settings), the probability is at most {_percent(each[most])}: "
                 f"at {_at(one, most[0])}; {_at(other, most[1])}."
             )
         median = 1 - spread(faster).median / spread(slower).median
         found = _found(study, "TG401", claim, pid, f"{claim.percent} %")
-        yield found(message=message, computed=f"median {100 * median:.3g} %")
+        computed = f"median {100 * median:.3g} %"
+        yield found(kind="runs", sentences=tuple(said), computed=computed)
 
 
 def interval_words(low: float, high: float) -> str:
@@ -160,11 +161,12 @@ def _compared(study: Study, claim: StatementClaim, against: str) -> Iterator[Fin
             problem=pid,
             reading=rid,
             computed=f"shorter in {_percent(shorter)} of the pairs",
-            message=(
+            kind="runs",
+            sentences=(
                 f"In {study.seeds} independent runs each under the listed choices, {own} reaches "
                 f"{spread(totals[own])} and {other} {spread(totals[other])}; one run of {own} is "
                 f"no longer than one of {other} with probability {_percent(shorter)} "
-                f"({interval_words(low, high)}): {settled}."
+                f"({interval_words(low, high)}): {settled}.",
             ),
         )
 
@@ -184,48 +186,52 @@ def _total(study: Study, claim: AnyClaim) -> Iterator[Finding]:
         found = _found(study, "TG402", claim, pid, shown)
         runs = study.spread_runs(claim.algorithm, pid, rid)
         if not runs:
-            yield found(message=study.unreplayed(claim.algorithm, pid, rid) or "")
+            why = study.unreplayed(claim.algorithm, pid, rid) or ""
+            yield found(kind="not replayed", sentences=(why,))
             continue
         minimised = other_objective(study.case, claim)
         if minimised is not None:
-            yield found(
-                message=f"A replay minimises time alone, and {shown} was minimised for "
-                f"{minimised}: they are not set beside each other."
+            said = (
+                f"A replay minimises time alone, and {shown} was minimised for {minimised}: they "
+                "are not set beside each other."
             )
+            yield found(kind="other objective", sentences=(said,))
             continue
         spreads = {name: spread(_totals(one)) for name, one in runs.items()}
         listed = spreads[LISTED]
         yield found(
             computed=f"{ranged(listed.lowest, listed.highest, '.6f')} s",
-            message=(
+            kind="runs",
+            sentences=(
                 f"{capital(study.called(claim.algorithm))} under the listed choices reaches "
-                f"{listed} in {listed.runs} independent runs; printed is {shown}."
-                f"{_typical(spreads, low, high)}"
+                f"{listed} in {listed.runs} independent runs; printed is {shown}.",
+                *_typical(spreads, low, high),
             ),
         )
 
 
-def _typical(spreads: dict[str, Spread], low: float, high: float) -> str:
+def _typical(spreads: dict[str, Spread], low: float, high: float) -> Iterator[str]:
     """For which settings a printed total is typical: those an author would point at."""
     medians = {name: s.median for name, s in spreads.items() if np.isfinite(s.median)}
     if len(medians) < 2:
-        return ""
+        return
     off = {name: max(low - m, m - high, 0.0) for name, m in medians.items()}
     nearest = min(off, key=lambda name: off[name])
     inside = [n for n, s in spreads.items() if s.lowest <= high and s.highest >= low]
-    said = (
-        f" With all that the text leaves open varied together ({len(medians)} settings), medians "
+    yield (
+        f"With all that the text leaves open varied together ({len(medians)} settings), medians "
         f"are {ranged(min(medians.values()), max(medians.values()), '.4f')} s; nearest to the "
         f"printed total is {medians[nearest]:.4f} s with {nearest}."
     )
     if inside:
-        return said
+        return
     answered = [s for s in spreads.values() if np.isfinite(s.lowest)]
     if all(s.lowest > high for s in answered):
-        return said + " Every run under every one of these settings is longer."
-    if all(s.highest < low for s in answered):
-        return said + " Every run under every one of these settings is shorter."
-    return said + " Under each of these settings all runs lie on one side of it."
+        yield "Every run under every one of these settings is longer."
+    elif all(s.highest < low for s in answered):
+        yield "Every run under every one of these settings is shorter."
+    else:
+        yield "Under each of these settings all runs lie on one side of it."
 
 
 def _traces(runs: Sequence[Run] | Sequence[JointRuns]) -> list[Run]:
@@ -248,7 +254,8 @@ def _convergence(study: Study, claim: ConvergenceClaim) -> Iterator[Finding]:
         found = _found(study, "TG403", claim, pid, f"{claim.iterations} iterations")
         runs = study.spread_runs(claim.algorithm, pid, rid)
         if not runs:
-            yield found(message=study.unreplayed(claim.algorithm, pid, rid) or "")
+            why = study.unreplayed(claim.algorithm, pid, rid) or ""
+            yield found(kind="not replayed", sentences=(why,))
             continue
         parts: list[str] = []
         spans: list[str] = []
@@ -261,7 +268,7 @@ def _convergence(study: Study, claim: ConvergenceClaim) -> Iterator[Finding]:
             parts.append(f"{share} lie within {100 * tolerance:g} %")
             spans.append(f"{_percent(min(within.values()))} to {_percent(max(within.values()))}")
         varied = (
-            f" Over {len(runs)} settings of what the text leaves open these shares "
+            f"Over {len(runs)} settings of what the text leaves open these shares "
             f"range from {' and from '.join(spans)}."
             if len(runs) > 1
             else ""
@@ -269,9 +276,11 @@ def _convergence(study: Study, claim: ConvergenceClaim) -> Iterator[Finding]:
         settled = _settled(runs[LISTED], SETTLED)
         yield found(
             computed=f"median {np.median(settled):.0f} iterations",
-            message=(
+            kind="runs",
+            sentences=(
                 f"After {claim.iterations} iterations {parts[0]} of their final value, and "
-                f"{parts[1]}, counted over {settled.size} runs under the listed "
-                f"choices.{varied} The text names no tolerance."
+                f"{parts[1]}, counted over {settled.size} runs under the listed choices.",
+                varied,
+                "The text names no tolerance.",
             ),
         )

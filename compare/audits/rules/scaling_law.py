@@ -112,16 +112,11 @@ def _stretched(
     allowed = f"{reachable:.6g} s"
     if allowed != exact:
         exact += f", or {allowed} with the rounding of way-points, limits and durations allowed for"
-    message = (
-        "With velocity limits only, shortest time times limit is a constant, so the two printed "
-        "results cannot both be shortest. "
-        f"The durations in {called_under(source, pairs[0][0])} sum to {summed:.6g} s. Times "
-        f"{factor:.6g}, the ratio of the two limits, that is {exact}. So scaled they keep the "
-        f"limit of {called_under(target, pairs[1][0])}; {shown}, printed there, is longer."
-    )
+    places = [
+        called_under(study, c, own[0]) for c, own in zip((source, target), pairs, strict=True)
+    ]
     beside = Finding(
         rule="TG301",
-        severity=Severity.WARNING,
         verdict=ClaimVerdict.INCONSISTENT,
         basis=Basis.IDENTITY,
         decides=False,
@@ -130,7 +125,14 @@ def _stretched(
         reading=rid,
         printed=shown,
         computed=f"{reachable:.6g} s",
-        message=message,
+        kind="not both shortest",
+        sentences=(
+            "With velocity limits only, shortest time times limit is a constant, so the two "
+            "printed results cannot both be shortest.",
+            f"The durations in {places[0]} sum to {summed:.6g} s.",
+            f"Times {factor:.6g}, the ratio of the two limits, that is {exact}.",
+            f"So scaled they keep the limit of {places[1]}; {shown}, printed there, is longer.",
+        ),
         follows=tuple(f"{OPTIMAL} {s.id}" for s in statements if target.id in s.of),
     )
     yield beside

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 
 from ....problem import Jump, from_si, shown_unit
 from ....problem.cases import AnyClaim
-from ...documents import UNITS, si_unit
+from ...documents import UNITS, noted, si_unit
 from ..study import Study
 
 JUMPING = ("position", "velocity", "acceleration")
@@ -103,9 +103,11 @@ def called(claim: AnyClaim) -> str:
     return claim.where.split(";")[0].strip()
 
 
-def called_under(claim: AnyClaim, pid: str | None) -> str:
+def called_under(study: Study, claim: AnyClaim, pid: str | None) -> str:
     """A claim by its place, and the problem in brackets where the claim is about several."""
-    return called(claim) if claim.problem == pid else f"{called(claim)} ({pid})"
+    problems = {one.id: one.title or one.id for one in study.case.problems}
+    several = len(problems) > 1 and pid != claim.problem
+    return noted(called(claim), problems[str(pid)] if several else "")
 
 
 def all_called(claims: Iterable[AnyClaim]) -> str:

@@ -101,11 +101,14 @@ SAYS = "In row {} the printed number is not what the numbers beside it allow."
 
 
 def made(row: object, *explanations: Explanation) -> Cause:
+    sentences = (SAYS.format(row), "More.")
+    head = Finding(rule="TG107", basis=Basis.COUNT, kind="k", sentences=sentences)
     return Cause(
         severity=Severity.ERROR,
         rule="TG107",
         claim=None,
-        says=f"{SAYS.format(row)} More.",
+        says=head.message,
+        head=head,
         readings=(),
         explanations=explanations,
         consequences=(),
@@ -167,7 +170,9 @@ GAP = Gap(kind=GapKind.REPORTED, lowest=0.40, highest=0.4034, reference=Referenc
 
 def cause(rule: str, claim: str, kind: str, readings: tuple[str, ...], **more: Any) -> Cause:
     gap = more.pop("gap", Why("not of every reading"))
-    head = Finding(rule=rule, basis=Basis.OPTIMUM, claim=claim, kind=kind, gap=gap, message="m")
+    head = Finding(
+        rule=rule, basis=Basis.OPTIMUM, claim=claim, kind=kind or "k", gap=gap, sentences=("m",)
+    )
     changes = {"rule": rule, "claim": claim, "head": head, "readings": readings}
     return made(1).model_copy(update=changes | more)
 
@@ -204,7 +209,7 @@ ONE = "Under “angles in rad, limits in rad/s and rad/s², stretched segments�
 def test_a_sentence_says_under_how_many_readings_it_holds(
     one: Cause, far: tuple[str, ...], wanted: str
 ) -> None:
-    said = plainly(CASE, one, far)
+    (said,) = plainly(CASE, one, far)
     assert wanted in said
     assert ("nder" in said) == ("nder" in wanted)
 
@@ -214,5 +219,5 @@ def test_the_joint_whose_total_lies_farthest_is_named() -> None:
     one = longer(("durations-at-least-0.3",), gap=GAP)
     assert one.head is not None
     head = one.head.model_copy(update={"farthest": "mnam-joint-3"})
-    said = plainly(load_case(PUMA), one.model_copy(update={"head": head}))
+    (said,) = plainly(load_case(PUMA), one.model_copy(update={"head": head}))
     assert said.endswith("joint 3 takes at least 40.0 % longer than a motion within the limits.")

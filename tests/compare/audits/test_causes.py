@@ -42,7 +42,7 @@ def test_neither_side_of_a_contradiction_in_print_is_taken() -> None:
     for name in ("pso-longest", "mnam-longest", "mnam-total", "pso-joint-1", "limits-kept"):
         (said,) = by[name].caveats
         assert said.kind is CaveatKind.DOUBTED
-        assert "Table 2" in said.text
+        assert "Table 2" in said.why
     assert by["pso-total"].verdict is ClaimVerdict.INCONSISTENT
     # Every curve of that kind meets them, whatever the durations.
     for name in ("conditions", "smooth"):
@@ -71,7 +71,7 @@ def test_what_was_judged_on_doubted_way_points_says_so() -> None:
     for name in ("durations-80", "durations-110", "limits-kept", "time-optimal"):
         (said,) = by[name].caveats
         assert said.kind in (CaveatKind.POINTS, CaveatKind.SOME_POINTS)
-        assert "Table 2" in said.text
+        assert "Table 2" in said.why
     assert qualified(by["durations-80"].verdict, by["durations-80"].beside) == (
         "supported, but on doubted way-points"
     )

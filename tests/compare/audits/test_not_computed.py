@@ -113,7 +113,7 @@ def broken_rule(study: Study) -> Iterator[Finding]:
     for one in study.claims:
         if one.id == "by":
             raise TrajgapError("nobody knows")
-        yield Finding(rule="TG101", basis="check", claim=one.id, message="Seen")
+        yield Finding(rule="TG101", basis="check", claim=one.id, kind="seen", sentences=("Seen",))
 
 
 def failing(error: TrajgapError) -> Any:

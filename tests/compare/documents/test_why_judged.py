@@ -16,6 +16,7 @@ from trajgap.compare.documents import (
     grouped,
     in_full,
     nature_caveat,
+    opened,
     said_beside,
     tally,
     under,
@@ -30,8 +31,8 @@ LABELS = {"a": "first", "b": "second", "c": "third", "d": "fourth", "e": "fifth"
 NAMED = Named(LABELS, {}, "c")
 
 
-def said(readings: str, message: str, verdict: str = "refuted", rule: str = "TG201") -> list[Said]:
-    return [Said(verdict, message, rule, one) for one in readings]
+def said(readings: str, message: str, verdict: str = "refuted", kind: str = "breaks") -> list[Said]:
+    return [Said(verdict, "TG201", kind, (message,), one) for one in readings]
 
 
 def test_an_implausible_reading_is_named_as_one_with_its_reason_where_asked() -> None:
@@ -47,14 +48,17 @@ def test_reasons_that_differ_in_numbers_alone_are_one_with_those_of_the_default(
         [
             *said("a", "The velocity reaches 7.5 rad/s, limit 3 rad/s."),
             *said("bc", "The velocity reaches 430 °/s, limit 172 °/s."),
-            *said("d", "The velocity jumps."),
+            *said("d", "The velocity jumps.", kind="jumps"),
         ],
         READINGS,
         NAMED,
     )
     assert [with_readings(one, READINGS, NAMED) for one in found] == [
-        "Under 3 of 6 readings (numbers of “third”): The velocity reaches 430 °/s, limit 172 °/s.",
-        "Under “fourth”: The velocity jumps.",
+        (
+            "Under 3 of 6 readings (numbers of “third”): The velocity reaches 430 °/s, limit 172 "
+            "°/s.",
+        ),
+        ("Under “fourth”: The velocity jumps.",),
     ]
     # To the digit, with every reading, nothing is left out.
     assert in_full(found[0], READINGS, NAMED, word=True) == [
@@ -65,15 +69,15 @@ def test_reasons_that_differ_in_numbers_alone_are_one_with_those_of_the_default(
 
 def test_two_numbers_of_one_reading_stay_two_reasons() -> None:
     found = grouped([*said("a", "Row 1: 3 s."), *said("a", "Row 2: 4 s.")], READINGS, NAMED)
-    assert [one.message for one in found] == ["Row 1: 3 s.", "Row 2: 4 s."]
+    assert [one.sentences for one in found] == [("Row 1: 3 s.",), ("Row 2: 4 s.",)]
 
 
 def test_the_strongest_word_stands_first_then_the_default_and_implausible_ones_last() -> None:
     named = Named(LABELS, {"a": "far"}, "c")
     found = grouped(
         [
-            *said("a", "far away."),
-            *said("b", "near."),
+            *said("a", "far away.", kind="far"),
+            *said("b", "near.", kind="near"),
             *said("c", "default."),
             *said("d", "holds.", "supported"),
             *said("e", "says nothing.", "not checkable"),
@@ -83,35 +87,48 @@ def test_the_strongest_word_stands_first_then_the_default_and_implausible_ones_l
         named,
     )
     messages = ["default.", "near.", "far away.", "contradicts.", "holds."]
-    assert [one.message for one in found] == messages
+    assert [one.sentences for one in found] == [(message,) for message in messages]
 
 
 def test_what_holds_under_every_reading_has_none_before_it_unless_words_differ() -> None:
-    (one,) = grouped([Said("refuted", "always.", "TG101")], READINGS, NAMED)
-    assert with_readings(one, READINGS, NAMED) == "always."
-    assert with_readings(one, READINGS, NAMED, word=True) == "Under every reading: always."
-
-
-def test_rules_that_say_the_same_are_named_together() -> None:
     (one,) = grouped(
-        [*said("a", "same.", rule="TG201"), *said("b", "same.", rule="TG302")], READINGS, NAMED
+        [
+            Said("refuted", "TG101", "k", ("always.", "So.")),
+        ],
+        READINGS,
+        NAMED,
     )
-    assert (one.rules, one.readings) == (("TG201", "TG302"), ("a", "b"))
+    assert with_readings(one, READINGS, NAMED) == ("always.", "So.")
+    assert with_readings(one, READINGS, NAMED, word=True) == (
+        "Under every reading: always.",
+        "So.",
+    )
+
+
+def test_whole_sentences_stand_in_the_open_one_at_least() -> None:
+    assert opened(("One two three.", "Four."), 2) == (("One two three.",), ("Four.",))
+    assert opened(("One two.", "Three.", "Four five."), 3) == (
+        ("One two.", "Three."),
+        ("Four five.",),
+    )
+    long = ("It breaks a limit.", *["Word after word."] * 30)
+    assert judged(R, sentences=long).opening == " ".join(long[:19])
+    assert judged(R, sentences=long[:3]).opening is None
 
 
 S, R, N = ClaimVerdict.SUPPORTED, ClaimVerdict.REFUTED, ClaimVerdict.NOT_CHECKABLE
-DOUBT = Caveat(CaveatKind.DOUBTED, f"{DOUBTED}: two tables are alike.")
+DOUBT = Caveat(CaveatKind.DOUBTED, DOUBTED, "two tables are alike.")
 BUILT = Caveat(CaveatKind.BUILT, built_remark())
 
 
-def judged(verdict: ClaimVerdict, *caveats: Caveat) -> Judgement:
+def judged(verdict: ClaimVerdict, *caveats: Caveat, sentences: tuple[str, ...] = ()) -> Judgement:
     decided = {} if verdict is N else {"confidence": Confidence.PROVEN}
     return Judgement(
         claim="c",
         verdict=verdict,
         scope=Scope.ALL,
         evidence=Evidence.NONE,
-        why="",
+        sentences=sentences,
         caveats=caveats,
         beside=said_beside(verdict, caveats),
         readings={},

@@ -20,7 +20,8 @@ from trajgap.problem import TrajgapError, load_case
 
 
 def finding(verdict: ClaimVerdict, reading: str | None, **change: object) -> Finding:
-    said = {"rule": "TG101", "basis": Basis.DIGITS, "claim": "c", "message": "m"}
+    said = {"rule": "TG101", "basis": Basis.DIGITS, "claim": "c"}
+    said |= {"kind": "k", "sentences": ("m",)}
     return Finding(verdict=verdict, reading=reading, **(said | change))
 
 
@@ -111,7 +112,7 @@ def test_a_verdict_speaks_of_the_readings_that_were_computed() -> None:
 
 
 def test_a_claim_that_nothing_decides_names_what_stands_beside_it() -> None:
-    beside = finding(S, None, decides=False, rule="TG403", message="replays")
+    beside = finding(S, None, decides=False, rule="TG403")
     judged = judge("c", [beside], ["a"])
     assert judged.verdict is N
     assert "TG403" in judged.why

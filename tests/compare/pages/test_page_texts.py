@@ -12,7 +12,15 @@ from support.studies import EVERY, audited_alone, page_alone
 from trajgap.compare.audits import KEPT
 from trajgap.compare.audits.case_audit import CaseAudit
 from trajgap.compare.audits.study import Study
-from trajgap.compare.documents import ClaimVerdict, Keeping, Step, Waterfall, Why
+from trajgap.compare.documents import (
+    Caveat,
+    CaveatKind,
+    ClaimVerdict,
+    Keeping,
+    Step,
+    Waterfall,
+    Why,
+)
 from trajgap.compare.pages.blocks import Cell, Claimed, Folded, Grid, Page, Prose, Section, word
 from trajgap.compare.pages.environment import environment, style
 from trajgap.compare.pages.markdown_text import markdown
@@ -166,7 +174,7 @@ FIGURE_5 = Claimed(
     holds="under both readings",
     why=("Both print 3.298 s.",),
     more=(),
-    caveats=("Rests on doubt: two tables are alike.",),
+    caveats=(Caveat(CaveatKind.DOUBTED, "Rests on doubt", "two tables are alike."),),
     anchor="claim-1",
     id="better-1",
 )
@@ -195,7 +203,7 @@ def test_a_reason_and_a_long_caveat_are_given_once() -> None:
     assert list(shown_once([FIGURE_5, here]))[1].why == (
         "For the reason given for “It is better”.",
     )
-    assert second.caveats == ("Rests on doubt (see above).",)
+    assert list(map(str, second.caveats)) == ["Rests on doubt (see above)."]
 
 
 def test_the_papers_unit_comes_first() -> None:
