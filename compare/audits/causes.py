@@ -248,11 +248,6 @@ def _rests_on(claim: AnyClaim) -> tuple[str, ...]:
 def _jumps(study: Study, claim: AnyClaim, rid: str) -> bool:
     """Whether the velocity of a motion that a claim speaks about jumps under a reading."""
     about = [claim, *(study.case.claim(i) for i in _rests_on(claim))]
-    checked = [
-        study.motion_check(one, pid, rid)
-        for one in about
-        if prints_durations(one)
-        for pid, reading in study.claim_pairs(one)
-        if reading == rid
-    ]
+    motions = study.pairs_under(filter(prints_durations, about), rid)
+    checked = [study.motion_check(one, pid, rid) for one, pid in motions]
     return any(jump.order == 1 for found in checked if found is not None for jump in found.jumps)

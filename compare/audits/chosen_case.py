@@ -8,14 +8,7 @@ from pathlib import Path
 from typing import Any, Self, TypeVar, cast
 
 from ...problem import Case, Problem, TrajgapError
-from ...problem.cases import (
-    AnyClaim,
-    Claim,
-    DurationsClaim,
-    MaximumClaim,
-    TimeClaim,
-    TotalTimeClaim,
-)
+from ...problem.cases import AnyClaim, Claim, DurationsClaim, MaximumClaim, TotalTimeClaim
 from .intervals import Intervals
 
 T = TypeVar("T")
@@ -126,7 +119,7 @@ class ChosenCase:
         """The unit that times are printed in."""
         return self.case.statement().units.time or "s"
 
-    def total_digits(self, claim: TimeClaim) -> str:
+    def total_digits(self, claim: Claim) -> str:
         """A total as printed, or else the sum of the printed durations, with its unit."""
         printed = (
             claim.value if isinstance(claim, TotalTimeClaim) else getattr(claim, "total", None)

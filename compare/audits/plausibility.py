@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import exp, isfinite, log
 
 from ...problem.cases import DurationsClaim, MaximumClaim
-from .stated import other_objective, prints_durations
+from .stated import other_objective
 from .study import Study
 
 _FAR = 10.0
@@ -41,16 +41,13 @@ def implausible(study: Study) -> dict[str, str]:
 
 def _stretch(study: Study, rid: str) -> float | None:
     """By what all printed durations times this keep the limits, and those of one claim just so."""
-    checked = [
-        study.motion_check(claim, pid, reading)
+    timed = [
+        claim
         for claim in study.case.claims
         if isinstance(claim, DurationsClaim | MaximumClaim)
-        if claim.state != "before"
-        and prints_durations(claim)
-        and other_objective(study.case, claim) is None
-        for pid, reading in study.claim_pairs(claim)
-        if reading == rid
+        if claim.state != "before" and other_objective(study.case, claim) is None
     ]
+    checked = [study.motion_check(one, pid, rid) for one, pid in study.pairs_under(timed, rid)]
     stretches = [found.stretch for found in checked if found is not None]
     real = [one for one in stretches if isfinite(one) and one > 0]
     return max(real, default=None)

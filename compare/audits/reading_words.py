@@ -32,18 +32,7 @@ KEPT = {
 def answers(
     summary: ReadingsSummary, called: Callable[[str, str], str] = "{} ({})".format
 ) -> tuple[str, ...]:
-    """What the readings make of the printed answers, and which of them fit best.
-
-    Parameters
-    ----------
-    summary : ReadingsSummary
-    called : callable
-        What a claim of a problem is called; by their ids if left out.
-
-    Returns
-    -------
-    tuple of str
-    """
+    """What the readings make of the printed answers, called by their ids, and which fit best."""
     return (*_of_answers(summary, called), *_of_fit(summary, called))
 
 

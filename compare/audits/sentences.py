@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 from ...problem import Case
 from ...problem.cases import (
     AnyClaim,
@@ -19,6 +17,7 @@ from ...problem.cases import (
     ValueClaim,
     with_unit,
 )
+from ..documents import enumerated
 
 _MOST = 8
 """Numbers of a row that a sentence repeats at most; of a longer one it gives the total."""
@@ -91,7 +90,7 @@ def _said(case: Case, claim: AnyClaim) -> str:
         case ConvergenceClaim():
             return f"the search converges within {claim.iterations} iterations"
         case ConditionsClaim():
-            names = _and([_ORDERS.get(k, f"derivative {k}") for k in claim.orders])
+            names = enumerated(_ORDERS.get(k, f"derivative {k}") for k in claim.orders)
             at = "both ends" if claim.rest_at == "ends" else "all way-points"
             verb = "is" if len(claim.orders) == 1 else "are"
             count = f": {claim.count} conditions" if claim.count is not None else ""
@@ -110,7 +109,7 @@ def _timed(claim: DurationsClaim | MaximumClaim | TotalTimeClaim, unit: str, who
     if count > _MOST:
         plain = f"the {count} segments{whose} take {total}"
         return plain if total else f"the durations of {count} segments{whose}"
-    digits = f"{_and(list(map(str, claim.durations)))} {unit}{', ' if total else ''}{total}"
+    digits = f"{enumerated(claim.durations)} {unit}{', ' if total else ''}{total}"
     several = "s" if count > 1 else ""
     if isinstance(claim, MaximumClaim):
         verb = "are" if several else "is"
@@ -137,7 +136,7 @@ def _measured(case: Case, claim: MotionValueClaim, whose: str) -> str:
     if isinstance(claim, ValueClaim):
         whose += place_of_value(case, claim)
     verb = "are" if each else "is"
-    return f"the {name}{whose} {verb} {_and(with_units(case, claim))}"
+    return f"the {name}{whose} {verb} {enumerated(with_units(case, claim))}"
 
 
 def place_of_value(case: Case, claim: ValueClaim) -> str:
@@ -163,8 +162,3 @@ def with_units(case: Case, claim: MotionValueClaim) -> list[str]:
         joint = None if claim.joint is None else case.robot.joints.index(claim.joint)
         units = case.statement(claim.problem).unit(claim.derivative, joint)
     return with_unit(numbers, units)
-
-
-def _and(parts: Sequence[str]) -> str:
-    *most, last = parts
-    return f"{', '.join(most)} and {last}" if most else last

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
-from typing import cast
+from typing import TypeVar, cast
 
 import numpy as np
 
@@ -50,6 +50,8 @@ from .replayed_case import ReplayedCase, Replays
 from .rounding import RoundingBox, RoundingVerdict, judge_rounding
 from .stated import in_words, in_words_among, place
 from .total_bound import BOXES, excludes_total
+
+_Claim = TypeVar("_Claim", bound=Claim)
 
 
 class Study(ReplayedCase):
@@ -199,6 +201,10 @@ class Study(ReplayedCase):
     def claim_pairs(self, claim: Claim) -> Iterator[Pair]:
         """Problems and readings that a claim speaks about; none where it fits none of them."""
         return (pair for pair in self.pairs if self.fits(claim, *pair))
+
+    def pairs_under(self, claims: Iterable[_Claim], rid: str) -> list[tuple[_Claim, str]]:
+        """Claims with each problem that they speak about under a reading."""
+        return [(c, pid) for c in claims for pid, one in self.claim_pairs(c) if one == rid]
 
     def fits(self, claim: Claim, pid: str, rid: str) -> bool:
         """Whether a claim is about a problem, its curve, and as many durations as it has."""

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 from ...nlp import Evidence, Route, Solution, Status, printed_problem_or_none
 from ...nlp.proofs.any_curve import estimate_any_curve
 from ...nlp.retiming import jerk_limited_path, retime, retime_third_order
@@ -30,6 +28,7 @@ from ..documents import (
     Step,
     Waterfall,
     Why,
+    enumerated,
     known,
 )
 from .digit_ranges import optimum_range
@@ -281,7 +280,7 @@ def _retimed(name: str, solution: Solution) -> Step:
         high=value + error,
         evidence=Evidence.BEST_KNOWN,
         note="velocity and acceleration only; extrapolated from grids of "
-        f"{_and(answer.gridpoints)} points",
+        f"{enumerated(answer.gridpoints)} points",
     )
 
 
@@ -308,8 +307,3 @@ def _free(study: Study, pid: str, rid: str) -> Step:
     high = max(low, answer.total_time)
     known = Evidence.BEST_KNOWN
     return Step(name=name, time=high, low=low, high=high, evidence=known, note=note)
-
-
-def _and(numbers: Sequence[int]) -> str:
-    *most, last = map(str, numbers)
-    return f"{', '.join(most)} and {last}" if most else last

@@ -213,15 +213,7 @@ class CaveatKind(Enum):
 
 @dataclass(frozen=True)
 class Caveat:
-    """What goes with a word: its kind for the code, its text for the reader and for JSON.
-
-    Attributes
-    ----------
-    kind : CaveatKind
-    says : str
-    why : str
-        Empty where nothing needs saying.
-    """
+    """What goes with a word: its kind for the code; what it says, and why, for the reader."""
 
     kind: CaveatKind
     says: str

@@ -248,13 +248,13 @@ def _under(
     if not left:
         return ("under both readings" if len(computed) == 2 else "under every reading"), []
     if len(readings) <= most:
-        which = _and([quoted(one, labels) for one in readings])
+        which = enumerated(quoted(one, labels) for one in readings)
         if len(readings) == 1 and readings[0] in far:
             return f"under the implausible {which}", [far[readings[0]]] if why else []
         return f"under {which}", [implausibly(readings, far)]
     notes = [implausibly(readings, far)]
     if len(left) <= _FEW:
-        notes.append(f"not under {_and([quoted(one, labels) for one in left])}")
+        notes.append(f"not under {enumerated(quoted(one, labels) for one in left)}")
     return f"under {len(readings)} of {len(computed)} readings", notes
 
 
@@ -305,6 +305,7 @@ def capital(text: str) -> str:
     return text[:1].upper() + text[1:]
 
 
-def _and(parts: Sequence[str]) -> str:
-    *most, last = parts
+def enumerated(parts: Iterable[object]) -> str:
+    """Things in a row: "1, 2 and 3"."""
+    *most, last = map(str, parts)
     return f"{', '.join(most)} and {last}" if most else last

@@ -23,6 +23,7 @@ from ..documents import (
     Keeping,
     Reached,
     by_search,
+    capital,
     more_errors,
     qualified,
     reached_cells,
@@ -141,11 +142,11 @@ class Claims(FromResults):
                     box += paragraph(f"{stated[one['claim']]['where']}: {one['why']}")
             for one in (verdict, *others):
                 box += [paragraph(said) for said in innocent.get(one["claim"], ())]
-            for caveat, head in zip(verdict["caveats"], verdict["caveats_in_short"], strict=True):
+            for caveat, says in zip(verdict["caveats"], verdict["caveats_in_short"], strict=True):
                 # One long reason is given once.
-                short = f"{head} (see above)." if caveat in seen and head != caveat else caveat
+                short = f"{says} (see above)." if caveat in seen and says != caveat else caveat
                 seen.add(caveat)
-                box += paragraph(f"{short[:1].upper()}{short[1:]}", "trajgap-beside")
+                box += paragraph(capital(short), "trajgap-beside")
             found.append(box)
         return found or [paragraph(none_said(wanted))]
 

@@ -9,9 +9,6 @@ from docutils import nodes
 from ..documents import ClaimVerdict, Named, Said, grouped, in_full
 from .parts import folded, paragraph
 
-_PLAIN = 2
-"""Reasons that are shown as they are; of more, all but one are folded."""
-
 
 def reasons(case: dict[str, Any], verdict: dict[str, Any]) -> list[nodes.Node]:
     """The reasons of a verdict as paragraphs.
@@ -36,11 +33,12 @@ def reasons(case: dict[str, Any], verdict: dict[str, Any]) -> list[nodes.Node]:
     found = grouped(said, computed, named)
     whole, depends = verdict["why"], verdict["verdict"] == ClaimVerdict.DEPENDS
     opening = paragraph(verdict.get("opening", whole))
-    if len(found) > _PLAIN or any(len(one.each) > 1 for one in found):
-        every = [line for one in found for line in in_full(one, computed, named, word=depends)]
-        return [opening, *folded(f"All {len(every)} reasons", *map(paragraph, every))]
-    cut = "opening" in verdict
-    return [opening, *(folded("The whole reason", paragraph(whole)) if cut else [])]
+    every = [line for one in found for line in in_full(one, computed, named, word=depends)]
+    if "opening" not in verdict and len(every) == len(found):
+        return [opening]
+    if len(every) < 2:
+        return [opening, *folded("The whole reason", paragraph(whole))]
+    return [opening, *folded(f"All {len(every)} reasons", *map(paragraph, every))]
 
 
 def names(case: dict[str, Any]) -> Named:

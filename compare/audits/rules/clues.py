@@ -102,11 +102,8 @@ def _motions(study: Study, names: Sequence[str], rid: str) -> list[tuple[AnyClai
     """Claims with durations that define a curve under a reading, with their problems."""
     return [
         (claim, pid)
-        for claim in map(study.case.claim, names)
-        for pid, reading in study.claim_pairs(claim)
-        if reading == rid
-        and study.unmoved(claim, pid, rid) is None
-        and has_curve(study, claim, pid, rid)
+        for claim, pid in study.pairs_under(map(study.case.claim, names), rid)
+        if study.unmoved(claim, pid, rid) is None and has_curve(study, claim, pid, rid)
     ]
 
 

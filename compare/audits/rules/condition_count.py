@@ -168,17 +168,15 @@ def _at_rest(
     motions = named or [c for c in study.case.claims if prints_durations(c)]
     for rid in study.readings:
         moving, judged, built = [], 0, True
-        for motion in motions:
-            for pid, reading in study.claim_pairs(motion):
-                ours = reading == rid and claim.problem in (None, pid)
-                if not ours or not has_curve(study, motion, pid, rid):
-                    continue
-                judged += 1
-                built &= _prescribed(study.claim_problem(motion, pid, rid).curve, orders)
-                moving += [
-                    f"{said} ({called_under(study, motion, pid)})"
-                    for said in _moving(study, motion, pid, rid, orders)
-                ]
+        for motion, pid in study.pairs_under(motions, rid):
+            if claim.problem not in (None, pid) or not has_curve(study, motion, pid, rid):
+                continue
+            judged += 1
+            built &= _prescribed(study.claim_problem(motion, pid, rid).curve, orders)
+            moving += [
+                f"{said} ({called_under(study, motion, pid)})"
+                for said in _moving(study, motion, pid, rid, orders)
+            ]
         if not judged:
             continue
         derivatives = [QUANTITIES[r - 1] for r in orders if r <= len(QUANTITIES)]

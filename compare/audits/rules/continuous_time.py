@@ -225,10 +225,7 @@ def _limits_statement(study: Study, claim: StatementClaim) -> Iterator[Finding]:
     about = [study.case.claim(i) for i in claim.of]
     for rid in study.readings:
         judged: list[tuple[AnyClaim, str | None, _Judged]] = [
-            (c, pid, _judged(study, c, pid, rid))
-            for c in about
-            for pid, reading in study.claim_pairs(c)
-            if reading == rid
+            (c, pid, _judged(study, c, pid, rid)) for c, pid in study.pairs_under(about, rid)
         ]
         judged += [one for c in left_out(study, about, rid) for one in _elsewhere(study, c, rid)]
         if not judged:
@@ -297,18 +294,16 @@ def _elsewhere(
 
 def _continuity(study: Study, claim: StatementClaim) -> Iterator[Finding]:
     for rid in study.readings:
-        jumps = []
-        judged, built = 0, True
-        for other in (study.case.claim(i) for i in claim.of):
-            for pid, reading in study.claim_pairs(other):
-                if reading == rid:
-                    judged += 1
-                    curve = study.claim_problem(other, pid, rid).curve
-                    built &= all(curve.smooth_order(k) >= 2 for k in range(1, curve.segments))
-                    jumps += [(pid, jump) for jump in study.claim_check(other, pid, rid).jumps]
-        if not judged:
+        jumps, built = [], True
+        motions = study.pairs_under(map(study.case.claim, claim.of), rid)
+        for other, pid in motions:
+            curve = study.claim_problem(other, pid, rid).curve
+            built &= all(curve.smooth_order(k) >= 2 for k in range(1, curve.segments))
+            jumps += [(pid, jump) for jump in study.claim_check(other, pid, rid).jumps]
+        if not motions:
             continue
-        which = {1: "the motion", 2: "both motions"}.get(judged, f"all {judged} motions")
+        count = len(motions)
+        which = {1: "the motion", 2: "both motions"}.get(count, f"all {count} motions")
         verdict, kind, more = ClaimVerdict.SUPPORTED, "continuous", ""
         message = (
             f"In {which} rebuilt from the printed durations, position, velocity and acceleration "
@@ -317,12 +312,7 @@ def _continuity(study: Study, claim: StatementClaim) -> Iterator[Finding]:
         if others := left_out(study, map(study.case.claim, claim.of), rid):
             verdict, kind = ClaimVerdict.NOT_CHECKABLE, "in part"
             more = f"No motion is built from {all_called(others)}, which it names too."
-        if jumps and all(
-            _may_be_smooth(study, study.case.claim(i), pid, rid)
-            for i in claim.of
-            for pid, reading in study.claim_pairs(study.case.claim(i))
-            if reading == rid
-        ):
+        if jumps and all(_may_be_smooth(study, other, pid, rid) for other, pid in motions):
             verdict, kind, more = ClaimVerdict.NOT_CHECKABLE, "may be smooth", ""
             message = (
                 "The motion jumps at the printed durations; what rounds to them or is cut off to "
@@ -365,15 +355,14 @@ def _may_be_smooth(study: Study, claim: AnyClaim, pid: str, rid: str) -> bool:
 def _said_to_jump(study: Study, claim: StatementClaim) -> Iterator[Finding]:
     """A reading under which acceleration does not jump speaks against itself, not the paper."""
     for rid in study.readings:
-        jumps, judged = [], 0
-        for other in (study.case.claim(i) for i in claim.of):
-            for pid, reading in study.claim_pairs(other):
-                if reading == rid:
-                    judged += 1
-                    found = study.claim_check(other, pid, rid).jumps
-                    own = [j for j in found if j.order == 2 and claim.joint in (None, j.joint)]
-                    jumps += [(pid, jump) for jump in own]
-        if not judged:
+        motions = study.pairs_under(map(study.case.claim, claim.of), rid)
+        jumps = [
+            (pid, jump)
+            for other, pid in motions
+            for jump in study.claim_check(other, pid, rid).jumps
+            if jump.order == 2 and claim.joint in (None, jump.joint)
+        ]
+        if not motions:
             continue
         whose = "" if claim.joint is None else f" of joint {claim.joint}"
         if jumps:

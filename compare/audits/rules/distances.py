@@ -371,16 +371,16 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
     """
     for rid in study.readings:
         sides = _Sides()
-        for claim in (named := [study.case.claim(i) for i in statement.of]):
+        named = [study.case.claim(i) for i in statement.of]
+        for claim, pid in study.pairs_under(named, rid):
             minimised = other_objective(study.case, claim)
-            for pid, reading in study.claim_pairs(claim):
-                if reading == rid and minimised is not None:
-                    sides.open.append(
-                        f"{called_under(study, claim, pid)}: minimised for {minimised}, not for "
-                        "time alone, so that a shorter motion contradicts nothing"
-                    )
-                elif reading == rid:
-                    _weigh(study, claim, pid, rid, sides)
+            if minimised is None:
+                _weigh(study, claim, pid, rid, sides)
+            else:
+                sides.open.append(
+                    f"{called_under(study, claim, pid)}: minimised for {minimised}, not for time "
+                    "alone, so that a shorter motion contradicts nothing"
+                )
         if not (sides.longer or sides.breaking or sides.agreeing or sides.open):
             continue
         for one in left_out(study, named, rid):

@@ -161,14 +161,13 @@ def _unquantified(
     unit = study.time_unit
     between = f"{slower} and {faster} {unit}"
     sides = [study.case.claim(i) for i in (claim.slower, claim.faster)]
-    verdict, more = ClaimVerdict.NOT_CHECKABLE, ""
+    verdict, kind, more = ClaimVerdict.NOT_CHECKABLE, "as claimed", ""
+    message = f"The printed totals are {between}"
     if slower.text == faster.text:
-        kind, message = (
-            "same total",
-            (
-                f"Both tables print the same total, {faster} {unit}: an improvement, if there is "
-                f"one, is below {shown(seconds.upper)} {unit}."
-            ),
+        kind = "same total"
+        message = (
+            f"Both tables print the same total, {faster} {unit}: an improvement, if there is one, "
+            f"is below {shown(seconds.upper)} {unit}"
         )
         # An improvement below the last digit is one. Only tables alike that are said to differ
         # speak against it.
@@ -178,27 +177,15 @@ def _unquantified(
                 "Their tables agree in every number, and elsewhere in print the two results differ."
             )
     elif seconds.lower > 0 and not study.has_problems:
-        kind, message = (
-            "as claimed",
-            (
-                f"The printed totals are {between}, in the order that is claimed; neither can be "
-                "computed from the text."
-            ),
-        )
+        message += ", in the order that is claimed; neither can be computed from the text"
     elif seconds.lower > 0:
-        kind, message = "as claimed", f"The printed totals are {between}."
         verdict = ClaimVerdict.SUPPORTED
     elif hull(slower).upper < hull(faster).lower:
-        kind, message = (
-            "longer",
-            (f"The printed totals are {between}: the one called better is the longer."),
-        )
-        verdict = ClaimVerdict.REFUTED
+        verdict, kind = ClaimVerdict.REFUTED, "longer"
+        message += ": the one called better is the longer"
     else:
-        kind, message = (
-            "within rounding",
-            (f"The printed totals {between} do not differ by more than their rounding."),
-        )
+        kind = "within rounding"
+        message = f"The printed totals {between} do not differ by more than their rounding"
     return Finding(
         rule="TG103",
         verdict=verdict,
@@ -206,7 +193,7 @@ def _unquantified(
         claim=claim.id,
         printed=between,
         kind=kind,
-        sentences=(message, more),
+        sentences=(f"{message}.", more),
         follows=doubted(study, sides),
     )
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import partial
 
 import numpy as np
 
@@ -26,19 +27,17 @@ HANDLED = {
 }
 """What each objective does, in words."""
 
+_informing = partial(Finding, rule="TG404", basis=Basis.REPLAY, decides=False)
+"""Nothing here decides: the instances are not the paper's."""
+
 
 def judge_instances(study: Study) -> Iterator[Finding]:
     """Findings of TG404. None of them decides: the instances are not the paper's."""
     for block in study.case.instances:
         why = study.unexamined(block) if readings_of(study, block) else None
         if why is not None:
-            yield Finding(
-                rule="TG404",
-                basis=Basis.REPLAY,
-                decides=False,
-                kind="not examined",
-                sentences=(f"Family {block.id} is not examined: {why}.",),
-            )
+            said = f"Family {block.id} is not examined: {why}."
+            yield _informing(kind="not examined", sentences=(said,))
     for block in study.instance_blocks:
         result = study.instances(block)
         yield _summary(result)
@@ -116,10 +115,7 @@ def _summary(result: InstancesResult) -> Finding:
     span = medians(result, Effect.BOTH)
     printed = None if result.printed is None else percent_range(*result.printed)
     computed = f"medians {percent_range(*span, digits=1)}" if span else "no pair of answers"
-    return Finding(
-        rule="TG404",
-        basis=Basis.REPLAY,
-        decides=False,
+    return _informing(
         claim=block.claim,
         printed=printed,
         computed=computed,
@@ -180,10 +176,7 @@ def _under(result: InstancesResult, reading: str) -> Finding:
     if failed:
         parts.append(f"{failed} runs found nothing that keeps its limits.")
     printed = None if result.printed is None else percent_range(*result.printed)
-    return Finding(
-        rule="TG404",
-        basis=Basis.REPLAY,
-        decides=False,
+    return _informing(
         claim=block.claim,
         reading=reading,
         printed=printed,
@@ -217,10 +210,7 @@ def _convergence(result: InstancesResult, claim: ConvergenceClaim) -> Finding:
         f"{100 * share:.3g} % under {quoted(reading, result.labels)}"
         for share, reading in zip(shares, result.readings, strict=True)
     )
-    return Finding(
-        rule="TG404",
-        basis=Basis.REPLAY,
-        decides=False,
+    return _informing(
         claim=claim.id,
         printed=f"{claim.iterations} iterations",
         computed=f"{ranged(low, high, '.3g')} % of the runs",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import partial
 from itertools import combinations
 from math import inf, isfinite, log
 
@@ -20,6 +21,9 @@ _FEWEST = 3
 """Durations that two rows need in common before equal digits are worth a word."""
 _CLOSE = 0.01
 """Share by which a row may miss the limits of another and still be said to fit it."""
+
+_informing = partial(Finding, rule="TG108", decides=False)
+"""Nothing here decides: a printer's slip is no fault of the numbers."""
 
 
 def judge_places(study: Study) -> Iterator[Finding]:
@@ -60,8 +64,7 @@ def _peaks_elsewhere(study: Study, claim: PeakClaim, own: AnyClaim) -> Iterator[
                     f"and {100 * distance:.2g} % from that of {called(motion)}{row}"
                 )
         if said:
-            yield Finding(
-                rule="TG108",
+            yield _informing(
                 basis=Basis.CHECK,
                 claim=claim.id,
                 problem=pid,
@@ -72,7 +75,6 @@ def _peaks_elsewhere(study: Study, claim: PeakClaim, own: AnyClaim) -> Iterator[
                     "Printed peaks fit another place better than their own, as if numbers had been "
                     f"exchanged in print: {'; '.join(said)}.",
                 ),
-                decides=False,
             )
 
 
@@ -92,8 +94,7 @@ def _row_elsewhere(study: Study, claim: DurationsClaim) -> Iterator[Finding]:
             if label != claim.joint
         )
         if best <= _CLOSE:
-            yield Finding(
-                rule="TG108",
+            yield _informing(
                 basis=Basis.CHECK,
                 claim=claim.id,
                 problem=pid,
@@ -105,7 +106,6 @@ def _row_elsewhere(study: Study, claim: DurationsClaim) -> Iterator[Finding]:
                     f"joint {joint} within {100 * best:.2g} %, as if rows had been exchanged in "
                     "print.",
                 ),
-                decides=False,
             )
 
 
@@ -125,8 +125,7 @@ def _equal_rows(study: Study) -> Iterator[Finding]:
             doubted(study, [second])
         ):
             continue
-        yield Finding(
-            rule="TG108",
+        yield _informing(
             basis=Basis.DIGITS,
             claim=second.id,
             printed=", ".join(texts[1]),
@@ -135,7 +134,6 @@ def _equal_rows(study: Study) -> Iterator[Finding]:
                 f"{called(first)} and {called(second)} print the same {len(texts[0])} durations "
                 "for different things, distance 0.",
             ),
-            decides=False,
         )
 
 

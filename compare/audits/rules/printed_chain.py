@@ -12,7 +12,7 @@ from ....problem import Array, Measured, is_linear, to_si
 from ....problem.cases import Cartesian, Column, Statement, StatementClaim
 from ....problem.robots import Chain, Convention, DhTable, JointKind, Proximity, proximity
 from ....verify import shown_bound
-from ...documents import Basis, ClaimVerdict, Finding
+from ...documents import Basis, ClaimVerdict, Finding, enumerated
 from ..study import Study
 
 _NEGLIGIBLE = 1e-9
@@ -265,6 +265,16 @@ def _misses(near: tuple[Proximity, ...], slack: tuple[float, ...]) -> bool:
     return any(n.lower > s for n, s in zip(near, slack, strict=True))
 
 
+_OPEN = {
+    "other signs": "With other signs of the twists, the angles or the positions, which the text "
+    "may have lost, no printed position is shown to be out of reach.",
+    "other twists": "With other signs of the twists, which the text may have lost, the end meets "
+    "every printed position.",
+    "undecided": "Whether rounding explains the distances to the printed positions is not decided.",
+}
+"""Why nothing is decided, by the kind of the finding."""
+
+
 def _judged(
     study: Study,
     statement: Statement,
@@ -319,26 +329,8 @@ def _judged(
         else:
             verdict = ClaimVerdict.NOT_CHECKABLE
             signed = any(_fits(near, m.slack) for m in matches for near in m.signed)
-            kind, first = (
-                (
-                    "any signs",
-                    "With other signs of the twists, the angles or the positions, which the text "
-                    "may have lost, no printed position is shown to be out of reach.",
-                )
-                if lost
-                else (
-                    "other twists",
-                    "With other signs of the twists, which the text may have lost, the end meets "
-                    "every printed position.",
-                )
-                if signed
-                else (
-                    "undecided",
-                    "Whether rounding explains the distances to the printed positions is not "
-                    "decided.",
-                )
-            )
-            said = first, *nearest
+            kind = "other signs" if lost else "other twists" if signed else "undecided"
+            said = _OPEN[kind], *nearest
     worst = "; ".join(f"{_down(m.worst)} m ({m.convention})" for m in matches)
     return Finding(
         rule="TG601",
@@ -362,18 +354,14 @@ def _units(statement: Statement) -> str:
 
 def _named(labels: list[str]) -> str:
     """Joints in a sentence."""
-    return (
-        f"joint{'' if len(labels) == 1 else 's'} {' and '.join(labels[-2:])}"
-        if len(labels) < 3
-        else f"joints {', '.join(labels[:-1])} and {labels[-1]}"
-    )
+    return f"joint{'s' * (len(labels) > 1)} {enumerated(labels)}"
 
 
 def _whatever(matches: list[_Match], names: list[str]) -> Iterator[str]:
     """What holds whatever the signs that the text may have lost, and the axes of the base."""
     missed = [(m, *m.unsigned) for m in matches if m.unsigned is not None]
     if missed:
-        worst = _listed([f"{names[at]} {_down(far)} m ({m.convention})" for m, at, far in missed])
+        worst = enumerated(f"{names[at]} {_down(far)} m ({m.convention})" for m, at, far in missed)
         yield (
             "Whatever signs the twists, the angles and the positions have, the end stays away "
             f"from them: {worst} at least."
@@ -381,15 +369,11 @@ def _whatever(matches: list[_Match], names: list[str]) -> Iterator[str]:
     turned = [f"{_down(m.radial)} m ({m.convention})" for m in matches if m.radial > 0]
     if turned:
         met = [str(m.convention) for m in matches if not m.radial > 0]
-        besides = f"; in the {_listed(met)} convention it need not" if met else ""
+        besides = f"; in the {enumerated(met)} convention it need not" if met else ""
         yield (
             "With any other axes of the base, the distance from its origin still misses by up to "
-            f"{_listed(turned)}{besides}."
+            f"{enumerated(turned)}{besides}."
         )
-
-
-def _listed(parts: list[str]) -> str:
-    return " and ".join(parts)
 
 
 def _down(metres: float) -> str:

@@ -34,13 +34,7 @@ def _varies(study: Study, claim: StatementClaim) -> Finding:
     ranges = {label: _range(numbers) for label, numbers in printed.items() if numbers}
     own = ranges.pop(str(claim.joint), None)
     if own is None:
-        return Finding(
-            rule="TG110",
-            basis=Basis.DIGITS,
-            claim=claim.id,
-            kind="not printed",
-            sentences=(f"No angles of joint {claim.joint} are printed.",),
-        )
+        return _finding(claim, "not printed", [f"No angles of joint {claim.joint} are printed."])
     if claim.joint is not None and statement.unit("position") is None:
         return _in_other_units(claim, statement, own)
     shown = " and ".join(
@@ -66,15 +60,7 @@ def _varies(study: Study, claim: StatementClaim) -> Finding:
         said.append(f"Joint{plural} {', '.join(more)} var{'y' if plural else 'ies'} more.")
     elif not missing and ranges and all(most <= own[0] for _, most in ranges.values()):
         verdict = ClaimVerdict.SUPPORTED
-    return Finding(
-        rule="TG110",
-        verdict=verdict,
-        basis=Basis.DIGITS,
-        claim=claim.id,
-        computed=f"{_middle(*own):.2f} in the printed unit",
-        kind=kind,
-        sentences=(*said, *aside),
-    )
+    return _finding(claim, kind, [*said, *aside], verdict, own)
 
 
 def _in_other_units(
@@ -83,19 +69,12 @@ def _in_other_units(
     """Nothing decided: joints in different units have no common measure of how much they vary."""
     units = statement.units.position
     listed = ", ".join(dict.fromkeys(units)) if isinstance(units, tuple) else str(units)
-    return Finding(
-        rule="TG110",
-        basis=Basis.DIGITS,
-        claim=claim.id,
-        computed=f"{_middle(*own):.2f} in the printed unit",
-        kind="other units",
-        sentences=(
-            f"Joints are printed in different units ({listed}), so that nothing says which of them "
-            "varies more.",
-            f"The printed positions of joint {claim.joint} span {_middle(*own):.2f} (printed "
-            "unit).",
-        ),
-    )
+    said = [
+        f"Joints are printed in different units ({listed}), so that nothing says which of them "
+        "varies more.",
+        f"The printed positions of joint {claim.joint} span {_middle(*own):.2f} (printed unit).",
+    ]
+    return _finding(claim, "other units", said, own=own)
 
 
 def _range(numbers: list[Printed]) -> tuple[Fraction, Fraction]:
@@ -124,23 +103,31 @@ def _above(study: Study, claim: StatementClaim) -> Finding:
     height = float(upper.values[2].fraction - lower.values[2].fraction)
     said = [f"{names.format(f'{beside[0]:.4g}')} and {height:.4g} {upper.unit} above it."]
     if _meets(upper, lower) and rise.lower > floor.upper:
-        return _finding(claim, ClaimVerdict.SUPPORTED, said)
+        return _finding(claim, "beside and above", said, ClaimVerdict.SUPPORTED)
     least = min(_beside(upper, lower, signs) for signs in product((1, -1), repeat=2))
     if least[0] < beside[0]:
         said.append(
             f"With another sign of {' and '.join(least[1])} it would be {least[0]:.4g} "
             f"{upper.unit}; signs may be lost in the text, so that nothing is decided."
         )
-    return _finding(claim, ClaimVerdict.NOT_CHECKABLE, said)
+    return _finding(claim, "beside and above", said)
 
 
-def _finding(claim: StatementClaim, verdict: ClaimVerdict, said: list[str]) -> Finding:
+def _finding(
+    claim: StatementClaim,
+    kind: str,
+    said: list[str],
+    verdict: ClaimVerdict = ClaimVerdict.NOT_CHECKABLE,
+    own: tuple[Fraction, Fraction] | None = None,
+) -> Finding:
+    """What is said of a statement, and the range of its joint where one is computed."""
     return Finding(
-        rule="TG602",
+        rule="TG602" if claim.checks == "above" else "TG110",
         verdict=verdict,
         basis=Basis.DIGITS,
         claim=claim.id,
-        kind="beside and above",
+        computed=None if own is None else f"{_middle(*own):.2f} in the printed unit",
+        kind=kind,
         sentences=tuple(said),
     )
 

@@ -289,11 +289,8 @@ def total_allowed(study: Study, claim: AnyClaim) -> Interval:
 def _total_shown(study: Study, claim: AnyClaim) -> tuple[str, Interval]:
     """A total as printed or as the sum of its parts, and what its digits allow."""
     allowed = total_allowed(study, claim)
-    printed = printed_total(claim)
-    if printed is not None:
-        return f"{printed} {study.time_unit}", allowed
-    parts = study.case.printed_durations(claim)
-    return f"{sum(p.decimal for p in parts)} {study.time_unit} (sum of its durations)", allowed
+    summed = "" if printed_total(claim) is not None else " (sum of its durations)"
+    return f"{study.total_digits(claim)}{summed}", allowed
 
 
 def _rival(claim: TotalTimeClaim) -> Finding:

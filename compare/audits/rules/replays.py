@@ -53,7 +53,7 @@ def judge_replays(study: Study) -> Iterator[Finding]:
 
 
 def _found(
-    study: Study, rule: str, claim: AnyClaim, pid: str, printed: str
+    study: Study, rule: str, claim: AnyClaim, pid: str, printed: str | None = None
 ) -> Callable[..., Finding]:
     """A finding of a rule about replays of a claim's algorithms, in want of what it says."""
     return partial(
@@ -153,13 +153,7 @@ def _compared(study: Study, claim: StatementClaim, against: str) -> Iterator[Fin
             for tolerance in _TOLERANCES
             for name, found in runs.items()
         )
-        yield Finding(
-            rule="TG401",
-            basis=Basis.REPLAY,
-            decides=False,
-            claim=claim.id,
-            problem=pid,
-            reading=rid,
+        yield _found(study, "TG401", claim, pid)(
             computed=f"shorter in {_percent(shorter)} of the pairs",
             kind="runs",
             sentences=(

@@ -82,9 +82,7 @@ def _stretched(
     rid: str,
     statements: list[StatementClaim],
 ) -> Iterator[Finding]:
-    pairs = [
-        [pid for pid, reading in study.claim_pairs(c) if reading == rid] for c in (source, target)
-    ]
+    pairs = [[pid for _, pid in study.pairs_under([c], rid)] for c in (source, target)]
     if not pairs[0] or not pairs[1]:
         return
     if any(

@@ -126,10 +126,5 @@ def left_out(study: Study, named: Iterable[AnyClaim], rid: str) -> list[AnyClaim
 
     They are of another curve, or have another number of durations than the curve has segments.
     """
-    chosen = {pid for pid, _ in study.pairs}
-    return [
-        claim
-        for claim in named
-        if claim.problem in (None, *chosen)
-        and not any(reading == rid for _, reading in study.claim_pairs(claim))
-    ]
+    chosen = (None, *(pid for pid, _ in study.pairs))
+    return [c for c in named if c.problem in chosen and not study.pairs_under([c], rid)]

@@ -40,7 +40,7 @@ def test_of_many_reasons_the_default_stands_first_and_the_others_are_folded() ->
     ]
     labels = {"a": "angles in degrees", "b": "angles in radians"}
     case = {"readings": {"default": "b", "labels": labels}, "findings": found}
-    lead, opening, folded, closing = reasons(case, VERDICT)
+    lead, opening, folded, closing = reasons(case, {**VERDICT, "opening": "all of it"})
     assert lead.astext() == "all of it"
     assert opening.astext() == "<details><summary>All 3 reasons</summary>"
     assert [one.astext() for one in folded.findall(nodes.paragraph)] == [
