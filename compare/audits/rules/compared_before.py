@@ -22,6 +22,7 @@ def cite_comparisons(study: Study) -> Iterator[Finding]:
         if known is None:
             continue
         first = known.listed[0]
+        both = {one: study.called(getattr(known, one)) for one in ("improved", "standard")}
         yield Finding(
             rule="TG405",
             basis=Basis.REPLAY,
@@ -30,15 +31,12 @@ def cite_comparisons(study: Study) -> Iterator[Finding]:
             printed=known.printed,
             computed=f"shows in {_percent(first.shown.share)} of the pairs",
             kind="study",
-            sentences=tuple(comparison_words(known, study.case)),
+            sentences=tuple(comparison_words(known.model_copy(update=both), study.case)),
         )
 
 
 def comparison_words(known: Comparison, case: Case) -> Iterator[str]:
     """What a comparison came to, in sentences; its problems are called as the case calls them."""
-    names = {one.id: f"the {one.name}" for one in case.algorithms}
-    both = {"improved": names[known.improved], "standard": names[known.standard]}
-    known = known.model_copy(update=both)
     what = f"at least {100 * known.advantage:.4g} % shorter" if known.advantage else "shorter"
     runs = known.listed[0].shown.runs
     yield (

@@ -162,7 +162,7 @@ def test_equal_rows_under_two_names_are_found(last: str, found: int) -> None:
     rows = row("r1", f"0.91 1.25 {last}", joint="1") + row("r2", "0.91 1.25 1.40", joint="2")
     study = study_of(paper([[0, 1, 2, 3], [0.5, 1, 2.5, 3]], rows, velocity=9))
     said = said_of(study, "r2", "TG108")
-    assert ["r1 and r2 print the same 3 durations" in one.message for one in said] == [True] * found
+    assert ["R1 and r2 print the same 3 durations" in one.message for one in said] == [True] * found
 
 
 def test_a_row_that_fits_another_joint_is_found() -> None:
