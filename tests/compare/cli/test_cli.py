@@ -97,7 +97,7 @@ def test_a_crate_never_takes_the_place_of_a_file(
 
 def test_no_command_says_how_to_begin_and_prints_the_help(run: Run) -> None:
     begin, _, help_ = run()[1].partition("\n\n")
-    assert re.findall(r"^  trajgap (\w+)", begin, re.MULTILINE) == ["audit", "new", "check"]
+    assert re.findall(r"^  trajgap (\w+)", begin, re.MULTILINE) == ["audit", "new", "check", "solve"]
     assert help_ == run("--help")[1]
 
 
