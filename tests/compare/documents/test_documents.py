@@ -72,7 +72,7 @@ def test_the_docs_are_those_that_the_models_give() -> None:
     for file in DOCS.rglob("*.md"):
         text = file.read_text("utf-8")
         now = filled(text, RULES)
-        assert now == text, f"{file.name}: run python -m trajgap.compare.documents docs"
+        assert now == text, f"{file.name}: run python docs/words.py"
         tables += text.count("<!-- table: ")
     assert tables == 8
 
