@@ -24,7 +24,7 @@ from trajgap.problem import (
 )
 from trajgap.problem.curves import adjoint as adjoint_module
 from trajgap.problem.curves import places_of, refined, right_hand_sides, system
-from trajgap.problem.curves.banded import Factors
+from trajgap.problem.curves.banded import Factors, factorise
 
 STEPS = (0.7, 0.5, 1.4, 0.3, 1.5, 0.7, 1.6)
 FIRST, LAST, BENT = (0.5, -0.2, 0.0), (-0.3, 0.4, 0.7), (0.0, 1.1, -0.6)
@@ -156,6 +156,19 @@ def test_nodal_values_refused() -> None:
     for nodal in (None, np.zeros((3, 3)), np.zeros((4, 1))):
         with pytest.raises(TrajgapError, match=message):
             fit(piecewise((5, 5, 5), 2), waypoints(4), [1.0, 1.0, 1.0], nodal)
+
+
+@pytest.mark.parametrize(("lower", "upper"), [(1, 2), (2, 1), (3, 3), (0, 2)])
+def test_factors_of_a_band_matrix_solve_the_dense_system(lower: int, upper: int) -> None:
+    rng, size = np.random.default_rng(5), 14
+    rows, dense = rng.normal(size=(size, lower + upper + 1)), np.zeros((size, size))
+    for i, d in np.ndindex(rows.shape):
+        if 0 <= i + d - lower < size:
+            dense[i, i + d - lower] = rows[i, d]
+    right, factors = rng.normal(size=(size, 2)), factorise(rows, lower, upper)
+    for transposed, matrix in ((False, dense), (True, dense.T)):
+        found = factors.solve(right, transposed)
+        np.testing.assert_allclose(matrix @ found, right, atol=1e-10)
 
 
 def singular_at_two_to_three() -> Interpolant:
