@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 from dataclasses import replace
 from fractions import Fraction
-from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -13,13 +12,11 @@ import numpy as np
 import pytest
 from support.checkout import ROOT
 from support.shipped_problems import COVERED_PROBLEMS
-from support.unjudged import unjudged
-from support.unlucky import answering
 from trajgap.nlp import solve
 from trajgap.nlp.proofs.certifiers import certify, covered
 from trajgap.nlp.proofs.document import certificate, problem_document, shipped, shipped_folder
-from trajgap.nlp.proofs.exact import ExactProblem, decimal, exact_problem
-from trajgap.nlp.proofs.outcome import Certified, Outcome
+from trajgap.nlp.proofs.exact import decimal, exact_problem
+from trajgap.nlp.proofs.outcome import Outcome
 from trajgap.problem import (
     Interpolant,
     Limits,
@@ -32,8 +29,6 @@ from trajgap.problem import (
 )
 from trajgap.verify import Subject
 from trajgap.verify import verify_certificate as verify
-
-module = import_module("trajgap.nlp.proofs.declared.certifier")
 
 
 def test_shipped_certificates_are_fresh_and_prove() -> None:
@@ -77,53 +72,6 @@ def test_the_table_in_the_docs_is_that_of_the_files() -> None:
         assert 0 <= most - upper < Fraction(1, 10**9), f"{name}: rounded outwards"
         assert cells[3] == f"{float(1 - lower / upper):.1e}", name
         assert int(cells[6]) == files[name].stat().st_size, name
-
-
-def unlucky(monkeypatch: pytest.MonkeyPatch, seconds: float = 2.0) -> tuple[float, Certified]:
-    """Certify with an answer 5 % above the optimum and no search for a better one."""
-    exact = COVERED_PROBLEMS["puma560-mnam-pso-353.six-joints.durations-positive"]
-    true = shipped(exact)
-    assert true is not None
-    upper = Fraction(true["claim"]["upper"])
-    worse = tuple(Fraction(h) * Fraction(21, 20) for h in true["claim"]["durations"])
-    answering(monkeypatch, lambda call, initial: worse)
-    monkeypatch.setattr(module.BoxStages, "_look", lambda run, *_: run.session.check_clock())
-    return float(upper), certify(exact, seconds=seconds)
-
-
-def test_an_answer_that_is_not_optimal_is_never_certified(monkeypatch: pytest.MonkeyPatch) -> None:
-    optimum, found = unlucky(monkeypatch)
-    assert found.outcome is Outcome.INTERVAL
-    assert 0.9 * optimum < found.lower <= optimum
-
-
-def test_a_broken_relaxation_is_caught(monkeypatch: pytest.MonkeyPatch) -> None:
-    real = module._kind
-
-    def broken(problem: ExactProblem, total: Fraction) -> Any:
-        return real(problem, total * Fraction(9, 10))
-
-    raw = unjudged(monkeypatch)
-    monkeypatch.setattr(module, "_kind", broken)
-    optimum, found = unlucky(monkeypatch, seconds=20.0)
-    assert raw[0].lower > optimum, "the attack above would not have seen it"
-    assert not verify(certificate(raw[0])).proves
-    assert (found.outcome, found.lower, found.proof) == (Outcome.OPEN, 0, None)
-    assert found.verdict is not None
-    assert "a leaf with limits is not proved" in found.verdict.reason
-
-
-def test_a_local_answer_is_replaced_by_a_better_one(monkeypatch: pytest.MonkeyPatch) -> None:
-    exact = COVERED_PROBLEMS["puma560-mnam-pso-353.six-joints.durations-positive.joint-6"]
-    true = shipped(exact)
-    assert true is not None
-    double = tuple(Fraction(h) * 2 for h in true["claim"]["durations"])
-    calls = answering(monkeypatch, lambda call, initial: double if call == 1 else True)
-    found = certify(exact)
-    assert len(calls) > 1
-    assert found.outcome is Outcome.CERTIFIED
-    assert found.upper is not None
-    assert float(found.upper) == pytest.approx(float(Fraction(true["claim"]["upper"])), rel=1e-6)
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""Whole runs for declared curves, against a dense search and other directions; the weights."""
+"""Whole runs for declared curves, against other directions; the weights."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ import pytest
 from scipy.optimize import linprog
 from support.declared_curves import CURVES
 from support.intervals import dense_best, judged
-from support.three_pieces import random_problem
 from trajgap.nlp.proofs.certifiers import certify, covered
 from trajgap.nlp.proofs.declared.certifier import DECLARED
 from trajgap.nlp.proofs.declared.simplex import best_weights
@@ -49,38 +48,6 @@ def test_weights_are_those_of_a_linear_program() -> None:
 
 
 # --- whole runs -----------------------------------------------------------------------------------
-
-
-def of_any_kind(seed: int) -> Problem:
-    """3-5-3 or 4-3-4: every kind of limit and bound, unequal sides among them."""
-    problem, rng = random_problem(seed), np.random.default_rng([seed, 5])
-    if seed % 2:
-        problem = replace(problem, curve=piecewise((4, 3, 4)))
-    return problem if rng.random() < 0.7 else replace(problem, limits=uneven(problem.limits, rng))
-
-
-def uneven(limits: Limits, rng: np.random.Generator) -> Limits:
-    high = limits.derivatives.T
-    low = -high * rng.uniform(0.5, 1.5, high.shape)
-    return Limits(*np.stack([low, high], axis=2), limits.position_lower, limits.position_upper)
-
-
-def attack(seed: int) -> Outcome:
-    problem = of_any_kind(seed)
-    found = certify(problem, gap=1e-3, seconds=20.0)
-    return judged(problem, found, dense_best(problem))
-
-
-@pytest.mark.parametrize("seed", [0, 2, 3])
-def test_dense_search_never_leaves_the_interval(seed: int) -> None:
-    attack(seed)
-
-
-@pytest.mark.slow
-def test_dense_search_never_leaves_the_interval_of_two_hundred_problems() -> None:
-    outcomes = [attack(seed) for seed in (1, *range(4, 210))]
-    decided = outcomes.count(Outcome.CERTIFIED) + outcomes.count(Outcome.INFEASIBLE)
-    assert decided >= 195
 
 
 @pytest.mark.parametrize("name", CURVES)

@@ -18,33 +18,6 @@ from trajgap.problem import (
 from trajgap.verify import verify_certificate as verify
 
 
-def often(monkeypatch: pytest.MonkeyPatch, boxes: int) -> None:
-    """Report after every few boxes, however fast they are."""
-    monkeypatch.setattr("trajgap.verify.declared._LEAVES", boxes)
-    monkeypatch.setattr("trajgap.nlp.proofs.declared.search.Curves.part", boxes)
-    monkeypatch.setattr("trajgap.nlp.proofs.session.Session.often", 0.0)
-
-
-def test_a_stopped_run_goes_on_where_it_stopped(monkeypatch: pytest.MonkeyPatch) -> None:
-    exact = COVERED_PROBLEMS["puma560-mnam-pso-353.six-joints.durations-positive.joint-1"]
-
-    def interrupt(progress: Progress) -> None:
-        if progress.lower > 0 and progress.nodes > 150 and progress.open_boxes > 0:
-            raise KeyboardInterrupt
-
-    often(monkeypatch, 16)
-    first = certify(exact, report=interrupt)
-    assert first.outcome is Outcome.INTERVAL
-    assert first.open_boxes > 0
-    assert first.lower > 0
-    assert 1e-6 < first.gap < 1
-    assert verify(certificate(first)).proves
-    second = certify(exact, resume=first)
-    assert second.outcome is Outcome.CERTIFIED
-    assert second.nodes < 800
-    assert verify(certificate(second)).proves
-
-
 def stopped_at(name: str, monkeypatch: pytest.MonkeyPatch) -> Certified:
     """A run that was stopped with a proved lower bound and with open boxes."""
 
@@ -52,7 +25,9 @@ def stopped_at(name: str, monkeypatch: pytest.MonkeyPatch) -> Certified:
         if progress.lower > 0 and progress.open_boxes > 0:
             raise KeyboardInterrupt
 
-    often(monkeypatch, 8)
+    # However fast boxes are, something is said after every few of them.
+    monkeypatch.setattr("trajgap.verify.declared._LEAVES", 8)
+    monkeypatch.setattr("trajgap.nlp.proofs.declared.search.Curves.part", 8)
     found = certify(COVERED_PROBLEMS[name], report=interrupt)
     assert found.outcome is Outcome.INTERVAL
     return found
