@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -14,6 +15,7 @@ import pytest
 from support.intervals import dense_best, judged
 from support.own_kinds import own_kinds as own_kinds
 from support.proof_problems import (
+    NATURAL,
     cubic_problem,
     random_cubic,
     random_declared,
@@ -26,20 +28,25 @@ from support.unlucky import answering
 from trajgap.nlp import solve
 from trajgap.nlp.proofs.certifier import Certifier
 from trajgap.nlp.proofs.certifiers import CERTIFIERS, certifiers, certify, covered
+from trajgap.nlp.proofs.closed_form.formulas import MOST_REBUILT
 from trajgap.nlp.proofs.cubic import certifier as cubic_certify
 from trajgap.nlp.proofs.cubic.system import CubicSystem
 from trajgap.nlp.proofs.declared import certifier as boxes
 from trajgap.nlp.proofs.declared import search
 from trajgap.nlp.proofs.document import certificate
-from trajgap.nlp.proofs.exact import ExactProblem, exact_problem
+from trajgap.nlp.proofs.exact import MOVING, ExactProblem, exact_problem
 from trajgap.nlp.proofs.outcome import Certified, Outcome, Progress
 from trajgap.nlp.proofs.state import state_document
 from trajgap.problem import (
+    Curve,
     Limits,
     Problem,
     TrajgapError,
     cubic_spline,
+    cubic_spline_virtual,
+    piecewise,
     quintic_spline,
+    quintic_spline_virtual,
     rest_to_rest,
     three_five_three,
     uniform_cubic_b_spline,
@@ -315,6 +322,77 @@ def test_a_stopped_run_goes_on_where_it_stopped(name: str, monkeypatch: pytest.M
     state["proof"]["total"] = str((second.upper or 0) * 2)
     with pytest.raises(TrajgapError, match="the state is not proved"):
         certify(problem, subject=subject, resume=state)
+
+
+# --- what no proof covers -------------------------------------------------------------------------
+
+
+def through(curve: Curve, limits: Limits | None = None, **more: Any) -> Problem:
+    """A problem of one joint that goes to and fro."""
+    count = curve.segments + 1 - len(getattr(curve, "virtual", ()))
+    way = np.resize([0.2, 1.1, -0.4, 0.7], (count, 1))
+    return Problem(
+        **{"waypoints": way, "limits": limits or Limits(1.0, 2.0), "curve": curve, **more}
+    )
+
+
+INF, STILL = np.inf, [[0.0], [1.0], [1.0], [2.0]]
+UNDETERMINED, AT_RATIOS = "the conditions do not determine the curve", {"ratios": "equal"}
+MOVES = ((1, 0.5),)
+UNCOVERED: list[tuple[str, Problem]] = [
+    (UNDETERMINED, through(piecewise((5, 3, 5)))),
+    (UNDETERMINED, through(quintic_spline(5, virtual=(1, 3)))),
+    (UNDETERMINED, through(cubic_spline(5, virtual=(1, 4)))),
+    ("no limit of a joint that moves in it", through(quintic_spline_virtual(2))),
+    (
+        "segment 2: no limit of a joint that moves in it, and no bound",
+        through(three_five_three(), Limits(1.0), waypoints=STILL),
+    ),
+    ("covered are curves at fixed ratios", through(uniform_cubic_b_spline(4, "timed"))),
+    ("nothing limits", through(three_five_three(), Limits())),
+    ("nothing limits", through(cubic_spline(2, NATURAL), Limits(INF, 2.0))),
+    ("nothing limits", through(quintic_spline(3), Limits())),
+    ("keeps its duration above 0", through(cubic_spline_virtual(2), Limits(1.0))),
+    ("more than 64 segments", through(cubic_spline(65))),
+    ("no joint that moves", through(quintic_spline(3), Limits(INF, INF, 9.0))),
+    ("unusual size", through(quintic_spline(3), waypoints=[[0.0], [1e61], [0.0], [1e60]])),
+    ("more than 26 segments", through(quintic_spline(29))),
+    (
+        "not rebuilt in rational numbers; at fixed ratios",
+        through(uniform_cubic_b_spline(4, "timed"), **AT_RATIOS),
+    ),
+    (
+        "coefficients free: not covered at fixed ratios",
+        through(piecewise((5, 5, 5)), **AT_RATIOS),
+    ),
+    (f"more than {MOST_REBUILT} segments", through(cubic_spline(MOST_REBUILT + 1), **AT_RATIOS)),
+    (MOVING, through(cubic_spline(3, MOVES), **AT_RATIOS)),
+    ("at most 120 digits", through(three_five_three(), waypoints=[[0], [1e-200], [0.5], [1]])),
+    ("joints: no text, or too long", through(three_five_three(), joints=("x" * 10_001,))),
+]
+UNBOUNDED: list[tuple[str, Problem]] = [
+    ("nothing moves", through(cubic_spline(1), waypoints=[[1.0], [1.0]])),
+    ("nothing that moves is limited", through(cubic_spline(1), Limits())),
+    ("velocity limit is 0", through(cubic_spline(1), Limits(0.0, 1.0))),
+    ("acceleration limit is 0", through(cubic_spline(1), Limits(1.0, 0.0))),
+    ("its ends are free", through(cubic_spline(1, ()), Limits(INF, 1.0))),
+    ("exceeds the limit", through(cubic_spline(1, ((1, 2.0),)))),
+    ("nothing moves in segment 2", through(cubic_spline(3), waypoints=STILL)),
+]
+"""By declared curves, and by any."""
+
+
+@pytest.mark.parametrize(
+    ("subject", "reason", "problem"),
+    [
+        *((Subject.DECLARED, *one) for one in UNCOVERED),
+        *((Subject.ANY, *one) for one in UNBOUNDED),
+    ],
+)
+def test_what_no_proof_covers_is_said(subject: Subject, reason: str, problem: Problem) -> None:
+    assert reason in str(covered(exact_problem(problem), subject))
+    with pytest.raises(TrajgapError, match=re.escape(reason)):
+        certify(problem, subject=subject)
 
 
 def test_every_entry_is_a_certifier() -> None:

@@ -12,7 +12,7 @@ from trajgap.nlp import Certified, Outcome, certify
 from trajgap.nlp.optimum import solve
 from trajgap.nlp.proofs import certificate
 from trajgap.nlp.proofs.cubic import CUBIC
-from trajgap.problem import Limits, Problem, cubic_spline, piecewise, rest_to_rest
+from trajgap.problem import Limits, Problem, cubic_spline, rest_to_rest
 from trajgap.verify import Subject, verify_certificate
 
 SIDED = ("rest-to-rest", "stretched", "3-5-3", "cubic")
@@ -38,13 +38,6 @@ def test_both_sides_are_certified(curve: str) -> None:
     assert not verdict.altered
     limits = certificate(found)["problem"]["limits"]
     assert [Fraction(x) for x in limits[0][1]] == [-3, 5]
-
-
-def test_four_three_four_is_certified_by_side() -> None:
-    problem = Problem(WAYPOINTS, LIMITS, piecewise((4, 3, 4)))
-    found = certify(problem, seconds=60.0)
-    assert found.outcome is Outcome.CERTIFIED
-    assert float(found.lower) == pytest.approx(solve(problem).total_time, rel=2e-6)
 
 
 @pytest.mark.parametrize("curve", SIDED)
@@ -108,10 +101,4 @@ def test_any_curve_is_bounded_within_the_larger_size_and_claims_no_answer() -> N
     found = certify(problem, seconds=60.0, subject=Subject.ANY)
     assert found.upper is None
     assert 0 < float(found.lower) < solve(problem).total_time
-    document = certificate(found)
-    assert verify_certificate(document).proves
-    wide = certificate(certify(problem.hull, seconds=60.0, subject=Subject.ANY))
-    wide["problem"] = document["problem"]
-    refused = verify_certificate(sealed(wide))
-    assert not refused.proves
-    assert "lower and upper limits differ" in refused.reason
+    assert verify_certificate(certificate(found)).proves

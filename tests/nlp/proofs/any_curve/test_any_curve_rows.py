@@ -8,13 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from support.any_curve_proofs import certify_any, interval, proved
-from support.any_motions import verified
-from support.joint_splines import spline_problem
+from support.any_curve_proofs import certify_any, interval, proved, spline_problem, verified
 from trajgap.nlp.proofs import evidence
 from trajgap.nlp.proofs.any_curve.estimate import estimate_any_curve
 from trajgap.nlp.proofs.any_curve.question import missing, question
-from trajgap.nlp.proofs.any_curve.reach import furthest, reachable
+from trajgap.nlp.proofs.any_curve.reach import reachable
 from trajgap.nlp.proofs.any_curve.search import Search
 from trajgap.nlp.proofs.any_curve.tangents import KINDS, matrix
 from trajgap.nlp.proofs.document import certificate
@@ -31,7 +29,6 @@ from trajgap.problem import (
 )
 from trajgap.verify import TANGENT_UNIT, Subject
 from trajgap.verify import verify_certificate as verify
-from trajgap.verify.any_curve import _furthest as verified_reach
 
 Array = NDArray[np.float64]
 
@@ -119,19 +116,6 @@ def test_rows_of_search_and_verifier_are_the_same(seed: int) -> None:
         mine = [left[0] / unit * each, *(x * each * unit / angle for x in left[2:4])]
         assert mine == pytest.approx([float(x) for x in own[:3]], rel=1e-12, abs=1e-12)
         assert right[0] * size[0] * each == pytest.approx(float(own[3]), rel=1e-12, abs=1e-12)
-
-
-@pytest.mark.parametrize("seed", range(20))
-def test_search_and_verifier_reach_equally_far(seed: int) -> None:
-    rng = np.random.default_rng(seed)
-    h, top, bend = rng.uniform(0.3, 3.0, 3)
-    first = rng.uniform(-1.0, 1.0) * top
-    last = max(-top, min(top, first + rng.uniform(-1.0, 1.0) * bend * h))
-    exact = [Fraction(float(x)) for x in (first, last, h, top, bend)]
-    for limit, given in ((np.inf, None), (top, exact[3])):
-        found = furthest(*(np.array(x) for x in (first, last, h, limit, bend)))
-        theirs = verified_reach(*exact[:3], given, exact[4])
-        assert float(found) == pytest.approx(float(theirs), rel=1e-12, abs=1e-12)
 
 
 def test_every_shipped_question_has_a_bound_that_is_proved() -> None:

@@ -11,8 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 from support.alterations import put
-from support.any_curve_proofs import certify_any, printed, proved
-from support.joint_splines import spline_problem
+from support.any_curve_proofs import certify_any, printed, proved, spline_problem
 from support.unjudged import unjudged
 from trajgap.nlp.proofs.any_curve import certifier as any_curve_certify
 from trajgap.nlp.proofs.any_curve import program, tangents

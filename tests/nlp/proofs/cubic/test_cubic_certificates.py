@@ -173,20 +173,6 @@ def test_durations_far_too_short_are_proved_infeasible_within_the_range_of_a_pro
     assert max(document["proof"]["root"]) <= document["proof"]["cap"] <= MOST_INTEGER
 
 
-def test_a_spline_that_is_too_long_for_a_certificate_is_not_covered() -> None:
-    many = Problem(np.arange(66.0)[:, None], Limits(1.0, 1.0), cubic_spline(65))
-    with pytest.raises(TrajgapError, match="more than 64 segments"):
-        certify(many)
-
-
-def test_what_is_not_covered_is_said() -> None:
-    q = [[0.2], [1.1], [-0.4]]
-    with pytest.raises(TrajgapError, match="nothing limits"):
-        certify(Problem(q, Limits(np.inf, 2.0), cubic_spline(2, NATURAL)))
-    with pytest.raises(TrajgapError, match="keeps its duration above 0"):
-        certify(Problem(q[:2], Limits(1.0), cubic_spline_virtual(2)))
-
-
 def test_the_example_s_certificate_is_fresh_and_proves() -> None:
     case = load_case(EXAMPLE)
     exact = printed_problem(case.statement(case.problems[0].id, case.readings[0].id))

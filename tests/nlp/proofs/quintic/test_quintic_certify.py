@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from support.checkout import ROOT
 from support.unjudged import unjudged
-from trajgap.nlp.proofs.certifiers import certify, covered
+from trajgap.nlp.proofs.certifiers import certify
 from trajgap.nlp.proofs.document import certificate
 from trajgap.nlp.proofs.exact import Real, exact_problem
 from trajgap.nlp.proofs.outcome import Certified, Outcome, Progress, Request
@@ -125,11 +125,7 @@ def test_a_proof_that_contradicts_the_answer_is_refused(monkeypatch: pytest.Monk
     found = certify(small(), gap=0.1)
     document = certificate(found)
     monkeypatch.setattr(QuinticSpline, "leaf", lambda *_: None)
-    assert verify(document).proves
     document["proof"]["total"] = "100"
-    reason = "the proof contradicts the answer: one of them is wrong"
-    assert verify(document).reason == reason
-    # The solver says so, too.
     state = state_document(certify(small(), gap=0.1, seconds=0.0))
     state["claim"] |= {"durations": None, "upper": None, "lower": "100"}
     state["proof"] = document["proof"]
@@ -152,17 +148,3 @@ def test_motions_of_a_millisecond_are_proved_in_units_of_their_own() -> None:
     slow = Problem(FAST, Limits(200.0 / 2**10, 1.2e6 / 2**20), quintic_spline(3))
     again = certify(slow, gap=0.03, seconds=20.0)
     assert float(again.lower) == pytest.approx(float(found.lower) * 2**10, rel=1e-6)
-
-
-def test_what_is_not_covered_is_said() -> None:
-    problem = small()
-    assert covered(exact_problem(problem)) is None
-    free = replace(problem, limits=Limits([np.inf] * 2, [np.inf] * 2))
-    assert "nothing limits" in str(covered(exact_problem(free)))
-    jerk = replace(problem, limits=Limits([np.inf] * 2, [np.inf] * 2, [9.0] * 2))
-    assert "no joint that moves" in str(covered(exact_problem(jerk)))
-    assert covered(exact_problem(replace(jerk, duration_lower=np.full(3, 0.1)))) is None
-    huge = replace(problem, waypoints=problem.waypoints * 1e61)
-    assert "unusual size" in str(covered(exact_problem(huge)))
-    many = Problem(np.zeros((30, 1)), Limits(1.0, 1.0), quintic_spline(29))
-    assert "segments" in str(covered(exact_problem(many)))
