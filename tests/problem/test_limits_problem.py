@@ -5,9 +5,11 @@ from __future__ import annotations
 import dataclasses
 import pickle
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
+from support.two_joints import WAYPOINTS, two_joints
 from trajgap.nlp import problem_seal
 from trajgap.problem import (
     QUANTITIES,
@@ -25,16 +27,7 @@ from trajgap.problem import (
     three_five_three,
 )
 
-WAYPOINTS = np.array([[0.19, -1.63], [0.82, -2.01], [0.13, -1.07], [-0.88, -1.31]])
-
-
-def problem_with(**changes: object) -> Problem:
-    given = {
-        "waypoints": WAYPOINTS,
-        "limits": Limits([5.0, 3.0], [8.0, 11.0]),
-        "curve": three_five_three(),
-    }
-    return Problem(**{**given, **changes})  # type: ignore[arg-type]
+problem_with = partial(two_joints, limits=Limits([5.0, 3.0], [8.0, 11.0]))
 
 
 FORMS = {

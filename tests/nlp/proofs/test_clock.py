@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from support.clocks import Ticking
 from trajgap.nlp.proofs import clock, judged, session, state
 from trajgap.nlp.proofs.answer import prove_feasible
 from trajgap.nlp.proofs.certifiers import certify
@@ -125,16 +126,6 @@ def test_a_state_is_judged_within_the_time_limit(monkeypatch: pytest.MonkeyPatch
     with pytest.raises(TrajgapError, match="the state is not proved"):
         certify(LONG, seconds=7.0, resume=given)
     assert asked == [pytest.approx(7.0 + RunClock.spare, abs=0.5)]
-
-
-class Ticking:
-    """A clock that goes on by a step whenever somebody looks at it."""
-
-    now, step = 0.0, 0.0
-
-    def perf_counter(self) -> float:
-        self.now += self.step
-        return self.now
 
 
 def waiting(monkeypatch: pytest.MonkeyPatch) -> tuple[Ticking, Session]:
