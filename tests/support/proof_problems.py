@@ -15,6 +15,11 @@ from trajgap.problem import (
 )
 
 NATURAL = ((2, 0.0),)
+QUINTIC = Problem(
+    np.array([[0.25, -0.5], [1.0, 0.125], [-0.375, 0.75], [0.5, 0.25]]),
+    Limits([1.0, 0.9], [2.0, 1.5]),
+    quintic_spline(3),
+)
 
 
 def _cubic_curve(rng: np.random.Generator) -> Interpolant:

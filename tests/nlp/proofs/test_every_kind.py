@@ -12,10 +12,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from support.any_curve_proofs import DETOUR
 from support.intervals import dense_best, judged
 from support.own_kinds import own_kinds as own_kinds
 from support.proof_problems import (
     NATURAL,
+    QUINTIC,
     cubic_problem,
     random_cubic,
     random_declared,
@@ -254,16 +256,6 @@ def test_what_no_durations_keep_is_proved_infeasible(name: str) -> None:
 # --- stops ----------------------------------------------------------------------------------------
 
 
-QUINTIC = Problem(
-    np.array([[0.25, -0.5], [1.0, 0.125], [-0.375, 0.75], [0.5, 0.25]]),
-    Limits([1.0, 0.9], [2.0, 1.5]),
-    quintic_spline(3),
-)
-DETOUR = Problem(
-    np.random.default_rng(5).normal(0.0, 1.0, (4, 2)).round(2),
-    Limits([2.0, 1.5], [2.0, 3.0]),
-    cubic_spline(3),
-)
 FEW_BOXES: Patches = ((declared_verifier, "_LEAVES", 16), (search.Curves, "part", 16))
 """However fast boxes are, something is said after every few of them."""
 STOPPED: dict[str, tuple[Problem, Subject, float, Callable[[Progress, int], bool]]] = {

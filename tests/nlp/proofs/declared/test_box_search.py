@@ -20,8 +20,8 @@ from trajgap.nlp.proofs.declared import search
 from trajgap.nlp.proofs.declared.certifier import BoxStages
 from trajgap.nlp.proofs.driver import grow
 from trajgap.nlp.proofs.exact import exact_problem
-from trajgap.nlp.proofs.outcome import Outcome, Request
-from trajgap.nlp.proofs.quintic.certifier import QUINTIC, QuinticStages
+from trajgap.nlp.proofs.outcome import Request
+from trajgap.nlp.proofs.quintic.certifier import QuinticStages
 from trajgap.nlp.proofs.session import Session, Shorter
 from trajgap.problem import Limits, Problem, TrajgapError, quintic_spline
 from trajgap.verify import OutOfTime
@@ -203,16 +203,6 @@ def test_the_middle_of_a_box_is_the_spline_there(stages: type[BoxStages]) -> Non
         there = [own.h[0] * np.exp(step * sign * (np.arange(3) == m)) for sign in (-1, 1)]
         slope = (spline(there[1]) - spline(there[0]))[:, 1:] / (2 * step)
         np.testing.assert_allclose(own.moved[0, m][:, 1:] * unit, slope, atol=1e-4)
-
-
-def test_the_result_is_the_same_with_two_workers() -> None:
-    one, two = (
-        certify(PROBLEM, gap=0.05, seconds=1e6, workers=workers, certifier=QUINTIC)
-        for workers in (1, 2)
-    )
-    assert one.outcome is two.outcome is Outcome.CERTIFIED
-    assert (one.lower, one.upper, one.durations) == (two.lower, two.upper, two.durations)
-    assert one.proof.document() == two.proof.document()
 
 
 def test_workers_are_counted_from_one() -> None:
