@@ -22,8 +22,7 @@ from trajgap.problem.motions import HalfUnits
 from attacks import faults
 from attacks.attack import Broken
 from attacks.reading import hold_together
-from attacks.registry import ATTACKS
-from attacks.run import Account, tried, warm
+from attacks.run import ATTACKS, Account, tried, warm
 from attacks.sandbox import available
 
 pytestmark = pytest.mark.skipif(not available(), reason="children are forked and watched on Linux")

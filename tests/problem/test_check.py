@@ -29,7 +29,7 @@ from trajgap.problem import (
     three_five_three,
     uniform_cubic_b_spline,
 )
-from trajgap.problem.curves import Trajectory, furthest
+from trajgap.problem.curves import Trajectory
 from trajgap.problem.jumps import jumps_of
 from trajgap.problem.uneven_peaks import uneven_peaks
 
@@ -91,11 +91,6 @@ def test_the_error_of_a_peak_covers_all_other_extrema(segments: int) -> None:
         uneven = iter(uneven_peaks(limits, motion, error))
         for j, r in itertools.product((0, 1), (1, 2, 3)):
             ends = [(e.value, float(error[e.segment, r, j])) for e in points[r, j]]
-            top, bound = furthest(motion, r, error[:, r]).largest(motion, j, error[:, r])
-            assert abs(top.value) == pytest.approx(max(abs(v) for v, _ in ends), rel=1e-12)
-            reach = max(abs(v) + e for v, e in ends)
-            own = float(error[top.segment, r, j])
-            assert abs(top.value) + bound == pytest.approx(max(reach, abs(top.value) + own))
             ratios = [
                 (sign * v + e) / sides[side, j, r - 1]
                 for side, sign in ((0, -1), (1, 1))

@@ -58,17 +58,12 @@ def test_a_looser_side_is_refused(curve: str, side: int) -> None:
     answer = verify_certificate(sealed(narrower))
     assert not answer.proves
     assert "exceeds its limit" in answer.reason
-    reached = solve(
-        Problem(WAYPOINTS, _with(LIMITS, side, 4.0), uneven_problem(curve).curve)
-    ).total_time
+    sides = LIMITS.sides.copy()
+    sides[side] *= 4.0
+    looser = Problem(WAYPOINTS, LIMITS.with_sides(sides), uneven_problem(curve).curve)
+    reached = solve(looser).total_time
     if reached < solve(uneven_problem(curve)).total_time * (1 - 1e-6):
         assert not found.proves
-
-
-def _with(limits: Limits, side: int, factor: float) -> Limits:
-    sides = limits.sides.copy()
-    sides[side] *= factor
-    return limits.with_sides(sides)
 
 
 def test_a_missing_side_is_no_limit() -> None:
