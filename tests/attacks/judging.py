@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from support.positions import over
 
 from attacks.attack import Attack, demand, keep
 from attacks.cases import (
@@ -26,7 +27,7 @@ from attacks.cases import (
     raw_of,
 )
 from attacks.grammar import asked_of, draw_case
-from attacks.truth import Truth, over, truth
+from attacks.truth import Truth, truth
 
 TOLERANCE = 1e-9
 """Excess that the judge documents as keeping a limit."""

@@ -41,8 +41,11 @@ class Truth:
     def worst(self, asked: Asked, h: Array) -> float:
         """The largest ratio to a limit; of positions and durations too."""
         bounds = max((asked.duration_lower / h).max(), (h / asked.duration_upper).max())
-        positions = position_ratios(self.ends[0], asked.position_lower, asked.position_upper)
-        return float(max(bounds, over(self.reach, asked.sides).max(), positions.max()))
+        return float(max(bounds, over(self.reach, asked.sides).max(), self.positions(asked).max()))
+
+    def positions(self, asked: Asked) -> Array:
+        """Ratios to position limits, (joints,)."""
+        return position_ratios(self.ends[0], asked.position_lower, asked.position_upper)
 
 
 def truth(asked: Asked, curve: Any, h: Array) -> Truth:

@@ -61,12 +61,6 @@ def refusing(common: str, number: int) -> int:
     raise ValueError(f"{common} {number}")
 
 
-@pytest.fixture
-def at_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Processes are started for the first pieces."""
-    monkeypatch.setattr(crew.ProofCrew, "worth", 0.0)
-
-
 @pytest.mark.usefixtures("at_once")
 def test_results_come_in_the_order_of_the_pieces() -> None:
     items = [(n,) for n in (5, 1, 4, 2, 3, 9, 8, 7)]
@@ -145,14 +139,7 @@ def test_a_cubic_proof_does_not_depend_on_who_worked_on_it(
     alone = proof(certify(ROUGH, gap=0.01))
     assert sum(node[0] == "/" for node in alone[0]["tree"]) > 4, "too few boxes for several"
     assert proof(certify(ROUGH, gap=0.01, workers=2)) == alone
-    late, waited = LastFirst(), crew.wait
-
-    def finishing(futures: Any, timeout: float) -> Any:
-        late.finish(1)
-        return waited(futures, 0.0)
-
-    monkeypatch.setattr(crew, "wait", finishing)
-    assert proof(certify(ROUGH, gap=0.01, workers=4, executor=late)) == alone
+    assert proof(certify(ROUGH, gap=0.01, workers=4, executor=LastFirst(monkeypatch))) == alone
 
 
 @pytest.mark.usefixtures("at_once")

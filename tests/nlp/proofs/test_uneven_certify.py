@@ -6,8 +6,9 @@ from functools import cache
 
 import numpy as np
 import pytest
+from support.same_question import same_question
 from support.small_certificates import sealed
-from support.uneven import LIMITS, WAYPOINTS, mirrored, uneven_problem
+from support.uneven import LIMITS, WAYPOINTS, uneven_problem
 from trajgap.nlp import Certified, Outcome, certify
 from trajgap.nlp.optimum import solve
 from trajgap.nlp.proofs import certificate
@@ -31,7 +32,8 @@ def test_both_sides_are_certified(curve: str) -> None:
     total = solve(problem).total_time
     assert float(found.lower) <= total * (1 + 1e-9)
     assert float(found.upper) == pytest.approx(total, rel=1e-8)
-    back = certify(mirrored(problem), seconds=60.0)
+    mirrored, _ = same_question("mirror", problem, np.ones(problem.segments))
+    back = certify(mirrored, seconds=60.0)
     assert float(back.lower) == pytest.approx(float(found.lower), rel=1e-9)
     verdict = verify_certificate(certificate(found))
     assert verdict.proves

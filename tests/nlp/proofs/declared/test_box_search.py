@@ -6,13 +6,11 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from fractions import Fraction
 from functools import cache
-from typing import Any
 
 import numpy as np
 import pytest
 from scipy.interpolate import make_interp_spline
 from support.executors import LastFirst
-from trajgap.nlp.proofs import crew
 from trajgap.nlp.proofs.certifiers import certify
 from trajgap.nlp.proofs.clock import RunClock
 from trajgap.nlp.proofs.crew import ProofCrew
@@ -72,12 +70,6 @@ def found_of(
     return boxes.found
 
 
-@pytest.fixture
-def at_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Processes are started for the first pieces."""
-    monkeypatch.setattr(crew.ProofCrew, "worth", 0.0)
-
-
 @KINDS
 def test_parts_join_to_one_tree(stages: type[BoxStages], monkeypatch: pytest.MonkeyPatch) -> None:
     curves = curves_of(stages)
@@ -85,14 +77,7 @@ def test_parts_join_to_one_tree(stages: type[BoxStages], monkeypatch: pytest.Mon
     assert len(here.cuts) > 5 * 8, "too few boxes for many parts"
     with ThreadPoolExecutor(3) as threads:
         assert here == found_of(curves, session(ProofCrew(3, threads)))
-    late, waited = LastFirst(), crew.wait
-
-    def finishing(futures: Any, timeout: float) -> Any:
-        late.finish(1)
-        return waited(futures, 0.0)
-
-    monkeypatch.setattr(crew, "wait", finishing)
-    assert here == found_of(curves, session(ProofCrew(4, late)))
+    assert here == found_of(curves, session(ProofCrew(4, LastFirst(monkeypatch))))
     # Every cut has both its parts, and every part is cut or excluded.
     below = {child for node in here.cuts for child in (2 * node, 2 * node + 1)}
     assert below | {1} == {*here.cuts, *here.leaves}
@@ -149,19 +134,12 @@ def test_the_clock_ends_it_and_leaves_nothing_waiting(monkeypatch: pytest.Monkey
         if asked > 5:
             raise OutOfTime
 
-    late, waited, every = LastFirst(), crew.wait, set[Any]()
-
-    def finishing(futures: Any, timeout: float) -> Any:
-        every.update(future for future, _ in late.held)
-        late.finish(1)
-        return waited(futures, 0.0)
-
-    monkeypatch.setattr(crew, "wait", finishing)
+    late = LastFirst(monkeypatch)
     with pytest.raises(OutOfTime):
         found_of(curves_of(QuinticStages), session(ProofCrew(2, late)), watch=watch)
     assert asked == 6
-    assert len(every) > 3
-    assert all(future.done() for future in every)
+    assert len(late.handed) > 3
+    assert all(future.done() for future in late.handed)
 
 
 def test_a_part_ends_with_the_time_of_its_search() -> None:
