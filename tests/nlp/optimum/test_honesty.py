@@ -9,6 +9,7 @@ import pytest
 from scipy.optimize import minimize
 from support.benchmarks import loaded
 from support.case_texts import case_text
+from support.near_problems import NEAR
 from support.two_joints import TURNING
 from trajgap.compare import audit
 from trajgap.nlp import Solution, Status, solve_per_joint
@@ -19,7 +20,6 @@ from trajgap.nlp.optimum.limit_rows import exact_rows
 from trajgap.nlp.optimum.optimality import kkt
 from trajgap.nlp.optimum.starts import LogBox, box_above
 from trajgap.problem import (
-    Case,
     Limits,
     Problem,
     TrajgapError,
@@ -34,16 +34,6 @@ from trajgap.problem import (
     uniform_cubic_b_spline,
 )
 
-QUINTIC_NEAR = Problem(
-    [[-0.9916], [1.6801773], [1.6801763], [0.5139]], Limits(0.00692, 0.00022), quintic_spline(3)
-)
-BOXED = Problem(
-    [[-0.6432], [1.66535], [1.33154], [-1.05607], [0.75371]],
-    Limits(2.24057, 2.87475, 6.80544),
-    cubic_spline(4),
-    [0.767, 0.352, 0.405, 0.378],
-    [2.408, 1.594, 1.740, 2.077],
-)
 CLAIMS = """
 [[claims]]
 id = "keeps"
@@ -59,39 +49,16 @@ of = ["keeps"]
 """
 
 
-def natural_near(more: str = "") -> Case:
+def test_an_audit_never_calls_best_known_what_its_own_checks_undercut() -> None:
     text = case_text(
         "joint_rows = [[0.656747, 0.147626, 0.147625]]",
         'family = "cubic-spline"\nend_orders = [2]',
         joints="1",
         unit="rad",
         limits="velocity = 0.796\nacceleration = 2.0",
-        more=more,
+        more=CLAIMS,
     )
-    return parse_case(text, "near.toml")
-
-
-@pytest.mark.parametrize(
-    ("problem", "passes"),
-    [
-        (natural_near().problem(), [0.64009, 0.00000125908]),
-        (QUINTIC_NEAR, [700.6, 0.00076, 280.2]),
-        (BOXED, [1.9765, 0.9903, 1.7399, 2.0769]),
-    ],
-    ids=["natural", "quintic", "boxed"],
-)
-def test_no_answer_is_worse_than_a_motion_that_passes(
-    problem: Problem, passes: list[float]
-) -> None:
-    assert check(problem, passes).verdict is Verdict.PASS
-    solution = solve(problem)
-    assert solution.status is Status.CONVERGED
-    assert solution.best <= sum(passes)
-    assert check(problem, solution.durations).verdict is Verdict.PASS
-
-
-def test_an_audit_never_calls_best_known_what_its_own_checks_undercut() -> None:
-    report = audit(natural_near(CLAIMS), seeds=2, certify_seconds=0)
+    report = audit(parse_case(text, "near.toml"), seeds=2, certify_seconds=0)
     optimum = report.cases[0].study.optimum("main", "as-printed")
     assert optimum.best < 0.64009 + 0.00000125908
     relaxed = report.cases[0].study.relaxed("main", "as-printed")
@@ -281,7 +248,7 @@ def test_exact_rows_have_the_gradients_of_their_excesses(
 
 
 def test_a_descent_starts_outside_the_limits_and_ends_within() -> None:
-    problem = BOXED
+    problem, _ = NEAR["boxed"]
     box = LogBox(np.log(problem.duration_lower), np.log(problem.duration_upper))
     start = np.sqrt(problem.duration_lower * problem.duration_upper)
     assert check(problem, start).verdict is Verdict.VIOLATED
