@@ -72,18 +72,21 @@ def test_a_resumed_run_without_time_replays_nothing_and_loses_nothing(
     assert again["proposals"] == given["proposals"]
 
 
+def late(monkeypatch: pytest.MonkeyPatch, module: Any) -> list[float]:
+    """The seconds that a module gives a verifier which decides nothing in them."""
+    asked: list[float] = []
+    monkeypatch.setattr(
+        module, "verify_certificate", lambda _, seconds, **__: (asked.append(seconds), LATE)[1]
+    )
+    return asked
+
+
 @pytest.mark.parametrize("subject", list(Subject))
 def test_what_is_not_judged_in_time_is_not_certified_and_can_be_resumed(
     monkeypatch: pytest.MonkeyPatch, subject: Subject
 ) -> None:
-    asked: list[float] = []
-
-    def late(_: Any, seconds: float, spread: Any = None) -> CertificateVerdict:
-        asked.append(seconds)
-        return LATE
-
     with monkeypatch.context() as patch:
-        patch.setattr(judged, "verify_certificate", late)
+        asked = late(patch, judged)
         found = certify(QUICK, gap=0.01, seconds=50.0, subject=subject)
     (seconds,) = asked
     assert 0 < seconds < 50.0 + RunClock.spare
@@ -116,13 +119,7 @@ def test_what_a_state_proved_stays_if_the_rest_is_not_judged_in_time(
 
 def test_a_state_is_judged_within_the_time_limit(monkeypatch: pytest.MonkeyPatch) -> None:
     given = stopped()
-    asked: list[float] = []
-
-    def late(_: Any, seconds: float, spread: Any = None) -> CertificateVerdict:
-        asked.append(seconds)
-        return LATE
-
-    monkeypatch.setattr(state, "verify_certificate", late)
+    asked = late(monkeypatch, state)
     with pytest.raises(TrajgapError, match="the state is not proved"):
         certify(LONG, seconds=7.0, resume=given)
     assert asked == [pytest.approx(7.0 + RunClock.spare, abs=0.5)]
