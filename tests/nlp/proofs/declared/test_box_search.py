@@ -9,8 +9,8 @@ from functools import cache
 
 import numpy as np
 import pytest
-from scipy.interpolate import make_interp_spline
 from support.executors import LastFirst
+from support.papers.motions import FAMILIES
 from trajgap.nlp.proofs.certifiers import certify
 from trajgap.nlp.proofs.clock import RunClock
 from trajgap.nlp.proofs.crew import ProofCrew
@@ -164,13 +164,7 @@ def test_the_middle_of_a_box_is_the_spline_there(stages: type[BoxStages]) -> Non
         return curves.middle(np.array([[at * 0.98, at / 0.98]]))
 
     def spline(at: np.ndarray) -> np.ndarray:
-        t = np.concatenate([[0.0], np.cumsum(at)])
-        rest = [(1, np.zeros(2)), (2, np.zeros(2))]
-        found = make_interp_spline(t, way - way[0], k=5, bc_type=(rest, rest))
-        factor = [1, 1, 2, 6, 24, 120]
-        inside = t[:-1] + 1e-9 * at
-        each = [found(inside, p) * at[:, None] ** p / factor[p] for p in range(6)]
-        return np.stack(each, axis=1)
+        return FAMILIES["C4 quintic"].fit(way - way[0], at).coefficients
 
     own = middle(h)
     assert own.h[0] == pytest.approx(h, rel=1e-3)
