@@ -23,15 +23,7 @@ from trajgap.compare.gaps import Store
 from trajgap.heuristics import uniform_rescaling
 from trajgap.nlp import certify, printed_problem, proved, shipped_file, solve
 from trajgap.nlp.proofs.document import fits
-from trajgap.problem import (
-    CaseError,
-    TrajgapError,
-    Verdict,
-    check,
-    evaluate,
-    load_case,
-    published_ids,
-)
+from trajgap.problem import CaseError, TrajgapError, Verdict, check, evaluate, load_case
 from trajgap.problem.suite import (
     LOADER,
     BenchmarkInstance,
@@ -324,20 +316,3 @@ def test_the_plain_motion_is_the_motion(name: str, tmp_path: Path) -> None:
     own = np.array(names["peaks"](plain, h))
     ours = evaluate(problem, h[None]).ratios[0].T
     assert own == pytest.approx(ours, rel=1e-6, abs=1e-9)
-
-
-# --- its case files are cases like any other ------------------------------------------------------
-
-
-def test_names_of_instances_are_no_published_ids() -> None:
-    names = {one.name for one in list_instances()}
-    assert names & set(published_ids()) == set()
-
-
-def test_every_case_asks_one_question_in_one_box() -> None:
-    for one in list_instances():
-        case = load_case(one.id)
-        assert case.selections() == [("main", "as-printed")]
-        problem = case.problem()
-        assert np.all(problem.duration_lower > 0)
-        assert np.all(np.isfinite(problem.duration_upper))
