@@ -247,3 +247,5 @@ def test_the_seal_of_a_question_holds_its_ratios() -> None:
     assert len(seals) == 4
     assert problem_seal(posed([2, 6])) == problem_seal(posed([1, 3]))
     assert problem_seal(posed([5, 5])) == problem_seal(posed("equal"))
+    ends = [cubic_spline(3, ((1, (0.5, -0.2)),), ((1, (-0.3, last)),)) for last in (0.4, 0.5)]
+    assert len({problem_seal(problem_with(curve=one)) for one in ends}) == 2
