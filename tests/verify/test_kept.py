@@ -19,16 +19,12 @@ from support.forgeries.forgery import (
     altered,
     document,
 )
+from support.forgeries.of_claims import here
 from trajgap.verify import reading, shown_bound, verify_certificate
 from trajgap.verify.problem import PI
 
 KINDS = sorted(path.stem for path in KEPT.glob("*.json"))
 INFEASIBLE = {**NO_ANSWER, "claim.infeasible": True}
-
-
-def here(work: Callable[..., Any], common: Any, parts: Iterable[Any]) -> Iterator[Any]:
-    """Every part of a tree, judged in this process."""
-    return (work(common, *part) for part in parts)
 
 
 def backwards(work: Callable[..., Any], common: Any, parts: Iterable[Any]) -> Iterator[Any]:

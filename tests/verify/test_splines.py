@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from scipy.interpolate import CubicSpline, make_interp_spline
 from support.forgeries.forgery import NO_ANSWER, altered, document
+from support.papers.motions import FAMILIES, Motion, nodes, vertices
 from trajgap.verify import read_problem
 from trajgap.verify.cubic.box import Box
 from trajgap.verify.cubic.system import Cubic
@@ -18,38 +18,19 @@ from trajgap.verify.curve import pieces, uniform_pieces, value_at
 from trajgap.verify.reading import Clock
 
 CLOCK = Clock(1e9)
-SPLINE_ENDS = [(1, 0.0), (2, 0.0)]
 
 
 def exact(values: Any) -> list[Fraction]:
     return [Fraction(float(x)) for x in values]
 
 
-def spline(data: dict[str, Any], h: np.ndarray, joint: int) -> Any:
-    """The declared spline of one joint, by scipy."""
+def spline(data: dict[str, Any], h: np.ndarray) -> Motion:
+    """The declared spline, by another route."""
     p = data["problem"]
-    t = np.concatenate([[0.0], np.cumsum(h)])
-    q = [float(Fraction(row[joint])) for row in p["waypoints"]]
-    if p["degrees"][0] == 5:
-        return make_interp_spline(t, q, k=5, bc_type=(SPLINE_ENDS, SPLINE_ENDS))
-    if p["virtual"]:
-        return _with_virtual(t, q)
-    ends = tuple((entries[0][0], 0.0) for entries in (p["prescribed"][0], p["prescribed"][-1]))
-    return CubicSpline(t, q, bc_type=ends)
-
-
-def _with_virtual(t: np.ndarray, q: list[float]) -> CubicSpline:
-    """At rest without acceleration: the two free positions make the accelerations vanish."""
-
-    def at(x: float, y: float) -> CubicSpline:
-        return CubicSpline(t, [q[0], x, *q[1:-1], y, q[-1]], bc_type=((1, 0.0), (1, 0.0)))
-
-    def ends(curve: CubicSpline) -> np.ndarray:
-        return np.array([curve(t[0], 2), curve(t[-1], 2)])
-
-    base = ends(at(0.0, 0.0))
-    matrix = np.array([ends(at(1.0, 0.0)) - base, ends(at(0.0, 1.0)) - base]).T
-    return at(*np.linalg.solve(matrix, -base))
+    ends = {1: "clamped cubic", 2: "natural cubic"}[p["prescribed"][0][0][0]]
+    name = "C4 quintic" if p["degrees"][0] == 5 else "virtual cubic" if p["virtual"] else ends
+    q = [[float(Fraction(x)) for x in row] for row in p["waypoints"]]
+    return FAMILIES[name].fit(np.array(q), h)
 
 
 @pytest.mark.parametrize("kind", ["cubic", "cubic-virtual", "quintic-spline"])
@@ -59,25 +40,16 @@ def test_a_declared_spline_is_that_of_scipy(kind: str) -> None:
     for _ in range(4):
         h = rng.uniform(0.4, 2.0, problem.segments)
         found = pieces(problem, exact(h), CLOCK)
-        t = np.concatenate([[0.0], np.cumsum(h)])
-        for j in range(problem.joints):
-            curve = spline(data, h, j)
-            for k, s in product(range(problem.segments), (0.0, 0.3, 1.0)):
-                own = value_at(found[j][k], Fraction(s * float(h[k])))
-                assert float(own) == pytest.approx(float(curve(t[k] + s * h[k])), abs=1e-9)
+        curve, t = spline(data, h), nodes(h)
+        for k, s in product(range(problem.segments), (0.0, 0.3, 1.0)):
+            own = [float(value_at(one[k], Fraction(s * float(h[k])))) for one in found]
+            assert own == pytest.approx(curve.at(t[[k]] + s * h[k], 0)[0], abs=1e-9)
 
 
 def test_a_uniform_b_spline_goes_through_its_points_with_two_equal_vertices_at_each_end() -> None:
     problem = read_problem(document("stretched")["problem"])
     for j, curve in enumerate(uniform_pieces(problem, CLOCK)):
-        q = [row[j] for row in problem.waypoints]
-        # Control vertices by the recursion V₋ + 4V + V₊ = 6q, V₀ = V₁ and Vₙ₊₁ = Vₙ.
-        n = len(q)
-        matrix = np.zeros((n + 2, n + 2))
-        for i in range(n):
-            matrix[i, i : i + 3] = 1, 4, 1
-        matrix[n, :2], matrix[n + 1, -2:] = (1, -1), (1, -1)
-        v = np.linalg.solve(matrix, [*(6 * float(x) for x in q), 0.0, 0.0])
+        v = vertices(np.array([[float(row[j])] for row in problem.waypoints]))[:, 0]
         for k, piece in enumerate(curve):
             a, b, c, d = v[k : k + 4]
             power = [
@@ -92,7 +64,7 @@ def test_a_uniform_b_spline_goes_through_its_points_with_two_equal_vertices_at_e
 def state(data: dict[str, Any], cubic: Cubic, h: np.ndarray) -> tuple[list[Any], list[Any]]:
     """Coordinates and each joint's unknowns of the true spline, in the units of the proof."""
     second = float(cubic.second)
-    t = np.concatenate([[0.0], np.cumsum(h)])
+    t, curve = nodes(h), spline(data, h)
     ends = t if not cubic.virtual else np.delete(t, (1, len(t) - 2))
     spans = np.diff(ends) / second
     y = [*spans]
@@ -101,9 +73,9 @@ def state(data: dict[str, Any], cubic: Cubic, h: np.ndarray) -> tuple[list[Any],
         y += [y[-2] ** 2 / spans[0], y[-1] ** 2 / spans[-1]]
     x = []
     for j in range(cubic.joints):
-        curve, angle = spline(data, h, j), 2.0 ** data["proof"]["powers"][j]
-        bends = curve(t, 2) * second**2 / angle
-        x.append([*bends, *(curve(ends, 1) * second / angle)])
+        angle = 2.0 ** data["proof"]["powers"][j]
+        bends = curve.at(t, 2)[:, j] * second**2 / angle
+        x.append([*bends, *(curve.at(ends, 1)[:, j] * second / angle)])
     return y, x
 
 

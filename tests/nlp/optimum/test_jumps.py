@@ -327,11 +327,8 @@ def test_proportional_joints_share_the_ratios() -> None:
 )
 def test_where_nothing_is_to_be_matched(curve: object) -> None:
     assert matched(determined(ON, curve), 0) == []
-
-
-def test_without_a_jerk_limit_nothing_is_matched() -> None:
-    problem = Problem(ON[:, None], Limits([V], [A], joints=1), DETERMINED)
-    assert matched(problem, 0) == []
+    free = Problem(ON[:, None], Limits([V], [A], joints=1), DETERMINED)
+    assert matched(free, 0) == []  # nor without a limit of jerk
 
 
 TOO_FEW = piecewise((3, 2, 3), 1, ((1, 0.0),))

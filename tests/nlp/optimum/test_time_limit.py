@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 import pytest
+from support.clocks import Ticking
 from trajgap.nlp import Solution, Status, certify
 from trajgap.nlp.optimum import (
     basins,
@@ -39,22 +39,6 @@ from trajgap.problem import (
     uniform_cubic_b_spline,
 )
 from trajgap.verify import OutOfTime
-
-
-@dataclass
-class Ticking:
-    """A clock that goes on by one second whenever somebody looks at it."""
-
-    now: float = 0.0
-    step: float = 1.0
-    looks: int = 0
-
-    def perf_counter(self) -> float:
-        self.now += self.step
-        self.looks += 1
-        return self.now
-
-    monotonic = perf_counter
 
 
 def ticking(monkeypatch: pytest.MonkeyPatch, step: float = 1.0) -> Ticking:
@@ -140,7 +124,7 @@ def test_an_estimate_stops_after_a_start(monkeypatch: pytest.MonkeyPatch) -> Non
 def test_the_answer_of_a_certification_has_a_share_of_the_time(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    ticks = Ticking(step=0.0)
+    ticks = Ticking()
     monkeypatch.setattr(proof_clock, "time", ticks)
     monkeypatch.setattr(clock, "time", ticks)
     one = Session(exact_problem(NEAR), Request(clock=proof_clock.RunClock(100.0)))

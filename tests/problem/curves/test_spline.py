@@ -1,14 +1,12 @@
 """Coefficients by other routes: scipy's splines, the papers' 14×14 system, rational arithmetic."""
 
 from fractions import Fraction
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline, make_interp_spline
+from support import exact_route
 from support.samples import DECLARATIONS, FREE, sample_problem
-from support.splines_drawn import exact_scaled, waypoints
-from support.suite import benchmark
 from trajgap.problem import (
     Interpolant,
     Limits,
@@ -16,7 +14,6 @@ from trajgap.problem import (
     TrajgapError,
     cubic_spline,
     cubic_spline_virtual,
-    evaluate,
     extrema,
     fit,
     piecewise,
@@ -27,7 +24,7 @@ from trajgap.problem import (
 )
 from trajgap.problem.curves import adjoint as adjoint_module
 from trajgap.problem.curves import places_of, refined, right_hand_sides, system
-from trajgap.problem.curves.banded import Factors
+from trajgap.problem.curves.banded import Factors, factorise
 
 STEPS = (0.7, 0.5, 1.4, 0.3, 1.5, 0.7, 1.6)
 FIRST, LAST, BENT = (0.5, -0.2, 0.0), (-0.3, 0.4, 0.7), (0.0, 1.1, -0.6)
@@ -60,6 +57,24 @@ CURVES = {
 """Splines, and what holds at either end: one order and value, or several."""
 
 
+def waypoints(count: int, seed: int = 3) -> np.ndarray:
+    rng = np.random.default_rng(seed)
+    return rng.normal(size=(count, 3)) * [0.4, 1.0, 2.0] + [-3.0, 0.5, 2.0]
+
+
+def exact_scaled(
+    interpolant: Interpolant, problem: Problem, h: np.ndarray, j: int, nodal: np.ndarray | None
+) -> list[list[Fraction]]:
+    extra = (
+        None if nodal is None else dict(zip(interpolant.free_derivatives, nodal[:, j], strict=True))
+    )
+    pieces = exact_route.fitted(interpolant, problem.waypoints[:, j], h, extra)
+    return [
+        [c * Fraction(float(h[k])) ** p for p, c in enumerate(piece)]
+        for k, piece in enumerate(pieces)
+    ]
+
+
 @pytest.mark.parametrize("seed", range(4))
 @pytest.mark.parametrize("name", CURVES)
 def test_splines_are_scipys(name: str, seed: int) -> None:
@@ -82,20 +97,6 @@ def test_splines_are_scipys(name: str, seed: int) -> None:
         np.testing.assert_allclose(mine(inside, order), other, rtol=0, atol=room)
     alone = fit(curve.for_joint(q, 1), q[:, 1:2], h)
     np.testing.assert_allclose(alone(inside)[:, 0], mine(inside)[:, 1], atol=1e-12)
-
-
-def test_353_peaks_are_the_author_codes() -> None:
-    theirs = SimpleNamespace(**benchmark("author_code"))
-    problem, _ = sample_problem(three_five_three(), 11)
-    rng = np.random.default_rng(4)
-    for h in rng.uniform(0.2, 3.0, (5, 3)):
-        exact = evaluate(problem, h[None]).ratios[0, :, :2] * problem.limits.derivatives[:, :2]
-        for j in range(3):
-            sampled = np.array(theirs.peaks_of_joint(problem.waypoints[:, j], *h, samples=20_000))
-            assert (sampled <= exact[j] * (1 + 1e-12)).all()
-            np.testing.assert_allclose(sampled, exact[j], rtol=1e-6)
-            coarse = np.array(theirs.peaks_of_joint(problem.waypoints[:, j], *h))
-            assert (coarse <= exact[j] * (1 + 1e-12)).all()
 
 
 def coefficients(
@@ -155,6 +156,19 @@ def test_nodal_values_refused() -> None:
     for nodal in (None, np.zeros((3, 3)), np.zeros((4, 1))):
         with pytest.raises(TrajgapError, match=message):
             fit(piecewise((5, 5, 5), 2), waypoints(4), [1.0, 1.0, 1.0], nodal)
+
+
+@pytest.mark.parametrize(("lower", "upper"), [(1, 2), (2, 1), (3, 3), (0, 2)])
+def test_factors_of_a_band_matrix_solve_the_dense_system(lower: int, upper: int) -> None:
+    rng, size = np.random.default_rng(5), 14
+    rows, dense = rng.normal(size=(size, lower + upper + 1)), np.zeros((size, size))
+    for i, d in np.ndindex(rows.shape):
+        if 0 <= i + d - lower < size:
+            dense[i, i + d - lower] = rows[i, d]
+    right, factors = rng.normal(size=(size, 2)), factorise(rows, lower, upper)
+    for transposed, matrix in ((False, dense), (True, dense.T)):
+        found = factors.solve(right, transposed)
+        np.testing.assert_allclose(matrix @ found, right, atol=1e-10)
 
 
 def singular_at_two_to_three() -> Interpolant:

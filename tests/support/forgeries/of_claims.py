@@ -62,7 +62,7 @@ def _lost(work: Callable[..., Any], common: Any, parts: Iterable[tuple[Any, ...]
     return iter([work(common, *part) for part in parts][:-1])
 
 
-def _here(work: Callable[..., Any], common: Any, parts: Iterable[tuple[Any, ...]]) -> Iterator[Any]:
+def here(work: Callable[..., Any], common: Any, parts: Iterable[tuple[Any, ...]]) -> Iterator[Any]:
     return (work(common, *part) for part in parts)
 
 
@@ -198,9 +198,9 @@ TREES = [
     Forgery(OPEN, "any-curve", lambda data: data["proof"]["tree"].pop()),
     Forgery(OPEN, "cubic", lambda data: data["proof"]["tree"].pop()),
     Forgery(DEEP, "cubic", _deep),
-    Forgery("tree._walked_above: the tree is too deep", "cubic", _deep, spread=_here),
+    Forgery("tree._walked_above: the tree is too deep", "cubic", _deep, spread=here),
     Forgery("tree._walk_parts: why or ", "cubic-virtual",
-            {"proof.tree.-1": ["?"]}, spread=_here),
+            {"proof.tree.-1": ["?"]}, spread=here),
     # Both trees are one part, the cubic one below a chain of steps.
     *(Forgery("tree._walk_parts: a part of the tree was not judged", kind, {}, spread=spread)
       for kind in ("cubic-virtual", "quintic-spline") for spread in (_none, _lost)),

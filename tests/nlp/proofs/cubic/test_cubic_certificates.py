@@ -12,13 +12,13 @@ import numpy as np
 import pytest
 from support.alterations import places, put
 from support.checkout import ROOT
-from support.cubic_problems import NATURAL, base, base_problem, prover_of, random_problem
+from support.proof_problems import NATURAL, cubic_problem, random_cubic
 from trajgap.nlp.proofs.certifiers import certify
 from trajgap.nlp.proofs.cubic.bound import TOTAL, Target, Weights
 from trajgap.nlp.proofs.cubic.certifier import CUBIC
 from trajgap.nlp.proofs.cubic.ranges import a_priori, narrowed
 from trajgap.nlp.proofs.cubic.relaxation import Relaxation
-from trajgap.nlp.proofs.cubic.system import CubicSystem
+from trajgap.nlp.proofs.cubic.system import CubicSystem, cubic_system
 from trajgap.nlp.proofs.cubic.tree import Prover, TickBox, _floats
 from trajgap.nlp.proofs.document import certificate, problem_document
 from trajgap.nlp.proofs.exact import exact_problem, printed_problem
@@ -33,7 +33,7 @@ from trajgap.problem import (
     evaluate,
     load_case,
 )
-from trajgap.verify import MOST_INTEGER, TICKS, Refused
+from trajgap.verify import MOST_INTEGER, TICKS, Refused, read_problem
 from trajgap.verify import verify_certificate as verify
 from trajgap.verify.cubic.box import Box
 from trajgap.verify.cubic.weights import least
@@ -70,9 +70,18 @@ def test_a_natural_spline_along_a_line_has_constant_speed() -> None:
 # --- solver and verifier --------------------------------------------------------------------------
 
 
+def prover_of(problem: Problem, total: Fraction | None = None) -> Prover:
+    """What carries out steps below a total; of 11 units of time by default."""
+    stated = read_problem(problem_document(exact_problem(problem)))
+    if total is not None:
+        return Prover(cubic_system(stated, total))
+    system = cubic_system(stated, Fraction(11))
+    return Prover(CubicSystem(stated, system.powers, system.second, 11 * TICKS))
+
+
 @pytest.mark.parametrize("seed", range(8))
 def test_floats_are_the_verifier_s_equations_and_conditions(seed: int) -> None:
-    system, rng = prover_of(random_problem(seed)).system, np.random.default_rng(seed)
+    system, rng = prover_of(random_cubic(seed)).system, np.random.default_rng(seed)
     y, x = rng.normal(size=system.coordinates), rng.normal(size=system.exact.size)
 
     def value(terms: dict[Any, Fraction]) -> float:
@@ -90,7 +99,7 @@ def test_floats_are_the_verifier_s_equations_and_conditions(seed: int) -> None:
 
 
 def test_weights_without_the_target_prove_nothing_about_it() -> None:
-    prover = prover_of(base_problem())
+    prover = prover_of(cubic_problem())
     box = prover.root()
     prover.narrow(box)
     relaxation = Relaxation(prover.system, prover.system.starting_rows())
@@ -111,7 +120,7 @@ def interrupted() -> Certified:
         if progress.nodes >= 12 and progress.open_boxes >= 3:
             raise KeyboardInterrupt
 
-    return certify(base_problem(), gap=1e-3, report=report)
+    return certify(cubic_problem(), gap=1e-3, report=report)
 
 
 def test_an_altered_state_is_refused() -> None:
@@ -127,11 +136,11 @@ def test_an_altered_state_is_refused() -> None:
             wrong = json.loads(json.dumps(document))
             put({"proof": wrong[part]}, path, 2**27 + int(rng.integers(0, 2**20)))
             try:
-                found = certify(base_problem(), gap=1e-3, resume=wrong, report=stop)
+                found = certify(cubic_problem(), gap=1e-3, resume=wrong, report=stop)
             except TrajgapError as error:
                 refused += "resume" in str(error)
                 continue
-            assert found.lower <= (base().upper or 0)
+            assert found.lower <= (interrupted().upper or 0)
         # The root of a proposal is not read: it is computed.
         assert refused > 0 or key == "root"
 
@@ -139,16 +148,16 @@ def test_an_altered_state_is_refused() -> None:
         return {**document, part: {**document[part], **change}}
 
     with pytest.raises(TrajgapError, match="kind"):
-        certify(base_problem(), resume=wrong_in("proposals", kind="declared"))
+        certify(cubic_problem(), resume=wrong_in("proposals", kind="declared"))
     with pytest.raises(TrajgapError, match="malformed"):
-        certify(base_problem(), resume={**document, "proposals": {"kind": "cubic"}})
+        certify(cubic_problem(), resume={**document, "proposals": {"kind": "cubic"}})
     # As a power of ten it would fill the memory.
     with pytest.raises(TrajgapError, match="malformed"):
-        certify(base_problem(), resume=wrong_in("claim", durations=["1e999999999"] * 2))
+        certify(cubic_problem(), resume=wrong_in("claim", durations=["1e999999999"] * 2))
 
 
 def test_no_time_gives_what_mean_velocities_say() -> None:
-    found = certify(base_problem(), seconds=0.0)
+    found = certify(cubic_problem(), seconds=0.0)
     assert found.outcome is Outcome.INTERVAL
     assert float(found.lower) == pytest.approx(1.1 / 1.1 + 0.7 / 0.9, rel=1e-6)
     assert verify(certificate(found)).proves
@@ -162,20 +171,6 @@ def test_durations_far_too_short_are_proved_infeasible_within_the_range_of_a_pro
     assert found.verdict.infeasible
     document = certificate(found)
     assert max(document["proof"]["root"]) <= document["proof"]["cap"] <= MOST_INTEGER
-
-
-def test_a_spline_that_is_too_long_for_a_certificate_is_not_covered() -> None:
-    many = Problem(np.arange(66.0)[:, None], Limits(1.0, 1.0), cubic_spline(65))
-    with pytest.raises(TrajgapError, match="more than 64 segments"):
-        certify(many)
-
-
-def test_what_is_not_covered_is_said() -> None:
-    q = [[0.2], [1.1], [-0.4]]
-    with pytest.raises(TrajgapError, match="nothing limits"):
-        certify(Problem(q, Limits(np.inf, 2.0), cubic_spline(2, NATURAL)))
-    with pytest.raises(TrajgapError, match="keeps its duration above 0"):
-        certify(Problem(q[:2], Limits(1.0), cubic_spline_virtual(2)))
 
 
 def test_the_example_s_certificate_is_fresh_and_proves() -> None:
@@ -230,7 +225,7 @@ def verifier_is_as_strong(prover: Prover, root: TickBox, slack: float) -> None:
 
 def near_feasible(seed: int) -> tuple[Prover, np.ndarray, np.random.Generator]:
     """A random problem without bounds of durations, and coordinates of feasible ones."""
-    problem, rng = random_problem(seed), np.random.default_rng(seed)
+    problem, rng = random_cubic(seed), np.random.default_rng(seed)
     problem = replace(problem, duration_lower=0.0, duration_upper=np.inf)
     h = rng.uniform(0.5, 2.0, problem.segments)
     h *= float(evaluate(problem, h[None]).stretch[0]) * 1.001
