@@ -8,7 +8,6 @@ from enum import StrEnum
 import numpy as np
 import pytest
 from support.checkout import ROOT
-from support.two_joints import PROBLEM
 from trajgap.heuristics import (
     GA,
     KINDS,
@@ -20,7 +19,6 @@ from trajgap.heuristics import (
     ImprovedWOA,
     from_settings,
     open_choices,
-    run,
 )
 from trajgap.problem import TrajgapError
 
@@ -158,16 +156,3 @@ def test_open_choices_name_real_parameters(kind: str) -> None:
 def test_open_choices_of_an_unknown_kind() -> None:
     with pytest.raises(TrajgapError, match=r"algorithm kind: 'sa' is unknown"):
         open_choices("sa")
-
-
-@pytest.mark.parametrize("kind", KINDS)
-def test_every_word_of_every_choice_runs(kind: str) -> None:
-    """Replays change one open choice at a time, so no word may contradict the other defaults."""
-    record = from_settings(kind, {})
-    for field in type(record).__dataclass_fields__:
-        current = getattr(record, field)
-        if isinstance(current, StrEnum):
-            for option in type(current):
-                found = run(from_settings(kind, {field: option}), PROBLEM, 1, 3)
-                assert found.trace.size == 4
-                assert getattr(found.settings, field) is option

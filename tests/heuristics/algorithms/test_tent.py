@@ -81,11 +81,6 @@ def test_the_experiment_of_figure_1() -> None:
     assert all((x > 0).all() for x in at[TentRule.COORDINATE])
     # 60 numbers of one orbit: from step 54 on all are 0, the last three points at least.
     assert all((x[-3:] == 0).all() for x in at[TentRule.SINGLE])
-    by_hand, x = [], np.random.default_rng((2, 0)).random(2)
-    for _ in range(30):
-        by_hand.append(list(x))
-        x = [one / 0.5 if one <= 0.5 else (1 - one) / 0.5 for one in x]
-    np.testing.assert_array_equal(at[TentRule.COORDINATE][0], by_hand)
 
 
 @pytest.mark.parametrize(("rule", "at_zero"), [("coordinate", 0), ("member", 0), ("single", 22)])
