@@ -90,10 +90,10 @@ def test_joints_that_the_case_searches_apart_are_named(run: Run) -> None:
 
 def test_an_optimiser_that_always_fails_is_shown_by_the_exit_code(run: Run) -> None:
     arguments = ("bench", PUMA, *SMALL, "--json", "--optimizer")
-    code, out, _ = run(*arguments, "random,support.faulty:raises")
+    code, out, _ = run(*arguments, "random,support.optimizers:raises")
     assert code == 1
     assert {one["failed"] for one in strict(out)["results"][0]["standings"]} == {0, 2}
-    code, out, _ = run(*arguments, "support.faulty:raises_at_times", "--seeds", "8")
+    code, out, _ = run(*arguments, "support.optimizers:raises_at_times", "--seeds", "8")
     (standing,) = strict(out)["results"][0]["standings"]
     assert (code, 0 < standing["failed"] < 8) == (0, True)
 
@@ -205,7 +205,7 @@ def test_a_study_is_run_exported_and_gone_on_with(run: Run) -> None:
 
 def test_the_exit_code_is_0_where_each_optimiser_has_a_run(run: Run, study: Path) -> None:
     study.write_text(
-        FEW.replace("support.optimizers:raises", "support.faulty:raises_at_times").replace(
+        FEW.replace("support.optimizers:raises", "support.optimizers:raises_at_times").replace(
             "seeds = 2", "seeds = 8"
         ),
         encoding="utf-8",

@@ -35,7 +35,6 @@ from trajgap.compare.sphinx import Results
 from trajgap.nlp import Evidence
 from trajgap.problem import (
     Case,
-    CaseError,
     TrajgapError,
     evaluate,
     forward_kinematics,
@@ -382,28 +381,3 @@ def test_instances_are_resampled_and_not_pairs_of_runs(result: InstancesResult) 
     twice = (replace(s, totals=np.concatenate([s.totals] * 2, axis=2)) for s in result.samples)
     doubled = replace(result, samples=tuple(twice))
     assert doubled.median_interval(reading, Effect.BOTH) == pytest.approx((low, high))
-
-
-@pytest.mark.parametrize(
-    ("old", "new", "message"),
-    [
-        ('claim = "better"', 'claim = "bettr"',
-         "families[0].claim: 'bettr' is not the id of any of the claims; did you mean 'better'?"),
-        ('claim = "better"', 'claim = "settles"',
-         "families[0].claim: 'settles' is a claim of quantity 'convergence'; name an improvement"),
-        ('algorithm = "plain"\n', "",
-         "families[0].claim: claim 'old-total' does not name its problem and its algorithm; add"),
-        ("samples = 50", 'readings = ["joined", "x"]',
-         "families[0].readings[1]: 'x' is not the id"),
-        ("[0.3, 0.9]", "[0.3, 0]", "families[0].steps[1]: is 0; a step moves something, give more"),
-        ("[0.3, 0.9]", "[0.3, 0.30]", "families[0].steps[1]: 0.30 is given twice; leave one out"),
-        ("instances = 2", "instances = 0", "families[0].instances:"),
-        ('kind = "joint"', 'kind = "wrist"', "families[0].kind:"),
-        ("samples = 50", 'objectives = ["mercy"]', "families[0].objectives[0]:"),
-        (SMALL[SMALL.index("[robot.dh]") : SMALL.index("[units]")], "",
-         "families[0].id: way-points are drawn from the robot's workspace; add robot.dh"),
-    ],
-)  # fmt: skip
-def test_faults_of_a_family(old: str, new: str, message: str) -> None:
-    with pytest.raises(CaseError, match=re.escape(f"small.toml: {message}")):
-        small((old, new))

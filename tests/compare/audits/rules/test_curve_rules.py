@@ -21,11 +21,9 @@ from trajgap.compare.documents import Basis, ClaimVerdict, Finding, Severity
 from trajgap.nlp.enclosure.balls import Ball
 from trajgap.nlp.enclosure.uniform import centred_stretched, centred_timed
 from trajgap.problem import (
-    CaseError,
     extrema,
     fit,
     load_case,
-    parse_case,
     peak_gradients,
 )
 
@@ -118,20 +116,6 @@ def test_vertices_of_another_curve_are_not_held_to_the_uniform_splines(
     one = {None: ClaimVerdict.REFUTED}
     apart = {"uniform": ClaimVerdict.REFUTED, "other": verdict}
     assert words == (one if curve is STRETCHED else apart)
-
-
-@pytest.mark.parametrize(
-    ("rows", "message"),
-    [
-        ([["1"] * 5], r"joint_rows\[0\]: 5 control vertices for 4 way-points; give 6"),
-        ([["1"] * 6] * 2, "joint_rows: gives 2 joints, but robot.joints lists 1"),
-    ],
-)
-def test_control_vertices_are_counted(rows: list[list[str]], message: str) -> None:
-    printed = claim("v", "control_vertices", joint_rows=rows)
-    text = paper(["0.1 1.2 -0.4 0.7"], printed, curve=STRETCHED, velocity=3)
-    with pytest.raises(CaseError, match=message):
-        parse_case(text, "made-up.toml")
 
 
 # --- rounding boxes -------------------------------------------------------------------------------
