@@ -16,7 +16,6 @@ import pytest
 from support.checkout import ROOT
 from support.command_line import CASE, Run, strict
 from support.documents import assert_valid
-from support.made_up import paper
 from support.shipped_problems import COVERED_PROBLEMS
 from trajgap.compare.cli import certifying as cli_certify
 from trajgap.compare.documents import Uncovered
@@ -343,30 +342,3 @@ def test_a_bound_over_any_curve_is_certified_verified_and_named(run: Run) -> Non
     assert one["lower"] == pytest.approx(float(Fraction(shown["claim"]["lower"])), rel=1e-6)
     assert run(*certify)[0] == 0
     assert len(list(folder.iterdir())) == 2, "another question, another file"
-
-
-MOVING = paper(
-    ["0 1 0.4", "0.2 -0.3 0.5"],
-    curve={
-        "family": "cubic-spline", "end_derivatives": [[0.5, -0.2]], "finish_derivatives": [0],
-    },
-    velocity=[2, 1.5],
-    acceleration=[5, 4],
-)  # fmt: skip
-"""A joint that starts forwards and one that starts backwards."""
-
-
-def test_ends_in_motion_have_a_proof_and_a_bound_over_any_curve(run: Run) -> None:
-    Path("moving.toml").write_text(MOVING, encoding="utf-8")
-    code, _, err = run("solve", "moving.toml", "--certify", "--out", "d.json")
-    assert (code, err) == (0, "")
-    (own,) = strict(Path("d.json").read_text())["intervals"]
-    code, out, err = run("verify", own["certificate"], "--case", "moving.toml")
-    assert (code, err) == (0, "")
-    code, _, err = run("solve", "moving.toml", "--certify", "--any-curve", "--out", "c.json")
-    assert (code, err) == (0, "")
-    (found,) = strict(Path("c.json").read_text())["intervals"]
-    assert 0 < found["lower"] < own["lower"] <= own["upper"]
-    code, out, err = run("verify", found["certificate"], "--case", "moving.toml")
-    assert (code, err) == (0, "")
-    assert "proves" in out

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import json
 import os
 import re
 import sys
@@ -66,18 +65,6 @@ def test_json_keeps_to_the_schema_and_repeats(run: Run, folder: Path) -> None:
     assert '"iterations"' not in pso["settings"]
     assert not (folder / "trajgap-bench").exists()
     assert run(*arguments)[1] == out
-
-
-def test_without_a_budget_the_paper_s_own_iterations_are_run_and_said(run: Run) -> None:
-    asked = ("bench", "irb460-pso-353", "--problem", "limit-80", "--optimizer", "constrained-pso")
-    code, out, _ = run(*asked, "--seeds", "2", "--no-baselines", "--json")
-    assert code == 0
-    (result,) = json.loads(out)["results"]
-    assert '"iterations":100' in result["standings"][0]["settings"]
-    assert (
-        "constrained-pso: 100 iterations, the algorithm's own, in 3,030 evaluations."
-        in (result["notes"])
-    )
 
 
 def test_joints_that_the_case_searches_apart_are_named(run: Run) -> None:

@@ -153,12 +153,6 @@ def test_pages_of_every_instance(run: Run, folder: Path) -> None:
     assert json.loads((there / "suite.json").read_text("utf-8"))["schema"] == "trajgap/1"
 
 
-def test_other_commands_take_an_instance(run: Run) -> None:
-    code, out, _ = run("check", "suite:septic-fang2020-task1", "--durations", "4.7177", "--json")
-    assert code == 0
-    assert strict(out)["results"][0]["case"] == "septic-fang2020-task1"
-
-
 def test_the_command_of_an_instance_makes_its_certificate(run: Run, folder: Path) -> None:
     one = load_instance("septic-fang2020-task1")
     arguments = one.command.split()

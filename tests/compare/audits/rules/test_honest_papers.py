@@ -18,7 +18,6 @@ from support.made_up import (
     total,
 )
 from support.papers.apart import apart
-from support.studies import audited_alone
 from trajgap.compare.audits.rules.condition_count import judge_counts
 from trajgap.compare.audits.rules.continuous_time import judge_motions
 from trajgap.compare.audits.rules.distances import judge_distances
@@ -364,24 +363,3 @@ def test_what_breaks_the_limits_is_not_optimal_within_them() -> None:
     beside = next(f for f in one.findings if f.rule == "TG302" and f.claim == "d")
     assert beside.severity is Severity.INFO
     assert beside.message.endswith("which keeps the limits; these durations do not.")
-
-
-def test_a_percentage_of_a_refuted_total_says_why_it_is_not_checkable() -> None:
-    """0.962 s beside a total of 0.99 s; 1.2 s is 17.5 % longer than that."""
-    parts = (
-        row("d", "0.962", total="0.990", where="Table 2"),
-        sentence("s", "within_limits", "d"),
-        total("old", "1.200", other_curve="straight lines"),
-        gain("old", "d", percent="17.5"),
-    )
-    one = audited_text(paper([[0, 1]], *parts, velocity=1.9496))
-    (gained,) = [j for j in one.judgements if j.claim == "gain"]
-    assert gained.verdict is ClaimVerdict.NOT_CHECKABLE
-    assert gained.why.startswith("It rests on what Table 2 prints, which is refuted. ")
-
-
-def test_the_order_of_two_totals_that_cannot_be_computed_supports_nothing() -> None:
-    judged = audited_alone("z1-woa-bspline").judgements
-    better = next(j for j in judged if j.claim == "improvement")
-    assert better.verdict is ClaimVerdict.NOT_CHECKABLE
-    assert "13.08 and 11.71 s, in the order that is claimed" in better.why
