@@ -7,13 +7,11 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from support.b_splines import NATURAL, uniform
 from support.rounding_boxes import boxes, contradiction, rounded_problem
 from trajgap.compare.audits.rounding import Place, Point, RoundingBox, judge_rounding
 from trajgap.compare.documents import Rounding
 from trajgap.nlp.enclosure import box_bound
 from trajgap.nlp.enclosure.balls import Ball
-from trajgap.nlp.enclosure.uniform import centred_timed
 from trajgap.problem import (
     Limits,
     Problem,
@@ -22,7 +20,6 @@ from trajgap.problem import (
     check,
     cubic_spline,
     evaluate,
-    fit,
     piecewise,
     three_five_three,
     uniform_cubic_b_spline,
@@ -179,28 +176,3 @@ def test_a_motion_whose_limited_derivative_vanishes_is_not_searched() -> None:
     problem = Problem(points, Limits(jerk=np.deg2rad(302.867), joints=1), curve)
     found = judge_rounding(problem, near(np.array([1.7282e-05]), 5e-10), near(points, 1e-6))
     assert found.verdict is not Rounding.BREAKS
-
-
-@pytest.mark.parametrize("natural", [False, True])
-def test_derivatives_over_a_box_hold_those_of_its_motions_however_time_ends(natural: bool) -> None:
-    problem, h = uniform(NATURAL if natural else "timed", 3, count=5)
-    rng = np.random.default_rng(8)
-    segment, joint = rng.integers(0, 4, 12), rng.integers(0, 3, 12)
-    order, s = rng.integers(1, 3, 12), rng.uniform(0, 1, 12)
-    wide = Ball.between(0.999 * h, 1.001 * h)
-    q = Ball(problem.waypoints, np.full(problem.waypoints.shape, 1e-3))
-    form = centred_timed(5, joint, segment, order, s, wide, q, natural)
-    spread = (np.abs(form.by_duration.mid) + form.by_duration.rad) @ (1e-3 * h) + (
-        np.abs(form.by_waypoint.mid) + form.by_waypoint.rad
-    ).sum(axis=1) * 1e-3
-    for _ in range(5):
-        durations = h * rng.uniform(0.999, 1.001, 4)
-        points = problem.waypoints + rng.uniform(-1e-3, 1e-3, problem.waypoints.shape)
-        moved = fit(problem.curve, points, durations)
-        found = [
-            float(moved.values(k, j, r, np.array(at)))
-            for k, j, r, at in zip(segment, joint, order, s, strict=True)
-        ]
-        away = np.abs(found - form.value.mid)
-        assert (away <= 1.01 * spread + form.value.rad).all()
-        assert away.max() > 0.01 * spread.max()

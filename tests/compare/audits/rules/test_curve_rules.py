@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
+from functools import partial
 from typing import Any
 
 import numpy as np
 import pytest
-from support.b_splines import uniform
+from support.b_splines import NATURAL, uniform
 from support.findings import judged, said_of, study_of
 from support.made_up import claim, paper, readings
 from support.papers.motions import vertices as solved
@@ -121,12 +122,13 @@ def test_vertices_of_another_curve_are_not_held_to_the_uniform_splines(
 # --- rounding boxes -------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("time", TIMES)
+@pytest.mark.parametrize("time", [*TIMES, NATURAL])
 def test_balls_hold_values_and_gradients_all_over_the_box(time: str) -> None:
     problem, h = uniform(time, 41, count=5)
     curve, q = problem.curve, problem.waypoints
     trajectory = fit(curve, q, h)
-    centred, highest = (centred_timed, 2) if time == "timed" else (centred_stretched, 3)
+    own = {"stretched": (centred_stretched, 3), NATURAL: (partial(centred_timed, natural=True), 2)}
+    centred, highest = own.get(time, (centred_timed, 2))
     orders = range(1, highest + 1)
     points = [e for j in range(3) for r in orders for e in extrema(trajectory, j, r)]
     joint, segment, order = (
