@@ -252,13 +252,9 @@ def test_where_no_motion_stays_within_nothing_is_feasible() -> None:
 
 def test_equal_durations_that_swing_too_far_are_no_baseline() -> None:
     tight = limited(cubic_spline(3), 0.001)
-    assert (evaluate(tight, np.ones((1, 3))).positions[0] > 1).any()
     with pytest.raises(
-        TrajgapError, match=r"equal durations lead joint \d beyond a position limit; no uniform"
-    ):
-        uniform_rescaling(tight)
-    with pytest.raises(
-        TrajgapError, match=r"no upper bound .* beyond a position limit; .*; give them one"
+        TrajgapError,
+        match=r"no upper bound .* joint \d beyond a position limit; .*; give them",
     ):
         search_box(replace(tight, duration_upper=np.inf))
     np.testing.assert_array_equal(search_box(tight).upper, [6.0, 6.0, 6.0])

@@ -35,7 +35,7 @@ from trajgap.compare.pictures import jump_picture, motion_picture
 from trajgap.nlp import solve
 from trajgap.nlp.proofs.document import problem_document
 from trajgap.nlp.proofs.exact import exact_problem, printed_problem
-from trajgap.problem import Limits, Problem, TrajgapError, check, control_vertices, cubic_spline
+from trajgap.problem import Limits, Problem, TrajgapError, control_vertices, cubic_spline
 from trajgap.problem.motions import MotionForm, motion_text, read_motion
 
 RULES = (
@@ -187,25 +187,6 @@ def test_millimetres_and_metres_are_the_same_paper() -> None:
     said = [[[getattr(f, k) for k in keys] for f in findings(*c)] for c in ((), METRES)]
     assert said[0] == said[1]
     assert "0.107564 ± 0.0002 m/s" in message("velocities", "rpm", *METRES)
-
-
-@pytest.mark.parametrize(("unit", "limit"), [("deg/s", "180"), ("deg/min", "10800")])
-def test_units_of_limits_are_the_same_limits(unit: str, limit: str) -> None:
-    """30 rpm is 180 °/s and 10800 °/min, 120 mm/s is 7.2 m/min."""
-    units = 'velocity = ["{}", "deg/s", "{}"]\nacc'
-    plain, problem = (
-        scara(*changes).problem()
-        for changes in (
-            (),
-            (
-                (units.format("rpm", "mm/s"), units.format(unit, "m/min")),
-                ("velocity = [30, 150, 120]", f"velocity = [{limit}, 150, 7.2]"),
-            ),
-        )
-    )
-    assert problem.limits.velocity == pytest.approx(plain.limits.velocity, rel=1e-15)
-    worst = check(plain, [0.5, 0.4, 0.7]).worst.ratio
-    assert check(problem, [0.5, 0.4, 0.7]).worst.ratio == pytest.approx(worst, rel=1e-12)
 
 
 def test_minutes_and_seconds_are_the_same_durations() -> None:

@@ -3,7 +3,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from trajgap.compare.audits.judging import judge, weigh
-from trajgap.compare.audits.rules import RULES
 from trajgap.compare.documents import (
     Basis,
     ClaimVerdict,
@@ -138,11 +137,6 @@ def test_a_severity_fits_the_verdict_on_the_claim(found, errors) -> None:
     assert sum(f.severity is Severity.ERROR for f in weighed) == errors
     softened = sum(f.severity is Severity.WARNING for f in weighed)
     assert errors + softened == sum(v in (R, X) for v, _ in found)
-
-
-def test_rule_ids_are_unique() -> None:
-    ids = [rule.id for rule in RULES]
-    assert len(ids) == len(set(ids))
 
 
 def test_shares_count_pairs_and_never_a_run_against_itself() -> None:

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 from support.refusals import Refusal, each_refusal
-from support.small_studies import HEAD, OPTIMIZERS, RUNS, STUDY, written
+from support.small_studies import HEAD, OPTIMIZERS, RUNS, STUDY, texts, written
 from trajgap.compare.gaps import (
     Bracket,
     Engine,
@@ -41,11 +41,6 @@ def whole(plan: StudyPlan, engine: Engine, tmp_path_factory: pytest.TempPathFact
     with Store(path) as store:
         run_study(plan, store, engine)
     return path
-
-
-def texts(plan: StudyPlan, path: Path) -> list[str]:
-    with Store(path) as store:
-        return [row.text() for row in study_rows(plan, store)]
 
 
 def test_every_combination_is_a_row_in_the_order_of_the_file(plan: StudyPlan, whole: Path) -> None:
