@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from support.findings import audited_text, finding, said_of, study_of
+from support.findings import audited_text, finding, found_by, said_of, study_of
 from support.made_up import (
     TWO_UNITS,
     algorithms,
@@ -18,39 +18,12 @@ from support.made_up import (
 )
 from support.papers.apart import apart
 from support.papers.claims import draw
-from trajgap.compare.audits.rules.condition_count import judge_counts
-from trajgap.compare.audits.rules.continuous_time import judge_motions
-from trajgap.compare.audits.rules.distances import judge_distances
-from trajgap.compare.audits.rules.improvements import judge_improvements
-from trajgap.compare.audits.rules.other_places import judge_places
-from trajgap.compare.audits.rules.peaks import judge_peaks
-from trajgap.compare.audits.rules.printed_digits import judge_digits
-from trajgap.compare.audits.rules.printed_tables import judge_tables
-from trajgap.compare.audits.rules.profiles import judge_profiles
-from trajgap.compare.audits.rules.scaling_law import judge_scaling
 from trajgap.compare.documents import Basis, ClaimVerdict, Finding, Scope, Severity
 from trajgap.nlp import Evidence, Status
 
 # A quintic from rest to rest over d rad in h s peaks at 15 d/(8 h) rad/s.
 PEAK = 15 / 8
-RULES = (
-    judge_digits,
-    judge_improvements,
-    judge_tables,
-    judge_motions,
-    judge_peaks,
-    judge_places,
-    judge_counts,
-    judge_scaling,
-    judge_distances,
-    judge_profiles,
-)
-
-
-def judged(text: str) -> list[Finding]:
-    """What the rules find, without the audit around them."""
-    study = study_of(text)
-    return [f for rule in RULES for f in rule(study)]
+RULES = ["TG101", "TG103", "TG105", "TG107", "TG108", "TG201", "TG203", "TG301", "TG302", "TG304"]
 
 
 def accused(found: list[Finding]) -> list[tuple[str, str | None, str]]:
@@ -64,7 +37,7 @@ def decided(found: list[Finding]) -> dict[str, ClaimVerdict | None]:
 # Papers that round, and print all joints in one row.
 @pytest.mark.parametrize("seed", [1, 2, 4, 5, 9, 10, 13, 14])
 def test_an_honest_paper_is_accused_of_nothing(seed: int) -> None:
-    found = judged(draw(seed, ("rest 5",)).text())
+    found = found_by(study_of(draw(seed, ("rest 5",)).text()), *RULES)
     assert accused(found) == []
     assert decided(found)["fast"] is ClaimVerdict.SUPPORTED
 
@@ -73,7 +46,7 @@ def test_an_honest_paper_is_accused_of_nothing(seed: int) -> None:
 def test_totals_that_are_kept_apart_and_profiles_from_rest_are_accused_of_nothing(
     seed: int,
 ) -> None:
-    found = judged(apart(seed))
+    found = found_by(study_of(apart(seed)), *RULES)
     assert accused(found) == []
     assert decided(found)["profile"] is decided(found)["abstract"] is ClaimVerdict.SUPPORTED
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
 import pytest
 from support.findings import judged
 from support.studies import changed
@@ -24,10 +22,6 @@ OPTIMA = (
     (SLOW, 'durations = ["0.6403", "0.6652", "0.5120"]'),
     (FAST, 'durations = ["0.4656", "0.4838", "0.3724"]'),
 )
-
-
-def on(found: Iterable[Finding], rule: str, claim: str) -> list[Finding]:
-    return [f for f in found if (f.rule, f.claim) == (rule, claim)]
 
 
 def of(study: Study, rule: str, claim: str | None = None) -> list[Finding]:
