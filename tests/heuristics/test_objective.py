@@ -212,6 +212,70 @@ def test_handlings_by_name() -> None:
         run(PSO(), wide(), 0, 1, objective="streched")
 
 
+# --- uniform rescaling, tight by the checker ------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "limits",
+    [
+        Limits(3.0, joints=2),
+        Limits([6.0, 5.0], [8.0, 9.0]),
+        Limits(6.0, 8.0, [25.0, 30.0]),
+    ],
+    ids=["v", "va", "vaj"],
+)
+def test_equal_durations_at_the_limit(limits: Limits) -> None:
+    durations = uniform_rescaling(two_joints(limits))
+    np.testing.assert_array_equal(durations, durations[0])
+    found = check(two_joints(limits), durations)
+    assert found.verdict is Verdict.PASS
+    assert found.worst is not None
+    assert found.worst.ratio == pytest.approx(1.0, abs=1e-12)
+    tight = check(two_joints(limits), [0.7, 0.7, 0.7]).tight_time
+    assert durations.sum() == pytest.approx(tight, rel=1e-12)
+
+
+def test_set_to_lower_bounds() -> None:
+    bounds = np.array([2.0, 2.5, 3.0])
+    durations = uniform_rescaling(two_joints(Limits(6.0, 8.0, joints=2), duration_lower=bounds))
+    np.testing.assert_array_equal(durations, bounds)
+
+
+def test_set_to_an_upper_bound_that_costs_nothing() -> None:
+    waypoints = np.array([0.4, 0.5, 0.50001, 1.6])
+    problem = Problem(waypoints, Limits(1.0), three_five_three())
+    equal = uniform_rescaling(problem)
+    cap = 0.9 * equal[0]
+    capped = Problem(waypoints, Limits(1.0), three_five_three(), 0.0, [cap, 9.0, 9.0])
+    np.testing.assert_array_equal(uniform_rescaling(capped), [cap, equal[1], equal[2]])
+
+
+@pytest.mark.parametrize(
+    ("problem", "said"),
+    [
+        (
+            two_joints(Limits(6.0, 8.0, joints=2), duration_upper=0.8),
+            r"^uniform rescaling: .* s per segment set to the duration bounds is violated; no",
+        ),
+        (
+            two_joints(Limits(6.0, 8.0, position_upper=0.5, joints=2)),
+            r"lead joint 1 beyond a position limit; no uniform",
+        ),
+        (two_joints(Limits([0.0, 3.0])), "a joint with limit 0 moves"),
+        (two_joints(Limits(joints=2)), "nothing moves or nothing is limited"),
+        (two_joints(curve=cubic_spline(3, ((1, 0.5),))), "a prescribed derivative is not 0"),
+    ],
+)
+def test_what_has_no_uniform_rescaling(problem: Problem, said: str) -> None:
+    with pytest.raises(TrajgapError, match=said):
+        uniform_rescaling(problem)
+
+
+def test_where_nothing_is_limited_the_bounds_are_the_answer() -> None:
+    found = uniform_rescaling(two_joints(Limits(joints=2), duration_lower=0.4))
+    np.testing.assert_array_equal(found, [0.4, 0.4, 0.4])
+
+
 # --- under position limits ------------------------------------------------------------------------
 
 SWARM = PSO(particles=20, iterations=60, position_initial=(0.2, 4.0))
