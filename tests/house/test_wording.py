@@ -36,21 +36,9 @@ from trajgap.problem.cases import Nature
 
 SAID = Path(__file__).parent / "wording"
 """One file for each kind of page."""
-BEFORE = """
-[[claims]]
-id = "before"
-quantity = "durations"
-where = "Table 3"
-durations = ["4.2"]
-total = "4.3"
-[[claims]]
-id = "gain"
-quantity = "improvement"
-where = "abstract"
-percent = "21"
-faster = "d"
-slower = "before"
-"""
+BEFORE = row("before", "4.2", where="Table 3", total="4.3") + gain(
+    "before", "d", where="abstract", percent="21"
+)
 # A quintic from rest to rest through 1 rad within 1 rad/s takes 15/8 s.
 CASES = {
     "optimal": one_joint("0, 1", "1", "1.875", "optimal"),

@@ -26,13 +26,7 @@ def finding(verdict: ClaimVerdict, reading: str | None, **change: object) -> Fin
 @pytest.mark.parametrize(
     ("time", "reference", "lowest", "highest", "percent"),
     [
-        (
-            (3.5, 3.6),
-            Reference(upper=3.2, lower=3.0),
-            3.5 / 3.2 - 1,
-            3.6 / 3.0 - 1,
-            "+9.3 to +20.1 %",
-        ),
+        ((3.5, 3.6), Reference(upper=3.2, lower=3.0), 0.09375, 0.2, "+9.3 to +20.1 %"),
         (3.0, 3.2, 3.0 / 3.2 - 1, 3.0 / 3.2 - 1, "-6.25 %"),  # below it, with its sign
         (5.0, 0.1, 49.0, 49.0, "50 times the reference"),
         # Both ends have the decimals of the one further from 0, and lie outwards.
