@@ -84,14 +84,6 @@ def loaded_by(names: list[str]) -> set[str]:
     return set(run.stdout.split())
 
 
-@pytest.mark.parametrize("folder", ["problem", "nlp", "heuristics"])
-def test_flow_is_one_way_when_run(folder: str) -> None:
-    # The second route: what the interpreter really loaded. scipy.interpolate loads scipy.optimize
-    # by itself, so that one is left to the reading of the sources.
-    loaded = loaded_by(list(source_modules(folder)))
-    assert loaded & (forbidden(folder) - {"scipy.optimize"}) == set()
-
-
 @pytest.mark.parametrize(
     ("source", "target"),
     [
