@@ -12,11 +12,10 @@ from typing import Any
 import numpy as np
 
 from .boxes import Array, Boxes, Rows, Sides
-from .problem import StatedProblem
+from .problem import StatedProblem, in_own_units
 from .quintic_bound import ROUND, Centre, Task
 from .ranges import (
     LEAST_TAU,
-    MOST_POWER,
     MOST_QUINTIC_JOINTS,
     MOST_QUINTIC_SEGMENTS,
     MOST_WINDOW,
@@ -45,25 +44,12 @@ class QuinticSpline(Boxes):
         super().__init__(problem, proof, total, clock)
         _covered(problem)
         n, joints, q = problem.segments, problem.joints, problem.waypoints
-        stated = listed(proof["powers"], "powers", joints, joints)
-        angle = [Fraction(2) ** whole(p, -MOST_POWER, MOST_POWER) for p in stated]
-        second = Fraction(2) ** whole(proof["second"], -MOST_POWER, MOST_POWER)
+        second, steps, limits = in_own_units(problem, proof)
         own = total / second
         need(
             SHORTEST_TOTAL < own < 1 / SHORTEST_TOTAL and Fraction(float(own)) == own,
             "a total that is no float of usual size is not proved",
         )
-        steps = [
-            [(b - a) / unit for a, b, unit in zip(q[k], q[k + 1], angle, strict=True)]
-            for k in range(n)
-        ]
-        limits = [
-            [
-                None if x is None or x[1] <= 0 else x[1] * second**r / unit
-                for r, x in enumerate(row, 1)
-            ]
-            for row, unit in zip(problem.limits, angle, strict=True)
-        ]
         sizes = [abs(d) for row in steps for d in row if d]
         sizes += [x for row in limits for x in row if x is not None]
         need(all(SMALLEST < x < 1 / SMALLEST for x in sizes), "a number is of unusual size")

@@ -7,7 +7,7 @@ from functools import lru_cache
 
 import numpy as np
 from trajgap.nlp.proofs.certifiers import certify
-from trajgap.nlp.proofs.cubic.system import CubicSystem, cubic_system
+from trajgap.nlp.proofs.cubic.system import CubicSystem, capped, cubic_system
 from trajgap.nlp.proofs.cubic.tree import Prover
 from trajgap.nlp.proofs.document import problem_document
 from trajgap.nlp.proofs.exact import exact_problem
@@ -66,5 +66,5 @@ def prover_of(problem: Problem, total: Fraction | None = None) -> Prover:
     stated = read_problem(problem_document(exact_problem(problem)))
     if total is not None:
         return Prover(cubic_system(stated, total))
-    system = cubic_system(stated, Fraction(11))
-    return Prover(CubicSystem(stated, system.powers, system.second, 11 * TICKS))
+    units = cubic_system(stated, Fraction(11)).units
+    return Prover(CubicSystem(stated, capped(stated, units["powers"], units["second"], 11 * TICKS)))

@@ -3,61 +3,116 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from math import floor, isqrt
 from typing import Any
 
 from ..ranges import MIX, MIX_DIGITS, MOST_INTEGER, MOST_WEIGHTS
-from ..reading import listed, need, required, text, whole
+from ..reading import listed, need, required, whole
 from .box import FINE, Box
-from .system import ZERO
+from .system import Condition, Cubic, Number, Sides
 
 _SLOPES = 128
 """Tangents of ρ that are tried: the best of them is as good as the bound needs."""
 
-Condition = tuple[int, dict[Any, Fraction], dict[Any, Fraction], Fraction]
-"""Joint, terms in the unknowns, terms in the coordinates, constant: their sum is ≤ 0."""
+Spot = tuple[int, int, int]
+"""Joint, coordinate and unknown of a product."""
 
 
-def least(
-    box: Box, target: dict[int, int], weights: list[Any], known: Sequence[Condition]
-) -> Fraction:
-    """Least value of the target plus the weighted conditions and equations over the box.
+@dataclass(frozen=True, eq=False)
+class Weighted:
+    """A target with weighted conditions and equations: at feasible points at most the target.
+
+    It is Σ alone·x + Σ products·y·x + Σ along·y + Σ inverse/T + constant.
+
+    Attributes
+    ----------
+    cubic : Cubic
+    alone : dict
+        By joint and unknown.
+    products : dict
+        By spot, in their order.
+    along, inverse : dict
+        By coordinate.
+    constant : Fraction or int
+    """
+
+    cubic: Cubic
+    alone: dict[tuple[int, int], Number]
+    products: dict[Spot, Number]
+    along: dict[int, Number]
+    inverse: dict[int, Fraction]
+    constant: Number
+
+    def least(self, box: Box, mix: str) -> Number:
+        """Least value over a box, with the shares of both bounds of each product.
+
+        Raises
+        ------
+        Refused
+            If the shares are malformed, or an unknown has no bounds.
+        """
+        sides, alone, along, constant = box.sides(self.cubic), *self._own()
+        need(len(mix) == len(self.products), "shares and products differ in number")
+        need(set(mix) <= set(MIX_DIGITS), "malformed: a share of a product")
+        for letter, ((joint, k, v), x) in zip(mix, self.products.items(), strict=True):
+            share = MIX_DIGITS.index(letter)
+            ends = required(box.x[joint][v], "a product of an unknown without bounds")
+            # y·u ≥ corner·u + edge·y − corner·edge where (y − corner)(u − edge) ≥ 0, and so on.
+            for part, end, first in ((share, ends[0], True), (MIX - share, ends[1], False)):
+                corner, edge = sides[k][0 if (x > 0) == first else 1], Fraction(end, FINE)
+                factor = x * Fraction(part, MIX)
+                alone[joint, v] = alone.get((joint, v), 0) + factor * corner
+                along[k] += factor * edge
+                constant -= factor * corner * edge
+        for (joint, v), x in alone.items():
+            if x:
+                ends = required(box.x[joint][v], "an unknown without bounds")
+                constant += Fraction(min(x * ends[0], x * ends[1])) / FINE
+        return constant + _over(along, self.inverse, sides, self.cubic.rho())
+
+    def _own(self) -> tuple[dict[tuple[int, int], Number], dict[int, Number], Number]:
+        return dict(self.alone), dict(self.along), self.constant
+
+
+def weighted(
+    cubic: Cubic,
+    known: Sequence[Condition],
+    target: dict[int, int],
+    held: list[Any],
+    equations: list[Any],
+) -> Weighted:
+    """Add up a target of the coordinates, conditions, and equations.
 
     Parameters
     ----------
-    box : Box
+    cubic : Cubic
+    known : sequence of Condition
     target : dict
         Weights of the coordinates.
-    weights : list
-        Three entries: [condition, w, …], [equation, μ, …], and the shares of the products.
-    known : sequence of Condition
-
-    Returns
-    -------
-    Fraction
+    held : list
+        [condition, w, …].
+    equations : list
+        [equation, μ, …].
 
     Raises
     ------
     Refused
-        If the weights are malformed, or an unknown has no bounds.
+        If the weights are malformed.
     """
-    cubic, sides = box.cubic, box.sides()
-    first, second, third = listed(weights, "weights", 3, 3)
-    held = listed(first, "weights of conditions", 2 * MOST_WEIGHTS)
-    equations = listed(second, "weights of equations", 2 * MOST_WEIGHTS)
-    mix = text(third, "shares of products")
-    terms: dict[tuple[int, Any], Fraction] = {}
-    along = dict.fromkeys(range(len(sides)), ZERO)
-    for k, factor in target.items():
-        along[k] += factor
-    constant, inverse = ZERO, dict.fromkeys(range(cubic.m), ZERO)
+    held = listed(held, "weights of conditions", 2 * MOST_WEIGHTS)
+    equations = listed(equations, "weights of equations", 2 * MOST_WEIGHTS)
     need(len(held) % 2 == 0 and len(equations) % 2 == 0, "malformed: weights come in pairs")
+    terms: dict[tuple[int, Any], Number] = {}
+    along: dict[int, Number] = {k: target.get(k, 0) for k in range(cubic.coordinates)}
+    constant: Number = 0
+    inverse = dict.fromkeys(range(cubic.m), Fraction(0))
     for number_, weight in zip(held[::2], held[1::2], strict=True):
         w = whole(weight, 0, MOST_INTEGER)
         joint, own, lengths, rest = known[whole(number_, 0, len(known) - 1)]
         for key, x in own.items():
-            terms[joint, key] = terms.get((joint, key), ZERO) + w * x
+            terms[joint, key] = terms.get((joint, key), 0) + w * x
         for k, x in lengths.items():
             along[k] += w * x
         constant += w * rest
@@ -65,44 +120,23 @@ def least(
         w = whole(weight, -MOST_INTEGER, MOST_INTEGER)
         joint, i = divmod(whole(number_, 0, cubic.joints * cubic.size - 1), cubic.size)
         for key, x in cubic.equations[i].items():
-            terms[joint, key] = terms.get((joint, key), ZERO) + w * x
+            terms[joint, key] = terms.get((joint, key), 0) + w * x
         if i in cubic.moved:
             t, sign = cubic.moved[i]
             inverse[t] -= w * sign * 6 * cubic.steps[t][joint]
-    lines: dict[tuple[int, int], Fraction] = {}
-    products = []
-    for (joint, key), x in terms.items():
-        if isinstance(key, int):
-            lines[joint, key] = lines.get((joint, key), ZERO) + x
-        elif x:
-            products.append((joint, *key, x))
-    products.sort()
-    need(len(mix) == len(products), "shares and products differ in number")
-    need(set(mix) <= set(MIX_DIGITS), "malformed: a share of a product")
-    for letter, (joint, k, v, x) in zip(mix, products, strict=True):
-        share = Fraction(MIX_DIGITS.index(letter), MIX)
-        ends = required(box.x[joint][v], "a product of an unknown without bounds")
-        # y·u ≥ corner·u + edge·y − corner·edge where (y − corner)(u − edge) ≥ 0, and so on.
-        for part, edge, first in ((share, ends[0], True), (1 - share, ends[1], False)):
-            corner = sides[k][0 if (x > 0) == first else 1]
-            lines[joint, v] = lines.get((joint, v), ZERO) + x * part * corner
-            along[k] += x * part * edge
-            constant -= x * part * corner * edge
-    for (joint, v), x in lines.items():
-        if x:
-            ends = required(box.x[joint][v], "an unknown without bounds")
-            constant += min(x * ends[0], x * ends[1])
-    return constant + _over(along, inverse, sides, cubic.rho())
+    alone = {(joint, key): x for (joint, key), x in terms.items() if isinstance(key, int)}
+    products = {(j, *key): x for (j, key), x in terms.items() if not isinstance(key, int) and x}
+    return Weighted(cubic, alone, dict(sorted(products.items())), along, inverse, constant)
 
 
 def _over(
-    along: dict[int, Fraction],
+    along: dict[int, Number],
     inverse: dict[int, Fraction],
-    sides: Sequence[tuple[Fraction, Fraction]],
+    sides: Sides,
     rho: Sequence[tuple[int, int, int]],
-) -> Fraction:
+) -> Number:
     """Least value of Σ along·y + Σ inverse/T, with ρ = h²/T."""
-    constant = ZERO
+    constant: Number = 0
     for h, t, r in rho:
         factor = along.pop(r)
         (h0, h1), t0 = sides[h], sides[t][0]
@@ -119,7 +153,7 @@ def _over(
             along[h] += factor
     for k, slope in along.items():
         low, high = sides[k]
-        e = inverse.get(k, ZERO)
+        e = inverse.get(k)
         if e:
             need(low > 0, "1/T of a span that may vanish")
             if e > 0:
@@ -141,20 +175,20 @@ def _root(x: Fraction) -> Fraction:
 
 
 def _slope(
-    factor: Fraction,
-    first: Fraction,
-    second: Fraction,
-    inverse: Fraction,
+    factor: Number,
+    first: Number,
+    second: Number,
+    inverse: Number,
     h: tuple[Fraction, Fraction],
     t: tuple[Fraction, Fraction],
 ) -> Fraction:
     """θ whose tangent of ρ gives about the best bound: floats only choose."""
+    best, found = Fraction(0), -float("inf")
     if not factor or t[0] <= 0:
-        return ZERO
-    f, a, b, e = float(factor), float(first), float(second), float(inverse)
-    (h0, h1), (t0, t1) = (float(h[0]), float(h[1])), (float(t[0]), float(t[1]))
+        return best
+    f, a, b, e = map(float, (factor, first, second, inverse))
+    (h0, h1), (t0, t1) = map(float, h), map(float, t)
     start, end = h0 / t1, min(1.0, h1 / t0)
-    best, found = ZERO, -float("inf")
     for i in range(_SLOPES + 1):
         theta = start + (end - start) * i / _SLOPES
         x, y = a + 2 * theta * f, b - theta**2 * f

@@ -62,7 +62,7 @@ class _Run:
 
     def _tree(self, system: CubicSystem) -> Tree:
         prover = Prover(system)
-        return Tree(prover, prover.root(), 0)
+        return Tree(prover, prover.root())
 
     def _target(self, gap: float) -> Fraction:
         assert self.session.upper is not None
@@ -81,7 +81,7 @@ class _Run:
         )
         if not (h > 0).all():
             return
-        tried = session.stretched(h[None] * 2.0**system.second)[0]
+        tried = session.stretched(h[None] * float(system.exact.second))[0]
         known = math.inf if session.upper is None else float(session.upper)
         # A solve costs more than a box: what is shorter by less than a millionth is no start.
         if tried.sum() < min(known, self._shortest_tried) * (1 - 1e-6):
@@ -108,12 +108,12 @@ def _prove(session: Session) -> bool:
 
         stage = CubicStage(tree, goal, restart, run.improve, watch)
         try:
-            grow(stage, stage.root.leaves(), session)
+            grow(stage, tree.root.leaves(), session)
         finally:
             nodes += stage.boxes
             session.keep(stage.tree.seconds, stage.tree)
             session.proposals = stage.tree.proposed
-            session.report(sum(1 for _ in stage.root.leaves()), nodes)
+            session.report(sum(1 for _ in tree.root.leaves()), nodes)
         if stage.finest:
             return False
     longest = [x for x in session.exact.duration_upper if x is not None]
@@ -127,10 +127,9 @@ def _missing(problem: ExactProblem) -> str | None:
         return f"more than {MOST_CUBIC_SEGMENTS} segments"
     if any(problem.duration_lower):
         return None
-    system = cubic_system(stated_problem(problem), Fraction(1))
-    moving = [any(step[j] for step in system.exact.steps) for j in range(len(problem.joints))]
-    bounded = any(math.isfinite(v) for (v, _), moves in zip(system.fastest, moving, strict=True)
-                  if moves)  # fmt: skip
+    exact = cubic_system(stated_problem(problem), Fraction(1)).exact
+    moving = [any(column) for column in zip(*exact.steps, strict=True)]
+    bounded = any(exact.fastest(j)[0] is not None for j, moves in enumerate(moving) if moves)
     return None if bounded else "nothing limits the total from below"
 
 
