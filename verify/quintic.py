@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from .boxes import Array, Boxes, Rows, Sides
+from .floors import least_durations
 from .problem import StatedProblem, in_own_units
 from .quintic_bound import ROUND, Centre, Task
 from .ranges import (
@@ -43,7 +44,7 @@ class QuinticSpline(Boxes):
     ) -> None:
         super().__init__(problem, proof, total, clock)
         _covered(problem)
-        n, joints, q = problem.segments, problem.joints, problem.waypoints
+        n, joints = problem.segments, problem.joints
         second, steps, limits = in_own_units(problem, proof)
         own = total / second
         need(
@@ -65,15 +66,11 @@ class QuinticSpline(Boxes):
         need(bool(there), "a row leans on a limit that is not there")
         self.windows = self._terms(read_windows)
         self._low = []
+        proved = least_durations(problem, total)
         for k, stated_low in enumerate(listed(proof["low"], "low", n, n)):
             x = number(stated_low)
-            mean = any(
-                v[0] is not None and v[0][1] > 0 and x * v[0][1] <= abs(b - a)
-                for v, a, b in zip(problem.limits, q[k], q[k + 1], strict=True)
-            )
-            exact = Fraction(float(x / second)) == x / second >= 0
             need(
-                exact and (mean or x <= problem.shortest[k]),
+                Fraction(float(x / second)) == x / second >= 0 and x <= proved[k],
                 f"segment {k + 1}: its least duration is not proved",
             )
             self._low.append(float(x / second))

@@ -53,7 +53,8 @@ class Weighted:
         Refused
             If the shares are malformed, or an unknown has no bounds.
         """
-        sides, alone, along, constant = box.sides(self.cubic), *self._own()
+        sides, constant = box.sides(self.cubic), self.constant
+        alone, along = dict(self.alone), dict(self.along)
         need(len(mix) == len(self.products), "shares and products differ in number")
         need(set(mix) <= set(MIX_DIGITS), "malformed: a share of a product")
         for letter, ((joint, k, v), x) in zip(mix, self.products.items(), strict=True):
@@ -71,9 +72,6 @@ class Weighted:
                 ends = required(box.x[joint][v], "an unknown without bounds")
                 constant += Fraction(min(x * ends[0], x * ends[1])) / FINE
         return constant + _over(along, self.inverse, sides, self.cubic.rho())
-
-    def _own(self) -> tuple[dict[tuple[int, int], Number], dict[int, Number], Number]:
-        return dict(self.alone), dict(self.along), self.constant
 
 
 def weighted(

@@ -94,9 +94,8 @@ class Prover:
             value = sums.least(box.own, mix)
         except Refused:
             return None
-        named = [x for i, w in zip(held[::2], held[1::2], strict=True)
-                 for x in (proposal.rows[i], w)]  # fmt: skip
-        return Fraction(value) * TICKS / scale, scale, [named, equations, mix]
+        weights = _renamed([held, equations, mix], proposal.rows.__getitem__)
+        return Fraction(value) * TICKS / scale, scale, weights
 
     def tighten(
         self, box: TickBox, coordinate: int, sign: int, proposal: Proposal, least: int
@@ -177,7 +176,7 @@ class Tree:
         while stack:
             box = stack.pop()
             steps = [s for s in box.steps if s[0] != "f" or _serves(box, s)]
-            tree += [_numbered(step, rows) for step in steps]
+            tree += [_renamed(step, lambda row: rows.setdefault(row, len(rows))) for step in steps]
             if box.children:
                 stack += reversed(box.children)
             elif not (steps and steps[-1][0] == LEAF):
@@ -199,13 +198,13 @@ def _serves(box: TickBox, step: Step) -> bool:
     return step is last and next(box.leaves(), None) is not None
 
 
-def _numbered(step: Step, rows: dict[CubicRow, int]) -> Step:
-    """A step with numbers for its conditions."""
-    if len(step) < 4:
+def _renamed(step: Step, name: Callable[[Any], Any]) -> Step:
+    """A step, or weights, with other names for the conditions."""
+    if len(step) < 3 or step[0] == CUT:
         return step
     *head, held, equations, shares = step
-    own = [rows.setdefault(x, len(rows)) if isinstance(x, CubicRow) else x for x in held]
-    return [*head, own, equations, shares]
+    pairs = zip(held[::2], held[1::2], strict=True)
+    return [*head, [x for row, w in pairs for x in (name(row), w)], equations, shares]
 
 
 def regrown(stated: StatedProblem, document: dict[str, Any], clock: Callable[[], None]) -> Tree:
@@ -235,24 +234,17 @@ def regrown(stated: StatedProblem, document: dict[str, Any], clock: Callable[[],
         # Whatever was done to a closed box once is not needed.
         return (box, box) if box.closed else prover.cut(box, k, at)
 
-    def named(step: Step) -> Step:
-        if len(step) < 4:
-            return step
-        *head, held, equations, shares = step
-        rows = [x for i, w in zip(held[::2], held[1::2], strict=True) for x in (known[i], w)]
-        return [*head, rows, equations, shares]
-
     def step(box: TickBox, tag: str, data: list[Any]) -> None:
         clock()
         if not box.closed:
             kind.step(box.own, tag, data)
-            box.steps.append(named([tag, *data]))
+            box.steps.append(_renamed([tag, *data], known.__getitem__))
 
     def leaf(box: TickBox, data: list[Any]) -> None:
         if data and not box.closed:
             clock()
             kind.leaf(box.own, data)
-            box.steps.append(named([LEAF, *data]))
+            box.steps.append(_renamed([LEAF, *data], known.__getitem__))
             box.own.empty = True
 
     root = prover.root()

@@ -104,7 +104,7 @@ def _still_below(data: Document) -> None:
 
 
 ANY = [
-    Forgery("any_curve._Row.read: a row of an unknown kind", "any-curve",
+    Forgery("any_curve.AnyCurve.row: a row of an unknown kind", "any-curve",
             {"proof.rows.0.0": "magic"}),
     *beyond("any-curve", {
         "proof.rows.0.1": (0, 1), "proof.rows.0.2": (0, 1), "proof.rows.0.4": (-(10**18), 10**18),

@@ -54,7 +54,7 @@ FORGERIES = [
           ("problem.limits.0.1", "1e31"), ("problem.limits.0.1", "1e-31"))),
     *(Forgery(_KIND + "__init__: segment {k + 1}: its least duration is not proved",
               "quintic-spline", {f"proof.low.{k}": low})
-      for k, low in ((0, "0.875"), (0, "0.7"), (0, "-0.5"), (1, "1.5"), (2, "0.9375"))),
+      for k, low in ((0, "0.9375"), (0, "0.7"), (0, "-0.5"), (1, "1.5"), (2, "0.9375"))),
     Forgery(_BOXES + "cut: the place of a cut is not stated in this kind of proof",
             "quintic-spline", {"proof.tree": [["/", 0, "1"], ["."], ["."]]}),
     *(Forgery(_BOXES + "leaf: it is not empty", "quintic-spline", {"proof.tree": tree})
