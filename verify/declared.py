@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from .boxes import SLACK, Array, Boxes, Rows, Sides
+from .boxes import SLACK, Array, Boxes, Sides
 from .declared_bound import Centre, Task
 from .declared_form import linear_form
 from .floors import least_durations
@@ -57,8 +57,6 @@ class DeclaredCurve(Boxes):
         both = zip(exact, self._returning(declared), strict=True)
         self.shortest = [max(nextafter(float(x), 0.0), y) for x, y in both]
         self.rows = self.read_rows(proof["rows"], 0, PLACES)
-        there = np.isfinite(self.task.cap(self.rows)).all()
-        need(bool(there), "a row leans on a limit that is not there")
         self.most, self.batch = self.task.total, self._batch()
         nodes = proof["tree"]
         self._hopeless = type(nodes) is list and len(nodes) == 1 and _single(nodes[0])
@@ -176,12 +174,8 @@ class DeclaredCurve(Boxes):
         angle = self.problem.waypoints[at - sum(b < at for b in virtual)][joint]
         return sign * angle > max(sign * x for x in ends)
 
-    def least(self, sides: Array, tau: Array, ids: Rows, weights: Array) -> Array:
-        """Of the curves in each box."""
-        return self.centre(sides).least(tau, self.rows[ids], weights)
-
     def centre(self, sides: Array) -> Centre:
-        """Boxes as an array (box, least or largest, segment)."""
+        """Of the declared curve."""
         return Centre(self.task, sides[:, 0], sides[:, 1])
 
 

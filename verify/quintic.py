@@ -56,14 +56,13 @@ class QuinticSpline(Boxes):
         need(all(SMALLEST < x < 1 / SMALLEST for x in sizes), "a number is of unusual size")
         stated_windows = listed(proof["windows"], "windows", MOST_WINDOWS)
         read_windows = [_window(w, n, joints) for w in clock.each(stated_windows)]
-        self.rows, self.most = self.read_rows(proof["rows"], 1, QUINTIC_PLACES), float(own)
+        self.most = float(own)
         self.task = Task(
             np.array([[float(x) for x in row] for row in steps]),
             np.array([[np.inf if x is None else float(x) for x in row] for row in limits]),
             self.most,
         )
-        there = np.isfinite(self.task.limits[self.rows[:, 1], self.rows[:, 2] - 1]).all()
-        need(bool(there), "a row leans on a limit that is not there")
+        self.rows = self.read_rows(proof["rows"], 1, QUINTIC_PLACES)
         self.windows = self._terms(read_windows)
         self._low = []
         proved = least_durations(problem, total)
@@ -97,12 +96,8 @@ class QuinticSpline(Boxes):
         least = self.over_windows(np.array(which), np.array(float(exact)), *map(np.array, box))
         need(bool(least > 0.0), "it is not proved by its window")
 
-    def least(self, sides: Array, tau: Array, ids: Rows, weights: Array) -> Array:
-        """Of the splines in each box."""
-        return self.centre(sides).least(tau, self.rows[ids], weights)
-
     def centre(self, sides: Array) -> Centre:
-        """Boxes as an array (box, least or largest, segment)."""
+        """Of the splines."""
         return Centre(self.task, sides[:, 0], sides[:, 1])
 
     def _terms(self, windows: list[list[int]]) -> tuple[Array, Array, Array]:

@@ -91,7 +91,7 @@ FORGERIES = [
             "quintic-spline", spline(3, 5, 13)),
     *(Forgery("reading.sign_of: malformed: a sign is neither 1 nor -1", "quintic-spline",
               {"proof.rows.0.3": sign}) for sign in (0, 2, -2)),
-    *(Forgery(_KIND + "__init__: a row leans on a limit that is not there",
+    *(Forgery(_BOXES + "read_rows: a row leans on a limit that is not there",
               "quintic-spline", changes)
       for changes in ({"proof.rows.0.2": 3}, {**NO_ANSWER, "problem.limits.0.0": "0"},
                       {**NO_ANSWER, "problem.limits.0.0": ["-1", None]})),
