@@ -189,10 +189,15 @@ def in_own_units(
     second = Fraction(2) ** whole(proof["second"], -MOST_POWER, MOST_POWER)
     steps = [[(b - a) / u for a, b, u in zip(*rows, units, strict=True)] for rows in pairwise(q)]
     limits = [
-        [None if x is None or x[1] <= 0 else x[1] * second**r / u for r, x in enumerate(row, 1)]
+        [None if x is None else x * second**r / u for r, x in enumerate(map(loose, row), 1)]
         for row, u in zip(problem.limits, units, strict=True)
     ]
     return second, steps, limits
+
+
+def loose(limit: Bounds) -> Fraction | None:
+    """An upper bound of a limit; one of 0 takes no part in a lower bound of the total."""
+    return None if limit is None or limit[1] <= 0 else limit[1]
 
 
 def _shares(entry: Any, segments: int) -> list[Fraction]:

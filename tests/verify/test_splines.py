@@ -12,6 +12,7 @@ from scipy.interpolate import CubicSpline, make_interp_spline
 from support.forgeries.forgery import NO_ANSWER, altered, document
 from trajgap.verify import read_problem
 from trajgap.verify.cubic import FINE, Box, Cubic, weighted
+from trajgap.verify.cubic import box as box_module
 from trajgap.verify.curve import pieces, uniform_pieces, value_at
 from trajgap.verify.reading import Clock
 
@@ -145,6 +146,30 @@ def test_ranges_hold_every_spline_of_a_box(name: str, seed: int) -> None:
                 assert float(low) - slack <= x[j][v] <= float(high) + slack
                 if width == 0.0:  # and they are worth something
                     assert float(high - low) < 1e-3 * (1 + abs(x[j][v]))
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_ranges_of_a_span_that_almost_vanishes_are_as_narrow_with_more_digits(
+    seed: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # Coincident way-points and a velocity limit alone: nothing keeps the span from 0.
+    same = {"problem.waypoints.1": document("cubic-virtual")["problem"]["waypoints"][0]}
+    limits = {"problem.limits": [["1", None, None]] * 2, "proof.cap": 2**28}
+    data = altered("cubic-virtual", {**NO_ANSWER, **same, **limits})
+    cubic, rng = Cubic(read_problem(data["problem"]), data["proof"]), np.random.default_rng(seed)
+    y = rng.uniform(1.0, 3.0, cubic.free)
+    y[0] = rng.uniform(1e-6, 4e-6)
+    y[cubic.m], y[cubic.m + 1] = 0.7 * y[0], 0.6 * y[cubic.m - 1]
+    found = []
+    for digits in (2**80, 2**200):
+        monkeypatch.setattr(box_module, "_INNER", digits)
+        low, high = ([int(z * w * 2**24) for z in y] for w in (0.999, 1.001))
+        box = Box(low, [z + 1 for z in high], [[None] * cubic.size for _ in range(2)])
+        box.trim(cubic)
+        box.narrow(cubic, CLOCK)
+        found.append(np.array(box.x, dtype=np.float64) / FINE)
+    assert np.isfinite(found[1]).all()
+    assert found[0] == pytest.approx(found[1], rel=1e-9, abs=1e-9)
 
 
 @pytest.mark.parametrize("seed", range(10))
