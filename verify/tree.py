@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Iterator
 from copy import copy
 from enum import StrEnum
 from fractions import Fraction
-from typing import Any, ClassVar, Generic, NoReturn, Self, TypeVar
+from typing import Any, ClassVar, Generic, Self, TypeVar
 
 from .problem import StatedProblem
 from .ranges import MOST_DEPTH, MOST_NODES, MOST_SEGMENTS
@@ -184,7 +184,7 @@ def _below(kind: ProofKind[B], box: B, node: Any, count: int) -> tuple[B, ...]:
         coordinate, place = listed(data, "a cut", 2, 2)
         return kind.cut(box, whole(coordinate, 0, MOST_SEGMENTS), place)
     if tag == OPEN:
-        _open(count)
+        raise Refused(f"the tree leaves a part open: node {count}")
     return (kind.step(box, tag, data),)
 
 
@@ -215,7 +215,3 @@ def _walked_part(
     except Refused as error:
         return str(error)
     return None
-
-
-def _open(count: int) -> NoReturn:
-    raise Refused(f"the tree leaves a part open: node {count}")

@@ -1,8 +1,8 @@
 """Proofs of lower bounds for C2 cubic splines."""
 
-from .box import FINE, Box
+from .box import Box
 from .kind import CubicSpline
-from .system import Condition, Cubic, kind_of_ends
+from .system import FINE, Condition, Cubic, kind_of_ends
 from .weights import Weighted, weighted
 
 __all__ = [

@@ -15,10 +15,8 @@ from typing import Self
 
 from ..ranges import TICKS
 from ..reading import Clock
-from .system import Cubic, Sides
+from .system import FINE, Cubic, Sides, least_of
 
-FINE = 2**44
-"""Ranges are multiples of 1/FINE: fine enough for gaps of 1e-9, and no number grows in a tree."""
 _INNER = 2**80
 """What the ranges are computed from is in multiples of 1/_INNER: where a span is almost 0, so is
 the determinant of the equations, and an inverse of 1e6 times ranges of 1e6 magnify a rounding."""
@@ -142,9 +140,9 @@ class Box:
 
     def _cut(self, j: int, v: int, bounds: list[Fraction | None]) -> None:
         """|x| is at most each of the bounds."""
-        known = [x for x in bounds if x is not None]
-        if known:
-            most = ceil(min(known) * FINE)
+        least = least_of(bounds)
+        if least is not None:
+            most = ceil(least * FINE)
             self._between(j, v, -most, most)
 
     def _between(self, j: int, v: int, low: int, high: int) -> None:

@@ -5,9 +5,10 @@ Symbols are those of docs/explanation/certificates-cubic.md.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from fractions import Fraction
 from itertools import pairwise
-from math import ceil, isqrt
+from math import ceil, floor, isqrt
 from typing import Any
 
 from ..problem import Declaration, StatedProblem, in_own_units
@@ -21,8 +22,9 @@ Condition = tuple[int, Vector, Vector, Number]
 """Joint, terms in the unknowns, terms in the coordinates, constant: their sum is ≤ 0."""
 Sides = list[tuple[Fraction, Fraction]]
 """Least and largest value of every coordinate."""
-_FINE = 2**60
-"""A square root is rounded up to its multiples: some digits more than a float has."""
+FINE = 2**44
+"""Ranges and roots are multiples of 1/FINE: fine enough for gaps of 1e-9, and no number grows in a
+tree."""
 
 
 class Cubic:
@@ -143,12 +145,13 @@ class Cubic:
         so α² ≤ 2VJ. From a rest the velocity is at most A·L, half of that between two.
         """
         velocity, acceleration, jerk = self.limits[joint]
-        a = smaller(acceleration, None if jerk is None else jerk * self.cap)
+        known = [acceleration, None if jerk is None else jerk * self.cap]
         if jerk is not None and velocity is not None:
-            a = smaller(a, _root_above(2 * velocity * jerk))
+            known.append(root_below(2 * velocity * jerk) + Fraction(1, FINE))
+        a = least_of(known)
         still = sum(order != 2 for order in self.ends)
         other = a * self.cap / still if still and a is not None else None
-        return smaller(velocity, other), a
+        return least_of([velocity, other]), a
 
     def side(self, c: int) -> tuple[Fraction, Fraction]:
         """Least and largest value of a coordinate: bounds, mean velocities, and the cap."""
@@ -187,11 +190,11 @@ def kind_of_ends(declared: Declaration) -> tuple[tuple[int, int], bool]:
     return (orders[0][0], orders[1][0]), False
 
 
-def _root_above(x: Fraction) -> Fraction:
-    """An upper bound of a square root."""
-    return Fraction(isqrt(ceil(x * _FINE**2)) + 1, _FINE)
+def root_below(x: Fraction) -> Fraction:
+    """A square root, rounded down to a multiple of 1/FINE."""
+    return Fraction(isqrt(floor(x * FINE**2)), FINE)
 
 
-def smaller(a: Fraction | None, b: Fraction | None) -> Fraction | None:
-    """The smaller bound; None is no bound."""
-    return a if b is None or (a is not None and a <= b) else b
+def least_of(bounds: Iterable[Fraction | None]) -> Fraction | None:
+    """The least of some bounds; None is no bound."""
+    return min((x for x in bounds if x is not None), default=None)

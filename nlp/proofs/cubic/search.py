@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import NamedTuple
 
 import numpy as np
@@ -95,10 +96,8 @@ class CubicStage(Branching[TickBox]):
     ----------
     tree : Tree
         To work on.
-    goal : callable
-        The ticks to prove.
-    restart : int
-        Goal below which the stage is over, since another one begins anew.
+    target : Fraction
+        The total to prove, s.
     improve : callable
         Given a system and a point of its relaxation, from which there may be a better answer.
     watch : callable
@@ -111,13 +110,13 @@ class CubicStage(Branching[TickBox]):
     def __init__(
         self,
         tree: Tree,
-        goal: Callable[[], int],
-        restart: int,
+        target: Fraction,
         improve: Callable[[CubicSystem, Array], None],
         watch: Callable[[Tree, int, int], None],
     ) -> None:
         self._tree, self.prover = tree, tree.prover
-        self._goal, self._restart, self._improve, self._watch = goal, restart, improve, watch
+        self._goal = min(math.ceil(target / self.prover.system.unit), self.prover.system.cap)
+        self._improve, self._watch = improve, watch
         self.rows = self.prover.system.starting_rows()
         self.common = Common(self.prover)
         self.boxes, self.finest = 0, False
@@ -133,9 +132,7 @@ class CubicStage(Branching[TickBox]):
 
     def wanted(self, box: TickBox) -> bool:
         """Whether its floor is below the goal."""
-        goal = self._goal()
-        below = goal >= self._restart and box.own.floor < min(goal, self.prover.system.cap)
-        return below and not self.finest
+        return box.own.floor < self._goal and not self.finest
 
     def given(self, box: TickBox) -> tuple[TickBox, tuple[CubicRow, ...]]:
         """The box, and the rows that are known."""

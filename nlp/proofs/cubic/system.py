@@ -182,9 +182,19 @@ def cubic_system(stated: StatedProblem, longest: Fraction, more: int = 0) -> Cub
     columns = zip(*stated.waypoints, strict=True)
     ways = [float(sum(abs(b - a) for a, b in pairwise(column))) for column in columns]
     powers = [math.frexp(way)[1] - 3 if way > 0 else 0 for way in ways]
-    second = math.frexp(float(longest))[1] - 4
+    second = _second(longest)
     cap = math.floor(longest / Fraction(2) ** second * TICKS) + more
     return CubicSystem(stated, capped(stated, powers, second, cap))
+
+
+def in_ticks(total: Fraction) -> Fraction:
+    """A total rounded down to ticks of the units in which it is between 8 and 16, s."""
+    unit = Fraction(2) ** _second(total) / TICKS
+    return math.floor(total / unit) * unit
+
+
+def _second(total: Fraction) -> int:
+    return math.frexp(float(total))[1] - 4
 
 
 def capped(stated: StatedProblem, powers: list[int], second: int, cap: int) -> dict[str, Any]:

@@ -116,7 +116,7 @@ class _High(Weighted):
         return super().least(box, mix) * Fraction(7, 5)
 
 
-QUIET_CUBIC: Patches = ((cubic_certify._Run, "improve", lambda *_: None),)
+QUIET_CUBIC: Patches = ((cubic_certify._Run, "_improve", lambda *_: None),)
 HIGH: Patches = ((tree, "weighted", lambda *given: _High(**vars(weighted(*given)))),)
 UNLUCKY: dict[str, tuple[Problem, float, Patches, Patches]] = {
     "cubic": (base_problem(), 0.02, QUIET_CUBIC, HIGH),

@@ -190,7 +190,7 @@ TREES = [
               "by hand", {"proof.tree": [node]}) for node in ([], ".[", None, True)),
     Forgery("tree._below: leaf at node {count}: {error}",
             "by hand", {"proof.tree.0.1.3": "1.8750001"}),
-    *(Forgery("tree._open: the tree leaves a part open: node {count}",
+    *(Forgery("tree._below: the tree leaves a part open: node {count}",
               kind, {"proof.tree": [["?"]]}) for kind in ("by hand", "any-curve", "cubic")),
     Forgery(MANY, "by hand", lambda data: data["proof"]["tree"].append(["."])),
     Forgery(MANY, "declared", lambda data: data["proof"]["tree"].append([".", 0, 0, 1])),
