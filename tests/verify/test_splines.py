@@ -11,7 +11,7 @@ import pytest
 from scipy.interpolate import CubicSpline, make_interp_spline
 from support.forgeries.forgery import NO_ANSWER, altered, document
 from trajgap.verify import read_problem
-from trajgap.verify.cubic import FINE, Box, Cubic, weighted
+from trajgap.verify.cubic import FINE, Box, Cubic, least
 from trajgap.verify.cubic import box as box_module
 from trajgap.verify.curve import pieces, uniform_pieces, value_at
 from trajgap.verify.reading import Clock
@@ -206,7 +206,7 @@ def test_weights_bound_every_spline_of_a_box(name: str, seed: int) -> None:
                 terms[j, key] = terms.get((j, key), 0) + w * z
         length = sum(type(key) is not int and z != 0 for (_, key), z in terms.items())
         mix = "".join(rng.choice(list("0g7wm"), length))
-        bound = float(weighted(cubic, known, target, held, equations).least(box, mix))
+        bound = float(least(cubic, box, known, target, held, equations, lambda _, mix=mix: mix))
         values = []
         for y, x in found:
             value = sum(w * y[k] for k, w in target.items())

@@ -3,7 +3,7 @@
 from .box import Box
 from .kind import CubicSpline
 from .system import FINE, Condition, Cubic, kind_of_ends
-from .weights import Weighted, weighted
+from .weights import Spot, least
 
 __all__ = [
     "FINE",
@@ -11,7 +11,7 @@ __all__ = [
     "Condition",
     "Cubic",
     "CubicSpline",
-    "Weighted",
+    "Spot",
     "kind_of_ends",
-    "weighted",
+    "least",
 ]

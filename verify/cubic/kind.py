@@ -15,7 +15,7 @@ from ..reading import Clock, listed, need, sign_of, text, whole
 from ..tree import ProofKind
 from .box import Box, Range
 from .system import Cubic, Number
-from .weights import weighted
+from .weights import least
 
 
 class CubicSpline(ProofKind[Box]):
@@ -91,5 +91,5 @@ class CubicSpline(ProofKind[Box]):
     def _least(self, box: Box, target: dict[int, int], weights: list[Any]) -> Number:
         """Least value of the target with weights: of conditions, of equations, and the shares."""
         held, equations, mix = listed(weights, "weights", 3, 3)
-        sums = weighted(self.cubic, self._known, target, held, equations)
-        return sums.least(box, text(mix, "shares of products"))
+        text(mix, "shares of products")
+        return least(self.cubic, box, self._known, target, held, equations, lambda _: mix)

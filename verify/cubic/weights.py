@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
 from fractions import Fraction
 from typing import Any
 
@@ -19,85 +18,42 @@ Spot = tuple[int, int, int]
 """Joint, coordinate and unknown of a product."""
 
 
-@dataclass(frozen=True, eq=False)
-class Weighted:
-    """A target with weighted conditions and equations: at feasible points at most the target.
-
-    It is Σ alone·x + Σ products·y·x + Σ along·y + Σ inverse/T + constant.
-
-    Attributes
-    ----------
-    cubic : Cubic
-    alone : dict
-        By joint and unknown.
-    products : dict
-        By spot, in their order.
-    along, inverse : dict
-        By coordinate.
-    constant : Fraction or int
-    """
-
-    cubic: Cubic
-    alone: dict[tuple[int, int], Number]
-    products: dict[Spot, Number]
-    along: dict[int, Number]
-    inverse: dict[int, Fraction]
-    constant: Number
-
-    def least(self, box: Box, mix: str) -> Number:
-        """Least value over a box, with the shares of both bounds of each product.
-
-        Raises
-        ------
-        Refused
-            If the shares are malformed, or an unknown has no bounds.
-        """
-        sides, constant = box.sides(self.cubic), self.constant
-        alone, along = dict(self.alone), dict(self.along)
-        need(len(mix) == len(self.products), "shares and products differ in number")
-        need(set(mix) <= set(MIX_DIGITS), "malformed: a share of a product")
-        for letter, ((joint, k, v), x) in zip(mix, self.products.items(), strict=True):
-            share = MIX_DIGITS.index(letter)
-            ends = required(box.x[joint][v], "a product of an unknown without bounds")
-            # y·u ≥ corner·u + edge·y − corner·edge where (y − corner)(u − edge) ≥ 0, and so on.
-            for part, end, first in ((share, ends[0], True), (MIX - share, ends[1], False)):
-                corner, edge = sides[k][0 if (x > 0) == first else 1], Fraction(end, FINE)
-                factor = x * Fraction(part, MIX)
-                alone[joint, v] = alone.get((joint, v), 0) + factor * corner
-                along[k] += factor * edge
-                constant -= factor * corner * edge
-        for (joint, v), x in alone.items():
-            if x:
-                ends = required(box.x[joint][v], "an unknown without bounds")
-                constant += Fraction(min(x * ends[0], x * ends[1])) / FINE
-        return constant + _over(along, self.inverse, sides, self.cubic.rho())
-
-
-def weighted(
+def least(
     cubic: Cubic,
+    box: Box,
     known: Sequence[Condition],
     target: dict[int, int],
     held: list[Any],
     equations: list[Any],
-) -> Weighted:
-    """Add up a target of the coordinates, conditions, and equations.
+    shares: Callable[[list[Spot]], str],
+) -> Number:
+    """Least value of the target plus the weighted conditions and equations over the box.
+
+    At feasible points that sum is at most the target.
 
     Parameters
     ----------
     cubic : Cubic
+    box : Box
     known : sequence of Condition
     target : dict
         Weights of the coordinates.
-    held : list
-        [condition, w, …].
-    equations : list
-        [equation, μ, …].
+    held, equations : list
+        [condition, w, …] and [equation, μ, …].
+    shares : callable
+        Given the products that occur, a character for each: its share of the bound that is exact
+        where the unknown is lowest.
+
+    Returns
+    -------
+    Fraction or int
 
     Raises
     ------
     Refused
-        If the weights are malformed.
+        If the weights are malformed, or an unknown has no bounds.
     """
+    sides = box.sides(cubic)
     held = listed(held, "weights of conditions", 2 * MOST_WEIGHTS)
     equations = listed(equations, "weights of equations", 2 * MOST_WEIGHTS)
     need(len(held) % 2 == 0 and len(equations) % 2 == 0, "malformed: weights come in pairs")
@@ -121,9 +77,26 @@ def weighted(
         if i in cubic.moved:
             t, sign = cubic.moved[i]
             inverse[t] -= w * sign * 6 * cubic.steps[t][joint]
-    alone = {(joint, key): x for (joint, key), x in terms.items() if isinstance(key, int)}
+    alone = {place: x for place, x in terms.items() if isinstance(place[1], int)}
     products = {(j, *key): x for (j, key), x in terms.items() if not isinstance(key, int) and x}
-    return Weighted(cubic, alone, dict(sorted(products.items())), along, inverse, constant)
+    mix = shares(sorted(products))
+    need(len(mix) == len(products), "shares and products differ in number")
+    need(set(mix) <= set(MIX_DIGITS), "malformed: a share of a product")
+    for letter, (joint, k, v) in zip(mix, sorted(products), strict=True):
+        x, share = products[joint, k, v], MIX_DIGITS.index(letter)
+        ends = required(box.x[joint][v], "a product of an unknown without bounds")
+        # y·u ≥ corner·u + edge·y − corner·edge where (y − corner)(u − edge) ≥ 0, and so on.
+        for part, end, first in ((share, ends[0], True), (MIX - share, ends[1], False)):
+            corner, edge = sides[k][0 if (x > 0) == first else 1], Fraction(end, FINE)
+            factor = x * Fraction(part, MIX)
+            alone[joint, v] = alone.get((joint, v), 0) + factor * corner
+            along[k] += factor * edge
+            constant -= factor * corner * edge
+    for (joint, v), x in alone.items():
+        if x:
+            ends = required(box.x[joint][v], "an unknown without bounds")
+            constant += Fraction(min(x * ends[0], x * ends[1])) / FINE
+    return constant + _over(along, inverse, sides, cubic.rho())
 
 
 def _over(

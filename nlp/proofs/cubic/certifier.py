@@ -9,7 +9,7 @@ from fractions import Fraction
 import numpy as np
 
 from ....problem import Array
-from ....verify import MOST_CUBIC_SEGMENTS, OutOfTime
+from ....verify import OutOfTime, Refused
 from ..certifier import Certifier
 from ..document import stated_problem
 from ..driver import grow
@@ -114,11 +114,12 @@ def _prove(session: Session) -> bool:
 
 
 def _missing(problem: ExactProblem) -> str | None:
-    if problem.segments > MOST_CUBIC_SEGMENTS:
-        return f"more than {MOST_CUBIC_SEGMENTS} segments"
+    try:
+        exact = cubic_system(stated_problem(problem), Fraction(1)).exact
+    except Refused as error:
+        return f"{problem.curve.name}: {error}"
     if any(problem.duration_lower):
         return None
-    exact = cubic_system(stated_problem(problem), Fraction(1)).exact
     moving = [any(column) for column in zip(*exact.steps, strict=True)]
     bounded = any(exact.fastest(j)[0] is not None for j, moves in enumerate(moving) if moves)
     return None if bounded else "nothing limits the total from below"

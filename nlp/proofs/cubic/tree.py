@@ -10,7 +10,7 @@ from typing import Any
 
 from ....problem import TrajgapError
 from ....verify import CUT, LEAF, MIX_DIGITS, MOST_INTEGER, OPEN, TICKS, Refused, StatedProblem
-from ....verify.cubic import Box, weighted
+from ....verify.cubic import Box, Spot, least
 from ..driver import regrow
 from ..exact import decimal
 from .relaxation import Proposal
@@ -88,26 +88,31 @@ class Prover:
             return None
         held, equations = proposal.weights
         known = [system.terms(row)[0] for row in proposal.rows]
-        sums = weighted(self.exact, known, target, held, equations)
-        mix = "".join(MIX_DIGITS[proposal.mix[spot]] for spot in sums.products)
+        mix = ""
+
+        def shares(spots: list[Spot]) -> str:
+            nonlocal mix
+            mix = "".join(MIX_DIGITS[proposal.mix[spot]] for spot in spots)
+            return mix
+
         try:
-            value = sums.least(box.own, mix)
+            value = least(self.exact, box.own, known, target, held, equations, shares)
         except Refused:
             return None
         weights = _renamed([held, equations, mix], proposal.rows.__getitem__)
         return Fraction(value) * TICKS / scale, scale, weights
 
     def tighten(
-        self, box: TickBox, coordinate: int, sign: int, proposal: Proposal, least: int
+        self, box: TickBox, coordinate: int, sign: int, proposal: Proposal, worth: int
     ) -> None:
-        """Move a side inward, if by ``least`` ticks at least."""
+        """Move a side inward, if by ``worth`` ticks at least."""
         own = box.own
         low, high = own.low[coordinate], own.high[coordinate]
         old = low if sign > 0 else -high
-        if proposal.value * TICKS - old < least:
+        if proposal.value * TICKS - old < worth:
             return
         found = self.bound(box, proposal)
-        if found is None or math.floor(found[0]) - old < least:
+        if found is None or math.floor(found[0]) - old < worth:
             return
         # One tick beyond the other side says that the box is empty, which is all there is to say.
         value = min(math.floor(found[0]), high + 1 if sign > 0 else 1 - low) * sign

@@ -246,15 +246,15 @@ CUBICS = [
     *(Forgery(_ENDS + "an end that is neither clamped nor natural", "cubic",
               {**NO_ANSWER, "problem.prescribed.0": entry})
       for entry in ([[1, "0"], [2, "0"]], [], [[3, "0"]])),
-    *(Forgery(_WEIGHTS + "weighted: malformed: weights come in pairs", "cubic", {path: [0]})
+    *(Forgery(_WEIGHTS + "least: malformed: weights come in pairs", "cubic", {path: [0]})
       for path in ("proof.tree.1.5", "proof.tree.1.6")),
-    Forgery(_WEIGHTS + "Weighted.least: shares and products differ in number", "cubic",
+    Forgery(_WEIGHTS + "least: shares and products differ in number", "cubic",
             {"proof.tree.1.7": "0wf0"}),
-    Forgery(_WEIGHTS + "Weighted.least: malformed: a share of a product", "cubic",
+    Forgery(_WEIGHTS + "least: malformed: a share of a product", "cubic",
             {"proof.tree.1.7": "0wf0x"}),
-    Forgery(_WEIGHTS + "Weighted.least: a product of an unknown without bounds", "cubic",
+    Forgery(_WEIGHTS + "least: a product of an unknown without bounds", "cubic",
             lambda data: data["proof"]["tree"].pop(0)),
-    Forgery(_WEIGHTS + "Weighted.least: an unknown without bounds", "cubic",
+    Forgery(_WEIGHTS + "least: an unknown without bounds", "cubic",
             {"proof.tree": [["t", 0, 1, 1, 1, [], [0, 1], ""]]}),
     *(Forgery(_WEIGHTS + "_over: 1/T of a span that may vanish", "cubic",
               {"proof.root.0": 0, "proof.tree": [["r"], ["t", 0, 1, 1, 1, [], [3, w], "00"]]})
