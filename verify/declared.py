@@ -23,7 +23,7 @@ from .ranges import (
     PLACES,
     SMALLEST_CAP,
 )
-from .reading import Clock, need, whole
+from .reading import Clock, need, required, whole
 from .tree import LEAF
 
 _NUMBERS = 2_000_000
@@ -186,9 +186,9 @@ def _single(node: Any) -> bool:
 
 def covered(problem: StatedProblem) -> Declaration:
     """The declaration of a problem, if this kind of proof speaks about it."""
-    declared = problem.declaration
-    need(declared is not None, "declaration not covered: no declared piecewise polynomial")
-    assert declared is not None
+    declared = required(
+        problem.declaration, "declaration not covered: no declared piecewise polynomial"
+    )
     n = problem.segments
     need(n > 1 or not declared.at_rest, "one segment alone has no inner break")
     need(n <= MOST_DECLARED_SEGMENTS, f"more than {MOST_DECLARED_SEGMENTS} segments")

@@ -6,12 +6,10 @@ from in multiples of 1/_INNER. Whatever is rounded is rounded outward, which onl
 
 from __future__ import annotations
 
-from copy import copy
 from dataclasses import dataclass
 from fractions import Fraction
 from math import ceil, floor, isfinite
 from operator import mul
-from typing import Self
 
 from ..ranges import TICKS
 from ..reading import Clock
@@ -49,11 +47,10 @@ class Box:
     floor: int = 0
     empty: bool = False
 
-    def again(self) -> Self:
+    def again(self) -> Box:
         """A copy, of which nothing is shared."""
-        own = copy(self)
-        own.low, own.high, own.x = list(self.low), list(self.high), [list(row) for row in self.x]
-        return own
+        x = [list(row) for row in self.x]
+        return Box(list(self.low), list(self.high), x, self.floor, self.empty)
 
     def move(self, cubic: Cubic, coordinate: int, sign: int, value: int) -> None:
         """Move a side inward: the lower one for sign 1."""
@@ -61,11 +58,6 @@ class Box:
             self.low[coordinate] = max(self.low[coordinate], value)
         else:
             self.high[coordinate] = min(self.high[coordinate], value)
-        self.trim(cubic)
-
-    def lift(self, cubic: Cubic, value: int) -> None:
-        """Raise the floor."""
-        self.floor = max(self.floor, value)
         self.trim(cubic)
 
     def trim(self, cubic: Cubic) -> None:

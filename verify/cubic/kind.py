@@ -67,7 +67,8 @@ class CubicSpline(ProofKind[Box]):
             total = dict.fromkeys(range(self.cubic.m), whole(scale, 1, MOST_INTEGER))
             proved = self._least(box, total, weights) * TICKS >= value * scale
             need(proved, "a floor is not proved")
-            box.lift(self.cubic, value)
+            box.floor = max(box.floor, value)
+            box.trim(self.cubic)
         else:
             k, sign, value, scale, *weights = listed(data, 'a step "t"', 7, 7)
             whole(k, 0, self.cubic.free - 1)

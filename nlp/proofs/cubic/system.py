@@ -94,16 +94,11 @@ class CubicSystem:
         proof = {**units, "rows": list(rows)}
         self.kind = CubicSpline(stated, proof, Fraction(0), Clock(math.inf))
         self.exact = exact = self.kind.cubic
-        size = exact.size
-        self.fixed, self.linear = np.zeros((size, size)), np.zeros((exact.coordinates, size, size))
+        dense = [_dense(exact, equation) for equation in exact.equations]
+        self.fixed = np.array([alone for alone, _ in dense])
+        self.linear = np.stack([product for _, product in dense], axis=1)
         self.steps = np.zeros((exact.m, exact.joints))
         self.which = np.full(exact.m, -1)
-        for i, equation in enumerate(exact.equations):
-            for key, x in equation.items():
-                if isinstance(key, int):
-                    self.fixed[i, key] = x
-                else:
-                    self.linear[key[0], i, key[1]] = x
         for i, (t, sign) in exact.moving.items():
             self.steps[t] = [6 * sign * float(x) for x in exact.steps[t]]
             self.which[t] = i
@@ -130,12 +125,7 @@ class CubicSystem:
         if row not in self._terms:
             condition = self.exact.condition(list(row))
             _, own, along, constant = condition
-            alone, product = np.zeros(self.exact.size), np.zeros(self.linear.shape[:2])
-            for key, x in own.items():
-                if isinstance(key, int):
-                    alone[key] = x
-                else:
-                    product[key] = x
+            alone, product = _dense(self.exact, own)
             lengths = np.zeros(self.exact.coordinates)
             for k, x in along.items():
                 lengths[k] = x
@@ -161,6 +151,17 @@ class CubicSystem:
             if exact.longest[k] is not None:
                 rows.append(CubicRow("upper", at=k))
         return rows
+
+
+def _dense(exact: Cubic, terms: dict[Any, Any]) -> tuple[Array, Array]:
+    """Factors of the unknowns, and of their products with the coordinates."""
+    alone, product = np.zeros(exact.size), np.zeros((exact.coordinates, exact.size))
+    for key, x in terms.items():
+        if isinstance(key, int):
+            alone[key] = x
+        else:
+            product[key] = x
+    return alone, product
 
 
 def cubic_system(stated: StatedProblem, longest: Fraction, more: int = 0) -> CubicSystem:

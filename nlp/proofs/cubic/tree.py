@@ -125,7 +125,8 @@ class Prover:
         if found is not None and math.floor(found[0]) > box.own.floor:
             value = min(math.floor(found[0]), self.system.cap)
             box.steps.append(["f", value, found[1], *found[2]])
-            box.own.lift(self.exact, value)
+            box.own.floor = value
+            box.own.trim(self.exact)
 
     def clear(self, box: TickBox, proposal: Proposal) -> None:
         """Close a box that is empty."""
