@@ -150,8 +150,7 @@ class Box:
         step = _INNER // FINE
         base = [_up(x, _INNER**3 // FINE) for x in offset]
         for _ in range(_ROUNDS):
-            # No range is None here.
-            both = [(r or (0, 0), x) for r, x in zip(self.x[j], middle, strict=True)]
+            both = zip((r for r in self.x[j] if r is not None), middle, strict=True)
             radius = [_up(max(abs(a * step - x), abs(b * step - x)), step) for (a, b), x in both]
             for v, line in enumerate(change):
                 reach = base[v] + _up(sum(map(mul, line, radius)), _INNER)
@@ -234,12 +233,12 @@ class _Centre:
 
     def offset(self, joint: int) -> tuple[list[int], list[int]]:
         """x̃ of a joint, and how far the first line of the equation goes, in 1/_INNER³."""
-        force = [
-            (i, t, sign * 6 * self.cubic.steps[t][joint])
+        force = {
+            t: (i, sign * 6 * self.cubic.steps[t][joint])
             for i, (t, sign) in self.cubic.moving.items()
-        ]
+        }
         right = [0] * len(self.rows)
-        for i, t, f in force:
+        for t, (i, f) in force.items():
             right[i] = f.numerator * _INNER**2 // (f.denominator * self.centre[t])
         x = [sum(map(mul, line, right)) // _INNER for line in self.inverse]
         miss = [
@@ -251,11 +250,12 @@ class _Centre:
             pull: dict[int, int] = {}
             for i, v, a in entries:
                 pull[i] = pull.get(i, 0) + a * x[v]
-            both = [dict(pull), dict(pull)]
-            # (1/T − 1/c) = −(T − c)/(cT), for T at either end.
-            for i, t, f in force if k < self.cubic.m else ():
-                for own, side in zip(both, self.ends[k], strict=True) if t == k else ():
-                    slope = f.numerator * _INNER**3 // (f.denominator * self.centre[t] * side)
+            both = [pull, dict(pull)]
+            if k in force:
+                # (1/T − 1/c) = −(T − c)/(cT), for T at either end.
+                i, f = force[k]
+                for own, side in zip(both, self.ends[k], strict=True):
+                    slope = f.numerator * _INNER**3 // (f.denominator * self.centre[k] * side)
                     own[i] = own.get(i, 0) + slope
             pulls.append((width, both))
         out = []
