@@ -109,7 +109,8 @@ class Prover:
         own = box.own
         low, high = own.low[coordinate], own.high[coordinate]
         old = low if sign > 0 else -high
-        if proposal.value * TICKS - old < worth:
+        # A program has few tangents: more than its bound may be proved.
+        if proposal.value * TICKS < old:
             return
         found = self.bound(box, proposal)
         if found is None or math.floor(found[0]) - old < worth:
