@@ -17,6 +17,7 @@ from pathlib import Path
 import numpy as np
 from on_cores import CORES, on_cores
 from trajgap.nlp.proofs.certifiers import certify
+from trajgap.nlp.proofs.cubic import CUBIC
 from trajgap.nlp.proofs.cubic.guide import peaks
 from trajgap.nlp.proofs.cubic.relaxation import BoxProgram, Relaxation
 from trajgap.nlp.proofs.cubic.system import CubicSystem, capped, cubic_system
@@ -83,7 +84,7 @@ def problems() -> dict[str, ExactProblem]:
 
 
 def line(name: str, exact: ExactProblem) -> str:
-    found = certify(exact, gap=0.01, seconds=SECONDS)
+    found = certify(exact, gap=0.01, seconds=SECONDS, certifier=CUBIC)
     head = f"| `{name}` | {exact.segments} | {float(found.lower):.4f} "
     upper = "none" if found.upper is None else f"{float(found.upper):.4f}"
     head += f"| {upper} | {found.gap:.2%} | {found.nodes} | {found.seconds:.0f} "
@@ -104,7 +105,7 @@ def line(name: str, exact: ExactProblem) -> str:
 def by_gap(name: str, exact: ExactProblem) -> str:
     cells = []
     for gap in GAPS:
-        found = certify(exact, gap=gap, seconds=SECONDS)
+        found = certify(exact, gap=gap, seconds=SECONDS, certifier=CUBIC)
         reached = "" if found.gap <= gap else f" ({found.gap:.1%} reached)"
         cells.append(f"{found.nodes}, {found.seconds:.0f} s{reached}")
     return f"| `{name}` | " + " | ".join(cells) + " |"
@@ -176,7 +177,7 @@ def cores(known: dict[str, ExactProblem]) -> None:
     certify(known["clamped-8-seed-0"], gap=0.1)  # compiles, imports
     print(CORES)
     for name in LONG:
-        ask = partial(certify, known[name], gap=0.01, seconds=SECONDS)
+        ask = partial(certify, known[name], gap=0.01, seconds=SECONDS, certifier=CUBIC)
         print(on_cores(f"`{name}`", ask), flush=True)
 
 
@@ -184,7 +185,7 @@ def widths(known: dict[str, ExactProblem]) -> None:
     print("\n| problem | " + " | ".join(f"w = {w:g}" for w in WIDTHS) + " | order |")
     print("|---" * (len(WIDTHS) + 2) + "|")
     for name in CHOSEN:
-        print(by_width(name, certify(known[name], gap=0.1)), flush=True)
+        print(by_width(name, certify(known[name], gap=0.1, certifier=CUBIC)), flush=True)
 
 
 if __name__ == "__main__":

@@ -31,7 +31,6 @@ class Cubic:
     """The problem in its own units: equations, conditions, and what the limits imply."""
 
     def __init__(self, problem: StatedProblem, proof: dict[str, Any]) -> None:
-        self.problem = problem
         declared = required(problem.declaration, "the curve is no declared piecewise polynomial")
         self.ends, self.virtual = kind_of_ends(declared)
         self.n, self.m, self.joints = problem.segments, len(problem.waypoints) - 1, problem.joints
