@@ -11,9 +11,8 @@ import pytest
 from support.forgeries.forgery import NO_ANSWER, altered, document
 from support.papers.motions import FAMILIES, Motion, nodes, vertices
 from trajgap.verify import read_problem
-from trajgap.verify.cubic.box import Box
-from trajgap.verify.cubic.system import Cubic
-from trajgap.verify.cubic.weights import least
+from trajgap.verify.cubic import FINE, Box, Cubic, least
+from trajgap.verify.cubic import box as box_module
 from trajgap.verify.curve import pieces, uniform_pieces, value_at
 from trajgap.verify.reading import Clock
 
@@ -95,12 +94,11 @@ def drawn(name: str, seed: int, width: float) -> Any:
     found = [state(data, cubic, each) for each in (h, *inside)]
     ys = np.array([y[: cubic.free] for y, _ in found]) * 2**24
     box = Box(
-        cubic,
         [int(v) for v in ys.min(axis=0)],
         [int(v) + 1 for v in ys.max(axis=0)],
         [[None] * cubic.size for _ in range(2)],
-        0,
     )
+    box.trim(cubic)
     return rng, data, cubic, box, found
 
 
@@ -109,17 +107,41 @@ def drawn(name: str, seed: int, width: float) -> Any:
 def test_ranges_hold_every_spline_of_a_box(name: str, seed: int) -> None:
     for width in (0.0, 0.02, 0.3):
         _, _, cubic, box, found = drawn(name, seed, width)
-        box.narrow(CLOCK)
+        box.narrow(cubic, CLOCK)
         assert not box.empty
         for y, x in found:
-            for side, value in zip(box.sides(), y, strict=True):
+            for side, value in zip(box.sides(cubic), y, strict=True):
                 assert float(side[0]) - 1e-7 <= value <= float(side[1]) + 1e-7
             for j, v in product(range(2), range(cubic.size)):
-                low, high = box.x[j][v]
+                low, high = (end / FINE for end in box.x[j][v])
                 slack = 1e-7 * (1 + abs(x[j][v]))
                 assert float(low) - slack <= x[j][v] <= float(high) + slack
                 if width == 0.0:  # and they are worth something
                     assert float(high - low) < 1e-3 * (1 + abs(x[j][v]))
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_ranges_of_a_span_that_almost_vanishes_are_as_narrow_with_more_digits(
+    seed: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # Coincident way-points and a velocity limit alone: nothing keeps the span from 0.
+    same = {"problem.waypoints.1": document("cubic-virtual")["problem"]["waypoints"][0]}
+    limits = {"problem.limits": [["1", None, None]] * 2, "proof.cap": 2**28}
+    data = altered("cubic-virtual", {**NO_ANSWER, **same, **limits})
+    cubic, rng = Cubic(read_problem(data["problem"]), data["proof"]), np.random.default_rng(seed)
+    y = rng.uniform(1.0, 3.0, cubic.free)
+    y[0] = rng.uniform(1e-6, 4e-6)
+    y[cubic.m], y[cubic.m + 1] = 0.7 * y[0], 0.6 * y[cubic.m - 1]
+    found = []
+    for digits in (2**80, 2**200):
+        monkeypatch.setattr(box_module, "_INNER", digits)
+        low, high = ([int(z * w * 2**24) for z in y] for w in (0.999, 1.001))
+        box = Box(low, [z + 1 for z in high], [[None] * cubic.size for _ in range(2)])
+        box.trim(cubic)
+        box.narrow(cubic, CLOCK)
+        found.append(np.array(box.x, dtype=np.float64) / FINE)
+    assert np.isfinite(found[1]).all()
+    assert found[0] == pytest.approx(found[1], rel=1e-9, abs=1e-9)
 
 
 @pytest.mark.parametrize("seed", range(10))
@@ -128,7 +150,7 @@ def test_weights_bound_every_spline_of_a_box(name: str, seed: int) -> None:
     """Conditions and equations with weights, at true splines: never below what is called least."""
     for width in (0.0, 0.05):
         rng, _, cubic, box, found = drawn(name, seed, width)
-        box.narrow(CLOCK)
+        box.narrow(cubic, CLOCK)
         rows = [
             ["total", -1, 0, 1, 0],
             ["lower", -1, 1, 1, 0],
@@ -156,7 +178,7 @@ def test_weights_bound_every_spline_of_a_box(name: str, seed: int) -> None:
                 terms[j, key] = terms.get((j, key), 0) + w * z
         length = sum(type(key) is not int and z != 0 for (_, key), z in terms.items())
         mix = "".join(rng.choice(list("0g7wm"), length))
-        bound = float(least(box, target, [held, equations, mix], known))
+        bound = float(least(cubic, box, known, target, held, equations, lambda _, mix=mix: mix))
         values = []
         for y, x in found:
             value = sum(w * y[k] for k, w in target.items())
@@ -209,8 +231,9 @@ def test_squares_of_a_length_over_a_span_lie_in_their_range(sides: Any) -> None:
     low, high = [2**22] * 5, [2**25] * 5
     for k, (a, b) in ((3, sides[0]), (0, sides[1])):
         low[k], high[k] = int(a * 2**24), int(b * 2**24)
-    box = Box(cubic, low, high, [[None] * cubic.size for _ in range(2)], 0)
-    found = tuple(map(float, box.sides()[5]))
+    box = Box(low, high, [[None] * cubic.size for _ in range(2)])
+    box.trim(cubic)
+    found = tuple(map(float, box.sides(cubic)[5]))
     (h0, h1), (t0, t1) = sides
     # A piece is no longer than its span.
     assert found[0] == pytest.approx(h0 * h0 / t1, abs=1e-6)

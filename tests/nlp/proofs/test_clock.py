@@ -59,11 +59,11 @@ def test_a_resumed_run_without_time_replays_nothing_and_loses_nothing(
 ) -> None:
     given = stopped()
     monkeypatch.setattr(state, "verify_certificate", lambda document, **_: verify(document))
-    steps: list[Any] = []
-    real = tree._follow
-    monkeypatch.setattr(tree, "_follow", lambda *data: (steps.append(data), real(*data)))
+    boxes: list[Any] = []
+    real = tree.TickBox
+    monkeypatch.setattr(tree, "TickBox", lambda own: (boxes.append(own), real(own))[1])
     found = certify(LONG, gap=1e-3, seconds=0.0, resume=given)
-    assert len(steps) == 1, "the first box, to which nothing was done"
+    assert len(boxes) == 1, "the first box, to which nothing was done"
     assert found.outcome is Outcome.INTERVAL
     assert (str(found.lower), str(found.upper)) == tuple(
         str(Fraction(given["claim"][side])) for side in ("lower", "upper")
