@@ -23,7 +23,7 @@ from .interpolant import (
     layout,
     right_hand_sides,
 )
-from .kind import Curve, Derivatives, PeakGradients, as_curve, as_durations, fit
+from .kind import Curve, Derivatives, Enclosed, PeakGradients, as_curve, as_durations, fit
 from .peak import (
     Extremum,
     Furthest,
@@ -53,6 +53,7 @@ __all__ = [
     "Count",
     "Curve",
     "Derivatives",
+    "Enclosed",
     "Extremum",
     "Furthest",
     "Interpolant",

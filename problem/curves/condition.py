@@ -199,6 +199,21 @@ class Layout(Conditions):
         used = at >= 0
         return int((-away)[used].max(initial=0)), int(away[used].max(initial=0))
 
+    @cached_property
+    def order(self) -> tuple[Indices, int, int]:
+        """Row that stands at the place of each coefficient, and the bandwidths of that order.
+
+        A condition that gives a coefficient at once stands at its place; the others follow each
+        other between them, so that those of a break are divided between its two segments.
+        """
+        at = np.empty(self.unknown.size, dtype=np.int64)
+        right = self.kinds == ConditionKind.RIGHT_VALUE
+        at[self.unknown < 0] = np.flatnonzero(right)
+        at[self.unknown >= 0] = np.flatnonzero(~right)
+        columns, factors = self.entries
+        away = (columns[at] - np.arange(at.size)[:, None])[factors[at] != 0]
+        return at, int(max(0, -away.min())), int(max(0, away.max()))
+
     @property
     def lower(self) -> int:
         """The bandwidth below."""
@@ -223,7 +238,11 @@ class Layout(Conditions):
     def unflat(self, flat: Array) -> Array:
         """Coefficients by segment and power, shape (segments, 10, joints)."""
         out = np.zeros((self.segments, MAX_COEFFICIENTS, flat.shape[-1]))
-        out[self.places] = flat
+        size = len(flat) // self.segments
+        if (self.degrees == size - 1).all():
+            out[:, :size] = flat.reshape(self.segments, size, -1)
+        else:
+            out[self.places] = flat
         return out
 
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array
-from ..errors import TrajgapError
+from ..errors import SingularError, TrajgapError
 from .adjoint import Adjoint, places_of
 from .condition import Condition, ConditionKind, Conditions, Layout, conditions_of, counts_in_words
 from .kind import (
@@ -27,7 +27,7 @@ from .peak import Extremum
 from .polynomials import MAX_COEFFICIENTS
 from .population import batch_coefficients, batch_reach
 from .refined import refined_coefficients
-from .system import coefficients, system
+from .system import DENSE_UNKNOWNS, coefficients, system
 from .trajectory import Trajectory
 
 MOST_OPEN = 600
@@ -200,11 +200,20 @@ class Interpolant(Curve):
         return Trajectory(durations, coefficients(self.layout, values, durations), self.degrees)
 
     def enclosed(self, waypoints: Array, durations: Array, nodal: Array | None = None) -> Enclosed:
-        """`fit` refined in extended precision, with the bound of `refined_coefficients`."""
+        """`fit` with the bound of `refined_coefficients`, of long splines in float64 first."""
         values = right_hand_sides(self, waypoints, nodal)
-        scaled, error = refined_coefficients(self.layout, values, durations)
-        trajectory = Trajectory(durations, scaled, self.degrees)
-        return Enclosed(trajectory, value_errors(trajectory, error))
+
+        def found(extended: bool) -> Enclosed:
+            scaled, error = refined_coefficients(self.layout, values, durations, extended)
+            trajectory = Trajectory(durations, scaled, self.degrees)
+            return Enclosed(trajectory, value_errors(trajectory, error))
+
+        if self.coefficients <= DENSE_UNKNOWNS:
+            return found(True)
+        try:
+            return replace(found(False), closer=partial(found, True))
+        except SingularError:
+            return found(True)
 
     def motion_values(self, waypoints: Array, nodal: Array | None = None) -> Array:
         """Right-hand sides of the conditions, positions counted from the first way-point.

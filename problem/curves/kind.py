@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -37,10 +37,13 @@ class Enclosed:
     trajectory : Trajectory
     error : ndarray, shape (pieces, 4, joints)
         Bound on the error of any extremum of derivative 0 to 3 on a piece.
+    closer : callable, optional
+        Makes the same with a closer bound, at some cost; None where there is none.
     """
 
     trajectory: Trajectory
     error: Array
+    closer: Callable[[], Enclosed] | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -406,9 +409,12 @@ def value_errors(trajectory: Trajectory, coefficient_error: Array) -> Array:
     Coefficient errors, plus the rounding of Horner's scheme, plus that of the place of the
     extremum, where the next derivative vanishes to rounding.
     """
-    size = 32 * np.finfo(np.float64).eps * np.abs(trajectory.scaled)
-    own = np.einsum("pr,kpj->krj", PERM[:, :4], coefficient_error + size)
-    place = np.einsum("pr,kpj->krj", PERM[:, 1:5], size)
+    top = max(trajectory.degrees) + 1
+    scaled, error = (a[:, :top].transpose(1, 0, 2) for a in (trajectory.scaled, coefficient_error))
+    size = 32 * np.finfo(np.float64).eps * np.abs(scaled)
+    # Orders lead: what is asked of all pieces is one order at a time.
+    own = np.tensordot(PERM[:top, :4].T, error, axes=1)
+    own += np.tensordot(PERM[:top, :4].T + PERM[:top, 1:5].T, size, axes=1)
     # One power after another: those of a table of exponents differ in the last bit.
-    powers = np.stack([trajectory.durations**r for r in range(4)], axis=1)
-    return np.asarray((own + place) / powers[:, :, None])
+    own /= np.stack([trajectory.durations**r for r in range(4)])[:, :, None]
+    return own.transpose(1, 0, 2)

@@ -186,14 +186,12 @@ def _reaching(a: Array, errors: Array) -> NDArray[np.int64]:
     """Pieces that may have the least or largest value of a joint, or one that counts with errors.
 
     Bernstein coefficients bound a polynomial; a piece that stays within what the ends of others
-    have is left out.
+    surely have, with errors on both sides, is left out.
     """
     hull = bernstein(a)
-    room = LOOSE * np.abs(a).sum(axis=0)
-    counts = np.zeros(a.shape[1], dtype=bool)
+    room = LOOSE * np.abs(a).sum(axis=0) + errors
+    counts = np.zeros(errors.shape, dtype=bool)
     for sign in (-1.0, 1.0):
-        bound = (sign * hull).max(axis=0) + room
         top = (sign * hull[[0, -1]]).max(axis=0) - room
-        for blur in (0.0, -errors, errors):
-            counts |= ~(bound + blur < (top + blur).max(axis=0)).all(axis=1)
-    return np.flatnonzero(counts)
+        counts |= ~((sign * hull).max(axis=0) + room < top.max(axis=0))
+    return np.flatnonzero(counts.any(axis=1))

@@ -50,7 +50,7 @@ class System:
 
     def right(self, values: Array) -> NDArray[np.floating]:
         """Right-hand sides from the rows' values."""
-        return np.asarray(self.factor[:, None] * values.astype(self.factor.dtype))
+        return np.asarray(self.factor[:, None] * values.astype(self.factor.dtype, copy=False))
 
     def begun(self, values: Array) -> NDArray[np.floating]:
         """Coefficients that a row of one entry gives at once; 0 for the others.
@@ -58,8 +58,9 @@ class System:
         What is solved for from here is exactly 0 for a joint that stands still.
         """
         flat = np.zeros((len(self.values), values.shape[1]), dtype=self.factor.dtype)
-        alone = np.count_nonzero(self.values, axis=1) == 1
-        flat[self.columns[alone, 0]] = self.right(values)[alone] / self.values[alone, :1]
+        alone = ~self.values[:, 1:].any(axis=1)
+        given = self.factor[alone, None] * values[alone].astype(self.factor.dtype, copy=False)
+        flat[self.columns[alone, 0]] = given / self.values[alone, :1]
         return flat
 
     def parts(self) -> Iterator[tuple[slice, System]]:
@@ -85,6 +86,14 @@ class System:
         band = np.zeros((len(self.values), lower + upper + 1))
         band[row, away + lower] = self.values[row, slot]
         return factorise(band, lower, upper)
+
+    @property
+    def narrow(self) -> System:
+        """The same rows in float64."""
+        if self.values.dtype == np.float64:
+            return self
+        values, factor = (a.astype(np.float64) for a in (self.values, self.factor))
+        return System(self.columns, values, factor)
 
     @property
     def in_band(self) -> bool:
