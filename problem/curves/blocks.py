@@ -4,12 +4,13 @@ The conditions at a break are divided between the segments at its two sides, so 
 block tridiagonal, B_k x_{k−1} + D_k x_k + C_k x_{k+1} = r_k. With T_k near the inverse of
 S_k = D_k − B_k T_{k−1} C_{k−1},
 
-    w_k = T_k (r_k − B_k w_{k−1}),    x_k = w_k − T_k C_k x_{k+1}
+    w_k = T_k (r_k − z_k),    z_{k+1} = B_{k+1} w_k,    x_k = w_k − T_k C_k x_{k+1}
 
 solves it but for G_k = T_k S_k − I, which is as small as rounding: exactly, w_k has a term −G_k x_k
-more. Sizes in place of all numbers make a bound of the same recursion, and as a derivative at a
-break fades with the distance (by 0.27 a segment for C2 cubics, 0.43 for C4 quintics), so do the
-products of |T_k B_k| and |T_k C_k|: the bound stays near the error. Nothing is assumed of that.
+more. Sizes in place of all numbers make a bound of the same recursion. Only the few numbers z_k,
+and x_{k+1} as far as C_k meets it, pass from block to block, and the products |B_{k+1} T_k| and
+|T_k C_k| fade with the distance nearly as a derivative at a break does (by 0.27 a segment for C2
+cubics, 0.43 for C4 quintics), so that the bound stays near the error. Nothing is assumed of that.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arrays import Array
+from ..arrays import Array, over_rows
 from .condition import Layout
 from .kernel import compiled
 from .system import System
@@ -28,9 +29,6 @@ _EPS = float(np.finfo(np.float64).eps)
 """Spacing of float64 at 1."""
 _SUMS = 1.0 + 1e-9
 """Covers the rounding of sums of up to four million terms of one sign."""
-_IMAGES = 3
-"""Images of a bound that are taken: the first one is contained in what it is made from nearly
-always."""
 ENTRY = 24 * _EPS
 """Relative rounding of an entry: of a ninth power of a ratio, a whole factor and a scale."""
 POSITIVE = 1e-290
@@ -66,79 +64,76 @@ def _inverted(s, n, t):  # type: ignore[no-untyped-def]
 
 @compiled
 def _factor(  # type: ignore[no-untyped-def]
-    values, columns, order, cuts, lower, upper, entry, inverse, defect, carry, after, doubt
-):
-    """Write T_k, a bound on |G_k|, B_{k+1} T_k and T_k C_k of every block.
+    values, columns, order, cuts, lower, upper, entry, inverse, defect, carry, carry_doubt, after,
+    after_doubt,
+):  # fmt: skip
+    """Write T_k, a bound on |G_k|, B_{k+1} T_k and T_k C_k of every block, and doubts of those two.
 
-    B_k meets the last ``lower`` unknowns before a block, C_k the first ``upper`` after it. The first
-    page of ``doubt`` is of the carry, the second of what comes after; that of G_k carried, |B_{k+1}|
-    |G_k|, stands below |G_k| in ``defect``.
+    B_k meets the last ``lower`` unknowns before a block, C_k the first ``upper`` after it. Below
+    |G_k| stands |B_{k+1}| |G_k|.
     """
     most, width = inverse.shape[1], lower + upper + 1
-    band, blur = np.empty((most, width)), np.empty((most, most))
-    s, t = np.empty((most, most)), np.empty((most, most))
+    band, loose = np.empty((most, width)), np.empty(most)
+    s, t, room, blur = np.empty((4, most, most))
     for k in range(cuts.size - 1):
         start, n = cuts[k], cuts[k + 1] - cuts[k]
         rounding = entry + 2.3e-16 * (n + lower + upper)
         band[:n] = 0.0
         for i in range(n):
-            row = order[start + i]
+            row, entries = order[start + i], 0
             for m in range(columns.shape[1]):
                 if values[row, m] != 0.0:
                     band[i, columns[row, m] - (start + i) + lower] = values[row, m]
+                    entries += 1
+            # An entry alone is its row's scale: 1, and exact.
+            loose[i] = rounding if entries > 1 else 0.0
         s[:n, :n] = 0.0
         for i in range(n):
             for c in range(max(0, i - lower), min(n, i + upper + 1)):
                 s[i, c] = band[i, c - i + lower]
         for i in range(n):
-            for c in range(n):
-                blur[i, c] = rounding * abs(s[i, c])
+            blur[i, :n] = loose[i] * np.abs(s[i, :n])
         last = start - cuts[k - 1] if k > 0 else 0
         for i in range(min(n, lower) if k > 0 else 0):
             for m in range(i, lower):
                 b, p = band[i, m - i], last - lower + m
-                size = abs(b)
                 if b == 0.0:
                     continue
                 for c in range(upper):
                     s[i, c] -= b * after[k - 1, p, c]
-                    blur[i, c] += size * (
-                        doubt[k - 1, 1, p, c] + rounding * abs(after[k - 1, p, c])
-                    )
+                    doubt = after_doubt[k - 1, p, c] + rounding * abs(after[k - 1, p, c])
+                    blur[i, c] += abs(b) * doubt
                 for c in range(last):
                     carry[k - 1, i, c] += b * inverse[k - 1, p, c]
-                    doubt[k - 1, 0, c, i] += rounding * size * abs(inverse[k - 1, p, c])
-                    defect[k - 1, most + i, c] += (1.0 + rounding) * size * defect[k - 1, p, c]
+                    carry_doubt[k - 1, i, c] += rounding * abs(b * inverse[k - 1, p, c])
+                    defect[k - 1, most + i, c] += 1.01 * abs(b) * defect[k - 1, p, c]
+        room[:n, :n] = s[:n, :n]
+        _inverted(room, n, t)
+        inverse[k, :n, :n] = t[:n, :n]
         for i in range(n):
             for c in range(n):
-                blur[i, c] += rounding * abs(s[i, c])
-                defect[k, i, c] = s[i, c]
-        _inverted(s, n, t)
-        s[:n, :n] = defect[k, :n, :n]
+                blur[i, c] += loose[i] * abs(s[i, c])
         for i in range(n):
             for c in range(n):
-                inverse[k, i, c] = t[i, c]
-                found, size = -1.0 if c == i else 0.0, 0.0
+                found, doubt = -1.0 if c == i else 0.0, 0.0
                 for m in range(n):
                     found += t[i, m] * s[m, c]
-                    size += abs(t[i, m]) * blur[m, c]
-                defect[k, i, c] = abs(found) + size
+                    doubt += abs(t[i, m]) * blur[m, c]
+                defect[k, i, c] = abs(found) + doubt
             for c in range(upper):
-                found, size = 0.0, 0.0
                 for m in range(max(0, n + c - upper), n):
-                    found += t[i, m] * band[m, n + c - m + lower]
-                    size += abs(t[i, m] * band[m, n + c - m + lower])
-                after[k, i, c], doubt[k, 1, i, c] = found, rounding * size
+                    term = t[i, m] * band[m, n + c - m + lower]
+                    after[k, i, c] += term
+                    after_doubt[k, i, c] += rounding * abs(term)
 
 
 @compiled
 def _sweep(  # type: ignore[no-untyped-def]
-    order, cuts, inverse, carry, after, right, defect, guess, sign, out
+    order, cuts, inverse, carry, after, sign, right, defect, size, out
 ):
-    """Write x for a right-hand side by rows, with ``sign`` −1.
+    """Write x for a right-hand side by rows, with ``sign`` −1; its bound by sizes, with 1.
 
-    With sizes for all numbers and ``sign`` 1 it is the bound; what G_k times ``guess`` adds to it
-    is then taken in, unless the guess is empty.
+    ``size`` is that of an x of which w_k has |G_k| x_k more, or empty.
     """
     lower, upper, joints = carry.shape[1], after.shape[2], right.shape[1]
     most = inverse.shape[1]
@@ -162,13 +157,12 @@ def _sweep(  # type: ignore[no-untyped-def]
                 if carry[k, i, m] != 0.0:
                     for j in range(joints):
                         carried[i, j] += carry[k, i, m] * t[m, j]
-        for m in range(n if guess.shape[0] > 0 else 0):
-            for i in range(n):
-                for j in range(joints):
-                    out[start + i, j] += defect[k, i, m] * guess[start + m, j]
-            for i in range(lower):
-                for j in range(joints):
-                    carried[i, j] += defect[k, most + i, m] * guess[start + m, j]
+        for m in range(n if size.size > 0 else 0):
+            for j in range(joints):
+                for i in range(n):
+                    out[start + i, j] += defect[k, i, m] * size[start + m, j]
+                for i in range(lower):
+                    carried[i, j] += defect[k, most + i, m] * size[start + m, j]
     for k in range(cuts.size - 3, -1, -1):
         for x in range(cuts[k], cuts[k + 1]):
             for m in range(upper):
@@ -215,10 +209,14 @@ class Blocks:
         Row that stands at the place of each coefficient: its own where one gives it at once.
     cuts : ndarray of int, shape (blocks + 1,)
         First coefficient of each block.
-    inverse, defect : ndarray, shape (blocks, largest, largest)
-        T_k, and a bound on \\|G_k\\|.
-    before, after, doubts : ndarray, shape (blocks, largest, bandwidth)
-        T_k B_k, T_k C_k, and bounds on the errors of both.
+    inverse : ndarray, shape (blocks, largest, largest)
+        T_k.
+    defect : ndarray, shape (blocks, largest + bandwidth, largest)
+        Bound on |G_k|, and on what B_{k+1} makes of it.
+    carry, after : ndarray, shape (blocks, bandwidth, largest), (blocks, largest, bandwidth)
+        B_{k+1} T_k and T_k C_k.
+    carry_doubt, after_doubt : ndarray
+        Bounds on the errors of both.
     """
 
     rows: System
@@ -227,41 +225,43 @@ class Blocks:
     inverse: Array
     defect: Array
     carry: Array
+    carry_doubt: Array
     after: Array
-    doubt: Array
+    after_doubt: Array
 
     def solve(self, right: NDArray[np.floating]) -> Array:
         """Solution for right-hand sides of shape (rows, joints), to rounding."""
-        out, narrow = np.empty(right.shape), np.ascontiguousarray(right, dtype=np.float64)
-        none = np.empty((0, right.shape[1]))
-        _sweep(
-            self.order, self.cuts, self.inverse, self.carry, self.after, narrow, self.defect, none,
-            -1.0, out,
-        )  # fmt: skip
-        return out
+        narrow = np.ascontiguousarray(right, dtype=np.float64)
+        factors = (self.inverse, self.carry, self.after)
+        return self._swept(factors, -1.0, narrow, np.empty((0, narrow.shape[1])))
 
     def bound(self, excess: Array) -> Array | None:
         """Bound on the error of what leaves residuals of these sizes, entry by entry, or None.
 
-        The true error e keeps |e| ≤ F + N|e|, where F comes of the residual and N of G. Where an
-        u contains its own image, F + Nu ≤ u, and F is positive, N shrinks a positive vector, so
-        that its spectral radius is below 1 and |e| ≤ u; no system with such a bound is singular.
+        By the recursion over sizes the error e keeps |e| ≤ F + N|e|, where F > 0 comes of the
+        residuals and N of G. Take positive weights v with Nv ≤ θv, θ < 1. The bound
+        u = F + Nv max(F/v)/(1 − θ) is at most v max(F/v)/(1 − θ), and so contains its own image,
+        F + Nu ≤ u. N then shrinks a positive vector, so that its spectral radius is below 1 and
+        |e| ≤ u; no system with such a bound is singular. The sum of F over the joints makes good
+        weights, as what residuals cause has its sizes.
         """
-        lower, upper = self.carry.shape[1], self.after.shape[2]
         sizes = (
             np.abs(self.inverse),
-            np.abs(self.carry) + self.doubt[:, 0, :, :lower].transpose(0, 2, 1),
-            np.abs(self.after) + self.doubt[:, 1, :, :upper],
+            np.abs(self.carry) + self.carry_doubt,
+            np.abs(self.after) + self.after_doubt,
         )
-        found, guess = np.empty(excess.shape), np.empty((0, excess.shape[1]))
-        for _ in range(_IMAGES):
-            _sweep(self.order, self.cuts, *sizes, excess, self.defect, guess, 1.0, found)
-            found *= _SUMS
-            found += POSITIVE
-            if len(guess) and (found <= guess).all():
-                return found
-            guess = 2.0 * found
-        return None
+        found = self._swept(sizes, 1.0, excess, np.empty((0, excess.shape[1])))
+        found *= _SUMS
+        found += POSITIVE
+        largest = over_rows(np.maximum, found)
+        # Each joint has its share, so that F/v is nowhere above the joint's largest F.
+        weights = (found @ (1.0 / largest))[:, None]
+        more = _SUMS * self._swept(sizes, 1.0, np.zeros(weights.shape), weights)
+        theta = float((more / weights).max())
+        if not theta < 0.5:
+            return None
+        found += more * (largest * (_SUMS / (1.0 - theta)))
+        return found
 
     def residual(self, layout: Layout, values: Array, flat: Array) -> tuple[Array, Array]:
         """Right-hand sides less the rows times ``flat``, and a bound on the rounding of that."""
@@ -272,26 +272,29 @@ class Blocks:
         )
         return out, doubt
 
+    def _swept(
+        self, factors: tuple[Array, Array, Array], sign: float, right: Array, size: Array
+    ) -> Array:
+        out = np.empty(right.shape)
+        _sweep(self.order, self.cuts, *factors, sign, right, self.defect, size, out)
+        return out
+
 
 def blocks_of(layout: Layout, rows: System, segments: int) -> Blocks:
     """Factors by blocks of so many segments, and more where bands are wider than a block."""
     order, lower, upper = layout.order
-    cuts = [0]
-    least = max(lower, upper)
-    for c in layout.first[segments::segments].tolist():
-        if c - cuts[-1] >= least:
-            cuts.append(c)
-    if int(layout.first[-1]) - cuts[-1] < least and len(cuts) > 1:
-        cuts.pop()
-    if cuts[-1] != layout.first[-1]:
-        cuts.append(int(layout.first[-1]))
-    at = np.array(cuts)
-    count, most = at.size - 1, int(np.diff(at).max())
+    # No block is narrower than the bands: each meets its neighbours alone.
+    step = max(segments, -(-max(lower, upper) // int(layout.degrees.min() + 1)))
+    count = max(1, layout.segments // step)
+    cuts = np.append(layout.first[: count * step : step], layout.first[-1])
+    most = int(np.diff(cuts).max())
     inverse, defect = np.zeros((count, most, most)), np.zeros((count, most + lower, most))
     carry, after = np.zeros((count, lower, most)), np.zeros((count, most, upper))
-    doubt = np.zeros((count, 2, most, max(lower, upper)))
+    carry_doubt, after_doubt = np.zeros(carry.shape), np.zeros(after.shape)
     _factor(
-        rows.values, rows.columns, order, at, lower, upper, ENTRY, inverse, defect, carry, after,
-        doubt,
+        rows.values, rows.columns, order, cuts, lower, upper, ENTRY, inverse, defect, carry,
+        carry_doubt, after, after_doubt,
     )  # fmt: skip
-    return Blocks(rows, order, at, inverse, defect, carry, after, doubt)
+    return Blocks(
+        rows, order, cuts, inverse, defect, carry, carry_doubt, after, after_doubt
+    )

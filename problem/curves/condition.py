@@ -128,7 +128,10 @@ class Conditions:
 
     def rates(self, durations: NDArray[Any]) -> NDArray[Any]:
         """What multiplies the given values, h_kʳ, shape (conditions,)."""
-        return np.asarray(durations[self.segment] ** self.powers)
+        found = np.ones(self.kinds.size, dtype=durations.dtype)
+        i = np.flatnonzero(self.powers)
+        found[i] = durations[self.segment[i]] ** self.powers[i]
+        return found
 
     def dense(self, values: NDArray[Any]) -> NDArray[Any]:
         """Entries, as from `matrix`, in a full matrix of shape (conditions, coefficients)."""
@@ -235,14 +238,14 @@ class Layout(Conditions):
         """Coefficients in one axis, from those by segment and power."""
         return np.asarray(scaled[self.places])
 
-    def unflat(self, flat: Array) -> Array:
-        """Coefficients by segment and power, shape (segments, 10, joints)."""
-        out = np.zeros((self.segments, MAX_COEFFICIENTS, flat.shape[-1]))
+    def unflat(self, flat: Array, powers: int = MAX_COEFFICIENTS) -> Array:
+        """Coefficients by segment and power, shape (segments, powers, joints)."""
         size = len(flat) // self.segments
         if (self.degrees == size - 1).all():
-            out[:, :size] = flat.reshape(self.segments, size, -1)
-        else:
-            out[self.places] = flat
+            out = flat.reshape(self.segments, size, -1)
+            return out if size == powers else np.pad(out, ((0, 0), (0, powers - size), (0, 0)))
+        out = np.zeros((self.segments, powers, flat.shape[-1]))
+        out[self.places] = flat
         return out
 
 
@@ -272,12 +275,9 @@ def conditions_of(
     Conditions
     """
     last = len(given) - 1
-    templates: dict[tuple[frozenset[int], int], int] = {}
-    inner = (
-        templates.setdefault(key, len(templates))
-        for key in zip(given[1:-1], continuity, strict=True)
-    )
-    number = np.array([-1, *inner, -2])
+    inner = list(zip(given[1:-1], continuity, strict=True))
+    templates = {key: i for i, key in enumerate(dict.fromkeys(inner))}
+    number = np.array([-1, *map(templates.__getitem__, inner), -2])
     parts: list[tuple[NDArray[np.int64], ...]] = []
 
     def place(at: NDArray[np.int64], kinds: list[ConditionKind], orders: list[int]) -> None:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arrays import Array
+from ..arrays import Array, over_rows
 from .polynomials import LOOSE, bernstein, derivative_rows, derived, roots_in_unit
 from .trajectory import Trajectory
 
@@ -188,10 +188,9 @@ def _reaching(a: Array, errors: Array) -> NDArray[np.int64]:
     Bernstein coefficients bound a polynomial; a piece that stays within what the ends of others
     surely have, with errors on both sides, is left out.
     """
-    hull = bernstein(a)
+    hull = bernstein(a) if len(a) > 2 else a.cumsum(axis=0)
     room = LOOSE * np.abs(a).sum(axis=0) + errors
-    counts = np.zeros(errors.shape, dtype=bool)
-    for sign in (-1.0, 1.0):
-        top = (sign * hull[[0, -1]]).max(axis=0) - room
-        counts |= ~((sign * hull).max(axis=0) + room < top.max(axis=0))
-    return np.flatnonzero(counts.any(axis=1))
+    one, other = hull[0], hull[-1]
+    least = hull.min(axis=0) - room > over_rows(np.minimum, np.minimum(one, other) + room)
+    most = hull.max(axis=0) + room < over_rows(np.maximum, np.maximum(one, other) - room)
+    return np.flatnonzero(~(least & most).all(axis=1))

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arrays import Array
+from ..arrays import Array, over_rows
 from .blocks import POSITIVE, Blocks, blocks_of
 from .condition import Layout
 from .system import System, inverse, singular, system
@@ -64,7 +64,7 @@ def refined_coefficients(
         raise singular(layout, durations)
     rounded = flat.astype(np.float64, copy=False)
     error += np.finfo(np.float64).eps * np.abs(rounded)
-    return layout.unflat(rounded), layout.unflat(error)
+    return layout.unflat(rounded), layout.unflat(error, int(layout.degrees.max()) + 1)
 
 
 def _densely(
@@ -85,7 +85,7 @@ def _by_blocks(
     for segments in WIDTHS:
         blocks = blocks_of(layout, narrow, segments)
         if narrow is rows:
-            flat, excess = _refined_narrow(layout, blocks, values)
+            flat, excess = _solved(layout, blocks, values)
         else:
             flat = _refined(rows, values, blocks.solve)
             excess = _excess(rows, values, flat, rows.columns.shape[1])
@@ -95,21 +95,22 @@ def _by_blocks(
         best = flat, error
         # A joint that stands still at 0 has what is added to every bound, and no more.
         still = POSITIVE / CLOSE**2
-        if (error.max(axis=0) <= CLOSE * np.abs(flat).max(axis=0) + still).all():
+        sizes = over_rows(np.maximum, np.abs(flat))
+        if (over_rows(np.maximum, error) <= CLOSE * sizes + still).all():
             break
     return best
 
 
-def _refined_narrow(layout: Layout, blocks: Blocks, values: Array) -> tuple[Array, Array]:
-    """Coefficients after a solution and a step of refinement in float64, and their residual."""
+def _solved(layout: Layout, blocks: Blocks, values: Array) -> tuple[Array, Array]:
+    """Coefficients in float64, and a bound on their residual.
+
+    What a step of refinement would gain is less than the rounding of the residual.
+    """
     flat = blocks.rows.begun(values)
-    residual, doubt = blocks.residual(layout, values, flat)
-    for _ in range(2):
-        flat += blocks.solve(residual)
-        residual, doubt = blocks.residual(layout, values, flat)
-    np.abs(residual, out=residual)
-    residual += doubt
-    return flat, residual
+    flat += blocks.solve(blocks.residual(layout, values, flat)[0])
+    residual, excess = blocks.residual(layout, values, flat)
+    excess += np.abs(residual)
+    return flat, excess
 
 
 def _refined(rows: System, values: Array, solve: Callable[[Array], Array]) -> NDArray[np.floating]:

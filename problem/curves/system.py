@@ -58,7 +58,7 @@ class System:
         What is solved for from here is exactly 0 for a joint that stands still.
         """
         flat = np.zeros((len(self.values), values.shape[1]), dtype=self.factor.dtype)
-        alone = ~self.values[:, 1:].any(axis=1)
+        alone = np.flatnonzero((self.values != 0.0) @ np.ones(self.values.shape[1]) == 1.0)
         given = self.factor[alone, None] * values[alone].astype(self.factor.dtype, copy=False)
         flat[self.columns[alone, 0]] = given / self.values[alone, :1]
         return flat
