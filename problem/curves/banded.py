@@ -1,28 +1,13 @@
-"""Banded linear systems: factors, solutions, and rows of the inverse with what they leave out.
-
-A derivative at a break depends less and less on way-points further away: by about 0.27 a segment
-for C2 cubics, 0.43 for C4 quintics. An entry of the inverse far from the diagonal is tiny, so that
-each row of an approximate inverse B needs a few dozen segments only. Nothing is assumed of the
-entries left out: they show in BA − I, which is computed.
-"""
+"""Factors of long banded systems, for solutions with the matrix and with its transpose."""
 
 from __future__ import annotations
 
-import os
-from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array
-from .kernel import compiled
-
-_PART = 4096
-"""Rows that one thread takes at a time: enough to hide the cost of handing them out."""
-_SUMS = 1.0 + 1e-9
-"""Covers the rounding of sums of up to four million terms of one sign."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,8 +18,6 @@ class Factors:
     ----------
     lower, upper : int
         Bandwidths of the matrix; the factor U has ``lower + upper`` diagonals above its own.
-    rows : ndarray, shape (size, lower + upper + 1)
-        The matrix by rows: entry (i, c) at ``[i, c − i + lower]``.
     packed : ndarray, shape (size, 2 lower + upper + 1)
         The factors by columns: entry (i, c) of U, or the multiplier, at ``[c, lower + upper +
         i − c]``.
@@ -44,7 +27,6 @@ class Factors:
 
     lower: int
     upper: int
-    rows: Array
     packed: Array
     swapped: NDArray[np.int32]
 
@@ -63,14 +45,13 @@ class Factors:
         return np.asarray(found)
 
 
-def factorise(rows: Array, lower: int, upper: int) -> Factors:
-    """Factors of the band matrix with entry (i, c) at ``rows[i, c − i + lower]``."""
+def factorise(row: NDArray[np.int64], column: NDArray[np.int64], entries: Array) -> Factors:
+    """Factors of the matrix with these entries, each at its row and column."""
     from scipy.linalg.lapack import dgbtrf  # a quarter of a second, and few need it
 
-    size = len(rows)
-    packed = np.zeros((size, 2 * lower + upper + 1))
-    for d in range(-lower, upper + 1):  # entry (i, i + d)
-        i = np.arange(max(0, -d), min(size, size - d))
-        packed[i + d, lower + upper - d] = rows[i, d + lower]
+    away = row - column
+    lower, upper = int(away.max()), int(-away.min())
+    packed = np.zeros((int(column.max()) + 1, 2 * lower + upper + 1))
+    packed[column, lower + upper + away] = entries
     factors, swapped, _ = dgbtrf(packed.T, lower, upper, overwrite_ab=True)
-    return Factors(lower, upper, rows, np.ascontiguousarray(factors.T), swapped)
+    return Factors(lower, upper, np.ascontiguousarray(factors.T), swapped)

@@ -27,8 +27,8 @@ from .system import System
 
 _EPS = float(np.finfo(np.float64).eps)
 """Spacing of float64 at 1."""
-_SUMS = 1.0 + 1e-9
-"""Covers the rounding of sums of up to four million terms of one sign."""
+_SUMS = 1.0 + 1e-6
+"""Covers the rounding of sums of up to nine billion terms of one sign, through all blocks."""
 ENTRY = 24 * _EPS
 """Relative rounding of an entry: of a ninth power of a ratio, a whole factor and a scale."""
 POSITIVE = 1e-290

@@ -90,15 +90,14 @@ class Conditions:
     @cached_property
     def entries(self) -> tuple[Indices, Indices]:
         """Columns and whole factors, each (conditions, widest); a factor of 0 fills up a row."""
-        right, r = self.kinds == ConditionKind.RIGHT_VALUE, self.orders
-        degree = self.degrees[self.segment]
-        columns = np.zeros((r.size, int(self.degrees.max()) + 2), dtype=np.int64)
-        factors = np.zeros(columns.shape, dtype=np.int64)
-        for m in range(columns.shape[1] - 1):
-            power = np.minimum(r + m, MAX_COEFFICIENTS - 1)
-            there = (r + m <= degree) & (~right | (m == 0))
-            columns[there, m] = (self.first[self.segment] + power)[there]
-            factors[there, m] = PERM[power, np.minimum(r, MAX_COEFFICIENTS - 1)][there]
+        last, r = MAX_COEFFICIENTS - 1, self.orders[:, None]
+        power, degree = r + np.arange(int(self.degrees.max()) + 2), self.degrees[self.segment]
+        # At the start of a segment one coefficient alone is met.
+        alone = (self.kinds == ConditionKind.RIGHT_VALUE) & (self.orders < degree)
+        there = power <= np.where(alone, self.orders, degree)[:, None]
+        columns = np.where(there, self.first[self.segment, None] + power, 0)
+        whole = PERM.astype(np.int64)[np.minimum(power, last), np.minimum(r, last)]
+        factors, r = np.where(there, whole, 0), self.orders
         i, slot = self.links
         b = self.breaks[i]
         columns[i, slot] = self.first[b] + r[i]
@@ -111,6 +110,12 @@ class Conditions:
         i = np.flatnonzero(self.kinds == ConditionKind.MATCH)
         i = i[self.orders[i] <= self.degrees[self.breaks[i]]]
         return i, np.maximum(self.degrees[self.segment[i]] - self.orders[i] + 1, 0)
+
+    @cached_property
+    def alone(self) -> tuple[Indices, Indices]:
+        """Rows of one entry, which gives a coefficient at once, and the column of that."""
+        rows = np.flatnonzero(np.count_nonzero(self.entries[1], axis=1) == 1)
+        return rows, self.entries[0][rows, 0]
 
     def matrix(self, durations: NDArray[Any]) -> NDArray[Any]:
         """Entries of all rows, shape (conditions, widest), over the durations' kind of number.
@@ -300,6 +305,6 @@ def conditions_of(
     breaks, rank, kinds_, orders_ = (
         np.concatenate([part[i] for part in parts]).astype(np.int64) for i in range(4)
     )
-    order = np.lexsort((rank, breaks))
+    order = np.argsort(breaks * (rank.max() + 1) + rank, kind="stable")
     whole = np.array(degrees, dtype=np.int64)
     return Conditions(kinds_[order], breaks[order], orders_[order], whole)

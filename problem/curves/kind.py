@@ -409,9 +409,9 @@ def value_errors(trajectory: Trajectory, coefficient_error: Array) -> Array:
     Coefficient errors, plus the rounding of Horner's scheme, plus that of the place of the
     extremum, where the next derivative vanishes to rounding.
     """
-    top = max(trajectory.degrees) + 1
-    scaled, error = (a[:, :top].transpose(1, 0, 2) for a in (trajectory.scaled, coefficient_error))
-    size = 32 * np.finfo(np.float64).eps * np.abs(scaled)
+    powers = trajectory.derivatives(0)
+    top, size = len(powers), 32 * np.finfo(np.float64).eps * np.abs(powers)
+    error = coefficient_error[:, :top].transpose(1, 0, 2)
     # Orders lead: what is asked of all pieces is one order at a time.
     own = np.tensordot(PERM[:top, :4].T, error, axes=1)
     own += np.tensordot(PERM[:top, :4].T + PERM[:top, 1:5].T, size, axes=1)

@@ -72,7 +72,7 @@ def _densely(
 ) -> tuple[NDArray[np.floating], Array | None]:
     """Coefficients, and an error that contains its own image, by the inverse of all rows."""
     approximate = inverse(rows, layout, durations)
-    flat = _refined(rows, values, lambda residual: approximate @ residual)
+    flat = _refined(layout, rows, values, lambda residual: approximate @ residual)
     return flat, _bounded(rows, approximate, values, flat)
 
 
@@ -87,7 +87,7 @@ def _by_blocks(
         if narrow is rows:
             flat, excess = _solved(layout, blocks, values)
         else:
-            flat = _refined(rows, values, blocks.solve)
+            flat = _refined(layout, rows, values, blocks.solve)
             excess = _excess(rows, values, flat, rows.columns.shape[1])
         error = blocks.bound(excess)
         if error is None:
@@ -106,16 +106,18 @@ def _solved(layout: Layout, blocks: Blocks, values: Array) -> tuple[Array, Array
 
     What a step of refinement would gain is less than the rounding of the residual.
     """
-    flat = blocks.rows.begun(values)
+    flat = blocks.rows.begun(layout, values)
     flat += blocks.solve(blocks.residual(layout, values, flat)[0])
     residual, excess = blocks.residual(layout, values, flat)
     excess += np.abs(residual)
     return flat, excess
 
 
-def _refined(rows: System, values: Array, solve: Callable[[Array], Array]) -> NDArray[np.floating]:
+def _refined(
+    layout: Layout, rows: System, values: Array, solve: Callable[[Array], Array]
+) -> NDArray[np.floating]:
     """Coefficients after a solution and two steps of refinement, in extended precision."""
-    flat = rows.begun(values)
+    flat = rows.begun(layout, values)
     for _ in range(3):
         residual = np.concatenate(
             [(part.right(values[at]) - part.times(flat)) for at, part in rows.parts()]

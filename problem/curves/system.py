@@ -52,15 +52,15 @@ class System:
         """Right-hand sides from the rows' values."""
         return np.asarray(self.factor[:, None] * values.astype(self.factor.dtype, copy=False))
 
-    def begun(self, values: Array) -> NDArray[np.floating]:
+    def begun(self, layout: Layout, values: Array) -> NDArray[np.floating]:
         """Coefficients that a row of one entry gives at once; 0 for the others.
 
         What is solved for from here is exactly 0 for a joint that stands still.
         """
         flat = np.zeros((len(self.values), values.shape[1]), dtype=self.factor.dtype)
-        alone = np.flatnonzero((self.values != 0.0) @ np.ones(self.values.shape[1]) == 1.0)
-        given = self.factor[alone, None] * values[alone].astype(self.factor.dtype, copy=False)
-        flat[self.columns[alone, 0]] = given / self.values[alone, :1]
+        rows, columns = layout.alone
+        given = self.factor[rows, None] * values[rows].astype(self.factor.dtype, copy=False)
+        flat[columns] = given / self.values[rows, :1]
         return flat
 
     def parts(self) -> Iterator[tuple[slice, System]]:
@@ -79,13 +79,9 @@ class System:
 
     @cached_property
     def factors(self) -> Factors:
-        """The rows as a band matrix, with its factors: as many rows as coefficients are needed."""
+        """Factors of the band matrix: as many rows as coefficients are needed."""
         row, slot = np.nonzero(self.values)
-        away = self.columns[row, slot] - row
-        lower, upper = int(-away.min()), int(away.max())
-        band = np.zeros((len(self.values), lower + upper + 1))
-        band[row, away + lower] = self.values[row, slot]
-        return factorise(band, lower, upper)
+        return factorise(row, self.columns[row, slot], self.values[row, slot])
 
     @property
     def narrow(self) -> System:
@@ -138,7 +134,7 @@ def coefficients(layout: Layout, values: Array, durations: Array) -> Array:
     SingularError
     """
     rows = system(layout, durations)
-    flat = rows.begun(values)
+    flat = rows.begun(layout, values)
     residual = rows.right(values) - rows.times(flat)
     with np.errstate(all="ignore"):
         if rows.in_band:

@@ -11,11 +11,10 @@ from trajgap.problem.curves.banded import factorise
 @pytest.mark.parametrize(("lower", "upper"), [(1, 2), (2, 1), (3, 3), (0, 2)])
 def test_factors_of_a_band_matrix_solve_the_dense_system(lower: int, upper: int) -> None:
     rng, size = np.random.default_rng(5), 14
-    rows, dense = rng.normal(size=(size, lower + upper + 1)), np.zeros((size, size))
-    for i, d in np.ndindex(rows.shape):
-        if 0 <= i + d - lower < size:
-            dense[i, i + d - lower] = rows[i, d]
-    right, factors = rng.normal(size=(size, 2)), factorise(rows, lower, upper)
+    dense = np.triu(np.tril(rng.normal(size=(size, size)), upper), -lower)
+    row, column = np.nonzero(dense)
+    right, factors = rng.normal(size=(size, 2)), factorise(row, column, dense[row, column])
+    assert (factors.lower, factors.upper) == (lower, upper)
     for transposed, matrix in ((False, dense), (True, dense.T)):
         found = factors.solve(right, transposed)
         np.testing.assert_allclose(matrix @ found, right, atol=1e-10)

@@ -1,5 +1,6 @@
 """Coefficients by other routes: scipy's splines, the papers' 14×14 system, rational arithmetic."""
 
+from dataclasses import replace
 from fractions import Fraction
 from types import SimpleNamespace
 
@@ -238,36 +239,47 @@ def test_error_bound_at_extreme_durations(
         bounded(found, error, exact_scaled(interpolant, problem, h, 0, None))
 
 
-@pytest.mark.parametrize("share", [1e-2, 0.0])
+@pytest.mark.parametrize("spread", [0.2, 0.8])
+@pytest.mark.parametrize("extended", [True, False])
+@pytest.mark.parametrize("width", [1, 3, 32])
 @pytest.mark.parametrize("name", LONG)
-def test_rows_of_the_banded_inverse_bound_the_error_like_all_of_it(
-    monkeypatch: pytest.MonkeyPatch, share: float, name: str
+def test_blocks_of_segments_bound_the_error_like_the_whole_inverse(
+    monkeypatch: pytest.MonkeyPatch, name: str, width: int, extended: bool, spread: float
 ) -> None:
     interpolant = LONG[name]
-    problem, h = sample_problem(interpolant, 5, joints=1)
-    _, whole = refined_coefficients(interpolant, problem.waypoints, h)
-    exact = exact_scaled(interpolant, problem, h, 0, None)
+    problem, _ = sample_problem(interpolant, 5, joints=2)
+    q = problem.waypoints.copy()
+    q[:, 1] = 0.7  # stands still
+    h = 10.0 ** np.random.default_rng(width).uniform(-spread, spread, interpolant.segments)
+    _, whole = refined_coefficients(interpolant, q, h)
     monkeypatch.setattr(system, "DENSE_UNKNOWNS", 0)
-    monkeypatch.setattr(refined, "SHARES", (share,))
+    monkeypatch.setattr(refined, "WIDTHS", (width,))
     monkeypatch.setattr(refined, "inverse", refuse_inverse)
-    found, error = refined_coefficients(interpolant, problem.waypoints, h)
-    bounded(found, error, exact)
-    if share < 1e-2:  # rows cut so early leave out too much for a bound as close as the dense one
-        assert (error <= 1.02 * whole).all()
-    assert error.max() < 1e-9 * np.abs(found).max()
+    values = right_hand_sides(interpolant, q, None)
+    found, error = refined.refined_coefficients(interpolant.layout, values, h, extended)
+    for j in range(2):
+        exact = exact_scaled(interpolant, replace(problem, waypoints=q), h, j, None)
+        bounded(found, error, exact, j)
+    assert not found[:, 1:, 1].any()
+    if extended:
+        assert (error[..., 0] <= 1.02 * whole[..., 0]).all()
+    assert error[..., 0].max() < 1e-9 * np.abs(found[..., 0]).max()
+    assert error[:, 1:, 1].max() < 1e-250
 
 
 def refuse_inverse(*_: object) -> None:
     raise AssertionError("a dense inverse where a band was meant")
 
 
-def test_a_banded_bound_that_leaves_out_too_much_is_none(monkeypatch: pytest.MonkeyPatch) -> None:
-    problem, h = sample_problem(quintic_spline(14), 5, joints=1)
+def test_blocks_that_bound_nothing_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    """All conditions at the start: what follows grows by 3.7 a segment."""
+    curve = piecewise((3,) * 40, 2, ((1, 0.0), (2, 0.0)), finish=())
+    problem, h = sample_problem(curve, 5, joints=1)
     monkeypatch.setattr(system, "DENSE_UNKNOWNS", 0)
-    monkeypatch.setattr(refined, "DENSE_AFTER_ALL", 0)
-    monkeypatch.setattr(refined, "SHARES", (0.9,))
-    with pytest.raises(TrajgapError, match="singular for durations"):
-        refined_coefficients(problem.curve, problem.waypoints, h)
+    values = right_hand_sides(curve, problem.waypoints, None)
+    for extended in (False, True):
+        with pytest.raises(TrajgapError, match="singular for durations"):
+            refined.refined_coefficients(curve.layout, values, h, extended)
 
 
 def test_a_spline_of_1000_segments_needs_no_dense_inverse(monkeypatch: pytest.MonkeyPatch) -> None:
