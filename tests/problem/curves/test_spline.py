@@ -260,11 +260,14 @@ def test_blocks_of_segments_bound_the_error_like_the_whole_inverse(
     for j in range(2):
         exact = exact_scaled(interpolant, replace(problem, waypoints=q), h, j, None)
         bounded(found, error, exact, j)
-    assert not found[:, 1:, 1].any()
-    if extended:
-        assert (error[..., 0] <= 1.02 * whole[..., 0]).all()
     assert error[..., 0].max() < 1e-9 * np.abs(found[..., 0]).max()
-    assert error[:, 1:, 1].max() < 1e-250
+    if extended:
+        # Blocks narrower than the spline overestimate what passes between them.
+        room = 1.02 if width > interpolant.segments else 100.0
+        assert (error[..., 0] <= room * whole[..., 0]).all()
+    elif not interpolant.virtual:
+        assert not found[:, 1:, 1].any()
+        assert error[:, 1:, 1].max() < 1e-250
 
 
 def refuse_inverse(*_: object) -> None:
@@ -272,14 +275,12 @@ def refuse_inverse(*_: object) -> None:
 
 
 def test_blocks_that_bound_nothing_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    """All conditions at the start: what follows grows by 3.7 a segment."""
-    curve = piecewise((3,) * 40, 2, ((1, 0.0), (2, 0.0)), finish=())
-    problem, h = sample_problem(curve, 5, joints=1)
+    curve = singular_at_two_to_three()
     monkeypatch.setattr(system, "DENSE_UNKNOWNS", 0)
-    values = right_hand_sides(curve, problem.waypoints, None)
+    values = right_hand_sides(curve, waypoints(3), None)
     for extended in (False, True):
         with pytest.raises(TrajgapError, match="singular for durations"):
-            refined.refined_coefficients(curve.layout, values, h, extended)
+            refined.refined_coefficients(curve.layout, values, np.array([2.0, 3.0]), extended)
 
 
 def test_a_spline_of_1000_segments_needs_no_dense_inverse(monkeypatch: pytest.MonkeyPatch) -> None:
