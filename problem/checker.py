@@ -312,9 +312,7 @@ def check(
     return judged
 
 
-def _judged(
-    problem: Problem, h: Array, found: Enclosed, tolerance: float
-) -> tuple[Check, bool]:
+def _judged(problem: Problem, h: Array, found: Enclosed, tolerance: float) -> tuple[Check, bool]:
     """What a trajectory and its bound say, and whether the bound may hide a jump."""
     trajectory, error = found.trajectory, found.error
     peaks = [

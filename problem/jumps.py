@@ -35,9 +35,7 @@ class Jump:
     size: float
 
 
-def jumps_of(
-    problem: Problem, trajectory: Trajectory, error: Array
-) -> tuple[list[Jump], bool]:
+def jumps_of(problem: Problem, trajectory: Trajectory, error: Array) -> tuple[list[Jump], bool]:
     """Steps of position, velocity and acceleration that rounding errors do not explain.
 
     Parameters

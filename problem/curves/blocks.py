@@ -295,6 +295,4 @@ def blocks_of(layout: Layout, rows: System, segments: int) -> Blocks:
         rows.values, rows.columns, order, cuts, lower, upper, ENTRY, inverse, defect, carry,
         carry_doubt, after, after_doubt,
     )  # fmt: skip
-    return Blocks(
-        rows, order, cuts, inverse, defect, carry, carry_doubt, after, after_doubt
-    )
+    return Blocks(rows, order, cuts, inverse, defect, carry, carry_doubt, after, after_doubt)

@@ -204,6 +204,33 @@ def test_rounding_that_hides_the_limit_is_undecided() -> None:
         assert found.peaks[0].error > 1e-6 * size
 
 
+@pytest.mark.parametrize("blur", [0.0, 1e6])
+@pytest.mark.parametrize(
+    ("order", "curve", "verdict"),
+    [
+        (1, cubic_spline(2), Verdict.PASS),
+        (2, piecewise((3, 3), 1, ((1, 0.0), (2, 0.0)), finish=((1, 0.0),)), Verdict.DISCONTINUOUS),
+    ],
+)
+def test_what_a_wide_bound_leaves_open_a_closer_one_decides(
+    order: int, curve: Interpolant, verdict: Verdict, blur: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A limit, or a jump of the acceleration, which has no limit while the jerk has one."""
+    problem = one_joint([0.0, 0.4, -0.3], curve, velocity=5.0, jerk=1e9)
+    known, enclosed, asked = check(problem, [1.0, 0.7]), Interpolant.enclosed, []
+
+    def widened(self, *given):
+        found = enclosed(self, *given)
+        error = found.error + blur * (np.arange(4) == order)[:, None]
+        return dataclasses.replace(found, error=error, closer=lambda: asked.append(1) or found)
+
+    monkeypatch.setattr(Interpolant, "enclosed", widened)
+    again = check(problem, [1.0, 0.7])
+    assert (again.verdict, again.limits, again.jumps) == (known.verdict, known.limits, known.jumps)
+    assert known.verdict is verdict
+    assert bool(asked) is (blur > 0)
+
+
 def test_velocity_jump_is_discontinuous() -> None:
     lines = piecewise((1, 1, 1), 0, ())
     problem = one_joint([0.3, 1.0, 0.6, 0.8], lines, velocity=5.0, acceleration=7.0)

@@ -263,8 +263,8 @@ def test_blocks_of_segments_bound_the_error_like_the_whole_inverse(
     assert error[..., 0].max() < 1e-9 * np.abs(found[..., 0]).max()
     if extended:
         # Blocks narrower than the spline overestimate what passes between them.
-        room = 1.02 if width > interpolant.segments else 100.0
-        assert (error[..., 0] <= room * whole[..., 0]).all()
+        assert error[..., 0].max() <= 100.0 * whole[..., 0].max()
+        assert (error[..., 0] <= 1.02 * whole[..., 0]).all() or width <= interpolant.segments
     elif not interpolant.virtual:
         assert not found[:, 1:, 1].any()
         assert error[:, 1:, 1].max() < 1e-250
