@@ -45,7 +45,9 @@ class Factors:
         return np.asarray(found)
 
 
-def factorise(row: NDArray[np.int64], column: NDArray[np.int64], entries: Array) -> Factors:
+def factorise(
+    row: NDArray[np.int64], column: NDArray[np.int64], entries: NDArray[np.floating]
+) -> Factors:
     """Factors of the matrix with these entries, each at its row and column."""
     from scipy.linalg.lapack import dgbtrf  # a quarter of a second, and few need it
 

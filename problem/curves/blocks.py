@@ -263,7 +263,9 @@ class Blocks:
         found += more * (largest * (_SUMS / (1.0 - theta)))
         return found
 
-    def residual(self, layout: Layout, values: Array, flat: Array) -> tuple[Array, Array]:
+    def residual(
+        self, layout: Layout, values: Array, flat: NDArray[np.floating]
+    ) -> tuple[Array, Array]:
         """Right-hand sides less the rows times ``flat``, and a bound on the rounding of that."""
         out, doubt = np.empty(values.shape), np.empty(values.shape)
         rows = self.rows

@@ -33,8 +33,6 @@ from .trajectory import Trajectory
 MOST_OPEN = 600
 """Coefficients up to which a case file may leave some free: finding the derivatives that complete
 the declaration takes a dense decomposition for each, some seconds in all."""
-_DENSE = 300
-"""Coefficients above which the rank is judged by a banded factorisation: a dense one is cubic."""
 
 
 @dataclass(frozen=True)
@@ -304,7 +302,7 @@ class Interpolant(Curve):
     @cached_property
     def rank(self) -> int:
         """Rank of the conditions for equal durations."""
-        if self.conditions == self.coefficients > _DENSE:
+        if self.conditions == self.coefficients > DENSE_UNKNOWNS:
             return self.conditions if self._banded_regular() else self.conditions - 1
         return int(np.linalg.matrix_rank(_unit_matrix(self.table)))
 

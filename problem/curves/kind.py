@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 _LONGEST = 1e30
 """Durations, s, beyond which, or below whose reciprocal, ninth powers leave float64's range."""
+STEP = 1e-30
+"""Complex step of gradients, s: its square is lost in any double, so nothing is truncated."""
 _SIDES = (-1.0, 1.0)
 """Below 0, and above."""
 Derivatives = tuple[tuple[int, float | tuple[float, ...]], ...]

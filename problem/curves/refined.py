@@ -14,8 +14,8 @@ from .condition import Layout
 from .system import System, inverse, singular, system
 
 WIDTHS = (1, 2, 4, 8, 16, 32)
-"""Segments in a block, tried in turn: one gives a close bound for splines of degrees 3 and 5, two or
-four for 7. Beyond 32 what is left is near singular, and a block costs the cube of its width."""
+"""Segments in a block, tried in turn: one gives a close bound for splines of degrees 3 and 5, two
+or four for 7. Beyond 32 what is left is near singular, and a block costs the cube of its width."""
 CLOSE = 1e-11
 """Share of a joint's largest coefficient that its bound may have before wider blocks are tried: a
 hundredth of what the checker's tolerance leaves."""
@@ -73,7 +73,8 @@ def _densely(
     """Coefficients, and an error that contains its own image, by the inverse of all rows."""
     approximate = inverse(rows, layout, durations)
     flat = _refined(layout, rows, values, lambda residual: approximate @ residual)
-    return flat, _bounded(rows, approximate, values, flat)
+    matrix = rows.dense
+    return flat, contained(approximate, matrix, _excess(rows, values, flat, len(matrix)))
 
 
 def _by_blocks(
@@ -101,7 +102,7 @@ def _by_blocks(
     return best
 
 
-def _solved(layout: Layout, blocks: Blocks, values: Array) -> tuple[Array, Array]:
+def _solved(layout: Layout, blocks: Blocks, values: Array) -> tuple[NDArray[np.floating], Array]:
     """Coefficients in float64, and a bound on their residual.
 
     What a step of refinement would gain is less than the rounding of the residual.
@@ -119,31 +120,26 @@ def _refined(
     """Coefficients after a solution and two steps of refinement, in extended precision."""
     flat = rows.begun(layout, values)
     for _ in range(3):
-        residual = np.concatenate(
-            [(part.right(values[at]) - part.times(flat)) for at, part in rows.parts()]
-        )
-        flat = flat + solve(residual.astype(np.float64))
+        flat = flat + solve((rows.right(values) - rows.times(flat)).astype(np.float64))
     return flat
 
 
 def _excess(rows: System, values: Array, flat: NDArray[np.floating], terms: int) -> Array:
     """Bound on the residual, its rounding in sums of so many terms included."""
-    tiny = np.finfo(np.longdouble).eps * (terms + 24)
-    found = []
-    for at, part in rows.parts():
-        right = part.right(values[at])
-        sizes = replace(part, values=np.abs(part.values)).times(np.abs(flat))
-        excess = np.abs(right - part.times(flat)) + tiny * (sizes + np.abs(right))
-        found.append(excess.astype(np.float64))
-    return np.concatenate(found)
+    tiny, right = np.finfo(np.longdouble).eps * (terms + 24), rows.right(values)
+    sizes = replace(rows, values=np.abs(rows.values)).times(np.abs(flat)) + np.abs(right)
+    return np.asarray(np.abs(right - rows.times(flat)) + tiny * sizes, dtype=np.float64)
 
 
-def _bounded(
-    rows: System, approximate: Array, values: Array, flat: NDArray[np.floating]
-) -> Array | None:
-    """An error that contains its own image, or None."""
-    matrix = rows.dense
-    excess = _excess(rows, values, flat, len(matrix))
+def contained(approximate: Array, matrix: Array, excess: Array) -> Array | None:
+    """An error that contains its own image by any approximate inverse of a matrix, or None.
+
+    Parameters
+    ----------
+    approximate, matrix : ndarray, shape (size, size)
+    excess : ndarray, shape (size, joints)
+        Bound on the residual.
+    """
     size = np.finfo(np.float64).eps * (len(matrix) + 2)
     # The rounding of the product, and of A's entries, is part of the defect |BA − I|.
     found = np.abs(approximate @ matrix - np.eye(len(matrix)))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -14,10 +13,8 @@ from ..errors import SingularError
 from .banded import Factors, factorise
 from .condition import Layout
 
-DENSE_UNKNOWNS = 400
-"""Up to this many coefficients one dense inverse takes a few milliseconds; a band gains nothing."""
-_PART = 32768
-"""Rows that are handled together in extended precision: some ten megabytes for seven joints."""
+DENSE_UNKNOWNS = 300
+"""Up to this many coefficients one dense inverse takes ten milliseconds; nothing is compiled."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,12 +59,6 @@ class System:
         given = self.factor[rows, None] * values[rows].astype(self.factor.dtype, copy=False)
         flat[columns] = given / self.values[rows, :1]
         return flat
-
-    def parts(self) -> Iterator[tuple[slice, System]]:
-        """The rows in parts, so that extended precision takes little memory."""
-        for start in range(0, len(self.values), _PART):
-            at = slice(start, start + _PART)
-            yield at, System(self.columns[at], self.values[at], self.factor[at])
 
     @cached_property
     def dense(self) -> Array:

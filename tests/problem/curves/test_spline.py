@@ -320,20 +320,3 @@ def test_gradients_by_bands_are_those_of_the_dense_system(
     np.testing.assert_allclose(
         adjoint.weighted(places, weights), together, atol=1e-10 * np.abs(together).max()
     )
-
-
-@pytest.mark.parametrize("banded", [False, True])
-def test_coefficients_change_with_each_duration_as_differences_say(
-    banded: bool, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    if banded:
-        monkeypatch.setattr(system, "DENSE_UNKNOWNS", 0)
-    interpolant = DECLARATIONS["uneven"]
-    problem, h = sample_problem(interpolant, 7)
-    adjoint = interpolant.adjoint(problem.waypoints, h)
-    for k in range(interpolant.segments):
-        step = 1e-6 * np.eye(interpolant.segments)[k]
-        ends = [coefficients(interpolant, problem.waypoints, h + s * step) for s in (1, -1)]
-        slope = interpolant.layout.flat(ends[0] - ends[1]) / 2e-6
-        found = adjoint.coefficients_by_duration(k)
-        np.testing.assert_allclose(found, slope, atol=1e-7 * np.abs(slope).max())
