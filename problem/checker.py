@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass
 from enum import StrEnum
 
@@ -18,6 +19,11 @@ from .uneven_peaks import uneven_peaks
 
 TOLERANCE = 1e-9
 """Relative excess over a limit that still counts as keeping it."""
+
+
+_BLUR = 1e-10
+"""Relative error of a reported ratio above which a closer bound is asked for, if there is one: a
+tenth of the tolerance."""
 
 
 class Verdict(StrEnum):
@@ -307,8 +313,10 @@ def check(
     except CurveError as why:
         return _no_curve(problem, h, why, tolerance)
     judged, hidden = _judged(problem, h, found, tolerance)
-    if found.closer is not None and (hidden or judged.verdict is Verdict.UNDECIDED):
-        judged, _ = _judged(problem, h, found.closer(), tolerance)
+    loose = any(_slack(problem, p) > _BLUR * max(1.0, p.ratio) for p in judged.peaks)
+    if found.closer is not None and (hidden or loose or judged.verdict is Verdict.UNDECIDED):
+        with suppress(SingularError):  # the first bound holds all the same
+            judged, _ = _judged(problem, h, found.closer(), tolerance)
     return judged
 
 

@@ -131,7 +131,7 @@ def _excess(rows: System, values: Array, flat: NDArray[np.floating], terms: int)
     return np.asarray(np.abs(right - rows.times(flat)) + tiny * sizes, dtype=np.float64)
 
 
-def contained(approximate: Array, matrix: Array, excess: Array) -> Array | None:
+def contained(approximate: NDArray[np.floating], matrix: Array, excess: Array) -> Array | None:
     """An error that contains its own image by any approximate inverse of a matrix, or None.
 
     Parameters
@@ -148,4 +148,4 @@ def contained(approximate: Array, matrix: Array, excess: Array) -> Array | None:
     error = first
     for _ in range(3):
         error = first + 1.1 * (defect @ error)
-    return error if (first + defect @ error <= error).all() else None
+    return np.asarray(error) if (first + defect @ error <= error).all() else None
