@@ -15,8 +15,7 @@ from numpy.typing import NDArray
 
 from ..arrays import Array
 from .condition import Layout
-from .kind import PeakGradients
-from .peak import Extremum
+from .peak import Extremum, PeakGradients
 from .polynomials import derivative_rows
 from .system import coefficients, inverse, system
 

@@ -22,8 +22,8 @@ from .clamped_system import (
     places_on,
     span_bases,
 )
-from .kind import STEP, Enclosed, PeakGradients, Shape, are_durations, masked, value_errors
-from .peak import Extremum, rows_at
+from .kind import STEP, Enclosed, Shape, are_durations, masked, value_errors
+from .peak import Extremum, PeakGradients, rows_at
 from .polynomials import MAX_COEFFICIENTS, derived, tops
 from .trajectory import Trajectory
 

@@ -222,22 +222,12 @@ class Layout(Conditions):
         away = (columns[at] - np.arange(at.size)[:, None])[factors[at] != 0]
         return at, int(max(0, -away.min())), int(max(0, away.max()))
 
-    @property
-    def lower(self) -> int:
-        """The bandwidth below."""
-        return self.bandwidths[0]
-
-    @property
-    def upper(self) -> int:
-        """The bandwidth above."""
-        return self.bandwidths[1]
-
     @cached_property
     def rows(self) -> tuple[Any, ...]:
         """What the kernel takes of it, in its order."""
         columns, factors = self.entries
         shared = (self.kinds, self.breaks, self.orders, columns, factors.astype(np.float64))
-        return (*shared, self.unknown, self.first, self.lower, self.upper)
+        return (*shared, self.unknown, self.first, *self.bandwidths)
 
     def flat(self, scaled: Array) -> Array:
         """Coefficients in one axis, from those by segment and power."""

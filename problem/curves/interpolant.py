@@ -18,12 +18,11 @@ from .kind import (
     Curve,
     Derivatives,
     Enclosed,
-    PeakGradients,
     as_batch,
     merged_values,
     value_errors,
 )
-from .peak import Extremum
+from .peak import Extremum, PeakGradients
 from .polynomials import MAX_COEFFICIENTS
 from .population import batch_coefficients, batch_reach
 from .refined import refined_coefficients

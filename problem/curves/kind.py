@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import Array
 from ..errors import TrajgapError
-from .peak import Extremum
+from .peak import Extremum, PeakGradients
 from .polynomials import PERM
 from .trajectory import Trajectory
 
@@ -46,25 +46,6 @@ class Enclosed:
     trajectory: Trajectory
     error: Array
     closer: Callable[[], Enclosed] | None = None
-
-
-@dataclass(frozen=True, eq=False)
-class PeakGradients:
-    """Gradients of the values of some extrema.
-
-    Attributes
-    ----------
-    durations : ndarray, shape (extrema, segments)
-        d value / d duration.
-    waypoints : ndarray, shape (extrema, way-points)
-        d value / d way-point of the extremum's own joint.
-    nodal : ndarray, shape (extrema, free)
-        d value / d free derivative of the extremum's own joint.
-    """
-
-    durations: Array
-    waypoints: Array
-    nodal: Array
 
 
 @dataclass(frozen=True, eq=False)

@@ -39,6 +39,25 @@ class Extremum:
     value: float
 
 
+@dataclass(frozen=True, eq=False)
+class PeakGradients:
+    """Gradients of the values of some extrema.
+
+    Attributes
+    ----------
+    durations : ndarray, shape (extrema, segments)
+        d value / d duration.
+    waypoints : ndarray, shape (extrema, way-points)
+        d value / d way-point of the extremum's own joint.
+    nodal : ndarray, shape (extrema, free)
+        d value / d free derivative of the extremum's own joint.
+    """
+
+    durations: Array
+    waypoints: Array
+    nodal: Array
+
+
 def rows_at(points: list[Extremum]) -> Array:
     """Weights of ten coefficients in derivatives by s at some places, shape (places, 10)."""
     orders = np.array([e.order for e in points], dtype=np.int64)

@@ -73,7 +73,7 @@ def _densely(
     """Coefficients, and an error that contains its own image, by the inverse of all rows."""
     approximate = inverse(rows, layout, durations)
     flat = _refined(layout, rows, values, lambda residual: approximate @ residual)
-    matrix = rows.dense
+    matrix = layout.dense(rows.narrow.values)
     return flat, contained(approximate, matrix, _excess(rows, values, flat, len(matrix)))
 
 

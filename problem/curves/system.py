@@ -61,14 +61,6 @@ class System:
         return flat
 
     @cached_property
-    def dense(self) -> Array:
-        """The rows as a full matrix."""
-        out = np.zeros((len(self.values), len(self.values)))
-        row, slot = np.nonzero(self.values)
-        out[row, self.columns[row, slot]] = self.values[row, slot]
-        return out
-
-    @cached_property
     def factors(self) -> Factors:
         """Factors of the band matrix: as many rows as coefficients are needed."""
         row, slot = np.nonzero(self.values)
@@ -104,7 +96,7 @@ def inverse(rows: System, layout: Layout, durations: Array) -> Array:
     SingularError
     """
     try:
-        return np.asarray(np.linalg.inv(rows.dense), dtype=np.float64)
+        return np.asarray(np.linalg.inv(layout.dense(rows.narrow.values)), dtype=np.float64)
     except np.linalg.LinAlgError:
         raise singular(layout, durations) from None
 
@@ -132,7 +124,7 @@ def coefficients(layout: Layout, values: Array, durations: Array) -> Array:
             flat = flat + rows.factors.solve(residual)
         else:
             try:
-                flat = flat + np.linalg.solve(rows.dense, residual)
+                flat = flat + np.linalg.solve(layout.dense(rows.values), residual)
             except np.linalg.LinAlgError:
                 raise singular(layout, durations) from None
     if not np.isfinite(flat).all():

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from ..arrays import Array
 from ..errors import TrajgapError
-from .kind import STEP, Curve, Enclosed, PeakGradients, Shape, as_batch, masked
-from .peak import Extremum
+from .kind import STEP, Curve, Enclosed, Shape, as_batch, masked
+from .peak import Extremum, PeakGradients
 from .polynomials import MAX_COEFFICIENTS
 from .stretched import StretchedCurve, Timing
 from .timed import clocked_reach, enclosed_with_clock, runs_forwards, value_at
