@@ -270,9 +270,11 @@ def conditions_of(
     Conditions
     """
     last = len(given) - 1
-    inner = list(zip(given[1:-1], continuity, strict=True))
-    templates = {key: i for i, key in enumerate(dict.fromkeys(inner))}
-    number = np.array([-1, *map(templates.__getitem__, inner), -2])
+    sets = {orders: i for i, orders in enumerate(dict.fromkeys(given))}
+    smooth, base = np.array(continuity, dtype=np.int64), max(continuity, default=0) + 1
+    stated = np.array([sets[orders] for orders in given[1:-1]], dtype=np.int64) * base + smooth
+    templates, inner = np.unique(stated, return_inverse=True)
+    number = np.concatenate([[-1], inner, [-2]])
     parts: list[tuple[NDArray[np.int64], ...]] = []
 
     def place(at: NDArray[np.int64], kinds: list[ConditionKind], orders: list[int]) -> None:
@@ -283,9 +285,9 @@ def conditions_of(
     for edge, kind in ((0, ConditionKind.RIGHT_VALUE), (last, ConditionKind.LEFT_VALUE)):
         orders = sorted(given[edge])
         place(np.array([edge]), [kind] * len(orders), orders)
-    for (orders_given, smooth), i in templates.items():
-        values = sorted(orders_given)
-        matches = [order for order in range(smooth + 1) if order not in orders_given]
+    for i, template in enumerate(templates.tolist()):
+        values = sorted(list(sets)[template // base])
+        matches = [order for order in range(template % base + 1) if order not in values]
         kinds = [
             *[ConditionKind.LEFT_VALUE] * len(values),
             *[ConditionKind.RIGHT_VALUE] * len(values),

@@ -191,7 +191,7 @@ def test_faces_import_nothing_heavy() -> None:
 
 
 def test_modules_import_each_other_in_no_circle() -> None:
-    """Imports for types alone count too; what a curve's `piecewise` is makes the one circle left."""
+    """Imports for types count too; what a curve's `piecewise` is makes the one circle left."""
     modules = {n: p for folder in MAY_IMPORT for n, p in source_modules(folder).items()}
     needs: dict[str, set[str]] = {}
     for name, path in modules.items():
