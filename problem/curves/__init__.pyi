@@ -23,10 +23,11 @@ from .interpolant import (
     layout,
     right_hand_sides,
 )
-from .kind import Curve, Derivatives, PeakGradients, as_curve, as_durations, fit
+from .kind import Curve, Derivatives, Enclosed, as_curve, as_durations, fit
 from .peak import (
     Extremum,
     Furthest,
+    PeakGradients,
     critical_points,
     extrema,
     furthest,
@@ -53,6 +54,7 @@ __all__ = [
     "Count",
     "Curve",
     "Derivatives",
+    "Enclosed",
     "Extremum",
     "Furthest",
     "Interpolant",

@@ -121,7 +121,7 @@ def test_steps_beyond_the_errors_on_both_sides_are_jumps(pieces: int) -> None:
             (b + 1, problem.joints[j], r, pytest.approx(at[b]), pytest.approx(steps[r, b, j]))
             for b, j, r in np.argwhere((np.abs(steps) > both).transpose(1, 2, 0)).tolist()
         ]
-        found = jumps_of(problem, motion, error)
+        found, _ = jumps_of(problem, motion, error)
         assert [(j.break_index, j.joint, j.order, j.time, j.size) for j in found] == expected
         assert len(expected) > 0 or pieces < 3
 
@@ -194,6 +194,35 @@ def test_rounding_that_hides_the_limit_is_undecided() -> None:
         assert verdict in (None, found.verdict)
         size = abs(found.peaks[0].value)
         assert found.peaks[0].error > 1e-6 * size
+
+
+@pytest.mark.parametrize("blur", [0.0, 1e-7, 1e6])
+@pytest.mark.parametrize(
+    ("order", "curve", "verdict"),
+    [
+        (1, cubic_spline(2), Verdict.PASS),
+        (2, piecewise((3, 3), 1, ((1, 0.0), (2, 0.0)), finish=((1, 0.0),)), Verdict.DISCONTINUOUS),
+    ],
+)
+def test_what_a_wide_bound_leaves_open_a_closer_one_decides(
+    order: int, curve: Interpolant, verdict: Verdict, blur: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A limit and its ratio, or a jump of the acceleration, where the jerk is limited."""
+    problem = one_joint([0.0, 0.4, -0.3], curve, velocity=5.0, jerk=1e9)
+    known, enclosed, asked = check(problem, [1.0, 0.7]), Interpolant.enclosed, []
+
+    def widened(self, *given):
+        found = enclosed(self, *given)
+        error = found.error + blur * (np.arange(4) == order)[:, None]
+        return dataclasses.replace(found, error=error, closer=lambda: asked.append(1) or found)
+
+    monkeypatch.setattr(Interpolant, "enclosed", widened)
+    again = check(problem, [1.0, 0.7])
+    assert (again.verdict, again.limits, again.jumps) == (known.verdict, known.limits, known.jumps)
+    assert known.verdict is verdict
+    assert again.peaks == known.peaks
+    # An error too small to hide anything still blurs the ratio of what is limited.
+    assert bool(asked) is (blur > (0 if order == 1 else 1))
 
 
 def test_velocity_jump_is_discontinuous() -> None:

@@ -99,5 +99,5 @@ def test_unknowns_are_what_no_row_gives_at_once_and_the_band_holds_them(name: st
     matrix = plan.dense(plan.entries[1])[~right][:, plan.unknown >= 0]
     assert matrix.shape == (plan.unknowns, plan.unknowns)
     equation, unknown = np.nonzero(matrix)
-    assert (equation - unknown).max(initial=0) == plan.lower
-    assert (unknown - equation).max(initial=0) == plan.upper
+    assert (equation - unknown).max(initial=0) == plan.bandwidths[0]
+    assert (unknown - equation).max(initial=0) == plan.bandwidths[1]
