@@ -3,7 +3,13 @@ from .feasibility import apart
 from .judgement import SAME
 from .optimality import KKT, KKT_TOLERANCE, Active, kkt
 from .other_route import with_other_route
-from .per_joint import OPTIMUM_SLACK, PerJointSolution, Range, solve_per_joint
+from .per_joint import (
+    OPTIMUM_SLACK,
+    PerJointSolution,
+    Range,
+    longest_status,
+    solve_per_joint,
+)
 from .program import Program, free_values
 from .search import build
 from .solution import Evidence, Route, Solution, Status, close, weakest
@@ -32,6 +38,7 @@ __all__ = [
     "close",
     "free_values",
     "kkt",
+    "longest_status",
     "random_starts",
     "seconds_left",
     "solve",

@@ -1,7 +1,8 @@
 """Answers that need no search: a proof that there is none, a closed form, an infimum of 0.
 
 Straight motions at constant speed take no time where no velocity is limited. Segments that are
-stretched by themselves have their least durations, or ratios of them at which nothing jumps.
+stretched by themselves have their least durations, or ratios of them at which nothing jumps. At
+fixed ratios the total is the one unknown.
 """
 
 from __future__ import annotations
@@ -12,7 +13,16 @@ from itertools import pairwise
 
 import numpy as np
 
-from ...problem import Array, Problem, check, extrema
+from ...problem import (
+    QUANTITIES,
+    TOLERANCE,
+    Array,
+    Problem,
+    TrajgapError,
+    Verdict,
+    check,
+    extrema,
+)
 from ...verify import shown_bound
 from .decided import decided, kept
 from .feasibility import SURE, apart, impossible
@@ -217,6 +227,84 @@ def _least(low: Array, ratios: _Ratios) -> Array:
     for k in range(z.size - 1):
         z[k + 1] = max(z[k + 1], z[k] + ratios.low[k])
     return z
+
+
+FORMULA = "at fixed ratios the total is the one unknown, in closed form"
+"""Beside every optimum at fixed ratios: no search stands behind it."""
+
+
+def tight_at_ratios(problem: Problem) -> Array | Solution:
+    """The shortest durations with the ratios of the problem, or why no total keeps the limits.
+
+    A derivative of order r falls with the total T as T⁻ʳ where a curve may be stretched in time:
+    with its peak p_r at T = 1 s, a limit asks for T ≥ (p_r/limit_r)^(1/r), and the largest of these
+    is the answer, unless bounds on durations ask for more. Positions do not depend on T.
+
+    Parameters
+    ----------
+    problem : Problem
+        With ratios.
+
+    Returns
+    -------
+    ndarray, shape (segments,), or Solution
+        s; any total where nothing that moves is limited.
+
+    Raises
+    ------
+    TrajgapError
+        If the curve has free coefficients or cannot be stretched, so that there is no formula.
+    """
+    shares, why = problem.shares, problem.unscaled
+    if why is not None:
+        raise TrajgapError(why)
+    assert shares is not None
+    at_one = check(problem, shares)
+    if any(p.quantity == "curve" for p in at_one.peaks):
+        why = f"at these ratios there is no curve: {at_one.feasible_why}"
+        return Solution(problem, Status.FAILED, why)
+    for p in at_one.peaks:
+        if np.isinf(p.ratio) and p.quantity in QUANTITIES:
+            why = f"joint {p.joint} moves, though its {p.quantity} limit is 0"
+            return Solution(problem, Status.INFEASIBLE, why)
+    least = max(at_one.stretch, float((problem.duration_lower / shares).max()))
+    most = float((problem.duration_upper / shares).min())
+    # Rounding may take a duration beyond the bound that it meets.
+    h = shares * min(least or 1.0, most)
+    h = np.clip(h, problem.duration_lower, problem.duration_upper)
+    if least <= most:
+        return h
+    # The longest total breaks the limits least: it passes where rounding alone decides.
+    verdict = check(problem, h).limits
+    if verdict is Verdict.PASS:
+        return h
+    said = (
+        f"at these ratios limits and least durations ask for {shown_bound(least, 'lower')} s "
+        f"in total, and the upper bounds on durations end at {shown_bound(most, 'upper')} s"
+    )
+    if verdict is Verdict.VIOLATED:
+        return Solution(problem, Status.INFEASIBLE, said)
+    return Solution(problem, Status.NONE_FOUND, f"{said}; rounding hides which is the larger")
+
+
+def refused_at_ratios(problem: Problem, h: Array) -> Solution:
+    """The answer where no total makes a motion pass, though it is as tight as its limits allow."""
+    verdict = check(problem, h)
+    outside = [p for p in verdict.peaks if p.quantity == "position" and p.ratio > 1.0 + TOLERANCE]
+    if verdict.limits is Verdict.VIOLATED and outside:
+        worst = max(outside, key=lambda p: p.ratio)
+        unit = "m" if problem.linear[problem.joints.index(str(worst.joint))] else "rad"
+        why = (
+            f"at these ratios joint {worst.joint} reaches {worst.value:.6g} {unit}, beyond its "
+            f"position limit of {worst.limit:.6g} {unit}, whatever the total"
+        )
+        return Solution(problem, Status.INFEASIBLE, why)
+    why = "rounding hides whether any total keeps the limits at these ratios"
+    if verdict.jumps:
+        jump = max(verdict.jumps, key=lambda one: (-one.order, abs(one.size)))
+        what = ("position", "velocity", "acceleration")[jump.order]
+        why = f"at these ratios the {what} of joint {jump.joint} jumps, whatever the total"
+    return Solution(problem, Status.NONE_FOUND, why)
 
 
 CUT_SHORT = "the time ran out: what was not searched may hold a shorter motion"

@@ -6,10 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...problem import QUANTITIES, Array, Check, Problem, Verdict, check, half_range
+from ...problem import QUANTITIES, Array, Check, Problem, Verdict, check, evaluate, half_range
 from .descent import descend
 from .optimality import Local
-from .starts import DENSE, LogBox, slowed
+from .starts import DENSE, LogBox, slowed, stretching
 
 ROUNDS = 6
 """Stretches that are tried: the bound on rounding errors changes little with each."""
@@ -17,15 +17,13 @@ AIM = 5e-10
 """Relative excess, rounding included, that a stretch aims at: half the checker's tolerance."""
 NARROWINGS = 3
 """Descents within narrower limits: a shorter motion has larger rounding errors."""
-LONGER, LENGTHENINGS = 2.0, 30
-"""By how much the shortest durations are lengthened where rounding hides the limits, and how often:
-a jerk's error falls to an eighth each time, and over nine decades in all."""
 DEEPER_INSIDE = 2.0
 """By how many bounds on rounding errors limits are narrowed where no stretch is possible."""
-
-
 BLURRED = 1e-6
 """Relative length by which rounding may set an optimum apart from the tight motion beside it."""
+
+Motion = tuple[Array, Array | None]
+"""Durations, s, and free derivatives, where the declaration leaves some."""
 
 
 def kept(problem: Problem, verdict: Check) -> bool:
@@ -79,11 +77,47 @@ def decided(problem: Problem, h: Array, nodal: Array | None = None) -> Local | N
     # A descent changes each duration by itself, which fixed ratios do not allow.
     descends = not problem.curve.free and problem.ratios is None and problem.segments <= DENSE
     if found is None and descends:
-        found = _narrowed(problem, h) or _lengthened(problem, h)
+        found = _narrowed(problem, h)
     if found is None:
         return None
     durations, values = found
     return Local(durations, values, float(durations.sum()), True, True, 0, (h, nodal))
+
+
+def incumbent(problem: Problem, known: Array, nodal: Array | None) -> Local | None:
+    """The shortest motion that passes of those that somebody has, as they are or just tight.
+
+    A printed motion that exceeds a limit by its last digit is worth what its repair is worth.
+
+    Parameters
+    ----------
+    problem : Problem
+    known : ndarray, shape (motions, segments)
+        s.
+    nodal : ndarray, shape (motions, free, joints), or None
+        Without them motions of a curve that leaves derivatives free are not determined.
+
+    Returns
+    -------
+    Local or None
+    """
+    if problem.curve.free and nodal is None:
+        return None
+    motions: list[Motion] = []
+    for h, v in zip(known, [None] * len(known) if nodal is None else nodal, strict=True):
+        motions.append((h, v))
+        c = float(evaluate(stretching(problem), h[None], v).stretch[0])
+        if problem.curve.homogeneous and 0 < c < np.inf:
+            tight = np.clip(h * c, problem.duration_lower, problem.duration_upper)
+            motions.append((tight, None if v is None else slowed(problem, v, c)))
+    best: Local | None = None
+    for h, v in sorted(motions, key=lambda motion: float(motion[0].sum())):
+        if best is not None and h.sum() >= best.total:
+            break
+        passing = stretched(problem, h, v)
+        if passing is not None and not (best and passing[0].sum() >= best.total):
+            best = Local(*passing, float(passing[0].sum()), False, True, 0)
+    return best
 
 
 def longer_than_tight(beyond: float) -> str:
@@ -101,7 +135,7 @@ def _blur(problem: Problem, verdict: Check) -> Array:
     return blur
 
 
-def stretched(problem: Problem, h: Array, nodal: Array | None) -> tuple[Array, Array | None] | None:
+def stretched(problem: Problem, h: Array, nodal: Array | None) -> Motion | None:
     """The motion stretched until it passes, or None where the duration bounds leave no room.
 
     Parameters
@@ -138,7 +172,7 @@ def stretched(problem: Problem, h: Array, nodal: Array | None) -> tuple[Array, A
     return None
 
 
-def _narrowed(problem: Problem, h: Array) -> tuple[Array, None] | None:
+def _narrowed(problem: Problem, h: Array) -> Motion | None:
     """The end of a descent within limits that are narrower by the motion's rounding errors."""
     bottom = np.maximum(problem.duration_lower, 0.5 * h)
     box = LogBox(
@@ -152,30 +186,6 @@ def _narrowed(problem: Problem, h: Array) -> tuple[Array, None] | None:
         h = np.clip(end, problem.duration_lower, problem.duration_upper)
         if kept(problem, check(problem, h)):
             return h, None
-    return None
-
-
-def _lengthened(problem: Problem, h: Array) -> tuple[Array, Array | None] | None:
-    """The end of a descent whose shortest durations are longer, by as much as it takes.
-
-    A segment that is far shorter than the others blurs what is known of all derivatives in it. The
-    total often hardly depends on it.
-    """
-    if check(problem, h).limits is not Verdict.UNDECIDED:
-        return None
-    top = np.minimum(problem.duration_upper, LONGER * h.sum())
-    for _ in range(LENGTHENINGS):
-        floor = LONGER * float(h.min())
-        if floor > h.sum():
-            break
-        bottom = np.minimum(np.maximum(problem.duration_lower, floor), top)
-        end = descend(problem, np.maximum(h, bottom), LogBox(np.log(bottom), np.log(top)))
-        if not end.feasible:
-            break
-        h = np.clip(end.durations, problem.duration_lower, problem.duration_upper)
-        found = stretched(problem, h, None) or _narrowed(problem, h)
-        if found is not None:
-            return found
     return None
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...problem import Array, Problem, Verdict, check
 from .decided import BLURRED, decided, kept, longer_than_tight
@@ -27,16 +28,11 @@ def better_of(one: Solution, other: Solution) -> Solution:
     if not other.found:
         return one
     shorter = other.best < one.best * (1 - BETTER)
-    founded = other.best <= one.best * (1 + BETTER) and settled(other) and not settled(one)
+    founded = other.best <= one.best * (1 + BETTER) and other.settled and not one.settled
     if one.found and not shorter and not founded:
         return one
     iterations = one.iterations + other.iterations
     return replace(other, build_seconds=one.build_seconds, iterations=iterations)
-
-
-def settled(solution: Solution) -> bool:
-    """Whether an answer meets the conditions of an optimum, or of a total that is not attained."""
-    return solution.status in (Status.CONVERGED, Status.OPTIMAL, Status.NOT_ATTAINED)
 
 
 SAME = 1e-6
@@ -91,10 +87,10 @@ def judged(
     best = min(alike, key=lambda local: (not local.converged, local.total))
     durations, nodal = best.tight or (best.durations, best.nodal)
     report = best.report if best.report is not None and best.tight is None else None
-    dense = problem.segments <= DENSE
+    dense, fixed = problem.segments <= DENSE, problem.ratios is not None
     if report is None:
-        report = kkt(problem, durations, nodal) if dense else UNKNOWN
-    if report.residual > SHARP and dense and not problem.curve.free:
+        report = kkt(problem, durations, nodal) if dense or fixed else UNKNOWN
+    if report.residual > SHARP and dense and not (problem.curve.free or fixed):
         durations, report = _sharper(problem, durations, report)
     # Where rounding decides, the conditions hold at the tight motion, and a longer one passes.
     passing, beyond = (durations, nodal), 0.0
@@ -152,6 +148,11 @@ def _sharper(problem: Problem, durations: Array, report: KKT) -> tuple[Array, KK
     return (h, better) if alike and better.residual < report.residual else (durations, report)
 
 
+def on_floor(durations: Array, floor: Array) -> NDArray[np.bool_]:
+    """Which durations, s, lie on a least one that the search made up, shape (segments,)."""
+    return (floor > 0) & (durations <= _ON_FLOOR * floor)
+
+
 def still_falling(durations: Array, floor: Array) -> str | None:
     """Why an answer is no shortest motion: a duration lies on a least one that the search made up.
 
@@ -167,10 +168,10 @@ def still_falling(durations: Array, floor: Array) -> str | None:
     str or None
         None where every duration is longer than its made-up least one.
     """
-    on_floor = np.flatnonzero((floor > 0) & (durations <= _ON_FLOOR * floor)).tolist()
-    if not on_floor:
+    at = np.flatnonzero(on_floor(durations, floor)).tolist()
+    if not at:
         return None
-    names = ", ".join(str(k + 1) for k in on_floor)
+    names = ", ".join(str(k + 1) for k in at)
     return f"the total falls as the duration of segment {names} goes to 0"
 
 

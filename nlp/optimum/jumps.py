@@ -10,15 +10,16 @@ of motions is looked for.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
 from ...problem import Array, CurveError, Problem, TrajgapError, check, fit
 from .clock import time_up
-from .decided import decided, kept
+from .decided import Motion, decided, kept
 from .feasibility import apart
+from .optimality import Local
 from .program import free_values
 from .solution import Solution, Status
 from .starts import slowed
@@ -125,35 +126,41 @@ def as_answer(problem: Problem, found: Solution) -> Solution | None:
     return replace(answer, status=Status.FEASIBLE, why=why)
 
 
-TRIES = 24
-"""Random ratios from which the equations are solved: a problem with an answer has one or two, and
-about every third start ends at one."""
-STEPS = 40
-"""Steps of one try: those that end at an answer need fewer, the others run into the bounds."""
-LAST_BITS = {"xtol": 1e-15, "ftol": 1e-15, "gtol": 1e-15}
-"""Tolerances that leave rounding alone."""
-SPREAD, WIDEST = 2.0, 6.0
-"""Log ratios of the starts, and at most: a factor of 7, and of 400."""
-MATCHED = 1e-10
-"""Jump, relative to its terms, that counts as none: a tenth of what the checker grants."""
-APART = 1e-6
-"""Log ratios that lie further apart are other solutions."""
-SETS = 4
-"""Ends from which steps along a whole set of solutions are taken: two to see that they agree, and
-two more, since a set may have several parts."""
-MOVE, SMALLEST_MOVE = 0.3, 1e-7
-"""First and last step along a set of solutions, in log ratios: the total is then settled to less
-than what the checker's tolerance gives away."""
-DIFFERENCE = 1e-6
-"""Step of the differences that give the directions of that set, in log ratios."""
-FLAT = 1e-5
-"""Share of the largest singular value below which a direction changes no jump."""
+@dataclass(frozen=True)
+class Matching:
+    """Settings of the search for ratios without a jump; lengths are in log ratios."""
 
-Motion = tuple[Array, Array | None]
-"""Durations, s, and free derivatives, where the declaration leaves some."""
+    tries: int = 24
+    """Random ratios from which the equations are solved: a problem with an answer has one or two,
+    and about every third start ends at one."""
+    steps: int = 40
+    """Of one try: those that end at an answer need fewer, the others run into the bounds."""
+    spread: float = 2.0
+    """Of the starts: a factor of 7."""
+    widest: float = 6.0
+    """Of all that is looked at: a factor of 400."""
+    matched: float = 1e-10
+    """Jump, relative to its terms, that counts as none: a tenth of what the checker grants."""
+    apart: float = 1e-6
+    """Ratios that lie further apart are other solutions."""
+    sets: int = 4
+    """Ends from which steps along a whole set of solutions are taken: two to see that they agree,
+    and two more, since a set may have several parts."""
+    move: float = 0.3
+    """First step along a set of solutions."""
+    smallest_move: float = 1e-7
+    """Last one: the total is settled to less than what the checker's tolerance gives away."""
+    flat: float = 1e-5
+    """Share of the largest singular value below which a direction changes no jump."""
 
 
-def matched(problem: Problem, seed: int) -> list[Motion]:
+MATCHING = Matching()
+"""What ratios without a jump are looked for with."""
+Places = list[tuple[int, int, int]]
+"""Break, joint and order of each jump that the declaration allows and the limits forbid."""
+
+
+def matched(problem: Problem, seed: int) -> list[Local]:
     """Motions that pass although their declaration lets them jump, shortest first.
 
     Parameters
@@ -163,40 +170,34 @@ def matched(problem: Problem, seed: int) -> list[Motion]:
 
     Returns
     -------
-    list of (durations, free derivatives)
-        s. None found proves nothing.
+    list of Local
+        None found proves nothing.
     """
-    curve, n = problem.curve.piecewise, problem.segments
-    places = _places(problem)
+    curve, places, by = problem.curve.piecewise, _places(problem), MATCHING
     if curve is None or apart(problem) or not curve.homogeneous or not places:
         return []
     if curve.free and smoother(problem) is not None:
         return []  # the same motions are those of a declaration that cannot jump
-
-    def jumps(ratios: Array) -> Array:
-        found = _least_jumps(problem, places, np.exp(np.append(0.0, ratios)))
-        return np.ones(len(places)) if found is None else found[1]
-
     generator = np.random.default_rng(seed)
     ratios: list[Array] = []
-    found: list[Motion] = []
+    found: list[Local] = []
     walks = 0
-    for _ in range(TRIES):
-        if time_up() or walks == SETS:
+    for _ in range(by.tries):
+        if time_up() or walks == by.sets:
             break
-        start = generator.uniform(-SPREAD, SPREAD, n - 1)
-        end = _onto(jumps, start)
-        if end is None or any(np.abs(end - other).max() <= APART for other in ratios):
+        start = generator.uniform(-by.spread, by.spread, problem.segments - 1)
+        end = _onto(problem, places, start)
+        if end is None or any(np.abs(end.x - other).max() <= by.apart for other in ratios):
             continue
-        if len(_directions(jumps, end)):
+        if len(_flat(end)):
             walks += 1
-            end = _shortened(problem, places, jumps, end)
-        if all(np.abs(end - other).max() > APART for other in ratios):
-            ratios.append(end)
-            motion = _tight(problem, places, end)
-            if motion is not None:
-                found.append(motion)
-    return sorted(found, key=lambda one: float(one[0].sum()))
+            end = _shortened(problem, places, end)
+        if all(np.abs(end.x - other).max() > by.apart for other in ratios):
+            ratios.append(end.x)
+            local = decided(problem, *_tight(problem, places, end.x))
+            if local is not None:
+                found.append(local)
+    return sorted(found, key=lambda one: one.total)
 
 
 def jump_equations(problem: Problem) -> tuple[int, int]:
@@ -216,116 +217,89 @@ def jump_equations(problem: Problem) -> tuple[int, int]:
     return max(0, len(places) - problem.curve.free * len(joints)), problem.segments - 1
 
 
-def _onto(jumps: Callable[[Array], Array], start: Array) -> Array | None:
-    """The nearest ratios without a jump, if a search from the start ends at some."""
+def _onto(problem: Problem, places: Places, start: Array) -> Any:
+    """The nearest ratios without a jump, as SciPy's result, if a search ends at some; else None."""
     from scipy.optimize import least_squares  # a quarter of a second, and few need it
 
-    end = least_squares(jumps, start, bounds=(-WIDEST, WIDEST), max_nfev=STEPS, **LAST_BITS)
-    return end.x if np.abs(end.fun).max() <= MATCHED else None
+    def jumps(ratios: Array) -> Array:
+        try:
+            return _least_jumps(problem, places, np.exp(np.append(0.0, ratios)))[1]
+        except CurveError:
+            return np.ones(len(places))
+
+    bits, by = 1e-15, MATCHING  # tolerances that leave rounding alone
+    end = least_squares(
+        jumps, start, bounds=(-by.widest, by.widest), max_nfev=by.steps,
+        xtol=bits, ftol=bits, gtol=bits, jac="3-point",
+    )  # fmt: skip
+    return end if np.abs(end.fun).max() <= by.matched else None
 
 
-def _least_jumps(
-    problem: Problem, places: list[tuple[int, int, int]], h: Array
-) -> tuple[Array | None, Array] | None:
-    """The free derivatives with the least jumps at these durations, and those jumps, relative.
-
-    A jump is linear in the free derivatives of its own joint; None where there is no curve.
-    """
-    try:
-        moved = fit(problem.curve, problem.waypoints, h, _nodal(problem, {}))
-    except CurveError:
-        return None
-    sides = np.array([moved.sides(b, j, order)[:2] for b, j, order in places])
-    base = sides[:, 1] - sides[:, 0]
-    values: dict[tuple[int, int], float] = {}
-    for i in range(problem.curve.free):
-        every = {(i, j): 1.0 for j in range(len(problem.joints))}
-        one = fit(problem.curve, problem.waypoints, h, _nodal(problem, every))
-        sides = np.array([one.sides(b, j, order)[:2] for b, j, order in places])
-        for at in range(len(places)):
-            values[i, at] = float(sides[at, 1] - sides[at, 0] - base[at])
-    nodal: dict[tuple[int, int], float] = {}
-    for j in sorted({j for _, j, _ in places}) if problem.curve.free else []:
-        own = [at for at, place in enumerate(places) if place[1] == j]
-        matrix = np.array([[values[i, at] for i in range(problem.curve.free)] for at in own])
-        solved = np.linalg.lstsq(matrix, -base[own], rcond=None)[0]
-        nodal |= {(i, j): float(x) for i, x in enumerate(solved)}
-    found = _nodal(problem, nodal)
-    moved = fit(problem.curve, problem.waypoints, h, found)
-    left, right, scale = np.array([moved.sides(b, j, order) for b, j, order in places]).T
-    return found, np.asarray((right - left) / np.where(scale > 0, scale, 1.0))
-
-
-def _nodal(problem: Problem, values: dict[tuple[int, int], float]) -> Array | None:
-    """Free derivatives, shape (free, joints), 0 where nothing else is said; None without any."""
-    if not problem.curve.free:
-        return None
-    nodal = np.zeros((problem.curve.free, len(problem.joints)))
-    for place, value in values.items():
-        nodal[place] = value
-    return nodal
-
-
-def _shortened(
-    problem: Problem,
-    places: list[tuple[int, int, int]],
-    jumps: Callable[[Array], Array],
-    ratios: Array,
-) -> Array:
-    """The ratios of the shortest motion that steps along the solutions lead to."""
-    size = MOVE
-    total = _total(problem, places, ratios)
-    while size > SMALLEST_MOVE and np.isfinite(total) and not time_up():
-        better = False
-        for direction in _directions(jumps, ratios):
-            for sign in (1.0, -1.0):
-                trial = np.clip(ratios + sign * size * direction, -WIDEST, WIDEST)
-                end = _onto(jumps, trial)
-                if end is None or not _total(problem, places, end) < total:
-                    continue
-                ratios, total, better = end, _total(problem, places, end), True
-                break
-        size = size if better else 0.5 * size
-    return ratios
-
-
-def _directions(jumps: Callable[[Array], Array], ratios: Array) -> Array:
+def _flat(end: Any) -> Array:
     """Orthogonal directions in which no jump arises, shape (directions, ratios)."""
-    steps = DIFFERENCE * np.eye(ratios.size)
-    columns = [(jumps(ratios + s) - jumps(ratios - s)) / (2 * DIFFERENCE) for s in steps]
-    _, sizes, turned = np.linalg.svd(np.array(columns).T)
-    rank = int((sizes > FLAT * max(float(sizes.max(initial=0.0)), 1.0)).sum())
+    _, sizes, turned = np.linalg.svd(end.jac)
+    rank = int((sizes > MATCHING.flat * max(float(sizes.max(initial=0.0)), 1.0)).sum())
     return np.asarray(turned[rank:])
 
 
-def _stretched(problem: Problem, places: list[tuple[int, int, int]], ratios: Array) -> Motion:
+def _least_jumps(problem: Problem, places: Places, h: Array) -> tuple[Array | None, Array]:
+    """The free derivatives with the least jumps at these durations, and those jumps, relative.
+
+    A jump is linear in the free derivatives of its own joint.
+    """
+    free, joints = problem.curve.free, len(problem.joints)
+
+    def sides(nodal: Array | None) -> Array:
+        moved = fit(problem.curve, problem.waypoints, h, nodal)
+        return np.array([moved.sides(b, j, order) for b, j, order in places]).T
+
+    nodal = np.zeros((free, joints)) if free else None
+    left, right, scale = sides(nodal)
+    if nodal is not None:
+        each = np.eye(free)[:, :, None] * np.ones(joints)
+        effects = np.array([side[1] - side[0] for side in map(sides, each)]) - (right - left)
+        of = np.array([j for _, j, _ in places])
+        for j in np.unique(of):
+            own = of == j
+            wanted = (left - right)[own]
+            nodal[:, j] = np.linalg.lstsq(effects[:, own].T, wanted, rcond=None)[0]
+        left, right, scale = sides(nodal)
+    return nodal, np.asarray((right - left) / np.where(scale > 0, scale, 1.0))
+
+
+def _shortened(problem: Problem, places: Places, end: Any) -> Any:
+    """The end of steps along a set of solutions to the ratios of its shortest motion."""
+    size, total = MATCHING.move, _total(problem, places, end.x)
+    while size > MATCHING.smallest_move and np.isfinite(total) and not time_up():
+        for step in (way * size * one for one in _flat(end) for way in (1.0, -1.0)):
+            inside = np.clip(end.x + step, -MATCHING.widest, MATCHING.widest)
+            trial = _onto(problem, places, inside)
+            if trial is not None and _total(problem, places, trial.x) < total:
+                end, total = trial, _total(problem, places, trial.x)
+                break
+        else:
+            size *= 0.5
+    return end
+
+
+def _tight(problem: Problem, places: Places, ratios: Array) -> Motion:
     """The motion with these ratios, stretched to its limits and lower bounds."""
     h = np.exp(np.append(0.0, ratios))
-    found = _least_jumps(problem, places, h)
-    nodal = None if found is None else found[0]
+    nodal, _ = _least_jumps(problem, places, h)
     stretch = float(check(problem, h, nodal).stretch)
     factor = float(np.max(problem.duration_lower / h, initial=stretch))
     return h * factor, None if nodal is None else slowed(problem, nodal, factor)
 
 
-def _total(problem: Problem, places: list[tuple[int, int, int]], ratios: Array) -> float:
-    """Total of the stretched motion, s; inf beyond an upper bound."""
-    h, _ = _stretched(problem, places, ratios)
+def _total(problem: Problem, places: Places, ratios: Array) -> float:
+    """Total of the tight motion, s; inf beyond an upper bound."""
+    h, _ = _tight(problem, places, ratios)
     inside = np.isfinite(h).all() and (h <= problem.duration_upper).all()
     return float(h.sum()) if inside else float("inf")
 
 
-def _tight(problem: Problem, places: list[tuple[int, int, int]], ratios: Array) -> Motion | None:
-    """The stretched motion, moved inside its limits until the checker passes it."""
-    h, nodal = _stretched(problem, places, ratios)
-    local = decided(problem, h, nodal)
-    if local is None or not kept(problem, check(problem, local.durations, local.nodal)):
-        return None
-    return local.durations, local.nodal
-
-
-def _places(problem: Problem) -> list[tuple[int, int, int]]:
-    """Break, joint and order of each jump that the declaration allows and the limits forbid."""
+def _places(problem: Problem) -> Places:
+    """Jumps that the declaration allows and the limits forbid."""
     curve = problem.curve.piecewise
     if curve is None:
         return []

@@ -1,4 +1,4 @@
-"""Where searches begin: what `solve` is given, usual durations, their box, starts drawn over it."""
+"""Where searches begin: durations that are given, usual ones, and the box around them."""
 
 from __future__ import annotations
 
@@ -18,8 +18,6 @@ ROUND = 1e-9
 """Relative room below a least duration, which rounding may take: the checker's tolerance."""
 LEAST_SHARE, MOST_TIMES = 1e-12, 1e12
 """Of the usual duration: no search leaves this range, in which float64 has not lost the curve."""
-WIDTH = 3.0
-"""Log durations by which starts anywhere differ from the usual ones: a factor of 20."""
 PASSES = 4
 """Stretches of single segments of `way_start`; more change little."""
 STEP, DAMPING = (0.8, 3.0), 0.7
@@ -186,75 +184,6 @@ def box_above(problem: Problem, floor: Array) -> LogBox:
     # A least duration above an upper bound leaves no motion; the box stays one for the search.
     high = np.maximum(np.minimum(problem.duration_upper, MOST_TIMES * usual), low)
     return LogBox(np.log(low), np.log(high))
-
-
-def anywhere(problem: Problem, count: int, seed: int, floor: Array) -> Array:
-    """Starts drawn over the box, up to `WIDTH` to both sides of the usual durations."""
-    box, base = box_above(problem, floor), np.log(equal_start(problem))
-    low = np.maximum(box.low, np.minimum(base, box.high) - WIDTH)
-    high = np.minimum(box.high, np.maximum(base, box.low) + WIDTH)
-    spread = np.random.default_rng(seed).uniform(0.0, 1.0, (count, problem.segments))
-    return np.asarray(np.exp(low + spread * (high - low)))
-
-
-@dataclass(frozen=True, eq=False)
-class Ask:
-    """The arguments of `solve`."""
-
-    starts: int
-    seed: int
-    initial: Array | None
-    known: Array
-    """Durations that somebody has, and after them the same stretched to be tight, s."""
-    known_nodal: Array | None
-    lower: float = 0.0
-    """A proved lower bound of the total, s."""
-
-
-def asked(
-    problem: Problem,
-    starts: int,
-    seed: int,
-    initial: ArrayLike | None,
-    known: ArrayLike | None,
-    known_nodal: ArrayLike | None,
-    lower: float,
-) -> Ask:
-    """The arguments of `solve`, read; a clear refusal of what has the wrong shape."""
-    if starts < 1:
-        raise TrajgapError(f"starts: must be 1 or more, got {starts}")
-    points = np.empty((0, problem.segments)) if known is None else vectors(problem, "known", known)
-    nodal = None if known_nodal is None else np.asarray(known_nodal, dtype=np.float64)
-    wanted = (len(points), problem.curve.free, len(problem.joints))
-    if nodal is not None and nodal.shape != wanted:
-        raise TrajgapError(f"known_nodal: expected shape {wanted}, got {nodal.shape}")
-    points, nodal = _with_tight(problem, points, nodal)
-    first = None if initial is None else vectors(problem, "initial", initial)
-    return Ask(starts, seed, first, points, nodal, lower)
-
-
-def _with_tight(problem: Problem, known: Array, nodal: Array | None) -> tuple[Array, Array | None]:
-    """Known motions, and after them each one stretched so that it just keeps its limits.
-
-    A printed motion that exceeds a limit by its last digit is worth what its repair is worth.
-    """
-    if not len(known) or not problem.curve.homogeneous or (problem.curve.free and nodal is None):
-        return known, nodal
-    problem = stretching(problem)
-    if nodal is None:
-        stretch = evaluate(problem, known).stretch
-    else:
-        each = zip(known, nodal, strict=True)
-        stretch = np.array([evaluate(problem, h[None], v).stretch[0] for h, v in each])
-    usable = np.isfinite(stretch) & (stretch > 0) & (stretch != 1.0)
-    factor = stretch[usable]
-    inside = np.clip(
-        known[usable] * factor[:, None], problem.duration_lower, problem.duration_upper
-    )
-    if nodal is not None:
-        each = zip(nodal[usable], factor.tolist(), strict=True)
-        nodal = np.concatenate([nodal, *([slowed(problem, v, c)] for v, c in each)])
-    return np.vstack([known, inside]), nodal
 
 
 def vectors(problem: Problem, name: str, given: ArrayLike) -> Array:

@@ -291,15 +291,15 @@ def test_none_is_found_where_brute_force_has_none() -> None:
 @cache
 def without_a_jump() -> Array:
     """The only durations of that one joint, which two tests look at."""
-    ((found, _),) = matched(determined(ON), 0)
-    return found
+    (found,) = matched(determined(ON), 0)
+    return found.durations
 
 
 def test_bounds_on_the_durations_hold() -> None:
     free = without_a_jump()
     low = np.array([0.0, 2.0 * free[1], 0.0])
-    ((longer, _),) = matched(determined(ON, duration_lower=low), 0)
-    np.testing.assert_allclose(longer, 2.0 * free, rtol=1e-6)
+    (longer,) = matched(determined(ON, duration_lower=low), 0)
+    np.testing.assert_allclose(longer.durations, 2.0 * free, rtol=1e-6)
     assert matched(determined(ON, duration_upper=0.9 * free), 0) == []
 
 
@@ -307,8 +307,8 @@ def test_proportional_joints_share_the_ratios() -> None:
     both = Problem(
         np.column_stack([ON, 0.5 - 0.4 * ON]), Limits([V] * 2, [A] * 2, [J] * 2), DETERMINED
     )
-    ((shared, _),) = matched(both, 0)
-    np.testing.assert_allclose(shared, without_a_jump(), rtol=1e-6)
+    (shared,) = matched(both, 0)
+    np.testing.assert_allclose(shared.durations, without_a_jump(), rtol=1e-6)
     other = Problem(
         np.column_stack([ON, TURNING_BACK]), Limits([V] * 2, [A] * 2, [J] * 2), DETERMINED
     )
@@ -416,7 +416,7 @@ def test_two_joints_have_two_equations_for_two_ratios() -> None:
 @pytest.mark.slow
 def test_joints_whose_equations_are_the_same_share_the_shortest_motion() -> None:
     (shared, *_) = matched(problem_through(BOTH), 0)
-    assert shared[0].sum() == pytest.approx(shortest().total_time, rel=1e-5)
+    assert shared.total == pytest.approx(shortest().total_time, rel=1e-5)
 
 
 def test_more_equations_than_ratios_are_named() -> None:
