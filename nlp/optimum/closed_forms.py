@@ -29,14 +29,12 @@ from .feasibility import SURE, apart, impossible
 from .solution import Route, Solution, Status
 from .starts import equal_start, first_nodal
 
-UNLIMITED = 1e-4
-"""Share of equal durations that an unlimited motion is shown with: any would do."""
-HALVINGS = 60
-"""Times that the total is halved while `check` still sees that nothing exceeds its limit."""
+HALVINGS = 40
+"""Times that a total whose infimum is 0 is halved, while the checker still passes it."""
 
 
-def straight_durations(problem: Problem) -> Array | None:
-    """Durations in proportion to the way, s, if a total of any length keeps every limit; or None.
+def straight_shares(problem: Problem) -> Array | None:
+    """Durations in proportion to the way, if a total of any length keeps every limit; or None.
 
     The decision is exact. Joints that nothing limits but their position are left out, and so is a
     problem with a positive lower bound on a duration.
@@ -48,7 +46,7 @@ def straight_durations(problem: Problem) -> Array | None:
     Returns
     -------
     ndarray, shape (segments,), or None
-        The shortest halving that the checker passes.
+        Shares of the total.
     """
     curve = problem.curve.piecewise
     if curve is None or curve.free or curve.virtual or problem.duration_lower.any():
@@ -69,8 +67,7 @@ def straight_durations(problem: Problem) -> Array | None:
     forth = all(way * first[0] > 0 for way in first)
     if not forth or any(w[k] * first[0] != w[0] * first[k] for w in ways for k in range(len(w))):
         return None
-    share = np.array([float(way / sum(first)) for way in first])
-    return _shortest(problem, share)
+    return np.array([float(way / sum(first)) for way in first])
 
 
 def _shortest(problem: Problem, share: Array) -> Array | None:
@@ -79,7 +76,7 @@ def _shortest(problem: Problem, share: Array) -> Array | None:
         room = float((problem.duration_upper / share).min())
     total, best = min(float(equal_start(problem).sum()), room), None
     for _ in range(HALVINGS):
-        if not kept(problem, check(problem, total * share)):
+        if not kept(problem, check(problem, total * share, first_nodal(problem))):
             break
         best, total = total * share, 0.5 * total
     return best
@@ -183,19 +180,19 @@ def _ratios(problem: Problem, share: float) -> _Ratios:
 
 
 def _ratio(left: float, right: float, room: float, other: float) -> tuple[float, float]:
-    """Least and largest x/y = (h₂/h₁)ʳ; the least above the largest where there is none."""
-    if left < 0.0:
-        left, right = -left, -right
+    """Least and largest t = x/y = (h₂/h₁)ʳ ≥ 0; the least above the largest where there is none."""
     least, most = 0.0, np.inf
-    if right > other:
-        least = (right - other) / (left + room) if left + room > 0.0 else np.inf
-    if left > room:
-        most = max(0.0, (right + other) / (left - room))
-        if most == 0.0:
-            return np.inf, 0.0
-    elif right < -other:
-        least = -(right + other) / (room - left) if room > left else np.inf
-    return least, most
+    for slope, side in (
+        (left - room, right + other),
+        (-left - room, other - right),
+    ):  # slope t ≤ side
+        if slope > 0.0:
+            most = min(most, side / slope)
+        elif slope < 0.0:
+            least = max(least, side / slope)
+        elif side < 0.0:
+            least = np.inf
+    return (least, most) if most > 0.0 else (np.inf, 0.0)
 
 
 def _box(problem: Problem) -> tuple[Array, Array]:
@@ -337,14 +334,21 @@ def unsearched(problem: Problem) -> Solution | None:
             check=check(problem, answer.durations),
             route=Route.CLOSED_FORM,
         )
-    why = "nothing is limited: the total falls to 0"
-    short, nodal = _unlimited(problem), first_nodal(problem)
-    if short is None:
+    limits = problem.limits
+    limited = np.isfinite(limits.sides).any() or limits.limits_position
+    if not limited and not problem.duration_lower.any():
+        why = "nothing is limited: the total falls to 0"
+        shares = np.full(problem.segments, 1.0 / problem.segments)
+    else:
         why = (
             "at durations in proportion to the way nothing accelerates, and no velocity is "
             "limited: the total falls to 0"
         )
-        short = straight_durations(problem)
+        straight = straight_shares(problem)
+        if straight is None:
+            return None
+        shares = straight
+    short, nodal = _shortest(problem, shares), first_nodal(problem)
     if short is None:
         return None
     return Solution(
@@ -357,15 +361,6 @@ def unsearched(problem: Problem) -> Solution | None:
         route=Route.CLOSED_FORM,
         infimum=0.0,
     )
-
-
-def _unlimited(problem: Problem) -> Array | None:
-    """Short durations, s, where no derivative, position or duration is limited from any side."""
-    limits = problem.limits
-    limited = np.isfinite(limits.sides).any() or limits.limits_position
-    if limited or problem.duration_lower.any():
-        return None
-    return UNLIMITED * equal_start(problem)
 
 
 def cut_short(answer: Solution) -> Solution:

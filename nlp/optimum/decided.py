@@ -45,13 +45,19 @@ def tolerated(problem: Problem) -> Problem:
     Problem
         With the same duration bounds. A side of 0, and a range of no width, stay as they are.
     """
-    limits = problem.limits
-    low, high = limits.position_lower, limits.position_upper
+    low, high = problem.limits.position_lower, problem.limits.position_upper
     half = np.array([[half_range(a, b, x) for x in (a, b)] for a, b in zip(low, high, strict=True)])
     room = np.where(np.isfinite(half), AIM * half, 0.0)
-    inside = limits.with_sides(limits.sides * (1.0 + AIM))
-    wider = inside.with_positions(low - room[:, 0], high + room[:, 1])
-    return replace(problem, limits=wider)
+    return _moved(problem, 1.0 + AIM, room * [-1.0, 1.0])
+
+
+def _moved(problem: Problem, share: Array | float, positions: Array) -> Problem:
+    """The problem with sides of limits times a share, and both ends of positions moved."""
+    limits = problem.limits
+    low, high = limits.position_lower + positions[:, 0], limits.position_upper + positions[:, 1]
+    return replace(
+        problem, limits=limits.with_sides(limits.sides * share).with_positions(low, high)
+    )
 
 
 def decided(problem: Problem, h: Array, nodal: Array | None = None) -> Local | None:
@@ -196,14 +202,11 @@ def _narrower(problem: Problem, verdict: Check) -> Problem:
     """
     limits = problem.limits
     share = np.maximum(1.0 - DEEPER_INSIDE * _blur(problem, verdict), 0.5)
-    low, high = limits.position_lower.copy(), limits.position_upper.copy()
+    inwards = np.zeros((len(problem.joints), 2))
     for peak in verdict.peaks:
         if peak.quantity == "position" and peak.joint is not None:
             j = problem.joints.index(peak.joint)
-            inwards = min(DEEPER_INSIDE * peak.error, 0.25 * float(high[j] - low[j]))
-            if peak.limit == limits.position_lower[j]:
-                low[j] += inwards
-            else:
-                high[j] -= inwards
-    inside = limits.with_sides(limits.sides * share)
-    return replace(problem, limits=inside.with_positions(low, high))
+            room = 0.25 * float(limits.position_upper[j] - limits.position_lower[j])
+            end = int(peak.limit != limits.position_lower[j])
+            inwards[j, end] = (1 - 2 * end) * min(DEEPER_INSIDE * peak.error, room)
+    return _moved(problem, share, inwards)

@@ -85,20 +85,16 @@ def judged(
     # Of ends that are the same to rounding, one that met its conditions.
     alike = [local for local in feasible if local.total <= shortest * (1 + ROUNDED)]
     best = min(alike, key=lambda local: (not local.converged, local.total))
-    durations, nodal = best.tight or (best.durations, best.nodal)
-    report = best.report if best.report is not None and best.tight is None else None
+    # Where rounding decides, the conditions hold at the tight motion, and a longer one passes.
+    tight, nodal = best.tight or (best.durations, best.nodal)
+    report = best.report if best.tight is None else None
     dense, fixed = problem.segments <= DENSE, problem.ratios is not None
     if report is None:
-        report = kkt(problem, durations, nodal) if dense or fixed else UNKNOWN
+        report = kkt(problem, tight, nodal) if dense or fixed else UNKNOWN
     if report.residual > SHARP and dense and not (problem.curve.free or fixed):
-        durations, report = _sharper(problem, durations, report)
-    # Where rounding decides, the conditions hold at the tight motion, and a longer one passes.
-    passing, beyond = (durations, nodal), 0.0
-    if not kept(problem, check(problem, durations, nodal)):
-        inside = decided(problem, durations, nodal) or best
-        passing = (inside.durations, inside.nodal)
-        beyond = max(0.0, inside.total / float(durations.sum()) - 1.0)
-    durations, nodal = passing
+        tight, report = _sharper(problem, tight, report)
+    durations, nodal = (tight, nodal) if best.tight is None else (best.durations, best.nodal)
+    beyond = max(0.0, float(durations.sum() / tight.sum()) - 1.0)
     status = Status.CONVERGED if report.residual <= KKT_TOLERANCE else Status.FEASIBLE
     why = None if status is Status.CONVERGED else unmet(report.residual)
     if beyond > BLURRED:
@@ -188,16 +184,6 @@ def _past_rounding(problem: Problem, local: Local) -> Local:
     return replace(found, converged=local.converged, iterations=local.iterations)
 
 
-def stretchable(problem: Problem) -> bool:
-    """Whether a long enough stretch repairs every duration vector."""
-    return bool(
-        np.isinf(problem.duration_upper).all()
-        and problem.curve.homogeneous
-        and not problem.limits.limits_position
-        and (problem.limits.sides > 0).all()
-    )
-
-
 def _nothing_found(problem: Problem, found: list[Local]) -> tuple[Status, str]:
     judgements = [check(problem, local.durations, local.nodal) for local in found]
     least = min(judgements, key=lambda one: one.max_violation, default=None)
@@ -207,8 +193,6 @@ def _nothing_found(problem: Problem, found: list[Local]) -> tuple[Status, str]:
             "the limits can be kept inside the segments, but between them the motion jumps; "
             f"no durations without a jump found from {len(found)} starts",
         )
-    if stretchable(problem):
-        return Status.FAILED, "the solver reached no feasible point, though stretching gives one"
     worst = float("inf") if least is None else least.max_violation
     return (
         Status.NONE_FOUND,
