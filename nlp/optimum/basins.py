@@ -11,12 +11,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...problem import Array, Problem, TrajgapError, check, evaluate
+from ...problem import TOLERANCE, Array, Problem, TrajgapError, check, evaluate
 from .clock import seconds_left, time_up
 from .decided import kept
 from .descent import SLOW, Descent, descend
 from .optimality import Local
-from .starts import ROUND, LogBox, box_above, equal_start, stretching
+from .starts import LogBox, box_above, equal_start, stretching
 
 HOPELESS = 10.0
 """Excess of a vector that defines no curve: worse than any that does."""
@@ -212,7 +212,7 @@ def as_local(problem: Problem, found: Descent) -> Local | None:
     h = np.clip(found.durations, problem.duration_lower, problem.duration_upper)
     try:
         verdict = check(problem, h)
-        if found.feasible and 1.0 < verdict.stretch < 1.0 + ROUND and problem.curve.homogeneous:
+        if found.feasible and 1.0 < verdict.stretch < 1.0 + TOLERANCE and problem.curve.homogeneous:
             h = np.clip(h * verdict.stretch, problem.duration_lower, problem.duration_upper)
             verdict = check(problem, h)
     except TrajgapError:
@@ -260,8 +260,6 @@ def _resumed(problem: Problem, found: list[Local], box: LogBox) -> list[Local]:
 SHORT = 0.02
 """Largest way of a segment, in what each joint covers in all, at which its duration may have two
 optima that lie decades apart: with random way-points all that were found had less than 1e-3."""
-DECADE = 10.0
-"""Factor between the starts: a descent that goes down in a basin reaches over one."""
 
 
 def _reaches(problem: Problem) -> Array:
@@ -302,6 +300,7 @@ def short_ways(problem: Problem) -> list[int]:
 def shortened(problem: Problem, durations: Array, floor: Array) -> Array:
     """Motions in which a segment of a short way is shorter by powers of ten.
 
+    A descent that goes down in a basin reaches over a decade.
     A wide search over the whole box seldom ends in such a basin: it is decades away in one
     duration, and a few per cent deep.
 
@@ -321,9 +320,9 @@ def shortened(problem: Problem, durations: Array, floor: Array) -> Array:
     found = []
     low = np.exp(box_above(problem, floor).low)
     for segment in short_ways(problem):
-        shorter = durations[segment] / DECADE
+        shorter = durations[segment] / 10.0
         while shorter > low[segment]:
             found.append(durations.copy())
             found[-1][segment] = shorter
-            shorter /= DECADE
+            shorter /= 10.0
     return np.array(found).reshape(-1, problem.segments)

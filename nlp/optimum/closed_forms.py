@@ -82,8 +82,6 @@ def _shortest(problem: Problem, share: Array) -> Array | None:
     return best
 
 
-AGREE = 1e-9
-"""Share of their terms by which the checker lets two sides of a break differ."""
 WITHIN = 0.5
 """Share of the checker's room for a jump that an answer uses."""
 BEYOND = 1e3
@@ -164,7 +162,8 @@ def _ratios(problem: Problem, share: float) -> _Ratios:
                 # A joint that stands still has no derivative: rounding has no part in that.
                 still = np.diff(problem.waypoints[k : k + 3, j]) == 0.0
                 room = [
-                    share * (float(found.error[k + i, order, j]) + AGREE * float(np.abs(s).sum()))
+                    share
+                    * (float(found.error[k + i, order, j]) + TOLERANCE * float(np.abs(s).sum()))
                     if not still[i]
                     else 0.0
                     for i, s in enumerate(sides)

@@ -6,22 +6,28 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...problem import QUANTITIES, Array, Check, Problem, Verdict, check, evaluate, half_range
+from ...problem import (
+    QUANTITIES,
+    TOLERANCE,
+    Array,
+    Check,
+    Problem,
+    Verdict,
+    check,
+    evaluate,
+    half_range,
+)
 from .descent import descend
 from .optimality import Local
 from .starts import DENSE, LogBox, slowed, stretching
 
 ROUNDS = 6
-"""Stretches that are tried: the bound on rounding errors changes little with each."""
-AIM = 5e-10
+"""Stretches, or descents within narrower limits, that are tried: the bound on rounding errors
+changes little with each."""
+AIM = 0.5 * TOLERANCE
 """Relative excess, rounding included, that a stretch aims at: half the checker's tolerance."""
-NARROWINGS = 3
-"""Descents within narrower limits: a shorter motion has larger rounding errors."""
 DEEPER_INSIDE = 2.0
 """By how many bounds on rounding errors limits are narrowed where no stretch is possible."""
-BLURRED = 1e-6
-"""Relative length by which rounding may set an optimum apart from the tight motion beside it."""
-
 Motion = tuple[Array, Array | None]
 """Durations, s, and free derivatives, where the declaration leaves some."""
 
@@ -184,7 +190,7 @@ def _narrowed(problem: Problem, h: Array) -> Motion | None:
     box = LogBox(
         np.log(bottom), np.log(np.maximum(np.minimum(problem.duration_upper, 2 * h), bottom))
     )
-    for _ in range(NARROWINGS):
+    for _ in range(ROUNDS):
         verdict = check(problem, h)
         if verdict.limits is not Verdict.UNDECIDED:
             return None

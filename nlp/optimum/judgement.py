@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ...problem import Array, Problem, Verdict, check
-from .decided import BLURRED, decided, kept, longer_than_tight
+from ...problem import TOLERANCE, Array, Problem, Verdict, check
+from .decided import decided, kept, longer_than_tight
 from .optimality import KKT, KKT_TOLERANCE, SHARP, UNKNOWN, Local, kkt, sharpened, unmet
 from .solution import Route, Solution, Status
 from .starts import DENSE
@@ -37,7 +37,7 @@ def better_of(one: Solution, other: Solution) -> Solution:
 
 SAME = 1e-6
 """Relative difference below which two totals count as the same."""
-ROUNDED = 2e-9
+ROUNDED = 2.0 * TOLERANCE
 """Relative difference of totals that the checker's tolerance makes: of both ends at most."""
 HIDDEN = 1e-4
 """Excess over a limit that rounding hides from a search where durations differ by many powers of
@@ -97,7 +97,7 @@ def judged(
     beyond = max(0.0, float(durations.sum() / tight.sum()) - 1.0)
     status = Status.CONVERGED if report.residual <= KKT_TOLERANCE else Status.FEASIBLE
     why = None if status is Status.CONVERGED else unmet(report.residual)
-    if beyond > BLURRED:
+    if beyond > SAME:
         status = Status.FEASIBLE
     if beyond > KKT_TOLERANCE:
         note = longer_than_tight(beyond)

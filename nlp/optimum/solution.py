@@ -8,7 +8,7 @@ from enum import StrEnum
 
 import numpy as np
 
-from ...problem import Array, Check, Problem, Trajectory, TrajgapError, fit
+from ...problem import TOLERANCE, Array, Check, Problem, Trajectory, TrajgapError, fit
 from ...problem.motions import Samples, sampled
 from ...verify import shown_bound
 from .optimality import Active
@@ -20,8 +20,6 @@ search above it, and an infimum above 0 is nearly reached there."""
 
 WIDEST = 0.01
 """Relative width up to which an interval is narrow enough to call the optimum certified."""
-_MET = 1e-9
-"""Relative distance of a proved bound at which it meets a value: what rounding explains."""
 
 
 def close(lower: float, upper: float) -> bool:
@@ -190,7 +188,9 @@ class Solution(Answer):
         """Whether nothing lies below the value approached: it is 0, or a proved bound meets it."""
         if self.infimum is None:
             return False
-        return self.best == 0.0 or (self.lower_bound or 0.0) >= self.infimum * (1.0 - _MET)
+        return self.best == 0.0 or (self.lower_bound or 0.0) >= self.infimum * (
+            1.0 - TOLERANCE
+        )  # what rounding explains
 
     @property
     def boundless(self) -> str | None:

@@ -22,7 +22,7 @@ from .closed_forms import (
 )
 from .decided import decided, incumbent, kept, tolerated
 from .feasibility import apart
-from .judgement import BETTER, ROUNDED, better_of, judged, on_floor
+from .judgement import BETTER, ROUNDED, SAME, better_of, judged, on_floor
 from .jumps import as_answer, carried_over, jump_equations, matched, smoother
 from .optimality import Local
 from .search import program_search
@@ -36,16 +36,11 @@ FLOORS = (1e-3, 1e-4, 1e-6, 1e-8, 1e-10)
 answer lies on the one before, since the total of way-points that nearly coincide may rise again."""
 DEEP = FLOORS[2:]
 """Those tried where a short way makes a second optimum likely that is decades away."""
-PROVEN = 1e-6
-"""Relative distance from a proved lower bound at which nothing shorter is looked for."""
 SPARSE = 14
 """Segments from which rounds of the NLP come first: there they end at the same totals in half the
 time of a wide search and dense descents, at 10 segments in twice it."""
 ONLY_TOLERANCE = "the limits leave no room: they are kept within the tolerance of the check alone"
 """Beside an answer that exact limits would not let pass."""
-APPROACHED = 1e-6
-"""Share of a total that is still to fall at which the value that it approaches is near enough: an
-extrapolation over more than this may be off by more than totals that count as the same."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,7 +121,7 @@ def solve(
         answer = unsearched(problem) if problem.ratios is None else _at_ratios(problem)
         if answer is None:
             best = incumbent(problem, points, nodal)
-            proved = best is not None and best.total <= lower * (1.0 + PROVEN)
+            proved = best is not None and best.total <= lower * (1.0 + SAME)
             answer = _solve(problem, _Ask(starts, seed, first, best, proved))
             answer = cut_short(answer) if time_up() else answer
     return replace(answer, solve_seconds=time.perf_counter() - began - answer.build_seconds)
@@ -285,7 +280,7 @@ def _above_floors(problem: Problem, points: Array, shares: tuple[float, ...]) ->
             ratio, total = share / wide, lower.total_time
             slope = max(0.0, answer.total_time - total) / (1.0 - ratio)
             lower = replace(lower, infimum=max(0.0, total - slope * ratio))
-            near = total - lower.best <= APPROACHED * total
+            near = total - lower.best <= SAME * total  # further, the estimate may be off by more
             if near and not _rises_below(problem, lower.durations, made_up(problem, share)):
                 return lower
         answer = lower

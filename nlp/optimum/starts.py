@@ -8,27 +8,38 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...problem import Array, Problem, TrajgapError, evaluate, fit
+from ...problem import TOLERANCE, Array, Problem, TrajgapError, evaluate, fit
 from ...problem.curves import Trajectory, near_extrema
 
 DENSE = 24
 """Segments up to which a wide search and dense descents come first: their gradients have
 (segments)² entries, and beyond this random trials gain little."""
-ROUND = 1e-9
-"""Relative room below a least duration, which rounding may take: the checker's tolerance."""
-LEAST_SHARE, MOST_TIMES = 1e-12, 1e12
-"""Of the usual duration: no search leaves this range, in which float64 has not lost the curve."""
-PASSES = 4
-"""Stretches of single segments of `way_start`; more change little."""
-STEP, DAMPING = (0.8, 3.0), 0.7
-"""Least and largest factor of a stretch, and its power: neighbours are stretched by it too."""
-DWELL = 1.2
-"""Share by which a segment is first given more than its way takes at the velocity limit."""
-TURN = 8.0
-"""Starts have h² = 8|Δq|/A: rest to rest takes 4 at least, a spline's overshoot some more; at 5 the
-first round of quintics takes up to twice as many iterations."""
-LEAST = 0.3
-"""Of the mean duration, the least at the start: neighbours share their accelerations."""
+FARTHEST = 1e12
+"""Factor to both sides of the usual duration that no search leaves: float64 has not lost the curve
+there."""
+
+
+@dataclass(frozen=True)
+class WayStart:
+    """How the way of each segment gives the durations at which rounds of the NLP begin."""
+
+    dwell: float = 1.2
+    """Times the time that the way takes at the velocity limit."""
+    turn: float = 8.0
+    """h² = 8|Δq|/A: rest to rest takes 4 at least, a spline's overshoot some more; at 5 the first
+    round of quintics takes up to twice as many iterations."""
+    least: float = 0.3
+    """Of the mean duration, the least: neighbours share their accelerations."""
+    passes: int = 4
+    """Stretches of single segments; more change little."""
+    factors: tuple[float, float] = (0.8, 3.0)
+    """Least and largest factor of a stretch."""
+    power: float = 0.7
+    """Of a stretch: neighbours are stretched by it too."""
+
+
+WAY = WayStart()
+"""What `way_start` is made with."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,18 +99,18 @@ def way_start(problem: Problem) -> Array:
     way = np.abs(np.diff(problem.waypoints, axis=0))
     velocity, acceleration, _ = problem.limits.sides.min(axis=0).T  # the smaller sides
     with np.errstate(divide="ignore", invalid="ignore"):
-        fast = np.where(way > 0, DWELL * way / velocity, 0.0).max(axis=1)
-        turn = np.sqrt(np.where(way > 0, TURN * way / acceleration, 0.0)).max(axis=1)
+        fast = np.where(way > 0, WAY.dwell * way / velocity, 0.0).max(axis=1)
+        turn = np.sqrt(np.where(way > 0, WAY.turn * way / acceleration, 0.0)).max(axis=1)
     breaks = np.array(problem.curve.waypoint_breaks)
     parts = np.diff(breaks)
     h = np.repeat(np.maximum(fast, turn) / parts, parts)
     if not (np.isfinite(h).all() and h.mean() > 0):
         return equal_start(problem)
-    h = np.maximum(h, LEAST * h.mean())
-    for _ in range(PASSES):
+    h = np.maximum(h, WAY.least * h.mean())
+    for _ in range(WAY.passes):
         worst = worst_ratios(problem, fit(problem.curve, problem.waypoints, h))
         beside = np.maximum(np.append(worst[1:], 0.0), np.append(0.0, worst[:-1]))
-        h = h * np.clip(np.maximum(worst, beside), *STEP) ** DAMPING
+        h = h * np.clip(np.maximum(worst, beside), *WAY.factors) ** WAY.power
     if not np.isfinite(h).all():
         return equal_start(problem)
     return np.asarray(np.clip(h, problem.duration_lower, problem.duration_upper))
@@ -153,7 +164,7 @@ def least_durations(problem: Problem) -> Array:
         needed = np.where(distance > 0, distance / velocity, 0.0).max(axis=1)
     for w, seconds in enumerate(needed):
         if breaks[w + 1] == breaks[w] + 1 and np.isfinite(seconds):
-            least[breaks[w]] = max(least[breaks[w]], (1.0 - ROUND) * seconds)
+            least[breaks[w]] = max(least[breaks[w]], (1.0 - TOLERANCE) * seconds)
     return least
 
 
@@ -179,10 +190,10 @@ def made_up(problem: Problem, share: float) -> Array:
 def box_above(problem: Problem, floor: Array) -> LogBox:
     """Bounds on log durations: the problem's own, the least durations, and the floors."""
     usual = float(equal_start(problem).mean())
-    least = LEAST_SHARE * np.minimum(usual, problem.duration_upper)
+    least = np.minimum(usual, problem.duration_upper) / FARTHEST
     low = np.maximum(np.maximum(least_durations(problem), floor), least)
     # A least duration above an upper bound leaves no motion; the box stays one for the search.
-    high = np.maximum(np.minimum(problem.duration_upper, MOST_TIMES * usual), low)
+    high = np.maximum(np.minimum(problem.duration_upper, FARTHEST * usual), low)
     return LogBox(np.log(low), np.log(high))
 
 
