@@ -137,11 +137,9 @@ def _at_ratios(problem: Problem) -> Solution:
     if not answer.found:
         return refused_at_ratios(problem, h)
     if check(problem, h).stretch == 0.0 and not problem.duration_lower.any():
-        why, status = (
-            "nothing that moves is limited, so that the total falls to 0",
-            Status.NOT_ATTAINED,
-        )
-        return replace(answer, status=status, why=why, infimum=0.0, kkt_residual=None, active=())
+        why = "nothing that moves is limited, so that the total falls to 0"
+        found = replace(answer, status=Status.NOT_ATTAINED, why=why, infimum=0.0)
+        return replace(found, kkt_residual=None, active=())
     if answer.status is not Status.CONVERGED:
         return answer
     return replace(answer, why=FORMULA if answer.why is None else f"{FORMULA}; {answer.why}")
