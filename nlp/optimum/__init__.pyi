@@ -4,12 +4,12 @@ from .judgement import SAME
 from .optimality import KKT, KKT_TOLERANCE, Active, kkt
 from .other_route import with_other_route
 from .per_joint import OPTIMUM_SLACK, PerJointSolution, Range, solve_per_joint
+from .pieces import ca
 from .program import Program, free_values
-from .search import build
+from .rounds import build
 from .solution import Evidence, Route, Solution, Status, close, weakest
 from .solver import STARTS, solve
 from .starts import random_starts
-from .symbolic import ca
 
 __all__ = [
     "KKT",

@@ -11,12 +11,12 @@ import numpy as np
 
 from ...problem import Array, Check, Problem, check, fit
 from .clock import time_up
+from .pieces import ca
 from .program import Program
 from .rounds import NEAR, constraints, near_rows
 from .rounds import OPTIONS as OPTIONS_OF_ROUNDS
 from .solution import Evidence, Solution, Status, no_motion, weakest
 from .solver import solve
-from .symbolic import ca
 
 ROUNDS = 20
 """Rounds from one optimum: a bound against endless shrinking of the region; two to four suffice
@@ -66,7 +66,7 @@ class Nearby:
         expressions, least, most = [], [], []
         for program, own, cap in zip(self._programs, h, self._caps, strict=True):
             motion = fit(program.problem.curve, program.problem.waypoints, own)
-            stated = constraints(program, near_rows(program, motion, NEAR))
+            stated, floor, ceiling = constraints(program, near_rows(program, motion, NEAR))
             x, (lower, upper) = program.pack(motion, own), program.bounds()
             lower[:n] = np.maximum(lower[:n], x[:n] * (1 - radius))
             upper[:n] = np.minimum(upper[:n], x[:n] * (1 + radius))
@@ -75,9 +75,9 @@ class Nearby:
             given.append(x)
             low.append(lower)
             high.append(upper)
-            expressions += [stated.expressions, ca.sum1(durations), durations - top]
-            least += [stated.low, np.zeros(1), np.full(n, -np.inf)]
-            most += [stated.high, np.array([cap]), np.zeros(n)]
+            expressions += [stated, ca.sum1(durations), durations - top]
+            least += [floor, np.zeros(1), np.full(n, -np.inf)]
+            most += [ceiling, np.array([cap]), np.zeros(n)]
         objective = ca.sum1(top)
         if weights is not None:  # the longest durations have no part in it
             objective = ca.dot(ca.DM(weights), self._programs[0].durations)

@@ -26,7 +26,7 @@ from .fixed_ratios import at_ratios
 from .judgement import BETTER, ROUNDED, better_of, judged
 from .jumps import as_answer, carried_over, jump_equations, matched, smoother
 from .optimality import Local
-from .search import program_search
+from .rounds import program_search
 from .solution import Route, Solution, Status
 from .starts import (
     DENSE,
