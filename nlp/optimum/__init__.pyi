@@ -10,12 +10,12 @@ from .per_joint import (
     longest_status,
     solve_per_joint,
 )
+from .pieces import ca
 from .program import Program, free_values
-from .search import build
+from .rounds import build
 from .solution import Evidence, Route, Solution, Status, close, weakest
 from .solver import STARTS, solve
 from .starts import random_starts
-from .symbolic import ca
 
 __all__ = [
     "KKT",

@@ -1,4 +1,4 @@
-"""Limits as rows: of the NLP at places that follow extrema, of a descent at the true extrema."""
+"""Limits at the true extrema of a motion: how far each is kept, and how that changes."""
 
 from __future__ import annotations
 
@@ -9,9 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...problem import Array, CurveError, Extremum, Problem, extrema, fit, peak_gradients
-from ...problem.curves import PERM, Places, Trajectory
-
-Indices = NDArray[np.int64]
 
 NEAR = 0.3
 """Extrema below this share of their limit are left out: no step of a trust region reaches it."""
@@ -22,98 +19,6 @@ STILL = 1e-13
 INSIDE = 1e-11
 """Share of it by which a motion stays inside such a side: the checker allows no tolerance there,
 and a descent keeps its rows to 1e-12."""
-
-
-REACH = 0.5
-"""Farthest that a place follows its extremum, in shares of its segment: one of a derivative that is
-all but constant runs to any distance, where the polynomial means nothing. With 0.1 the
-windows of a plateau over 250 segments did not join, with 0.25 one of 150 did not settle."""
-
-
-@dataclass(frozen=True, eq=False)
-class Rows:
-    """Limits inside segments: one side of one derivative of one joint at a place that moves.
-
-    Attributes
-    ----------
-    places : Places
-    sign : ndarray
-        Side of the limit.
-    weight : ndarray
-        Newton weight: the place moves by −w f′, f the derivative as a function of s, up to `REACH`.
-    """
-
-    places: Places
-    sign: Array
-    weight: Array
-
-
-def along(trajectory: Trajectory, places: Places, further: int) -> Array:
-    """Derivatives in s of order ``places.order + further`` at places."""
-    a = trajectory.scaled[places.segment, :, places.joint]
-    r = places.order + further
-    out = np.zeros(places.s.size)
-    for p in range(min(a.shape[1], len(PERM)) - 1, -1, -1):
-        factor = PERM[p, np.minimum(r, PERM.shape[1] - 1)]
-        out = np.where(p >= r, out * places.s + factor * a[:, p], out)
-    return out
-
-
-class Sides:
-    """Limits of derivatives in units of order one, as shares of the larger side.
-
-    Attributes
-    ----------
-    scale : ndarray, shape (joints, 3)
-        The larger side; inf where nothing is limited.
-    low, high : ndarray, shape (joints, 3)
-        Both sides in shares of it: −1 and 1 where they are equal.
-    """
-
-    def __init__(self, problem: Problem, unit: float, angle: Array) -> None:
-        below, above = problem.limits.sides * unit ** np.arange(1, 4) / angle[:, None]
-        positive = [np.where(np.isfinite(side), side, 0.0) for side in (below, above)]
-        scale = np.maximum(*positive)
-        # A derivative that must not leave 0 to a side has no size to take; standing still keeps it.
-        moves = np.ptp(problem.waypoints, axis=0)[:, None] > 0.0
-        limited = (scale > 0.0) | (moves & ((below == 0.0) | (above == 0.0)))
-        size = np.where(scale > 0.0, scale, 1.0)
-        self.scale = np.where(limited, size, np.inf)
-        self.low = np.where(limited, -below / size, -np.inf)
-        self.high = np.where(limited, above / size, np.inf)
-
-
-class Scaled:
-    """What the NLPs of all curves share: units of order one, and the limits in them.
-
-    Parameters
-    ----------
-    problem : Problem
-    unit : float
-        Time unit, s. That of angles is each joint's mean way between way-points.
-    floor : ndarray, shape (segments,)
-        Least durations, s.
-    """
-
-    def __init__(self, problem: Problem, unit: float, floor: Array) -> None:
-        self.problem, self.unit, self._floor = problem, unit, floor
-        self.segments, self.joints = problem.segments, problem.waypoints.shape[1]
-        steps = np.abs(np.diff(problem.waypoints, axis=0)).mean(axis=0)
-        self.angle = np.where(steps > 0, steps, 1.0)
-        self.sides = Sides(problem, unit, self.angle)
-
-    def duration_bounds(self) -> tuple[Array, Array]:
-        """Bounds on the durations, in units."""
-        low = np.maximum(self.problem.duration_lower, self._floor) / self.unit
-        return low, np.maximum(self.problem.duration_upper / self.unit, low)
-
-    def rooms(self, places: Places, sign: Array) -> Array:
-        """Limits of rows: derivatives in shares of the larger side, positions in angles."""
-        limits, first, j = self.problem.limits, self.problem.waypoints[0], places.joint
-        r = np.clip(places.order, 1, 3) - 1
-        at = np.where(sign > 0, limits.position_upper[j], limits.position_lower[j])
-        side = np.where(sign > 0, self.sides.high[j, r], self.sides.low[j, r])
-        return np.asarray(np.where(places.order == 0, (at - first[j]) / self.angle[j], side))
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,4 +1,13 @@
-"""Optimality conditions, with every active peak found again, and the ends of local searches.
+"""Optimality conditions of min Σh, with every active peak found again, and ends of searches.
+
+In log durations z = log h and free nodal derivatives x, in units of their limits, with T = Σh,
+
+    min log T  subject to  g_i = ratio_i − 1 ≤ 0:
+    h_k/T + Σ_i w_i ∂g_i/∂z_k = 0,  Σ_i w_i ∂g_i/∂x = 0,  w ≥ 0,  w_i g_i = 0.
+
+A peak's gradient is that of the derivative at its fixed place (envelope theorem), and
+∂/∂z_k = h_k ∂/∂h_k. A bound of a duration is g = ±(z_k − log bound). Since d(log T) = dT/T, the
+multiplier of T itself is w_i T; easing limit i by a share ε changes T by −ε w_i T.
 
 `kkt` finds multipliers by non-negative least squares over all limits that are reached: dense, for
 few segments. `sparse_kkt` takes those of the NLP.
@@ -6,18 +15,19 @@ few segments. `sparse_kkt` takes those of the NLP.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...problem import QUANTITIES, Array, CurveError, Extremum, Problem, fit, peak_gradients
-from ...problem.curves import Places, Trajectory
+from ...problem import QUANTITIES, Array, CurveError, Problem, peak_gradients
+from ...problem.curves import MAX_COEFFICIENTS, Places, places_of
 from .clock import time_up
-from .limit_rows import ExactRows, along, exact_rows, limited
+from .limit_rows import ExactRows, exact_rows, limited
 
 ACTIVE = 1e-7
-"""Relative distance to a limit within which a peak counts as active."""
+"""Relative distance to a limit within which a peak counts as active. What a multiplier is of the
+mean segment's share of the total counts from the same number on: a barrier leaves some on all."""
 KKT_TOLERANCE = 1e-8
 """Scaled KKT residual up to which an answer is called converged: IPOPT's own usual tolerance."""
 MORE = 0.1
@@ -77,35 +87,67 @@ UNKNOWN = KKT(np.inf, ())
 """Of durations at which rounding hides the curve or its gradients: no condition is met."""
 
 
-@dataclass(frozen=True)
-class _Constraint:
-    extremum: Extremum
-    label: tuple[str | None, str, int, float | None]
-    excess: float
-    sign: float
-    scale: float
-    size: float
-    """Of the limit, in scales."""
+@dataclass(frozen=True, eq=False)
+class _Reached:
+    """Limits that a motion reaches, or comes near.
+
+    Attributes
+    ----------
+    places : Places
+    side : ndarray
+        1 for the upper side, −1 for the lower.
+    excess : ndarray
+        Over the limit, in scales.
+    scale, size : ndarray
+        The limit's size, of a position at least 1 and of a limit of 0 the other side's; and the
+        limit's own size in scales.
+    """
+
+    places: Places
+    side: Array
+    excess: Array
+    scale: Array
+    size: Array
+
+    @classmethod
+    def at(cls, problem: Problem, places: Places, side: Array, values: Array) -> _Reached:
+        """The limits on one side of values at places."""
+        limits, j, position = problem.limits, places.joint, places.order == 0
+        edge = np.where(side > 0, limits.position_upper[j], limits.position_lower[j])
+        sizes = limits.sides[:, j, np.maximum(places.order, 1) - 1]
+        larger = np.where(np.isfinite(sizes), sizes, 0.0).max(axis=0, initial=0.0)
+        larger = np.where(larger > 0.0, larger, 1.0)
+        own = np.where(position, edge, np.where(side > 0, sizes[1], sizes[0]))
+        own = np.where(np.isfinite(own), own, np.where(position, 0.0, larger))
+        size = np.abs(own)
+        scale = np.where(position, np.maximum(1.0, size), np.where(size > 0.0, size, larger))
+        excess = (side * values - np.where(position, side * own, own)) / scale
+        return cls(places, side, excess, scale, size / scale)
+
+    def picked(self, at: NDArray[np.bool_]) -> _Reached:
+        """Some of them."""
+        p = self.places
+        places = Places(p.joint[at], p.segment[at], p.order[at], p.s[at])
+        return _Reached(places, self.side[at], self.excess[at], self.scale[at], self.size[at])
 
 
-def _peaks_near_limit(
-    problem: Problem, durations: Array, nodal: Array | None, near: float
-) -> list[_Constraint]:
-    found: list[_Constraint] = []
-    for one in limited(problem, durations, nodal):
-        e, quantity = one.extremum, ("position", *QUANTITIES)[one.extremum.order]
-        if one.stretched:  # its excess is the logarithm of the stretch that it asks for
-            excess, scale, size = float(np.expm1(e.order * one.excess)), one.limit, 1.0
-        elif e.order == 0:
-            scale = max(1.0, abs(one.limit))
-            excess, size = one.excess * one.size / scale, abs(one.limit) / scale
-        else:
-            excess, scale, size = one.excess, one.size, 0.0
-        if excess >= -near:
-            segment = problem.curve.segment_of(durations, e)
-            label = (problem.joints[e.joint], quantity, segment, e.time)
-            found.append(_Constraint(e, label, excess, one.sign, scale, size))
-    return found
+@dataclass(frozen=True, eq=False)
+class _Walls:
+    """Bounds of durations: segments, sides, relative distances to the bound."""
+
+    segment: NDArray[np.int64]
+    side: Array
+    gap: Array
+
+    @classmethod
+    def of(
+        cls, problem: Problem, durations: Array, segment: NDArray[np.int64], side: Array
+    ) -> _Walls:
+        """The bounds on one side of some durations."""
+        h, low = durations[segment], problem.duration_lower[segment]
+        with np.errstate(divide="ignore"):
+            gap = np.where(side > 0, 1.0 - h / problem.duration_upper[segment], h / low - 1.0)
+        return cls(segment, side, np.where(np.isfinite(gap), gap, 1.0))
 
 
 def kkt(
@@ -114,7 +156,7 @@ def kkt(
     nodal: Array | None = None,
     active: float = ACTIVE,
 ) -> KKT:
-    """Optimality conditions of min Σh over durations (and free nodal derivatives).
+    """Optimality conditions over durations (and free nodal derivatives).
 
     Parameters
     ----------
@@ -132,75 +174,134 @@ def kkt(
 
     Notes
     -----
-    In log durations z = log h and free nodal derivatives x, in units of their limits, with T = Σh,
-
-        min log T  subject to  g_i = ratio_i − 1 ≤ 0:
-        h_k/T + Σ_i w_i ∂g_i/∂z_k = 0,  Σ_i w_i ∂g_i/∂x = 0,  w ≥ 0,  w_i g_i = 0.
-
-    A peak's gradient is that of the derivative at its fixed place (envelope theorem), and
-    ∂/∂z_k = h_k ∂/∂h_k. A bound of a duration is g = ±(z_k − log bound). Since d(log T) = dT/T, the
-    multiplier of T itself is w_i T; easing limit i by a share ε changes T by −ε w_i T. Where ratios
-    are fixed, log T is the one unknown: all z_k change alike, and their equations are added up.
+    Where ratios are fixed, log T is the one unknown: all z_k change alike, and their equations are
+    added up.
     """
-    n, total = problem.segments, float(durations.sum())
-    joints = problem.waypoints.shape[1]
-    free = problem.curve.free
+    n, joints, free = problem.segments, problem.waypoints.shape[1], problem.curve.free
     try:
-        rows = _peaks_near_limit(problem, durations, nodal, active)
-        gradients = peak_gradients(problem, durations, [c.extremum for c in rows], nodal)
+        found = limited(problem, durations, nodal)
+        points = [one.extremum for one in found]
+        side, values = np.array([[one.sign, one.extremum.value] for one in found]).reshape(-1, 2).T
+        reached = _Reached.at(problem, places_of(points), side, values)
+        near = reached.excess >= -active
+        points, reached = [points[i] for i in np.flatnonzero(near)], reached.picked(near)
+        gradients = peak_gradients(problem, durations, points, nodal)
     except CurveError:
         return UNKNOWN
-    columns = np.zeros((n + free * joints, len(rows)))
-    nodal_scale = np.ones((free, joints))
-    for i, (_, order) in enumerate(problem.piecewise.free_derivatives if free else ()):
-        if 1 <= order <= 3:
-            limit = problem.limits.widest[:, order - 1]
-            nodal_scale[i] = np.where(np.isfinite(limit), limit, 1.0)
-    for i, c in enumerate(rows):
-        columns[:n, i] = c.sign * gradients.durations[i] * durations / c.scale
-        if free:
-            block = np.zeros((free, joints))
-            block[:, c.extremum.joint] = c.sign * gradients.nodal[i] / c.scale
-            columns[n:, i] = (block * nodal_scale).ravel()
-    bounds: list[tuple[int, float, float]] = []
-    for k in range(n):
-        low, high = problem.duration_lower[k], problem.duration_upper[k]
-        if low > 0 and durations[k] <= low * (1 + active):
-            bounds.append((k, -1.0, durations[k] / low - 1))
-        if np.isfinite(high) and durations[k] >= high * (1 - active):
-            bounds.append((k, 1.0, 1 - durations[k] / high))
-    walls = np.zeros((n + free * joints, len(bounds)))
-    for i, (k, sign, _) in enumerate(bounds):
-        walls[k, i] = sign
-    objective = np.concatenate([durations / total, np.zeros(free * joints)])
-    matrix = np.hstack([columns, walls])
+    own = np.eye(joints)[reached.places.joint]
+    units, widest = np.ones((MAX_COEFFICIENTS, joints)), problem.limits.widest.T
+    units[1:4] = np.where(np.isfinite(widest), widest, 1.0)
+    orders = [order for _, order in problem.piecewise.free_derivatives] if free else []
+    by_nodal = gradients.nodal[:, :, None] * own[:, None] * units[orders]
+    rows = np.hstack(
+        [gradients.durations * durations, by_nodal.reshape(len(points), free * joints)]
+    )
+    low = np.flatnonzero(durations <= problem.duration_lower * (1 + active))
+    high = np.flatnonzero(durations >= problem.duration_upper * (1 - active))
+    sides = np.repeat([-1.0, 1.0], [low.size, high.size])
+    walls = _Walls.of(problem, durations, np.append(low, high), sides)
+    bounds = sides[:, None] * np.eye(n + free * joints)[walls.segment]
+    matrix = np.vstack([rows * (reached.side / reached.scale)[:, None], bounds]).T
+    objective = np.append(durations / durations.sum(), np.zeros(free * joints))
     if problem.ratios is not None:
         objective, matrix = objective.sum(keepdims=True), matrix.sum(axis=0, keepdims=True)
-    if matrix.shape[1]:
+    weights = np.zeros(matrix.shape[1])
+    if weights.size:
         from scipy.optimize import nnls  # a quarter of a second; a check does without
 
         try:
-            weights, _ = nnls(matrix, -objective, maxiter=30 * matrix.shape[1] + 100)
+            weights, _ = nnls(matrix, -objective, maxiter=30 * weights.size + 100)
         except RuntimeError:  # too many iterations: rounding hides which limits hold the motion
             return UNKNOWN
-    else:
-        weights = np.zeros(0)
-    stationarity = float(np.abs(matrix @ weights + objective).max())
-    gaps = np.array([c.excess for c in rows] + [gap for _, _, gap in bounds])
-    slack = float(np.abs(weights * gaps).max(initial=0.0))
-    violation = max([0.0, *(c.excess for c in rows)])
-    reached: list[Active] = []
-    for c, w in zip(rows, weights, strict=False):
-        joint, quantity, segment, time = c.label
-        multiplier = float(w * total)
-        more = MORE * c.size
-        if multiplier > 0:
-            reached.append(Active(joint, quantity, segment, time, multiplier, -more * multiplier))
-    for (k, sign, _), w in zip(bounds, weights[len(rows) :], strict=True):
-        multiplier = float(w * total)
-        if multiplier > 0:
-            reached.append(Active(None, "duration", k, None, multiplier, -sign * MORE * multiplier))
-    return KKT(max(stationarity, slack, violation), tuple(reached))
+    of_limits, of_bounds = np.split(weights, [len(points)])
+    segments = [problem.curve.segment_of(durations, e) for e in points]
+    labels = list(zip(segments, [e.time for e in points], strict=True))
+    stationary = matrix @ weights + objective
+    return _report(problem, durations, stationary, (reached, of_limits, labels), (walls, of_bounds))
+
+
+def sparse_kkt(
+    problem: Problem, durations: Array, places: Places, limits: Array, bounds: Array
+) -> KKT:
+    """Optimality conditions at given multipliers: nothing is solved but one banded system.
+
+    Parameters
+    ----------
+    problem : Problem
+        With a determined declaration.
+    durations : ndarray, shape (segments,)
+        s.
+    places : Places
+        Of limits. One of a derivative that is all but constant, as on a plateau at its limit, need
+        not be an extremum: any place does, but a multiplier belongs to its own.
+    limits : ndarray
+        Multipliers, signed by the side, of limits in shares of the larger side (positions in rad).
+    bounds : ndarray, shape (segments,)
+        Of the bounds on durations, s per s, signed by the side.
+
+    Returns
+    -------
+    KKT
+
+    Notes
+    -----
+    With multipliers w of the limits, Σ w_i ∂g_i/∂h is the gradient of one weighted sum of values,
+    which one adjoint solve gives for all durations. Their limits need not be within a chosen
+    distance: w_i g_i = 0 is part of the residual.
+    """
+    total = float(durations.sum())
+    adjoint = problem.piecewise.adjoint(problem.waypoints, durations)
+    side = np.where(limits >= 0.0, 1.0, -1.0)
+    reached = _Reached.at(problem, places, side, adjoint.values(places))
+    sizes = problem.limits.sides[:, places.joint, np.maximum(places.order, 1) - 1]
+    larger = np.where(np.isfinite(sizes), sizes, 0.0).max(axis=0)
+    larger = np.where(places.order == 0, 1.0, np.where(larger > 0.0, larger, 1.0))
+    weights = np.abs(limits) * reached.scale / (larger * total)
+    walls = _Walls.of(problem, durations, np.arange(durations.size), np.sign(bounds))
+    of_bounds = np.abs(bounds) * durations / total
+    slope = adjoint.weighted(places, side * weights / reached.scale)
+    stationary = durations * (1.0 / total + slope) + walls.side * of_bounds
+    segments, starts = [], np.concatenate([[0.0], np.cumsum(durations)])
+    for k, r, s in zip(places.segment.tolist(), places.order.tolist(), places.s, strict=True):
+        # What both segments share belongs to the first, as in `kkt`.
+        shared = s == 0.0 and k > 0 and problem.piecewise.smooth_order(k) >= r
+        segments.append(k - int(shared))
+    times = starts[places.segment] + places.s * durations[places.segment]
+    labels = list(zip(segments, times.tolist(), strict=True))
+    return _report(problem, durations, stationary, (reached, weights, labels), (walls, of_bounds))
+
+
+def _report(
+    problem: Problem,
+    durations: Array,
+    stationary: Array,
+    limits: tuple[_Reached, Array, list[tuple[int, float]]],
+    bounds: tuple[_Walls, Array],
+) -> KKT:
+    """The conditions, of limits with their weights, segments and times, and of bounds with theirs.
+
+    A violation counts as far as these limits show it; `check` looks at all.
+    """
+    reached, weights, labels = limits
+    walls, of_bounds = bounds
+    residual = max(
+        float(np.abs(stationary).max()),
+        float(np.abs(weights * reached.excess).max(initial=0.0)),
+        float(np.abs(of_bounds * walls.gap).max(initial=0.0)),
+        float(reached.excess.max(initial=0.0)),
+    )
+    total, least = float(durations.sum()), ACTIVE / problem.segments
+    active = []
+    for i in np.flatnonzero((weights > least) & (np.abs(reached.excess) <= ACTIVE)).tolist():
+        p, w, (segment, time) = reached.places, float(weights[i] * total), labels[i]
+        quantity = ("position", *QUANTITIES)[p.order[i]]
+        gain = -MORE * float(reached.size[i]) * w
+        active.append(Active(problem.joints[p.joint[i]], quantity, segment, time, w, gain))
+    for i in np.flatnonzero((of_bounds > least) & (np.abs(walls.gap) <= ACTIVE)).tolist():
+        w = float(of_bounds[i] * total)
+        more = -float(walls.side[i]) * MORE * w
+        active.append(Active(None, "duration", int(walls.segment[i]), None, w, more))
+    return KKT(residual, tuple(active))
 
 
 SHARP = 1e-12
@@ -281,125 +382,6 @@ def _conditions(
         return None
     at = np.array(twins, dtype=np.int64)
     return h / h.sum() + weights @ rows.gradient[at], rows.excess[at], rows.gradient[at]
-
-
-NEWTON_STEPS = 4
-"""Steps by which a place inside a segment is brought onto its extremum; it starts very near."""
-COUNTS = 1e-6
-"""Multiplier, in shares of the total of a mean segment, from which a limit is called active."""
-REACHED = 1e-6
-"""Relative distance to a limit within which a limit with a multiplier is called active."""
-
-
-@dataclass(frozen=True, eq=False)
-class Multipliers:
-    """Multipliers of limits at places, and of bounds on durations, as a search leaves them.
-
-    Attributes
-    ----------
-    places : Places
-    follows : ndarray of bool
-        Which places belong to the extremum beside them; the others stay: where a derivative is all
-        but constant, as on a plateau at its limit, any place does, but a multiplier belongs to its
-        own.
-    limits : ndarray
-        Signed by the side, of limits in shares of themselves (positions in rad); s.
-    walls : ndarray, shape (segments,)
-        Of the bounds on durations, s per s, signed by the side.
-    """
-
-    places: Places
-    follows: NDArray[np.bool_]
-    limits: Array
-    walls: Array
-
-
-def on_extrema(trajectory: Trajectory, places: Places) -> Places:
-    """Places inside segments moved onto the extrema beside them; those at ends stay."""
-    inner = (places.s > 0.0) & (places.s < 1.0)
-    s = places.s
-    for _ in range(NEWTON_STEPS):
-        now = replace(places, s=s)
-        slope, bend = along(trajectory, now, 1), along(trajectory, now, 2)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            step = np.where(inner & (bend != 0.0), slope / bend, 0.0)
-        s = np.clip(s - np.clip(step, -0.1, 0.1), 0.0, 1.0)
-    return replace(places, s=s)
-
-
-def sparse_kkt(problem: Problem, durations: Array, found: Multipliers, violation: float) -> KKT:
-    """Optimality conditions at given multipliers: nothing is solved but one banded system.
-
-    Parameters
-    ----------
-    problem : Problem
-    durations : ndarray, shape (segments,)
-        s.
-    found : Multipliers
-    violation : float
-        Largest relative excess over any limit, from `check`.
-
-    Returns
-    -------
-    KKT
-        Scaled as `optimality.kkt` scales it.
-
-    Notes
-    -----
-    The conditions are those of `optimality.kkt`. With multipliers w of the limits, Σ w_i ∂g_i/∂h is
-    the gradient of one weighted sum of values, which one adjoint solve gives for all durations.
-    Their limits need not be within a chosen distance: w_i g_i = 0 is part of the residual.
-    """
-    total = float(durations.sum())
-    trajectory = fit(problem.curve, problem.waypoints, durations)
-    moved = on_extrema(trajectory, found.places)
-    places = replace(moved, s=np.where(found.follows, moved.s, found.places.s))
-    adjoint = problem.piecewise.adjoint(problem.waypoints, durations)
-    limits, j, position = problem.limits, places.joint, places.order == 0
-    side = np.where(found.limits >= 0.0, 1.0, -1.0)
-    edge = np.where(side > 0, limits.position_upper[j], limits.position_lower[j])
-    edge = np.where(np.isfinite(edge), edge, 0.0)
-    column = np.maximum(places.order, 1) - 1
-    rate = limits.sides[(side > 0).astype(np.int64), j, column]
-    # Rows are shares of the larger side; a limit of 0 has no other size.
-    larger = np.where(np.isfinite(limits.sides), limits.sides, 0.0).max(axis=0)[j, column]
-    larger = np.where(larger > 0.0, larger, 1.0)
-    rate = np.where(np.isfinite(rate), rate, larger)
-    own = np.where(rate > 0.0, rate, larger)
-    scale = np.where(position, np.maximum(1.0, np.abs(edge)), own)
-    values = adjoint.values(places)
-    excess = np.where(position, side * (values - edge), side * values - rate) / scale
-    weights = np.abs(found.limits) * np.where(position, scale, own / larger) / total
-    walls = np.abs(found.walls) * durations / total
-    low, high = problem.duration_lower, problem.duration_upper
-    with np.errstate(divide="ignore", invalid="ignore"):
-        gap = np.where(found.walls > 0, 1.0 - durations / high, durations / low - 1.0)
-    gap = np.where(np.isfinite(gap), gap, 1.0)
-    slope = adjoint.weighted(places, side * weights / scale)
-    stationary = durations * (1.0 / total + slope) + np.sign(found.walls) * walls
-    residual = max(
-        float(np.abs(stationary).max()),
-        float(np.abs(weights * excess).max(initial=0.0)),
-        float(np.abs(walls * gap).max()),
-        violation,
-    )
-    counts = COUNTS / problem.segments
-    active = []
-    breaks = trajectory.breaks
-    size = np.where(position, np.abs(edge) / scale, 1.0)
-    for i in np.flatnonzero((weights > counts) & (np.abs(excess) <= REACHED)).tolist():
-        k, r, w = int(places.segment[i]), int(places.order[i]), float(weights[i] * total)
-        quantity = "position" if r == 0 else QUANTITIES[r - 1]
-        time = float(breaks[k] + places.s[i] * durations[k])
-        if places.s[i] == 0.0 and k > 0 and problem.piecewise.smooth_order(k) >= r:
-            k -= 1  # what both segments share belongs to the first, as in `optimality.kkt`
-        joint = problem.joints[int(j[i])]
-        active.append(Active(joint, quantity, k, time, w, -MORE * float(size[i]) * w))
-    for k in np.flatnonzero((walls > counts) & (np.abs(gap) <= REACHED)).tolist():
-        w = float(walls[k] * total)
-        sign = float(np.sign(found.walls[k]))
-        active.append(Active(None, "duration", k, None, w, -sign * MORE * w))
-    return KKT(residual, tuple(active))
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from .basins import exact_search
-from .search import program_search
+from .rounds import program_search
 from .solution import Route, Solution
 from .starts import DENSE, made_up
 

@@ -11,12 +11,12 @@ import numpy as np
 
 from ...problem import Array, Problem, check, fit
 from .clock import time_up
+from .pieces import ca
 from .program import Program
 from .rounds import NEAR, constraints, near_rows
 from .rounds import OPTIONS as OPTIONS_OF_ROUNDS
 from .solution import Answer, Evidence, Solution, Status, weakest
 from .solver import solve
-from .symbolic import ca
 
 ROUNDS = 20
 """Rounds from one optimum: a bound against endless shrinking of the region; two to four suffice
@@ -87,7 +87,7 @@ def _round(
     expressions, least, most = [], [], []
     for program, own, cap in zip(programs, h, caps, strict=True):
         motion = fit(program.problem.curve, program.problem.waypoints, own)
-        stated = constraints(program, near_rows(program, motion, NEAR))
+        stated, floor, ceiling = constraints(program, near_rows(program, motion, NEAR))
         x, (lower, upper) = program.pack(motion, own), program.bounds()
         lower[:n] = np.maximum(lower[:n], x[:n] * (1 - radius))
         upper[:n] = np.minimum(upper[:n], x[:n] * (1 + radius))
@@ -96,9 +96,9 @@ def _round(
         given.append(x)
         low.append(lower)
         high.append(upper)
-        expressions += [stated.expressions, ca.sum1(durations), durations - top]
-        least += [stated.low, np.zeros(1), np.full(n, -np.inf)]
-        most += [stated.high, np.array([cap / unit]), np.zeros(n)]
+        expressions += [stated, ca.sum1(durations), durations - top]
+        least += [floor, np.zeros(1), np.full(n, -np.inf)]
+        most += [ceiling, np.array([cap / unit]), np.zeros(n)]
     objective = ca.sum1(top)
     if weights is not None:  # the longest durations have no part in it
         objective = ca.dot(ca.DM(weights), programs[0].durations)

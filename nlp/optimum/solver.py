@@ -25,7 +25,7 @@ from .feasibility import apart
 from .judgement import BETTER, ROUNDED, SAME, better_of, judged, on_floor
 from .jumps import as_answer, carried_over, jump_equations, matched, smoother
 from .optimality import Local
-from .search import program_search
+from .rounds import program_search
 from .solution import Route, Solution, Status
 from .starts import DENSE, equal_start, first_nodal, made_up, random_starts, vectors, way_start
 

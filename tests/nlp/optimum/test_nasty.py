@@ -15,7 +15,7 @@ from attacks.nasty import answered, nasty, rebuilt
 from scipy.interpolate import CubicSpline
 from support.near_problems import NEAR
 from trajgap.nlp import Solution, Status, certify
-from trajgap.nlp.optimum import limit_rows, optimality, solve
+from trajgap.nlp.optimum import limit_rows, solve
 from trajgap.nlp.optimum.closed_forms import straight_shares
 from trajgap.nlp.optimum.decided import decided, incumbent
 from trajgap.nlp.optimum.limit_rows import exact_rows
@@ -102,8 +102,7 @@ def test_rounding_that_hides_a_spline_is_undecided_and_raises_nothing(
     def singular(*_: object) -> None:
         raise SingularError("singular", 0)
 
-    for module in (limit_rows, optimality):
-        monkeypatch.setattr(module, "fit", singular)
+    monkeypatch.setattr(limit_rows, "fit", singular)
     assert exact_rows(problem, np.array(hidden)).worst == np.inf
     assert kkt(problem, np.array(hidden)).residual == np.inf
 
