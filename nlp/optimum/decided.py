@@ -26,6 +26,9 @@ ROUNDS = 6
 changes little with each."""
 AIM = 0.5 * TOLERANCE
 """Relative excess, rounding included, that a stretch aims at: half the checker's tolerance."""
+LENGTHENINGS = 30
+"""Doublings of the shortest durations where rounding hides the limits: a jerk's error falls to an
+eighth each time, and over nine decades in all."""
 DEEPER_INSIDE = 2.0
 """By how many bounds on rounding errors limits are narrowed where no stretch is possible."""
 Motion = tuple[Array, Array | None]
@@ -89,7 +92,7 @@ def decided(problem: Problem, h: Array, nodal: Array | None = None) -> Local | N
     # A descent changes each duration by itself, which fixed ratios do not allow.
     descends = not problem.curve.free and problem.ratios is None and problem.segments <= DENSE
     if found is None and descends:
-        found = _narrowed(problem, h)
+        found = _narrowed(problem, h) or _lengthened(problem, h)
     if found is None:
         return None
     durations, values = found
@@ -198,6 +201,30 @@ def _narrowed(problem: Problem, h: Array) -> Motion | None:
         h = np.clip(end, problem.duration_lower, problem.duration_upper)
         if kept(problem, check(problem, h)):
             return h, None
+    return None
+
+
+def _lengthened(problem: Problem, h: Array) -> Motion | None:
+    """The end of a descent whose shortest durations are longer, by as much as it takes.
+
+    A segment that is far shorter than the others blurs what is known of all derivatives in it. The
+    total often hardly depends on it.
+    """
+    if check(problem, h).limits is not Verdict.UNDECIDED:
+        return None
+    top = np.minimum(problem.duration_upper, 2.0 * h.sum())
+    for _ in range(LENGTHENINGS):
+        floor = 2.0 * float(h.min())
+        if floor > h.sum():
+            break
+        bottom = np.minimum(np.maximum(problem.duration_lower, floor), top)
+        end = descend(problem, np.maximum(h, bottom), LogBox(np.log(bottom), np.log(top)))
+        if not end.feasible:
+            break
+        h = np.clip(end.durations, problem.duration_lower, problem.duration_upper)
+        found = stretched(problem, h, None) or _narrowed(problem, h)
+        if found is not None:
+            return found
     return None
 
 

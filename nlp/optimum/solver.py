@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
@@ -244,31 +246,35 @@ def _rounds(problem: Problem, starts: Array, floor: Array, nodal: Array | None) 
 
 def _widely(problem: Problem, ask: _Ask) -> Solution:
     """The answer by rounds of the NLP where these are quick, or else from a wide search."""
-    if ask.initial is not None:
-        return _above_floors(problem, ask.initial, FLOORS)
+    given = ask.initial
+    if given is not None:
+        return _above_floors(problem, lambda _: given, FLOORS)
     quick = problem.segments >= SPARSE and _moves_throughout(problem)
     found = _programmed(problem, ask) if quick else None
     if found is None or found.status is not Status.CONVERGED:
-        floor = made_up(problem, FLOORS[0])
-        points = basins(problem, ask.starts, ask.seed, floor)
-        searched = _above_floors(problem, points, FLOORS)
+        search = partial(basins, problem, ask.starts, ask.seed)
+        searched = _above_floors(problem, search, FLOORS)
         if not searched.found:
             searched = _within_tolerance(problem, ask)
         found = searched if found is None else better_of(searched, found)
     return _shortened(problem, found)
 
 
-def _above_floors(problem: Problem, points: Array, shares: tuple[float, ...]) -> Solution:
-    """Exact descents from some starts above a floor, and above a lower one while they end at it.
+def _above_floors(
+    problem: Problem, points: Callable[[Array], Array], shares: tuple[float, ...]
+) -> Solution:
+    """Exact descents from points above a floor, and above a lower one while they end at it.
 
     Where they do to the last, the total only approaches its infimum: the totals at two floors,
     extrapolated to 0.
     """
-    answer = _descended(problem, points, shares[0])
+    floor = made_up(problem, shares[0])
+    answer = _descended(problem, points(floor), floor)
     for wide, share in pairwise(shares):
         if answer.status is not Status.NOT_ATTAINED:
             return answer
-        lower = _descended(problem, np.vstack([points, answer.durations]), share)
+        floor = made_up(problem, share)
+        lower = _descended(problem, np.vstack([points(floor), answer.durations]), floor)
         undercut = lower.total_time < answer.best * (1 - BETTER)
         if lower.total_time > answer.total_time * (1 + BETTER):
             return answer  # rounding costs more than the lower floor gains
@@ -279,14 +285,13 @@ def _above_floors(problem: Problem, points: Array, shares: tuple[float, ...]) ->
             slope = max(0.0, answer.total_time - total) / (1.0 - ratio)
             lower = replace(lower, infimum=max(0.0, total - slope * ratio))
             near = total - lower.best <= SAME * total  # further, the estimate may be off by more
-            if near and not _rises_below(problem, lower.durations, made_up(problem, share)):
+            if near and not _rises_below(problem, lower.durations, floor):
                 return lower
         answer = lower
     return answer
 
 
-def _descended(problem: Problem, points: Array, share: float) -> Solution:
-    floor = made_up(problem, share)
+def _descended(problem: Problem, points: Array, floor: Array) -> Solution:
     return judged(problem, exact_search(problem, points, floor), floor, len(points))
 
 
@@ -352,7 +357,8 @@ def _shortened(problem: Problem, solution: Solution) -> Solution:
     starts = shortened(problem, solution.durations, made_up(problem, DEEP[-1]))
     if not len(starts):
         return solution
-    found = _above_floors(problem, starts, DEEP[-1:])
+    found = _above_floors(problem, lambda _: starts, DEEP[-1:])
     if found.status is Status.NOT_ATTAINED:
-        found = _above_floors(problem, found.durations[None], DEEP)
+        end = found.durations[None]
+        found = _above_floors(problem, lambda _: end, DEEP)
     return replace(better_of(solution, found), starts=solution.starts + len(starts))
