@@ -18,6 +18,7 @@ from ...problem import Array, ClampedBSpline, Interpolant, Problem, TrajgapError
 from ...problem.curves import (
     Places,
     TimedUniformBSpline,
+    Trajectory,
     average_matrix,
     clamped_control_points,
     fractions_of,
@@ -75,6 +76,23 @@ class Pieces:
             inner = np.array(self.declared.continuity, dtype=np.int64) >= order
         return np.append(inner, False)
 
+    def own_places(self, trajectory: Trajectory, places: Places) -> tuple[Places, Array]:
+        """Places of a motion in each joint's own pieces, and how many times as wide these are."""
+        if self.widths is None or len(self.widths) == 1:
+            return places, np.ones(places.s.size)
+        breaks, total = trajectory.breaks, float(trajectory.breaks[-1])
+        width = np.diff(breaks)[places.segment]
+        time = breaks[places.segment] + places.s * width
+        own, s, wider = np.empty_like(places.segment), np.empty(time.size), np.empty(time.size)
+        for j, of_joint in enumerate(self.widths):
+            # Where joints have knots of their own these are shares of the total.
+            knots = total * np.append(0.0, np.cumsum(of_joint[:, 0]))
+            i = np.flatnonzero(places.joint == j)
+            own[i] = k = np.clip(np.searchsorted(knots, time[i], "right") - 1, 0, knots.size - 2)
+            each = np.diff(knots)[k]
+            s[i], wider[i] = (time[i] - knots[k]) / each, each / width[i]
+        return Places(places.joint, own, places.order, s), wider
+
 
 def pieces_of(problem: Problem) -> Pieces:
     """The pieces of a problem's curve.
@@ -127,7 +145,9 @@ def _between_knots(curve: ClampedBSpline, waypoints: Array) -> Pieces:
     return Pieces(np.full(count, p), declared, widths, passed=tuple(range(1, n)))
 
 
-def left_derivatives(pieces: Pieces, problem: Problem, motion: Any, durations: Array) -> Array:
+def left_derivatives(
+    pieces: Pieces, problem: Problem, motion: Trajectory, durations: Array
+) -> Array:
     """Derivatives in time at the left ends of the pieces of a motion, (pieces, orders, joints).
 
     Parameters

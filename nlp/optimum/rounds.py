@@ -155,7 +155,7 @@ def near_rows(program: Program, trajectory: Trajectory, near: float, flat: float
     rows = Rows(np.column_stack([np.vstack(found), np.zeros(sum(map(len, found)))]))
     places = rows.places
     bend = program.slope(trajectory, places, 2)
-    own, wider = program.own_places(trajectory, places)
+    own, wider = program.pieces.own_places(trajectory, places)
     bend = bend * wider**2
     size = program.sides.scale[places.joint, np.maximum(places.order, 1) - 1]
     stays = np.abs(bend) < flat * np.where(places.order == 0, 1.0, size)
