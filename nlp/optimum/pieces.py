@@ -1,4 +1,4 @@
-"""What the NLP is told of a curve: polynomial pieces, and what the durations do to them.
+"""What the NLP is told of a curve and its limits: pieces, what durations do to them, and rows.
 
 Declared curves and B-splines with knots in time are pieces with conditions at their breaks; the
 derivatives at left ends are variables. Curves of a fixed shape in a parameter have constants in
@@ -38,6 +38,60 @@ class _Casadi:
 
 ca: Any = _Casadi()
 """CasADi, imported where an NLP is built: small problems need none, and it takes a while."""
+
+
+@dataclass(frozen=True, eq=False)
+class Rows:
+    """Limits inside pieces, a row of the table each.
+
+    Attributes
+    ----------
+    table : ndarray, shape (rows, 6)
+        Joint, piece, order, place in 0..1, side of the limit, and Newton weight w: the place moves
+        by −w f′, f the derivative as a function of the place, up to `program.REACH`.
+    """
+
+    table: Array
+
+    @property
+    def places(self) -> Places:
+        """Where they are."""
+        joint, segment, order = self.table[:, :3].T.astype(np.int64)
+        return Places(joint, segment, order, self.table[:, 3])
+
+    @property
+    def sign(self) -> Array:
+        """Sides of the limits."""
+        return self.table[:, 4]
+
+    @property
+    def weight(self) -> Array:
+        """Newton weights; 0 of a place that stays."""
+        return self.table[:, 5]
+
+
+class Sides:
+    """Limits of derivatives in units of order one, as shares of the larger side.
+
+    Attributes
+    ----------
+    scale : ndarray, shape (joints, 3)
+        The larger side; inf where nothing is limited.
+    low, high : ndarray, shape (joints, 3)
+        Both sides in shares of it: −1 and 1 where they are equal.
+    """
+
+    def __init__(self, problem: Problem, unit: float, angle: Array) -> None:
+        below, above = problem.limits.sides * unit ** np.arange(1, 4) / angle[:, None]
+        positive = [np.where(np.isfinite(side), side, 0.0) for side in (below, above)]
+        scale = np.maximum(*positive)
+        # A derivative that must not leave 0 to a side has no size to take; standing still keeps it.
+        moves = np.ptp(problem.waypoints, axis=0)[:, None] > 0.0
+        limited = (scale > 0.0) | (moves & ((below == 0.0) | (above == 0.0)))
+        size = np.where(scale > 0.0, scale, 1.0)
+        self.scale = np.where(limited, size, np.inf)
+        self.low = np.where(limited, -below / size, -np.inf)
+        self.high = np.where(limited, above / size, np.inf)
 
 
 @dataclass(frozen=True, eq=False)

@@ -15,74 +15,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
 import numpy as np
 
 from ...problem import QUANTITIES, Array, Interpolant, Problem
-from ...problem.curves import PERM, ConditionKind, Conditions, Places, Trajectory
-from .pieces import Clock, Indices, ca, clocked_bend, left_derivatives, pieces_of
+from ...problem.curves import ConditionKind, Conditions, Places, Trajectory, derivative_rows
+from .pieces import Clock, Indices, Rows, Sides, ca, clocked_bend, left_derivatives, pieces_of
 
 REACH = 0.5
 """Farthest that a place follows its extremum, in shares of its piece: one of a derivative that is
 all but constant runs to any distance, where the polynomial means nothing. With 0.1 the
 windows of a plateau over 250 segments did not join, with 0.25 one of 150 did not settle."""
-
-
-@dataclass(frozen=True, eq=False)
-class Rows:
-    """Limits inside pieces, a row of the table each.
-
-    Attributes
-    ----------
-    table : ndarray, shape (rows, 6)
-        Joint, piece, order, place in 0..1, side of the limit, and Newton weight w: the place moves
-        by −w f′, f the derivative as a function of the place, up to `REACH`.
-    """
-
-    table: Array
-
-    @property
-    def places(self) -> Places:
-        """Where they are."""
-        joint, segment, order = self.table[:, :3].T.astype(np.int64)
-        return Places(joint, segment, order, self.table[:, 3])
-
-    @property
-    def sign(self) -> Array:
-        """Sides of the limits."""
-        return self.table[:, 4]
-
-    @property
-    def weight(self) -> Array:
-        """Newton weights; 0 of a place that stays."""
-        return self.table[:, 5]
-
-
-class Sides:
-    """Limits of derivatives in units of order one, as shares of the larger side.
-
-    Attributes
-    ----------
-    scale : ndarray, shape (joints, 3)
-        The larger side; inf where nothing is limited.
-    low, high : ndarray, shape (joints, 3)
-        Both sides in shares of it: −1 and 1 where they are equal.
-    """
-
-    def __init__(self, problem: Problem, unit: float, angle: Array) -> None:
-        below, above = problem.limits.sides * unit ** np.arange(1, 4) / angle[:, None]
-        positive = [np.where(np.isfinite(side), side, 0.0) for side in (below, above)]
-        scale = np.maximum(*positive)
-        # A derivative that must not leave 0 to a side has no size to take; standing still keeps it.
-        moves = np.ptp(problem.waypoints, axis=0)[:, None] > 0.0
-        limited = (scale > 0.0) | (moves & ((below == 0.0) | (above == 0.0)))
-        size = np.where(scale > 0.0, scale, 1.0)
-        self.scale = np.where(limited, size, np.inf)
-        self.low = np.where(limited, -below / size, -np.inf)
-        self.high = np.where(limited, above / size, np.inf)
 
 
 class Program:
@@ -339,11 +284,8 @@ class Program:
         if self._clock is not None:
             return clocked_bend(trajectory, places) * unit
         a = trajectory.scaled[places.segment, :, places.joint]
-        r, out = places.order + times, np.zeros(places.s.size)
-        for p in range(min(a.shape[1], len(PERM)) - 1, 0, -1):
-            factor = PERM[p, np.minimum(r, PERM.shape[1] - 1)]
-            out = np.where(p >= r, out * places.s + factor * a[:, p], out)
-        return out * unit / trajectory.durations[places.segment] ** places.order
+        found = (derivative_rows(places.s, places.order + times) * a).sum(axis=1)
+        return np.asarray(found * unit / trajectory.durations[places.segment] ** places.order)
 
     def followed(self, trajectory: Trajectory, rows: Rows) -> Rows:
         """Rows where a motion has them: those that follow an extremum at its side."""

@@ -19,8 +19,8 @@ from ...problem.curves import Trajectory, near_extrema
 from .clock import seconds_left, time_up
 from .decided import kept
 from .optimality import KKT, KKT_TOLERANCE, Local, kkt, sparse_kkt
-from .pieces import Indices, ca
-from .program import Program, Rows
+from .pieces import Indices, Rows, ca
+from .program import Program
 from .starts import DENSE, equal_start, slowed, worst_ratios
 
 NEAR = 0.5
