@@ -18,12 +18,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ...problem import QUANTITIES, Array, CurveError, Problem, peak_gradients
-from ...problem.curves import MAX_COEFFICIENTS, Places, places_of
+from ...problem import QUANTITIES, Array, Extremum, Problem
+from ...problem.curves import Places
 from .clock import time_up
-from .limit_rows import ExactRows, exact_rows, limited
+from .limit_rows import ExactRows, Excess, Indices, exact_rows
 
 ACTIVE = 1e-7
 """Relative distance to a limit within which a peak counts as active. What a multiplier is of the
@@ -88,66 +87,53 @@ UNKNOWN = KKT(np.inf, ())
 
 
 @dataclass(frozen=True, eq=False)
-class _Reached:
-    """Limits that a motion reaches, or comes near.
+class _Weighed:
+    """Limits and bounds of durations that are reached, with least-squares multipliers.
 
     Attributes
     ----------
-    places : Places
-    side : ndarray
-        1 for the upper side, −1 for the lower.
-    excess : ndarray
-        Over the limit, in scales.
-    scale, size : ndarray
-        The limit's size, of a position at least 1 and of a limit of 0 the other side's; and the
-        limit's own size in scales.
+    near : ndarray of int
+        Numbers of the limits among the exact rows.
+    segments, sides : ndarray, shape (bounds,)
+        Of the bounds.
+    slopes : ndarray, shape (limits + bounds, unknowns)
+        Gradients of what is to be at most 0, the limits' first.
+    weights : ndarray, shape (limits + bounds,)
+        Multipliers w for log T.
+    stationary : ndarray, shape (unknowns,)
+        What is left of the gradient of the Lagrangian.
     """
 
-    places: Places
-    side: Array
-    excess: Array
-    scale: Array
-    size: Array
+    near: Indices
+    segments: Indices
+    sides: Array
+    slopes: Array
+    weights: Array
+    stationary: Array
 
     @classmethod
-    def at(cls, problem: Problem, places: Places, side: Array, values: Array) -> _Reached:
-        """The limits on one side of values at places."""
-        limits, j, position = problem.limits, places.joint, places.order == 0
-        edge = np.where(side > 0, limits.position_upper[j], limits.position_lower[j])
-        sizes = limits.sides[:, j, np.maximum(places.order, 1) - 1]
-        larger = np.where(np.isfinite(sizes), sizes, 0.0).max(axis=0, initial=0.0)
-        larger = np.where(larger > 0.0, larger, 1.0)
-        own = np.where(position, edge, np.where(side > 0, sizes[1], sizes[0]))
-        own = np.where(np.isfinite(own), own, np.where(position, 0.0, larger))
-        size = np.abs(own)
-        scale = np.where(position, np.maximum(1.0, size), np.where(size > 0.0, size, larger))
-        excess = (side * values - np.where(position, side * own, own)) / scale
-        return cls(places, side, excess, scale, size / scale)
+    def of(cls, problem: Problem, rows: ExactRows, active: float) -> _Weighed | None:
+        """Multipliers of all that is nearer than ``active``; None where rounding hides them."""
+        h, unknowns = rows.durations, rows.gradient.shape[1]
+        near = np.flatnonzero(rows.excess >= -active)
+        low = np.flatnonzero(h <= problem.duration_lower * (1 + active))
+        high = np.flatnonzero(h >= problem.duration_upper * (1 - active))
+        segments, sides = np.append(low, high), np.repeat([-1.0, 1.0], [low.size, high.size])
+        walls = sides[:, None] * np.eye(unknowns)[segments]
+        slopes = np.vstack([rows.gradient[near], walls])
+        objective = np.append(h / h.sum(), np.zeros(unknowns - h.size))
+        if problem.ratios is not None:
+            slopes, objective = slopes.sum(axis=1, keepdims=True), objective.sum(keepdims=True)
+        weights = np.zeros(len(slopes))
+        if weights.size:
+            from scipy.optimize import nnls  # a quarter of a second; a check does without
 
-    def picked(self, at: NDArray[np.bool_]) -> _Reached:
-        """Some of them."""
-        p = self.places
-        places = Places(p.joint[at], p.segment[at], p.order[at], p.s[at])
-        return _Reached(places, self.side[at], self.excess[at], self.scale[at], self.size[at])
-
-
-@dataclass(frozen=True, eq=False)
-class _Walls:
-    """Bounds of durations: segments, sides, relative distances to the bound."""
-
-    segment: NDArray[np.int64]
-    side: Array
-    gap: Array
-
-    @classmethod
-    def of(
-        cls, problem: Problem, durations: Array, segment: NDArray[np.int64], side: Array
-    ) -> _Walls:
-        """The bounds on one side of some durations."""
-        h, low = durations[segment], problem.duration_lower[segment]
-        with np.errstate(divide="ignore"):
-            gap = np.where(side > 0, 1.0 - h / problem.duration_upper[segment], h / low - 1.0)
-        return cls(segment, side, np.where(np.isfinite(gap), gap, 1.0))
+            try:
+                weights, _ = nnls(slopes.T, -objective, maxiter=30 * weights.size + 100)
+            except RuntimeError:  # too many iterations
+                return None
+        stationary = objective + weights @ slopes
+        return cls(near, segments, sides, slopes, weights, stationary)
 
 
 def kkt(
@@ -177,47 +163,20 @@ def kkt(
     Where ratios are fixed, log T is the one unknown: all z_k change alike, and their equations are
     added up.
     """
-    n, joints, free = problem.segments, problem.waypoints.shape[1], problem.curve.free
-    try:
-        found = limited(problem, durations, nodal)
-        points = [one.extremum for one in found]
-        side, values = np.array([[one.sign, one.extremum.value] for one in found]).reshape(-1, 2).T
-        reached = _Reached.at(problem, places_of(points), side, values)
-        near = reached.excess >= -active
-        points, reached = [points[i] for i in np.flatnonzero(near)], reached.picked(near)
-        gradients = peak_gradients(problem, durations, points, nodal)
-    except CurveError:
+    rows = exact_rows(problem, durations, nodal)
+    found = _Weighed.of(problem, rows, active) if rows.worst < np.inf else None
+    if found is None:
         return UNKNOWN
-    own = np.eye(joints)[reached.places.joint]
-    units, widest = np.ones((MAX_COEFFICIENTS, joints)), problem.limits.widest.T
-    units[1:4] = np.where(np.isfinite(widest), widest, 1.0)
-    orders = [order for _, order in problem.piecewise.free_derivatives] if free else []
-    by_nodal = gradients.nodal[:, :, None] * own[:, None] * units[orders]
-    rows = np.hstack(
-        [gradients.durations * durations, by_nodal.reshape(len(points), free * joints)]
-    )
-    low = np.flatnonzero(durations <= problem.duration_lower * (1 + active))
-    high = np.flatnonzero(durations >= problem.duration_upper * (1 - active))
-    sides = np.repeat([-1.0, 1.0], [low.size, high.size])
-    walls = _Walls.of(problem, durations, np.append(low, high), sides)
-    bounds = sides[:, None] * np.eye(n + free * joints)[walls.segment]
-    matrix = np.vstack([rows * (reached.side / reached.scale)[:, None], bounds]).T
-    objective = np.append(durations / durations.sum(), np.zeros(free * joints))
-    if problem.ratios is not None:
-        objective, matrix = objective.sum(keepdims=True), matrix.sum(axis=0, keepdims=True)
-    weights = np.zeros(matrix.shape[1])
-    if weights.size:
-        from scipy.optimize import nnls  # a quarter of a second; a check does without
-
-        try:
-            weights, _ = nnls(matrix, -objective, maxiter=30 * weights.size + 100)
-        except RuntimeError:  # too many iterations: rounding hides which limits hold the motion
-            return UNKNOWN
-    of_limits, of_bounds = np.split(weights, [len(points)])
-    segments = [problem.curve.segment_of(durations, e) for e in points]
-    labels = list(zip(segments, [e.time for e in points], strict=True))
-    stationary = matrix @ weights + objective
-    return _report(problem, durations, stationary, (reached, of_limits, labels), (walls, of_bounds))
+    of_limits, of_bounds = np.split(found.weights, [found.near.size])
+    excess = rows.excess[found.near]
+    walls = np.zeros((2, problem.segments))
+    np.add.at(walls, ((found.sides > 0).astype(int), found.segments), of_bounds)
+    limits = [
+        (rows.points[i], float(rows.signs[i]), w)
+        for i, w in zip(found.near, of_limits, strict=True)
+        if w > 0
+    ]
+    return _report(problem, durations, found.stationary, excess, of_limits, limits, walls)
 
 
 def sparse_kkt(
@@ -249,67 +208,85 @@ def sparse_kkt(
     which one adjoint solve gives for all durations. Their limits need not be within a chosen
     distance: w_i g_i = 0 is part of the residual.
     """
-    total = float(durations.sum())
+    total, joint, order = float(durations.sum()), places.joint, places.order
     adjoint = problem.piecewise.adjoint(problem.waypoints, durations)
-    side = np.where(limits >= 0.0, 1.0, -1.0)
-    reached = _Reached.at(problem, places, side, adjoint.values(places))
-    sizes = problem.limits.sides[:, places.joint, np.maximum(places.order, 1) - 1]
+    values, sign = adjoint.values(places), np.where(limits >= 0.0, 1.0, -1.0)
+    one = Excess.of(problem, total, joint, order, sign, values)
+    sizes = problem.limits.sides[:, joint, np.maximum(order, 1) - 1]
     larger = np.where(np.isfinite(sizes), sizes, 0.0).max(axis=0)
-    larger = np.where(places.order == 0, 1.0, np.where(larger > 0.0, larger, 1.0))
-    weights = np.abs(limits) * reached.scale / (larger * total)
-    walls = _Walls.of(problem, durations, np.arange(durations.size), np.sign(bounds))
-    of_bounds = np.abs(bounds) * durations / total
-    slope = adjoint.weighted(places, side * weights / reached.scale)
-    stationary = durations * (1.0 / total + slope) + walls.side * of_bounds
-    segments, starts = [], np.concatenate([[0.0], np.cumsum(durations)])
-    for k, r, s in zip(places.segment.tolist(), places.order.tolist(), places.s, strict=True):
+    slopes = limits / (np.where((order == 0) | (larger == 0.0), 1.0, larger) * total)
+    weights = np.abs(slopes) * one.size
+    stationary = durations * ((1.0 + bounds) / total + adjoint.weighted(places, slopes))
+    walls = np.maximum([-bounds, bounds], 0.0) * durations / total
+    starts = np.append(0.0, np.cumsum(durations))
+    active = []
+    for i in np.flatnonzero(np.abs(one.excess) <= ACTIVE).tolist():
+        k, r, s = int(places.segment[i]), int(order[i]), float(places.s[i])
+        time = float(starts[k] + s * durations[k])
         # What both segments share belongs to the first, as in `kkt`.
-        shared = s == 0.0 and k > 0 and problem.piecewise.smooth_order(k) >= r
-        segments.append(k - int(shared))
-    times = starts[places.segment] + places.s * durations[places.segment]
-    labels = list(zip(segments, times.tolist(), strict=True))
-    return _report(problem, durations, stationary, (reached, weights, labels), (walls, of_bounds))
+        k -= int(s == 0.0 and k > 0 and problem.piecewise.smooth_order(k) >= r)
+        e = Extremum(int(joint[i]), k, r, s, time, float(values[i]))
+        active.append((e, float(sign[i]), float(weights[i])))
+    return _report(problem, durations, stationary, one.excess, weights, active, walls)
 
 
 def _report(
     problem: Problem,
     durations: Array,
     stationary: Array,
-    limits: tuple[_Reached, Array, list[tuple[int, float]]],
-    bounds: tuple[_Walls, Array],
+    excess: Array,
+    weights: Array,
+    limits: list[tuple[Extremum, float, float]],
+    walls: Array,
 ) -> KKT:
-    """The conditions, of limits with their weights, segments and times, and of bounds with theirs.
+    """The conditions of limits and bounds, and those that are active.
 
-    A violation counts as far as these limits show it; `check` looks at all.
+    Parameters
+    ----------
+    problem : Problem
+    durations : ndarray, shape (segments,)
+    stationary : ndarray
+        Gradient of the Lagrangian of log T.
+    excess, weights : ndarray
+        Of limits.
+    limits : list of (Extremum, side, weight)
+        Those that are reached.
+    walls : ndarray, shape (2, segments)
+        Weights of lower and upper bounds of durations.
     """
-    reached, weights, labels = limits
-    walls, of_bounds = bounds
-    residual = max(
-        float(np.abs(stationary).max()),
-        float(np.abs(weights * reached.excess).max(initial=0.0)),
-        float(np.abs(of_bounds * walls.gap).max(initial=0.0)),
-        float(reached.excess.max(initial=0.0)),
-    )
     total, least = float(durations.sum()), ACTIVE / problem.segments
-    active = []
-    for i in np.flatnonzero((weights > least) & (np.abs(reached.excess) <= ACTIVE)).tolist():
-        p, w, (segment, time) = reached.places, float(weights[i] * total), labels[i]
-        quantity = ("position", *QUANTITIES)[p.order[i]]
-        gain = -MORE * float(reached.size[i]) * w
-        active.append(Active(problem.joints[p.joint[i]], quantity, segment, time, w, gain))
-    for i in np.flatnonzero((of_bounds > least) & (np.abs(walls.gap) <= ACTIVE)).tolist():
-        w = float(of_bounds[i] * total)
-        more = -float(walls.side[i]) * MORE * w
-        active.append(Active(None, "duration", int(walls.segment[i]), None, w, more))
-    return KKT(residual, tuple(active))
+    with np.errstate(divide="ignore"):
+        gaps = [durations / problem.duration_lower - 1.0, 1.0 - durations / problem.duration_upper]
+    gaps = np.where(np.isfinite(gaps), gaps, 1.0)
+    parts = (stationary, weights * excess, walls * gaps)
+    residual = max(float(np.abs(part).max(initial=0.0)) for part in parts)
+    active, span = [], np.ptp(problem.waypoints, axis=0)
+    for e, sign, weight in limits:
+        if weight <= least:
+            continue
+        if e.order == 0:
+            ends = problem.limits.position_lower, problem.limits.position_upper
+            edge = abs(float(ends[int(sign > 0)][e.joint]))
+            w = weight * total * max(1.0, edge) / (float(span[e.joint]) or 1.0)
+            gain = edge / max(1.0, edge)
+        else:
+            w = weight * total / e.order
+            gain = float(problem.limits.sides[int(sign > 0), e.joint, e.order - 1] > 0.0)
+        quantity = ("position", *QUANTITIES)[e.order]
+        segment = problem.curve.segment_of(durations, e)
+        label = problem.joints[e.joint], quantity, segment, e.time
+        active.append(Active(*label, w, -MORE * gain * w))
+    for side, k in np.argwhere((walls > least) & (gaps <= ACTIVE)).tolist():
+        w = float(walls[side, k] * total)
+        active.append(Active(None, "duration", k, None, w, (MORE - 2 * MORE * side) * w))
+    return KKT(max(residual, float(excess.max(initial=0.0))), tuple(active))
 
 
 SHARP = 1e-12
 """Residual that `sharpened` leaves as it is: rounding of gradients."""
-SHARPENINGS = 4
-"""Newton steps of `sharpened`: few are needed from near by, since it is quadratic."""
 DIFFERENCE = 1e-6
 """Step of its central differences in log durations: they err by 1e-12, their rounding by 1e-10."""
+
 NEAR_BY = 1e-3
 """Log durations by which one of its steps changes a duration at most: an answer is very near."""
 
@@ -318,6 +295,7 @@ def sharpened(problem: Problem, durations: Array) -> Array | None:
     """Newton steps on stationarity and the active limits; None where they lead nowhere.
 
     A search ends where rounding hides what it gains, before the gradient vanishes as far as it can.
+    Four steps are plenty from near by, since the convergence is quadratic.
 
     Parameters
     ----------
@@ -326,26 +304,16 @@ def sharpened(problem: Problem, durations: Array) -> Array | None:
     durations : ndarray, shape (segments,)
         s.
     """
-    from scipy.optimize import nnls  # a quarter of a second; a check does without
-
     first = exact_rows(problem, durations)
-    near = np.flatnonzero(first.excess > -ACTIVE)
-    one = np.eye(durations.size)
-    low = (durations <= problem.duration_lower * (1 + ACTIVE)).nonzero()[0]
-    high = (durations >= problem.duration_upper * (1 - ACTIVE)).nonzero()[0]
-    walls = np.vstack([-one[low], one[high]])
-    slopes = np.vstack([first.gradient[near], walls])
-    if not slopes.size:
+    found = _Weighed.of(problem, first, ACTIVE)
+    if found is None or not found.weights.size:
         return None
-    try:
-        weights, _ = nnls(slopes.T, -durations / durations.sum())
-    except RuntimeError:  # rounding hides which limits hold the motion
-        return None
-    loaded = weights[: near.size] > 0
-    active, weights, held = near[loaded], weights[: near.size][loaded], weights[near.size :] > 0
-    free = ~walls[held].any(axis=0)
-    h, n, z = durations, int(free.sum()), active.size
-    for _ in range(SHARPENINGS):
+    loaded = found.weights > 0
+    limits, bounds = np.split(loaded, [found.near.size])
+    active, weights = found.near[limits], found.weights[: found.near.size][limits]
+    free = ~np.isin(np.arange(durations.size), found.segments[bounds])
+    h, n, z, one = durations, int(free.sum()), active.size, np.eye(durations.size)
+    for _ in range(4):
         now = _conditions(problem, h, first, active, weights)
         if now is None or time_up():
             return None
@@ -364,7 +332,7 @@ def sharpened(problem: Problem, durations: Array) -> Array | None:
         block = columns[:, free]
         system = np.block([[np.reshape(bends, (n, n)).T, block.T], [block, np.zeros((z, z))]])
         try:
-            change = np.linalg.lstsq(system, -np.append(slope[free], excess), rcond=1e-12)[0]
+            change = np.linalg.lstsq(system, -np.append(slope[free], excess), rcond=SHARP)[0]
         except np.linalg.LinAlgError:
             return None
         h = h * np.exp(one[free].T @ np.clip(change[:n], -NEAR_BY, NEAR_BY))
@@ -373,7 +341,7 @@ def sharpened(problem: Problem, durations: Array) -> Array | None:
 
 
 def _conditions(
-    problem: Problem, h: Array, first: ExactRows, active: NDArray[np.int64], weights: Array
+    problem: Problem, h: Array, first: ExactRows, active: Indices, weights: Array
 ) -> tuple[Array, Array, Array] | None:
     """Slope of the Lagrangian in log durations, excess of the active limits, and their slopes."""
     rows = exact_rows(problem, h)

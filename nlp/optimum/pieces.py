@@ -1,4 +1,4 @@
-"""What the NLP is told of a curve: polynomial pieces, and what the durations do to them.
+"""What the NLP is told of a curve and its limits: pieces, what durations do to them, and rows.
 
 Declared curves and B-splines with knots in time are pieces with conditions at their breaks; the
 derivatives at left ends are variables. Curves of a fixed shape in a parameter have constants in
@@ -18,6 +18,7 @@ from ...problem import Array, ClampedBSpline, Interpolant, Problem, TrajgapError
 from ...problem.curves import (
     Places,
     TimedUniformBSpline,
+    Trajectory,
     average_matrix,
     clamped_control_points,
     fractions_of,
@@ -37,6 +38,60 @@ class _Casadi:
 
 ca: Any = _Casadi()
 """CasADi, imported where an NLP is built: small problems need none, and it takes a while."""
+
+
+@dataclass(frozen=True, eq=False)
+class Rows:
+    """Limits inside pieces, a row of the table each.
+
+    Attributes
+    ----------
+    table : ndarray, shape (rows, 6)
+        Joint, piece, order, place in 0..1, side of the limit, and Newton weight w: the place moves
+        by −w f′, f the derivative as a function of the place, up to `program.REACH`.
+    """
+
+    table: Array
+
+    @property
+    def places(self) -> Places:
+        """Where they are."""
+        joint, segment, order = self.table[:, :3].T.astype(np.int64)
+        return Places(joint, segment, order, self.table[:, 3])
+
+    @property
+    def sign(self) -> Array:
+        """Sides of the limits."""
+        return self.table[:, 4]
+
+    @property
+    def weight(self) -> Array:
+        """Newton weights; 0 of a place that stays."""
+        return self.table[:, 5]
+
+
+class Sides:
+    """Limits of derivatives in units of order one, as shares of the larger side.
+
+    Attributes
+    ----------
+    scale : ndarray, shape (joints, 3)
+        The larger side; inf where nothing is limited.
+    low, high : ndarray, shape (joints, 3)
+        Both sides in shares of it: −1 and 1 where they are equal.
+    """
+
+    def __init__(self, problem: Problem, unit: float, angle: Array) -> None:
+        below, above = problem.limits.sides * unit ** np.arange(1, 4) / angle[:, None]
+        positive = [np.where(np.isfinite(side), side, 0.0) for side in (below, above)]
+        scale = np.maximum(*positive)
+        # A derivative that must not leave 0 to a side has no size to take; standing still keeps it.
+        moves = np.ptp(problem.waypoints, axis=0)[:, None] > 0.0
+        limited = (scale > 0.0) | (moves & ((below == 0.0) | (above == 0.0)))
+        size = np.where(scale > 0.0, scale, 1.0)
+        self.scale = np.where(limited, size, np.inf)
+        self.low = np.where(limited, -below / size, -np.inf)
+        self.high = np.where(limited, above / size, np.inf)
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,6 +129,23 @@ class Pieces:
         else:
             inner = np.array(self.declared.continuity, dtype=np.int64) >= order
         return np.append(inner, False)
+
+    def own_places(self, trajectory: Trajectory, places: Places) -> tuple[Places, Array]:
+        """Places of a motion in each joint's own pieces, and how many times as wide these are."""
+        if self.widths is None or len(self.widths) == 1:
+            return places, np.ones(places.s.size)
+        breaks, total = trajectory.breaks, float(trajectory.breaks[-1])
+        width = np.diff(breaks)[places.segment]
+        time = breaks[places.segment] + places.s * width
+        own, s, wider = np.empty_like(places.segment), np.empty(time.size), np.empty(time.size)
+        for j, of_joint in enumerate(self.widths):
+            # Where joints have knots of their own these are shares of the total.
+            knots = total * np.append(0.0, np.cumsum(of_joint[:, 0]))
+            i = np.flatnonzero(places.joint == j)
+            own[i] = k = np.clip(np.searchsorted(knots, time[i], "right") - 1, 0, knots.size - 2)
+            each = np.diff(knots)[k]
+            s[i], wider[i] = (time[i] - knots[k]) / each, each / width[i]
+        return Places(places.joint, own, places.order, s), wider
 
 
 def pieces_of(problem: Problem) -> Pieces:
@@ -127,7 +199,9 @@ def _between_knots(curve: ClampedBSpline, waypoints: Array) -> Pieces:
     return Pieces(np.full(count, p), declared, widths, passed=tuple(range(1, n)))
 
 
-def left_derivatives(pieces: Pieces, problem: Problem, motion: Any, durations: Array) -> Array:
+def left_derivatives(
+    pieces: Pieces, problem: Problem, motion: Trajectory, durations: Array
+) -> Array:
     """Derivatives in time at the left ends of the pieces of a motion, (pieces, orders, joints).
 
     Parameters

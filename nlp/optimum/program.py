@@ -15,73 +15,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from ...problem import QUANTITIES, Array, Interpolant, Problem
-from ...problem.curves import PERM, ConditionKind, Places, Trajectory
-from .pieces import Clock, Indices, ca, clocked_bend, left_derivatives, pieces_of
+from ...problem.curves import ConditionKind, Conditions, Places, Trajectory, derivative_rows
+from .pieces import Clock, Indices, Rows, Sides, ca, clocked_bend, left_derivatives, pieces_of
 
 REACH = 0.5
 """Farthest that a place follows its extremum, in shares of its piece: one of a derivative that is
 all but constant runs to any distance, where the polynomial means nothing. With 0.1 the
 windows of a plateau over 250 segments did not join, with 0.25 one of 150 did not settle."""
-
-
-@dataclass(frozen=True, eq=False)
-class Rows:
-    """Limits inside pieces, a row of the table each.
-
-    Attributes
-    ----------
-    table : ndarray, shape (rows, 6)
-        Joint, piece, order, place in 0..1, side of the limit, and Newton weight w: the place moves
-        by −w f′, f the derivative as a function of the place, up to `REACH`.
-    """
-
-    table: Array
-
-    @property
-    def places(self) -> Places:
-        """Where they are."""
-        joint, segment, order = self.table[:, :3].T.astype(np.int64)
-        return Places(joint, segment, order, self.table[:, 3])
-
-    @property
-    def sign(self) -> Array:
-        """Sides of the limits."""
-        return self.table[:, 4]
-
-    @property
-    def weight(self) -> Array:
-        """Newton weights; 0 of a place that stays."""
-        return self.table[:, 5]
-
-
-class Sides:
-    """Limits of derivatives in units of order one, as shares of the larger side.
-
-    Attributes
-    ----------
-    scale : ndarray, shape (joints, 3)
-        The larger side; inf where nothing is limited.
-    low, high : ndarray, shape (joints, 3)
-        Both sides in shares of it: −1 and 1 where they are equal.
-    """
-
-    def __init__(self, problem: Problem, unit: float, angle: Array) -> None:
-        below, above = problem.limits.sides * unit ** np.arange(1, 4) / angle[:, None]
-        positive = [np.where(np.isfinite(side), side, 0.0) for side in (below, above)]
-        scale = np.maximum(*positive)
-        # A derivative that must not leave 0 to a side has no size to take; standing still keeps it.
-        moves = np.ptp(problem.waypoints, axis=0)[:, None] > 0.0
-        limited = (scale > 0.0) | (moves & ((below == 0.0) | (above == 0.0)))
-        size = np.where(scale > 0.0, scale, 1.0)
-        self.scale = np.where(limited, size, np.inf)
-        self.low = np.where(limited, -below / size, -np.inf)
-        self.high = np.where(limited, above / size, np.inf)
 
 
 class Program:
@@ -114,9 +60,10 @@ class Program:
         self._row = {r: _inverted(k, self.degrees.size) for r, k in held.items()}
         self.durations = ca.MX.sym("h", self.segments)
         self._widths = self._widths_of_pieces()
-        if self.pieces.declared is None:
-            self._of_shape()
-        else:
+        self._clock: Clock | None = None
+        if self.pieces.scaled is not None:
+            self._of_shape(self.pieces.scaled)
+        elif self.pieces.declared is not None:
             self._of_conditions(self.pieces.declared)
         self.ends = self._end_places()
 
@@ -128,16 +75,14 @@ class Program:
         columns = [ca.mtimes(ca.sparsify(ca.DM(own)), self.durations) for own in widths]
         return ca.horzcat(*columns) if len(columns) > 1 else ca.repmat(columns[0], 1, self.joints)
 
-    def _of_shape(self) -> None:
+    def _of_shape(self, scaled: Array) -> None:
         """Constants in the place of variables; a clock gives its own derivatives."""
-        scaled = np.array(self.pieces.scaled) / self.angle
+        scaled = scaled / self.angle
         scaled[:, 0] -= self.problem.waypoints[0] / self.angle
-        self._states, self._virtual = {}, np.zeros(0, dtype=np.int64)
-        self._q, self._offset = ca.DM(scaled[:, 0]), np.array([0, self.segments, self.segments])
-        self._clock = None
+        self._q, none = ca.DM(scaled[:, 0]), np.zeros(0, dtype=np.int64)
+        self.left, self._given = Places(none, none, none, np.zeros(0)), np.zeros(0)
         if self.pieces.clock is not None:
-            self._clock = Clock(self.pieces.clock, scaled, self.durations)
-            self._held = {}
+            self._clock, self._held = Clock(self.pieces.clock, scaled, self.durations), {}
         self._d = {
             r: ca.DM(math.factorial(r) * scaled[k, r]) / self._widths[k.tolist(), :] ** r
             for r, k in self._held.items()
@@ -146,51 +91,53 @@ class Program:
 
     def _of_conditions(self, curve: Interpolant) -> None:
         """Variables at left ends, and what the curve says of right ends."""
-        joints, self._states, breaks = self.joints, self._held, list(curve.waypoint_breaks)
-        self._table, self._values = curve.table, _stated_values(curve, joints)
-        self._virtual = np.array(curve.virtual, dtype=np.int64)
-        self._d = {r: ca.MX.sym(f"d{r}", len(k), joints) for r, k in self._held.items()}
-        free = ca.MX.sym("q", self._virtual.size, joints)
+        joints, table, values = self.joints, curve.table, _stated_values(curve, self.joints)
         q = (self.problem.waypoints - self.problem.waypoints[0]) / self.angle
         self._fixed = np.zeros((self.degrees.size + 1, joints))
-        self._fixed[breaks] = q[[0, -1]] if self.pieces.passed else q
+        self._fixed[list(curve.waypoint_breaks)] = q[[0, -1]] if self.pieces.passed else q
         self._q = ca.MX(ca.DM(self._fixed))
-        if self._virtual.size:
-            self._q[self._virtual.tolist(), :] = free
-        parts = [ca.vec(d) for d in self._d.values()]
-        self.variables = ca.vertcat(self.durations, *parts, ca.vec(free))
-        sizes = [self.segments, *(part.numel() for part in parts), free.numel()]
-        self._offset = np.concatenate([[0], np.cumsum(sizes)])
-        stated = [*self._conditions(), *self._passed(q), self._fixed_ratios()]
-        self._clock, self.equalities = None, ca.vertcat(*stated)
+        virtual = np.array(curve.virtual, dtype=np.int64)
+        symbols = {r: ca.MX.sym(f"d{r}", len(k), joints) for r, k in self._held.items()}
+        self._d, free = symbols, ca.MX.sym("q", virtual.size, joints)
+        if virtual.size:
+            self._q[virtual.tolist(), :] = free
+        self.variables = ca.vertcat(self.durations, *map(ca.vec, symbols.values()), ca.vec(free))
+        found = []
+        for r, k in (*self._held.items(), (0, virtual)):
+            given = np.full((k.size, joints), np.nan)
+            i = np.flatnonzero((table.kinds == ConditionKind.RIGHT_VALUE) & (table.orders == r))
+            if r:
+                at = self._row[r][table.breaks[i]]
+                given[at] = values[i] * self.unit**r / self.angle
+            j, row = np.divmod(np.arange(given.size), max(1, k.size))
+            found.append(np.array([j, k[row], np.full(j.size, r), given.ravel("F")]))
+        joint, piece, order, self._given = np.hstack(found)
+        columns = (one.astype(np.int64) for one in (joint, piece, order))
+        self.left = Places(*columns, np.zeros(joint.size))
+        stated = [*self._conditions(table, values), *self._passed(q), self._fixed_ratios()]
+        self.equalities = ca.vertcat(*stated)
 
     def __str__(self) -> str:
-        p, rows = self.problem, self.ends.s.size
-        limited = [
-            q for q, s in zip(QUANTITIES, self.sides.scale.T, strict=True) if s.min() < np.inf
-        ]
-        if p.limits.limits_position:
-            limited.insert(0, "position")
-        pieces = "pieces" if self.pieces.widths is not None else "segments"
-        states, free = (int(n) for n in np.diff(self._offset[[1, -2, -1]]))
+        p, rows, states = self.problem, self.ends.s.size, int((self.left.order > 0).sum())
+        scales = zip(QUANTITIES, self.sides.scale.T, strict=True)
+        limited = ["position"] if p.limits.limits_position else []
+        limited += [quantity for quantity, scale in scales if scale.min() < np.inf]
         variables = f"{self.segments} durations"
-        if self._states:
-            variables += f", {states} derivatives at left ends of {pieces}"
-        if free:
-            variables += f", {free} positions"
-        stated = ["the curve's conditions at right ends"] if self._states else []
+        if states:
+            variables += f", {states} derivatives at left ends of pieces"
+        if states < self.left.s.size:
+            variables += f", {self.left.s.size - states} positions"
+        stated = ["the curve's conditions at right ends"] if states else []
         stated += ["way-points at their times"] if self.pieces.passed else []
         stated += ["the fixed ratios"] if p.ratios is not None else []
         return (
             f"minimise the sum of {self.segments} segment durations\n"
-            f"  curve        {p.curve.name}, {self.joints} joint(s)\n"
+            f"  curve        {p.curve.name}, {self.joints} joint(s), {self.degrees.size} pieces\n"
             f"  variables    {self.variables.numel()}: {variables}\n"
             f"  equalities   {self.equalities.numel()}: {', '.join(stated) or 'none'}\n"
             f"  limits       on {', '.join(limited) or 'nothing'}: "
-            f"{'bounds at left ends,' if self._states else ''}\n"
-            f"               {rows} rows at {'right ends' if self._states else 'ends'}, and a row "
-            "at each extremum inside a piece,\n"
-            "               found anew in each round"
+            f"{'bounds at left ends, ' if states else ''}{rows} rows at ends,\n"
+            "               and a row at each extremum inside a piece, found anew in each round"
         )
 
     def _series(self, order: int, degree: int, t: Any, left: Callable[[int], Any]) -> Any:
@@ -213,23 +160,21 @@ class Program:
             out[np.flatnonzero(there).tolist(), :] = rows
         return out
 
-    def _conditions(self) -> list[Any]:
+    def _conditions(self, table: Conditions, values: Array) -> list[Any]:
         """What the curve says of right ends, joint by joint."""
-        table, found = self._table, []
+        found = []
         rows = np.flatnonzero(table.kinds != ConditionKind.RIGHT_VALUE)
-        keys = np.stack(
-            [table.kinds[rows], table.orders[rows], self.degrees[table.breaks[rows] - 1]]
-        )
-        for kind, r, degree in np.unique(keys, axis=1).T.tolist():
-            i = rows[(keys == np.array([[kind], [r], [degree]])).all(axis=0)]
+        degree = self.degrees[table.breaks[rows] - 1]
+        keys = np.stack([table.kinds[rows], table.orders[rows], degree])
+        for kind, r, d in np.unique(keys, axis=1).T.tolist():
+            i = rows[(keys == np.array([[kind], [r], [d]])).all(axis=0)]
             b = table.breaks[i]
-            before = b - 1
-            t = self._widths[before.tolist(), :] if b.size < self.degrees.size else self._widths
-            value = self._series(r, degree, t, lambda m, k=before: self._left(m, k))
+            t = self._widths if b.size == self.degrees.size else self._widths[(b - 1).tolist(), :]
+            value = self._series(r, d, t, partial(self._left, k=b - 1))
             if r == 0:
-                wanted = self._q[b.tolist(), :] - self._q[before.tolist(), :]
+                wanted = self._q[b.tolist(), :] - self._q[(b - 1).tolist(), :]
             elif kind == ConditionKind.LEFT_VALUE:
-                wanted = ca.DM(self._values[i] * self.unit**r / self.angle)
+                wanted = ca.DM(values[i] * self.unit**r / self.angle)
             else:
                 wanted = self._left(r, b)
             found.append(ca.vec(value - wanted))
@@ -242,23 +187,22 @@ class Program:
         of the durations with p − 1 continuous derivatives, as the spline has. Beside a curve's c
         end conditions, way-point w lies in one of p + 1 pieces (Schoenberg and Whitney).
         """
-        passed, found = self.pieces.passed, []
+        passed = self.pieces.passed
+        found: list[Any] = []
         if not passed:
             return found
         p, last, c = int(self.degrees[0]), self.degrees.size - 1, len(self.problem.curve.ends[0])
         near = [(i, k) for i, w in enumerate(passed) for k in range(w + c - p, w + c + 1)]
         i, k = np.array([(i, k) for i, k in near if 0 <= k <= last], dtype=np.int64).T
         time = ca.cumsum(self.durations)[[passed[row] - 1 for row in i]]
-        sums = ca.DM.zeros(len(passed), i.size)
-        for column, row in enumerate(i.tolist()):
-            sums[row, column] = 1.0
+        sums = ca.sparsify(ca.DM(np.eye(len(passed))[:, i]))
         for j in range(self.joints):
             knots = ca.vertcat(0, ca.cumsum(self._widths[:, j]))
             t = time - knots[k.tolist()]
             inside = ca.logic_and(t >= 0, time < knots[(k + 1).tolist()])
-            way = self._series(0, p, t, lambda m, j=j: self._d[m][k.tolist(), j])
-            value = ca.mtimes(ca.sparsify(sums), inside * (self._q[k.tolist(), j] + way))
-            found.append(value - ca.DM(q[list(passed), j]))
+            left = {m: d[k.tolist(), j] for m, d in self._d.items()}
+            value = self._q[k.tolist(), j] + self._series(0, p, t, left.__getitem__)
+            found.append(ca.mtimes(sums, inside * value) - ca.DM(q[list(passed), j]))
         return found
 
     def _fixed_ratios(self) -> Any:
@@ -276,7 +220,7 @@ class Program:
         for r in (1, 2, 3):
             joints = np.flatnonzero(np.isfinite(self.sides.scale[:, r - 1])).tolist()
             right = (self.degrees > r) & ~self.pieces.smooth(r)
-            left = np.zeros(last, dtype=bool) if self._states else self.degrees >= r
+            left = (self.degrees >= r) & (declared is None)
             for s, at in ((0.0, left), (1.0, right)):
                 for k in np.flatnonzero(at).tolist():
                     if r not in orders.get(k + int(s), ()):
@@ -340,11 +284,8 @@ class Program:
         if self._clock is not None:
             return clocked_bend(trajectory, places) * unit
         a = trajectory.scaled[places.segment, :, places.joint]
-        r, out = places.order + times, np.zeros(places.s.size)
-        for p in range(min(a.shape[1], len(PERM)) - 1, 0, -1):
-            factor = PERM[p, np.minimum(r, PERM.shape[1] - 1)]
-            out = np.where(p >= r, out * places.s + factor * a[:, p], out)
-        return out * unit / trajectory.durations[places.segment] ** places.order
+        found = (derivative_rows(places.s, places.order + times) * a).sum(axis=1)
+        return np.asarray(found * unit / trajectory.durations[places.segment] ** places.order)
 
     def followed(self, trajectory: Trajectory, rows: Rows) -> Rows:
         """Rows where a motion has them: those that follow an extremum at its side."""
@@ -352,29 +293,6 @@ class Program:
         step = rows.weight * self.slope(trajectory, rows.places, 1)
         table[:, 3] -= REACH * np.tanh(step / REACH)
         return Rows(table)
-
-    def own_places(self, trajectory: Trajectory, places: Places) -> tuple[Places, Array]:
-        """Places of a motion in each joint's own pieces, and how many times as wide these are."""
-        widths = self.pieces.widths
-        if widths is None or len(widths) == 1:
-            return places, np.ones(places.s.size)
-        breaks, total = trajectory.breaks, float(trajectory.breaks[-1])
-        width = np.diff(breaks)[places.segment]
-        time = breaks[places.segment] + places.s * width
-        own, s, wider = np.empty_like(places.segment), np.empty(time.size), np.empty(time.size)
-        for j, of_joint in enumerate(widths):
-            # Where joints have knots of their own these are shares of the total.
-            knots = total * np.append(0.0, np.cumsum(of_joint[:, 0]))
-            i = np.flatnonzero(places.joint == j)
-            own[i] = k = np.clip(np.searchsorted(knots, time[i], "right") - 1, 0, knots.size - 2)
-            each = np.diff(knots)[k]
-            s[i], wider[i] = (time[i] - knots[k]) / each, each / width[i]
-        return Places(places.joint, own, places.order, s), wider
-
-    def duration_bounds(self) -> tuple[Array, Array]:
-        """Bounds on the durations, in units."""
-        low = np.maximum(self.problem.duration_lower, self._floor) / self.unit
-        return low, np.maximum(self.problem.duration_upper / self.unit, low)
 
     def rooms(self, places: Places, sign: Array) -> Array:
         """Limits of rows: derivatives in shares of the larger side, positions in angles."""
@@ -396,47 +314,41 @@ class Program:
 
     def bounds(self) -> tuple[Array, Array]:
         """Bounds on the variables: durations, limits at left ends, given derivatives."""
-        low, high = ([bound] for bound in self.duration_bounds())
-        for r, held in self._states.items():
-            edges = (np.full(self.joints, -np.inf), np.full(self.joints, np.inf))
-            if r <= 3:
-                size = self.sides.scale[:, r - 1]
-                edges = size * self.sides.low[:, r - 1], size * self.sides.high[:, r - 1]
-            lower, upper = (np.tile(edge, (held.size, 1)) for edge in edges)
-            right = self._table.kinds == ConditionKind.RIGHT_VALUE
-            i = np.flatnonzero(right & (self._table.orders == r))
-            at = self._row[r][self._table.breaks[i]]
-            lower[at] = upper[at] = self._values[i] * self.unit**r / self.angle
-            low.append(lower.ravel("F"))
-            high.append(upper.ravel("F"))
-        limits, first = self.problem.limits, self.problem.waypoints[0]
-        for bound, out in ((limits.position_lower, low), (limits.position_upper, high)):
-            out.append(np.tile((bound - first) / self.angle, (self._virtual.size, 1)).ravel("F"))
-        return np.concatenate(low), np.concatenate(high)
+        low = np.maximum(self.problem.duration_lower, self._floor) / self.unit
+        found = [low, np.maximum(self.problem.duration_upper / self.unit, low)]
+        for i, sign in enumerate((-1.0, 1.0)):
+            rooms = self.rooms(self.left, np.full(self.left.s.size, sign)) * self._sizes(self.left)
+            edge = np.where(self.left.order <= 3, rooms, sign * np.inf)
+            edge = np.where(np.isnan(self._given), edge, self._given)
+            found[i] = np.append(found[i], edge)
+        return found[0], found[1]
+
+    def _sizes(self, places: Places) -> Array:
+        """What limits are shares of: the larger side of a derivative; 1 of positions."""
+        size = self.sides.scale[places.joint, np.clip(places.order, 1, 3) - 1]
+        return np.where((places.order == 0) | np.isinf(size), 1.0, size)
 
     def pack(self, trajectory: Trajectory, durations: Array) -> Array:
         """Variables at a motion with these durations."""
-        if not self._states:
-            return durations / self.unit
+        at, h = self.left, durations / self.unit
+        if not at.s.size:
+            return h
         left = left_derivatives(self.pieces, self.problem, trajectory, durations)
-        rates = self.unit ** np.arange(left.shape[1])[:, None]
         left[:, 0] -= self.problem.waypoints[0]
-        left = left * rates / self.angle
-        parts = [left[held, r].ravel("F") for r, held in self._states.items()]
-        return np.concatenate([durations / self.unit, *parts, left[self._virtual, 0].ravel("F")])
+        values = left[at.segment, at.order, at.joint] * self.unit**at.order / self.angle[at.joint]
+        return np.append(h, values)
 
     def motion(self, x: Array) -> tuple[Array, Array | None]:
         """Durations, s, and free derivatives, where the declaration leaves some."""
-        h, curve = x[: self.segments], self.problem.curve.piecewise
+        h, curve, at = x[: self.segments], self.problem.curve.piecewise, self.left
         if curve is None or not curve.free:
             return h * self.unit, None
-        scaled = np.zeros((self.segments, 1 + len(self._states), self.joints))
+        scaled = np.zeros((self.segments, 1 + len(self._held), self.joints))
         scaled[:, 0] = self._fixed[:-1]
-        scaled[self._virtual, 0] = x[self._offset[-2] :].reshape(self.joints, -1).T
-        for r, held in self._states.items():
-            own = x[self._offset[r] : self._offset[r + 1]].reshape(self.joints, -1).T
-            scaled[held, r] = own * (h[held] ** r / math.factorial(r))[:, None]
-        scaled *= self.angle
+        factorials = np.array([math.factorial(r) for r in range(scaled.shape[1])])
+        rates = h[at.segment] ** at.order / factorials[at.order]
+        scaled[at.segment, at.order, at.joint] = x[self.segments :] * rates
+        scaled = scaled * self.angle
         scaled[:, 0] += self.problem.waypoints[0]
         trajectory = Trajectory(h * self.unit, scaled, tuple(self.degrees.tolist()))
         return trajectory.durations, free_values(curve, trajectory)
@@ -463,33 +375,21 @@ class Program:
         walls : ndarray, shape (segments,)
             Of the bounds on durations, s per s, signed by the side.
         """
-        at_left, number = self.left_places()
-        parts, first = (at_left, self.ends, rows.places), self.equalities.numel()
+        low, high = (bound[self.segments :] for bound in self.bounds())
+        # What is given is no limit, nor is what has none.
+        at = (low < high) & (np.isfinite(low) | np.isfinite(high))
+        parts, first = (self.left, self.ends, rows.places), self.equalities.numel()
+        keep = np.append(at, np.ones(self.ends.s.size + duals.size, dtype=bool))
         joint, segment, order, s = (
-            np.concatenate([getattr(part, name) for part in parts])
+            np.concatenate([getattr(part, name) for part in parts])[keep]
             for name in ("joint", "segment", "order", "s")
         )
         # A bound on a variable is no share of its limit, as the rows are.
-        shares = self.sides.scale[at_left.joint, np.maximum(at_left.order, 1) - 1]
-        left = bounds[number] * np.where(at_left.order == 0, 1.0, shares)
+        left = (bounds[self.segments :] * self._sizes(self.left))[at]
         limits = np.concatenate([left, stated[first : first + self.ends.s.size], duals])
         angle = np.where(order == 0, self.angle[joint], 1.0)
         places = Places(joint, segment, order, s)
         return places, limits * self.unit / angle, bounds[: self.segments]
-
-    def left_places(self) -> tuple[Places, Indices]:
-        """Limits that are bounds on variables, as places, and the variables' numbers."""
-        found: list[tuple[Indices, Indices, Indices, Indices]] = []
-        limited = [(r, k, self._offset[r]) for r, k in self._states.items() if r <= 3]
-        for r, k, first in (*limited, (0, self._virtual, self._offset[-2])):
-            joint, row = np.divmod(np.arange(self.joints * k.size), max(1, k.size))
-            found.append((joint, k[row], np.full(joint.size, r), first + np.arange(joint.size)))
-        joint, segment, order, number = (np.concatenate([f[i] for f in found]) for i in range(4))
-        low, high = self.bounds()
-        # What is given is no limit, nor is what has none.
-        at = np.flatnonzero((low < high)[number] & (np.isfinite(low) | np.isfinite(high))[number])
-        places = Places(joint[at], segment[at], order[at], np.zeros(at.size))
-        return places, np.asarray(number[at])
 
 
 def free_values(curve: Interpolant, trajectory: Trajectory) -> Array:

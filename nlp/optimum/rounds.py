@@ -19,8 +19,8 @@ from ...problem.curves import Trajectory, near_extrema
 from .clock import seconds_left, time_up
 from .decided import kept
 from .optimality import KKT, KKT_TOLERANCE, Local, kkt, sparse_kkt
-from .pieces import Indices, ca
-from .program import Program, Rows
+from .pieces import Indices, Rows, ca
+from .program import Program
 from .starts import DENSE, equal_start, slowed, worst_ratios
 
 NEAR = 0.5
@@ -155,7 +155,7 @@ def near_rows(program: Program, trajectory: Trajectory, near: float, flat: float
     rows = Rows(np.column_stack([np.vstack(found), np.zeros(sum(map(len, found)))]))
     places = rows.places
     bend = program.slope(trajectory, places, 2)
-    own, wider = program.own_places(trajectory, places)
+    own, wider = program.pieces.own_places(trajectory, places)
     bend = bend * wider**2
     size = program.sides.scale[places.joint, np.maximum(places.order, 1) - 1]
     stays = np.abs(bend) < flat * np.where(places.order == 0, 1.0, size)

@@ -9,7 +9,8 @@ from trajgap.nlp import Solution, Status
 from trajgap.nlp.optimum import rounds, solve, solver
 from trajgap.nlp.optimum.closed_forms import CUT_SHORT
 from trajgap.nlp.optimum.optimality import kkt
-from trajgap.nlp.optimum.program import Program, Rows
+from trajgap.nlp.optimum.pieces import Rows
+from trajgap.nlp.optimum.program import Program
 from trajgap.nlp.optimum.rounds import Stage, beside, carried, near_rows, program_search
 from trajgap.nlp.optimum.starts import way_start, worst_ratios
 from trajgap.problem import (

@@ -108,13 +108,13 @@ def test_sides_of_rows_and_bounds_are_the_limits(name: str) -> None:
     problem = DECLARED[name]
     program = build(problem)
     low, high = program.bounds()
-    at_left, number = program.left_places()
     below, above = problem.limits.sides
-    for i, (j, r) in enumerate(zip(at_left.joint, at_left.order, strict=True)):
-        if r:
+    left = zip(program.left.joint, program.left.order, strict=True)
+    for i, (j, r) in enumerate(left, problem.segments):
+        if 1 <= r <= 3 and low[i] < high[i]:  # else it is given
             unit = program.unit**r / program.angle[j]
-            assert low[number[i]] == pytest.approx(-below[j, r - 1] * unit)
-            assert high[number[i]] == pytest.approx(above[j, r - 1] * unit)
+            assert low[i] == pytest.approx(-below[j, r - 1] * unit)
+            assert high[i] == pytest.approx(above[j, r - 1] * unit)
     for side, sign in ((below, -1.0), (above, 1.0)):
         for j in range(program.joints):
             for r in (1, 2, 3):
@@ -156,8 +156,8 @@ def test_a_program_says_what_it_consists_of() -> None:
     said = str(build(problem))
     assert said.splitlines()[:4] == [
         "minimise the sum of 3 segment durations",
-        "  curve        3-5-3 polynomials, 6 joint(s)",
-        "  variables    69: 3 durations, 66 derivatives at left ends of segments",
+        "  curve        3-5-3 polynomials, 6 joint(s), 3 pieces",
+        "  variables    69: 3 durations, 66 derivatives at left ends of pieces",
         "  equalities   54: the curve's conditions at right ends",
     ]
     assert "velocity, acceleration" in said
