@@ -177,6 +177,29 @@ def apart(problem: Problem) -> bool:
     return alone and curve.homogeneous and not curve.free and not curve.virtual
 
 
+def forbidden_jumps(problem: Problem) -> list[tuple[int, int, int]]:
+    """Jumps that the declaration allows and the limits forbid.
+
+    Parameters
+    ----------
+    problem : Problem
+
+    Returns
+    -------
+    list of (break, order, joint)
+        Of joints that move: of velocity, and of acceleration where jerk is limited.
+    """
+    curve, moving = problem.curve.piecewise, np.ptp(problem.waypoints, axis=0) > 0
+    return [
+        (b, order, int(j))
+        for b in range(1, 0 if curve is None else curve.segments)
+        for order in (1, 2)
+        if curve is not None and order > curve.smooth_order(b)
+        for j in np.flatnonzero(moving)
+        if order == 1 or problem.limits.limited[j, 2]
+    ]
+
+
 def _each_segment_by_itself(problem: Problem) -> str | None:
     """A limit that is exceeded at the longest durations, where stretching only lowers ratios.
 

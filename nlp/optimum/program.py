@@ -22,6 +22,7 @@ import numpy as np
 
 from ...problem import QUANTITIES, Array, Interpolant, Problem
 from ...problem.curves import ConditionKind, Conditions, Places, Trajectory, derivative_rows
+from .feasibility import forbidden_jumps
 from .pieces import Clock, Indices, Rows, Sides, ca, clocked_bend, left_derivatives, pieces_of
 
 REACH = 0.5
@@ -115,7 +116,7 @@ class Program:
         columns = (one.astype(np.int64) for one in (joint, piece, order))
         self.left = Places(*columns, np.zeros(joint.size))
         stated = [*self._conditions(table, values), *self._passed(q), self._fixed_ratios()]
-        self.equalities = ca.vertcat(*stated)
+        self.equalities = ca.vertcat(*stated, *self._without_jumps())
 
     def __str__(self) -> str:
         p, rows, states = self.problem, self.ends.s.size, int((self.left.order > 0).sum())
@@ -130,6 +131,7 @@ class Program:
         stated = ["the curve's conditions at right ends"] if states else []
         stated += ["way-points at their times"] if self.pieces.passed else []
         stated += ["the fixed ratios"] if p.ratios is not None else []
+        stated += ["no jump that the limits forbid"] if forbidden_jumps(p) else []
         return (
             f"minimise the sum of {self.segments} segment durations\n"
             f"  curve        {p.curve.name}, {self.joints} joint(s), {self.degrees.size} pieces\n"
@@ -178,6 +180,18 @@ class Program:
             else:
                 wanted = self._left(r, b)
             found.append(ca.vec(value - wanted))
+        return found
+
+    def _without_jumps(self) -> list[Any]:
+        """Derivatives that agree at a break since a motion that passes must not jump there."""
+        places, found = np.array(forbidden_jumps(self.problem), dtype=np.int64).reshape(-1, 3), []
+        degrees = self.degrees[places[:, 0] - 1]
+        for r, degree in sorted(set(zip(places[:, 1].tolist(), degrees.tolist(), strict=True))):
+            at, _, joint = places[(places[:, 1] == r) & (degrees == degree)].T
+            b = np.unique(at)
+            t, left = self._widths[(b - 1).tolist(), :], partial(self._left, k=b - 1)
+            step = self._series(r, degree, t, left) - self._left(r, b)
+            found.append(ca.vec(step)[(np.searchsorted(b, at) + b.size * joint).tolist()])
         return found
 
     def _passed(self, q: Array) -> list[Any]:

@@ -353,9 +353,9 @@ def program_search(
             continue
         if turn and excess <= SETTLED:
             report = _report(program, longer, trajectory, rows, state)
-            if best is None or report.residual < best[1].residual:
-                best = longer, report
             # A round with an eased tolerance leaves its barrier's gap: 1.6e-7 of a total was seen.
+            if best is None or turn == JUDGED or report.residual < best[1].residual:
+                best = longer, report
             if turn >= JUDGED:
                 if report.residual <= KKT_TOLERANCE:
                     break

@@ -23,9 +23,9 @@ from .closed_forms import (
     unsearched,
 )
 from .decided import decided, incumbent, kept, tolerated
-from .feasibility import apart
+from .feasibility import apart, forbidden_jumps
 from .judgement import BETTER, ROUNDED, SAME, better_of, judged, on_floor
-from .jumps import as_answer, carried_over, jump_equations, matched, smoother
+from .jumps import as_answer, carried_over, smoother
 from .optimality import Local
 from .rounds import program_search
 from .solution import Route, Solution, Status
@@ -41,6 +41,9 @@ DEEP = FLOORS[2:]
 SPARSE = 14
 """Segments from which rounds of the NLP come first: there they end at the same totals in half the
 time of a wide search and dense descents, at 10 segments in twice it."""
+RATIOS = 12
+"""Random ratios from which rounds look for a motion without a jump: every second of them finds
+one, where there is any."""
 ONLY_TOLERANCE = "the limits leave no room: they are kept within the tolerance of the check alone"
 """Beside an answer that exact limits would not let pass."""
 
@@ -175,9 +178,14 @@ def _solve_smoother(problem: Problem, smooth: Problem, ask: _Ask) -> Solution:
 
 def _solve_itself(problem: Problem, ask: _Ask) -> Solution:
     """`solve` where no smoother declaration has the same motions."""
-    known, dense = ask.known, not problem.curve.free and problem.segments <= DENSE
-    if not dense:
-        solution = _programmed(problem, ask)
+    jumping = bool(forbidden_jumps(problem)) and not apart(problem)
+    dense = not (problem.curve.free or jumping) and problem.segments <= DENSE
+    known = ask.known
+    if jumping:
+        solution = _programmed(problem, replace(ask, initial=None), RATIOS)
+        solution = _without_jumps(problem, solution)
+    elif not dense:
+        solution = _programmed(problem, ask, ask.starts if problem.curve.free else 1)
     elif known is not None and ask.proved:
         solution = _continued(problem, known, Route.DESCENT)
     else:
@@ -189,8 +197,6 @@ def _solve_itself(problem: Problem, ask: _Ask) -> Solution:
     if short and _moves_throughout(problem) and not time_up():
         end = Local(solution.durations, None, solution.total_time, False, True, 0)
         solution = better_of(solution, _continued(problem, end, Route.NLP))
-    if not solution.found:
-        solution = _without_jumps(problem, solution, ask.seed)
     if not solution.found:
         solution = _stretched_start(problem, solution)
     return solution
@@ -215,18 +221,14 @@ def _moves_throughout(problem: Problem) -> bool:
     return curve is not None and not curve.free and bool(moves.all() and limited)
 
 
-def _programmed(problem: Problem, ask: _Ask) -> Solution:
-    """Rounds of the NLP from each start."""
-    if ask.initial is not None:
-        starts = ask.initial
-    elif problem.curve.free:
-        generator = np.random.default_rng(ask.seed)
-        more = random_starts(problem, ask.starts - 1, generator)
-        starts = np.vstack([equal_start(problem), more])
-    elif problem.curve.piecewise is None:
-        starts = equal_start(problem)[None]
-    else:
-        starts = way_start(problem)[None]
+def _programmed(problem: Problem, ask: _Ask, many: int = 1) -> Solution:
+    """Rounds of the NLP from the usual start and random ones, or from those that are given."""
+    starts = ask.initial
+    if starts is None:
+        plain = problem.curve.piecewise is not None and not problem.curve.free
+        usual = way_start(problem) if plain else equal_start(problem)
+        more = random_starts(problem, many - 1, np.random.default_rng(ask.seed))
+        starts = np.vstack([usual, more])
     floor = made_up(problem, FLOORS[1])
     found = _rounds(problem, starts, floor, first_nodal(problem))
     return judged(problem, found, floor, len(starts), Route.NLP)
@@ -327,18 +329,18 @@ def _within_tolerance(problem: Problem, ask: _Ask) -> Solution:
     return replace(answer, status=Status.FEASIBLE, why=ONLY_TOLERANCE)
 
 
-def _without_jumps(problem: Problem, solution: Solution, seed: int) -> Solution:
-    """Ratios of durations at which a curve that may jump happens not to."""
-    found = [replace(one, tight=None) for one in matched(problem, seed)]
-    if not found:
-        equations, ratios = jump_equations(problem)
-        if not equations > ratios:
-            return solution
-        why = f"it would take {ratios} ratios of durations that meet {equations} equations"
-        return replace(solution, why=f"{solution.why}; {why}")
-    answer = judged(problem, found, np.zeros(problem.segments), len(found))
-    why = f"shortest of {len(found)} ratios of durations at which the motion does not jump"
-    return replace(answer, status=Status.FEASIBLE, why=why, iterations=solution.iterations)
+def _without_jumps(problem: Problem, solution: Solution) -> Solution:
+    """The answer of the NLP where a curve that may jump must happen not to, in words of its own."""
+    if solution.found:
+        ended = [total for total in solution.totals if total < math.inf]
+        why = f"shortest of {len(ended)} motions found at ratios at which the motion does not jump"
+        return replace(solution, status=Status.FEASIBLE, why=why)
+    places, ratios = forbidden_jumps(problem), problem.segments - 1
+    equations = len(places) - problem.curve.free * len({j for *_, j in places})
+    if equations <= ratios:
+        return solution
+    why = f"it would take {ratios} ratios of durations that meet {equations} equations"
+    return replace(solution, why=f"{solution.why}; {why}")
 
 
 def _stretched_start(problem: Problem, solution: Solution) -> Solution:
