@@ -93,8 +93,11 @@ def judged(
         report = kkt(problem, tight, nodal) if dense or fixed else UNKNOWN
     if report.residual > SHARP and dense and not (problem.curve.free or fixed):
         tight, report = _sharper(problem, tight, report)
-    durations, nodal = (tight, nodal) if best.tight is None else (best.durations, best.nodal)
-    beyond = max(0.0, float(durations.sum() / tight.sum()) - 1.0)
+    durations, beyond = tight, 0.0
+    if not kept(problem, check(problem, tight, nodal)):
+        inside = decided(problem, tight, nodal) or best
+        durations, nodal = inside.durations, inside.nodal
+        beyond = max(0.0, inside.total / float(tight.sum()) - 1.0)
     status = Status.CONVERGED if report.residual <= KKT_TOLERANCE else Status.FEASIBLE
     why = None if status is Status.CONVERGED else unmet(report.residual)
     if beyond > SAME:

@@ -164,7 +164,7 @@ def test_a_certification_without_time_has_an_answer() -> None:
 
 def test_a_first_population_is_as_large_as_the_time_is_there_for() -> None:
     box = box_above(MANY, np.zeros(MANY.segments))
-    h = np.exp(np.random.default_rng(3).normal(size=(3 * basins.PART, MANY.segments)))
+    h = np.exp(np.random.default_rng(3).normal(size=(3 * basins.EVOLUTION.part, MANY.segments)))
     whole = basins.excess_and_total(MANY, h.copy(), box)
     with stopping_after(1e6):
         in_parts = basins._first(MANY, h.copy(), box)
@@ -172,8 +172,8 @@ def test_a_first_population_is_as_large_as_the_time_is_there_for() -> None:
         np.testing.assert_array_equal(one, other)
     with stopping_after(0.0):
         z, excess, total = basins._first(MANY, h.copy(), box)
-    assert len(z) == len(excess) == len(total) == basins.PART
-    np.testing.assert_array_equal(z, whole[0][: basins.PART])
+    assert len(z) == len(excess) == len(total) == basins.EVOLUTION.part
+    np.testing.assert_array_equal(z, whole[0][: basins.EVOLUTION.part])
 
 
 def test_the_windows_of_a_proof_look_at_the_clock() -> None:
