@@ -2,7 +2,9 @@
 
 The first round has rows at all extrema inside pieces, each later one at those of the motion before
 it that come near their limit; an exact search over all pieces says where they are, so that no
-sampled place decides. A row goes on from round to round as the extremum that it follows.
+sampled place decides. A row goes on from round to round as the extremum that it follows. Without
+rows below a fifth of their limit in the first round, quintics often leave the region in which the
+others mean anything.
 """
 
 from __future__ import annotations
@@ -18,16 +20,12 @@ from ...problem import Array, CurveError, Problem, check, fit
 from ...problem.curves import Trajectory, near_extrema
 from .clock import seconds_left, time_up
 from .decided import kept
+from .limit_rows import NEAR
 from .optimality import KKT, KKT_TOLERANCE, Local, kkt, sparse_kkt
 from .pieces import Indices, Rows, ca
 from .program import Program
-from .starts import DENSE, equal_start, slowed, worst_ratios
+from .starts import DENSE, ROUND, equal_start, slowed, worst_ratios
 
-NEAR = 0.5
-"""Share of its limit from which an extremum has a row after the first round: what grows beyond its
-limit meanwhile is found next. In the first all have: without those below a fifth of their limit,
-quintics often leave the region in which the others mean anything. With 0.7 a round of quintics
-fails now and then."""
 FLAT = (1e-6, 1e-2)
 """Second derivative by the piece's parameter, in shares of the limit, below which a row stays at
 its place: to follow an extremum of which rounding decides where it is keeps rounds from settling.
@@ -42,8 +40,6 @@ CHANGED = 3.0
 """Factor by which a round changes a duration at most: the extrema of a motion far away are others,
 and without a bound some quintics leave for motions of which the rows say nothing. Its square root
 after each failure, three of which a search survives."""
-SETTLED = 2e-9
-"""Excess over a limit at which the rounds end: a stretch, which costs as much, repairs it."""
 
 
 @dataclass(frozen=True)
@@ -73,9 +69,6 @@ JUDGED = len(STAGES) - 2
 FAILURES = 3
 """Rounds without success after which a search is given up; each begins again from the best motion
 with rows at all its extrema."""
-LOADED = 10.0
-"""Multiplier, in tolerances of its round, from which a row was active: the barrier leaves about the
-tolerance on the others."""
 OPTIONS = {
     "print_time": False,
     "show_eval_warnings": False,  # the status says where a function is not defined
@@ -351,7 +344,7 @@ def program_search(
             turn = done = 0
             state, rows = begun(program, rough or (start, nodal))
             continue
-        if turn and excess <= SETTLED:
+        if turn and excess <= ROUND:  # a stretch, which costs as much, repairs it
             report = _report(program, longer, trajectory, rows, state)
             if best is None or report.residual < best[1].residual:
                 best = longer, report
@@ -362,7 +355,8 @@ def program_search(
                 flat = min(FLAT[1], 10.0 * flat)
         # Where a derivative is all but constant its extremum jumps through the whole piece.
         # Without rows at the places where it was, rounds go on in a circle.
-        loaded = np.abs(state.rows) > LOADED * STAGES[min(turn, JUDGED)].tolerance
+        # On the central path a multiplier times its slack is the barrier: the larger one tells.
+        loaded = np.abs(state.rows) > math.sqrt(stage.tolerance)
         following = beside(rows_of(program, trajectory, NEAR, flat), Rows(rows.table[loaded]))
         state.rows, rows, turn = carried(rows, state.rows, following), following, turn + 1
     if best is None and rough is None:
