@@ -73,7 +73,7 @@ class ExactRows:
 
 
 @dataclass(frozen=True, eq=False)
-class Excess:
+class LimitExcess:
     """Excess of values over the limits to one side, as in `ExactRows`.
 
     Attributes
@@ -102,7 +102,7 @@ class Excess:
         order: Indices,
         sign: Array,
         value: Array,
-    ) -> Excess:
+    ) -> LimitExcess:
         """The excess of values (rad/sᵒʳᵈᵉʳ) of joints, in a motion of so many seconds."""
         limits, r = problem.limits, np.maximum(order, 1)
         position, upper, beyond = order == 0, sign > 0, sign * value
@@ -163,7 +163,7 @@ def exact_rows(problem: Problem, h: Array, nodal: Array | None = None) -> ExactR
 def _near(
     problem: Problem, trajectory: Trajectory
 ) -> tuple[list[Extremum], Array, Array, Array, NDArray[np.bool_]]:
-    """Extrema near a limit: side, excess and size as in `Excess`, and whether a stretch repairs."""
+    """Extrema near a limit: side, excess, its size, and whether a stretch repairs it."""
     curve, limits = problem.curve, problem.limits
     total, inner = trajectory.total_time, range(1, trajectory.durations.size)
     smooth = np.array([curve.smooth_order(b) for b in inner], dtype=np.int64)
@@ -187,7 +187,7 @@ def _near(
         times = trajectory.times_of(k, s)
         for sign in (1.0, -1.0):
             side = np.full(i.size, sign)
-            one = Excess.of(problem, total, j, order, side, value)
+            one = LimitExcess.of(problem, total, j, order, side, value)
             near = np.flatnonzero(one.share > NEAR)
             stretched = (order > 0) & (one.limit > 0.0)
             found.append(np.array([side, one.excess, one.size, stretched])[:, near])

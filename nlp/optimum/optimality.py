@@ -22,7 +22,7 @@ import numpy as np
 from ...problem import QUANTITIES, Array, Extremum, Problem
 from ...problem.curves import Places
 from .clock import time_up
-from .limit_rows import ExactRows, Excess, Indices, exact_rows
+from .limit_rows import ExactRows, Indices, LimitExcess, exact_rows
 
 ACTIVE = 1e-7
 """Relative distance to a limit within which a peak counts as active. What a multiplier is of the
@@ -211,7 +211,7 @@ def sparse_kkt(
     total, joint, order = float(durations.sum()), places.joint, places.order
     adjoint = problem.piecewise.adjoint(problem.waypoints, durations)
     values, sign = adjoint.values(places), np.where(limits >= 0.0, 1.0, -1.0)
-    one = Excess.of(problem, total, joint, order, sign, values)
+    one = LimitExcess.of(problem, total, joint, order, sign, values)
     sizes = problem.limits.sides[:, joint, np.maximum(order, 1) - 1]
     larger = np.where(np.isfinite(sizes), sizes, 0.0).max(axis=0)
     slopes = limits / (np.where((order == 0) | (larger == 0.0), 1.0, larger) * total)
@@ -256,7 +256,9 @@ def _report(
     """
     total, least = float(durations.sum()), ACTIVE / problem.segments
     with np.errstate(divide="ignore"):
-        gaps = [durations / problem.duration_lower - 1.0, 1.0 - durations / problem.duration_upper]
+        gaps = np.stack(
+            [durations / problem.duration_lower - 1.0, 1.0 - durations / problem.duration_upper]
+        )
     gaps = np.where(np.isfinite(gaps), gaps, 1.0)
     parts = (stationary, weights * excess, walls * gaps)
     residual = max(float(np.abs(part).max(initial=0.0)) for part in parts)

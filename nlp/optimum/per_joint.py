@@ -11,10 +11,11 @@ import numpy as np
 
 from ...problem import Array, Problem, check, fit
 from .clock import time_up
+from .limit_rows import NEAR
 from .pieces import ca
 from .program import Program
-from .rounds import NEAR, constraints, near_rows
 from .rounds import OPTIONS as OPTIONS_OF_ROUNDS
+from .rounds import constraints, near_rows
 from .solution import Answer, Evidence, Solution, Status, weakest
 from .solver import solve
 

@@ -95,7 +95,7 @@ class Sides:
 
 
 @dataclass(frozen=True, eq=False)
-class Pieces:
+class CurvePieces:
     """The pieces of a curve through the way-points of a problem.
 
     Attributes
@@ -148,7 +148,7 @@ class Pieces:
         return Places(places.joint, own, places.order, s), wider
 
 
-def pieces_of(problem: Problem) -> Pieces:
+def pieces_of(problem: Problem) -> CurvePieces:
     """The pieces of a problem's curve.
 
     Parameters
@@ -157,7 +157,7 @@ def pieces_of(problem: Problem) -> Pieces:
 
     Returns
     -------
-    Pieces
+    CurvePieces
 
     Raises
     ------
@@ -166,25 +166,25 @@ def pieces_of(problem: Problem) -> Pieces:
     """
     curve, q = problem.curve, problem.waypoints
     if curve.piecewise is not None:
-        return Pieces(np.array(curve.piecewise.degrees, dtype=np.int64), curve.piecewise)
+        return CurvePieces(np.array(curve.piecewise.degrees, dtype=np.int64), curve.piecewise)
     shape = curve.shape(q)
     if shape is not None:
         widths = np.zeros((1, shape.share.size, curve.segments))
         widths[0, np.arange(shape.share.size), shape.segment] = shape.share
         degrees = np.full(shape.share.size, shape.degree)
-        return Pieces(degrees, widths=widths, scaled=shape.scaled)
+        return CurvePieces(degrees, widths=widths, scaled=shape.scaled)
     if isinstance(curve, TimedUniformBSpline):
         scaled = curve.motion_values(q)
         scaled[:, 0] += q[0]
         # N_r has two powers more than the derivative of a polynomial of degree 3.
         degrees = np.full(curve.segments, 5)
-        return Pieces(degrees, scaled=scaled, clock=curve.clock.astype(np.float64))
+        return CurvePieces(degrees, scaled=scaled, clock=curve.clock.astype(np.float64))
     if isinstance(curve, ClampedBSpline):
         return _between_knots(curve, q)
     raise TrajgapError(f"curve: no NLP is known for {curve.name}; use another curve")
 
 
-def _between_knots(curve: ClampedBSpline, waypoints: Array) -> Pieces:
+def _between_knots(curve: ClampedBSpline, waypoints: Array) -> CurvePieces:
     """A spline with breaks at its knots, which are linear in the durations."""
     p, n, count = curve.degree, curve.segments, curve.inner_knots + 1
     times, average = np.tri(n + 1, n, -1), average_matrix(curve)
@@ -196,17 +196,17 @@ def _between_knots(curve: ClampedBSpline, waypoints: Array) -> Pieces:
     widths = np.array([np.diff(np.vstack([ends[0], k, ends[1]]), axis=0) for k in inner])
     rest = tuple((order, 0.0) for order in curve.end_orders)
     declared = piecewise((p,) * count, p - 1, rest, virtual=tuple(range(1, count)))
-    return Pieces(np.full(count, p), declared, widths, passed=tuple(range(1, n)))
+    return CurvePieces(np.full(count, p), declared, widths, passed=tuple(range(1, n)))
 
 
 def left_derivatives(
-    pieces: Pieces, problem: Problem, motion: Trajectory, durations: Array
+    pieces: CurvePieces, problem: Problem, motion: Trajectory, durations: Array
 ) -> Array:
     """Derivatives in time at the left ends of the pieces of a motion, (pieces, orders, joints).
 
     Parameters
     ----------
-    pieces : Pieces
+    pieces : CurvePieces
         With conditions.
     problem : Problem
     motion : Trajectory
@@ -233,7 +233,7 @@ class Clock:
     Parameters
     ----------
     nodes : ndarray, shape (pieces, powers, segments)
-        As `Pieces.clock`.
+        As `CurvePieces.clock`.
     scaled : ndarray, shape (pieces, powers, joints)
         Coefficients of q.
     durations : expression, shape (segments,)

@@ -112,9 +112,9 @@ class Program:
                 given[at] = values[i] * self.unit**r / self.angle
             j, row = np.divmod(np.arange(given.size), max(1, k.size))
             found.append(np.array([j, k[row], np.full(j.size, r), given.ravel("F")]))
-        joint, piece, order, self._given = np.hstack(found)
-        columns = (one.astype(np.int64) for one in (joint, piece, order))
-        self.left = Places(*columns, np.zeros(joint.size))
+        columns = np.hstack(found)
+        joint, piece, order = columns[:3].astype(np.int64)
+        self.left, self._given = Places(joint, piece, order, np.zeros(joint.size)), columns[3]
         stated = [*self._conditions(table, values), *self._passed(q), self._fixed_ratios()]
         self.equalities = ca.vertcat(*stated, *self._without_jumps())
 

@@ -2,7 +2,9 @@
 
 The first round has rows at all extrema inside pieces, each later one at those of the motion before
 it that come near their limit; an exact search over all pieces says where they are, so that no
-sampled place decides. A row goes on from round to round as the extremum that it follows.
+sampled place decides. A row goes on from round to round as the extremum that it follows. Without
+rows below a fifth of their limit in the first round, quintics often leave the region in which the
+others mean anything.
 """
 
 from __future__ import annotations
@@ -14,20 +16,16 @@ from typing import Any
 
 import numpy as np
 
-from ...problem import Array, CurveError, Problem, check, fit
+from ...problem import TOLERANCE, Array, CurveError, Problem, check, fit
 from ...problem.curves import Trajectory, near_extrema
 from .clock import seconds_left, time_up
 from .decided import kept
+from .limit_rows import NEAR
 from .optimality import KKT, KKT_TOLERANCE, Local, kkt, sparse_kkt
 from .pieces import Indices, Rows, ca
 from .program import Program
 from .starts import DENSE, equal_start, slowed, worst_ratios
 
-NEAR = 0.5
-"""Share of its limit from which an extremum has a row after the first round: what grows beyond its
-limit meanwhile is found next. In the first all have: without those below a fifth of their limit,
-quintics often leave the region in which the others mean anything. With 0.7 a round of quintics
-fails now and then."""
 FLAT = (1e-6, 1e-2)
 """Second derivative by the piece's parameter, in shares of the limit, below which a row stays at
 its place: to follow an extremum of which rounding decides where it is keeps rounds from settling.
@@ -42,40 +40,19 @@ CHANGED = 3.0
 """Factor by which a round changes a duration at most: the extrema of a motion far away are others,
 and without a bound some quintics leave for motions of which the rows say nothing. Its square root
 after each failure, three of which a search survives."""
-SETTLED = 2e-9
-"""Excess over a limit at which the rounds end: a stretch, which costs as much, repairs it."""
 
 
-@dataclass(frozen=True)
-class Stage:
-    """How far a round of IPOPT goes, and where it begins."""
-
-    tolerance: float
-    barrier: float
-    push: float
-    """Relative distance from bounds at which it begins; IPOPT's own in the first round."""
-    violation: float
-
-
-STAGES = (
-    # The first rows are not the last: with 1e-3 and 1e-6 a thousand quintic segments take half as
-    # long again. IPOPT's own barrier of 0.1 costs quintics half as many iterations again.
-    Stage(1e-2, 1e-2, 1e-2, 1e-2),
-    Stage(1e-5, 1e-3, 1e-5, 1e-5),
-    Stage(1e-9, 1e-9, 1e-9, 1e-10),
-    # For short segments, whose high derivatives carry a small residual far: to 8e-7 of the total
-    # where the stage before was reached.
-    Stage(1e-11, 1e-11, 1e-9, 1e-12),
-)
-"""Of the first round, the second, the third, from which answers are judged, and the later ones."""
+STAGES = ((1e-2, 1e-2), (1e-5, 1e-3), (1e-9, 1e-9), (1e-11, 1e-11))
+"""IPOPT's tolerance, and the barrier at which it begins, in the first round, the second, the third
+and the later ones. The first rows are not the last: with 1e-3 and 1e-6 a thousand quintic segments
+take half as long again. IPOPT's own barrier of 0.1 costs quintics half as many iterations again,
+and the later rows hardly move. The last tolerance is for short segments, whose high derivatives
+carry a small residual far: to 8e-7 of the total where the third was reached."""
 JUDGED = len(STAGES) - 2
-"""Round, counted from 0, from which the answer is judged."""
+"""Round, counted from 0, from which the answer is judged: its tolerance is that of an answer."""
 FAILURES = 3
 """Rounds without success after which a search is given up; each begins again from the best motion
 with rows at all its extrema."""
-LOADED = 10.0
-"""Multiplier, in tolerances of its round, from which a row was active: the barrier leaves about the
-tolerance on the others."""
 OPTIONS = {
     "print_time": False,
     "show_eval_warnings": False,  # the status says where a function is not defined
@@ -93,6 +70,10 @@ OPTIONS = {
     "ipopt.mumps_pivot_order": 0,
 }
 """Options of IPOPT in every round."""
+PUSHES = [f"ipopt.warm_start_{name}_push" for name in ("bound", "slack_bound", "mult_bound")] + [
+    f"ipopt.warm_start_{name}_frac" for name in ("bound", "slack_bound")
+]
+"""Options of how far from bounds a later round begins."""
 SHORTEST = 0.05
 """Seconds that a call of IPOPT has at least: its limit must be positive."""
 
@@ -249,22 +230,23 @@ def rows_of(program: Program, trajectory: Trajectory, near: float, flat: float) 
 
 
 def solve_round(
-    program: Program, rows: Rows, state: RoundState, stage: Stage, box: tuple[Array, Array]
+    program: Program,
+    rows: Rows,
+    state: RoundState,
+    stage: tuple[float, float],
+    box: tuple[Array, Array],
 ) -> tuple[bool, int, float]:
     """One call of IPOPT, from a state to the next: success, iterations, and seconds of building.
 
     No duration leaves the ``box`` (s): rows say nothing of motions far from theirs.
     """
     began = time.perf_counter()
+    tolerance, barrier = stage
     expressions, least, most = constraints(program, rows)
     nlp = {"x": program.variables, "f": ca.sum1(program.durations), "g": expressions}
-    options = OPTIONS | {
-        "ipopt.mu_init": stage.barrier,
-        "ipopt.tol": stage.tolerance,
-        "ipopt.constr_viol_tol": stage.violation,
-        "ipopt.dual_inf_tol": 10.0 * stage.tolerance,
-        "ipopt.compl_inf_tol": stage.tolerance,
-    }
+    names = ("tol", "constr_viol_tol", "compl_inf_tol")
+    options = OPTIONS | dict.fromkeys((f"ipopt.{name}" for name in names), tolerance)
+    options |= {"ipopt.mu_init": barrier, "ipopt.dual_inf_tol": 10.0 * tolerance}
     left = seconds_left()
     if left < math.inf:  # each round's solver is its own, so that no limit is shared
         options["ipopt.max_wall_time"] = max(left, SHORTEST)
@@ -274,9 +256,8 @@ def solve_round(
     given = {"x0": np.clip(state.x, low, high), "lbx": low, "ubx": high, "lbg": least, "ubg": most}
     if state.bounds is not None:
         options["ipopt.warm_start_init_point"] = "yes"
-        for name in ("bound_push", "bound_frac", "slack_bound_push", "slack_bound_frac"):
-            options[f"ipopt.warm_start_{name}"] = stage.push
-        options["ipopt.warm_start_mult_bound_push"] = stage.push
+        # Begun nearer to bounds than 1e-9, the last rounds take twice as many iterations.
+        options |= dict.fromkeys(PUSHES, max(tolerance, 1e-9))
         given["lam_x0"], given["lam_g0"] = state.bounds, np.append(state.stated, state.rows)
     solver = ca.nlpsol("round", "ipopt", nlp, options)
     build = time.perf_counter() - began
@@ -351,7 +332,7 @@ def program_search(
             turn = done = 0
             state, rows = begun(program, rough or (start, nodal))
             continue
-        if turn and excess <= SETTLED:
+        if turn and excess <= TOLERANCE:  # a stretch, which costs as much, repairs it
             report = _report(program, longer, trajectory, rows, state)
             # A round with an eased tolerance leaves its barrier's gap: 1.6e-7 of a total was seen.
             if best is None or turn == JUDGED or report.residual < best[1].residual:
@@ -362,7 +343,8 @@ def program_search(
                 flat = min(FLAT[1], 10.0 * flat)
         # Where a derivative is all but constant its extremum jumps through the whole piece.
         # Without rows at the places where it was, rounds go on in a circle.
-        loaded = np.abs(state.rows) > LOADED * STAGES[min(turn, JUDGED)].tolerance
+        # On the central path a multiplier times its slack is the barrier: the larger one tells.
+        loaded = np.abs(state.rows) > math.sqrt(stage[0])
         following = beside(rows_of(program, trajectory, NEAR, flat), Rows(rows.table[loaded]))
         state.rows, rows, turn = carried(rows, state.rows, following), following, turn + 1
     if best is None and rough is None:

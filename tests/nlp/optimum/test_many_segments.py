@@ -11,7 +11,7 @@ from trajgap.nlp.optimum.closed_forms import CUT_SHORT
 from trajgap.nlp.optimum.optimality import kkt
 from trajgap.nlp.optimum.pieces import Rows
 from trajgap.nlp.optimum.program import Program
-from trajgap.nlp.optimum.rounds import Stage, beside, carried, near_rows, program_search
+from trajgap.nlp.optimum.rounds import beside, carried, near_rows, program_search
 from trajgap.nlp.optimum.starts import way_start, worst_ratios
 from trajgap.problem import (
     Interpolant,
@@ -164,10 +164,10 @@ def test_a_round_that_fails_begins_again_from_the_best_motion(
 ) -> None:
     problem, total = long_problem(CURVES["cubic"]), solved("cubic").total_time
     round_ = rounds.solve_round
-    calls: list[Stage] = []
+    calls: list[tuple[float, float]] = []
 
     def failing(
-        program: Program, rows: Rows, state: object, stage: Stage, within: object
+        program: Program, rows: Rows, state: object, stage: tuple[float, float], within: object
     ) -> tuple[bool, int, float]:
         success, count, seconds = round_(program, rows, state, stage, within)  # type: ignore[arg-type]
         calls.append(stage)
