@@ -349,9 +349,9 @@ def program_search(
         state.rows, rows, turn = carried(rows, state.rows, following), following, turn + 1
     if best is None and rough is None:
         return None
-    motion, found = best if best is not None else (rough, None)
-    assert motion is not None
-    h, values = motion
+    ended, found = best if best is not None else (rough, None)
+    assert ended is not None
+    h, values = ended
     passes = kept(problem, check(problem, h, values))
     settled = found is not None and found.residual <= KKT_TOLERANCE
     return Local(h, values, float(h.sum()), settled, passes, iterations, None, found, build)
