@@ -12,7 +12,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...problem import Array, Problem, TrajgapError, check
+from ...problem import TOLERANCE, Array, Problem, TrajgapError, check
 from .basins import basins, exact_search, shortened
 from .clock import stopping_after, time_up
 from .closed_forms import (
@@ -24,7 +24,7 @@ from .closed_forms import (
 )
 from .decided import decided, incumbent, kept, tolerated
 from .feasibility import apart, forbidden_jumps
-from .judgement import BETTER, ROUNDED, SAME, better_of, judged, on_floor
+from .judgement import BETTER, SAME, better_of, judged, on_floor
 from .jumps import as_answer, carried_over, smoother
 from .optimality import Local
 from .rounds import program_search
@@ -190,7 +190,7 @@ def _solve_itself(problem: Problem, ask: _Ask) -> Solution:
         solution = _continued(problem, known, Route.DESCENT)
     else:
         solution = _widely(problem, ask)
-    if known is not None and known.total < solution.best * (1 - ROUNDED):
+    if known is not None and known.total < solution.best * (1 - TOLERANCE):
         again = _continued(problem, known, Route.DESCENT if dense else Route.NLP)
         solution = again if again.best < solution.best else solution
     short = solution.status is Status.FEASIBLE and solution.route is Route.DESCENT
