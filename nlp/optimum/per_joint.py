@@ -16,7 +16,7 @@ from .pieces import ca
 from .program import Program
 from .rounds import OPTIONS as OPTIONS_OF_ROUNDS
 from .rounds import constraints, near_rows
-from .solution import Answer, Evidence, Solution, Status, weakest
+from .solution import Evidence, SearchResult, Solution, Status, weakest
 from .solver import solve
 
 ROUNDS = 20
@@ -191,7 +191,7 @@ def longest_status(joints: tuple[Solution, ...]) -> Status:
 
 
 @dataclass(frozen=True, eq=False)
-class PerJointSolution(Answer):
+class PerJointSolution(SearchResult):
     """Each joint's own optimum, and what the longest-per-segment procedure makes of them.
 
     Its durations are the longest of the joints', per segment, judged with all joints. The total of

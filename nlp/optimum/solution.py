@@ -83,7 +83,7 @@ def weakest(evidence: Iterable[Evidence]) -> Evidence:
 
 
 @dataclass(frozen=True, eq=False)
-class Answer:
+class SearchResult:
     """What a search comes to: durations that `check` has judged, or the reason why there are none.
 
     Attributes
@@ -132,7 +132,7 @@ class Answer:
 
 
 @dataclass(frozen=True, eq=False)
-class Solution(Answer):
+class Solution(SearchResult):
     """Answer of the exact side to a `Problem` with shared durations.
 
     Attributes
