@@ -33,7 +33,15 @@ from .peak import (
     furthest,
     near_extrema,
 )
-from .polynomials import MAX_COEFFICIENTS, PERM, bernstein, derived, roots_in_unit, valued
+from .polynomials import (
+    MAX_COEFFICIENTS,
+    PERM,
+    bernstein,
+    derivative_rows,
+    derived,
+    roots_in_unit,
+    valued,
+)
 from .stretched import Timing, segment_peaks, shape_of, solve_in_closed_form
 from .timed import ClockedTrajectory, numerators
 from .trajectory import Trajectory
@@ -81,6 +89,7 @@ __all__ = [
     "critical_points",
     "cubic_spline",
     "cubic_spline_virtual",
+    "derivative_rows",
     "derived",
     "extrema",
     "fit",

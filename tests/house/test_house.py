@@ -215,7 +215,7 @@ def kinds() -> str:
 
 ASK_FOR_A_KIND = {
     # Named in docs/reference/interpolants.md, with the reason.
-    "nlp/optimum/spline_program.py",
+    "nlp/optimum/pieces.py",
     "nlp/enclosure/box_bound.py",
     "compare/pages/readings.py",
 }

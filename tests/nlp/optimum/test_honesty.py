@@ -86,7 +86,7 @@ def test_a_known_motion_is_kept_where_the_solver_finds_nothing(
     def lost(one: Problem, *_: object) -> Solution:
         return Solution(one, Status.NONE_FOUND, "lost")
 
-    monkeypatch.setattr(solver, "_searched", lambda one, *_, **__: lost(one))
+    monkeypatch.setattr(solver, "_widely", lambda one, *_: lost(one))
     monkeypatch.setattr(solver, "_stretched_start", lambda one, *_: lost(one))
     assert solve(problem).status is Status.NONE_FOUND
     found = solve(problem, known=known)

@@ -16,9 +16,9 @@ from scipy.interpolate import CubicSpline
 from support.near_problems import NEAR
 from support.two_joints import TURNING
 from trajgap.nlp import Solution, Status, certify
-from trajgap.nlp.optimum import limit_rows, optimality, solve, solver
-from trajgap.nlp.optimum.closed_forms import straight_durations
-from trajgap.nlp.optimum.decided import decided
+from trajgap.nlp.optimum import limit_rows, solve
+from trajgap.nlp.optimum.closed_forms import straight_shares
+from trajgap.nlp.optimum.decided import decided, incumbent
 from trajgap.nlp.optimum.limit_rows import exact_rows
 from trajgap.nlp.optimum.optimality import kkt
 from trajgap.nlp.proofs import exact_problem
@@ -95,8 +95,7 @@ def test_rounding_that_hides_a_spline_is_undecided_and_raises_nothing(
     def singular(*_: object) -> None:
         raise SingularError("singular", 0)
 
-    for module in (limit_rows, optimality):
-        monkeypatch.setattr(module, "fit", singular)
+    monkeypatch.setattr(limit_rows, "fit", singular)
     assert exact_rows(problem, np.array(hidden)).worst == np.inf
     assert kkt(problem, np.array(hidden)).residual == np.inf
 
@@ -120,14 +119,11 @@ def test_a_value_approached_is_called_infimum_only_where_that_is_proved() -> Non
 def test_a_known_motion_counts_stretched_until_it_keeps_the_limits() -> None:
     """The same ratios at 0.3 and at 4 times the durations are worth as much as tight ones."""
     problem = TURNING
-    best = solve(problem)
-    poor = np.array([[9.0, 0.5, 0.5]])
+    best = solve(problem).durations
     for factor in (0.3, 4.0):
-        asked = solver.asked(problem, 1, 0, poor, factor * best.durations, None, 0.0)
-        worse = Solution(problem, Status.FEASIBLE, vector=poor[0])
-        found = solver._with_known(problem, worse, asked)
-        assert found.total_time == pytest.approx(best.total_time, rel=1e-8)
-        assert found.check.verdict is Verdict.PASS
+        known = incumbent(problem, factor * np.stack([2.0 * best[::-1], best]), None)
+        assert known.durations == pytest.approx(best, rel=1e-8)
+        assert check(problem, known.durations).verdict is Verdict.PASS
 
 
 def test_no_answer_depends_on_the_clock(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -202,7 +198,7 @@ def test_where_a_stretch_gives_a_feasible_motion_it_is_the_answer(
     def lost(one: Problem, *_: object) -> Solution:
         return Solution(one, Status.FAILED, "lost")
 
-    monkeypatch.setattr(solver, "_searched", lambda one, *_, **__: lost(one))
+    monkeypatch.setattr(solver, "_widely", lambda one, *_: lost(one))
     monkeypatch.setattr(solver, "_programmed", lambda one, *_: lost(one))
     problem = Problem(np.array([[0.3], [1.1], [0.2]]), Limits(1.0, 2.0, joints=1), curve)
     solution = solve(problem)
@@ -266,5 +262,5 @@ def test_joints_on_one_line_share_it_and_bounds_above_do_not_matter() -> None:
     ids=["velocity", "rest", "rest-5", "lower bound", "turn", "still", "bend"],
 )
 def test_what_is_no_line_or_is_limited_is_searched(other: Problem) -> None:
-    assert straight_durations(LINE) is not None
-    assert straight_durations(other) is None
+    assert straight_shares(LINE) is not None
+    assert straight_shares(other) is None
