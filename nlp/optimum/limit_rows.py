@@ -139,6 +139,7 @@ def near_limits(
     curve, limits = problem.curve, problem.limits
     inner = range(1, trajectory.durations.size)
     smooth = np.array([curve.smooth_order(b) for b in inner], dtype=np.int64)
+    degrees = np.array(trajectory.degrees)
     every_break = len(curve.waypoint_breaks) == curve.segments + 1
     found = [np.zeros((5, 0))]
     for r in (1, 2, 3, 0):
@@ -151,6 +152,8 @@ def near_limits(
         places, values = trajectory.turns(r)
         there = ~np.isnan(places) & wanted
         there[0, 1:] &= (smooth < r)[:, None]  # the same one ends the piece before
+        if trajectory.polynomial_in_time:
+            there[-1] &= (degrees > r)[:, None]  # a constant is met at the left end
         if r == 0 and every_break:
             there[[0, -1]] = False  # way-points
         j, k, i = np.nonzero(there.transpose(2, 1, 0))

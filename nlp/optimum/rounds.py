@@ -330,11 +330,9 @@ def program_search(
         loaded = np.abs(state.rows) > math.sqrt(stage[0])
         following = beside(rows_of(program, trajectory, NEAR, flat), Rows(rows.table[loaded]))
         state.rows, rows, turn = carried(rows, state.rows, following), following, turn + 1
-    if best is None and rough is None:
+    if rough is None:
         return None
-    motion, found = best if best is not None else (rough, None)
-    assert motion is not None
-    h, values = motion
+    (h, values), found = best or (rough, None)
     passes = kept(problem, check(problem, h, values))
     settled = found is not None and found.residual <= KKT_TOLERANCE
     return Local(h, values, float(h.sum()), settled, passes, iterations, None, found, build)
