@@ -91,9 +91,9 @@ def excesses(
     Returns
     -------
     excess : ndarray
-        −inf where a joint stands still beside a side of 0.
     share : ndarray
-        Of the limit; of others than derivatives with a limit above 0, 1 and the excess.
+        Of the limit; of others than derivatives with a limit above 0, 1 and the excess, and −inf
+        where a joint stands still beside a side of 0.
     size : ndarray
         What a small change of a value is divided by to be one of the excess.
     """
@@ -108,13 +108,13 @@ def excesses(
         share = beyond / limit
         logs = np.where(share > NEAR, np.log(share), share - 1.0) / r
         rates = beyond / rate + np.where(other > 0.0, INSIDE, 0.0)
-    rates = np.where(np.abs(value) <= np.where(span > 0.0, STILL * rate, np.inf), -np.inf, rates)
-    span = np.where(span > 0.0, span, 1.0)
-    excess = np.where(limit == 0.0, rates, logs)
+    still = (span == 0.0) | (np.abs(value) <= STILL * rate)
+    nothing, span = ~position & (limit == 0.0), np.where(span > 0.0, span, 1.0)
+    excess = np.where(nothing, np.where(still, 0.0, rates), logs)
     excess = np.where(position, (beyond - edge) / span, excess)
-    size = np.where(limit == 0.0, rate, r * np.abs(value))
-    share = np.where(position | (limit == 0.0), 1.0 + excess, share)
-    return excess, share, np.where(position, span, size)
+    size = np.where(position, span, np.where(nothing, rate, r * np.abs(value)))
+    share = np.where(nothing | position, 1.0 + excess, share)
+    return excess, np.where(nothing & still, -np.inf, share), size
 
 
 def near_limits(

@@ -212,6 +212,7 @@ def sparse_kkt(
     adjoint = problem.piecewise.adjoint(problem.waypoints, durations)
     values, sign = adjoint.values(places), np.where(limits >= 0.0, 1.0, -1.0)
     excess, _, size = excesses(problem, total, joint, order, sign, values)
+    excess = np.maximum(excess, -1.0)  # a sign may be that of a side without a limit, by rounding
     sizes = problem.limits.sides[:, joint, np.maximum(order, 1) - 1]
     larger = np.where(np.isfinite(sizes), sizes, 0.0).max(axis=0)
     slopes = limits / (np.where((order == 0) | (larger == 0.0), 1.0, larger) * total)
