@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...problem import Array, CurveError, Extremum, Problem, fit, peak_gradients
-from ...problem.curves import MAX_COEFFICIENTS, Trajectory
+from ...problem.curves import MAX_COEFFICIENTS, Places, Trajectory
 
 Indices = NDArray[np.int64]
 
@@ -72,60 +72,99 @@ class ExactRows:
         return k if away <= MOVED else None
 
 
-@dataclass(frozen=True, eq=False)
-class LimitExcess:
+def excesses(
+    problem: Problem, total: float, joint: Indices, order: Indices, side: Array, value: Array
+) -> tuple[Array, Array, Array]:
     """Excess of values over the limits to one side, as in `ExactRows`.
 
-    Attributes
+    Parameters
     ----------
+    problem : Problem
+    total : float
+        Duration of the motion, s.
+    joint, order : ndarray of int
+    side : ndarray
+        1 for the upper side, −1 for the lower.
+    value : ndarray
+        rad/sᵒʳᵈᵉʳ.
+
+    Returns
+    -------
     excess : ndarray
-        −inf where a joint stands still beside a side of 0.
     share : ndarray
-        Of the limit; of others than derivatives with a limit above 0, 1 and the excess.
+        Of the limit; of others than derivatives with a limit above 0, 1 and the excess, and −inf
+        where a joint stands still beside a side of 0.
     size : ndarray
         What a small change of a value is divided by to be one of the excess.
-    limit : ndarray
-        Size of the limit, rad/sᵒʳᵈᵉʳ.
     """
+    limits, r, beyond = problem.limits, np.maximum(order, 1), side * value
+    position, upper = order == 0, side > 0
+    edge = np.where(upper, limits.position_upper[joint], -limits.position_lower[joint])
+    below, above = limits.sides[:, joint, r - 1]
+    limit, other = np.where(upper, above, below), np.where(upper, below, above)
+    span = np.ptp(problem.waypoints, axis=0)[joint]
+    rate = span / total**order
+    with np.errstate(divide="ignore", invalid="ignore"):
+        share = beyond / limit
+        logs = np.where(share > NEAR, np.log(share), share - 1.0) / r
+        rates = beyond / rate + np.where(other > 0.0, INSIDE, 0.0)
+    still = (span == 0.0) | (np.abs(value) <= STILL * rate)
+    nothing, span = ~position & (limit == 0.0), np.where(span > 0.0, span, 1.0)
+    excess = np.where(nothing, np.where(still, 0.0, rates), logs)
+    excess = np.where(position, (beyond - edge) / span, excess)
+    size = np.where(position, span, np.where(nothing, rate, r * np.abs(value)))
+    share = np.where(nothing | position, 1.0 + excess, share)
+    return excess, np.where(nothing & still, -np.inf, share), size
 
-    excess: Array
-    share: Array
-    size: Array
-    limit: Array
 
-    @classmethod
-    def of(
-        cls,
-        problem: Problem,
-        total: float,
-        joint: Indices,
-        order: Indices,
-        sign: Array,
-        value: Array,
-    ) -> LimitExcess:
-        """The excess of values (rad/sᵒʳᵈᵉʳ) of joints, in a motion of so many seconds."""
-        limits, r = problem.limits, np.maximum(order, 1)
-        position, upper, beyond = order == 0, sign > 0, sign * value
-        edge = np.where(upper, limits.position_upper[joint], limits.position_lower[joint])
-        below, above = limits.sides[:, joint, r - 1]
-        limit, other = np.where(upper, above, below), np.where(upper, below, above)
-        span = np.ptp(problem.waypoints, axis=0)[joint]
-        rate = span / total**order
-        with np.errstate(divide="ignore", invalid="ignore"):
-            share = beyond / limit
-            logs = np.where(share > NEAR, np.log(share), share - 1.0) / r
-            rates = beyond / rate + np.where(other > 0.0, INSIDE, 0.0)
-        rates = np.where(np.abs(value) <= STILL * rate, -np.inf, rates)
-        span = np.where(span > 0.0, span, 1.0)
-        excess = np.where(limit == 0.0, rates, logs)
-        excess = np.where(position, (beyond - sign * edge) / span, excess)
-        size = np.where(limit == 0.0, rate, r * np.abs(value))
-        return cls(
-            excess,
-            np.where(position | (limit == 0.0), 1.0 + excess, share),
-            np.where(position, span, size),
-            np.where(position, np.abs(edge), limit),
+def near_limits(
+    problem: Problem, trajectory: Trajectory, near: float
+) -> tuple[Places, Array, Array, Array, Array]:
+    """Extrema above a share of their limit.
+
+    Parameters
+    ----------
+    problem : Problem
+    trajectory : Trajectory
+        A motion of its curve.
+    near : float
+        As the shares of `excesses`: 0 for all that a limit is on the side of.
+
+    Returns
+    -------
+    places : Places
+    value, side, excess, size : ndarray
+        Values, rad/sᵒʳᵈᵉʳ, and the rest as in `excesses`.
+    """
+    curve, limits = problem.curve, problem.limits
+    inner = range(1, trajectory.durations.size)
+    smooth = np.array([curve.smooth_order(b) for b in inner], dtype=np.int64)
+    degrees = np.array(trajectory.degrees)
+    every_break = len(curve.waypoint_breaks) == curve.segments + 1
+    found = [np.zeros((5, 0))]
+    for r in (1, 2, 3, 0):
+        low, high = (
+            limits.sides[..., r - 1] if r else (-limits.position_lower, limits.position_upper)
         )
+        wanted = np.isfinite(low) | np.isfinite(high)
+        if not wanted.any():
+            continue
+        places, values = trajectory.turns(r)
+        there = ~np.isnan(places) & wanted
+        there[0, 1:] &= (smooth < r)[:, None]  # the same one ends the piece before
+        if trajectory.polynomial_in_time:
+            there[-1] &= (degrees > r)[:, None]  # a constant is met at the left end
+        if r == 0 and every_break:
+            there[[0, -1]] = False  # way-points
+        j, k, i = np.nonzero(there.transpose(2, 1, 0))
+        found.append(np.array([j, k, np.full(i.size, r), places[i, k, j], values[i, k, j]]))
+    whole = np.repeat(np.hstack(found), 2, axis=1)
+    joint, piece, order = whole[:3].astype(np.int64)
+    side = np.tile([1.0, -1.0], joint.size // 2)
+    excess, share, size = excesses(problem, trajectory.total_time, joint, order, side, whole[4])
+    at = np.flatnonzero(share > near)
+    where = Places(joint[at], piece[at], order[at], whole[3, at])
+    return where, whole[4, at], side[at], excess[at], size[at]
 
 
 def exact_rows(problem: Problem, h: Array, nodal: Array | None = None) -> ExactRows:
@@ -145,9 +184,17 @@ def exact_rows(problem: Problem, h: Array, nodal: Array | None = None) -> ExactR
     """
     free = 0 if nodal is None else nodal.size
     try:
-        points, side, excess, size, stretched = _near(
-            problem, fit(problem.curve, problem.waypoints, h, nodal)
+        trajectory = fit(problem.curve, problem.waypoints, h, nodal)
+        at, value, side, excess, size = near_limits(problem, trajectory, NEAR)
+        columns = (
+            at.joint,
+            at.segment,
+            at.order,
+            at.s,
+            trajectory.times_of(at.segment, at.s),
+            value,
         )
+        points = [Extremum(*row) for row in zip(*(c.tolist() for c in columns), strict=True)]
         slope = np.zeros((0, h.size + free))
         if points:
             found = peak_gradients(problem, h, points, nodal)
@@ -157,45 +204,9 @@ def exact_rows(problem: Problem, h: Array, nodal: Array | None = None) -> ExactR
     except CurveError:
         nothing, none = np.zeros((1, h.size + free)), np.zeros(1, dtype=bool)
         return ExactRows(h, np.array([np.inf]), nothing, (), np.ones(1), none)
+    limit = problem.limits.sides[(side > 0).astype(int), at.joint, np.maximum(at.order, 1) - 1]
+    stretched = (at.order > 0) & (limit > 0.0)
     return ExactRows(h, excess, slope * (side / size)[:, None], tuple(points), side, stretched)
-
-
-def _near(
-    problem: Problem, trajectory: Trajectory
-) -> tuple[list[Extremum], Array, Array, Array, NDArray[np.bool_]]:
-    """Extrema near a limit: side, excess, its size, and whether a stretch repairs it."""
-    curve, limits = problem.curve, problem.limits
-    total, inner = trajectory.total_time, range(1, trajectory.durations.size)
-    smooth = np.array([curve.smooth_order(b) for b in inner], dtype=np.int64)
-    every_break = len(curve.waypoint_breaks) == curve.segments + 1
-    points: list[Extremum] = []
-    found = [np.zeros((4, 0))]
-    for r in (1, 2, 3, 0):
-        ends = (
-            (limits.position_lower, limits.position_upper) if r == 0 else limits.sides[..., r - 1]
-        )
-        wanted = np.isfinite(ends).any(axis=0)
-        if not wanted.any():
-            continue
-        places, values = trajectory.turns(r)
-        there = ~np.isnan(places) & wanted
-        there[0, 1:] &= (smooth < r)[:, None]  # the same one ends the piece before
-        if r == 0 and every_break:
-            there[[0, -1]] = False  # way-points
-        j, k, i = np.nonzero(there.transpose(2, 1, 0))
-        s, value, order = places[i, k, j], values[i, k, j], np.full(i.size, r)
-        times = trajectory.times_of(k, s)
-        for sign in (1.0, -1.0):
-            side = np.full(i.size, sign)
-            one = LimitExcess.of(problem, total, j, order, side, value)
-            near = np.flatnonzero(one.share > NEAR)
-            stretched = (order > 0) & (one.limit > 0.0)
-            found.append(np.array([side, one.excess, one.size, stretched])[:, near])
-            columns = (j, k, s, times, value)
-            for joint, piece, *rest in zip(*(c[near].tolist() for c in columns), strict=True):
-                points.append(Extremum(joint, piece, r, *rest))
-    side, excess, size, stretched = np.hstack(found)
-    return points, side, excess, size, stretched > 0.0
 
 
 def _by_nodal(problem: Problem, points: list[Extremum], slope: Array) -> Array:

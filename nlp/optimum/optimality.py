@@ -22,7 +22,7 @@ import numpy as np
 from ...problem import QUANTITIES, Array, Extremum, Problem
 from ...problem.curves import Places
 from .clock import time_up
-from .limit_rows import ExactRows, Indices, LimitExcess, exact_rows
+from .limit_rows import ExactRows, Indices, exact_rows, excesses
 
 ACTIVE = 1e-7
 """Relative distance to a limit within which a peak counts as active. What a multiplier is of the
@@ -211,23 +211,24 @@ def sparse_kkt(
     total, joint, order = float(durations.sum()), places.joint, places.order
     adjoint = problem.piecewise.adjoint(problem.waypoints, durations)
     values, sign = adjoint.values(places), np.where(limits >= 0.0, 1.0, -1.0)
-    one = LimitExcess.of(problem, total, joint, order, sign, values)
+    excess, _, size = excesses(problem, total, joint, order, sign, values)
+    excess = np.maximum(excess, -1.0)  # a sign may be that of a side without a limit, by rounding
     sizes = problem.limits.sides[:, joint, np.maximum(order, 1) - 1]
     larger = np.where(np.isfinite(sizes), sizes, 0.0).max(axis=0)
     slopes = limits / (np.where((order == 0) | (larger == 0.0), 1.0, larger) * total)
-    weights = np.abs(slopes) * one.size
+    weights = np.abs(slopes) * size
     stationary = durations * ((1.0 + bounds) / total + adjoint.weighted(places, slopes))
     walls = np.maximum([-bounds, bounds], 0.0) * durations / total
     starts = np.append(0.0, np.cumsum(durations))
     active = []
-    for i in np.flatnonzero(np.abs(one.excess) <= ACTIVE).tolist():
+    for i in np.flatnonzero(np.abs(excess) <= ACTIVE).tolist():
         k, r, s = int(places.segment[i]), int(order[i]), float(places.s[i])
         time = float(starts[k] + s * durations[k])
         # What both segments share belongs to the first, as in `kkt`.
         k -= int(s == 0.0 and k > 0 and problem.piecewise.smooth_order(k) >= r)
         e = Extremum(int(joint[i]), k, r, s, time, float(values[i]))
         active.append((e, float(sign[i]), float(weights[i])))
-    return _report(problem, durations, stationary, one.excess, weights, active, walls)
+    return _report(problem, durations, stationary, excess, weights, active, walls)
 
 
 def _report(

@@ -17,10 +17,10 @@ from typing import Any
 import numpy as np
 
 from ...problem import TOLERANCE, Array, CurveError, Problem, check, fit
-from ...problem.curves import Trajectory, near_extrema
+from ...problem.curves import Trajectory
 from .clock import seconds_left, time_up
 from .decided import kept
-from .limit_rows import NEAR
+from .limit_rows import NEAR, near_limits
 from .optimality import KKT, KKT_TOLERANCE, Local, kkt, sparse_kkt
 from .pieces import Indices, Rows, ca
 from .program import Program
@@ -42,12 +42,12 @@ and without a bound some quintics leave for motions of which the rows say nothin
 after each failure, three of which a search survives."""
 
 
-STAGES = ((1e-2, 1e-2), (1e-5, 1e-3), (1e-9, 1e-9), (1e-11, 1e-11))
+STAGES = ((1e-2, 1e-2), (1e-5, 1e-3), (1e-10, 1e-10), (1e-11, 1e-11))
 """IPOPT's tolerance, and the barrier at which it begins, in the first round, the second, the third
 and the later ones. The first rows are not the last: with 1e-3 and 1e-6 a thousand quintic segments
 take half as long again. IPOPT's own barrier of 0.1 costs quintics half as many iterations again,
 and the later rows hardly move. The last tolerance is for short segments, whose high derivatives
-carry a small residual far: to 8e-7 of the total where the third was reached."""
+carry a small residual far: to 8e-7 of the total at 1e-9."""
 JUDGED = len(STAGES) - 2
 """Round, counted from 0, from which the answer is judged: its tolerance is that of an answer."""
 FAILURES = 3
@@ -109,40 +109,19 @@ def near_rows(program: Program, trajectory: Trajectory, near: float, flat: float
     program : Program
     trajectory : Trajectory
     near : float
-        Share of its limit from which an extremum has a row; 0 for all. Beside a side of 0, and of
-        positions, it counts shares of the larger side, and of the joint's span.
+        Share of its limit from which an extremum has a row, as in `near_limits`.
     flat : float
         Second derivative, as in `FLAT`, below which a row stays at its place.
     """
-    limits, found = program.problem.limits, [np.zeros((0, 5))]
-    for j, r in np.ndindex(program.joints, 4):
-        if r == 0:
-            edges = np.array([limits.position_lower[j], limits.position_upper[j]])
-            sizes = np.full(2, np.ptp(program.problem.waypoints[:, j]))
-        else:
-            edges = limits.sides[:, j, r - 1] * np.array([-1.0, 1.0])
-            sizes = np.where(edges != 0.0, np.abs(edges), np.abs(edges[::-1]))
-        limited = np.isfinite(edges) & (r == 0 or np.isfinite(program.sides.scale[j, r - 1]))
-        if program.degrees.max() - r < 2 or not limited.any():
-            continue
-        room = np.where(limited, (1.0 - near) * sizes, 0.0)
-        low, high = np.where(limited, edges, [-np.inf, np.inf]) + room * [1.0, -1.0]
-        k, s, value = near_extrema(trajectory, j, r, low, high)
-        inner = (s > 0.0) & (s < 1.0)
-        for sign, beyond in ((1.0, value >= high), (-1.0, value <= low)):
-            at = inner & beyond
-            whole = np.broadcast_to([j, r, sign], (int(at.sum()), 3))
-            found.append(np.column_stack([whole[:, 0], k[at], whole[:, 1], s[at], whole[:, 2]]))
-    rows = Rows(np.column_stack([np.vstack(found), np.zeros(sum(map(len, found)))]))
-    places = rows.places
+    places, _, sign, *_ = near_limits(program.problem, trajectory, near)
     bend = program.slope(trajectory, places, 2)
+    size = program.sides.scale[places.joint, np.maximum(places.order, 1) - 1]
     own, wider = program.pieces.own_places(trajectory, places)
     bend = bend * wider**2
-    size = program.sides.scale[places.joint, np.maximum(places.order, 1) - 1]
     stays = np.abs(bend) < flat * np.where(places.order == 0, 1.0, size)
-    rows.table[:, 1], rows.table[:, 3] = own.segment, own.s
-    rows.table[:, 5] = np.where(stays, 0.0, 1.0 / np.where(stays, 1.0, bend))
-    return rows
+    weight = np.where(stays, 0.0, 1.0 / np.where(stays, 1.0, bend))
+    table = np.column_stack([places.joint, own.segment, places.order, own.s, sign, weight])
+    return Rows(table[(places.s > 0.0) & (places.s < 1.0)])
 
 
 def grid_rows(program: Program) -> Rows:
@@ -244,9 +223,13 @@ def solve_round(
     tolerance, barrier = stage
     expressions, least, most = constraints(program, rows)
     nlp = {"x": program.variables, "f": ca.sum1(program.durations), "g": expressions}
-    names = ("tol", "constr_viol_tol", "compl_inf_tol")
-    options = OPTIONS | dict.fromkeys((f"ipopt.{name}" for name in names), tolerance)
-    options |= {"ipopt.mu_init": barrier, "ipopt.dual_inf_tol": 10.0 * tolerance}
+    options = OPTIONS | {
+        "ipopt.mu_init": barrier,
+        "ipopt.tol": tolerance,
+        "ipopt.constr_viol_tol": tolerance,
+        "ipopt.dual_inf_tol": 10.0 * tolerance,
+        "ipopt.compl_inf_tol": tolerance,
+    }
     left = seconds_left()
     if left < math.inf:  # each round's solver is its own, so that no limit is shared
         options["ipopt.max_wall_time"] = max(left, SHORTEST)
@@ -347,11 +330,9 @@ def program_search(
         loaded = np.abs(state.rows) > math.sqrt(stage[0])
         following = beside(rows_of(program, trajectory, NEAR, flat), Rows(rows.table[loaded]))
         state.rows, rows, turn = carried(rows, state.rows, following), following, turn + 1
-    if best is None and rough is None:
+    if rough is None:
         return None
-    ended, found = best if best is not None else (rough, None)
-    assert ended is not None
-    h, values = ended
+    (h, values), found = best or (rough, None)
     passes = kept(problem, check(problem, h, values))
     settled = found is not None and found.residual <= KKT_TOLERANCE
     return Local(h, values, float(h.sum()), settled, passes, iterations, None, found, build)

@@ -16,7 +16,7 @@ from scipy.interpolate import CubicSpline
 from support.near_problems import NEAR
 from support.two_joints import TURNING
 from trajgap.nlp import Solution, Status, certify
-from trajgap.nlp.optimum import limit_rows, solve
+from trajgap.nlp.optimum import limit_rows, solve, solver
 from trajgap.nlp.optimum.closed_forms import straight_shares
 from trajgap.nlp.optimum.decided import decided, incumbent
 from trajgap.nlp.optimum.limit_rows import exact_rows
