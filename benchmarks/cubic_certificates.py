@@ -17,10 +17,10 @@ from pathlib import Path
 import numpy as np
 from on_cores import CORES, on_cores
 from trajgap.nlp.proofs.certifiers import certify
-from trajgap.nlp.proofs.cubic.bound import TOTAL
+from trajgap.nlp.proofs.cubic import CUBIC
 from trajgap.nlp.proofs.cubic.guide import peaks
-from trajgap.nlp.proofs.cubic.relaxation import Relaxation
-from trajgap.nlp.proofs.cubic.system import CubicSystem, cubic_system
+from trajgap.nlp.proofs.cubic.relaxation import BoxProgram, Relaxation
+from trajgap.nlp.proofs.cubic.system import CubicSystem, capped, cubic_system
 from trajgap.nlp.proofs.cubic.tree import Prover
 from trajgap.nlp.proofs.document import certificate, stated_problem, write_certificate
 from trajgap.nlp.proofs.exact import ExactProblem, exact_problem, printed_problem
@@ -84,7 +84,7 @@ def problems() -> dict[str, ExactProblem]:
 
 
 def line(name: str, exact: ExactProblem) -> str:
-    found = certify(exact, gap=0.01, seconds=SECONDS)
+    found = certify(exact, gap=0.01, seconds=SECONDS, certifier=CUBIC)
     head = f"| `{name}` | {exact.segments} | {float(found.lower):.4f} "
     upper = "none" if found.upper is None else f"{float(found.upper):.4f}"
     head += f"| {upper} | {found.gap:.2%} | {found.nodes} | {found.seconds:.0f} "
@@ -105,7 +105,7 @@ def line(name: str, exact: ExactProblem) -> str:
 def by_gap(name: str, exact: ExactProblem) -> str:
     cells = []
     for gap in GAPS:
-        found = certify(exact, gap=gap, seconds=SECONDS)
+        found = certify(exact, gap=gap, seconds=SECONDS, certifier=CUBIC)
         reached = "" if found.gap <= gap else f" ({found.gap:.1%} reached)"
         cells.append(f"{found.nodes}, {found.seconds:.0f} s{reached}")
     return f"| `{name}` | " + " | ".join(cells) + " |"
@@ -116,14 +116,14 @@ def by_width(name: str, found: Certified) -> str:
     assert found.upper is not None
     stated = stated_problem(found.problem)
     near = cubic_system(stated, found.upper)
-    unit = 2.0**near.second
+    unit = float(near.exact.second)
     h = np.array([float(x) for x in found.durations]) / unit
     cap = int(float(found.upper) / unit * 1.5 * TICKS)
-    system = CubicSystem(stated, near.powers, near.second, cap)
+    system = CubicSystem(stated, capped(stated, near.units["powers"], near.units["second"], cap))
     prover, exact = Prover(system), system.exact
     at = [
         sum(h[k] for k in range(exact.n) if exact.lengths[k].get(t, 0) > 0)
-        for t in range(system.free)
+        for t in range(exact.free)
     ]
     for end, (first, _, _) in zip((0, exact.n - 1), exact.rho(), strict=False):
         at[0 if end == 0 else exact.m - 1] += h[end]
@@ -131,21 +131,21 @@ def by_width(name: str, found: Certified) -> str:
     gaps = []
     for width in WIDTHS:
         box = prover.root()
-        box.low = [int(x * (1 - width) * TICKS) for x in at]
-        box.high = [int(x * (1 + width) * TICKS) for x in at]
+        box.own.low = [int(x * (1 - width) * TICKS) for x in at]
+        box.own.high = [int(x * (1 + width) * TICKS) for x in at]
         prover.narrow(box)
         rows = system.starting_rows()
         for _ in range(10):
-            program = Relaxation(system, rows).over(prover.side(box), box.ranges)
-            proposal = program.bound(TOTAL, capped=False)
+            program = BoxProgram(Relaxation(system, rows), box.own)
+            proposal = program.bound(system.total, capped=False)
             assert proposal is not None
-            new = [x for x in peaks(system, proposal.point[: system.free]) if x not in rows]
+            new = [x for x in peaks(system, proposal.point[: exact.free]) if x not in rows]
             if not new:
                 break
             rows += new
-        bound = prover.bound(box, TOTAL, proposal.weights)
+        bound = prover.bound(box, proposal)
         assert bound is not None
-        gaps.append(1 - float(bound) / TICKS * unit / float(found.upper))
+        gaps.append(1 - float(bound[0]) / TICKS * unit / float(found.upper))
     order = np.polyfit(np.log(WIDTHS[:4]), np.log(gaps[:4]), 1)[0]
     return f"| `{name}` | " + " | ".join(f"{g:.2e}" for g in gaps) + f" | {order:.1f} |"
 
@@ -177,7 +177,7 @@ def cores(known: dict[str, ExactProblem]) -> None:
     certify(known["clamped-8-seed-0"], gap=0.1)  # compiles, imports
     print(CORES)
     for name in LONG:
-        ask = partial(certify, known[name], gap=0.01, seconds=SECONDS)
+        ask = partial(certify, known[name], gap=0.01, seconds=SECONDS, certifier=CUBIC)
         print(on_cores(f"`{name}`", ask), flush=True)
 
 
@@ -185,7 +185,7 @@ def widths(known: dict[str, ExactProblem]) -> None:
     print("\n| problem | " + " | ".join(f"w = {w:g}" for w in WIDTHS) + " | order |")
     print("|---" * (len(WIDTHS) + 2) + "|")
     for name in CHOSEN:
-        print(by_width(name, certify(known[name], gap=0.1)), flush=True)
+        print(by_width(name, certify(known[name], gap=0.1, certifier=CUBIC)), flush=True)
 
 
 if __name__ == "__main__":

@@ -39,6 +39,7 @@ FIELDS = (
     "machine", "versions",
 )  # fmt: skip
 SCIPY = "scipy CubicSpline, roots of derivatives"
+CLOSED = "scipy CubicSpline, extrema in closed form"
 MX = "whole-array CasADi MX, 5 places a segment"
 OPTI = "plain CasADi Opti, 5 places a segment"
 SLSQP = "scipy SLSQP, exact extrema"
@@ -46,6 +47,7 @@ DIFFERENCES = "numpy loadtxt, finite differences"
 ROWS = [
     *(("check", "ours", c, 7, n) for c in ("cubic", "quintic") for n in (100, 1000, 10**4, 10**5)),
     *(("check", SCIPY, "cubic", 7, n) for n in (100, 1000, 10**4)),
+    *(("check", CLOSED, "cubic", 7, n) for n in (100, 1000, 10**4, 10**5)),
     *(
         ("check FILE", code, "samples", 7, n)
         for code in ("ours", DIFFERENCES)
@@ -97,6 +99,28 @@ def check_scipy(curve, joints, segments):
                 top = np.abs(motion(places[np.isfinite(places)], r)).max()
                 ratio = max(ratio, (top / limit) ** (1 / r))
         return ratio
+
+    return run
+
+
+def check_closed(curve, joints, segments):
+    """The same for all joints at once: velocity is quadratic, and turns where acceleration is 0."""
+    from scipy.interpolate import CubicSpline
+
+    q = walk(segments, joints)
+    h = np.random.default_rng(6).uniform(0.5, 1.5, segments)[:, None]
+
+    def run():
+        times = np.concatenate([[0.0], np.cumsum(h)])
+        c3, c2, c1, _ = CubicSpline(times, q, bc_type="clamped").c
+        last = (c1[-1] + h[-1] * (2 * c2[-1] + 3 * h[-1] * c3[-1]))[None]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            turn = -c2 / (3 * c3)
+        inner = np.where((turn > 0) & (turn < h), c1 + turn * c2, 0.0)
+        bends = np.concatenate([2 * c2, 2 * c2[-1:] + 6 * h[-1] * c3[-1:]])
+        tops = [max(np.abs(one).max() for one in (c1, last, inner)), np.abs(bends).max()]
+        tops.append(np.abs(6 * c3).max())
+        return max((tops[r] / LIMITS[r]) ** (1 / (r + 1)) for r in range(3))
 
     return run
 
@@ -239,6 +263,7 @@ def solve_slsqp(curve, joints, segments):
 CODES = {
     ("check", "ours"): check_ours,
     ("check", SCIPY): check_scipy,
+    ("check", CLOSED): check_closed,
     ("check FILE", "ours"): file_ours,
     ("check FILE", DIFFERENCES): file_differences,
     ("solve", "ours"): solve_ours,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass
 from enum import StrEnum
 
@@ -9,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .arrays import Array
-from .curves import Extremum, Trajectory, as_durations, furthest
+from .curves import Enclosed, Extremum, Trajectory, as_durations, furthest
 from .errors import CurveError, SingularError
 from .jumps import Jump, jumps_of
 from .limits import QUANTITIES, half_range
@@ -18,6 +19,11 @@ from .uneven_peaks import uneven_peaks
 
 TOLERANCE = 1e-9
 """Relative excess over a limit that still counts as keeping it."""
+
+
+_BLUR = 1e-10
+"""Relative error of a reported ratio above which a closer bound is asked for, if there is one: a
+tenth of the tolerance."""
 
 
 class Verdict(StrEnum):
@@ -221,8 +227,9 @@ def _slack(problem: Problem, peak: Peak) -> float:
 
 def _duration_peaks(problem: Problem, h: Array) -> list[Peak]:
     peaks = []
-    for k, d in enumerate(h):
-        low, high = problem.duration_lower[k], problem.duration_upper[k]
+    bounded = (problem.duration_lower > 0) | np.isfinite(problem.duration_upper)
+    for k in np.flatnonzero(bounded).tolist():
+        d, low, high = h[k], problem.duration_lower[k], problem.duration_upper[k]
         if low > 0:
             peaks.append(Peak(None, "duration", k, None, float(d), float(low), float(low / d), 0.0))
         if np.isfinite(high):
@@ -305,13 +312,23 @@ def check(
         found = problem.curve.enclosed(problem.waypoints, h, extra)
     except CurveError as why:
         return _no_curve(problem, h, why, tolerance)
+    judged, hidden = _judged(problem, h, found, tolerance)
+    loose = any(_slack(problem, p) > _BLUR * max(1.0, p.ratio) for p in judged.peaks)
+    if found.closer is not None and (hidden or loose or judged.verdict is Verdict.UNDECIDED):
+        with suppress(SingularError):  # the first bound holds all the same
+            judged, _ = _judged(problem, h, found.closer(), tolerance)
+    return judged
+
+
+def _judged(problem: Problem, h: Array, found: Enclosed, tolerance: float) -> tuple[Check, bool]:
+    """What a trajectory and its bound say, and whether the bound may hide a jump."""
     trajectory, error = found.trajectory, found.error
     peaks = [
         *_derivative_peaks(problem, h, trajectory, error),
         *_position_peaks(problem, h, trajectory, error),
         *_duration_peaks(problem, h),
     ]
-    jumps = jumps_of(problem, trajectory, error)
+    jumps, hidden = jumps_of(problem, trajectory, error)
     jerk_limited = problem.limits.limited[:, 2]
     serious = [
         jump for jump in jumps if jump.order < 2 or jerk_limited[problem.joints.index(jump.joint)]
@@ -337,7 +354,7 @@ def check(
     elif any(p.quantity in roots and _slack(problem, p) >= 1.0 for p in peaks):
         feasible_time, tight_time = None, None
         feasible_why = tight_why = "rounding hides whether a stretch repairs it"
-    return Check(
+    judged = Check(
         verdict=verdict,
         limits=about_limits,
         worst=max(
@@ -355,3 +372,4 @@ def check(
         tight_why=tight_why,
         tolerance=tolerance,
     )
+    return judged, hidden

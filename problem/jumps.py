@@ -35,7 +35,7 @@ class Jump:
     size: float
 
 
-def jumps_of(problem: Problem, trajectory: Trajectory, error: Array) -> list[Jump]:
+def jumps_of(problem: Problem, trajectory: Trajectory, error: Array) -> tuple[list[Jump], bool]:
     """Steps of position, velocity and acceleration that rounding errors do not explain.
 
     Parameters
@@ -47,15 +47,18 @@ def jumps_of(problem: Problem, trajectory: Trajectory, error: Array) -> list[Jum
 
     Returns
     -------
-    list of Jump
+    list of Jump, bool
+        The second says whether the bound is what keeps some step from being a jump.
     """
-    found = []
+    found, hidden = [], False
     for order in range(3):
         left, right, scale = trajectory.steps(order)
-        size = right - left
-        bound = error[:-1, order] + error[1:, order] + 1e-9 * scale
+        size, room = right - left, 1e-9 * scale
+        bound = error[:-1, order] + error[1:, order] + room
+        hidden = hidden or bool(((np.abs(size) > room) & (np.abs(size) <= bound)).any())
         found += [(b, j, order, size[b, j]) for b, j in np.argwhere(np.abs(size) > bound).tolist()]
-    return [
+    jumps = [
         Jump(problem.joints[j], order, b + 1, float(trajectory.breaks[b + 1]), float(step))
         for b, j, order, step in sorted(found)
     ]
+    return jumps, hidden

@@ -77,22 +77,6 @@ class _Row:
     m1: int
     n: int
 
-    @classmethod
-    def read(cls, entry: Any, spans: int, joints: int) -> _Row:
-        """Read [kind, span, joint, sign, m₀, m₁, n]."""
-        kind, span, joint, sign, m0, m1, n = listed(entry, "a row", 7, 7)
-        kind = text(kind, "a row")
-        need(kind in ("change", "reach", "brake"), "a row of an unknown kind")
-        return cls(
-            kind,
-            whole(span, 0, spans - 1),
-            whole(joint, 0, joints - 1),
-            sign_of(sign),
-            whole(m0, -MOST_TANGENT, MOST_TANGENT),
-            whole(m1, -MOST_TANGENT, MOST_TANGENT),
-            whole(n, 0, MOST_TANGENT),
-        )
-
     def terms(
         self, step: Fraction, v_max: Fraction, bend: Fraction, sides: tuple[Fraction, Fraction]
     ) -> tuple[Fraction, Fraction, Fraction, Fraction]:
@@ -142,7 +126,18 @@ class AnyCurve(ProofKind[Sides]):
 
     def row(self, entry: Any) -> _Row:
         """Read [kind, span, joint, sign, m₀, m₁, n]."""
-        return _Row.read(entry, len(self._asked.steps), self.problem.joints)
+        kind, span, joint, sign, m0, m1, n = listed(entry, "a row", 7, 7)
+        kind = text(kind, "a row")
+        need(kind in ("change", "reach", "brake"), "a row of an unknown kind")
+        return _Row(
+            kind,
+            whole(span, 0, len(self._asked.steps) - 1),
+            whole(joint, 0, self.problem.joints - 1),
+            sign_of(sign),
+            whole(m0, -MOST_TANGENT, MOST_TANGENT),
+            whole(m1, -MOST_TANGENT, MOST_TANGENT),
+            whole(n, 0, MOST_TANGENT),
+        )
 
     def _speed(self, joint: int) -> Fraction | None:
         """No motion with a total below the cap is faster; None if nothing bounds the speed."""

@@ -41,6 +41,8 @@ class Boxes(ProofKind[Sides]):
         Segment, joint, order, sign and place of limits that leaves lean on.
     batch : int
         Leaves that are judged together.
+    task : Any
+        Whose ``cap`` is the limit of each row.
     """
 
     apart = 500  # a batch of leaves
@@ -48,6 +50,7 @@ class Boxes(ProofKind[Sides]):
     stretches = True
     rows: Rows
     batch: int
+    task: Any
 
     def __init__(
         self, problem: StatedProblem, proof: dict[str, Any], total: Fraction, clock: Clock
@@ -69,7 +72,10 @@ class Boxes(ProofKind[Sides]):
             ]
             for segment, joint, order, sign, place in self.clock.each(entries)
         ]
-        return np.array(found, np.int64).reshape(-1, 5)
+        rows = np.array(found, np.int64).reshape(-1, 5)
+        limited = np.isfinite(self.task.cap(rows)).all()
+        need(bool(limited), "a row leans on a limit that is not there")
+        return rows
 
     def shrunk(self, low: list[float], high: list[float]) -> Sides:
         """Part of a box whose durations can add up to the total, with something to spare."""
@@ -134,18 +140,13 @@ class Boxes(ProofKind[Sides]):
             found = self.least(sides, np.array(taus, np.float64), ids, weights)
         need(bool((found > 0.0).all()), "a leaf with limits is not proved")
 
-    @abstractmethod
     def least(self, sides: Array, tau: Array, ids: Rows, weights: Array) -> Array:
-        """Lower bound of each leaf's weighted limits and τ, over its box.
+        """Lower bound of each leaf's weighted limits and τ over its box, by numbers of rows."""
+        return np.asarray(self.centre(sides).least(tau, self.rows[ids], weights))
 
-        Parameters
-        ----------
-        sides : ndarray, shape (leaf, 2, segment)
-        tau : ndarray, shape (leaf,)
-        ids : ndarray of int, shape (leaf, row)
-        weights : ndarray, shape (leaf, row)
-            0 where a leaf has fewer rows.
-        """
+    @abstractmethod
+    def centre(self, sides: Array) -> Any:
+        """The curves at the centres of boxes (box, least or largest, segment)."""
 
 
 def shapes(rows: Rows, powers: int, places: int) -> Array:

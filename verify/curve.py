@@ -166,30 +166,20 @@ def uniform_pieces(problem: StatedProblem, clock: Clock) -> Pieces:
     -------
     Pieces
     """
-    return [_uniform(list(column), clock) for column in zip(*problem.waypoints, strict=True)]
-
-
-def _uniform(q: Sequence[Fraction], clock: Clock) -> list[list[Fraction]]:
-    n = len(q)
+    q, last = problem.waypoints, len(problem.waypoints) - 1
+    ways = [[b - a for a, b in zip(*rows, strict=True)] for rows in pairwise(q)]
+    rows: list[Condition] = [({0: Fraction(6), 1: Fraction(2)}, [6 * x for x in ways[0]])]
+    for i, (before, behind) in enumerate(pairwise(ways), 1):
+        both = [3 * (a + b) for a, b in zip(before, behind, strict=True)]
+        rows.append(({i - 1: Fraction(1), i: Fraction(4), i + 1: Fraction(1)}, both))
     # q″ at the start of a piece is 6(q₁ − q₀) − 4m₀ − 2m₁, at its end 2m₀ + 4m₁ − 6(q₁ − q₀).
-    diagonal = [Fraction(6), *[Fraction(4)] * (n - 2), Fraction(6)]
-    above = [Fraction(2), *[Fraction(1)] * (n - 2)]
-    below = [*[Fraction(1)] * (n - 2), Fraction(2)]
-    right = [6 * (q[1] - q[0])]
-    right += [3 * (q[i + 1] - q[i - 1]) for i in range(1, n - 1)]
-    right += [6 * (q[-1] - q[-2])]
-    for i in clock.each(range(1, n)):
-        factor = below[i - 1] / diagonal[i - 1]
-        diagonal[i] -= factor * above[i - 1]
-        right[i] -= factor * right[i - 1]
-    slopes = [right[-1] / diagonal[-1]]
-    for i in clock.each(range(n - 2, -1, -1)):
-        slopes.append((right[i] - above[i] * slopes[-1]) / diagonal[i])
-    slopes.reverse()
-    found = []
-    both = zip(pairwise(q), pairwise(slopes), strict=True)
-    for (a, b), (u, w) in clock.each(both):
-        found.append([a, u, 3 * (b - a) - 2 * u - w, u + w - 2 * (b - a)])
+    rows.append(({last - 1: Fraction(2), last: Fraction(6)}, [6 * x for x in ways[-1]]))
+    slopes = eliminated(rows, clock)
+    found: Pieces = [[] for _ in q[0]]
+    for k, way in enumerate(ways):
+        for j, d in clock.each(enumerate(way)):
+            u, w = slopes[k][1][j], slopes[k + 1][1][j]
+            found[j].append([q[k][j], u, 3 * d - 2 * u - w, u + w - 2 * d])
     return found
 
 

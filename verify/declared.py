@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from .boxes import SLACK, Array, Boxes, Rows, Sides
+from .boxes import SLACK, Array, Boxes, Sides
 from .declared_bound import Centre, Task
 from .declared_form import linear_form
 from .floors import least_durations
@@ -23,7 +23,7 @@ from .ranges import (
     PLACES,
     SMALLEST_CAP,
 )
-from .reading import Clock, need, whole
+from .reading import Clock, need, required, whole
 from .tree import LEAF
 
 _NUMBERS = 2_000_000
@@ -57,8 +57,6 @@ class DeclaredCurve(Boxes):
         both = zip(exact, self._returning(declared), strict=True)
         self.shortest = [max(nextafter(float(x), 0.0), y) for x, y in both]
         self.rows = self.read_rows(proof["rows"], 0, PLACES)
-        there = np.isfinite(self.task.cap(self.rows)).all()
-        need(bool(there), "a row leans on a limit that is not there")
         self.most, self.batch = self.task.total, self._batch()
         nodes = proof["tree"]
         self._hopeless = type(nodes) is list and len(nodes) == 1 and _single(nodes[0])
@@ -176,12 +174,8 @@ class DeclaredCurve(Boxes):
         angle = self.problem.waypoints[at - sum(b < at for b in virtual)][joint]
         return sign * angle > max(sign * x for x in ends)
 
-    def least(self, sides: Array, tau: Array, ids: Rows, weights: Array) -> Array:
-        """Of the curves in each box."""
-        return self.centre(sides).least(tau, self.rows[ids], weights)
-
     def centre(self, sides: Array) -> Centre:
-        """Boxes as an array (box, least or largest, segment)."""
+        """Of the declared curve."""
         return Centre(self.task, sides[:, 0], sides[:, 1])
 
 
@@ -192,9 +186,9 @@ def _single(node: Any) -> bool:
 
 def covered(problem: StatedProblem) -> Declaration:
     """The declaration of a problem, if this kind of proof speaks about it."""
-    declared = problem.declaration
-    need(declared is not None, "declaration not covered: no declared piecewise polynomial")
-    assert declared is not None
+    declared = required(
+        problem.declaration, "declaration not covered: no declared piecewise polynomial"
+    )
     n = problem.segments
     need(n > 1 or not declared.at_rest, "one segment alone has no inner break")
     need(n <= MOST_DECLARED_SEGMENTS, f"more than {MOST_DECLARED_SEGMENTS} segments")

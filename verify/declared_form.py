@@ -21,6 +21,8 @@ from .problem import Declaration
 from .reading import Clock, need
 
 Array = NDArray[np.float64]
+Solved = NDArray[np.object_]
+"""Rationals."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,53 +96,42 @@ def linear_form(
     pivots = eliminated(conditions(fixed_part, waypoints, [one] * n), clock)
     unknowns = [column for column in range(first[n]) if column not in pivots]
     need(len(unknowns) == len(agreeing), "the conditions do not determine the curve")
+    factors = np.full((first[n], len(unknowns)), Fraction(0))
+    constants = np.full((first[n], joints), Fraction(0))
+    factors[unknowns, np.arange(len(unknowns))] = one
     place = {column: at for at, column in enumerate(unknowns)}
-    coefficients: list[tuple[list[Fraction], list[Fraction]]] = []
-    for column in clock.each(range(first[n])):
-        row = [Fraction(0)] * len(unknowns)
-        if column in place:
-            row[place[column]] = Fraction(1)
-            coefficients.append((row, list(none)))
-            continue
-        terms, values = pivots[column]
+    for column, (terms, values) in clock.each(pivots.items()):
+        constants[column] = values
         for other, x in terms.items():
             if other != column:
-                row[place[other]] = -x
-        coefficients.append((row, values))
+                factors[column, place[other]] = -x
 
-    def scaled(
-        segment: int, t: Fraction, order: int, values: list[Fraction]
-    ) -> tuple[list[Fraction], list[Fraction]]:
-        row, value = [Fraction(0)] * len(unknowns), list(none)
+    def scaled(segment: int, t: Fraction, order: int, values: list[Fraction]) -> list[Solved]:
+        """Factors by unknown, and a value for each joint."""
         if segment == n:
-            return row, values
-        for power, x in at_end(declared, segment, t, order).items():
-            own = coefficients[first[segment] + power]
-            row = [a + x * c for a, c in zip(row, own[0], strict=True)]
-            value = [a + x * c for a, c in zip(value, own[1], strict=True)]
-        return row, value
+            return [0 * factors[0], np.array(values)]
+        own = at_end(declared, segment, t, order).items()
+        return [
+            np.asarray(sum((x * table[first[segment] + p] for p, x in own), 0 * table[0]))
+            for table in (factors, constants)
+        ]
 
     ends = [scaled(k, one, order, x) for k, _, order, x in clock.each(agreeing)]
     starts = [scaled(k, 0 * one, order, x) for _, k, order, x in clock.each(agreeing)]
     between = list(dict.fromkeys((left, right) for left, right, _, _ in agreeing))
     most, p = max(declared.degrees) + 1, len(agreeing)
     basis, fixed = np.zeros((n, most, p)), np.zeros((n, most, joints))
-    for k in range(n):
-        for power in range(declared.degrees[k] + 1):
-            row, value = coefficients[first[k] + power]
-            basis[k, power], fixed[k, power] = _floats([row])[0], _floats([value])[0]
+    for k, degree in enumerate(declared.degrees):
+        own = slice(first[k], first[k + 1])
+        basis[k, : degree + 1], fixed[k, : degree + 1] = factors[own], constants[own]
     return Form(
         basis,
         fixed,
-        _floats([row for row, _ in ends]).reshape(p, p),
-        _floats([value for _, value in ends]).reshape(p, joints),
-        _floats([row for row, _ in starts]).reshape(p, p),
-        _floats([value for _, value in starts]).reshape(p, joints),
+        np.array([row for row, _ in ends], np.float64).reshape(p, p),
+        np.array([value for _, value in ends], np.float64).reshape(p, joints),
+        np.array([row for row, _ in starts], np.float64).reshape(p, p),
+        np.array([value for _, value in starts], np.float64).reshape(p, joints),
         np.array([between.index((left, right)) for left, right, _, _ in agreeing], np.int64),
         np.array([order for _, _, order, _ in agreeing], np.int64),
         np.array(between, np.int64).reshape(-1, 2),
     )
-
-
-def _floats(rows: Sequence[Sequence[Fraction]]) -> Array:
-    return np.array([[float(x) for x in row] for row in rows], np.float64)

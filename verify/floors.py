@@ -5,7 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 from math import factorial
 
-from .problem import Bounds, Declaration, StatedProblem
+from .problem import Declaration, StatedProblem, loose
 
 _DIGITS = 10**12
 """Roots are rounded down to one part in it."""
@@ -38,7 +38,7 @@ def least_durations(problem: StatedProblem, total: Fraction) -> list[Fraction]:
     at = [None if b in virtual else next(rows) for b in range(n + 1)]
     found = list(problem.shortest)
     for j, sizes in enumerate(problem.limits):
-        caps = [None if x is None or x[1] <= 0 else x[1] for x in sizes]
+        caps = [loose(x) for x in sizes]
         speeds = _speeds(declared, j, caps, total)
         for k in range(n):
             start, finish = at[k], at[k + 1]
@@ -50,13 +50,9 @@ def least_durations(problem: StatedProblem, total: Fraction) -> list[Fraction]:
                     cap = caps[r - 1]
                     if cap is not None and all(x in end and end[x][j] == 0 for x in range(1, r)):
                         found[k] = max(found[k], _root(factorial(r) * abs(way) / cap, r))
-            own = _size(problem.sides[1 if way > 0 else 0][j][0])
+            own = loose(problem.sides[1 if way > 0 else 0][j][0])
             found[k] = max([found[k], *(abs(way) / v for v in (*speeds, own) if v is not None)])
     return found
-
-
-def _size(limit: Bounds) -> Fraction | None:
-    return None if limit is None or limit[1] <= 0 else limit[1]
 
 
 def _speeds(

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import pairwise
 from typing import Any
 
-from .ranges import MOST_DEGREE, MOST_JOINTS, MOST_SEGMENTS
+from .ranges import MOST_DEGREE, MOST_JOINTS, MOST_POWER, MOST_SEGMENTS
 from .reading import fields, listed, need, number, text, whole
 
 _DIGITS = 314159265358979323846264338327950288419716939937510
@@ -168,6 +169,35 @@ def read_problem(data: Any) -> StatedProblem:
     return StatedProblem(
         q, limits, sides, position, shortest, longest, declaration, curve, ends, shares, chord
     )
+
+
+def in_own_units(
+    problem: StatedProblem, proof: dict[str, Any]
+) -> tuple[Fraction, list[list[Fraction]], list[list[Fraction | None]]]:
+    """A proof's unit of time, and steps and limits in its units, which are powers of two.
+
+    Returns
+    -------
+    second : Fraction
+    steps : list, [step][joint]
+    limits : list, [joint][order − 1]
+        None where there is none; one of 0 takes no part.
+    """
+    joints, q = problem.joints, problem.waypoints
+    stated = listed(proof["powers"], "powers", joints, joints)
+    units = [Fraction(2) ** whole(p, -MOST_POWER, MOST_POWER) for p in stated]
+    second = Fraction(2) ** whole(proof["second"], -MOST_POWER, MOST_POWER)
+    steps = [[(b - a) / u for a, b, u in zip(*rows, units, strict=True)] for rows in pairwise(q)]
+    limits = [
+        [None if x is None else x * second**r / u for r, x in enumerate(map(loose, row), 1)]
+        for row, u in zip(problem.limits, units, strict=True)
+    ]
+    return second, steps, limits
+
+
+def loose(limit: Bounds) -> Fraction | None:
+    """An upper bound of a limit; one of 0 takes no part in a lower bound of the total."""
+    return None if limit is None or limit[1] <= 0 else limit[1]
 
 
 def _shares(entry: Any, segments: int) -> list[Fraction]:

@@ -12,11 +12,11 @@ from typing import Any
 import numpy as np
 
 from .boxes import Array, Boxes, Rows, Sides
-from .problem import StatedProblem
+from .floors import least_durations
+from .problem import StatedProblem, in_own_units
 from .quintic_bound import ROUND, Centre, Task
 from .ranges import (
     LEAST_TAU,
-    MOST_POWER,
     MOST_QUINTIC_JOINTS,
     MOST_QUINTIC_SEGMENTS,
     MOST_WINDOW,
@@ -44,50 +44,32 @@ class QuinticSpline(Boxes):
     ) -> None:
         super().__init__(problem, proof, total, clock)
         _covered(problem)
-        n, joints, q = problem.segments, problem.joints, problem.waypoints
-        stated = listed(proof["powers"], "powers", joints, joints)
-        angle = [Fraction(2) ** whole(p, -MOST_POWER, MOST_POWER) for p in stated]
-        second = Fraction(2) ** whole(proof["second"], -MOST_POWER, MOST_POWER)
+        n, joints = problem.segments, problem.joints
+        second, steps, limits = in_own_units(problem, proof)
         own = total / second
         need(
             SHORTEST_TOTAL < own < 1 / SHORTEST_TOTAL and Fraction(float(own)) == own,
             "a total that is no float of usual size is not proved",
         )
-        steps = [
-            [(b - a) / unit for a, b, unit in zip(q[k], q[k + 1], angle, strict=True)]
-            for k in range(n)
-        ]
-        limits = [
-            [
-                None if x is None or x[1] <= 0 else x[1] * second**r / unit
-                for r, x in enumerate(row, 1)
-            ]
-            for row, unit in zip(problem.limits, angle, strict=True)
-        ]
         sizes = [abs(d) for row in steps for d in row if d]
         sizes += [x for row in limits for x in row if x is not None]
         need(all(SMALLEST < x < 1 / SMALLEST for x in sizes), "a number is of unusual size")
         stated_windows = listed(proof["windows"], "windows", MOST_WINDOWS)
         read_windows = [_window(w, n, joints) for w in clock.each(stated_windows)]
-        self.rows, self.most = self.read_rows(proof["rows"], 1, QUINTIC_PLACES), float(own)
+        self.most = float(own)
         self.task = Task(
             np.array([[float(x) for x in row] for row in steps]),
             np.array([[np.inf if x is None else float(x) for x in row] for row in limits]),
             self.most,
         )
-        there = np.isfinite(self.task.limits[self.rows[:, 1], self.rows[:, 2] - 1]).all()
-        need(bool(there), "a row leans on a limit that is not there")
+        self.rows = self.read_rows(proof["rows"], 1, QUINTIC_PLACES)
         self.windows = self._terms(read_windows)
         self._low = []
+        proved = least_durations(problem, total)
         for k, stated_low in enumerate(listed(proof["low"], "low", n, n)):
             x = number(stated_low)
-            mean = any(
-                v[0] is not None and v[0][1] > 0 and x * v[0][1] <= abs(b - a)
-                for v, a, b in zip(problem.limits, q[k], q[k + 1], strict=True)
-            )
-            exact = Fraction(float(x / second)) == x / second >= 0
             need(
-                exact and (mean or x <= problem.shortest[k]),
+                Fraction(float(x / second)) == x / second >= 0 and x <= proved[k],
                 f"segment {k + 1}: its least duration is not proved",
             )
             self._low.append(float(x / second))
@@ -114,12 +96,8 @@ class QuinticSpline(Boxes):
         least = self.over_windows(np.array(which), np.array(float(exact)), *map(np.array, box))
         need(bool(least > 0.0), "it is not proved by its window")
 
-    def least(self, sides: Array, tau: Array, ids: Rows, weights: Array) -> Array:
-        """Of the splines in each box."""
-        return self.centre(sides).least(tau, self.rows[ids], weights)
-
     def centre(self, sides: Array) -> Centre:
-        """Boxes as an array (box, least or largest, segment)."""
+        """Of the splines."""
         return Centre(self.task, sides[:, 0], sides[:, 1])
 
     def _terms(self, windows: list[list[int]]) -> tuple[Array, Array, Array]:

@@ -66,6 +66,10 @@ class Task:
     def __init__(self, steps: Array, limits: Array, total: float) -> None:
         self.steps, self.limits, self.total, self.basis = steps, limits, total, HERMITE[1:]
 
+    def cap(self, rows: Rows) -> Array:
+        """Limit of each row."""
+        return np.asarray(self.limits[rows[..., 1], rows[..., 2] - 1])
+
 
 class Centre:
     """The splines at the centres of a batch of boxes: arrays (leaf, ...) in the docs' symbols.
@@ -223,7 +227,7 @@ class Centre:
         k, j, order = used[:, 0], used[:, 1], used[:, 2]
         # Few digits: multiples of 2⁻⁵⁰ or so, every sum and product is exact.
         shape = (shapes(used, 6, QUINTIC_PLACES) @ task.basis.T) * weight[:, None]
-        cap = task.limits[j, order - 1] * weight
+        cap = task.cap(used) * weight
         bent = np.zeros((self.size, n))
         np.add.at(bent, (every, k), shape[:, 0] * task.steps[k, j])
         against = np.zeros((3, self.size, n))  # limits: constant, times r, times 1/r

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Iterator
 from copy import copy
 from enum import StrEnum
 from fractions import Fraction
-from typing import Any, ClassVar, Generic, NoReturn, Self, TypeVar
+from typing import Any, ClassVar, Generic, Self, TypeVar
 
 from .problem import StatedProblem
 from .ranges import MOST_DEPTH, MOST_NODES, MOST_SEGMENTS
@@ -118,20 +118,8 @@ def walk(kind: ProofKind[B], tree: Any, clock: Clock, spread: Spread | None = No
         At a node that is not proved; the first one, unless parts are walked elsewhere.
     """
     nodes = listed(tree, "tree", MOST_NODES, 1)
-    if spread is not None and kind.apart:
-        sizes = _sizes(nodes)
-        if sizes is not None:
-            _walk_parts(kind, nodes, sizes, clock, spread)
-            return
-    _walk(kind, kind.root(), nodes, 0, clock)
-    kind.end()
-
-
-def _walk_parts(
-    kind: ProofKind[B], nodes: list[Any], sizes: list[int], clock: Clock, spread: Spread
-) -> None:
-    """Walk through a tree in parts; whoever judges them proves nothing by leaving one out."""
-    every, handed, judged = _walked_above(kind, nodes, sizes, clock), 0, 0
+    sizes = _sizes(nodes) if spread is not None and kind.apart else None
+    every, handed, judged = _walked(kind, kind.root(), nodes, clock, sizes), 0, 0
 
     def parts() -> Iterator[tuple[B, list[Any], int, float]]:
         nonlocal handed
@@ -139,7 +127,8 @@ def _walk_parts(
             handed += 1
             yield part
 
-    for why in spread(_walked_part, kind, parts()):
+    # Whoever judges the parts proves nothing by leaving one out.
+    for why in (spread or _here)(_walked_part, kind, parts()):
         clock.check()
         need(why is None, why or "")
         judged += 1
@@ -147,14 +136,35 @@ def _walk_parts(
     kind.end()
 
 
-def _walk(kind: ProofKind[B], root: B, nodes: list[Any], first: int, clock: Clock) -> None:
-    """Walk through the nodes below a box; ``first`` is the place of the first of them."""
-    waiting = [root]
-    for count, node in enumerate(nodes, first):
+def _here(work: Callable[..., Any], common: Any, items: Iterable[tuple[Any, ...]]) -> Iterable[Any]:
+    return (work(common, *item) for item in items)
+
+
+def _walked(
+    kind: ProofKind[B],
+    root: B,
+    nodes: list[Any],
+    clock: Clock,
+    sizes: list[int] | None = None,
+    first: int = 0,
+) -> Iterator[tuple[B, list[Any], int, float]]:
+    """Walk through the nodes below a box, the first of which has a place among all.
+
+    Where the sizes of subtrees are given, those that are small are left out: each is given with its
+    box, its place and the seconds that are left.
+    """
+    waiting, at, most = [root], 0, max(kind.apart, len(nodes) // _PARTS)
+    while at < len(nodes):
         clock.check()
         need(bool(waiting), "the tree has too many nodes")
-        waiting += reversed(_below(kind, waiting.pop(), node, count))
-        need(len(waiting) <= MOST_DEPTH, "the tree is too deep")
+        box, size = waiting.pop(), 1
+        if sizes is not None and sizes[at] <= most:
+            size = sizes[at]
+            yield box, nodes[at : at + size], at, clock.left
+        else:
+            waiting += reversed(_below(kind, box, nodes[at], first + at))
+            need(len(waiting) <= MOST_DEPTH, "the tree is too deep")
+        at += size
     need(not waiting, "the tree leaves a part open")
 
 
@@ -174,7 +184,7 @@ def _below(kind: ProofKind[B], box: B, node: Any, count: int) -> tuple[B, ...]:
         coordinate, place = listed(data, "a cut", 2, 2)
         return kind.cut(box, whole(coordinate, 0, MOST_SEGMENTS), place)
     if tag == OPEN:
-        _open(count)
+        raise Refused(f"the tree leaves a part open: node {count}")
     return (kind.step(box, tag, data),)
 
 
@@ -192,24 +202,6 @@ def _sizes(nodes: list[Any]) -> list[int] | None:
     return sizes if len(waiting) == 1 else None
 
 
-def _walked_above(
-    kind: ProofKind[B], nodes: list[Any], sizes: list[int], clock: Clock
-) -> Iterator[tuple[B, list[Any], int, float]]:
-    """Walk through the nodes above the parts, and give each part with its box when it is due."""
-    most = max(kind.apart, len(nodes) // _PARTS)
-    waiting, at = [kind.root()], 0
-    while waiting:
-        clock.check()
-        box = waiting.pop()
-        if sizes[at] <= most:
-            yield box, nodes[at : at + sizes[at]], at, clock.left
-            at += sizes[at]
-            continue
-        waiting += reversed(_below(kind, box, nodes[at], at))
-        need(len(waiting) <= MOST_DEPTH, "the tree is too deep")
-        at += 1
-
-
 def _walked_part(
     kind: ProofKind[B], box: B, nodes: list[Any], first: int, left: float
 ) -> str | None:
@@ -217,12 +209,9 @@ def _walked_part(
     own = kind.alone()
     own.clock.shorten(left)
     try:
-        _walk(own, box, nodes, first, own.clock)
+        for _ in _walked(own, box, nodes, own.clock, first=first):
+            pass
         own.end()
     except Refused as error:
         return str(error)
     return None
-
-
-def _open(count: int) -> NoReturn:
-    raise Refused(f"the tree leaves a part open: node {count}")

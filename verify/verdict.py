@@ -201,7 +201,7 @@ def verify_certificate(
         clock.check()
         altered |= document["seal"] != seal({k: x for k, x in document.items() if k != "seal"})
         question = _question(document["question"])
-        subject, lower, upper, infeasible = _judged(document, clock, spread)
+        claimed = _judged(document, clock, spread)
     except Refused as error:
         why, late = str(error), False
     except OutOfTime:
@@ -209,18 +209,8 @@ def verify_certificate(
     except (ValueError, TypeError, LookupError, ArithmeticError, RecursionError) as error:
         why, late = f"malformed: {type(error).__name__}: {shown(str(error))}", False
     else:
-        return CertificateVerdict(
-            True,
-            altered,
-            _said(subject, lower, upper, infeasible),
-            False,
-            lower,
-            upper,
-            infeasible,
-            subject,
-            question,
-            problem_hash,
-        )
+        said = _said(*claimed)
+        return CertificateVerdict(True, altered, said, False, *claimed, question, problem_hash)
     return CertificateVerdict(
         False, altered, why, late, question=question, problem_hash=problem_hash
     )
@@ -244,8 +234,8 @@ def _question(data: Any) -> CertifiedQuestion:
     return CertifiedQuestion(**{k: None if x is None else text(x, k) for k, x in data.items()})
 
 
-Claimed = tuple[Subject, Fraction, Fraction | None, bool]
-"""Subject, lower, upper, infeasible."""
+Claimed = tuple[Fraction, Fraction | None, bool, Subject]
+"""Lower, upper, infeasible, subject."""
 
 
 def _judged(document: dict[str, Any], clock: Clock, spread: Spread | None) -> Claimed:
@@ -283,7 +273,7 @@ def _judged(document: dict[str, Any], clock: Clock, spread: Spread | None) -> Cl
             kind is not None and (above or kind.infeasible),
             "infeasible only above the sum of all upper bounds, or by a proof of its own",
         )
-    return subject, lower, upper, infeasible
+    return lower, upper, infeasible, subject
 
 
 def _read_answer(
@@ -328,7 +318,7 @@ def _read_proof(
     return make(problem, proof, total, clock), total
 
 
-def _said(subject: Subject, lower: Fraction, upper: Fraction | None, infeasible: bool) -> str:
+def _said(lower: Fraction, upper: Fraction | None, infeasible: bool, subject: Subject) -> str:
     if infeasible:
         return "no durations within their bounds keep the limits: infeasible"
     said = f"the least total of {subject} is at least {shown_bound(lower, 'lower', digits=12)} s"

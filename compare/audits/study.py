@@ -19,7 +19,13 @@ from ...nlp import (
     solve_per_joint,
     with_interval,
 )
-from ...nlp.optimum import OPTIMUM_SLACK, free_values, solve, with_other_route
+from ...nlp.optimum import (
+    OPTIMUM_SLACK,
+    free_values,
+    longest_status,
+    solve,
+    with_other_route,
+)
 from ...problem import (
     Array,
     CaseError,
@@ -120,7 +126,8 @@ class Study(ReplayedCase):
                 )
             except TrajgapError as error:
                 joints = tuple(self.optimum(pid, rid, label) for label in problem.joints)
-                return PerJointSolution(problem, joints, None, None, (), str(error), 0.0)
+                status = longest_status(joints)
+                return PerJointSolution(problem, status, str(error), joints=joints)
 
         return self.once(("per joint", pid, rid), compute)
 

@@ -17,22 +17,20 @@ from .bench_command import bench
 from .case_app import case_app
 from .check_command import check
 from .interrupt import INTERRUPTED, catch_interrupts
-from .motion_options import Form, Rate, Retimed, SamplesFile
 from .new_command import new
 from .options import (
     ENDS,
     MOST,
     AsJson,
-    Coupled,
     Crate,
     NoCache,
     Out,
     ProblemId,
-    ProofWorkers,
     ReadingId,
     Source,
     Workers,
 )
+from .solve_command import solve
 from .study_command import study
 from .suite_app import suite_app
 from .threads import one_thread
@@ -55,6 +53,7 @@ _BEGIN = """To begin:
   trajgap audit puma560-mnam-pso-353           judge a published paper
   trajgap new mine.toml --from table.csv       start a case file for your own (see new --help)
   trajgap check motion.csv --urdf arm.urdf     judge a motion against limits
+  trajgap solve points.csv --urdf arm.urdf     find the fastest motion through way-points
 """
 """What `trajgap` without a command says first."""
 _LONGEST = 1600
@@ -106,125 +105,7 @@ def show(
 app.command(epilog=ENDS)(check)
 
 
-@app.command(epilog=ENDS)
-def solve(
-    case: Source,
-    problem: ProblemId = None,
-    reading: ReadingId = None,
-    coupling: Coupled = None,
-    starts: Annotated[int, typer.Option(min=1, max=MOST, help="Starts of the solver.")] = 4,
-    seed: Annotated[int, typer.Option(min=0, help="Seed of the random starts.")] = 0,
-    prove: Annotated[
-        float,
-        typer.Option(
-            min=0.0,
-            metavar="B",
-            help="Boxes for the proof of each optimum, as a share of what an audit allows: 0 for "
-            "no proof, 1 for some ten seconds.",
-        ),
-    ] = 0.1,
-    certify: Annotated[
-        bool, typer.Option("--certify", help="Prove an interval of each optimum instead.")
-    ] = False,
-    gap: Annotated[
-        float | None,
-        typer.Option(
-            min=0.0,
-            metavar="G",
-            help="With --certify: relative width to reach.",
-            show_default="1e-6",
-        ),
-    ] = None,
-    seconds: Annotated[
-        float | None,
-        typer.Option(
-            "--time",
-            min=0.0,
-            metavar="S",
-            help="Seconds for each problem; then the best motion, or interval, is left.",
-            show_default="none; 60 with --certify",
-        ),
-    ] = None,
-    any_curve: Annotated[
-        bool,
-        typer.Option(
-            "--any-curve",
-            help="With --certify: over every motion through the way-points, whatever its curve.",
-        ),
-    ] = False,
-    certificates: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="FOLDER",
-            help="With --certify: where certificates go, and states of stopped runs.",
-            show_default="trajgap-certificates; none with --json",
-        ),
-    ] = None,
-    resume: Annotated[
-        list[Path] | None,
-        typer.Option(
-            metavar="FILE",
-            help="With --certify: go on from this state file, every part of it proved again. "
-            "May be given several times.",
-        ),
-    ] = None,
-    workers: ProofWorkers = None,
-    samples: SamplesFile = None,
-    rate: Rate = None,
-    form: Form = None,
-    retimed: Retimed = False,
-    no_cache: NoCache = False,
-    as_json: AsJson = False,
-    out: Out = None,
-) -> int:
-    """Solve a case exactly: all its problems under all its readings.
-
-    With --samples the motion of the answer goes into a file, which is read back and checked.
-
-    With --certify, Ctrl-C leaves the best interval, and a state to go on from.
-    """
-    if not certify:
-        options = {
-            "--gap": gap,
-            "--any-curve": any_curve or None,
-            "--certificates": certificates,
-            "--resume": resume or None,
-            "--workers": workers,
-        }
-        for name, value in options.items():
-            if value is not None:
-                raise typer.BadParameter(f"{name} needs --certify")
-        if samples is None and (rate is not None or form is not None or retimed):
-            lone = "--rate" if rate is not None else "--retimed" if retimed else "--format"
-            raise typer.BadParameter(f"{lone} needs --samples")
-        from .motion_writing import asked_samples
-        from .solving import solve_case
-
-        asked = None if samples is None else asked_samples(samples, rate, form, retimed)
-        return solve_case(
-            case, problem, reading, coupling, starts, seed, prove, seconds, as_json, out, asked
-        )
-    if samples is not None or rate is not None or form is not None or retimed:
-        raise typer.BadParameter("--samples is of a solution; leave --certify out")
-    from ...verify import Subject
-    from .certifying import certify_case
-
-    return certify_case(
-        case,
-        problem,
-        reading,
-        coupling,
-        1e-6 if gap is None else gap,
-        60.0 if seconds is None else seconds,
-        seed,
-        Subject.ANY if any_curve else Subject.DECLARED,
-        certificates,
-        resume or [],
-        workers or os.cpu_count() or 1,
-        as_json,
-        out,
-        not no_cache,
-    )
+app.command(epilog=ENDS)(solve)
 
 
 @app.command(epilog=ENDS)

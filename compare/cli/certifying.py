@@ -111,7 +111,7 @@ class Question:
 
 
 def certify_case(
-    source: str,
+    case: Case,
     problem: str | None,
     reading: str | None,
     coupling: str | None,
@@ -127,13 +127,14 @@ def certify_case(
     cache: bool = True,
 ) -> int:
     """Prove an interval of the optimum of each selected problem and reading."""
-    case = read_case(source)
     chosen = select(case, problem, reading, coupling)
     asked = [q for one in chosen for q in _questions(case, one, subject)]
     states = _states(resume, asked)
     folder = CERTIFICATE_FOLDER if folder is None and not as_json else folder
     if not 0 <= gap < 1:
-        raise CaseError(source, "--gap", f"{gap:g} is no relative width; give 0 or more, below 1")
+        raise CaseError(
+            case.file, "--gap", f"{gap:g} is no relative width; give 0 or more, below 1"
+        )
     if folder is not None:
         check_certificates(folder)
         _check_files(folder, asked)

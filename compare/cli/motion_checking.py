@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from rich.console import RenderableType
 
-from ...problem import CaseError, TrajgapError, Verdict, from_si, read_float
+from ...problem import Array, CaseError, TrajgapError, Verdict, from_si, read_float
 from ...problem.limit_files import StatedLimits, limits_of_flags, merge, read_limits, read_urdf
 from ...problem.motions import (
     Floor,
@@ -86,13 +86,14 @@ def check_file(source: str, options: MotionOptions, as_json: bool, out: Path | N
     how = _interpolation(options.interpolation)
     read = read_motion(
         Path(source),
-        _words(options.units),
+        words(options.units),
         _numbers(options.noise),
-        _words(options.joints),
+        words(options.joints),
         options.topic,
         options.time_noise,
     )
-    limits = _limits(read, options)
+    factors = factors_of(read.units, len(read.joints), "--units")
+    limits = stated_limits(read.joints, factors, options)
     with new_output(out) as write, naming(source):
         how, found = judged(read, limits, how, options.tolerance)
         document = motion_document(source, read, how, found)
@@ -203,12 +204,28 @@ def _peak(one: MotionPeak) -> MotionPeakShown:
     )
 
 
-def _limits(read: ForeignFile, options: MotionOptions) -> JointLimits:
-    """What holds for the joints of a file: flag before limits file before URDF."""
-    factors = factors_of(read.units, len(read.joints), "--units")
+def stated_limits(joints: Sequence[str], factors: Array, options: MotionOptions) -> JointLimits:
+    """What holds for joints: flag before limits file before URDF.
+
+    Parameters
+    ----------
+    joints : sequence of str
+    factors : ndarray, shape (joints,)
+        What a number of a flag is in rad or m.
+    options : MotionOptions
+
+    Returns
+    -------
+    JointLimits
+
+    Raises
+    ------
+    CaseError
+        If nothing is stated, or nothing finite.
+    """
     sources: list[StatedLimits] = []
     if any(value is not None for value in options.limits.values()):
-        sources.append(limits_of_flags(options.limits, read.joints, factors))
+        sources.append(limits_of_flags(options.limits, joints, factors))
     if options.limits_file:
         sources.append(read_limits(options.limits_file))
     if options.urdf:
@@ -217,7 +234,7 @@ def _limits(read: ForeignFile, options: MotionOptions) -> JointLimits:
         raise CaseError(
             "limits", "", "none are given; add --velocity, --acceleration, ..., --limits or --urdf"
         )
-    limits = merge(read.joints, sources)
+    limits = merge(joints, sources)
     ends = (limits.lower, limits.upper, limits.deceleration)
     if all(np.isinf(one).all() for one in ends):
         raise CaseError("limits", "", "none is finite, so that nothing is judged; give one")
@@ -234,7 +251,8 @@ def _interpolation(text: str | None) -> Interpolation | None:
         raise CaseError("--interpolation", "", f"{text!r} is unknown; use {known_words}") from None
 
 
-def _words(text: str | None) -> tuple[str, ...]:
+def words(text: str | None) -> tuple[str, ...]:
+    """What stands between the commas of an option."""
     return tuple(x.strip() for x in (text or "").split(",") if x.strip())
 
 
@@ -242,7 +260,7 @@ def _numbers(text: str | None) -> tuple[float, ...] | None:
     if text is None:
         return None
     found = []
-    for word in _words(text) or ("0",):
+    for word in words(text) or ("0",):
         try:
             found.append(read_float(word))
         except TrajgapError as error:

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from .options import LIMIT
+from .options import FAMILY, LIMIT, USUAL
 
 _UNITS = "One for all joints, or one for each with commas between: deg,deg,mm."
 """Said of each option that takes a unit of joints."""
@@ -40,14 +40,7 @@ def new(
     case_id: Annotated[
         str | None, typer.Option("--id", help="Id of the case.", show_default="the name of OUT")
     ] = None,
-    family: Annotated[
-        str | None,
-        typer.Option(
-            help="Curve, as case files or the literature name it, or the degrees of its segments: "
-            "3-5-3, 4-3-3-4, natural-cubic, cubic-b-spline, quintic-polynomials...",
-            show_default="3-5-3 for four way-points, else a cubic spline",
-        ),
-    ] = None,
+    family: Annotated[str | None, typer.Option(help=FAMILY, show_default=USUAL)] = None,
     degree: Annotated[int | None, typer.Option(help="Of a curve that needs one.")] = None,
     durations: Annotated[
         str | None,

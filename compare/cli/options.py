@@ -9,6 +9,13 @@ import typer
 
 LIMIT = "Limit of every joint, or one for each with commas between."
 """Help of the three options of `new` that take limits."""
+FAMILY = (
+    "Curve, as case files or the literature name it, or the degrees of its segments: 3-5-3, "
+    "4-3-3-4, natural-cubic, cubic-b-spline, quintic-polynomials..."
+)
+"""Help of the option that names the curve through a table of way-points."""
+USUAL = "3-5-3 for four way-points, else a cubic spline"
+"""What it is where it is not named."""
 ENDS = """\b
 Exit codes:
   0    done

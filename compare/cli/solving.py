@@ -30,7 +30,7 @@ from ..documents import (
     solve_result,
     value_or_none,
 )
-from .input import Selected, naming, read_case, select
+from .input import Selected, naming, select
 from .motion_writing import AskedSamples, check_one_motion, write_motion, written_lines
 from .output import emit, new_output, progress
 from .result_tables import by_result, place, reasons, seconds
@@ -38,7 +38,7 @@ from .table import Columns, line
 
 
 def solve_case(
-    source: str,
+    case: Case,
     problem: str | None,
     reading: str | None,
     coupling: str | None,
@@ -51,7 +51,6 @@ def solve_case(
     asked: AskedSamples | None = None,
 ) -> int:
     """Solve each selected problem and reading; write the motion of the first if asked to."""
-    case = read_case(source)
     selected = select(case, problem, reading, coupling)
     if asked is not None:
         check_one_motion(case, selected)

@@ -26,6 +26,7 @@ from .results import Results, revived
 _NONE = "–"
 """A cell without a value."""
 _OPEN = ClaimVerdict.NOT_CHECKABLE
+"""The word of claims on which nothing is decided."""
 COLUMNS = (
     "paper",
     "printed, s",

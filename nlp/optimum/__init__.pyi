@@ -3,13 +3,19 @@ from .feasibility import apart
 from .judgement import SAME
 from .optimality import KKT, KKT_TOLERANCE, Active, kkt
 from .other_route import with_other_route
-from .per_joint import OPTIMUM_SLACK, PerJointSolution, Range, solve_per_joint
+from .per_joint import (
+    OPTIMUM_SLACK,
+    PerJointSolution,
+    Range,
+    longest_status,
+    solve_per_joint,
+)
+from .pieces import ca
 from .program import Program, free_values
-from .search import build
+from .rounds import build
 from .solution import Evidence, Route, Solution, Status, close, weakest
 from .solver import STARTS, solve
 from .starts import random_starts
-from .symbolic import ca
 
 __all__ = [
     "KKT",
@@ -32,6 +38,7 @@ __all__ = [
     "close",
     "free_values",
     "kkt",
+    "longest_status",
     "random_starts",
     "seconds_left",
     "solve",

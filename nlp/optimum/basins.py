@@ -7,69 +7,57 @@ where durations are few, and a search in each decade of a segment between near w
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...problem import Array, CurveError, Problem, TrajgapError, check, evaluate, fit
-from ...problem.curves import coefficients_of_many
+from ...problem import TOLERANCE, Array, Problem, TrajgapError, check, evaluate
 from .clock import seconds_left, time_up
-from .decided import kept, tolerated
-from .descent import Descent, descend
+from .decided import kept
+from .descent import SLOW, Descent, descend
 from .optimality import Local
-from .starts import ROUND, LogBox, box_above, equal_start, made_up, stretching
+from .starts import LogBox, box_above, equal_start, stretching
 
-MEMBERS, MOST_MEMBERS = 16, 128
-"""Members of a population for each segment, and at most."""
-GENERATIONS = 60
-"""Generations: members of a basin then agree to a few per cent, which a descent ends."""
-USUAL, WIDE = 2.3, 7.0
-"""Spread of the first members' log durations: a factor of 10 usually, 1,000 for one in three."""
-SHRUNKEN = 0.25
-"""Chance that a segment of a wide member starts at its least duration."""
-APART = 0.3
-"""Log durations that lie further apart than this are other basins."""
-PLACES = 17
-"""Places of a piece at which positions are looked at; `check` judges what comes of it."""
-REPAIRS = 3
-"""Stretches, each put back into the box, that try to keep the limits."""
-PART = 16
-"""Members of a first population after which the clock is looked at: a quarter of a second where 25
-segments of a curve are not evaluated by compiled code yet."""
-GRID = {2: 400, 3: 50}
-"""Points along each axis of log ratios of durations, where so many can be looked at: basins that
-are narrower than the members of a population lie apart are found here."""
-RATIOS = 4.5
-"""Log ratios up to which the grid reaches: a factor of 90."""
 HOPELESS = 10.0
 """Excess of a vector that defines no curve: worse than any that does."""
 
 
-def _scaled(problem: Problem, h: Array) -> Array:
-    """Coefficients of all vectors, shape (vectors, pieces, powers, joints); NaN without a curve."""
-    curve = problem.curve
-    if curve.piecewise is not None:
-        return coefficients_of_many(curve.piecewise, problem.waypoints, h)
-    found: list[Array | None] = []
-    for one in h:
-        try:
-            found.append(fit(curve, problem.waypoints, one).scaled)
-        except CurveError:
-            found.append(None)
-    shape = next((c.shape for c in found if c is not None), (1, 1, len(problem.joints)))
-    return np.stack([np.full(shape, np.nan) if c is None else c for c in found])
+@dataclass(frozen=True)
+class Evolution:
+    """Settings of the wide search; lengths are in log durations."""
+
+    members: int = 16
+    """Members of a population for each segment."""
+    most_members: int = 128
+    generations: int = 60
+    """Members of a basin then agree to a few per cent, which a descent ends."""
+    usual: float = 2.3
+    """Spread of the first members: a factor of 10."""
+    wide: float = 7.0
+    """Spread of one in three: a factor of 1,000."""
+    shrunken: float = 0.25
+    """Chance that a segment of such a member starts at its least duration."""
+    apart: float = 0.3
+    """Members that lie further apart than this are in other basins."""
+    repairs: int = 3
+    """Stretches, each put back into the box, that try to keep the limits."""
+    part: int = 16
+    """Members of a first population after which the clock is looked at: a quarter of a second where
+    25 segments of a curve are not evaluated by compiled code yet."""
+    ratios: float = 4.5
+    """Up to which the grid reaches: a factor of 90."""
+
+    def axis(self, segments: int) -> Array:
+        """Log ratios to the first duration of which a grid is made; empty where it is too large.
+
+        Basins that are narrower than the members of a population lie apart are found there.
+        """
+        points = {2: 400, 3: 50}.get(segments, 0)
+        return np.linspace(-self.ratios, self.ratios, points)
 
 
-def _outside(problem: Problem, h: Array) -> Array:
-    """Excess over the position ranges of each vector, in spans of the joint."""
-    limits, span = problem.limits, np.ptp(problem.waypoints, axis=0)
-    span = np.where(span > 0, span, 1.0)
-    scaled = _scaled(problem, h)
-    powers = np.linspace(0.0, 1.0, PLACES)[:, None] ** np.arange(scaled.shape[2])
-    q = powers @ scaled
-    over = np.maximum((q - limits.position_upper) / span, (limits.position_lower - q) / span)
-    worst = over.max(axis=(1, 2, 3))
-    return np.asarray(np.where(np.isfinite(worst), worst, HOPELESS))
+EVOLUTION = Evolution()
+"""What every wide search is made with."""
 
 
 def _beyond_nothing(problem: Problem, h: Array) -> Array:
@@ -91,7 +79,7 @@ def excess_and_total(problem: Problem, h: Array, box: LogBox) -> tuple[Array, Ar
     stretch = evaluate(usable, h).stretch
     excess = np.where(np.isfinite(stretch), 0.0, HOPELESS)
     left = np.flatnonzero(np.isfinite(stretch) & (stretch > 0))
-    for _ in range(REPAIRS):
+    for _ in range(EVOLUTION.repairs):
         wanted = h[left] * stretch[left, None]
         h[left] = np.clip(wanted, low, high)
         # Where the whole stretch fits and time can be stretched, the limits are met exactly.
@@ -105,7 +93,8 @@ def excess_and_total(problem: Problem, h: Array, box: LogBox) -> tuple[Array, Ar
         left = left[~lost]
         excess[left] = np.log(stretch[left])
     if problem.limits.limits_position:
-        excess = np.maximum(excess, _outside(problem, h))
+        outside = evaluate(problem, h).positions.max(axis=1) - 1.0
+        excess = np.maximum(excess, np.where(np.isfinite(outside), outside, HOPELESS))
     if usable is not problem:
         excess = np.maximum(excess, _beyond_nothing(problem, h))
     return np.log(h), np.maximum(excess, 0.0), h.sum(axis=1)
@@ -121,11 +110,12 @@ def _first(problem: Problem, h: Array, box: LogBox) -> tuple[Array, Array, Array
     """`excess_and_total` of a first population, or of as many of it as the time is there for."""
     if seconds_left() == np.inf:
         return excess_and_total(problem, h, box)
-    found = [excess_and_total(problem, h[:PART], box)]
-    for k in range(PART, len(h), PART):
+    part = EVOLUTION.part
+    found = [excess_and_total(problem, h[:part], box)]
+    for k in range(part, len(h), part):
         if time_up():
             break
-        found.append(excess_and_total(problem, h[k : k + PART], box))
+        found.append(excess_and_total(problem, h[k : k + part], box))
     z, excess, total = zip(*found, strict=True)
     return np.concatenate(z), np.concatenate(excess), np.concatenate(total)
 
@@ -148,29 +138,26 @@ def basins(problem: Problem, count: int, seed: int, floor: Array) -> Array:
     ndarray, shape (members, segments)
         Durations, s.
     """
-    base, box = equal_start(problem), box_above(problem, floor)
+    base, box, of = equal_start(problem), box_above(problem, floor), EVOLUTION
     generator = np.random.default_rng(seed)
     n = problem.segments
-    size = min(MEMBERS * n, MOST_MEMBERS)
-    z = np.log(base) + USUAL * generator.uniform(-1.0, 1.0, (size, n))
+    size = min(of.members * n, of.most_members)
+    z = np.log(base) + of.usual * generator.uniform(-1.0, 1.0, (size, n))
     wide = generator.random(size) < 1 / 3
-    z[wide] = np.log(base) + WIDE * generator.uniform(-1.0, 0.3, (int(wide.sum()), n))
-    shrunken = wide[:, None] & (generator.random((size, n)) < SHRUNKEN)
+    z[wide] = np.log(base) + of.wide * generator.uniform(-1.0, 0.3, (int(wide.sum()), n))
+    shrunken = wide[:, None] & (generator.random((size, n)) < of.shrunken)
     z = np.where(shrunken, box.low, z)
-    narrow = np.isfinite(box.high) & (box.high - box.low < 2.0 * USUAL)
+    narrow = np.isfinite(box.high) & (box.high - box.low < 2.0 * of.usual)
     spread = generator.uniform(0.0, 1.0, (size, n))
     z[:, narrow] = box.low[narrow] + spread[:, narrow] * (box.high - box.low)[narrow]
     z[0] = np.log(base)
-    if n in GRID:
-        minima = _grid_minima(problem, base, box)[: size // 2]
-        z[1 : 1 + len(minima)] = minima
+    minima = _grid_minima(problem, base, box)[: size // 2]
+    z[1 : 1 + len(minima)] = minima
     z, excess, total = _first(problem, np.exp(z), box)
-    size, took = len(z), 0.0
-    scale = float(base.sum())
+    size, scale = len(z), float(base.sum())
     worth = _worth(excess, total, scale)
-    for _ in range(GENERATIONS):
-        left = seconds_left()
-        if left <= took:
+    for _ in range(of.generations):
+        if time_up():
             break
         a, b = generator.integers(size, size=(2, size))
         best = np.argsort(worth, kind="stable")[generator.integers(max(2, size // 4), size=size)]
@@ -178,19 +165,17 @@ def basins(problem: Problem, count: int, seed: int, floor: Array) -> Array:
         mutant = z + factor * (z[best] - z) + factor * (z[a] - z[b])
         mixed = generator.random((size, n)) < 0.7
         mixed[np.arange(size), generator.integers(n, size=size)] = True
-        trial, trial_excess, trial_total = excess_and_total(
+        trial, excess, total = excess_and_total(
             problem, np.exp(np.clip(np.where(mixed, mutant, z), box.low, box.high)), box
         )
-        trial_worth = _worth(trial_excess, trial_total, scale)
+        trial_worth = _worth(excess, total, scale)
         better = trial_worth <= worth
         z[better], worth[better] = trial[better], trial_worth[better]
-        excess[better], total[better] = trial_excess[better], trial_total[better]
-        took = max(took, left - seconds_left()) if left < np.inf else 0.0
     chosen: list[int] = []
     for i in np.argsort(worth, kind="stable"):
         if len(chosen) == count:
             break
-        if all(np.abs(z[i] - z[c]).max() > APART for c in chosen):
+        if all(np.abs(z[i] - z[c]).max() > of.apart for c in chosen):
             chosen.append(int(i))
     return np.exp(z[chosen])
 
@@ -198,7 +183,9 @@ def basins(problem: Problem, count: int, seed: int, floor: Array) -> Array:
 def _grid_minima(problem: Problem, base: Array, box: LogBox) -> Array:
     """Local minima over a grid of log ratios to the first duration, best first, log durations."""
     n = problem.segments
-    axis = np.linspace(-RATIOS, RATIOS, GRID[n])
+    axis = EVOLUTION.axis(n)
+    if not axis.size:
+        return np.empty((0, n))
     ratios = np.stack(np.meshgrid(*[axis] * (n - 1), indexing="ij"), axis=-1)
     logs = np.concatenate([np.zeros((*ratios.shape[:-1], 1)), ratios], axis=-1)
     logs += np.log(base.sum()) - np.log(np.exp(logs).sum(axis=-1, keepdims=True))
@@ -215,8 +202,6 @@ def _grid_minima(problem: Problem, base: Array, box: LogBox) -> Array:
 
 RESUMPTIONS = 8
 """Most descents that go on from the end of the best one: two or three suffice where any does."""
-WORTHWHILE = 1e-9
-"""Relative gain of a resumed descent from which the next one is tried."""
 
 
 def as_local(problem: Problem, found: Descent) -> Local | None:
@@ -227,7 +212,7 @@ def as_local(problem: Problem, found: Descent) -> Local | None:
     h = np.clip(found.durations, problem.duration_lower, problem.duration_upper)
     try:
         verdict = check(problem, h)
-        if found.feasible and 1.0 < verdict.stretch < 1.0 + ROUND and problem.curve.homogeneous:
+        if found.feasible and 1.0 < verdict.stretch < 1.0 + TOLERANCE and problem.curve.homogeneous:
             h = np.clip(h * verdict.stretch, problem.duration_lower, problem.duration_upper)
             verdict = check(problem, h)
     except TrajgapError:
@@ -267,27 +252,14 @@ def _resumed(problem: Problem, found: list[Local], box: LogBox) -> list[Local]:
         if after is None or not (after.feasible and after.total <= before.total):
             break
         found[best] = replace(after, iterations=before.iterations + after.iterations)
-        if after.total > before.total * (1.0 - WORTHWHILE):
+        if after.total > before.total * (1.0 - SLOW):
             break
     return found
-
-
-def tolerated_search(problem: Problem, count: int, seed: int, share: float) -> list[Local]:
-    """Searches where limits leave no room inside them, only the tolerance of the checker.
-
-    So it is where a position range ends at the way-points, or bounds leave one duration vector. A
-    descent needs room to move in: it is given half the tolerance, and `check` judges its end.
-    """
-    wide, floor = tolerated(problem), made_up(problem, share)
-    ends = exact_search(wide, basins(wide, count, seed, floor), floor)
-    return [replace(end, feasible=kept(problem, check(problem, end.durations))) for end in ends]
 
 
 SHORT = 0.02
 """Largest way of a segment, in what each joint covers in all, at which its duration may have two
 optima that lie decades apart: with random way-points all that were found had less than 1e-3."""
-DECADE = 10.0
-"""Factor between the starts: a descent that goes down in a basin reaches over one."""
 
 
 def _reaches(problem: Problem) -> Array:
@@ -328,6 +300,7 @@ def short_ways(problem: Problem) -> list[int]:
 def shortened(problem: Problem, durations: Array, floor: Array) -> Array:
     """Motions in which a segment of a short way is shorter by powers of ten.
 
+    A descent that goes down in a basin reaches over a decade.
     A wide search over the whole box seldom ends in such a basin: it is decades away in one
     duration, and a few per cent deep.
 
@@ -347,34 +320,9 @@ def shortened(problem: Problem, durations: Array, floor: Array) -> Array:
     found = []
     low = np.exp(box_above(problem, floor).low)
     for segment in short_ways(problem):
-        shorter = durations[segment] / DECADE
+        shorter = durations[segment] / 10.0
         while shorter > low[segment]:
             found.append(durations.copy())
             found[-1][segment] = shorter
-            shorter /= DECADE
+            shorter /= 10.0
     return np.array(found).reshape(-1, problem.segments)
-
-
-def moving_at_floor(problem: Problem, durations: Array, floor: Array) -> bool:
-    """Whether a segment at its floor has something below it: a motion, or a bound.
-
-    Where a joint moves the total rises again further down; a bound that is given ends it.
-
-    Parameters
-    ----------
-    problem : Problem
-    durations, floor : ndarray, shape (segments,)
-        s.
-
-    Returns
-    -------
-    bool
-    """
-    at = (floor > 0) & (durations <= 1.01 * floor)
-    if (at & (problem.duration_lower > 0)).any():
-        return True
-    breaks = problem.curve.waypoint_breaks
-    return any(
-        at[b] and (problem.waypoints[w] != problem.waypoints[w + 1]).any()
-        for w, b in enumerate(breaks[:-1])
-    )

@@ -1,7 +1,8 @@
 """Answers that need no search: a proof that there is none, a closed form, an infimum of 0.
 
 Straight motions at constant speed take no time where no velocity is limited. Segments that are
-stretched by themselves have their least durations, or ratios of them at which nothing jumps.
+stretched by themselves have their least durations, or ratios of them at which nothing jumps. At
+fixed ratios the total is the one unknown.
 """
 
 from __future__ import annotations
@@ -12,21 +13,28 @@ from itertools import pairwise
 
 import numpy as np
 
-from ...problem import Array, Problem, check, extrema
+from ...problem import (
+    QUANTITIES,
+    TOLERANCE,
+    Array,
+    Problem,
+    TrajgapError,
+    Verdict,
+    check,
+    extrema,
+)
 from ...verify import shown_bound
 from .decided import decided, kept
 from .feasibility import SURE, apart, impossible
 from .solution import Route, Solution, Status
 from .starts import equal_start, first_nodal
 
-UNLIMITED = 1e-4
-"""Share of equal durations that an unlimited motion is shown with: any would do."""
-HALVINGS = 60
-"""Times that the total is halved while `check` still sees that nothing exceeds its limit."""
+HALVINGS = 40
+"""Times that a total whose infimum is 0 is halved, while the checker still passes it."""
 
 
-def straight_durations(problem: Problem) -> Array | None:
-    """Durations in proportion to the way, s, if a total of any length keeps every limit; or None.
+def straight_shares(problem: Problem) -> Array | None:
+    """Durations in proportion to the way, if a total of any length keeps every limit; or None.
 
     The decision is exact. Joints that nothing limits but their position are left out, and so is a
     problem with a positive lower bound on a duration.
@@ -38,7 +46,7 @@ def straight_durations(problem: Problem) -> Array | None:
     Returns
     -------
     ndarray, shape (segments,), or None
-        The shortest halving that the checker passes.
+        Shares of the total.
     """
     curve = problem.curve.piecewise
     if curve is None or curve.free or curve.virtual or problem.duration_lower.any():
@@ -59,8 +67,7 @@ def straight_durations(problem: Problem) -> Array | None:
     forth = all(way * first[0] > 0 for way in first)
     if not forth or any(w[k] * first[0] != w[0] * first[k] for w in ways for k in range(len(w))):
         return None
-    share = np.array([float(way / sum(first)) for way in first])
-    return _shortest(problem, share)
+    return np.array([float(way / sum(first)) for way in first])
 
 
 def _shortest(problem: Problem, share: Array) -> Array | None:
@@ -69,14 +76,12 @@ def _shortest(problem: Problem, share: Array) -> Array | None:
         room = float((problem.duration_upper / share).min())
     total, best = min(float(equal_start(problem).sum()), room), None
     for _ in range(HALVINGS):
-        if not kept(problem, check(problem, total * share)):
+        if not kept(problem, check(problem, total * share, first_nodal(problem))):
             break
         best, total = total * share, 0.5 * total
     return best
 
 
-AGREE = 1e-9
-"""Share of their terms by which the checker lets two sides of a break differ."""
 WITHIN = 0.5
 """Share of the checker's room for a jump that an answer uses."""
 BEYOND = 1e3
@@ -157,7 +162,8 @@ def _ratios(problem: Problem, share: float) -> _Ratios:
                 # A joint that stands still has no derivative: rounding has no part in that.
                 still = np.diff(problem.waypoints[k : k + 3, j]) == 0.0
                 room = [
-                    share * (float(found.error[k + i, order, j]) + AGREE * float(np.abs(s).sum()))
+                    share
+                    * (float(found.error[k + i, order, j]) + TOLERANCE * float(np.abs(s).sum()))
                     if not still[i]
                     else 0.0
                     for i, s in enumerate(sides)
@@ -173,19 +179,19 @@ def _ratios(problem: Problem, share: float) -> _Ratios:
 
 
 def _ratio(left: float, right: float, room: float, other: float) -> tuple[float, float]:
-    """Least and largest x/y = (h₂/h₁)ʳ; the least above the largest where there is none."""
-    if left < 0.0:
-        left, right = -left, -right
+    """Least and largest t = x/y = (h₂/h₁)ʳ ≥ 0; the least above the largest where there is none."""
     least, most = 0.0, np.inf
-    if right > other:
-        least = (right - other) / (left + room) if left + room > 0.0 else np.inf
-    if left > room:
-        most = max(0.0, (right + other) / (left - room))
-        if most == 0.0:
-            return np.inf, 0.0
-    elif right < -other:
-        least = -(right + other) / (room - left) if room > left else np.inf
-    return least, most
+    for slope, side in (
+        (left - room, right + other),
+        (-left - room, other - right),
+    ):  # slope t ≤ side
+        if slope > 0.0:
+            most = min(most, side / slope)
+        elif slope < 0.0:
+            least = max(least, side / slope)
+        elif side < 0.0:
+            least = np.inf
+    return (least, most) if most > 0.0 else (np.inf, 0.0)
 
 
 def _box(problem: Problem) -> tuple[Array, Array]:
@@ -219,6 +225,84 @@ def _least(low: Array, ratios: _Ratios) -> Array:
     return z
 
 
+FORMULA = "at fixed ratios the total is the one unknown, in closed form"
+"""Beside every optimum at fixed ratios: no search stands behind it."""
+
+
+def tight_at_ratios(problem: Problem) -> Array | Solution:
+    """The shortest durations with the ratios of the problem, or why no total keeps the limits.
+
+    A derivative of order r falls with the total T as T⁻ʳ where a curve may be stretched in time:
+    with its peak p_r at T = 1 s, a limit asks for T ≥ (p_r/limit_r)^(1/r), and the largest of these
+    is the answer, unless bounds on durations ask for more. Positions do not depend on T.
+
+    Parameters
+    ----------
+    problem : Problem
+        With ratios.
+
+    Returns
+    -------
+    ndarray, shape (segments,), or Solution
+        s; any total where nothing that moves is limited.
+
+    Raises
+    ------
+    TrajgapError
+        If the curve has free coefficients or cannot be stretched, so that there is no formula.
+    """
+    shares, why = problem.shares, problem.unscaled
+    if why is not None:
+        raise TrajgapError(why)
+    assert shares is not None
+    at_one = check(problem, shares)
+    if any(p.quantity == "curve" for p in at_one.peaks):
+        why = f"at these ratios there is no curve: {at_one.feasible_why}"
+        return Solution(problem, Status.FAILED, why)
+    for p in at_one.peaks:
+        if np.isinf(p.ratio) and p.quantity in QUANTITIES:
+            why = f"joint {p.joint} moves, though its {p.quantity} limit is 0"
+            return Solution(problem, Status.INFEASIBLE, why)
+    least = max(at_one.stretch, float((problem.duration_lower / shares).max()))
+    most = float((problem.duration_upper / shares).min())
+    # Rounding may take a duration beyond the bound that it meets.
+    h = shares * min(least or 1.0, most)
+    h = np.clip(h, problem.duration_lower, problem.duration_upper)
+    if least <= most:
+        return h
+    # The longest total breaks the limits least: it passes where rounding alone decides.
+    verdict = check(problem, h).limits
+    if verdict is Verdict.PASS:
+        return h
+    said = (
+        f"at these ratios limits and least durations ask for {shown_bound(least, 'lower')} s "
+        f"in total, and the upper bounds on durations end at {shown_bound(most, 'upper')} s"
+    )
+    if verdict is Verdict.VIOLATED:
+        return Solution(problem, Status.INFEASIBLE, said)
+    return Solution(problem, Status.NONE_FOUND, f"{said}; rounding hides which is the larger")
+
+
+def refused_at_ratios(problem: Problem, h: Array) -> Solution:
+    """The answer where no total makes a motion pass, though it is as tight as its limits allow."""
+    verdict = check(problem, h)
+    outside = [p for p in verdict.peaks if p.quantity == "position" and p.ratio > 1.0 + TOLERANCE]
+    if verdict.limits is Verdict.VIOLATED and outside:
+        worst = max(outside, key=lambda p: p.ratio)
+        unit = "m" if problem.linear[problem.joints.index(str(worst.joint))] else "rad"
+        why = (
+            f"at these ratios joint {worst.joint} reaches {worst.value:.6g} {unit}, beyond its "
+            f"position limit of {worst.limit:.6g} {unit}, whatever the total"
+        )
+        return Solution(problem, Status.INFEASIBLE, why)
+    why = "rounding hides whether any total keeps the limits at these ratios"
+    if verdict.jumps:
+        jump = max(verdict.jumps, key=lambda one: (-one.order, abs(one.size)))
+        what = ("position", "velocity", "acceleration")[jump.order]
+        why = f"at these ratios the {what} of joint {jump.joint} jumps, whatever the total"
+    return Solution(problem, Status.NONE_FOUND, why)
+
+
 CUT_SHORT = "the time ran out: what was not searched may hold a shorter motion"
 """Beside the answer of a search that its time limit ended."""
 OUT_OF_TIME = "the time ran out, which says nothing about whether there are any"
@@ -249,14 +333,21 @@ def unsearched(problem: Problem) -> Solution | None:
             check=check(problem, answer.durations),
             route=Route.CLOSED_FORM,
         )
-    why = "nothing is limited: the total falls to 0"
-    short, nodal = _unlimited(problem), first_nodal(problem)
-    if short is None:
+    limits = problem.limits
+    limited = np.isfinite(limits.sides).any() or limits.limits_position
+    if not limited and not problem.duration_lower.any():
+        why = "nothing is limited: the total falls to 0"
+        shares = np.full(problem.segments, 1.0 / problem.segments)
+    else:
         why = (
             "at durations in proportion to the way nothing accelerates, and no velocity is "
             "limited: the total falls to 0"
         )
-        short = straight_durations(problem)
+        straight = straight_shares(problem)
+        if straight is None:
+            return None
+        shares = straight
+    short, nodal = _shortest(problem, shares), first_nodal(problem)
     if short is None:
         return None
     return Solution(
@@ -269,15 +360,6 @@ def unsearched(problem: Problem) -> Solution | None:
         route=Route.CLOSED_FORM,
         infimum=0.0,
     )
-
-
-def _unlimited(problem: Problem) -> Array | None:
-    """Short durations, s, where no derivative, position or duration is limited from any side."""
-    limits = problem.limits
-    limited = np.isfinite(limits.sides).any() or limits.limits_position
-    if limited or problem.duration_lower.any():
-        return None
-    return UNLIMITED * equal_start(problem)
 
 
 def cut_short(answer: Solution) -> Solution:

@@ -6,26 +6,33 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...problem import QUANTITIES, Array, Check, Problem, Verdict, check, half_range
+from ...problem import (
+    QUANTITIES,
+    TOLERANCE,
+    Array,
+    Check,
+    Problem,
+    Verdict,
+    check,
+    evaluate,
+    half_range,
+)
 from .descent import descend
 from .optimality import Local
-from .starts import DENSE, LogBox, slowed
+from .starts import DENSE, LogBox, slowed, stretching
 
 ROUNDS = 6
-"""Stretches that are tried: the bound on rounding errors changes little with each."""
-AIM = 5e-10
+"""Stretches, or descents within narrower limits, that are tried: the bound on rounding errors
+changes little with each."""
+AIM = 0.5 * TOLERANCE
 """Relative excess, rounding included, that a stretch aims at: half the checker's tolerance."""
-NARROWINGS = 3
-"""Descents within narrower limits: a shorter motion has larger rounding errors."""
-LONGER, LENGTHENINGS = 2.0, 30
-"""By how much the shortest durations are lengthened where rounding hides the limits, and how often:
-a jerk's error falls to an eighth each time, and over nine decades in all."""
+LENGTHENINGS = 30
+"""Doublings of the shortest durations where rounding hides the limits: a jerk's error falls to an
+eighth each time, and over nine decades in all."""
 DEEPER_INSIDE = 2.0
 """By how many bounds on rounding errors limits are narrowed where no stretch is possible."""
-
-
-BLURRED = 1e-6
-"""Relative length by which rounding may set an optimum apart from the tight motion beside it."""
+Motion = tuple[Array, Array | None]
+"""Durations, s, and free derivatives, where the declaration leaves some."""
 
 
 def kept(problem: Problem, verdict: Check) -> bool:
@@ -47,13 +54,19 @@ def tolerated(problem: Problem) -> Problem:
     Problem
         With the same duration bounds. A side of 0, and a range of no width, stay as they are.
     """
-    limits = problem.limits
-    low, high = limits.position_lower, limits.position_upper
+    low, high = problem.limits.position_lower, problem.limits.position_upper
     half = np.array([[half_range(a, b, x) for x in (a, b)] for a, b in zip(low, high, strict=True)])
     room = np.where(np.isfinite(half), AIM * half, 0.0)
-    inside = limits.with_sides(limits.sides * (1.0 + AIM))
-    wider = inside.with_positions(low - room[:, 0], high + room[:, 1])
-    return replace(problem, limits=wider)
+    return _moved(problem, 1.0 + AIM, room * [-1.0, 1.0])
+
+
+def _moved(problem: Problem, share: Array | float, positions: Array) -> Problem:
+    """The problem with sides of limits times a share, and both ends of positions moved."""
+    limits = problem.limits
+    low, high = limits.position_lower + positions[:, 0], limits.position_upper + positions[:, 1]
+    return replace(
+        problem, limits=limits.with_sides(limits.sides * share).with_positions(low, high)
+    )
 
 
 def decided(problem: Problem, h: Array, nodal: Array | None = None) -> Local | None:
@@ -86,6 +99,42 @@ def decided(problem: Problem, h: Array, nodal: Array | None = None) -> Local | N
     return Local(durations, values, float(durations.sum()), True, True, 0, (h, nodal))
 
 
+def incumbent(problem: Problem, known: Array, nodal: Array | None) -> Local | None:
+    """The shortest motion that passes of those that somebody has, as they are or just tight.
+
+    A printed motion that exceeds a limit by its last digit is worth what its repair is worth.
+
+    Parameters
+    ----------
+    problem : Problem
+    known : ndarray, shape (motions, segments)
+        s.
+    nodal : ndarray, shape (motions, free, joints), or None
+        Without them motions of a curve that leaves derivatives free are not determined.
+
+    Returns
+    -------
+    Local or None
+    """
+    if problem.curve.free and nodal is None:
+        return None
+    motions: list[Motion] = []
+    for h, v in zip(known, [None] * len(known) if nodal is None else nodal, strict=True):
+        motions.append((h, v))
+        c = float(evaluate(stretching(problem), h[None], v).stretch[0])
+        if problem.curve.homogeneous and 0 < c < np.inf:
+            tight = np.clip(h * c, problem.duration_lower, problem.duration_upper)
+            motions.append((tight, None if v is None else slowed(problem, v, c)))
+    best: Local | None = None
+    for h, v in sorted(motions, key=lambda motion: float(motion[0].sum())):
+        if best is not None and h.sum() >= best.total:
+            break
+        passing = stretched(problem, h, v)
+        if passing is not None and not (best and passing[0].sum() >= best.total):
+            best = Local(*passing, float(passing[0].sum()), False, True, 0)
+    return best
+
+
 def longer_than_tight(beyond: float) -> str:
     """Why an answer is longer than a tight motion, by that share."""
     return f"longer by {beyond:.1e} (relative) than a tight motion, which rounding errors blur"
@@ -101,7 +150,7 @@ def _blur(problem: Problem, verdict: Check) -> Array:
     return blur
 
 
-def stretched(problem: Problem, h: Array, nodal: Array | None) -> tuple[Array, Array | None] | None:
+def stretched(problem: Problem, h: Array, nodal: Array | None) -> Motion | None:
     """The motion stretched until it passes, or None where the duration bounds leave no room.
 
     Parameters
@@ -138,13 +187,13 @@ def stretched(problem: Problem, h: Array, nodal: Array | None) -> tuple[Array, A
     return None
 
 
-def _narrowed(problem: Problem, h: Array) -> tuple[Array, None] | None:
+def _narrowed(problem: Problem, h: Array) -> Motion | None:
     """The end of a descent within limits that are narrower by the motion's rounding errors."""
     bottom = np.maximum(problem.duration_lower, 0.5 * h)
     box = LogBox(
         np.log(bottom), np.log(np.maximum(np.minimum(problem.duration_upper, 2 * h), bottom))
     )
-    for _ in range(NARROWINGS):
+    for _ in range(ROUNDS):
         verdict = check(problem, h)
         if verdict.limits is not Verdict.UNDECIDED:
             return None
@@ -155,7 +204,7 @@ def _narrowed(problem: Problem, h: Array) -> tuple[Array, None] | None:
     return None
 
 
-def _lengthened(problem: Problem, h: Array) -> tuple[Array, Array | None] | None:
+def _lengthened(problem: Problem, h: Array) -> Motion | None:
     """The end of a descent whose shortest durations are longer, by as much as it takes.
 
     A segment that is far shorter than the others blurs what is known of all derivatives in it. The
@@ -163,9 +212,9 @@ def _lengthened(problem: Problem, h: Array) -> tuple[Array, Array | None] | None
     """
     if check(problem, h).limits is not Verdict.UNDECIDED:
         return None
-    top = np.minimum(problem.duration_upper, LONGER * h.sum())
+    top = np.minimum(problem.duration_upper, 2.0 * h.sum())
     for _ in range(LENGTHENINGS):
-        floor = LONGER * float(h.min())
+        floor = 2.0 * float(h.min())
         if floor > h.sum():
             break
         bottom = np.minimum(np.maximum(problem.duration_lower, floor), top)
@@ -186,14 +235,11 @@ def _narrower(problem: Problem, verdict: Check) -> Problem:
     """
     limits = problem.limits
     share = np.maximum(1.0 - DEEPER_INSIDE * _blur(problem, verdict), 0.5)
-    low, high = limits.position_lower.copy(), limits.position_upper.copy()
+    inwards = np.zeros((len(problem.joints), 2))
     for peak in verdict.peaks:
         if peak.quantity == "position" and peak.joint is not None:
             j = problem.joints.index(peak.joint)
-            inwards = min(DEEPER_INSIDE * peak.error, 0.25 * float(high[j] - low[j]))
-            if peak.limit == limits.position_lower[j]:
-                low[j] += inwards
-            else:
-                high[j] -= inwards
-    inside = limits.with_sides(limits.sides * share)
-    return replace(problem, limits=inside.with_positions(low, high))
+            room = 0.25 * float(limits.position_upper[j] - limits.position_lower[j])
+            end = int(peak.limit != limits.position_lower[j])
+            inwards[j, end] = (1 - 2 * end) * min(DEEPER_INSIDE * peak.error, room)
+    return _moved(problem, share, inwards)

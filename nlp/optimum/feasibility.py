@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import numpy as np
 
@@ -30,7 +30,6 @@ def impossible(problem: Problem) -> str | None:
         or _outside_range(wide)
         or _prescribed_beyond_limit(problem)
         or _too_little_time(wide)
-        or _too_far_from_rest(wide)
         or _too_sharp_a_turn(wide)
         or _each_segment_by_itself(problem)
     )
@@ -73,24 +72,6 @@ def _prescribed_beyond_limit(problem: Problem) -> str | None:
     return None
 
 
-def _too_little_time(problem: Problem) -> str | None:
-    breaks = problem.curve.waypoint_breaks
-    for w in range(len(breaks) - 1):
-        room = float(problem.duration_upper[breaks[w] : breaks[w + 1]].sum())
-        distance = np.abs(problem.waypoints[w + 1] - problem.waypoints[w])
-        velocity = problem.limits.velocity
-        with np.errstate(divide="ignore", invalid="ignore"):
-            needed = np.where(distance > 0, distance / velocity, 0.0)
-        j = int(np.argmax(needed))
-        if needed[j] > room * (1 + 1e-12):
-            return (
-                f"joint {problem.joints[j]} needs at least {shown_bound(needed[j], 'lower')} s "
-                f"between way-points {w} and {w + 1} at its velocity limit; "
-                f"the duration bounds allow {room:.6g} s"
-            )
-    return None
-
-
 def _smooth(problem: Problem, order: int) -> bool:
     """Whether derivatives up to ``order`` agree at every break of a motion that passes.
 
@@ -111,32 +92,45 @@ def _room(problem: Problem) -> tuple[Array, Array]:
     return low, high
 
 
-def _from_rest(problem: Problem) -> Iterator[tuple[bool, int]]:
-    """Ends (the last one if true) and orders of the limits that hold the motion back there."""
+def _spans(problem: Problem) -> Iterator[tuple[int, Array, Array, Callable[[int], str]]]:
+    """Orders of limits, ways that they bound, the time that there is for each, and its words."""
+    q, (_, high) = problem.waypoints, _room(problem)
+    yield 1, np.diff(q, axis=0), high, lambda w: f"between way-points {w} and {w + 1}"
     for last, end in enumerate(problem.curve.ends):
         still = {order for order, value in end if value == 0.0}
         for order in (2, 3):
-            if still >= set(range(1, order)) and _smooth(problem, order - 1):
-                yield bool(last), order
+            if not (still >= set(range(1, order)) and _smooth(problem, order - 1)):
+                continue
+            if last:
+                room = np.cumsum(high[::-1])
+                yield (
+                    order,
+                    q[-2::-1] - q[-1],
+                    room,
+                    lambda w: f"from way-point {len(q) - 2 - w} to rest",
+                )
+            else:
+                yield (
+                    order,
+                    q[1:] - q[0],
+                    np.cumsum(high),
+                    lambda w: f"from rest to way-point {w + 1}",
+                )
 
 
-def _too_far_from_rest(problem: Problem) -> str | None:
-    """|Δq| ≤ At²/2 from a start at rest; ≤ Jt³/6 if its acceleration is 0 too. Ends alike."""
-    _, high = _room(problem)
-    for last, order in _from_rest(problem):
-        q, room = (problem.waypoints[::-1], high[::-1]) if last else (problem.waypoints, high)
-        distance, room = np.abs(q[1:] - q[0]), np.cumsum(room)
+def _too_little_time(problem: Problem) -> str | None:
+    """|Δq| ≤ Vt; ≤ At²/2 from a start at rest; ≤ Jt³/6 if its acceleration is 0 too. Ends alike."""
+    for order, way, room, words in _spans(problem):
+        distance = np.abs(way)
         with np.errstate(divide="ignore", invalid="ignore"):
             share = math.factorial(order) * distance / problem.limits.derivatives[:, order - 1]
         needed = np.where(distance > 0, share, 0.0) ** (1.0 / order)
         late = np.argwhere(needed > room[:, None] * SURE)
         if late.size:
             w, j = (int(x) for x in late[0])
-            point = len(q) - 2 - w if last else w + 1
-            where = f"from way-point {point} to rest" if last else f"from rest to way-point {point}"
             return (
                 f"joint {problem.joints[j]} needs at least {shown_bound(needed[w, j], 'lower')} s "
-                f"{where} at its {QUANTITIES[order - 1]} limit; "
+                f"{words(w)} at its {QUANTITIES[order - 1]} limit; "
                 f"the duration bounds allow {room[w]:.6g} s"
             )
     return None
@@ -181,6 +175,29 @@ def apart(problem: Problem) -> bool:
         for order, orders in zip(curve.continuity, given, strict=True)
     )
     return alone and curve.homogeneous and not curve.free and not curve.virtual
+
+
+def forbidden_jumps(problem: Problem) -> list[tuple[int, int, int]]:
+    """Jumps that the declaration allows and the limits forbid.
+
+    Parameters
+    ----------
+    problem : Problem
+
+    Returns
+    -------
+    list of (break, order, joint)
+        Of joints that move: of velocity, and of acceleration where jerk is limited.
+    """
+    curve, moving = problem.curve.piecewise, np.ptp(problem.waypoints, axis=0) > 0
+    return [
+        (b, order, int(j))
+        for b in range(1, 0 if curve is None else curve.segments)
+        for order in (1, 2)
+        if curve is not None and order > curve.smooth_order(b)
+        for j in np.flatnonzero(moving)
+        if order == 1 or problem.limits.limited[j, 2]
+    ]
 
 
 def _each_segment_by_itself(problem: Problem) -> str | None:

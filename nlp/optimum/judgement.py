@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
-from ...problem import Array, Problem, Verdict, check
-from .decided import BLURRED, decided, kept, longer_than_tight
+from ...problem import TOLERANCE, Array, Problem, Verdict, check
+from .decided import decided, kept, longer_than_tight
 from .optimality import KKT, KKT_TOLERANCE, SHARP, UNKNOWN, Local, kkt, sharpened, unmet
 from .solution import Route, Solution, Status
 from .starts import DENSE
@@ -27,21 +28,16 @@ def better_of(one: Solution, other: Solution) -> Solution:
     if not other.found:
         return one
     shorter = other.best < one.best * (1 - BETTER)
-    founded = other.best <= one.best * (1 + BETTER) and settled(other) and not settled(one)
+    founded = other.best <= one.best * (1 + BETTER) and other.settled and not one.settled
     if one.found and not shorter and not founded:
         return one
     iterations = one.iterations + other.iterations
     return replace(other, build_seconds=one.build_seconds, iterations=iterations)
 
 
-def settled(solution: Solution) -> bool:
-    """Whether an answer meets the conditions of an optimum, or of a total that is not attained."""
-    return solution.status in (Status.CONVERGED, Status.OPTIMAL, Status.NOT_ATTAINED)
-
-
 SAME = 1e-6
 """Relative difference below which two totals count as the same."""
-ROUNDED = 2e-9
+ROUNDED = 2.0 * TOLERANCE
 """Relative difference of totals that the checker's tolerance makes: of both ends at most."""
 HIDDEN = 1e-4
 """Excess over a limit that rounding hides from a search where durations differ by many powers of
@@ -89,23 +85,22 @@ def judged(
     # Of ends that are the same to rounding, one that met its conditions.
     alike = [local for local in feasible if local.total <= shortest * (1 + ROUNDED)]
     best = min(alike, key=lambda local: (not local.converged, local.total))
-    durations, nodal = best.tight or (best.durations, best.nodal)
-    report = best.report if best.report is not None and best.tight is None else None
-    dense = problem.segments <= DENSE
-    if report is None:
-        report = kkt(problem, durations, nodal) if dense else UNKNOWN
-    if report.residual > SHARP and dense and not problem.curve.free:
-        durations, report = _sharper(problem, durations, report)
     # Where rounding decides, the conditions hold at the tight motion, and a longer one passes.
-    passing, beyond = (durations, nodal), 0.0
-    if not kept(problem, check(problem, durations, nodal)):
-        inside = decided(problem, durations, nodal) or best
-        passing = (inside.durations, inside.nodal)
-        beyond = max(0.0, inside.total / float(durations.sum()) - 1.0)
-    durations, nodal = passing
+    tight, nodal = best.tight or (best.durations, best.nodal)
+    report = best.report if best.tight is None else None
+    dense, fixed = problem.segments <= DENSE, problem.ratios is not None
+    if report is None:
+        report = kkt(problem, tight, nodal) if dense or fixed else UNKNOWN
+    if report.residual > SHARP and dense and not (problem.curve.free or fixed):
+        tight, report = _sharper(problem, tight, report)
+    durations, beyond = tight, 0.0
+    if not kept(problem, check(problem, tight, nodal)):
+        inside = decided(problem, tight, nodal) or best
+        durations, nodal = inside.durations, inside.nodal
+        beyond = max(0.0, inside.total / float(tight.sum()) - 1.0)
     status = Status.CONVERGED if report.residual <= KKT_TOLERANCE else Status.FEASIBLE
     why = None if status is Status.CONVERGED else unmet(report.residual)
-    if beyond > BLURRED:
+    if beyond > SAME:
         status = Status.FEASIBLE
     if beyond > KKT_TOLERANCE:
         note = longer_than_tight(beyond)
@@ -152,6 +147,11 @@ def _sharper(problem: Problem, durations: Array, report: KKT) -> tuple[Array, KK
     return (h, better) if alike and better.residual < report.residual else (durations, report)
 
 
+def on_floor(durations: Array, floor: Array) -> NDArray[np.bool_]:
+    """Which durations, s, lie on a least one that the search made up, shape (segments,)."""
+    return (floor > 0) & (durations <= _ON_FLOOR * floor)
+
+
 def still_falling(durations: Array, floor: Array) -> str | None:
     """Why an answer is no shortest motion: a duration lies on a least one that the search made up.
 
@@ -167,10 +167,10 @@ def still_falling(durations: Array, floor: Array) -> str | None:
     str or None
         None where every duration is longer than its made-up least one.
     """
-    on_floor = np.flatnonzero((floor > 0) & (durations <= _ON_FLOOR * floor)).tolist()
-    if not on_floor:
+    at = np.flatnonzero(on_floor(durations, floor)).tolist()
+    if not at:
         return None
-    names = ", ".join(str(k + 1) for k in on_floor)
+    names = ", ".join(str(k + 1) for k in at)
     return f"the total falls as the duration of segment {names} goes to 0"
 
 
@@ -187,16 +187,6 @@ def _past_rounding(problem: Problem, local: Local) -> Local:
     return replace(found, converged=local.converged, iterations=local.iterations)
 
 
-def stretchable(problem: Problem) -> bool:
-    """Whether a long enough stretch repairs every duration vector."""
-    return bool(
-        np.isinf(problem.duration_upper).all()
-        and problem.curve.homogeneous
-        and not problem.limits.limits_position
-        and (problem.limits.sides > 0).all()
-    )
-
-
 def _nothing_found(problem: Problem, found: list[Local]) -> tuple[Status, str]:
     judgements = [check(problem, local.durations, local.nodal) for local in found]
     least = min(judgements, key=lambda one: one.max_violation, default=None)
@@ -206,8 +196,6 @@ def _nothing_found(problem: Problem, found: list[Local]) -> tuple[Status, str]:
             "the limits can be kept inside the segments, but between them the motion jumps; "
             f"no durations without a jump found from {len(found)} starts",
         )
-    if stretchable(problem):
-        return Status.FAILED, "the solver reached no feasible point, though stretching gives one"
     worst = float("inf") if least is None else least.max_violation
     return (
         Status.NONE_FOUND,

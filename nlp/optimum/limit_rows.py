@@ -1,15 +1,14 @@
-"""Limits as rows: of the NLP at places that follow extrema, of a descent at the true extrema."""
+"""Limits at the true extrema of a motion: how far each is kept, and how that changes."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...problem import Array, CurveError, Extremum, Problem, extrema, fit, peak_gradients
-from ...problem.curves import PERM, Places, Trajectory
+from ...problem import Array, CurveError, Extremum, Problem, fit, peak_gradients
+from ...problem.curves import MAX_COEFFICIENTS, Places, Trajectory
 
 Indices = NDArray[np.int64]
 
@@ -24,101 +23,9 @@ INSIDE = 1e-11
 and a descent keeps its rows to 1e-12."""
 
 
-REACH = 0.5
-"""Farthest that a place follows its extremum, in shares of its segment: one of a derivative that is
-all but constant runs to any distance, where the polynomial means nothing. With 0.1 the
-windows of a plateau over 250 segments did not join, with 0.25 one of 150 did not settle."""
-
-
-@dataclass(frozen=True, eq=False)
-class Rows:
-    """Limits inside segments: one side of one derivative of one joint at a place that moves.
-
-    Attributes
-    ----------
-    places : Places
-    sign : ndarray
-        Side of the limit.
-    weight : ndarray
-        Newton weight: the place moves by −w f′, f the derivative as a function of s, up to `REACH`.
-    """
-
-    places: Places
-    sign: Array
-    weight: Array
-
-
-def along(trajectory: Trajectory, places: Places, further: int) -> Array:
-    """Derivatives in s of order ``places.order + further`` at places."""
-    a = trajectory.scaled[places.segment, :, places.joint]
-    r = places.order + further
-    out = np.zeros(places.s.size)
-    for p in range(min(a.shape[1], len(PERM)) - 1, -1, -1):
-        factor = PERM[p, np.minimum(r, PERM.shape[1] - 1)]
-        out = np.where(p >= r, out * places.s + factor * a[:, p], out)
-    return out
-
-
-class Sides:
-    """Limits of derivatives in units of order one, as shares of the larger side.
-
-    Attributes
-    ----------
-    scale : ndarray, shape (joints, 3)
-        The larger side; inf where nothing is limited.
-    low, high : ndarray, shape (joints, 3)
-        Both sides in shares of it: −1 and 1 where they are equal.
-    """
-
-    def __init__(self, problem: Problem, unit: float, angle: Array) -> None:
-        below, above = problem.limits.sides * unit ** np.arange(1, 4) / angle[:, None]
-        positive = [np.where(np.isfinite(side), side, 0.0) for side in (below, above)]
-        scale = np.maximum(*positive)
-        # A derivative that must not leave 0 to a side has no size to take; standing still keeps it.
-        moves = np.ptp(problem.waypoints, axis=0)[:, None] > 0.0
-        limited = (scale > 0.0) | (moves & ((below == 0.0) | (above == 0.0)))
-        size = np.where(scale > 0.0, scale, 1.0)
-        self.scale = np.where(limited, size, np.inf)
-        self.low = np.where(limited, -below / size, -np.inf)
-        self.high = np.where(limited, above / size, np.inf)
-
-
-class Scaled:
-    """What the NLPs of all curves share: units of order one, and the limits in them.
-
-    Parameters
-    ----------
-    problem : Problem
-    unit : float
-        Time unit, s. That of angles is each joint's mean way between way-points.
-    floor : ndarray, shape (segments,)
-        Least durations, s.
-    """
-
-    def __init__(self, problem: Problem, unit: float, floor: Array) -> None:
-        self.problem, self.unit, self._floor = problem, unit, floor
-        self.segments, self.joints = problem.segments, problem.waypoints.shape[1]
-        steps = np.abs(np.diff(problem.waypoints, axis=0)).mean(axis=0)
-        self.angle = np.where(steps > 0, steps, 1.0)
-        self.sides = Sides(problem, unit, self.angle)
-
-    def duration_bounds(self) -> tuple[Array, Array]:
-        """Bounds on the durations, in units."""
-        low = np.maximum(self.problem.duration_lower, self._floor) / self.unit
-        return low, np.maximum(self.problem.duration_upper / self.unit, low)
-
-    def rooms(self, places: Places, sign: Array) -> Array:
-        """Limits of rows: derivatives in shares of the larger side, positions in angles."""
-        limits, first, j = self.problem.limits, self.problem.waypoints[0], places.joint
-        r = np.clip(places.order, 1, 3) - 1
-        at = np.where(sign > 0, limits.position_upper[j], limits.position_lower[j])
-        side = np.where(sign > 0, self.sides.high[j, r], self.sides.low[j, r])
-        return np.asarray(np.where(places.order == 0, (at - first[j]) / self.angle[j], side))
-
-
 @dataclass(frozen=True, eq=False)
 class ExactRows:
-    """Limits to first order about one duration vector, in log durations.
+    """Limits to first order about one motion, in log durations and free derivatives.
 
     A stretch by c divides v, a, j by c, c², c³, so a derivative's excess is log(|value|/limit)/r:
     its gradient is −1 along a stretch, whatever the order and the units. A position's excess is
@@ -131,8 +38,8 @@ class ExactRows:
         s.
     excess : ndarray, shape (rows,)
         Above 0 the limit is exceeded.
-    gradient : ndarray, shape (rows, segments)
-        d excess / d log duration.
+    gradient : ndarray, shape (rows, segments + free · joints)
+        d excess / d log duration, and by the free derivatives in units of their limits.
     points : tuple of Extremum
     signs : ndarray, shape (rows,)
         Which side of its range a value is at.
@@ -165,22 +72,103 @@ class ExactRows:
         return k if away <= MOVED else None
 
 
-@dataclass(frozen=True)
-class Near:
-    """An extremum near its limit."""
+def excesses(
+    problem: Problem, total: float, joint: Indices, order: Indices, side: Array, value: Array
+) -> tuple[Array, Array, Array]:
+    """Excess of values over the limits to one side, as in `ExactRows`.
 
-    extremum: Extremum
-    limit: float
-    sign: float
-    excess: float
-    size: float
-    """What a change of the value is set beside, so that it is a change of the excess."""
-    stretched: bool
-    """Whether a stretch of all durations repairs it."""
+    Parameters
+    ----------
+    problem : Problem
+    total : float
+        Duration of the motion, s.
+    joint, order : ndarray of int
+    side : ndarray
+        1 for the upper side, −1 for the lower.
+    value : ndarray
+        rad/sᵒʳᵈᵉʳ.
+
+    Returns
+    -------
+    excess : ndarray
+    share : ndarray
+        Of the limit; of others than derivatives with a limit above 0, 1 and the excess, and −inf
+        where a joint stands still beside a side of 0.
+    size : ndarray
+        What a small change of a value is divided by to be one of the excess.
+    """
+    limits, r, beyond = problem.limits, np.maximum(order, 1), side * value
+    position, upper = order == 0, side > 0
+    edge = np.where(upper, limits.position_upper[joint], -limits.position_lower[joint])
+    below, above = limits.sides[:, joint, r - 1]
+    limit, other = np.where(upper, above, below), np.where(upper, below, above)
+    span = np.ptp(problem.waypoints, axis=0)[joint]
+    rate = span / total**order
+    with np.errstate(divide="ignore", invalid="ignore"):
+        share = beyond / limit
+        logs = np.where(share > NEAR, np.log(share), share - 1.0) / r
+        rates = beyond / rate + np.where(other > 0.0, INSIDE, 0.0)
+    still = (span == 0.0) | (np.abs(value) <= STILL * rate)
+    nothing, span = ~position & (limit == 0.0), np.where(span > 0.0, span, 1.0)
+    excess = np.where(nothing, np.where(still, 0.0, rates), logs)
+    excess = np.where(position, (beyond - edge) / span, excess)
+    size = np.where(position, span, np.where(nothing, rate, r * np.abs(value)))
+    share = np.where(nothing | position, 1.0 + excess, share)
+    return excess, np.where(nothing & still, -np.inf, share), size
 
 
-def limited(problem: Problem, h: Array, nodal: Array | None = None) -> list[Near]:
-    """Extrema near a limit.
+def near_limits(
+    problem: Problem, trajectory: Trajectory, near: float
+) -> tuple[Places, Array, Array, Array, Array]:
+    """Extrema above a share of their limit.
+
+    Parameters
+    ----------
+    problem : Problem
+    trajectory : Trajectory
+        A motion of its curve.
+    near : float
+        As the shares of `excesses`: 0 for all that a limit is on the side of.
+
+    Returns
+    -------
+    places : Places
+    value, side, excess, size : ndarray
+        Values, rad/sᵒʳᵈᵉʳ, and the rest as in `excesses`.
+    """
+    curve, limits = problem.curve, problem.limits
+    inner = range(1, trajectory.durations.size)
+    smooth = np.array([curve.smooth_order(b) for b in inner], dtype=np.int64)
+    degrees = np.array(trajectory.degrees)
+    every_break = len(curve.waypoint_breaks) == curve.segments + 1
+    found = [np.zeros((5, 0))]
+    for r in (1, 2, 3, 0):
+        low, high = (
+            limits.sides[..., r - 1] if r else (-limits.position_lower, limits.position_upper)
+        )
+        wanted = np.isfinite(low) | np.isfinite(high)
+        if not wanted.any():
+            continue
+        places, values = trajectory.turns(r)
+        there = ~np.isnan(places) & wanted
+        there[0, 1:] &= (smooth < r)[:, None]  # the same one ends the piece before
+        if trajectory.polynomial_in_time:
+            there[-1] &= (degrees > r)[:, None]  # a constant is met at the left end
+        if r == 0 and every_break:
+            there[[0, -1]] = False  # way-points
+        j, k, i = np.nonzero(there.transpose(2, 1, 0))
+        found.append(np.array([j, k, np.full(i.size, r), places[i, k, j], values[i, k, j]]))
+    whole = np.repeat(np.hstack(found), 2, axis=1)
+    joint, piece, order = whole[:3].astype(np.int64)
+    side = np.tile([1.0, -1.0], joint.size // 2)
+    excess, share, size = excesses(problem, trajectory.total_time, joint, order, side, whole[4])
+    at = np.flatnonzero(share > near)
+    where = Places(joint[at], piece[at], order[at], whole[3, at])
+    return where, whole[4, at], side[at], excess[at], size[at]
+
+
+def exact_rows(problem: Problem, h: Array, nodal: Array | None = None) -> ExactRows:
+    """Excesses near or above 0 and their gradients; one infinite excess where there is no curve.
 
     Parameters
     ----------
@@ -188,89 +176,43 @@ def limited(problem: Problem, h: Array, nodal: Array | None = None) -> list[Near
     h : ndarray, shape (segments,)
         s.
     nodal : ndarray, shape (free, joints), optional
-    """
-    curve, limits, sizes = problem.curve, problem.limits, problem.limits.sides
-    trajectory = fit(curve, problem.waypoints, h, nodal)
-    every_break = len(curve.waypoint_breaks) == curve.segments + 1
-    span = np.ptp(problem.waypoints, axis=0)
-    found: list[Near] = []
-    for j in range(len(problem.joints)):
-        for r in (1, 2, 3):
-            if not np.isfinite(sizes[:, j, r - 1]).any():
-                continue
-            for e in extrema(trajectory, j, r):
-                repeated = e.s == 0.0 and e.segment > 0 and curve.smooth_order(e.segment) >= r
-                if repeated:
-                    continue
-                found += _beyond_nothing(e, sizes[:, j, r - 1], float(span[j]) / h.sum() ** r)
-                limit = float(sizes[int(e.value > 0.0), j, r - 1])
-                if not np.isfinite(limit) or limit == 0.0:
-                    continue
-                size = abs(e.value) / limit
-                if size > NEAR:
-                    excess = float(np.log(size)) / r
-                    sign, size = float(np.sign(e.value)), r * abs(e.value)
-                    found.append(Near(e, limit, sign, excess, size, True))
-        sides = ((float(limits.position_lower[j]), -1.0), (float(limits.position_upper[j]), 1.0))
-        if not any(np.isfinite(limit) for limit, _ in sides):
-            continue
-        size = float(span[j]) or 1.0
-        for e in extrema(trajectory, j, 0):
-            if e.s in (0.0, 1.0) and every_break:
-                continue
-            for limit, sign in sides:
-                excess = sign * (e.value - limit) / size
-                if np.isfinite(limit) and excess > NEAR - 1.0:
-                    found.append(Near(e, limit, sign, excess, size, False))
-    return found
-
-
-def _beyond_nothing(e: Extremum, sides: Array, rate: float) -> Iterator[Near]:
-    """The extremum of a derivative that must not leave 0 to one side, in shares of a mean rate.
-
-    Parameters
-    ----------
-    e : Extremum
-    sides : ndarray, shape (2,)
-        Sizes of the limits below and above 0.
-    rate : float
-        What the derivative's excess is set beside: way over time to its order; 0 of a joint that
-        stands still.
-    """
-    if rate == 0.0 or abs(e.value) <= STILL * rate:
-        return
-    for side, sign in ((0, -1.0), (1, 1.0)):
-        excess = sign * e.value / rate + (INSIDE if sides[1 - side] > 0.0 else 0.0)
-        if sides[side] == 0.0 and excess > NEAR - 1.0:
-            yield Near(e, 0.0, sign, excess, rate, False)
-
-
-def exact_rows(problem: Problem, h: Array) -> ExactRows:
-    """Excesses and gradients at ``h``; one infinite excess if ``h`` defines no curve.
-
-    Parameters
-    ----------
-    problem : Problem
-        With a determined curve.
-    h : ndarray, shape (segments,)
-        s.
+        Free derivatives, where the declaration leaves some.
 
     Returns
     -------
     ExactRows
     """
+    free = 0 if nodal is None else nodal.size
     try:
-        found = limited(problem, h)
-        points = [near.extremum for near in found]
-        slope = np.zeros((0, h.size))
+        trajectory = fit(problem.curve, problem.waypoints, h, nodal)
+        at, value, side, excess, size = near_limits(problem, trajectory, NEAR)
+        columns = (
+            at.joint,
+            at.segment,
+            at.order,
+            at.s,
+            trajectory.times_of(at.segment, at.s),
+            value,
+        )
+        points = [Extremum(*row) for row in zip(*(c.tolist() for c in columns), strict=True)]
+        slope = np.zeros((0, h.size + free))
         if points:
-            slope = peak_gradients(problem, h, points).durations * h
+            found = peak_gradients(problem, h, points, nodal)
+            slope = found.durations * h
+            if free:
+                slope = np.hstack([slope, _by_nodal(problem, points, found.nodal)])
     except CurveError:
-        nothing = np.zeros((1, h.size))
-        none = np.zeros(1, dtype=bool)
+        nothing, none = np.zeros((1, h.size + free)), np.zeros(1, dtype=bool)
         return ExactRows(h, np.array([np.inf]), nothing, (), np.ones(1), none)
-    signs = np.array([near.sign for near in found])
-    excess = np.array([near.excess for near in found])
-    scale = signs / np.array([near.size for near in found])
-    stretched = np.array([near.stretched for near in found], dtype=bool)
-    return ExactRows(h, excess, slope * scale[:, None], tuple(points), signs, stretched)
+    limit = problem.limits.sides[(side > 0).astype(int), at.joint, np.maximum(at.order, 1) - 1]
+    stretched = (at.order > 0) & (limit > 0.0)
+    return ExactRows(h, excess, slope * (side / size)[:, None], tuple(points), side, stretched)
+
+
+def _by_nodal(problem: Problem, points: list[Extremum], slope: Array) -> Array:
+    """Gradients by the free derivatives of all joints, (points, free · joints), in their limits."""
+    own = np.eye(len(problem.joints))[[e.joint for e in points]]
+    units, widest = np.ones((MAX_COEFFICIENTS, len(problem.joints))), problem.limits.widest.T
+    units[1:4] = np.where(np.isfinite(widest), widest, 1.0)
+    orders = [order for _, order in problem.piecewise.free_derivatives]
+    return np.asarray(slope[:, :, None] * own[:, None] * units[orders]).reshape(len(points), -1)

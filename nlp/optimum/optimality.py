@@ -1,4 +1,13 @@
-"""Optimality conditions, with every active peak found again, and the ends of local searches.
+"""Optimality conditions of min Σh, with every active peak found again, and ends of searches.
+
+In log durations z = log h and free nodal derivatives x, in units of their limits, with T = Σh,
+
+    min log T  subject to  g_i = ratio_i − 1 ≤ 0:
+    h_k/T + Σ_i w_i ∂g_i/∂z_k = 0,  Σ_i w_i ∂g_i/∂x = 0,  w ≥ 0,  w_i g_i = 0.
+
+A peak's gradient is that of the derivative at its fixed place (envelope theorem), and
+∂/∂z_k = h_k ∂/∂h_k. A bound of a duration is g = ±(z_k − log bound). Since d(log T) = dT/T, the
+multiplier of T itself is w_i T; easing limit i by a share ε changes T by −ε w_i T.
 
 `kkt` finds multipliers by non-negative least squares over all limits that are reached: dense, for
 few segments. `sparse_kkt` takes those of the NLP.
@@ -6,18 +15,18 @@ few segments. `sparse_kkt` takes those of the NLP.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ...problem import QUANTITIES, Array, CurveError, Extremum, Problem, fit, peak_gradients
-from ...problem.curves import Places, Trajectory
+from ...problem import QUANTITIES, Array, Extremum, Problem
+from ...problem.curves import Places
 from .clock import time_up
-from .limit_rows import ExactRows, along, exact_rows, limited
+from .limit_rows import ExactRows, Indices, exact_rows, excesses
 
 ACTIVE = 1e-7
-"""Relative distance to a limit within which a peak counts as active."""
+"""Relative distance to a limit within which a peak counts as active. What a multiplier is of the
+mean segment's share of the total counts from the same number on: a barrier leaves some on all."""
 KKT_TOLERANCE = 1e-8
 """Scaled KKT residual up to which an answer is called converged: IPOPT's own usual tolerance."""
 MORE = 0.1
@@ -77,35 +86,54 @@ UNKNOWN = KKT(np.inf, ())
 """Of durations at which rounding hides the curve or its gradients: no condition is met."""
 
 
-@dataclass(frozen=True)
-class _Constraint:
-    extremum: Extremum
-    label: tuple[str | None, str, int, float | None]
-    excess: float
-    sign: float
-    scale: float
-    size: float
-    """Of the limit, in scales."""
+@dataclass(frozen=True, eq=False)
+class _Weighed:
+    """Limits and bounds of durations that are reached, with least-squares multipliers.
 
+    Attributes
+    ----------
+    near : ndarray of int
+        Numbers of the limits among the exact rows.
+    segments, sides : ndarray, shape (bounds,)
+        Of the bounds.
+    slopes : ndarray, shape (limits + bounds, unknowns)
+        Gradients of what is to be at most 0, the limits' first.
+    weights : ndarray, shape (limits + bounds,)
+        Multipliers w for log T.
+    stationary : ndarray, shape (unknowns,)
+        What is left of the gradient of the Lagrangian.
+    """
 
-def _peaks_near_limit(
-    problem: Problem, durations: Array, nodal: Array | None, near: float
-) -> list[_Constraint]:
-    found: list[_Constraint] = []
-    for one in limited(problem, durations, nodal):
-        e, quantity = one.extremum, ("position", *QUANTITIES)[one.extremum.order]
-        if one.stretched:  # its excess is the logarithm of the stretch that it asks for
-            excess, scale, size = float(np.expm1(e.order * one.excess)), one.limit, 1.0
-        elif e.order == 0:
-            scale = max(1.0, abs(one.limit))
-            excess, size = one.excess * one.size / scale, abs(one.limit) / scale
-        else:
-            excess, scale, size = one.excess, one.size, 0.0
-        if excess >= -near:
-            segment = problem.curve.segment_of(durations, e)
-            label = (problem.joints[e.joint], quantity, segment, e.time)
-            found.append(_Constraint(e, label, excess, one.sign, scale, size))
-    return found
+    near: Indices
+    segments: Indices
+    sides: Array
+    slopes: Array
+    weights: Array
+    stationary: Array
+
+    @classmethod
+    def of(cls, problem: Problem, rows: ExactRows, active: float) -> _Weighed | None:
+        """Multipliers of all that is nearer than ``active``; None where rounding hides them."""
+        h, unknowns = rows.durations, rows.gradient.shape[1]
+        near = np.flatnonzero(rows.excess >= -active)
+        low = np.flatnonzero(h <= problem.duration_lower * (1 + active))
+        high = np.flatnonzero(h >= problem.duration_upper * (1 - active))
+        segments, sides = np.append(low, high), np.repeat([-1.0, 1.0], [low.size, high.size])
+        walls = sides[:, None] * np.eye(unknowns)[segments]
+        slopes = np.vstack([rows.gradient[near], walls])
+        objective = np.append(h / h.sum(), np.zeros(unknowns - h.size))
+        if problem.ratios is not None:
+            slopes, objective = slopes.sum(axis=1, keepdims=True), objective.sum(keepdims=True)
+        weights = np.zeros(len(slopes))
+        if weights.size:
+            from scipy.optimize import nnls  # a quarter of a second; a check does without
+
+            try:
+                weights, _ = nnls(slopes.T, -objective, maxiter=30 * weights.size + 100)
+            except RuntimeError:  # too many iterations
+                return None
+        stationary = objective + weights @ slopes
+        return cls(near, segments, sides, slopes, weights, stationary)
 
 
 def kkt(
@@ -114,7 +142,7 @@ def kkt(
     nodal: Array | None = None,
     active: float = ACTIVE,
 ) -> KKT:
-    """Optimality conditions of min Σh over durations (and free nodal derivatives).
+    """Optimality conditions over durations (and free nodal derivatives).
 
     Parameters
     ----------
@@ -132,83 +160,136 @@ def kkt(
 
     Notes
     -----
-    In log durations z = log h and free nodal derivatives x, in units of their limits, with T = Σh,
-
-        min log T  subject to  g_i = ratio_i − 1 ≤ 0:
-        h_k/T + Σ_i w_i ∂g_i/∂z_k = 0,  Σ_i w_i ∂g_i/∂x = 0,  w ≥ 0,  w_i g_i = 0.
-
-    A peak's gradient is that of the derivative at its fixed place (envelope theorem), and
-    ∂/∂z_k = h_k ∂/∂h_k. A bound of a duration is g = ±(z_k − log bound). Since d(log T) = dT/T, the
-    multiplier of T itself is w_i T; easing limit i by a share ε changes T by −ε w_i T. Where ratios
-    are fixed, log T is the one unknown: all z_k change alike, and their equations are added up.
+    Where ratios are fixed, log T is the one unknown: all z_k change alike, and their equations are
+    added up.
     """
-    n, total = problem.segments, float(durations.sum())
-    joints = problem.waypoints.shape[1]
-    free = problem.curve.free
-    try:
-        rows = _peaks_near_limit(problem, durations, nodal, active)
-        gradients = peak_gradients(problem, durations, [c.extremum for c in rows], nodal)
-    except CurveError:
+    rows = exact_rows(problem, durations, nodal)
+    found = _Weighed.of(problem, rows, active) if rows.worst < np.inf else None
+    if found is None:
         return UNKNOWN
-    columns = np.zeros((n + free * joints, len(rows)))
-    nodal_scale = np.ones((free, joints))
-    for i, (_, order) in enumerate(problem.piecewise.free_derivatives if free else ()):
-        if 1 <= order <= 3:
-            limit = problem.limits.widest[:, order - 1]
-            nodal_scale[i] = np.where(np.isfinite(limit), limit, 1.0)
-    for i, c in enumerate(rows):
-        columns[:n, i] = c.sign * gradients.durations[i] * durations / c.scale
-        if free:
-            block = np.zeros((free, joints))
-            block[:, c.extremum.joint] = c.sign * gradients.nodal[i] / c.scale
-            columns[n:, i] = (block * nodal_scale).ravel()
-    bounds: list[tuple[int, float, float]] = []
-    for k in range(n):
-        low, high = problem.duration_lower[k], problem.duration_upper[k]
-        if low > 0 and durations[k] <= low * (1 + active):
-            bounds.append((k, -1.0, durations[k] / low - 1))
-        if np.isfinite(high) and durations[k] >= high * (1 - active):
-            bounds.append((k, 1.0, 1 - durations[k] / high))
-    walls = np.zeros((n + free * joints, len(bounds)))
-    for i, (k, sign, _) in enumerate(bounds):
-        walls[k, i] = sign
-    objective = np.concatenate([durations / total, np.zeros(free * joints)])
-    matrix = np.hstack([columns, walls])
-    if problem.ratios is not None:
-        objective, matrix = objective.sum(keepdims=True), matrix.sum(axis=0, keepdims=True)
-    if matrix.shape[1]:
-        from scipy.optimize import nnls  # a quarter of a second; a check does without
+    of_limits, of_bounds = np.split(found.weights, [found.near.size])
+    excess = rows.excess[found.near]
+    walls = np.zeros((2, problem.segments))
+    np.add.at(walls, ((found.sides > 0).astype(int), found.segments), of_bounds)
+    limits = [
+        (rows.points[i], float(rows.signs[i]), w)
+        for i, w in zip(found.near, of_limits, strict=True)
+        if w > 0
+    ]
+    return _report(problem, durations, found.stationary, excess, of_limits, limits, walls)
 
-        try:
-            weights, _ = nnls(matrix, -objective, maxiter=30 * matrix.shape[1] + 100)
-        except RuntimeError:  # too many iterations: rounding hides which limits hold the motion
-            return UNKNOWN
-    else:
-        weights = np.zeros(0)
-    stationarity = float(np.abs(matrix @ weights + objective).max())
-    gaps = np.array([c.excess for c in rows] + [gap for _, _, gap in bounds])
-    slack = float(np.abs(weights * gaps).max(initial=0.0))
-    violation = max([0.0, *(c.excess for c in rows)])
-    reached: list[Active] = []
-    for c, w in zip(rows, weights, strict=False):
-        joint, quantity, segment, time = c.label
-        multiplier = float(w * total)
-        more = MORE * c.size
-        if multiplier > 0:
-            reached.append(Active(joint, quantity, segment, time, multiplier, -more * multiplier))
-    for (k, sign, _), w in zip(bounds, weights[len(rows) :], strict=True):
-        multiplier = float(w * total)
-        if multiplier > 0:
-            reached.append(Active(None, "duration", k, None, multiplier, -sign * MORE * multiplier))
-    return KKT(max(stationarity, slack, violation), tuple(reached))
+
+def sparse_kkt(
+    problem: Problem, durations: Array, places: Places, limits: Array, bounds: Array
+) -> KKT:
+    """Optimality conditions at given multipliers: nothing is solved but one banded system.
+
+    Parameters
+    ----------
+    problem : Problem
+        With a determined declaration.
+    durations : ndarray, shape (segments,)
+        s.
+    places : Places
+        Of limits. One of a derivative that is all but constant, as on a plateau at its limit, need
+        not be an extremum: any place does, but a multiplier belongs to its own.
+    limits : ndarray
+        Multipliers, signed by the side, of limits in shares of the larger side (positions in rad).
+    bounds : ndarray, shape (segments,)
+        Of the bounds on durations, s per s, signed by the side.
+
+    Returns
+    -------
+    KKT
+
+    Notes
+    -----
+    With multipliers w of the limits, Σ w_i ∂g_i/∂h is the gradient of one weighted sum of values,
+    which one adjoint solve gives for all durations. Their limits need not be within a chosen
+    distance: w_i g_i = 0 is part of the residual.
+    """
+    total, joint, order = float(durations.sum()), places.joint, places.order
+    adjoint = problem.piecewise.adjoint(problem.waypoints, durations)
+    values, sign = adjoint.values(places), np.where(limits >= 0.0, 1.0, -1.0)
+    excess, _, size = excesses(problem, total, joint, order, sign, values)
+    excess = np.maximum(excess, -1.0)  # a sign may be that of a side without a limit, by rounding
+    sizes = problem.limits.sides[:, joint, np.maximum(order, 1) - 1]
+    larger = np.where(np.isfinite(sizes), sizes, 0.0).max(axis=0)
+    slopes = limits / (np.where((order == 0) | (larger == 0.0), 1.0, larger) * total)
+    weights = np.abs(slopes) * size
+    stationary = durations * ((1.0 + bounds) / total + adjoint.weighted(places, slopes))
+    walls = np.maximum([-bounds, bounds], 0.0) * durations / total
+    starts = np.append(0.0, np.cumsum(durations))
+    active = []
+    for i in np.flatnonzero(np.abs(excess) <= ACTIVE).tolist():
+        k, r, s = int(places.segment[i]), int(order[i]), float(places.s[i])
+        time = float(starts[k] + s * durations[k])
+        # What both segments share belongs to the first, as in `kkt`.
+        k -= int(s == 0.0 and k > 0 and problem.piecewise.smooth_order(k) >= r)
+        e = Extremum(int(joint[i]), k, r, s, time, float(values[i]))
+        active.append((e, float(sign[i]), float(weights[i])))
+    return _report(problem, durations, stationary, excess, weights, active, walls)
+
+
+def _report(
+    problem: Problem,
+    durations: Array,
+    stationary: Array,
+    excess: Array,
+    weights: Array,
+    limits: list[tuple[Extremum, float, float]],
+    walls: Array,
+) -> KKT:
+    """The conditions of limits and bounds, and those that are active.
+
+    Parameters
+    ----------
+    problem : Problem
+    durations : ndarray, shape (segments,)
+    stationary : ndarray
+        Gradient of the Lagrangian of log T.
+    excess, weights : ndarray
+        Of limits.
+    limits : list of (Extremum, side, weight)
+        Those that are reached.
+    walls : ndarray, shape (2, segments)
+        Weights of lower and upper bounds of durations.
+    """
+    total, least = float(durations.sum()), ACTIVE / problem.segments
+    with np.errstate(divide="ignore"):
+        gaps = np.stack(
+            [durations / problem.duration_lower - 1.0, 1.0 - durations / problem.duration_upper]
+        )
+    gaps = np.where(np.isfinite(gaps), gaps, 1.0)
+    parts = (stationary, weights * excess, walls * gaps)
+    residual = max(float(np.abs(part).max(initial=0.0)) for part in parts)
+    active, span = [], np.ptp(problem.waypoints, axis=0)
+    for e, sign, weight in limits:
+        if weight <= least:
+            continue
+        if e.order == 0:
+            ends = problem.limits.position_lower, problem.limits.position_upper
+            edge = abs(float(ends[int(sign > 0)][e.joint]))
+            w = weight * total * max(1.0, edge) / (float(span[e.joint]) or 1.0)
+            gain = edge / max(1.0, edge)
+        else:
+            w = weight * total / e.order
+            gain = float(problem.limits.sides[int(sign > 0), e.joint, e.order - 1] > 0.0)
+        quantity = ("position", *QUANTITIES)[e.order]
+        segment = problem.curve.segment_of(durations, e)
+        label = problem.joints[e.joint], quantity, segment, e.time
+        active.append(Active(*label, w, -MORE * gain * w))
+    for side, k in np.argwhere((walls > least) & (gaps <= ACTIVE)).tolist():
+        w = float(walls[side, k] * total)
+        active.append(Active(None, "duration", k, None, w, (MORE - 2 * MORE * side) * w))
+    return KKT(max(residual, float(excess.max(initial=0.0))), tuple(active))
 
 
 SHARP = 1e-12
 """Residual that `sharpened` leaves as it is: rounding of gradients."""
-SHARPENINGS = 4
-"""Newton steps of `sharpened`: few are needed from near by, since it is quadratic."""
 DIFFERENCE = 1e-6
 """Step of its central differences in log durations: they err by 1e-12, their rounding by 1e-10."""
+
 NEAR_BY = 1e-3
 """Log durations by which one of its steps changes a duration at most: an answer is very near."""
 
@@ -217,6 +298,7 @@ def sharpened(problem: Problem, durations: Array) -> Array | None:
     """Newton steps on stationarity and the active limits; None where they lead nowhere.
 
     A search ends where rounding hides what it gains, before the gradient vanishes as far as it can.
+    Four steps are plenty from near by, since the convergence is quadratic.
 
     Parameters
     ----------
@@ -225,26 +307,16 @@ def sharpened(problem: Problem, durations: Array) -> Array | None:
     durations : ndarray, shape (segments,)
         s.
     """
-    from scipy.optimize import nnls  # a quarter of a second; a check does without
-
     first = exact_rows(problem, durations)
-    near = np.flatnonzero(first.excess > -ACTIVE)
-    one = np.eye(durations.size)
-    low = (durations <= problem.duration_lower * (1 + ACTIVE)).nonzero()[0]
-    high = (durations >= problem.duration_upper * (1 - ACTIVE)).nonzero()[0]
-    walls = np.vstack([-one[low], one[high]])
-    slopes = np.vstack([first.gradient[near], walls])
-    if not slopes.size:
+    found = _Weighed.of(problem, first, ACTIVE)
+    if found is None or not found.weights.size:
         return None
-    try:
-        weights, _ = nnls(slopes.T, -durations / durations.sum())
-    except RuntimeError:  # rounding hides which limits hold the motion
-        return None
-    loaded = weights[: near.size] > 0
-    active, weights, held = near[loaded], weights[: near.size][loaded], weights[near.size :] > 0
-    free = ~walls[held].any(axis=0)
-    h, n, z = durations, int(free.sum()), active.size
-    for _ in range(SHARPENINGS):
+    loaded = found.weights > 0
+    limits, bounds = np.split(loaded, [found.near.size])
+    active, weights = found.near[limits], found.weights[: found.near.size][limits]
+    free = ~np.isin(np.arange(durations.size), found.segments[bounds])
+    h, n, z, one = durations, int(free.sum()), active.size, np.eye(durations.size)
+    for _ in range(4):
         now = _conditions(problem, h, first, active, weights)
         if now is None or time_up():
             return None
@@ -263,7 +335,7 @@ def sharpened(problem: Problem, durations: Array) -> Array | None:
         block = columns[:, free]
         system = np.block([[np.reshape(bends, (n, n)).T, block.T], [block, np.zeros((z, z))]])
         try:
-            change = np.linalg.lstsq(system, -np.append(slope[free], excess), rcond=1e-12)[0]
+            change = np.linalg.lstsq(system, -np.append(slope[free], excess), rcond=SHARP)[0]
         except np.linalg.LinAlgError:
             return None
         h = h * np.exp(one[free].T @ np.clip(change[:n], -NEAR_BY, NEAR_BY))
@@ -272,7 +344,7 @@ def sharpened(problem: Problem, durations: Array) -> Array | None:
 
 
 def _conditions(
-    problem: Problem, h: Array, first: ExactRows, active: NDArray[np.int64], weights: Array
+    problem: Problem, h: Array, first: ExactRows, active: Indices, weights: Array
 ) -> tuple[Array, Array, Array] | None:
     """Slope of the Lagrangian in log durations, excess of the active limits, and their slopes."""
     rows = exact_rows(problem, h)
@@ -281,125 +353,6 @@ def _conditions(
         return None
     at = np.array(twins, dtype=np.int64)
     return h / h.sum() + weights @ rows.gradient[at], rows.excess[at], rows.gradient[at]
-
-
-NEWTON_STEPS = 4
-"""Steps by which a place inside a segment is brought onto its extremum; it starts very near."""
-COUNTS = 1e-6
-"""Multiplier, in shares of the total of a mean segment, from which a limit is called active."""
-REACHED = 1e-6
-"""Relative distance to a limit within which a limit with a multiplier is called active."""
-
-
-@dataclass(frozen=True, eq=False)
-class Multipliers:
-    """Multipliers of limits at places, and of bounds on durations, as a search leaves them.
-
-    Attributes
-    ----------
-    places : Places
-    follows : ndarray of bool
-        Which places belong to the extremum beside them; the others stay: where a derivative is all
-        but constant, as on a plateau at its limit, any place does, but a multiplier belongs to its
-        own.
-    limits : ndarray
-        Signed by the side, of limits in shares of themselves (positions in rad); s.
-    walls : ndarray, shape (segments,)
-        Of the bounds on durations, s per s, signed by the side.
-    """
-
-    places: Places
-    follows: NDArray[np.bool_]
-    limits: Array
-    walls: Array
-
-
-def on_extrema(trajectory: Trajectory, places: Places) -> Places:
-    """Places inside segments moved onto the extrema beside them; those at ends stay."""
-    inner = (places.s > 0.0) & (places.s < 1.0)
-    s = places.s
-    for _ in range(NEWTON_STEPS):
-        now = replace(places, s=s)
-        slope, bend = along(trajectory, now, 1), along(trajectory, now, 2)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            step = np.where(inner & (bend != 0.0), slope / bend, 0.0)
-        s = np.clip(s - np.clip(step, -0.1, 0.1), 0.0, 1.0)
-    return replace(places, s=s)
-
-
-def sparse_kkt(problem: Problem, durations: Array, found: Multipliers, violation: float) -> KKT:
-    """Optimality conditions at given multipliers: nothing is solved but one banded system.
-
-    Parameters
-    ----------
-    problem : Problem
-    durations : ndarray, shape (segments,)
-        s.
-    found : Multipliers
-    violation : float
-        Largest relative excess over any limit, from `check`.
-
-    Returns
-    -------
-    KKT
-        Scaled as `optimality.kkt` scales it.
-
-    Notes
-    -----
-    The conditions are those of `optimality.kkt`. With multipliers w of the limits, Σ w_i ∂g_i/∂h is
-    the gradient of one weighted sum of values, which one adjoint solve gives for all durations.
-    Their limits need not be within a chosen distance: w_i g_i = 0 is part of the residual.
-    """
-    total = float(durations.sum())
-    trajectory = fit(problem.curve, problem.waypoints, durations)
-    moved = on_extrema(trajectory, found.places)
-    places = replace(moved, s=np.where(found.follows, moved.s, found.places.s))
-    adjoint = problem.piecewise.adjoint(problem.waypoints, durations)
-    limits, j, position = problem.limits, places.joint, places.order == 0
-    side = np.where(found.limits >= 0.0, 1.0, -1.0)
-    edge = np.where(side > 0, limits.position_upper[j], limits.position_lower[j])
-    edge = np.where(np.isfinite(edge), edge, 0.0)
-    column = np.maximum(places.order, 1) - 1
-    rate = limits.sides[(side > 0).astype(np.int64), j, column]
-    # Rows are shares of the larger side; a limit of 0 has no other size.
-    larger = np.where(np.isfinite(limits.sides), limits.sides, 0.0).max(axis=0)[j, column]
-    larger = np.where(larger > 0.0, larger, 1.0)
-    rate = np.where(np.isfinite(rate), rate, larger)
-    own = np.where(rate > 0.0, rate, larger)
-    scale = np.where(position, np.maximum(1.0, np.abs(edge)), own)
-    values = adjoint.values(places)
-    excess = np.where(position, side * (values - edge), side * values - rate) / scale
-    weights = np.abs(found.limits) * np.where(position, scale, own / larger) / total
-    walls = np.abs(found.walls) * durations / total
-    low, high = problem.duration_lower, problem.duration_upper
-    with np.errstate(divide="ignore", invalid="ignore"):
-        gap = np.where(found.walls > 0, 1.0 - durations / high, durations / low - 1.0)
-    gap = np.where(np.isfinite(gap), gap, 1.0)
-    slope = adjoint.weighted(places, side * weights / scale)
-    stationary = durations * (1.0 / total + slope) + np.sign(found.walls) * walls
-    residual = max(
-        float(np.abs(stationary).max()),
-        float(np.abs(weights * excess).max(initial=0.0)),
-        float(np.abs(walls * gap).max()),
-        violation,
-    )
-    counts = COUNTS / problem.segments
-    active = []
-    breaks = trajectory.breaks
-    size = np.where(position, np.abs(edge) / scale, 1.0)
-    for i in np.flatnonzero((weights > counts) & (np.abs(excess) <= REACHED)).tolist():
-        k, r, w = int(places.segment[i]), int(places.order[i]), float(weights[i] * total)
-        quantity = "position" if r == 0 else QUANTITIES[r - 1]
-        time = float(breaks[k] + places.s[i] * durations[k])
-        if places.s[i] == 0.0 and k > 0 and problem.piecewise.smooth_order(k) >= r:
-            k -= 1  # what both segments share belongs to the first, as in `optimality.kkt`
-        joint = problem.joints[int(j[i])]
-        active.append(Active(joint, quantity, k, time, w, -MORE * float(size[i]) * w))
-    for k in np.flatnonzero((walls > counts) & (np.abs(gap) <= REACHED)).tolist():
-        w = float(walls[k] * total)
-        sign = float(np.sign(found.walls[k]))
-        active.append(Active(None, "duration", k, None, w, -sign * MORE * w))
-    return KKT(residual, tuple(active))
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from .basins import exact_search
-from .search import program_search
+from .rounds import program_search
 from .solution import Route, Solution
 from .starts import DENSE, made_up
 
@@ -34,27 +34,16 @@ def with_other_route(solution: Solution) -> Solution:
     Solution
         With `other_total`, where the other route knows the curve and ends within the limits.
     """
-    if not solution.found or solution.infimum is not None:
+    problem, h = solution.problem, solution.vector
+    if h is None or solution.infimum is not None:
         return solution
-    total = _descended(solution) if solution.route is Route.NLP else _programmed(solution)
-    return solution if total is None else replace(solution, other_total=total)
-
-
-def _programmed(solution: Solution) -> float | None:
-    problem, h = solution.problem, solution.durations
-    assert h is not None
     start = np.clip(LONGER * h, problem.duration_lower, problem.duration_upper)
     floor = np.minimum(made_up(problem, FLOOR), 0.5 * h)
-    local = program_search(problem, start, floor, solution.nodal)
-    return local.total if local is not None and local.feasible else None
-
-
-def _descended(solution: Solution) -> float | None:
-    problem, h = solution.problem, solution.durations
-    assert h is not None
-    if problem.curve.free or problem.segments > DENSE or problem.ratios is not None:
-        return None
-    start = np.clip(LONGER * h, problem.duration_lower, problem.duration_upper)
-    floor = np.minimum(made_up(problem, FLOOR), 0.5 * h)
-    found = [local for local in exact_search(problem, start[None], floor) if local.feasible]
-    return min((local.total for local in found), default=None)
+    if solution.route is not Route.NLP:
+        found = [program_search(problem, start, floor, solution.nodal)]
+    elif problem.curve.free or problem.segments > DENSE or problem.ratios is not None:
+        return solution
+    else:
+        found = [*exact_search(problem, start[None], floor)]
+    totals = [local.total for local in found if local is not None and local.feasible]
+    return replace(solution, other_total=min(totals)) if totals else solution

@@ -9,14 +9,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...problem import Array, Check, Problem, check, fit
+from ...problem import Array, Problem, check, fit
 from .clock import time_up
+from .limit_rows import NEAR
+from .pieces import ca
 from .program import Program
-from .rounds import NEAR, constraints, near_rows
 from .rounds import OPTIONS as OPTIONS_OF_ROUNDS
-from .solution import Evidence, Solution, Status, no_motion, weakest
+from .rounds import constraints, near_rows
+from .solution import Evidence, SearchResult, Solution, Status, weakest
 from .solver import solve
-from .symbolic import ca
 
 ROUNDS = 20
 """Rounds from one optimum: a bound against endless shrinking of the region; two to four suffice
@@ -24,85 +25,99 @@ where the first region does."""
 REGION = 0.05
 """Share by which a first round may change a duration: near an optimum the extrema hardly move."""
 LEFT = 1e-8
-"""Relative change of the durations at which the rounds end."""
+"""Relative change of the durations at which the rounds end, and excess of a cap that rounding
+explains."""
 OPTIONS = OPTIONS_OF_ROUNDS | {"ipopt.mu_init": 1e-4, "ipopt.tol": 1e-9}
 """Options of IPOPT, begun near a solution: with a small barrier."""
 
 
-class Nearby:
-    """One objective over the durations of some joints, each within its cap, by rounds of the NLP.
+def nearby(
+    problems: list[Problem], starts: list[Array], caps: list[float], weights: Array | None
+) -> list[Array]:
+    """Durations of some joints, each within its limits and its cap, at which an objective is least.
 
-    Without weights it is the sum over segments of the longest duration; with weights that of the
-    one joint's weighted durations.
+    Parameters
+    ----------
+    problems : list of Problem
+        One-joint problems with the same number of segments.
+    starts : list of ndarray, shape (segments,)
+        Durations, s, of each joint that keep its limits and its cap.
+    caps : list of float
+        Largest total of each joint, s.
+    weights : ndarray, shape (segments,), or None
+        The objective: the weighted durations of one joint, or without weights Σ_k max_j h_jk.
+
+    Returns
+    -------
+    list of ndarray, shape (segments,)
+        s; by rounds of the NLP near the starts, which are returned where nothing better was found.
     """
-
-    def __init__(self, problems: list[Problem], unit: float, caps: list[float]) -> None:
-        self._problems, self._unit, self._caps = problems, unit, np.array(caps) / unit
-        none = np.zeros(problems[0].segments)
-        self._programs = [Program(problem, unit, none) for problem in problems]
-
-    def reached(self, starts: list[Array], weights: Array | None) -> list[Array]:
-        """Durations of each joint at which the objective is least near the starts, s."""
-        h, radius = [start.copy() for start in starts], REGION
-        for _ in range(ROUNDS):
-            new = self._round(h, radius, weights)
-            moved = max(float(np.abs(a / b - 1).max()) for a, b in zip(new, h, strict=True))
-            if all(
-                check(q, d).stretch <= 1 + 1e-4 * radius
-                for q, d in zip(self._problems, new, strict=True)
-            ):
-                h, radius = new, min(REGION, 4.0 * radius)
-                if moved < LEFT:
-                    break
-            else:
-                radius *= 0.25
-        return h
-
-    def _round(self, h: list[Array], radius: float, weights: Array | None) -> list[Array]:
-        n = self._problems[0].segments
-        top = ca.MX.sym("longest", n)
-        longest = np.max(h, axis=0) / self._unit
-        variables, given, low, high = [top], [longest], [np.zeros(n)], [np.full(n, np.inf)]
-        expressions, least, most = [], [], []
-        for program, own, cap in zip(self._programs, h, self._caps, strict=True):
-            motion = fit(program.problem.curve, program.problem.waypoints, own)
-            stated = constraints(program, near_rows(program, motion, NEAR))
-            x, (lower, upper) = program.pack(motion, own), program.bounds()
-            lower[:n] = np.maximum(lower[:n], x[:n] * (1 - radius))
-            upper[:n] = np.minimum(upper[:n], x[:n] * (1 + radius))
-            durations = program.durations
-            variables.append(program.variables)
-            given.append(x)
-            low.append(lower)
-            high.append(upper)
-            expressions += [stated.expressions, ca.sum1(durations), durations - top]
-            least += [stated.low, np.zeros(1), np.full(n, -np.inf)]
-            most += [stated.high, np.array([cap]), np.zeros(n)]
-        objective = ca.sum1(top)
-        if weights is not None:  # the longest durations have no part in it
-            objective = ca.dot(ca.DM(weights), self._programs[0].durations)
-            given[0] = low[0] = high[0] = np.full(n, 10.0 * longest.max())
-        nlp = {"x": ca.vertcat(*variables), "f": objective, "g": ca.vertcat(*expressions)}
-        result = ca.nlpsol("near", "ipopt", nlp, OPTIONS)(
-            x0=np.concatenate(given),
-            lbx=np.concatenate(low),
-            ubx=np.concatenate(high),
-            lbg=np.concatenate(least),
-            ubg=np.concatenate(most),
-        )
-        answer, at, found = np.asarray(result["x"]).ravel(), n, []
-        for program in self._programs:
-            own = answer[at : at + n] * self._unit
-            problem = program.problem
-            found.append(np.clip(own, problem.duration_lower, problem.duration_upper))
-            at += program.variables.numel()
-        return found
+    unit = float(np.mean(starts))
+    programs = [Program(problem, unit, np.zeros(problem.segments)) for problem in problems]
+    h, radius = starts, REGION
+    for _ in range(ROUNDS):
+        new = _round(programs, h, caps, radius, weights)
+        stretches = [check(q, d).stretch for q, d in zip(problems, new, strict=True)]
+        if max(stretches) > 1 + 1e-4 * radius:
+            radius *= 0.25
+            continue
+        moved = np.abs(np.array(new) / np.array(h) - 1).max()
+        h, radius = new, min(REGION, 4.0 * radius)
+        if moved < LEFT:
+            break
+    inside = []
+    for problem, own, cap in zip(problems, h, caps, strict=True):
+        tight = own * max(1.0, check(problem, own).stretch)
+        inside.append(np.clip(tight, problem.duration_lower, problem.duration_upper))
+        if inside[-1].sum() > cap * (1 + LEFT):
+            return starts
+    return inside
 
 
-def _kept(problem: Problem, h: Array) -> Array:
-    """Durations made feasible by the (tiny) uniform stretch that they may need."""
-    stretch = max(1.0, check(problem, h).stretch)
-    return np.asarray(np.clip(h * stretch, problem.duration_lower, problem.duration_upper))
+def _round(
+    programs: list[Program],
+    h: list[Array],
+    caps: list[float],
+    radius: float,
+    weights: Array | None,
+) -> list[Array]:
+    n, unit = programs[0].segments, programs[0].unit
+    top = ca.MX.sym("longest", n)
+    longest = np.max(h, axis=0) / unit
+    variables, given, low, high = [top], [longest], [np.zeros(n)], [np.full(n, np.inf)]
+    expressions, least, most = [], [], []
+    for program, own, cap in zip(programs, h, caps, strict=True):
+        motion = fit(program.problem.curve, program.problem.waypoints, own)
+        stated, floor, ceiling = constraints(program, near_rows(program, motion, NEAR))
+        x, (lower, upper) = program.pack(motion, own), program.bounds()
+        lower[:n] = np.maximum(lower[:n], x[:n] * (1 - radius))
+        upper[:n] = np.minimum(upper[:n], x[:n] * (1 + radius))
+        durations = program.durations
+        variables.append(program.variables)
+        given.append(x)
+        low.append(lower)
+        high.append(upper)
+        expressions += [stated, ca.sum1(durations), durations - top]
+        least += [floor, np.zeros(1), np.full(n, -np.inf)]
+        most += [ceiling, np.array([cap / unit]), np.zeros(n)]
+    objective = ca.sum1(top)
+    if weights is not None:  # the longest durations have no part in it
+        objective = ca.dot(ca.DM(weights), programs[0].durations)
+        given[0] = low[0] = high[0] = np.full(n, 10.0 * longest.max())
+    nlp = {"x": ca.vertcat(*variables), "f": objective, "g": ca.vertcat(*expressions)}
+    result = ca.nlpsol("near", "ipopt", nlp, OPTIONS)(
+        x0=np.concatenate(given),
+        lbx=np.concatenate(low),
+        ubx=np.concatenate(high),
+        lbg=np.concatenate(least),
+        ubg=np.concatenate(most),
+    )
+    answer, at, found = np.asarray(result["x"]).ravel(), n, []
+    for program in programs:
+        own, problem = answer[at : at + n] * unit, program.problem
+        found.append(np.clip(own, problem.duration_lower, problem.duration_upper))
+        at += program.variables.numel()
+    return found
 
 
 def longest_per_segment_range(
@@ -127,39 +142,22 @@ def longest_per_segment_range(
     """
     caps = [float(h.sum()) + slack for h in optima]
     given = float(np.max(optima, axis=0).sum())
-    unit = float(np.mean([h.mean() for h in optima]))
-    least = [
-        _kept(problem, h)
-        for problem, h in zip(
-            problems, Nearby(problems, unit, caps).reached(optima, None), strict=True
-        )
-    ]
-    lowest = given
-    if all(h.sum() <= cap * (1 + 1e-8) for h, cap in zip(least, caps, strict=True)):
-        lowest = min(given, float(np.max(least, axis=0).sum()))
+    lowest = float(np.max(nearby(problems, optima, caps, None), axis=0).sum())
     n = problems[0].segments
-    subsets = [
-        subset for size in range(1, n + 1) for subset in itertools.combinations(range(n), size)
-    ]
-    reach: dict[tuple[int, tuple[int, ...]], float] = {}
-    for j, (problem, optimum, cap) in enumerate(zip(problems, optima, caps, strict=True)):
-        alone = Nearby([problem], unit, [cap])
-        for subset in subsets:
-            chosen = list(subset)
-            reach[j, subset] = float(optimum[chosen].sum())
-            if len(subset) == n:
-                reach[j, subset] = cap
-                continue
-            weights = np.zeros(n)
-            weights[chosen] = -1.0
-            h = _kept(problem, alone.reached([optimum], weights)[0])
-            if h.sum() <= cap * (1 + 1e-8):
-                reach[j, subset] = max(reach[j, subset], float(h[chosen].sum()))
+    every = tuple(range(n))
+    reach = {(j, every): cap for j, cap in enumerate(caps)}
+    for size in range(1, n):
+        for j, subset in itertools.product(
+            range(len(problems)), itertools.combinations(every, size)
+        ):
+            chosen = np.isin(every, subset)
+            (h,) = nearby([problems[j]], [optima[j]], [caps[j]], -chosen.astype(np.float64))
+            reach[j, subset] = float(max(optima[j][chosen].sum(), h[chosen].sum()))
     highest = max(
-        sum(reach[j, tuple(k for k in range(n) if setting[k] == j)] for j in set(setting))
+        sum(reach[j, tuple(k for k in every if setting[k] == j)] for j in set(setting))
         for setting in itertools.product(range(len(problems)), repeat=n)
     )
-    return lowest, max(given, highest)
+    return min(given, lowest), max(given, highest)
 
 
 OPTIMUM_SLACK = 1e-6
@@ -177,74 +175,39 @@ class Range:
     highest: float
 
 
+def longest_status(joints: tuple[Solution, ...]) -> Status:
+    """The worst status among the joints; *converged* at best, for the output is no optimum."""
+    order = [
+        Status.OPTIMAL,
+        Status.CONVERGED,
+        Status.FEASIBLE,
+        Status.NOT_ATTAINED,
+        Status.LIMIT,
+        Status.FAILED,
+        Status.NONE_FOUND,
+        Status.INFEASIBLE,
+    ]
+    return max((Status.CONVERGED, *(s.status for s in joints)), key=order.index)
+
+
 @dataclass(frozen=True, eq=False)
-class PerJointSolution:
+class PerJointSolution(SearchResult):
     """Each joint's own optimum, and what the longest-per-segment procedure makes of them.
 
-    The total of the procedure is its output, not an optimum of anything: where a joint's optimum
-    is flat, many totals are equally justified, and `ranges` says which.
+    Its durations are the longest of the joints', per segment, judged with all joints. The total of
+    the procedure is its output, not an optimum of anything: where a joint's optimum is flat, many
+    totals are equally justified, and `ranges` says which.
 
     Attributes
     ----------
-    problem : Problem
     joints : tuple of Solution
         One per joint.
-    vector : ndarray, shape (segments,), or None
-        Longest of the joints' durations, per segment; None where some joint has none. `durations`
-        is what users read.
-    check : Check or None
-        That vector judged with all joints.
     ranges : tuple of Range
-    why : str or None
-        Why there is no total or no range.
+        `why` says why there is none.
     """
 
-    problem: Problem
-    joints: tuple[Solution, ...]
-    vector: Array | None
-    check: Check | None
-    ranges: tuple[Range, ...]
-    why: str | None
-    solve_seconds: float
-
-    @property
-    def status(self) -> Status:
-        """The worst status among the joints; *converged* at best, for the output is no optimum."""
-        order = [
-            Status.OPTIMAL,
-            Status.CONVERGED,
-            Status.FEASIBLE,
-            Status.NOT_ATTAINED,
-            Status.LIMIT,
-            Status.FAILED,
-            Status.NONE_FOUND,
-            Status.INFEASIBLE,
-        ]
-        worst = max((s.status for s in self.joints), key=order.index)
-        return Status.CONVERGED if worst is Status.OPTIMAL else worst
-
-    @property
-    def found(self) -> bool:
-        """Whether every joint has durations."""
-        return self.vector is not None
-
-    @property
-    def durations(self) -> Array:
-        """Longest of the joints' durations, s, shape (segments,).
-
-        Raises
-        ------
-        TrajgapError
-            If some joint has none, with the reason; `found` tells.
-        """
-        if self.vector is None:
-            raise no_motion(self.status, self.why)
-        return self.vector
-
-    @property
-    def total_time(self) -> float:
-        """Total of the longest durations, s; inf without an answer."""
-        return float(self.durations.sum()) if self.vector is not None else float("inf")
+    joints: tuple[Solution, ...] = ()
+    ranges: tuple[Range, ...] = ()
 
     @property
     def joint_evidence(self) -> Evidence:
@@ -321,7 +284,7 @@ def solve_per_joint(
         durations = np.max(answers, axis=0)
         verdict = check(problem, durations)
         why = None
-        settled = all(s.status in (Status.CONVERGED, Status.OPTIMAL) for s in solutions)
+        settled = longest_status(solutions) is Status.CONVERGED
         shares = problem.shares
         if shares is not None and settled:
             # The longest of totals at the same ratios is the total: each may be as much longer.
@@ -341,12 +304,8 @@ def solve_per_joint(
                 Range(slack, *longest_per_segment_range(singles, answers, slack))
                 for slack in slacks
             ]
+    seconds = time.perf_counter() - began
+    status = longest_status(solutions)
     return PerJointSolution(
-        problem,
-        solutions,
-        durations,
-        verdict,
-        tuple(ranges),
-        why,
-        time.perf_counter() - began,
+        problem, status, why, durations, verdict, seconds, solutions, tuple(ranges)
     )

@@ -1,303 +1,409 @@
-"""The exact NLP in CasADi: durations, and derivatives at the left ends of segments.
+"""The exact NLP in CasADi, of every curve: durations, and derivatives at left ends of pieces.
 
-The derivatives q⁽ʳ⁾, r = 1..d, at the left end of a segment determine its polynomial; its Taylor
-series gives the values at the right end. The declaration's conditions are equalities between them,
-limits at left ends are bounds on variables, and limits inside segments are rows at places that
-follow the extrema. Derivatives are in time and not in the segment's parameter, so that a limit is
-one number whatever the duration.
+The derivatives q⁽ʳ⁾, r = 1..d, at the left end of a piece determine its polynomial; its Taylor
+series gives the values at the right end. The conditions of the curve are equalities between them,
+limits at left ends are bounds on variables, and limits inside pieces are rows at places that
+follow the extrema. Derivatives are in time and not in the piece's parameter, so that a limit is
+one number whatever the duration. Of a curve with a fixed shape those derivatives are no variables
+but constants over powers of a duration, and limits at left ends are rows too.
 
-Every matrix is (segments, joints): no expression is written once a segment, so that building takes
-a tenth of a second at a thousand segments.
+Every matrix is (pieces, joints): no expression is written once a piece, so that building takes a
+tenth of a second at a thousand segments.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from ...problem import QUANTITIES, Array, Interpolant, Problem
-from ...problem.curves import ConditionKind, Places, Trajectory
-from .limit_rows import REACH, Indices, Rows, Scaled, along
-from .symbolic import ca
+from ...problem.curves import ConditionKind, Conditions, Places, Trajectory, derivative_rows
+from .feasibility import forbidden_jumps
+from .pieces import Clock, Indices, Rows, Sides, ca, clocked_bend, left_derivatives, pieces_of
+
+REACH = 0.5
+"""Farthest that a place follows its extremum, in shares of its piece: one of a derivative that is
+all but constant runs to any distance, where the polynomial means nothing. With 0.1 the
+windows of a plateau over 250 segments did not join, with 0.25 one of 150 did not settle."""
 
 
-@dataclass(frozen=True, eq=False)
-class StatedConditions:
-    """What the declaration states at its breaks, shape (conditions,).
-
-    Attributes
-    ----------
-    kinds, breaks, orders : ndarray of int
-    values : ndarray, shape (conditions, joints)
-        Given derivatives, rad/sᵒʳᵈᵉʳ; 0 for matches and positions.
-    """
-
-    kinds: Indices
-    breaks: Indices
-    orders: Indices
-    values: Array
-
-    @classmethod
-    def of(cls, curve: Interpolant, joints: int) -> StatedConditions:
-        """The conditions of a declaration; derivatives that it leaves free have none."""
-        table = curve.table
-        values = np.zeros((table.kinds.size, joints))
-        given = [dict(curve.prescribed_at(b)) for b in range(curve.segments + 1)]
-        told = (table.kinds != ConditionKind.MATCH) & (table.orders > 0)
-        for i in np.flatnonzero(told).tolist():
-            values[i] = given[table.breaks[i]][int(table.orders[i])]
-        return cls(table.kinds, table.breaks, table.orders, values)
-
-
-class Program(Scaled):
-    """The NLP of a declared curve, in units of order one, with its expressions.
+class Program:
+    """The NLP of a problem, in units of order one, with its expressions.
 
     Parameters
     ----------
     problem : Problem
-        With a piecewise polynomial.
     unit : float
-        Time unit, s.
+        Time unit, s. That of angles is each joint's mean way between way-points.
     floor : ndarray, shape (segments,)
         Least durations, s.
+
+    Raises
+    ------
+    TrajgapError
+        If no NLP is known for the kind of curve.
     """
 
     def __init__(self, problem: Problem, unit: float, floor: Array) -> None:
-        super().__init__(problem, unit, floor)
-        curve = problem.piecewise
-        self.degrees = np.array(curve.degrees, dtype=np.int64)
-        self.top = int(self.degrees.max())
-        self._plan = StatedConditions.of(curve, self.joints)
-        self._held = {r: np.flatnonzero(self.degrees >= r) for r in range(1, self.top + 1)}
-        self._row = {r: _inverted(k, self.segments) for r, k in self._held.items()}
-        self._virtual = np.array(curve.virtual, dtype=np.int64)
-        self._declare()
-        self.equalities = self._equalities()
+        self.problem, self.unit, self._floor = problem, unit, floor
+        self.segments, self.joints = problem.segments, problem.waypoints.shape[1]
+        steps = np.abs(np.diff(problem.waypoints, axis=0)).mean(axis=0)
+        self.angle = np.where(steps > 0, steps, 1.0)
+        self.sides = Sides(problem, unit, self.angle)
+        self.pieces = pieces_of(problem)
+        self.degrees = self.pieces.degrees
+        held = {r: np.flatnonzero(self.degrees >= r) for r in range(1, 1 + self.degrees.max())}
+        self._held = held
+        self._row = {r: _inverted(k, self.degrees.size) for r, k in held.items()}
+        self.durations = ca.MX.sym("h", self.segments)
+        self._widths = self._widths_of_pieces()
+        self._clock: Clock | None = None
+        if self.pieces.scaled is not None:
+            self._of_shape(self.pieces.scaled)
+        elif self.pieces.declared is not None:
+            self._of_conditions(self.pieces.declared)
         self.ends = self._end_places()
 
-    def _declare(self) -> None:
-        n, joints = self.segments, self.joints
-        self.durations = ca.MX.sym("h", n)
-        self._d = {r: ca.MX.sym(f"d{r}", len(k), joints) for r, k in self._held.items()}
-        free = ca.MX.sym("q", self._virtual.size, joints)
-        breaks = list(self.problem.curve.waypoint_breaks)
-        shifted = (self.problem.waypoints - self.problem.waypoints[0]) / self.angle
-        self._fixed = np.zeros((n + 1, joints))
-        self._fixed[breaks] = shifted
+    def _widths_of_pieces(self) -> Any:
+        """Durations of the pieces, a column for each joint."""
+        widths = self.pieces.widths
+        if widths is None:
+            return ca.repmat(self.durations, 1, self.joints)
+        columns = [ca.mtimes(ca.sparsify(ca.DM(own)), self.durations) for own in widths]
+        return ca.horzcat(*columns) if len(columns) > 1 else ca.repmat(columns[0], 1, self.joints)
+
+    def _of_shape(self, scaled: Array) -> None:
+        """Constants in the place of variables; a clock gives its own derivatives."""
+        scaled = scaled / self.angle
+        scaled[:, 0] -= self.problem.waypoints[0] / self.angle
+        self._q, none = ca.DM(scaled[:, 0]), np.zeros(0, dtype=np.int64)
+        self.left, self._given = Places(none, none, none, np.zeros(0)), np.zeros(0)
+        if self.pieces.clock is not None:
+            self._clock, self._held = Clock(self.pieces.clock, scaled, self.durations), {}
+        self._d = {
+            r: ca.DM(math.factorial(r) * scaled[k, r]) / self._widths[k.tolist(), :] ** r
+            for r, k in self._held.items()
+        }
+        self.variables, self.equalities = self.durations, self._fixed_ratios()
+
+    def _of_conditions(self, curve: Interpolant) -> None:
+        """Variables at left ends, and what the curve says of right ends."""
+        joints, table, values = self.joints, curve.table, _stated_values(curve, self.joints)
+        q = (self.problem.waypoints - self.problem.waypoints[0]) / self.angle
+        self._fixed = np.zeros((self.degrees.size + 1, joints))
+        self._fixed[list(curve.waypoint_breaks)] = q[[0, -1]] if self.pieces.passed else q
         self._q = ca.MX(ca.DM(self._fixed))
-        if self._virtual.size:
-            self._q[self._virtual.tolist(), :] = free
-        parts = [ca.vec(self._d[r]) for r in range(1, self.top + 1)]
-        self.variables = ca.vertcat(self.durations, *parts, ca.vec(free))
-        sizes = [n, *(len(k) * joints for k in self._held.values()), self._virtual.size * joints]
-        self._offset = np.concatenate([[0], np.cumsum(sizes)])
+        virtual = np.array(curve.virtual, dtype=np.int64)
+        symbols = {r: ca.MX.sym(f"d{r}", len(k), joints) for r, k in self._held.items()}
+        self._d, free = symbols, ca.MX.sym("q", virtual.size, joints)
+        if virtual.size:
+            self._q[virtual.tolist(), :] = free
+        self.variables = ca.vertcat(self.durations, *map(ca.vec, symbols.values()), ca.vec(free))
+        found = []
+        for r, k in (*self._held.items(), (0, virtual)):
+            given = np.full((k.size, joints), np.nan)
+            i = np.flatnonzero((table.kinds == ConditionKind.RIGHT_VALUE) & (table.orders == r))
+            if r:
+                at = self._row[r][table.breaks[i]]
+                given[at] = values[i] * self.unit**r / self.angle
+            j, row = np.divmod(np.arange(given.size), max(1, k.size))
+            found.append(np.array([j, k[row], np.full(j.size, r), given.ravel("F")]))
+        columns = np.hstack(found)
+        joint, piece, order = columns[:3].astype(np.int64)
+        self.left, self._given = Places(joint, piece, order, np.zeros(joint.size)), columns[3]
+        stated = [*self._conditions(table, values), *self._passed(q), self._fixed_ratios()]
+        self.equalities = ca.vertcat(*stated, *self._without_jumps())
 
     def __str__(self) -> str:
-        p, rows = self.problem, self.ends.s.size
-        limited = [
-            q for q, s in zip(QUANTITIES, self.sides.scale.T, strict=True) if s.min() < np.inf
-        ]
-        if p.limits.limits_position:
-            limited.insert(0, "position")
-        free = f", {self._virtual.size * self.joints} positions" if self._virtual.size else ""
-        states = int(self._offset[-2]) - self.segments
+        p, rows, states = self.problem, self.ends.s.size, int((self.left.order > 0).sum())
+        scales = zip(QUANTITIES, self.sides.scale.T, strict=True)
+        limited = ["position"] if p.limits.limits_position else []
+        limited += [quantity for quantity, scale in scales if scale.min() < np.inf]
+        variables = f"{self.segments} durations"
+        if states:
+            variables += f", {states} derivatives at left ends of pieces"
+        if states < self.left.s.size:
+            variables += f", {self.left.s.size - states} positions"
+        stated = ["the curve's conditions at right ends"] if states else []
+        stated += ["way-points at their times"] if self.pieces.passed else []
+        stated += ["the fixed ratios"] if p.ratios is not None else []
+        stated += ["no jump that the limits forbid"] if forbidden_jumps(p) else []
         return (
             f"minimise the sum of {self.segments} segment durations\n"
-            f"  curve        {p.curve.name}, {self.joints} joint(s)\n"
-            f"  variables    {self.variables.numel()}: {self.segments} durations, "
-            f"{states} derivatives at left ends of segments{free}\n"
-            f"  equalities   {self.equalities.numel()}: the declaration's conditions at right ends"
-            f"{' and the fixed ratios' if p.ratios is not None else ''}\n"
-            f"  limits       on {', '.join(limited) or 'nothing'}: bounds at left ends,\n"
-            f"               {rows} rows at right ends, and a row at each extremum inside a\n"
-            "               segment, found anew in each round"
+            f"  curve        {p.curve.name}, {self.joints} joint(s), {self.degrees.size} pieces\n"
+            f"  variables    {self.variables.numel()}: {variables}\n"
+            f"  equalities   {self.equalities.numel()}: {', '.join(stated) or 'none'}\n"
+            f"  limits       on {', '.join(limited) or 'nothing'}: "
+            f"{'bounds at left ends, ' if states else ''}{rows} rows at ends,\n"
+            "               and a row at each extremum inside a piece, found anew in each round"
         )
 
-    def _taylor(self, order: int, k: Indices) -> Any:
-        """Derivative of some segments of one degree at their ends; of order 0 their way."""
-        h = self.durations if k.size == self.segments else self.durations[k.tolist()]
-        t = ca.repmat(h, 1, self.joints)
-        return self._series(order, int(self.degrees[k[0]]), t, lambda r: self._left(r, k))
-
-    def _series(self, order: int, degree: int, t: Any, left: Any) -> Any:
+    def _series(self, order: int, degree: int, t: Any, left: Callable[[int], Any]) -> Any:
+        """Derivative at time ``t`` of a piece, from those at its left end; of order 0 its way."""
         value: Any = ca.MX.zeros(*t.shape)
         for m in range(degree, max(order, 1) - 1, -1):
             value = value * t + left(m) / math.factorial(m - order)
         return value * t if order == 0 else value
 
     def _left(self, r: int, k: Indices) -> Any:
-        if k.size == self._held[r].size:
+        """Derivative of pieces at their left ends, (pieces, joints); 0 above their degree."""
+        if k.size == self._held[r].size == self.degrees.size:
             return self._d[r]
-        return self._d[r][self._row[r][k].tolist(), :]
+        there = self.degrees[k] >= r
+        rows = self._d[r][self._row[r][k[there]].tolist(), :]
+        if there.all():
+            return rows
+        out = ca.MX.zeros(k.size, self.joints)
+        if there.any():
+            out[np.flatnonzero(there).tolist(), :] = rows
+        return out
 
-    def _equalities(self) -> Any:
-        """What the declaration says of right ends, and the fixed ratios of durations."""
-        plan, unit = self._plan, self.unit
-        rows = np.flatnonzero(plan.kinds != ConditionKind.RIGHT_VALUE)
-        keys = np.stack([plan.kinds[rows], plan.orders[rows], self.degrees[plan.breaks[rows] - 1]])
+    def _conditions(self, table: Conditions, values: Array) -> list[Any]:
+        """What the curve says of right ends, joint by joint."""
         found = []
-        for kind, r, degree in np.unique(keys, axis=1).T.tolist():
-            i = rows[(keys == np.array([[kind], [r], [degree]])).all(axis=0)]
-            b = plan.breaks[i]
-            value = self._taylor(r, b - 1)
+        rows = np.flatnonzero(table.kinds != ConditionKind.RIGHT_VALUE)
+        degree = self.degrees[table.breaks[rows] - 1]
+        keys = np.stack([table.kinds[rows], table.orders[rows], degree])
+        for kind, r, d in np.unique(keys, axis=1).T.tolist():
+            i = rows[(keys == np.array([[kind], [r], [d]])).all(axis=0)]
+            b = table.breaks[i]
+            t = self._widths if b.size == self.degrees.size else self._widths[(b - 1).tolist(), :]
+            value = self._series(r, d, t, partial(self._left, k=b - 1))
             if r == 0:
                 wanted = self._q[b.tolist(), :] - self._q[(b - 1).tolist(), :]
             elif kind == ConditionKind.LEFT_VALUE:
-                wanted = ca.DM(plan.values[i] * unit**r / self.angle)
+                wanted = ca.DM(values[i] * self.unit**r / self.angle)
             else:
-                there = self.degrees[b] >= r
-                if there.all():
-                    wanted = self._left(r, b)
-                else:
-                    wanted = ca.MX.zeros(b.size, self.joints)
-                    if there.any():
-                        wanted[np.flatnonzero(there).tolist(), :] = self._left(r, b[there])
+                wanted = self._left(r, b)
             found.append(ca.vec(value - wanted))
-        shares = self.problem.shares
-        if shares is not None:
-            h = self.durations
-            found.append(h[1:] * shares[0] - ca.DM(shares[1:]) * h[0])
-        return ca.vertcat(*found)
+        return found
+
+    def _without_jumps(self) -> list[Any]:
+        """Derivatives that agree at a break since a motion that passes must not jump there."""
+        places, found = np.array(forbidden_jumps(self.problem), dtype=np.int64).reshape(-1, 3), []
+        degrees = self.degrees[places[:, 0] - 1]
+        for r, degree in sorted(set(zip(places[:, 1].tolist(), degrees.tolist(), strict=True))):
+            at, _, joint = places[(places[:, 1] == r) & (degrees == degree)].T
+            b = np.unique(at)
+            t, left = self._widths[(b - 1).tolist(), :], partial(self._left, k=b - 1)
+            step = self._series(r, degree, t, left) - self._left(r, b)
+            found.append(ca.vec(step)[(np.searchsorted(b, at) + b.size * joint).tolist()])
+        return found
+
+    def _passed(self, q: Array) -> list[Any]:
+        """Positions at the times of way-points that lie inside pieces.
+
+        A time t may pass a knot. The value is that of the piece with t_k ≤ t < t_{k+1}: a function
+        of the durations with p − 1 continuous derivatives, as the spline has. Beside a curve's c
+        end conditions, way-point w lies in one of p + 1 pieces (Schoenberg and Whitney).
+        """
+        passed = self.pieces.passed
+        found: list[Any] = []
+        if not passed:
+            return found
+        p, last, c = int(self.degrees[0]), self.degrees.size - 1, len(self.problem.curve.ends[0])
+        near = [(i, k) for i, w in enumerate(passed) for k in range(w + c - p, w + c + 1)]
+        i, k = np.array([(i, k) for i, k in near if 0 <= k <= last], dtype=np.int64).T
+        time = ca.cumsum(self.durations)[[passed[row] - 1 for row in i]]
+        sums = ca.sparsify(ca.DM(np.eye(len(passed))[:, i]))
+        for j in range(self.joints):
+            knots = ca.vertcat(0, ca.cumsum(self._widths[:, j]))
+            t = time - knots[k.tolist()]
+            inside = ca.logic_and(t >= 0, time < knots[(k + 1).tolist()])
+            left = {m: d[k.tolist(), j] for m, d in self._d.items()}
+            value = self._q[k.tolist(), j] + self._series(0, p, t, left.__getitem__)
+            found.append(ca.mtimes(sums, inside * value) - ca.DM(q[list(passed), j]))
+        return found
+
+    def _fixed_ratios(self) -> Any:
+        h, shares = self.durations, self.problem.shares
+        return ca.MX(0, 1) if shares is None else h[1:] * shares[0] - ca.DM(shares[1:]) * h[0]
 
     def _end_places(self) -> Places:
-        """Right ends at which a limited derivative is neither given nor bounded on the left."""
-        curve = self.problem.piecewise
-        found: list[tuple[int, int, int]] = []
+        """Ends of pieces at which a limited derivative is neither given nor bounded otherwise."""
+        declared, last = self.pieces.declared, self.degrees.size
+        given = {0: self.problem.curve.ends[0], last: self.problem.curve.ends[1]}
+        if declared is not None:
+            given = dict(enumerate(map(declared.prescribed_at, range(last + 1))))
+        orders = {b: {order for order, _ in at} for b, at in given.items() if at}
+        found: list[tuple[int, int, int, float]] = []
         for r in (1, 2, 3):
-            joints = np.flatnonzero(np.isfinite(self.sides.scale[:, r - 1]))
-            smooth = np.array([*curve.continuity, -1])  # nothing bounds the last right end but rows
-            open_ = (self.degrees > r) & (smooth < r)
-            for k in np.flatnonzero(open_).tolist():
-                given = any(order == r for order, _ in curve.prescribed_at(k + 1))
-                found += [] if given else [(int(j), k, r) for j in joints]
-        whole = np.array(found, dtype=np.int64).reshape(-1, 3)
-        places = Places(whole[:, 0], whole[:, 1], whole[:, 2], np.ones(len(whole)))
-        at = self.order_of_rows(places)
-        return replace(places, joint=whole[at, 0], segment=whole[at, 1], order=whole[at, 2])
+            joints = np.flatnonzero(np.isfinite(self.sides.scale[:, r - 1])).tolist()
+            right = (self.degrees > r) & ~self.pieces.smooth(r)
+            left = (self.degrees >= r) & (declared is None)
+            for s, at in ((0.0, left), (1.0, right)):
+                for k in np.flatnonzero(at).tolist():
+                    if r not in orders.get(k + int(s), ()):
+                        found += [(j, k, r, s) for j in joints]
+        whole = np.array(found, dtype=np.float64).reshape(-1, 4)
+        joint, segment, order = whole[:, :3].T.astype(np.int64)
+        return Places(joint, segment, order, whole[:, 3])
 
     def at_places(self, places: Places, weight: Array) -> Any:
         """Derivatives at places that follow their extremum, over their limits (positions plain)."""
-        found = []
-        for r, degree in sorted(set(zip(places.order, self.degrees[places.segment], strict=True))):
-            i = (places.order == r) & (self.degrees[places.segment] == degree)
-            found.append(self._some(places, weight, np.flatnonzero(i), int(r), int(degree)))
-        return ca.vertcat(*found) if found else ca.MX(0, 1)
+        found, numbers = [], []
+        degree = self.degrees[places.segment]
+        for r, d in sorted(set(zip(places.order.tolist(), degree.tolist(), strict=True))):
+            i = np.flatnonzero((places.order == r) & (degree == d))
+            k, j = places.segment[i], places.joint[i]
+            value, speed = self._motion(k, j, r, d)
+            s = ca.DM(places.s[i])
+            if weight[i].any():
+                # f′ is dt/ds times the next derivative in time.
+                step = ca.DM(weight[i]) * speed(s) * value(r + 1, s)
+                s = s - REACH * ca.tanh(step / REACH)
+            size = 1.0 if r == 0 else ca.DM(self.sides.scale[j, r - 1])
+            found.append(value(r, s) / size)
+            numbers.append(i)
+        if not found:
+            return ca.MX(0, 1)
+        back = np.argsort(np.concatenate(numbers))
+        together = ca.vertcat(*found)
+        return together if (np.diff(back) == 1).all() else together[back.tolist()]
 
-    def order_of_rows(self, places: Places) -> Indices:
-        """The order in which `at_places` answers."""
-        return np.lexsort(
-            (np.arange(places.s.size), self.degrees[places.segment], places.order)
-        ).astype(np.int64)
-
-    def _some(self, places: Places, weight: Array, i: Indices, r: int, degree: int) -> Any:
-        k, j = places.segment[i], places.joint[i]
+    def _motion(self, k: Indices, j: Indices, lowest: int, degree: int) -> tuple[Any, Any]:
+        """Derivatives in time and dt/ds, functions of the place, of pieces with their joints."""
+        if self._clock is not None:
+            return self._clock.motion(k, j)
         # One number, taken several times, is a row.
-        h = ca.vec(self.durations[k.tolist()])
-        flat = {
+        h = ca.vec(ca.vec(self._widths)[(k + self.degrees.size * j).tolist()])
+        left = {
             m: ca.vec(ca.vec(self._d[m])[(self._row[m][k] + self._held[m].size * j).tolist()])
-            for m in range(max(r, 1), degree + 1)
+            for m in range(max(lowest, 1), degree + 1)
         }
-        s, w = ca.DM(places.s[i]), weight[i]
-        if w.any():
-            # f′(s) is h times the next derivative in time.
-            step = ca.DM(w) * h * self._series(r + 1, degree, s * h, flat.__getitem__)
-            s = s - REACH * ca.tanh(step / REACH)
-        value = self._series(r, degree, s * h, flat.__getitem__)
-        if r == 0:
-            return value + ca.vec(ca.vec(self._q)[(k + (self.segments + 1) * j).tolist()])
-        return value / ca.DM(self.sides.scale[j, r - 1])
+        first = ca.vec(ca.vec(self._q)[(k + self._q.shape[0] * j).tolist()]) if lowest == 0 else 0
 
-    def rows_at(self, trajectory: Trajectory, places: Places, sign: Array, flat: float) -> Rows:
-        """Rows at extrema of a motion; the weight is 1/f″, 0 where f″ is below ``flat``.
+        def value(order: int, s: Any) -> Any:
+            found = self._series(order, degree, s * h, left.__getitem__)
+            return found + first if order == 0 else found
 
-        f is a derivative in units of order one as a function of s.
+        return value, lambda s: h
+
+    def slope(self, trajectory: Trajectory, places: Places, times: int) -> Array:
+        """Derivatives by the place of f, a derivative in time as a function of the place.
+
+        Parameters
+        ----------
+        trajectory : Trajectory
+        places : Places
+            With a clock, those where f turns.
+        times : int
+            1 for f′, 2 for f″; with a clock 2.
         """
-        curvature = along(trajectory, places, 2)
-        rate = (self.unit / trajectory.durations[places.segment]) ** places.order
-        curvature = curvature * rate / self.angle[places.joint]
-        limits = self.sides.scale[places.joint, np.maximum(places.order, 1) - 1]
-        stays = np.abs(curvature) < flat * np.where(places.order == 0, 1.0, limits)
-        return Rows(places, sign, np.where(stays, 0.0, 1.0 / np.where(stays, 1.0, curvature)))
+        unit = self.unit**places.order / self.angle[places.joint]
+        if self._clock is not None:
+            return clocked_bend(trajectory, places) * unit
+        a = trajectory.scaled[places.segment, :, places.joint]
+        found = (derivative_rows(places.s, places.order + times) * a).sum(axis=1)
+        return np.asarray(found * unit / trajectory.durations[places.segment] ** places.order)
+
+    def followed(self, trajectory: Trajectory, rows: Rows) -> Rows:
+        """Rows where a motion has them: those that follow an extremum at its side."""
+        table = rows.table.copy()
+        step = rows.weight * self.slope(trajectory, rows.places, 1)
+        table[:, 3] -= REACH * np.tanh(step / REACH)
+        return Rows(table)
+
+    def rooms(self, places: Places, sign: Array) -> Array:
+        """Limits of rows: derivatives in shares of the larger side, positions in angles."""
+        limits, first, j = self.problem.limits, self.problem.waypoints[0], places.joint
+        r = np.clip(places.order, 1, 3) - 1
+        at = np.where(sign > 0, limits.position_upper[j], limits.position_lower[j])
+        side = np.where(sign > 0, self.sides.high[j, r], self.sides.low[j, r])
+        return np.asarray(np.where(places.order == 0, (at - first[j]) / self.angle[j], side))
+
+    def stated(self) -> tuple[Any, Array, Array]:
+        """Equalities, rows at ends, and that a clock goes on, with what they lie between."""
+        ends, zero = self.ends, np.zeros(self.equalities.numel())
+        low, high = (self.rooms(ends, np.full(ends.s.size, sign)) for sign in (-1.0, 1.0))
+        at_ends = self.at_places(ends, np.zeros(ends.s.size))
+        going = ca.MX(0, 1) if self._clock is None else self._clock.speeds()
+        low = np.concatenate([zero, low, np.zeros(going.numel())])
+        high = np.concatenate([zero, high, np.full(going.numel(), np.inf)])
+        return ca.vertcat(self.equalities, at_ends, going), low, high
 
     def bounds(self) -> tuple[Array, Array]:
         """Bounds on the variables: durations, limits at left ends, given derivatives."""
-        problem, plan, unit = self.problem, self._plan, self.unit
-        low, high = ([bound] for bound in self.duration_bounds())
-        right = plan.kinds == ConditionKind.RIGHT_VALUE
-        for r, held in self._held.items():
-            edges = (np.full(self.joints, -np.inf), np.full(self.joints, np.inf))
-            if r <= 3:
-                size = self.sides.scale[:, r - 1]
-                edges = size * self.sides.low[:, r - 1], size * self.sides.high[:, r - 1]
-            lower, upper = (np.tile(edge, (held.size, 1)) for edge in edges)
-            i = np.flatnonzero(right & (plan.orders == r))
-            at = self._row[r][plan.breaks[i]]
-            lower[at] = upper[at] = plan.values[i] * unit**r / self.angle
-            low.append(lower.ravel("F"))
-            high.append(upper.ravel("F"))
-        first = problem.waypoints[0]
-        for bound, out in (
-            (problem.limits.position_lower, low),
-            (problem.limits.position_upper, high),
-        ):
-            out.append(np.tile((bound - first) / self.angle, (self._virtual.size, 1)).ravel("F"))
-        return np.concatenate(low), np.concatenate(high)
+        low = np.maximum(self.problem.duration_lower, self._floor) / self.unit
+        found = [low, np.maximum(self.problem.duration_upper / self.unit, low)]
+        for i, sign in enumerate((-1.0, 1.0)):
+            rooms = self.rooms(self.left, np.full(self.left.s.size, sign)) * self._sizes(self.left)
+            edge = np.where(self.left.order <= 3, rooms, sign * np.inf)
+            edge = np.where(np.isnan(self._given), edge, self._given)
+            found[i] = np.append(found[i], edge)
+        return found[0], found[1]
+
+    def _sizes(self, places: Places) -> Array:
+        """What limits are shares of: the larger side of a derivative; 1 of positions."""
+        size = self.sides.scale[places.joint, np.clip(places.order, 1, 3) - 1]
+        return np.where((places.order == 0) | np.isinf(size), 1.0, size)
 
     def pack(self, trajectory: Trajectory, durations: Array) -> Array:
         """Variables at a motion with these durations."""
-        scaled = trajectory.scaled
-        parts = [durations / self.unit]
-        for r, held in self._held.items():
-            rate = math.factorial(r) / (durations[held] / self.unit) ** r
-            parts.append((scaled[held, r] * rate[:, None] / self.angle).ravel("F"))
-        at = scaled[self._virtual, 0] - self.problem.waypoints[0]
-        return np.concatenate([*parts, (at / self.angle).ravel("F")])
-
-    def trajectory(self, x: Array) -> Trajectory:
-        """The polynomials that variables stand for, from the derivatives at left ends."""
-        size, joints = self.segments, self.joints
-        h = x[:size]
-        scaled = np.zeros((size, self.top + 1, joints))
-        scaled[:, 0] = self._fixed[:-1]
-        scaled[self._virtual, 0] = x[self._offset[-2] :].reshape(joints, -1).T
-        for r, held in self._held.items():
-            own = x[self._offset[r] : self._offset[r + 1]].reshape(joints, -1).T
-            scaled[held, r] = own * (h[held] ** r / math.factorial(r))[:, None]
-        scaled *= self.angle
-        scaled[:, 0] += self.problem.waypoints[0]
-        return Trajectory(h * self.unit, scaled, tuple(self.degrees.tolist()))
+        at, h = self.left, durations / self.unit
+        if not at.s.size:
+            return h
+        left = left_derivatives(self.pieces, self.problem, trajectory, durations)
+        left[:, 0] -= self.problem.waypoints[0]
+        values = left[at.segment, at.order, at.joint] * self.unit**at.order / self.angle[at.joint]
+        return np.append(h, values)
 
     def motion(self, x: Array) -> tuple[Array, Array | None]:
         """Durations, s, and free derivatives, where the declaration leaves some."""
-        curve, trajectory = self.problem.piecewise, self.trajectory(x)
-        nodal = free_values(curve, trajectory) if curve.free else None
-        return trajectory.durations, nodal
+        h, curve, at = x[: self.segments], self.problem.curve.piecewise, self.left
+        if curve is None or not curve.free:
+            return h * self.unit, None
+        scaled = np.zeros((self.segments, 1 + len(self._held), self.joints))
+        scaled[:, 0] = self._fixed[:-1]
+        factorials = np.array([math.factorial(r) for r in range(scaled.shape[1])])
+        rates = h[at.segment] ** at.order / factorials[at.order]
+        scaled[at.segment, at.order, at.joint] = x[self.segments :] * rates
+        scaled = scaled * self.angle
+        scaled[:, 0] += self.problem.waypoints[0]
+        trajectory = Trajectory(h * self.unit, scaled, tuple(self.degrees.tolist()))
+        return trajectory.durations, free_values(curve, trajectory)
 
-    def left_places(self) -> tuple[Places, Indices]:
-        """Limits that are bounds on variables, as places, and the variables' numbers."""
-        found: list[tuple[Indices, Indices, Indices, Indices]] = []
-        for r, held in self._held.items():
-            if r > 3:
-                break
-            j = np.flatnonzero(np.isfinite(self.sides.scale[:, r - 1]))
-            joint, row = np.repeat(j, held.size), np.tile(np.arange(held.size), j.size)
-            number = self._offset[r] + joint * held.size + row
-            found.append((joint, held[row], np.full(joint.size, r), number))
-        count = self._virtual.size
-        joint, row = (
-            np.repeat(np.arange(self.joints), count),
-            np.tile(np.arange(count), self.joints),
+    def priced(
+        self, bounds: Array, stated: Array, rows: Rows, duals: Array
+    ) -> tuple[Places, Array, Array]:
+        """What multipliers say of limits at places, and of bounds on durations, in seconds.
+
+        Parameters
+        ----------
+        bounds, stated : ndarray
+            Multipliers of the bounds on variables, and of what the program states.
+        rows : Rows
+        duals : ndarray
+            Their multipliers.
+
+        Returns
+        -------
+        places : Places
+        limits : ndarray
+            Of the limits there, in shares of the larger side (positions in rad), signed by the
+            side.
+        walls : ndarray, shape (segments,)
+            Of the bounds on durations, s per s, signed by the side.
+        """
+        low, high = (bound[self.segments :] for bound in self.bounds())
+        # What is given is no limit, nor is what has none.
+        at = (low < high) & (np.isfinite(low) | np.isfinite(high))
+        parts, first = (self.left, self.ends, rows.places), self.equalities.numel()
+        keep = np.append(at, np.ones(self.ends.s.size + duals.size, dtype=bool))
+        joint, segment, order, s = (
+            np.concatenate([getattr(part, name) for part in parts])[keep]
+            for name in ("joint", "segment", "order", "s")
         )
-        number = self._offset[-2] + joint * count + row
-        found.append((joint, self._virtual[row], np.zeros(joint.size, dtype=np.int64), number))
-        joint, segment, order, number = (np.concatenate([f[i] for f in found]) for i in range(4))
-        low, high = self.bounds()
-        at = np.flatnonzero(low[number] < high[number])  # what is given is no limit
-        places = Places(joint[at], segment[at], order[at], np.zeros(at.size))
-        return places, np.asarray(number[at])
+        # A bound on a variable is no share of its limit, as the rows are.
+        left = (bounds[self.segments :] * self._sizes(self.left))[at]
+        limits = np.concatenate([left, stated[first : first + self.ends.s.size], duals])
+        angle = np.where(order == 0, self.angle[joint], 1.0)
+        places = Places(joint, segment, order, s)
+        return places, limits * self.unit / angle, bounds[: self.segments]
 
 
 def free_values(curve: Interpolant, trajectory: Trajectory) -> Array:
@@ -321,8 +427,19 @@ def free_values(curve: Interpolant, trajectory: Trajectory) -> Array:
     return nodal
 
 
+def _stated_values(curve: Interpolant, joints: int) -> Array:
+    """Derivatives that conditions give, rad/sᵒʳᵈᵉʳ, (conditions, joints); 0 for the others."""
+    table = curve.table
+    values = np.zeros((table.kinds.size, joints))
+    given = [dict(curve.prescribed_at(b)) for b in range(curve.segments + 1)]
+    told = (table.kinds != ConditionKind.MATCH) & (table.orders > 0)
+    for i in np.flatnonzero(told).tolist():
+        values[i] = given[table.breaks[i]][int(table.orders[i])]
+    return values
+
+
 def _inverted(held: Indices, size: int) -> Indices:
-    """Row of each segment among those held; −1 elsewhere."""
+    """Row of each piece among those held; −1 elsewhere."""
     out = np.full(size, -1, dtype=np.int64)
     out[held] = np.arange(held.size)
     return out

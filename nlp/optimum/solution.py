@@ -8,7 +8,7 @@ from enum import StrEnum
 
 import numpy as np
 
-from ...problem import Array, Check, Problem, Trajectory, TrajgapError, fit
+from ...problem import TOLERANCE, Array, Check, Problem, Trajectory, TrajgapError, fit
 from ...problem.motions import Samples, sampled
 from ...verify import shown_bound
 from .optimality import Active
@@ -20,8 +20,6 @@ search above it, and an infimum above 0 is nearly reached there."""
 
 WIDEST = 0.01
 """Relative width up to which an interval is narrow enough to call the optimum certified."""
-_MET = 1e-9
-"""Relative distance of a proved bound at which it meets a value: what rounding explains."""
 
 
 def close(lower: float, upper: float) -> bool:
@@ -84,14 +82,9 @@ def weakest(evidence: Iterable[Evidence]) -> Evidence:
     return max(evidence, key=order.index, default=Evidence.NONE)
 
 
-def no_motion(status: Status, why: str | None) -> TrajgapError:
-    """The error of whoever asks an answer without a motion for it."""
-    return TrajgapError(f"no motion: {status}" + (f", {why}" if why else ""))
-
-
 @dataclass(frozen=True, eq=False)
-class Solution:
-    """Answer of the exact side to a `Problem` with shared durations.
+class SearchResult:
+    """What a search comes to: durations that `check` has judged, or the reason why there are none.
 
     Attributes
     ----------
@@ -101,10 +94,51 @@ class Solution:
         The reason, where the status needs one.
     vector : ndarray, shape (segments,), or None
         The durations, or None where there is no motion; `durations` is what users read.
-    nodal : ndarray, shape (free, joints), or None
-        Free derivatives of an under-determined curve.
     check : Check or None
         The checker's verdict on the durations.
+    solve_seconds : float
+    """
+
+    problem: Problem
+    status: Status
+    why: str | None = None
+    vector: Array | None = None
+    check: Check | None = None
+    solve_seconds: float = 0.0
+
+    @property
+    def found(self) -> bool:
+        """Whether there is a motion."""
+        return self.vector is not None
+
+    @property
+    def durations(self) -> Array:
+        """Durations of the segments, s, shape (segments,).
+
+        Raises
+        ------
+        TrajgapError
+            If there is no motion, with the reason; `found` tells.
+        """
+        if self.vector is None:
+            why = f", {self.why}" if self.why else ""
+            raise TrajgapError(f"no motion: {self.status}{why}")
+        return self.vector
+
+    @property
+    def total_time(self) -> float:
+        """Sum of the durations, s; inf without an answer, so that no comparison passes."""
+        return float(self.durations.sum()) if self.vector is not None else float("inf")
+
+
+@dataclass(frozen=True, eq=False)
+class Solution(SearchResult):
+    """Answer of the exact side to a `Problem` with shared durations.
+
+    Attributes
+    ----------
+    nodal : ndarray, shape (free, joints), or None
+        Free derivatives of an under-determined curve.
     route : Route or None
         How it was found; None without durations.
     other_total : float or None
@@ -123,15 +157,10 @@ class Solution:
         Starts of the solver, and how many ended within 1e-6 (relative) of the best.
     iterations : int
         Solver iterations over all starts.
-    build_seconds, solve_seconds : float
+    build_seconds : float
     """
 
-    problem: Problem
-    status: Status
-    why: str | None = None
-    vector: Array | None = None
     nodal: Array | None = None
-    check: Check | None = None
     route: Route | None = None
     other_total: float | None = None
     infimum: float | None = None
@@ -142,31 +171,7 @@ class Solution:
     starts_at_best: int = 0
     iterations: int = 0
     build_seconds: float = 0.0
-    solve_seconds: float = 0.0
     totals: tuple[float, ...] = field(default=(), repr=False)
-
-    @property
-    def found(self) -> bool:
-        """Whether there is a motion."""
-        return self.vector is not None
-
-    @property
-    def durations(self) -> Array:
-        """Durations of the segments, s, shape (segments,).
-
-        Raises
-        ------
-        TrajgapError
-            If there is no motion, with the reason; `found` tells.
-        """
-        if self.vector is None:
-            raise no_motion(self.status, self.why)
-        return self.vector
-
-    @property
-    def total_time(self) -> float:
-        """Sum of the durations, s; inf without an answer, so that no comparison passes."""
-        return float(self.durations.sum()) if self.vector is not None else float("inf")
 
     @property
     def best(self) -> float:
@@ -183,7 +188,9 @@ class Solution:
         """Whether nothing lies below the value approached: it is 0, or a proved bound meets it."""
         if self.infimum is None:
             return False
-        return self.best == 0.0 or (self.lower_bound or 0.0) >= self.infimum * (1.0 - _MET)
+        return self.best == 0.0 or (self.lower_bound or 0.0) >= self.infimum * (
+            1.0 - TOLERANCE
+        )  # what rounding explains
 
     @property
     def boundless(self) -> str | None:
@@ -195,14 +202,18 @@ class Solution:
         return "nothing that is limited keeps the total from 0, so that no motion is the shortest"
 
     @property
+    def settled(self) -> bool:
+        """Whether it meets the conditions of an optimum, or of a total that is not attained."""
+        return self.status in (Status.CONVERGED, Status.OPTIMAL, Status.NOT_ATTAINED)
+
+    @property
     def evidence(self) -> Evidence:
         """Certified with a lower bound within 1 %; best known only where the search converged."""
         if self.vector is None:
             return Evidence.NONE
         if self.lower_bound is not None and close(self.lower_bound, self.best):
             return Evidence.CERTIFIED
-        ended = self.status in (Status.CONVERGED, Status.OPTIMAL, Status.NOT_ATTAINED)
-        return Evidence.BEST_KNOWN if ended else Evidence.UNCONVERGED
+        return Evidence.BEST_KNOWN if self.settled else Evidence.UNCONVERGED
 
     @property
     def trajectory(self) -> Trajectory:

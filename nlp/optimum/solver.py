@@ -4,60 +4,61 @@ from __future__ import annotations
 
 import math
 import time
-from dataclasses import replace
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import partial
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...problem import Array, Problem, check
-from .basins import (
-    basins,
-    exact_search,
-    moving_at_floor,
-    short_ways,
-    shortened,
-    tolerated_search,
-)
+from ...problem import TOLERANCE, Array, Problem, TrajgapError, check
+from .basins import basins, exact_search, shortened
 from .clock import stopping_after, time_up
-from .closed_forms import cut_short, unsearched
-from .decided import decided, kept, stretched
-from .feasibility import apart
-from .fixed_ratios import at_ratios
-from .judgement import BETTER, ROUNDED, better_of, judged
-from .jumps import as_answer, carried_over, jump_equations, matched, smoother
-from .optimality import Local
-from .search import program_search
-from .solution import Route, Solution, Status
-from .starts import (
-    DENSE,
-    Ask,
-    anywhere,
-    asked,
-    equal_start,
-    first_nodal,
-    made_up,
-    random_starts,
-    way_start,
+from .closed_forms import (
+    FORMULA,
+    cut_short,
+    refused_at_ratios,
+    tight_at_ratios,
+    unsearched,
 )
+from .decided import decided, incumbent, kept, tolerated
+from .feasibility import apart, forbidden_jumps
+from .judgement import BETTER, SAME, better_of, judged, on_floor
+from .jumps import as_answer, carried_over, smoother
+from .optimality import Local
+from .rounds import program_search
+from .solution import Route, Solution, Status
+from .starts import DENSE, equal_start, first_nodal, made_up, random_starts, vectors, way_start
 
 STARTS = 4
 """Basins of the wide search from which descents start."""
-FLOORS = (1e-3, 1e-4)
-"""Smallest durations tried, relative to the mean, where the case sets no lower bound."""
-DEEPER = (1e-6, 1e-8, 1e-10)
-"""Further floors where way-points nearly coincide: the total may rise again below the others."""
-PROVEN = 1e-6
-"""Relative distance from a proved lower bound at which nothing shorter is looked for."""
+FLOORS = (1e-3, 1e-4, 1e-6, 1e-8, 1e-10)
+"""Smallest durations tried, relative to the mean, where the case sets no lower bound: each where an
+answer lies on the one before, since the total of way-points that nearly coincide may rise again."""
+DEEP = FLOORS[2:]
+"""Those tried where a short way makes a second optimum likely that is decades away."""
 SPARSE = 14
 """Segments from which rounds of the NLP come first: there they end at the same totals in half the
 time of a wide search and dense descents, at 10 segments in twice it."""
+RATIOS = 12
+"""Random ratios from which rounds look for a motion without a jump: every second of them finds
+one, where there is any."""
 ONLY_TOLERANCE = "the limits leave no room: they are kept within the tolerance of the check alone"
 """Beside an answer that exact limits would not let pass."""
-APPROACHED = 1e-6
-"""Share of a total that is still to fall at which the value that it approaches is near enough: an
-extrapolation over more than this may be off by more than totals that count as the same."""
-ANYWHERE = 8
-"""Further starts all over the box before nothing is said to be found."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Ask:
+    """The arguments of `solve`."""
+
+    starts: int
+    seed: int
+    initial: Array | None
+    known: Local | None
+    """The shortest motion that somebody has and that passes."""
+    proved: bool
+    """Whether a proved lower bound leaves no room below it."""
 
 
 def solve(
@@ -112,19 +113,44 @@ def solve(
     TrajgapError
         If ``initial`` or ``known`` has the wrong shape, or there is no formula for fixed ratios.
     """
-    ask = asked(problem, starts, seed, initial, known, known_nodal, lower)
-    if problem.ratios is not None:
-        return at_ratios(problem)
+    if starts < 1:
+        raise TrajgapError(f"starts: must be 1 or more, got {starts}")
+    points = np.empty((0, problem.segments)) if known is None else vectors(problem, "known", known)
+    nodal = None if known_nodal is None else np.asarray(known_nodal, dtype=np.float64)
+    wanted = (len(points), problem.curve.free, len(problem.joints))
+    if nodal is not None and nodal.shape != wanted:
+        raise TrajgapError(f"known_nodal: expected shape {wanted}, got {nodal.shape}")
+    first = None if initial is None else vectors(problem, "initial", initial)
     began = time.perf_counter()
     with stopping_after(seconds):
-        answer = unsearched(problem)
+        answer = unsearched(problem) if problem.ratios is None else _at_ratios(problem)
         if answer is None:
-            answer = _solve(problem, ask)
+            best = incumbent(problem, points, nodal)
+            proved = best is not None and best.total <= lower * (1.0 + SAME)
+            answer = _solve(problem, _Ask(starts, seed, first, best, proved))
             answer = cut_short(answer) if time_up() else answer
     return replace(answer, solve_seconds=time.perf_counter() - began - answer.build_seconds)
 
 
-def _solve(problem: Problem, ask: Ask) -> Solution:
+def _at_ratios(problem: Problem) -> Solution:
+    """The shortest motion whose durations have the ratios of the problem."""
+    h = tight_at_ratios(problem)
+    if isinstance(h, Solution):
+        return h
+    tight = Local(h, None, float(h.sum()), True, kept(problem, check(problem, h)), 0)
+    answer = judged(problem, [tight], np.zeros(problem.segments), 0, Route.CLOSED_FORM)
+    if not answer.found:
+        return refused_at_ratios(problem, h)
+    if check(problem, h).stretch == 0.0 and not problem.duration_lower.any():
+        why = "nothing that moves is limited, so that the total falls to 0"
+        found = replace(answer, status=Status.NOT_ATTAINED, why=why, infimum=0.0)
+        return replace(found, kkt_residual=None, active=())
+    if answer.status is not Status.CONVERGED:
+        return answer
+    return replace(answer, why=FORMULA if answer.why is None else f"{FORMULA}; {answer.why}")
+
+
+def _solve(problem: Problem, ask: _Ask) -> Solution:
     """`solve` where no elementary argument decides."""
     smooth = smoother(problem)
     if smooth is not None:
@@ -134,21 +160,12 @@ def _solve(problem: Problem, ask: Ask) -> Solution:
     return _solve_itself(problem, ask)
 
 
-def _sparse(problem: Problem) -> bool:
-    """Whether rounds of the NLP apply: each segment moves, and something is limited."""
-    curve, sides = problem.curve.piecewise, problem.limits.sides
-    moves = np.abs(np.diff(problem.waypoints, axis=0)).max(axis=1) > 0
-    limited = (np.isfinite(sides) & (sides > 0)).any()
-    return curve is not None and not curve.free and bool(moves.all() and limited)
-
-
-def _solve_smoother(problem: Problem, smooth: Problem, ask: Ask) -> Solution:
-    """`solve` on the smoother declaration, with the same starts and known motions."""
-    known, values = ask.known, None
-    if ask.known_nodal is None:
-        known = known[:0]  # without their free derivatives they are not determined
-    else:
-        values = carried_over(problem, ask.known_nodal, known, smooth)
+def _solve_smoother(problem: Problem, smooth: Problem, ask: _Ask) -> Solution:
+    """`solve` on the smoother declaration, with the same starts and the known motion."""
+    known = values = None
+    if ask.known is not None:
+        known = ask.known.durations[None]
+        values = carried_over(problem, np.array([ask.known.nodal]), known, smooth)
     return solve(
         smooth,
         starts=ask.starts,
@@ -159,61 +176,61 @@ def _solve_smoother(problem: Problem, smooth: Problem, ask: Ask) -> Solution:
     )
 
 
-def _solve_itself(problem: Problem, ask: Ask) -> Solution:
+def _solve_itself(problem: Problem, ask: _Ask) -> Solution:
     """`solve` where no smoother declaration has the same motions."""
-    if problem.curve.free or problem.segments > DENSE:
-        solution = _programmed(problem, ask)
-    elif (near := _proved(problem, ask)) is not None:
-        solution = _searched(problem, replace(ask, initial=near[None]))
-    elif ask.initial is not None:
-        solution = _searched(problem, ask)
+    jumping = bool(forbidden_jumps(problem)) and not apart(problem)
+    dense = not (problem.curve.free or jumping) and problem.segments <= DENSE
+    known = ask.known
+    if jumping:
+        solution = _programmed(problem, replace(ask, initial=None), RATIOS)
+        solution = _without_jumps(problem, solution)
+    elif not dense:
+        solution = _programmed(problem, ask, ask.starts if problem.curve.free else 1)
+    elif known is not None and ask.proved:
+        solution = _continued(problem, known, Route.DESCENT)
     else:
-        solution = _shortened(problem, _widely(problem, ask), ask)
-    solution = _finished(problem, _with_known(problem, solution, ask))
-    if not solution.found:
-        solution = _without_jumps(problem, solution, ask.seed)
+        solution = _widely(problem, ask)
+    if known is not None and known.total < solution.best * (1 - TOLERANCE):
+        again = _continued(problem, known, Route.DESCENT if dense else Route.NLP)
+        solution = again if again.best < solution.best else solution
+    short = solution.status is Status.FEASIBLE and solution.route is Route.DESCENT
+    if short and _moves_throughout(problem) and not time_up():
+        end = Local(solution.durations, None, solution.total_time, False, True, 0)
+        solution = better_of(solution, _continued(problem, end, Route.NLP))
     if not solution.found:
         solution = _stretched_start(problem, solution)
     return solution
 
 
-def _finished(problem: Problem, solution: Solution) -> Solution:
-    """The answer, finished by the NLP where descents stopped short of an optimum."""
-    short = solution.status is Status.FEASIBLE and solution.route is Route.DESCENT
-    if not (short and _sparse(problem)) or time_up():
-        return solution
-    floor = np.minimum(made_up(problem, FLOORS[-1]), 0.5 * solution.durations)
-    found = _rounds(problem, solution.durations[None], floor, None)
-    return better_of(solution, judged(problem, found, floor, solution.starts, Route.NLP))
+def _continued(problem: Problem, motion: Local, route: Route) -> Solution:
+    """What a search by a route makes of a motion that passes: no worse an answer."""
+    h = motion.durations
+    floor, found = np.minimum(made_up(problem, FLOORS[1]), 0.5 * h), [motion]
+    if route is Route.DESCENT:
+        found += exact_search(problem, h[None], floor)
+    elif problem.curve.piecewise is not None:
+        found += _rounds(problem, h[None], floor, motion.nodal)
+    return judged(problem, found, floor, 1, route)
 
 
-def _proved(problem: Problem, ask: Ask) -> Array | None:
-    """A known motion that passes, and below which a proof leaves no room; None without one."""
-    for h in ask.known:
-        if h.sum() <= ask.lower * (1.0 + PROVEN) and kept(problem, check(problem, h)):
-            return np.asarray(h)
-    return None
+def _moves_throughout(problem: Problem) -> bool:
+    """Whether rounds of the NLP apply: each segment moves, and something is limited."""
+    curve, sides = problem.curve.piecewise, problem.limits.sides
+    moves = np.abs(np.diff(problem.waypoints, axis=0)).max(axis=1) > 0
+    limited = (np.isfinite(sides) & (sides > 0)).any()
+    return curve is not None and not curve.free and bool(moves.all() and limited)
 
 
-def _programmed(problem: Problem, ask: Ask) -> Solution:
-    """Rounds of the NLP from each start."""
-    floor = made_up(problem, FLOORS[-1])
-    nodal = first_nodal(problem)
-    if ask.initial is not None:
-        starts = ask.initial
-    elif problem.curve.free:
-        generator = np.random.default_rng(ask.seed)
-        more = random_starts(problem, ask.starts - 1, generator)
-        starts = np.vstack([equal_start(problem), more])
-    elif problem.curve.piecewise is None:
-        starts = equal_start(problem)[None]
-    else:
-        starts = way_start(problem)[None]
-    found = _rounds(problem, starts, floor, nodal)
-    if not any(local.feasible for local in found) and nodal is not None:
-        usual = equal_start(problem)  # stretched to be tight, with the free derivatives at rest
-        passes = kept(problem, check(problem, usual, nodal))
-        found.append(Local(usual, nodal, float(usual.sum()), False, passes, 0))
+def _programmed(problem: Problem, ask: _Ask, many: int = 1) -> Solution:
+    """Rounds of the NLP from the usual start and random ones, or from those that are given."""
+    starts = ask.initial
+    if starts is None:
+        plain = problem.curve.piecewise is not None and not problem.curve.free
+        usual = way_start(problem) if plain else equal_start(problem)
+        more = random_starts(problem, many - 1, np.random.default_rng(ask.seed))
+        starts = np.vstack([usual, more])
+    floor = made_up(problem, FLOORS[1])
+    found = _rounds(problem, starts, floor, first_nodal(problem))
     return judged(problem, found, floor, len(starts), Route.NLP)
 
 
@@ -229,79 +246,101 @@ def _rounds(problem: Problem, starts: Array, floor: Array, nodal: Array | None) 
     return found
 
 
-def _widely(problem: Problem, ask: Ask) -> Solution:
+def _widely(problem: Problem, ask: _Ask) -> Solution:
     """The answer by rounds of the NLP where these are quick, or else from a wide search."""
-    if problem.segments < SPARSE or not _sparse(problem):
-        return _searched(problem, ask)
-    found = _programmed(problem, ask)
-    if found.status is Status.CONVERGED:
-        return found
-    return better_of(_searched(problem, ask), found)
+    given = ask.initial
+    if given is not None:
+        return _above_floors(problem, lambda _: given, FLOORS)
+    quick = problem.segments >= SPARSE and _moves_throughout(problem)
+    found = _programmed(problem, ask) if quick else None
+    if found is None or found.status is not Status.CONVERGED:
+        search = partial(basins, problem, ask.starts, ask.seed)
+        searched = _above_floors(problem, search, FLOORS)
+        if not searched.found:
+            searched = _within_tolerance(problem, ask)
+        found = searched if found is None else better_of(searched, found)
+    return _shortened(problem, found)
 
 
-def _searched(
-    problem: Problem, ask: Ask, shares: tuple[float, ...] = (*FLOORS, *DEEPER)
+def _above_floors(
+    problem: Problem, points: Callable[[Array], Array], shares: tuple[float, ...]
 ) -> Solution:
-    """Exact descents from the basins of a wide search, or from the given starts.
+    """Exact descents from points above a floor, and above a lower one while they end at it.
 
-    Where an answer ends at a floor, the floor is lowered, with a search of its own; where it still
-    does, the total only approaches its infimum.
+    Where they do to the last, the total only approaches its infimum: the totals at two floors,
+    extrapolated to 0.
     """
-    carried = np.empty((0, problem.segments))
-    coarse: Solution | None = None
-    for k, share in enumerate(shares):
+    floor = made_up(problem, shares[0])
+    answer = _descended(problem, points(floor), floor)
+    for wide, share in pairwise(shares):
+        if answer.status is not Status.NOT_ATTAINED:
+            return answer
         floor = made_up(problem, share)
-        if ask.initial is None:
-            points = basins(problem, ask.starts, ask.seed, floor)
-        else:
-            points = ask.initial
-        points = np.vstack([points, carried])
-        found = exact_search(problem, points, floor)
-        solution = judged(problem, found, floor, len(points))
-        if not solution.found and coarse is not None:
-            return coarse  # further down, rounding hides the limits
-        if not solution.found and ask.initial is None:
-            more = anywhere(problem, ANYWHERE, ask.seed, floor)
-            found += exact_search(problem, more, floor)
-            solution = judged(problem, found, floor, len(found))
-            if not solution.found:
-                found += tolerated_search(problem, ask.starts, ask.seed, DEEPER[0])
-                least = judged(problem, found, made_up(problem, DEEPER[0]), len(found))
-                none = not least.found
-                why = ONLY_TOLERANCE
-                return solution if none else replace(least, status=Status.FEASIBLE, why=why)
-        if coarse is not None and solution.total_time > coarse.total_time * (1 + BETTER):
-            return coarse  # rounding costs more than the lower floor gains
-        if solution.status is not Status.NOT_ATTAINED:
-            h, stopped = solution.durations, solution.status is Status.FEASIBLE
-            if coarse is None or h is None or not stopped:
-                return solution
-            if solution.total_time < coarse.best * (1 - BETTER):
-                return solution  # what was approached above is undercut: it is no infimum
-            # Unconverged below the floor that an answer lay on, it shows no less that totals fall.
-            return coarse if (h < made_up(problem, shares[k - 1])).any() else solution
-        if coarse is not None:
-            solution = _approached(problem, coarse, solution, shares[k - 1], share)
-            near = solution.total_time - solution.best <= APPROACHED * solution.total_time
-            if near and not moving_at_floor(problem, solution.durations, floor):
-                return solution
-        coarse, carried = solution, solution.durations[None]
-    assert coarse is not None
-    return coarse
+        lower = _descended(problem, np.vstack([points(floor), answer.durations]), floor)
+        undercut = lower.total_time < answer.best * (1 - BETTER)
+        if lower.total_time > answer.total_time * (1 + BETTER):
+            return answer  # rounding costs more than the lower floor gains
+        if lower.status is Status.FEASIBLE and not undercut:
+            return answer  # unconverged, it shows no less that totals fall
+        if lower.status is Status.NOT_ATTAINED:
+            ratio, total = share / wide, lower.total_time
+            slope = max(0.0, answer.total_time - total) / (1.0 - ratio)
+            lower = replace(lower, infimum=max(0.0, total - slope * ratio))
+            near = total - lower.best <= SAME * total  # further, the estimate may be off by more
+            if near and not _rises_below(problem, lower.durations, floor):
+                return lower
+        answer = lower
+    return answer
 
 
-def _without_jumps(problem: Problem, solution: Solution, seed: int) -> Solution:
-    """Ratios of durations at which a curve that may jump happens not to."""
-    found = [Local(h, v, float(h.sum()), True, True, 0) for h, v in matched(problem, seed)]
-    if not found:
-        equations, ratios = jump_equations(problem)
-        if not equations > ratios:
-            return solution
-        why = f"it would take {ratios} ratios of durations that meet {equations} equations"
-        return replace(solution, why=f"{solution.why}; {why}")
-    answer = judged(problem, found, np.zeros(problem.segments), len(found))
-    why = f"shortest of {len(found)} ratios of durations at which the motion does not jump"
-    return replace(answer, status=Status.FEASIBLE, why=why, iterations=solution.iterations)
+def _descended(problem: Problem, points: Array, floor: Array) -> Solution:
+    return judged(problem, exact_search(problem, points, floor), floor, len(points))
+
+
+def _rises_below(problem: Problem, durations: Array, floor: Array) -> bool:
+    """Whether a segment at its floor has something below it, where the total rises again.
+
+    A way, which a joint covers in no time at all only if nothing limits it, or a bound.
+    """
+    at = on_floor(durations, floor)
+    moves = (np.diff(problem.waypoints, axis=0) != 0).any(axis=1)
+    first = list(problem.curve.waypoint_breaks[:-1])
+    return bool((at & (problem.duration_lower > 0)).any() or (at[first] & moves).any())
+
+
+def _within_tolerance(problem: Problem, ask: _Ask) -> Solution:
+    """A search where limits leave no room inside them, or less than a wide search finds.
+
+    So it is where a position range ends at the way-points, or bounds leave one duration vector. A
+    descent needs room to move in: it is given half the checker's tolerance, and goes on from its
+    end within the limits themselves. Where nothing is there, the first end may pass all the same.
+    """
+    wide, floor = tolerated(problem), made_up(problem, DEEP[0])
+    ends = exact_search(wide, basins(wide, ask.starts, ask.seed, floor), floor)
+    points = np.array([end.durations for end in ends]).reshape(-1, problem.segments)
+    within = exact_search(problem, points, floor)
+    answer = judged(problem, within, floor, len(within))
+    if answer.found:
+        return answer
+    ends = [replace(end, feasible=kept(problem, check(problem, end.durations))) for end in ends]
+    answer = judged(problem, within + ends, floor, len(within) + len(ends))
+    if not answer.found:
+        return answer
+    return replace(answer, status=Status.FEASIBLE, why=ONLY_TOLERANCE)
+
+
+def _without_jumps(problem: Problem, solution: Solution) -> Solution:
+    """The answer of the NLP where a curve that may jump must happen not to, in words of its own."""
+    if solution.found:
+        ended = [total for total in solution.totals if total < math.inf]
+        why = f"shortest of {len(ended)} motions found at ratios at which the motion does not jump"
+        return replace(solution, status=Status.FEASIBLE, why=why)
+    places, ratios = forbidden_jumps(problem), problem.segments - 1
+    equations = len(places) - problem.curve.free * len({j for *_, j in places})
+    if equations <= ratios:
+        return solution
+    why = f"it would take {ratios} ratios of durations that meet {equations} equations"
+    return replace(solution, why=f"{solution.why}; {why}")
 
 
 def _stretched_start(problem: Problem, solution: Solution) -> Solution:
@@ -309,61 +348,19 @@ def _stretched_start(problem: Problem, solution: Solution) -> Solution:
     found = decided(problem, equal_start(problem), first_nodal(problem))
     if found is None:
         return solution
-    answer = judged(problem, [found], made_up(problem, FLOORS[-1]), solution.starts)
+    answer = judged(problem, [found], made_up(problem, FLOORS[1]), solution.starts)
     return replace(answer, iterations=solution.iterations, build_seconds=solution.build_seconds)
 
 
-def _shortened(problem: Problem, solution: Solution, ask: Ask) -> Solution:
+def _shortened(problem: Problem, solution: Solution) -> Solution:
     """The answer, or a better one in which a segment between close way-points is much shorter."""
     if solution.status is not Status.CONVERGED or apart(problem) or time_up():
         return solution
-    if not short_ways(problem):
+    starts = shortened(problem, solution.durations, made_up(problem, DEEP[-1]))
+    if not len(starts):
         return solution
-    floor = made_up(problem, DEEPER[-1])
-    ends = exact_search(problem, shortened(problem, solution.durations, floor), floor)
-    found = judged(problem, ends, floor, len(ends))
+    found = _above_floors(problem, lambda _: starts, DEEP[-1:])
     if found.status is Status.NOT_ATTAINED:
-        found = _searched(problem, replace(ask, initial=found.durations[None]), shares=DEEPER)
-    return replace(better_of(solution, found), starts=solution.starts + len(ends))
-
-
-def _with_known(problem: Problem, solution: Solution, ask: Ask) -> Solution:
-    """The answer, or the shortest known motion that `check` passes, made shorter if possible."""
-    nodal: list[Array | None] = [None] * len(ask.known)
-    if problem.curve.free:
-        if ask.known_nodal is None:
-            return solution
-        nodal = list(ask.known_nodal)
-    bar = solution.best * (1 - ROUNDED)
-    shorter = sorted(
-        ((h, v) for h, v in zip(ask.known, nodal, strict=True) if h.sum() < bar),
-        key=lambda motion: float(motion[0].sum()),
-    )
-    repaired = (stretched(problem, h, v) for h, v in shorter)
-    passed = next((one for one in repaired if one is not None and one[0].sum() < bar), None)
-    if passed is None:
-        return solution
-    best, values = passed
-    incumbent = Local(best, values, float(best.sum()), False, True, 0)
-    floor = np.minimum(made_up(problem, FLOORS[-1]), best / 2.0)
-    found, dense = [incumbent], not problem.curve.free and problem.segments <= DENSE
-    if dense:
-        found += exact_search(problem, best[None], floor)
-    elif problem.curve.piecewise is not None:
-        found += _rounds(problem, best[None], floor, values)
-    route = Route.DESCENT if dense else Route.NLP
-    answer = judged(problem, found, floor, solution.starts, route)
-    return answer if answer.best < solution.best else solution
-
-
-def _approached(
-    problem: Problem, coarser: Solution, finer: Solution, wide: float, narrow: float
-) -> Solution:
-    """The infimum by extrapolating the totals at two floors to 0, along one basin."""
-    totals = [coarser.total_time]
-    if problem.segments <= DENSE:
-        again = exact_search(problem, finer.durations[None], made_up(problem, wide))
-        totals += [local.total for local in again if local.feasible]
-    ratio = narrow / wide
-    slope = max(0.0, min(totals) - finer.total_time) / (1.0 - ratio)
-    return replace(finer, infimum=max(0.0, finer.total_time - slope * ratio))
+        end = found.durations[None]
+        found = _above_floors(problem, lambda _: end, DEEP)
+    return replace(better_of(solution, found), starts=solution.starts + len(starts))

@@ -1,4 +1,4 @@
-"""Where searches begin: what `solve` is given, usual durations, their box, starts drawn over it."""
+"""Where searches begin: durations that are given, usual ones, and the box around them."""
 
 from __future__ import annotations
 
@@ -8,29 +8,38 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...problem import Array, Problem, TrajgapError, evaluate, fit
+from ...problem import TOLERANCE, Array, Problem, TrajgapError, evaluate, fit
 from ...problem.curves import Trajectory, near_extrema
 
 DENSE = 24
 """Segments up to which a wide search and dense descents come first: their gradients have
 (segments)² entries, and beyond this random trials gain little."""
-ROUND = 1e-9
-"""Relative room below a least duration, which rounding may take: the checker's tolerance."""
-LEAST_SHARE, MOST_TIMES = 1e-12, 1e12
-"""Of the usual duration: no search leaves this range, in which float64 has not lost the curve."""
-WIDTH = 3.0
-"""Log durations by which starts anywhere differ from the usual ones: a factor of 20."""
-PASSES = 4
-"""Stretches of single segments of `way_start`; more change little."""
-STEP, DAMPING = (0.8, 3.0), 0.7
-"""Least and largest factor of a stretch, and its power: neighbours are stretched by it too."""
-DWELL = 1.2
-"""Share by which a segment is first given more than its way takes at the velocity limit."""
-TURN = 8.0
-"""Starts have h² = 8|Δq|/A: rest to rest takes 4 at least, a spline's overshoot some more; at 5 the
-first round of quintics takes up to twice as many iterations."""
-LEAST = 0.3
-"""Of the mean duration, the least at the start: neighbours share their accelerations."""
+FARTHEST = 1e12
+"""Factor to both sides of the usual duration that no search leaves: float64 has not lost the curve
+there."""
+
+
+@dataclass(frozen=True)
+class WayStart:
+    """How the way of each segment gives the durations at which rounds of the NLP begin."""
+
+    dwell: float = 1.2
+    """Times the time that the way takes at the velocity limit."""
+    turn: float = 8.0
+    """h² = 8|Δq|/A: rest to rest takes 4 at least, a spline's overshoot some more; at 5 the first
+    round of quintics takes up to twice as many iterations."""
+    least: float = 0.3
+    """Of the mean duration, the least: neighbours share their accelerations."""
+    passes: int = 4
+    """Stretches of single segments; more change little."""
+    factors: tuple[float, float] = (0.8, 3.0)
+    """Least and largest factor of a stretch."""
+    power: float = 0.7
+    """Of a stretch: neighbours are stretched by it too."""
+
+
+WAY = WayStart()
+"""What `way_start` is made with."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,18 +99,18 @@ def way_start(problem: Problem) -> Array:
     way = np.abs(np.diff(problem.waypoints, axis=0))
     velocity, acceleration, _ = problem.limits.sides.min(axis=0).T  # the smaller sides
     with np.errstate(divide="ignore", invalid="ignore"):
-        fast = np.where(way > 0, DWELL * way / velocity, 0.0).max(axis=1)
-        turn = np.sqrt(np.where(way > 0, TURN * way / acceleration, 0.0)).max(axis=1)
+        fast = np.where(way > 0, WAY.dwell * way / velocity, 0.0).max(axis=1)
+        turn = np.sqrt(np.where(way > 0, WAY.turn * way / acceleration, 0.0)).max(axis=1)
     breaks = np.array(problem.curve.waypoint_breaks)
     parts = np.diff(breaks)
     h = np.repeat(np.maximum(fast, turn) / parts, parts)
     if not (np.isfinite(h).all() and h.mean() > 0):
         return equal_start(problem)
-    h = np.maximum(h, LEAST * h.mean())
-    for _ in range(PASSES):
+    h = np.maximum(h, WAY.least * h.mean())
+    for _ in range(WAY.passes):
         worst = worst_ratios(problem, fit(problem.curve, problem.waypoints, h))
         beside = np.maximum(np.append(worst[1:], 0.0), np.append(0.0, worst[:-1]))
-        h = h * np.clip(np.maximum(worst, beside), *STEP) ** DAMPING
+        h = h * np.clip(np.maximum(worst, beside), *WAY.factors) ** WAY.power
     if not np.isfinite(h).all():
         return equal_start(problem)
     return np.asarray(np.clip(h, problem.duration_lower, problem.duration_upper))
@@ -155,7 +164,7 @@ def least_durations(problem: Problem) -> Array:
         needed = np.where(distance > 0, distance / velocity, 0.0).max(axis=1)
     for w, seconds in enumerate(needed):
         if breaks[w + 1] == breaks[w] + 1 and np.isfinite(seconds):
-            least[breaks[w]] = max(least[breaks[w]], (1.0 - ROUND) * seconds)
+            least[breaks[w]] = max(least[breaks[w]], (1.0 - TOLERANCE) * seconds)
     return least
 
 
@@ -181,80 +190,11 @@ def made_up(problem: Problem, share: float) -> Array:
 def box_above(problem: Problem, floor: Array) -> LogBox:
     """Bounds on log durations: the problem's own, the least durations, and the floors."""
     usual = float(equal_start(problem).mean())
-    least = LEAST_SHARE * np.minimum(usual, problem.duration_upper)
+    least = np.minimum(usual, problem.duration_upper) / FARTHEST
     low = np.maximum(np.maximum(least_durations(problem), floor), least)
     # A least duration above an upper bound leaves no motion; the box stays one for the search.
-    high = np.maximum(np.minimum(problem.duration_upper, MOST_TIMES * usual), low)
+    high = np.maximum(np.minimum(problem.duration_upper, FARTHEST * usual), low)
     return LogBox(np.log(low), np.log(high))
-
-
-def anywhere(problem: Problem, count: int, seed: int, floor: Array) -> Array:
-    """Starts drawn over the box, up to `WIDTH` to both sides of the usual durations."""
-    box, base = box_above(problem, floor), np.log(equal_start(problem))
-    low = np.maximum(box.low, np.minimum(base, box.high) - WIDTH)
-    high = np.minimum(box.high, np.maximum(base, box.low) + WIDTH)
-    spread = np.random.default_rng(seed).uniform(0.0, 1.0, (count, problem.segments))
-    return np.asarray(np.exp(low + spread * (high - low)))
-
-
-@dataclass(frozen=True, eq=False)
-class Ask:
-    """The arguments of `solve`."""
-
-    starts: int
-    seed: int
-    initial: Array | None
-    known: Array
-    """Durations that somebody has, and after them the same stretched to be tight, s."""
-    known_nodal: Array | None
-    lower: float = 0.0
-    """A proved lower bound of the total, s."""
-
-
-def asked(
-    problem: Problem,
-    starts: int,
-    seed: int,
-    initial: ArrayLike | None,
-    known: ArrayLike | None,
-    known_nodal: ArrayLike | None,
-    lower: float,
-) -> Ask:
-    """The arguments of `solve`, read; a clear refusal of what has the wrong shape."""
-    if starts < 1:
-        raise TrajgapError(f"starts: must be 1 or more, got {starts}")
-    points = np.empty((0, problem.segments)) if known is None else vectors(problem, "known", known)
-    nodal = None if known_nodal is None else np.asarray(known_nodal, dtype=np.float64)
-    wanted = (len(points), problem.curve.free, len(problem.joints))
-    if nodal is not None and nodal.shape != wanted:
-        raise TrajgapError(f"known_nodal: expected shape {wanted}, got {nodal.shape}")
-    points, nodal = _with_tight(problem, points, nodal)
-    first = None if initial is None else vectors(problem, "initial", initial)
-    return Ask(starts, seed, first, points, nodal, lower)
-
-
-def _with_tight(problem: Problem, known: Array, nodal: Array | None) -> tuple[Array, Array | None]:
-    """Known motions, and after them each one stretched so that it just keeps its limits.
-
-    A printed motion that exceeds a limit by its last digit is worth what its repair is worth.
-    """
-    if not len(known) or not problem.curve.homogeneous or (problem.curve.free and nodal is None):
-        return known, nodal
-    problem = stretching(problem)
-    if nodal is None:
-        stretch = evaluate(problem, known).stretch
-    else:
-        each = zip(known, nodal, strict=True)
-        stretch = np.array([evaluate(problem, h[None], v).stretch[0] for h, v in each])
-    usable = np.isfinite(stretch) & (stretch > 0) & (stretch != 1.0)
-    factor = stretch[usable]
-    inside = np.clip(
-        known[usable] * factor[:, None], problem.duration_lower, problem.duration_upper
-    )
-    if nodal is not None:
-        each = zip(nodal[usable], factor.tolist(), strict=True)
-        nodal = np.concatenate([nodal, *([slowed(problem, v, c)] for v, c in each)])
-    return np.vstack([known, inside]), nodal
 
 
 def vectors(problem: Problem, name: str, given: ArrayLike) -> Array:

@@ -290,12 +290,12 @@ class Session:
             If a stage raises it, or a shorter answer cannot be proved feasible.
         """
         while True:
-            upper = self.upper
-            assert upper is not None
+            before = self.upper
             try:
                 stages, leaping = ladder.stages(self.request.gap), False
                 for gap in stages:
-                    target = rounded(upper * (1 - Fraction(gap)))
+                    assert self.upper is not None
+                    target = rounded(self.upper * (1 - Fraction(gap)))
                     if target <= self.lower or (leaping and gap != stages[-1]):
                         continue
                     began = self.seconds
@@ -304,7 +304,7 @@ class Session:
                     leaping = leaping or ladder.leaps(gap, took, self.clock.left)
                 return
             except Shorter as found:
-                if not self.seek(found.durations):
+                if self.upper == before and not self.seek(found.durations):
                     raise OutOfTime from None  # the improvement is too slight to prove
 
     def report(self, open_boxes: int, nodes: int, lower: Fraction | float | None = None) -> None:

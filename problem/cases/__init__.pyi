@@ -26,7 +26,7 @@ from .faults import all_faults, refusal
 from .instances import InstancesBlock, instance_waypoints
 from .joint_units import unit_of, with_unit
 from .labels import ratio_words
-from .load import load_case, parse_case, published_ids
+from .load import check_case, load_case, parse_case, published_ids
 from .robot_file import load_robot, robot_ids
 from .scaffolding import identity_of, scaffold
 from .schema import (
@@ -93,6 +93,7 @@ __all__ = [
     "all_faults",
     "case_files",
     "case_schema",
+    "check_case",
     "compare_transcriptions",
     "identity_of",
     "instance_waypoints",

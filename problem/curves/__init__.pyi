@@ -23,16 +23,25 @@ from .interpolant import (
     layout,
     right_hand_sides,
 )
-from .kind import Curve, Derivatives, PeakGradients, as_curve, as_durations, fit
+from .kind import Curve, Derivatives, Enclosed, as_curve, as_durations, fit
 from .peak import (
     Extremum,
     Furthest,
+    PeakGradients,
     critical_points,
     extrema,
     furthest,
     near_extrema,
 )
-from .polynomials import MAX_COEFFICIENTS, PERM, bernstein, derived, roots_in_unit, valued
+from .polynomials import (
+    MAX_COEFFICIENTS,
+    PERM,
+    bernstein,
+    derivative_rows,
+    derived,
+    roots_in_unit,
+    valued,
+)
 from .stretched import Timing, segment_peaks, shape_of, solve_in_closed_form
 from .timed import ClockedTrajectory, numerators
 from .trajectory import Trajectory
@@ -53,6 +62,7 @@ __all__ = [
     "Count",
     "Curve",
     "Derivatives",
+    "Enclosed",
     "Extremum",
     "Furthest",
     "Interpolant",
@@ -79,6 +89,7 @@ __all__ = [
     "critical_points",
     "cubic_spline",
     "cubic_spline_virtual",
+    "derivative_rows",
     "derived",
     "extrema",
     "fit",

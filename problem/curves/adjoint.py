@@ -15,8 +15,7 @@ from numpy.typing import NDArray
 
 from ..arrays import Array
 from .condition import Layout
-from .kind import PeakGradients
-from .peak import Extremum
+from .peak import Extremum, PeakGradients
 from .polynomials import derivative_rows
 from .system import coefficients, inverse, system
 
@@ -116,19 +115,10 @@ class Adjoint:
                 out[at] = part.T
         return PeakGradients(by_duration, *given)
 
-    def coefficients_by_duration(self, segment: int) -> Array:
-        """Derivatives of all coefficients by one duration, shape (coefficients, joints)."""
-        right, h = np.zeros((len(self._rows.values), self._scaled.shape[2])), self._durations
-        for side, sign in ((-1, -1.0), (0, 1.0)):
-            own = self._after + side == segment
-            right[self._links[own]] += sign * self._slope[own] / h[segment]
-        right[self._given[self._at == segment]] += self._rate[self._at == segment]
-        return self._solved(right, transposed=False)
-
-    def _solved(self, right: Array, transposed: bool = True) -> Array:
+    def _solved(self, right: Array) -> Array:
         if self._inverse is None:
-            return self._rows.factors.solve(right, transposed)
-        return np.asarray((self._inverse.T if transposed else self._inverse) @ right)
+            return self._rows.factors.solve(right, transposed=True)
+        return np.asarray(self._inverse.T @ right)
 
     def _basis(self, places: Places) -> Array:
         rate = self._durations[places.segment] ** places.order

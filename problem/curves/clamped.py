@@ -22,13 +22,12 @@ from .kind import (
     Curve,
     Derivatives,
     Enclosed,
-    PeakGradients,
     Shape,
     as_batch,
     as_durations,
     as_waypoints,
 )
-from .peak import Extremum
+from .peak import Extremum, PeakGradients
 from .stretched import StretchedCurve
 
 

@@ -22,8 +22,8 @@ from .clamped_system import (
     places_on,
     span_bases,
 )
-from .kind import Enclosed, PeakGradients, Shape, are_durations, masked, value_errors
-from .peak import Extremum, rows_at
+from .kind import STEP, Enclosed, Shape, are_durations, masked, value_errors
+from .peak import Extremum, PeakGradients, rows_at
 from .polynomials import MAX_COEFFICIENTS, derived, tops
 from .trajectory import Trajectory
 
@@ -31,8 +31,6 @@ _SLIVER = 1e-12
 """Breaks nearer than this share of the whole differ by rounding alone."""
 _RESOLVED = 1e13
 """Growth of control points over way-points beyond which float64 resolves nothing of them."""
-_STEP = 1e-30
-"""Complex step of the gradients, s: its square is lost in any double, so nothing is truncated."""
 
 
 def _times(durations: Numbers) -> Numbers:
@@ -191,9 +189,9 @@ def clamped_gradients(
     rows = rows_at(points)
     for k in range(n):
         step = durations.astype(np.complex128)
-        step[k] += 1j * _STEP
+        step[k] += 1j * STEP
         moved = _pieces(curve, waypoints, step)
-        scaled, widths = moved.scaled.imag / _STEP, np.diff(moved.breaks).imag / _STEP
+        scaled, widths = moved.scaled.imag / STEP, np.diff(moved.breaks).imag / STEP
         for i, (e, row) in enumerate(zip(points, rows, strict=True)):
             change = row @ scaled[e.segment, :, e.joint] / lengths[e.segment] ** e.order
             fade = e.order * e.value * widths[e.segment] / lengths[e.segment]

@@ -13,6 +13,7 @@ from ..errors import CurveError
 from .clamped_declaration import ClampedDeclaration
 from .clamped_knots import inside_support
 from .polynomials import PERM
+from .refined import contained
 
 Numbers = NDArray[Any]
 EPS = np.finfo(np.float64).eps
@@ -161,13 +162,8 @@ def interpolated(
     residual = np.abs(right - matrix @ control) + rounding * (
         absolute @ np.abs(control) + np.abs(right)
     )
-    first = np.abs(inverse) @ residual.astype(np.float64)
-    defect = np.abs(inverse @ narrow - np.eye(len(narrow)))
-    defect += EPS * (len(narrow) + 2) * (np.abs(inverse) @ np.abs(narrow))
-    unsure = first
-    for _ in range(3):
-        unsure = first + 1.1 * (defect @ unsure)
-    if not (first + defect @ unsure <= unsure).all():
+    unsure = contained(inverse, narrow, residual.astype(np.float64))
+    if unsure is None:
         raise _not_passing(curve, sites, 0)
     scaled = powers(control, bases)
     error = powers(unsure.astype(matrix.dtype), sizes) + rounding * powers(np.abs(control), sizes)

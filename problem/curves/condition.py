@@ -90,15 +90,14 @@ class Conditions:
     @cached_property
     def entries(self) -> tuple[Indices, Indices]:
         """Columns and whole factors, each (conditions, widest); a factor of 0 fills up a row."""
-        right, r = self.kinds == ConditionKind.RIGHT_VALUE, self.orders
-        degree = self.degrees[self.segment]
-        columns = np.zeros((r.size, int(self.degrees.max()) + 2), dtype=np.int64)
-        factors = np.zeros(columns.shape, dtype=np.int64)
-        for m in range(columns.shape[1] - 1):
-            power = np.minimum(r + m, MAX_COEFFICIENTS - 1)
-            there = (r + m <= degree) & (~right | (m == 0))
-            columns[there, m] = (self.first[self.segment] + power)[there]
-            factors[there, m] = PERM[power, np.minimum(r, MAX_COEFFICIENTS - 1)][there]
+        last, r = MAX_COEFFICIENTS - 1, self.orders[:, None]
+        power, degree = r + np.arange(int(self.degrees.max()) + 2), self.degrees[self.segment]
+        # At the start of a segment one coefficient alone is met.
+        alone = (self.kinds == ConditionKind.RIGHT_VALUE) & (self.orders < degree)
+        there = power <= np.where(alone, self.orders, degree)[:, None]
+        columns = np.where(there, self.first[self.segment, None] + power, 0)
+        whole = PERM.astype(np.int64)[np.minimum(power, last), np.minimum(r, last)]
+        factors, r = np.where(there, whole, 0), self.orders
         i, slot = self.links
         b = self.breaks[i]
         columns[i, slot] = self.first[b] + r[i]
@@ -111,6 +110,12 @@ class Conditions:
         i = np.flatnonzero(self.kinds == ConditionKind.MATCH)
         i = i[self.orders[i] <= self.degrees[self.breaks[i]]]
         return i, np.maximum(self.degrees[self.segment[i]] - self.orders[i] + 1, 0)
+
+    @cached_property
+    def alone(self) -> tuple[Indices, Indices]:
+        """Rows of one entry, which gives a coefficient at once, and the column of that."""
+        rows = np.flatnonzero(np.count_nonzero(self.entries[1], axis=1) == 1)
+        return rows, self.entries[0][rows, 0]
 
     def matrix(self, durations: NDArray[Any]) -> NDArray[Any]:
         """Entries of all rows, shape (conditions, widest), over the durations' kind of number.
@@ -128,7 +133,10 @@ class Conditions:
 
     def rates(self, durations: NDArray[Any]) -> NDArray[Any]:
         """What multiplies the given values, h_kʳ, shape (conditions,)."""
-        return np.asarray(durations[self.segment] ** self.powers)
+        found = np.ones(self.kinds.size, dtype=durations.dtype)
+        i = np.flatnonzero(self.powers)
+        found[i] = durations[self.segment[i]] ** self.powers[i]
+        return found
 
     def dense(self, values: NDArray[Any]) -> NDArray[Any]:
         """Entries, as from `matrix`, in a full matrix of shape (conditions, coefficients)."""
@@ -199,30 +207,39 @@ class Layout(Conditions):
         used = at >= 0
         return int((-away)[used].max(initial=0)), int(away[used].max(initial=0))
 
-    @property
-    def lower(self) -> int:
-        """The bandwidth below."""
-        return self.bandwidths[0]
+    @cached_property
+    def order(self) -> tuple[Indices, int, int]:
+        """Row that stands at the place of each coefficient, and the bandwidths of that order.
 
-    @property
-    def upper(self) -> int:
-        """The bandwidth above."""
-        return self.bandwidths[1]
+        A condition that gives a coefficient at once stands at its place; the others follow each
+        other between them, so that those of a break are divided between its two segments.
+        """
+        at = np.empty(self.unknown.size, dtype=np.int64)
+        right = self.kinds == ConditionKind.RIGHT_VALUE
+        at[self.unknown < 0] = np.flatnonzero(right)
+        at[self.unknown >= 0] = np.flatnonzero(~right)
+        columns, factors = self.entries
+        away = (columns[at] - np.arange(at.size)[:, None])[factors[at] != 0]
+        return at, int(max(0, -away.min())), int(max(0, away.max()))
 
     @cached_property
     def rows(self) -> tuple[Any, ...]:
         """What the kernel takes of it, in its order."""
         columns, factors = self.entries
         shared = (self.kinds, self.breaks, self.orders, columns, factors.astype(np.float64))
-        return (*shared, self.unknown, self.first, self.lower, self.upper)
+        return (*shared, self.unknown, self.first, *self.bandwidths)
 
     def flat(self, scaled: Array) -> Array:
         """Coefficients in one axis, from those by segment and power."""
         return np.asarray(scaled[self.places])
 
-    def unflat(self, flat: Array) -> Array:
-        """Coefficients by segment and power, shape (segments, 10, joints)."""
-        out = np.zeros((self.segments, MAX_COEFFICIENTS, flat.shape[-1]))
+    def unflat(self, flat: Array, powers: int = MAX_COEFFICIENTS) -> Array:
+        """Coefficients by segment and power, shape (segments, powers, joints)."""
+        size = len(flat) // self.segments
+        if (self.degrees == size - 1).all():
+            out = flat.reshape(self.segments, size, -1)
+            return out if size == powers else np.pad(out, ((0, 0), (0, powers - size), (0, 0)))
+        out = np.zeros((self.segments, powers, flat.shape[-1]))
         out[self.places] = flat
         return out
 
@@ -253,12 +270,11 @@ def conditions_of(
     Conditions
     """
     last = len(given) - 1
-    templates: dict[tuple[frozenset[int], int], int] = {}
-    inner = (
-        templates.setdefault(key, len(templates))
-        for key in zip(given[1:-1], continuity, strict=True)
-    )
-    number = np.array([-1, *inner, -2])
+    sets = {orders: i for i, orders in enumerate(dict.fromkeys(given))}
+    smooth, base = np.array(continuity, dtype=np.int64), max(continuity, default=0) + 1
+    stated = np.array([sets[orders] for orders in given[1:-1]], dtype=np.int64) * base + smooth
+    templates, inner = np.unique(stated, return_inverse=True)
+    number = np.concatenate([[-1], inner, [-2]])
     parts: list[tuple[NDArray[np.int64], ...]] = []
 
     def place(at: NDArray[np.int64], kinds: list[ConditionKind], orders: list[int]) -> None:
@@ -269,9 +285,9 @@ def conditions_of(
     for edge, kind in ((0, ConditionKind.RIGHT_VALUE), (last, ConditionKind.LEFT_VALUE)):
         orders = sorted(given[edge])
         place(np.array([edge]), [kind] * len(orders), orders)
-    for (orders_given, smooth), i in templates.items():
-        values = sorted(orders_given)
-        matches = [order for order in range(smooth + 1) if order not in orders_given]
+    for i, template in enumerate(templates.tolist()):
+        values = sorted(list(sets)[template // base])
+        matches = [order for order in range(template % base + 1) if order not in values]
         kinds = [
             *[ConditionKind.LEFT_VALUE] * len(values),
             *[ConditionKind.RIGHT_VALUE] * len(values),
@@ -281,6 +297,6 @@ def conditions_of(
     breaks, rank, kinds_, orders_ = (
         np.concatenate([part[i] for part in parts]).astype(np.int64) for i in range(4)
     )
-    order = np.lexsort((rank, breaks))
+    order = np.argsort(breaks * (rank.max() + 1) + rank, kind="stable")
     whole = np.array(degrees, dtype=np.int64)
     return Conditions(kinds_[order], breaks[order], orders_[order], whole)

@@ -5,36 +5,33 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array
-from ..errors import TrajgapError
+from ..errors import SingularError, TrajgapError
 from .adjoint import Adjoint, places_of
 from .condition import Condition, ConditionKind, Conditions, Layout, conditions_of, counts_in_words
 from .kind import (
     Curve,
     Derivatives,
     Enclosed,
-    PeakGradients,
     as_batch,
     merged_values,
     value_errors,
 )
-from .peak import Extremum
+from .peak import Extremum, PeakGradients
 from .polynomials import MAX_COEFFICIENTS
 from .population import batch_coefficients, batch_reach
 from .refined import refined_coefficients
-from .system import coefficients, system
+from .system import DENSE_UNKNOWNS, coefficients, system
 from .trajectory import Trajectory
 
 MOST_OPEN = 600
 """Coefficients up to which a case file may leave some free: finding the derivatives that complete
 the declaration takes a dense decomposition for each, some seconds in all."""
-_DENSE = 300
-"""Coefficients above which the rank is judged by a banded factorisation: a dense one is cubic."""
 
 
 @dataclass(frozen=True)
@@ -90,31 +87,34 @@ class Interpolant(Curve):
                 f"interpolant.prescribed: {n} segments have {n + 1} breaks, "
                 f"got {len(self.prescribed)} entries"
             )
-        if any(d < 1 or d > 9 for d in self.degrees):
+        if min(self.degrees) < 1 or max(self.degrees) > 9:
             raise TrajgapError("interpolant.degrees: every degree must lie in 1..9")
-        if any(c < 0 for c in self.continuity):
+        if min(self.continuity, default=0) < 0:
             raise TrajgapError("interpolant.continuity: every order must be 0 or more")
         if any(not 0 < b < n for b in self.virtual):
             raise TrajgapError(
                 "interpolant.virtual: only interior breaks can be virtual, "
                 f"{f'1 to {n - 1}' if n > 1 else 'of which one segment has none'}"
             )
-        object.__setattr__(self, "prescribed", tuple(map(merged_values, self.prescribed)))
-        counts = {len(v) for at in self.prescribed for _, v in at if isinstance(v, tuple)}
+        # Long declarations state few different things: each is looked at once.
+        same = {id(entries): entries for entries in self.prescribed}
+        merged = {key: merged_values(entries) for key, entries in same.items()}
+        object.__setattr__(self, "prescribed", tuple(merged[id(e)] for e in self.prescribed))
+        stated = {*self.prescribed}
+        counts = {len(v) for at in stated for _, v in at if isinstance(v, tuple)}
         if len(counts) > 1:
             raise TrajgapError(
                 "interpolant.prescribed: given for "
                 f"{' and for '.join(map(str, sorted(counts)))} joints; give one value for all "
                 "joints, or one for each of them"
             )
-        for b, entries in enumerate(self.prescribed):
+        for entries in stated:
             orders = [order for order, _ in entries]
+            where = f"interpolant.prescribed[{self.prescribed.index(entries)}]"
             if len(set(orders)) != len(orders) or any(order < 1 for order in orders):
-                raise TrajgapError(
-                    f"interpolant.prescribed[{b}]: orders must be distinct and at least 1"
-                )
+                raise TrajgapError(f"{where}: orders must be distinct and at least 1")
             if not all(map(math.isfinite, _values(entries))):
-                raise TrajgapError(f"interpolant.prescribed[{b}]: values must be finite")
+                raise TrajgapError(f"{where}: values must be finite")
         if self.conditions > self.coefficients:
             raise TrajgapError(
                 f"interpolant {self.name}: over-determined, "
@@ -147,13 +147,13 @@ class Interpolant(Curve):
     @cached_property
     def waypoint_breaks(self) -> tuple[int, ...]:
         """Breaks that carry a way-point, in order."""
-        virtual = set(self.virtual)
-        return tuple(b for b in range(self.segments + 1) if b not in virtual)
+        every, virtual = range(self.segments + 1), set(self.virtual)
+        return tuple(b for b in every if b not in virtual) if virtual else tuple(every)
 
-    @property
+    @cached_property
     def coefficients(self) -> int:
         """Number of coefficients of one joint."""
-        return sum(d + 1 for d in self.degrees)
+        return sum(self.degrees) + self.segments
 
     @property
     def conditions(self) -> int:
@@ -175,9 +175,14 @@ class Interpolant(Curve):
         return self.prescribed[break_index]
 
     @cached_property
+    def homogeneous(self) -> bool:
+        """Whether all derivatives that are prescribed are 0."""
+        return all(value == 0.0 for at in {*self.prescribed} for _, value in at)
+
+    @cached_property
     def prescribed_joints(self) -> int | None:
         """Joints that prescribed derivatives differ between."""
-        several = (v for at in self.prescribed for _, v in at if isinstance(v, tuple))
+        several = (v for at in {*self.prescribed} for _, v in at if isinstance(v, tuple))
         return next(map(len, several), None)
 
     def for_joint(self, waypoints: Array, index: int) -> Interpolant:
@@ -200,11 +205,20 @@ class Interpolant(Curve):
         return Trajectory(durations, coefficients(self.layout, values, durations), self.degrees)
 
     def enclosed(self, waypoints: Array, durations: Array, nodal: Array | None = None) -> Enclosed:
-        """`fit` refined in extended precision, with the bound of `refined_coefficients`."""
+        """`fit` with the bound of `refined_coefficients`, of long splines in float64 first."""
         values = right_hand_sides(self, waypoints, nodal)
-        scaled, error = refined_coefficients(self.layout, values, durations)
-        trajectory = Trajectory(durations, scaled, self.degrees)
-        return Enclosed(trajectory, value_errors(trajectory, error))
+
+        def found(extended: bool) -> Enclosed:
+            scaled, error = refined_coefficients(self.layout, values, durations, extended)
+            trajectory = Trajectory(durations, scaled, self.degrees)
+            return Enclosed(trajectory, value_errors(trajectory, error))
+
+        if self.coefficients <= DENSE_UNKNOWNS:
+            return found(True)
+        try:
+            return replace(found(False), closer=partial(found, True))
+        except SingularError:
+            return found(True)
 
     def motion_values(self, waypoints: Array, nodal: Array | None = None) -> Array:
         """Right-hand sides of the conditions, positions counted from the first way-point.
@@ -244,11 +258,11 @@ class Interpolant(Curve):
     @cached_property
     def table(self) -> Conditions:
         """The conditions as arrays, ordered by break, so that the linear system is banded."""
-        virtual = set(self.virtual)
-        given = [
-            frozenset([*(order for order, _ in entries), *([] if b in virtual else [0])])
-            for b, entries in enumerate(self.prescribed)
-        ]
+        orders = {at: frozenset(order for order, _ in at) for at in {*self.prescribed}}
+        fixed = {at: given | {0} for at, given in orders.items()}
+        given = [fixed[at] for at in self.prescribed]
+        for b in self.virtual:
+            given[b] = orders[self.prescribed[b]]
         return conditions_of(given, self.continuity, self.degrees)
 
     @cached_property
@@ -269,8 +283,9 @@ class Interpolant(Curve):
         free = np.full(values.shape[:2], -1, dtype=np.int64)
         for i, (b, order) in enumerate(self.free_derivatives):
             free[b, order] = i
-        waypoint = np.full(n + 1, -1, dtype=np.int64)
-        waypoint[list(self.waypoint_breaks)] = np.arange(len(self.waypoint_breaks))
+        waypoint = np.ones(n + 1, dtype=np.int64)
+        waypoint[list(self.virtual)] = 0
+        waypoint = np.where(waypoint > 0, np.cumsum(waypoint) - 1, -1)
         match, orders = table.kinds == ConditionKind.MATCH, table.orders
         return Layout(
             kinds=table.kinds,
@@ -286,7 +301,7 @@ class Interpolant(Curve):
     @cached_property
     def rank(self) -> int:
         """Rank of the conditions for equal durations."""
-        if self.conditions == self.coefficients > _DENSE:
+        if self.conditions == self.coefficients > DENSE_UNKNOWNS:
             return self.conditions if self._banded_regular() else self.conditions - 1
         return int(np.linalg.matrix_rank(_unit_matrix(self.table)))
 

@@ -19,7 +19,7 @@ LANES = 192
 SETTLED = 1e-6
 """Newton step below which a lane rests: the next error is its square, 1e-12, and a peak's error
 the square of that of its place."""
-KERNELS = ("kernel.py", "banded.py")
+KERNELS = ("kernel.py", "blocks.py")
 """Every file of compiled functions here: they share a stamp."""
 compiled = compiler(*(Path(__file__).with_name(name) for name in KERNELS))
 """Compiles a function of one of these files."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import Array
 from ..errors import TrajgapError
-from .peak import Extremum
+from .peak import Extremum, PeakGradients
 from .polynomials import PERM
 from .trajectory import Trajectory
 
@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 _LONGEST = 1e30
 """Durations, s, beyond which, or below whose reciprocal, ninth powers leave float64's range."""
+STEP = 1e-30
+"""Complex step of gradients, s: its square is lost in any double, so nothing is truncated."""
 _SIDES = (-1.0, 1.0)
 """Below 0, and above."""
 Derivatives = tuple[tuple[int, float | tuple[float, ...]], ...]
@@ -37,29 +39,13 @@ class Enclosed:
     trajectory : Trajectory
     error : ndarray, shape (pieces, 4, joints)
         Bound on the error of any extremum of derivative 0 to 3 on a piece.
+    closer : callable, optional
+        Makes the same with a closer bound, at some cost; None where there is none.
     """
 
     trajectory: Trajectory
     error: Array
-
-
-@dataclass(frozen=True, eq=False)
-class PeakGradients:
-    """Gradients of the values of some extrema.
-
-    Attributes
-    ----------
-    durations : ndarray, shape (extrema, segments)
-        d value / d duration.
-    waypoints : ndarray, shape (extrema, way-points)
-        d value / d way-point of the extremum's own joint.
-    nodal : ndarray, shape (extrema, free)
-        d value / d free derivative of the extremum's own joint.
-    """
-
-    durations: Array
-    waypoints: Array
-    nodal: Array
+    closer: Callable[[], Enclosed] | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -406,9 +392,12 @@ def value_errors(trajectory: Trajectory, coefficient_error: Array) -> Array:
     Coefficient errors, plus the rounding of Horner's scheme, plus that of the place of the
     extremum, where the next derivative vanishes to rounding.
     """
-    size = 32 * np.finfo(np.float64).eps * np.abs(trajectory.scaled)
-    own = np.einsum("pr,kpj->krj", PERM[:, :4], coefficient_error + size)
-    place = np.einsum("pr,kpj->krj", PERM[:, 1:5], size)
+    powers = trajectory.derivatives(0)
+    top, size = len(powers), 32 * np.finfo(np.float64).eps * np.abs(powers)
+    error = coefficient_error[:, :top].transpose(1, 0, 2)
+    # Orders lead: what is asked of all pieces is one order at a time.
+    own = np.tensordot(PERM[:top, :4].T, error, axes=1)
+    own += np.tensordot(PERM[:top, :4].T + PERM[:top, 1:5].T, size, axes=1)
     # One power after another: those of a table of exponents differ in the last bit.
-    powers = np.stack([trajectory.durations**r for r in range(4)], axis=1)
-    return np.asarray((own + place) / powers[:, :, None])
+    own /= np.stack([trajectory.durations**r for r in range(4)])[:, :, None]
+    return own.transpose(1, 0, 2)

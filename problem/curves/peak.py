@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arrays import Array
+from ..arrays import Array, over_rows
 from .polynomials import LOOSE, bernstein, derivative_rows, derived, roots_in_unit
 from .trajectory import Trajectory
 
@@ -37,6 +37,25 @@ class Extremum:
     s: float
     time: float
     value: float
+
+
+@dataclass(frozen=True, eq=False)
+class PeakGradients:
+    """Gradients of the values of some extrema.
+
+    Attributes
+    ----------
+    durations : ndarray, shape (extrema, segments)
+        d value / d duration.
+    waypoints : ndarray, shape (extrema, way-points)
+        d value / d way-point of the extremum's own joint.
+    nodal : ndarray, shape (extrema, free)
+        d value / d free derivative of the extremum's own joint.
+    """
+
+    durations: Array
+    waypoints: Array
+    nodal: Array
 
 
 def rows_at(points: list[Extremum]) -> Array:
@@ -186,14 +205,11 @@ def _reaching(a: Array, errors: Array) -> NDArray[np.int64]:
     """Pieces that may have the least or largest value of a joint, or one that counts with errors.
 
     Bernstein coefficients bound a polynomial; a piece that stays within what the ends of others
-    have is left out.
+    surely have, with errors on both sides, is left out.
     """
-    hull = bernstein(a)
-    room = LOOSE * np.abs(a).sum(axis=0)
-    counts = np.zeros(a.shape[1], dtype=bool)
-    for sign in (-1.0, 1.0):
-        bound = (sign * hull).max(axis=0) + room
-        top = (sign * hull[[0, -1]]).max(axis=0) - room
-        for blur in (0.0, -errors, errors):
-            counts |= ~(bound + blur < (top + blur).max(axis=0)).all(axis=1)
-    return np.flatnonzero(counts)
+    hull = bernstein(a) if len(a) > 2 else a.cumsum(axis=0)
+    room = LOOSE * np.abs(a).sum(axis=0) + errors
+    one, other = hull[0], hull[-1]
+    least = hull.min(axis=0) - room > over_rows(np.minimum, np.minimum(one, other) + room)
+    most = hull.max(axis=0) + room < over_rows(np.maximum, np.maximum(one, other) - room)
+    return np.flatnonzero(~(least & most).all(axis=1))

@@ -67,7 +67,8 @@ def batch_coefficients(layout: Layout, values: Array, durations: Array) -> Array
     """
     vectors, joints = len(durations), values.shape[1]
     flat = np.empty((int(layout.first[-1]), joints * vectors))
-    system = np.empty((layout.unknowns, 2 * layout.lower + layout.upper + 1, vectors))
+    lower, upper = layout.bandwidths
+    system = np.empty((layout.unknowns, 2 * lower + upper + 1, vectors))
     right = np.empty((layout.unknowns, joints * vectors))
     # Durations that may be written into: compiled for them alone.
     h = np.array(durations.T, order="C")

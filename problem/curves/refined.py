@@ -8,28 +8,22 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arrays import Array
-from .banded import image
+from ..arrays import Array, over_rows
+from .blocks import POSITIVE, Blocks, blocks_of
 from .condition import Layout
 from .system import System, inverse, singular, system
 
-SHARES = (1e-5, 1e-9, 1e-14)
-"""Of the largest entry in a row of the inverse, below which entries are left out, tried in turn:
-the first nearly always does (at 1e-3 a second image is needed, at 1e-8 rows are a third longer),
-the last leaves out what rounding would lose."""
-GUESSED = 1e-2
-"""The same for the guess that an image has to stay below: shorter rows, and twice the sum of what
-is left mostly covers the rest; where it does not, a further image does."""
-DENSE_AFTER_ALL = 6000
-"""Up to this many coefficients, 300 MB, a dense inverse is tried where no banded one settles."""
-IMAGES = 3
-"""Images of a bound that are taken: the first one contains its own nearly always."""
-_POSITIVE = 1e-290
-"""Added to every bound, so that none is 0: far below any angle, far above the least float even
-after division by hʳ."""
+WIDTHS = (1, 2, 4, 8, 16, 32)
+"""Segments in a block, tried in turn: one gives a close bound for splines of degrees 3 and 5, two
+or four for 7. Beyond 32 what is left is near singular, and a block costs the cube of its width."""
+CLOSE = 1e-11
+"""Share of a joint's largest coefficient that its bound may have before wider blocks are tried: a
+hundredth of what the checker's tolerance leaves."""
 
 
-def refined_coefficients(layout: Layout, values: Array, durations: Array) -> tuple[Array, Array]:
+def refined_coefficients(
+    layout: Layout, values: Array, durations: Array, extended: bool = True
+) -> tuple[Array, Array]:
     """Coefficients after iterative refinement in extended precision, with an error bound.
 
     The residual is taken in ``longdouble``; its rounding is bounded by that type's own epsilon,
@@ -62,74 +56,96 @@ def refined_coefficients(layout: Layout, values: Array, durations: Array) -> tup
     SingularError
         If the system is, or if rounding does not tell it from one that is.
     """
-    rows = system(layout, durations.astype(np.longdouble))
-    size = len(rows.values)
-    flat, error = _refined_in_band(rows, values) if rows.in_band else (values, None)
-    if error is None:
-        if rows.in_band and size > DENSE_AFTER_ALL:
-            raise singular(layout, durations)
-        approximate = inverse(rows, layout, durations)
-        flat = _refined(rows, values, lambda residual: approximate @ residual)
-        error = _bounded(rows, approximate, values, flat)
+    wide = durations.astype(np.longdouble) if extended else durations
+    with np.errstate(all="ignore"):  # what is no number has no bound, and is refused
+        rows = system(layout, wide)
+        flat, error = (_by_blocks if rows.in_band else _densely)(layout, rows, values, durations)
     if error is None or not np.isfinite(flat).all():
         raise singular(layout, durations)
-    rounded = flat.astype(np.float64)
-    error = error + np.finfo(np.float64).eps * np.abs(rounded)
-    return layout.unflat(rounded), layout.unflat(error)
+    rounded = flat.astype(np.float64, copy=False)
+    error += np.finfo(np.float64).eps * np.abs(rounded)
+    return layout.unflat(rounded), layout.unflat(error, int(layout.degrees.max()) + 1)
 
 
-def _refined(rows: System, values: Array, solve: Callable[[Array], Array]) -> NDArray[np.floating]:
+def _densely(
+    layout: Layout, rows: System, values: Array, durations: Array
+) -> tuple[NDArray[np.floating], Array | None]:
+    """Coefficients, and an error that contains its own image, by the inverse of all rows."""
+    approximate = inverse(rows, layout, durations)
+    flat = _refined(layout, rows, values, lambda residual: approximate @ residual)
+    matrix = layout.dense(rows.narrow.values)
+    return flat, contained(approximate, matrix, _excess(rows, values, flat, len(matrix)))
+
+
+def _by_blocks(
+    layout: Layout, rows: System, values: Array, durations: Array
+) -> tuple[NDArray[np.floating], Array | None]:
+    """The same by blocks of segments, wider ones where the bound is not close."""
+    narrow = rows.narrow
+    best: tuple[NDArray[np.floating], Array | None] = (values, None)
+    for segments in WIDTHS:
+        blocks = blocks_of(layout, narrow, segments)
+        if narrow is rows:
+            flat, excess = _solved(layout, blocks, values)
+        else:
+            flat = _refined(layout, rows, values, blocks.solve)
+            excess = _excess(rows, values, flat, rows.columns.shape[1])
+        error = blocks.bound(excess)
+        if error is None:
+            continue
+        best = flat, error
+        # A joint that stands still at 0 has what is added to every bound, and no more.
+        still = POSITIVE / CLOSE**2
+        sizes = over_rows(np.maximum, np.abs(flat))
+        if (over_rows(np.maximum, error) <= CLOSE * sizes + still).all():
+            break
+    return best
+
+
+def _solved(layout: Layout, blocks: Blocks, values: Array) -> tuple[NDArray[np.floating], Array]:
+    """Coefficients in float64, and a bound on their residual.
+
+    What a step of refinement would gain is less than the rounding of the residual.
+    """
+    flat = blocks.rows.begun(layout, values)
+    flat += blocks.solve(blocks.residual(layout, values, flat)[0])
+    residual, excess = blocks.residual(layout, values, flat)
+    excess += np.abs(residual)
+    return flat, excess
+
+
+def _refined(
+    layout: Layout, rows: System, values: Array, solve: Callable[[Array], Array]
+) -> NDArray[np.floating]:
     """Coefficients after a solution and two steps of refinement, in extended precision."""
-    flat = rows.begun(values)
+    flat = rows.begun(layout, values)
     for _ in range(3):
-        residual = np.concatenate(
-            [(part.right(values[at]) - part.times(flat)) for at, part in rows.parts()]
-        )
-        flat = flat + solve(residual.astype(np.float64))
+        flat = flat + solve((rows.right(values) - rows.times(flat)).astype(np.float64))
     return flat
 
 
 def _excess(rows: System, values: Array, flat: NDArray[np.floating], terms: int) -> Array:
     """Bound on the residual, its rounding in sums of so many terms included."""
-    tiny = np.finfo(np.longdouble).eps * (terms + 24)
-    found = []
-    for at, part in rows.parts():
-        right = part.right(values[at])
-        sizes = replace(part, values=np.abs(part.values)).times(np.abs(flat))
-        excess = np.abs(right - part.times(flat)) + tiny * (sizes + np.abs(right))
-        found.append(excess.astype(np.float64))
-    return np.concatenate(found)
+    tiny, right = np.finfo(np.longdouble).eps * (terms + 24), rows.right(values)
+    sizes = replace(rows, values=np.abs(rows.values)).times(np.abs(flat)) + np.abs(right)
+    return np.asarray(np.abs(right - rows.times(flat)) + tiny * sizes, dtype=np.float64)
 
 
-def _refined_in_band(rows: System, values: Array) -> tuple[NDArray[np.floating], Array | None]:
-    """Coefficients, refined by a band's factors, and an error that contains its own image."""
-    factors = rows.factors
-    if not (np.abs(factors.diagonal) > 0.0).all():
-        return values, None
-    flat = _refined(rows, values, factors.solve)
-    excess = _excess(rows, values, flat, rows.columns.shape[1])
-    for share in SHARES:
-        guess = 2.0 * (_POSITIVE + image(factors, max(share, GUESSED), excess, None))
-        for _ in range(IMAGES):
-            error = _POSITIVE + image(factors, share, excess, guess)
-            if (error <= guess).all():
-                return flat, error
-            guess = 2.0 * error
-    return flat, None
+def contained(approximate: NDArray[np.floating], matrix: Array, excess: Array) -> Array | None:
+    """An error that contains its own image by any approximate inverse of a matrix, or None.
 
-
-def _bounded(
-    rows: System, approximate: Array, values: Array, flat: NDArray[np.floating]
-) -> Array | None:
-    """An error that contains its own image, or None."""
-    matrix = rows.dense
-    excess = _excess(rows, values, flat, len(matrix))
+    Parameters
+    ----------
+    approximate, matrix : ndarray, shape (size, size)
+    excess : ndarray, shape (size, joints)
+        Bound on the residual.
+    """
     size = np.finfo(np.float64).eps * (len(matrix) + 2)
     # The rounding of the product, and of A's entries, is part of the defect |BA − I|.
     found = np.abs(approximate @ matrix - np.eye(len(matrix)))
     defect = found + size * (np.abs(approximate) @ np.abs(matrix))
-    first = _POSITIVE + np.abs(approximate) @ excess
+    first = POSITIVE + np.abs(approximate) @ excess
     error = first
     for _ in range(3):
         error = first + 1.1 * (defect @ error)
-    return error if (first + defect @ error <= error).all() else None
+    return np.asarray(error) if (first + defect @ error <= error).all() else None

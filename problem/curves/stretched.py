@@ -13,7 +13,6 @@ from ..limits import QUANTITIES
 from .kind import (
     Curve,
     Enclosed,
-    PeakGradients,
     Shape,
     are_durations,
     as_batch,
@@ -21,7 +20,7 @@ from .kind import (
     masked,
     value_errors,
 )
-from .peak import Extremum, rows_at
+from .peak import Extremum, PeakGradients, rows_at
 from .polynomials import derived, tops
 from .trajectory import Trajectory
 

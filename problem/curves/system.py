@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -14,10 +13,8 @@ from ..errors import SingularError
 from .banded import Factors, factorise
 from .condition import Layout
 
-DENSE_UNKNOWNS = 400
-"""Up to this many coefficients one dense inverse takes a few milliseconds; a band gains nothing."""
-_PART = 32768
-"""Rows that are handled together in extended precision: some ten megabytes for seven joints."""
+DENSE_UNKNOWNS = 300
+"""Up to this many coefficients one dense inverse takes ten milliseconds; nothing is compiled."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,41 +47,32 @@ class System:
 
     def right(self, values: Array) -> NDArray[np.floating]:
         """Right-hand sides from the rows' values."""
-        return np.asarray(self.factor[:, None] * values.astype(self.factor.dtype))
+        return np.asarray(self.factor[:, None] * values.astype(self.factor.dtype, copy=False))
 
-    def begun(self, values: Array) -> NDArray[np.floating]:
+    def begun(self, layout: Layout, values: Array) -> NDArray[np.floating]:
         """Coefficients that a row of one entry gives at once; 0 for the others.
 
         What is solved for from here is exactly 0 for a joint that stands still.
         """
         flat = np.zeros((len(self.values), values.shape[1]), dtype=self.factor.dtype)
-        alone = np.count_nonzero(self.values, axis=1) == 1
-        flat[self.columns[alone, 0]] = self.right(values)[alone] / self.values[alone, :1]
+        rows, columns = layout.alone
+        given = self.factor[rows, None] * values[rows].astype(self.factor.dtype, copy=False)
+        flat[columns] = given / self.values[rows, :1]
         return flat
-
-    def parts(self) -> Iterator[tuple[slice, System]]:
-        """The rows in parts, so that extended precision takes little memory."""
-        for start in range(0, len(self.values), _PART):
-            at = slice(start, start + _PART)
-            yield at, System(self.columns[at], self.values[at], self.factor[at])
-
-    @cached_property
-    def dense(self) -> Array:
-        """The rows as a full matrix."""
-        out = np.zeros((len(self.values), len(self.values)))
-        row, slot = np.nonzero(self.values)
-        out[row, self.columns[row, slot]] = self.values[row, slot]
-        return out
 
     @cached_property
     def factors(self) -> Factors:
-        """The rows as a band matrix, with its factors: as many rows as coefficients are needed."""
+        """Factors of the band matrix: as many rows as coefficients are needed."""
         row, slot = np.nonzero(self.values)
-        away = self.columns[row, slot] - row
-        lower, upper = int(-away.min()), int(away.max())
-        band = np.zeros((len(self.values), lower + upper + 1))
-        band[row, away + lower] = self.values[row, slot]
-        return factorise(band, lower, upper)
+        return factorise(row, self.columns[row, slot], self.values[row, slot])
+
+    @property
+    def narrow(self) -> System:
+        """The same rows in float64."""
+        if self.values.dtype == np.float64:
+            return self
+        values, factor = (a.astype(np.float64) for a in (self.values, self.factor))
+        return System(self.columns, values, factor)
 
     @property
     def in_band(self) -> bool:
@@ -108,7 +96,7 @@ def inverse(rows: System, layout: Layout, durations: Array) -> Array:
     SingularError
     """
     try:
-        return np.asarray(np.linalg.inv(rows.dense), dtype=np.float64)
+        return np.asarray(np.linalg.inv(layout.dense(rows.narrow.values)), dtype=np.float64)
     except np.linalg.LinAlgError:
         raise singular(layout, durations) from None
 
@@ -129,14 +117,14 @@ def coefficients(layout: Layout, values: Array, durations: Array) -> Array:
     SingularError
     """
     rows = system(layout, durations)
-    flat = rows.begun(values)
+    flat = rows.begun(layout, values)
     residual = rows.right(values) - rows.times(flat)
     with np.errstate(all="ignore"):
         if rows.in_band:
             flat = flat + rows.factors.solve(residual)
         else:
             try:
-                flat = flat + np.linalg.solve(rows.dense, residual)
+                flat = flat + np.linalg.solve(layout.dense(rows.values), residual)
             except np.linalg.LinAlgError:
                 raise singular(layout, durations) from None
     if not np.isfinite(flat).all():

@@ -91,9 +91,13 @@ class Trajectory:
         As many powers as the highest degree leaves, at least one.
         """
         if order not in self._known:
-            powers = self.scaled[:, : max(self.degrees) + 1].transpose(1, 0, 2)
-            rates = self.durations[:, None] ** order
-            self._known[order] = np.ascontiguousarray(derived(powers, order) / rates)
+            if order == 0:
+                powers = self.scaled[:, : max(self.degrees) + 1].transpose(1, 0, 2)
+                self._known[0] = np.array(powers, order="C")
+            else:
+                found = derived(self.derivatives(0), order)
+                found /= self.durations[:, None] ** order
+                self._known[order] = found
             self._known[order].setflags(write=False)
         return self._known[order]
 

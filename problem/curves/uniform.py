@@ -11,15 +11,12 @@ from numpy.typing import NDArray
 
 from ..arrays import Array
 from ..errors import TrajgapError
-from .kind import Curve, Enclosed, PeakGradients, Shape, as_batch, masked
-from .peak import Extremum
+from .kind import STEP, Curve, Enclosed, Shape, as_batch, masked
+from .peak import Extremum, PeakGradients
 from .polynomials import MAX_COEFFICIENTS
 from .stretched import StretchedCurve, Timing
 from .timed import clocked_reach, enclosed_with_clock, runs_forwards, value_at
 from .uniform_matrices import clock_matrix, shape_matrix
-
-_STEP = 1e-30
-"""Complex step of the gradients, s: its square is lost in any double, so nothing is truncated."""
 
 
 @lru_cache(maxsize=16)
@@ -166,8 +163,8 @@ class TimedUniformBSpline(UniformBSpline):
         by_waypoint = np.empty((len(points), self.waypoints))
         for i, e in enumerate(points):
             q, t = scaled[e.segment, :, e.joint], clock[e.segment]
-            steps = t + 1j * _STEP * nodes[e.segment].T
-            by_duration[i] = value_at(q, steps, e).imag / _STEP
+            steps = t + 1j * STEP * nodes[e.segment].T
+            by_duration[i] = value_at(q, steps, e).imag / STEP
             # The numerators are linear in q.
             by_waypoint[i] = value_at(matrix[e.segment].T, t, e)
         return PeakGradients(by_duration, by_waypoint, np.empty((len(points), 0)))

@@ -18,8 +18,7 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 _HERE = Path(__file__).resolve().parent
 sys.path[:] = [str(_HERE.parent), *(x for x in sys.path if Path(x or ".").resolve() != _HERE)]
 
-from attacks.registry import ATTACKS  # noqa: E402
-from attacks.run import Account, run, run_each, tried, warm  # noqa: E402
+from attacks.run import ATTACKS, Account, run, run_each, tried, warm  # noqa: E402
 from attacks.sandbox import available  # noqa: E402
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from support.positions import over
 
 from attacks.attack import Attack, demand, keep
 from attacks.cases import (
@@ -26,7 +27,7 @@ from attacks.cases import (
     raw_of,
 )
 from attacks.grammar import asked_of, draw_case
-from attacks.truth import Truth, over, truth
+from attacks.truth import Truth, truth
 
 TOLERANCE = 1e-9
 """Excess that the judge documents as keeping a limit."""
@@ -220,6 +221,29 @@ def rounding(rng: Rng, folder: Path) -> str | None:
     return str(found.verdict)
 
 
+def poses(problem: Any, asked: Asked, what: str) -> None:
+    """Break where a problem is not what a second reading of its file asks, to the last bits."""
+    compared = [
+        ("way-points", asked.waypoints, problem.waypoints),
+        ("limits", asked.sides, problem.limits.sides),
+        ("lower positions", asked.position_lower, problem.limits.position_lower),
+        ("upper positions", asked.position_upper, problem.limits.position_upper),
+        ("lower bounds", asked.duration_lower, problem.duration_lower),
+        ("upper bounds", asked.duration_upper, problem.duration_upper),
+    ]
+    form, still = problem.curve.piecewise, np.zeros(len(asked.labels))
+    for at, ends in ((0, asked.ends), (-1, asked.finish)) if form is not None else ():
+        given = dict(form.prescribed[at])
+        for r in given.keys() | ends.keys():
+            mine, own = ends.get(r, still), given.get(r, 0.0) + still
+            compared.append((f"derivative {r} at {at}", mine, own))
+    for name, mine, theirs in compared:
+        same = mine.shape == theirs.shape and np.allclose(mine, theirs, rtol=1e-14, atol=0)
+        demand(bool(same), f"{what}{name} {theirs} instead of {mine}")
+    demand(problem.coupling == asked.coupling, f"{what}coupling")
+    demand(problem.joints == asked.labels, f"{what}joints")
+
+
 def readings(rng: Rng, folder: Path) -> str | None:
     """Problems and readings pose what a second reading of the same file says."""
     from trajgap.problem import TrajgapError, check, parse_case
@@ -230,25 +254,7 @@ def readings(rng: Rng, folder: Path) -> str | None:
     demand(set(case.selections()) == set(drawn.asked), "problems and readings")
     for pair, asked in drawn.asked.items():
         problem = case.problem(*pair)
-        compared = [
-            ("way-points", asked.waypoints, problem.waypoints),
-            ("limits", asked.sides, problem.limits.sides),
-            ("lower positions", asked.position_lower, problem.limits.position_lower),
-            ("upper positions", asked.position_upper, problem.limits.position_upper),
-            ("lower bounds", asked.duration_lower, problem.duration_lower),
-            ("upper bounds", asked.duration_upper, problem.duration_upper),
-        ]
-        form = problem.curve.piecewise
-        for at, ends in ((0, asked.ends), (-1, asked.finish)) if form is not None else ():
-            for r, value in form.prescribed[at]:
-                mine = ends.get(r, np.zeros(len(asked.labels)))
-                compared.append(
-                    (f"derivative {r} at {at}", mine, np.broadcast_to(value, mine.shape))
-                )
-        for name, mine, theirs in compared:
-            same = mine.shape == theirs.shape and np.allclose(mine, theirs, rtol=1e-14, atol=0)
-            demand(bool(same), f"{pair}: {name} {theirs} instead of {mine}")
-        demand(problem.coupling == asked.coupling, f"{pair}: coupling")
+        poses(problem, asked, f"{pair}: ")
         try:
             h = near_limits(rng, problem, 1.0, float(rng.choice([0.8, 1.2])))
             agrees(check(problem, h), truth(asked, problem.curve, h), asked, h, f"{pair}: ")

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy.optimize import differential_evolution
+from support.benchmarks import loaded
 
 from attacks.attack import Attack, demand, keep
 from attacks.cases import Array, Rng
@@ -17,8 +17,6 @@ BEATEN = 1e-4
 """By how much, relative, known durations must beat an answer before that counts."""
 OFFSPRING, ROUNDS = 48, 25
 """Random steps from the durations that are known, and how often, in batches on exact totals."""
-DECADES, GENERATIONS = 3.0, 80
-"""How far around the known durations a global search looks, either way, and for how long."""
 FAMILIES = (
     "3-5-3",
     "4-3-4",
@@ -210,36 +208,10 @@ def shorter(rng: Rng, problem: Any, h: Array) -> Array:
 
 
 def searched(rng: Rng, problem: Any, h: Array) -> Array:
-    """The shorter of these and of what differential evolution finds that keeps all."""
-    from trajgap.problem import evaluate
-
-    low = np.maximum(problem.duration_lower, h * 10.0**-DECADES)
-    high = np.minimum(problem.duration_upper, h * 10.0**DECADES)
-    box = np.log(np.stack([low, np.maximum(high, low * (1 + 1e-12))], axis=1))
-
-    def stretched(z: Array) -> tuple[Array, Array]:
-        trial = np.clip(np.exp(np.atleast_2d(z.T)), low, high)
-        found = evaluate(problem, trial)
-        c = found.stretch
-        if problem.curve.homogeneous:
-            trial = np.clip(trial * np.where(np.isfinite(c), c, 1.0)[:, None], low, high)
-            found = evaluate(problem, trial)
-        with np.errstate(invalid="ignore"):
-            worst = np.maximum(found.stretch, found.positions.max(axis=1))
-        return trial, np.where(np.isfinite(worst) | (worst < 0), worst, 1e12)
-
-    def objective(z: Array) -> Array:
-        trial, worst = stretched(z)
-        beyond = np.maximum(worst - (1 + 1e-10), 0.0)
-        return np.asarray(np.log(trial.sum(axis=1)) + np.where(beyond > 0, 1e3 + beyond, 0.0))
-
-    best = differential_evolution(
-        objective, box, maxiter=GENERATIONS, popsize=12, tol=1e-10, rng=rng, vectorized=True,
-        updating="deferred", polish=False,
-    )  # fmt: skip
-    found = stretched(best.x)[0][0]
-    better = (found > 0).all() and found.sum() < h.sum() and keeps_all(problem, found)
-    return found if better else h
+    """The shorter of these and of what brute force finds that keeps all."""
+    found = loaded("solver_errors").brute_force(problem, int(rng.integers(2**31)))
+    better = found.total < h.sum() and keeps_all(problem, found.durations)
+    return found.durations if better else h
 
 
 def written(problem: Any, h: Array) -> str:
@@ -307,7 +279,7 @@ def nasty(rng: Rng, folder: Path) -> str | None:
 
 
 def optima(rng: Rng, folder: Path) -> str | None:
-    """The same against differential evolution."""
+    """The same against brute force."""
     return _beside(rng, folder, searched)
 
 
@@ -336,7 +308,7 @@ ATTACKS = (
     ),
     Attack(
         "optima",
-        "the same; differential evolution on exact totals",
+        "the same; differential evolution and the simplex method, as benchmarks/solver_errors",
         "the same",
         optima,
         share=3.0,

@@ -17,9 +17,19 @@ from pathlib import Path
 
 import numpy as np
 
+from attacks import faults, judging, motions, nasty, proofs, reading
 from attacks.attack import Attack, Broken
 from attacks.sandbox import call
 
+ATTACKS: tuple[Attack, ...] = (
+    *reading.ATTACKS,
+    *judging.ATTACKS,
+    *motions.ATTACKS,
+    *nasty.ATTACKS,
+    *proofs.ATTACKS,
+    *faults.ATTACKS,
+)
+"""In the order of the table."""
 TRIAL_SECONDS = 240.0
 """Processor time of one trial inside a child."""
 LARGEST_KEPT = 500_000

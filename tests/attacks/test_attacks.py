@@ -18,8 +18,7 @@ from attacks.attack import Attack
 from attacks.cases import CLAIMS, FAMILIES
 from attacks.grammar import draw_case
 from attacks.mutations import damaged
-from attacks.registry import ATTACKS
-from attacks.run import Account, tried, warm
+from attacks.run import ATTACKS, Account, tried, warm
 
 pytestmark = pytest.mark.skipif(
     not sandbox.available(), reason="children are forked and watched on Linux"

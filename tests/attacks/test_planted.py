@@ -22,8 +22,7 @@ from trajgap.problem.motions import HalfUnits
 from attacks import faults
 from attacks.attack import Broken
 from attacks.reading import hold_together
-from attacks.registry import ATTACKS
-from attacks.run import Account, tried, warm
+from attacks.run import ATTACKS, Account, tried, warm
 from attacks.sandbox import available
 
 pytestmark = pytest.mark.skipif(not available(), reason="children are forked and watched on Linux")
@@ -106,30 +105,30 @@ def writing_raises(name: str, field: str) -> Iterator[None]:
 
 SOLVE = trajgap.nlp.solve
 CLI, VERIFY, MOTIONS = "trajgap.compare.cli.", "trajgap.verify.", "trajgap.problem.motions."
-FAULTS: dict[str, dict[str, Any]] = {
-    "check passes": {"trajgap.problem.check": all_are(Verdict.PASS)},
-    "check violates": {"trajgap.problem.check": all_are(Verdict.VIOLATED)},
-    "peaks one per mille low": {
+PLANTED: dict[tuple[str, str, int], dict[str, Any]] = {
+    ("verdicts", "check passes", 20): {"trajgap.problem.check": all_are(Verdict.PASS)},
+    ("verdicts", "check violates", 20): {"trajgap.problem.check": all_are(Verdict.VIOLATED)},
+    ("peaks", "peaks one per mille low", 10): {
         "trajgap.problem.check": peaks_are(lambda p: replace(p, value=0.999 * p.value))
     },
-    "digits say nothing": {
+    ("verdicts on motions", "digits say nothing", 200): {
         f"{MOTIONS}{reader}.rounding_of": lambda *_: HalfUnits() for reader in ("tables", "ros")
     },
-    "sides are one size": {
+    ("readings", "sides are one size", 20): {
         "trajgap.problem.parse_case": read(lambda one: replace(one, limits=one.limits.hull))
     },
-    "everything breaks": {
+    ("rounding boxes", "everything breaks", 20): {
         "trajgap.compare.audits.judge_rounding": after(
             trajgap.compare.audits.judge_rounding, lambda found: replace(found, verdict="breaks")
         )
     },
-    "one per mille long": {"trajgap.nlp.solve": after(SOLVE, longer)},
-    "all infeasible": {
+    ("optima", "one per mille long", 6): {"trajgap.nlp.solve": after(SOLVE, longer)},
+    ("nasty problems", "all infeasible", 6): {
         "trajgap.nlp.solve": after(
             SOLVE, lambda one: replace(one, status=Status.INFEASIBLE, vector=None)
         )
     },
-    "a fault": {
+    ("valid case files", "a fault", 2): {
         CLI + name: fails
         for name in (
             "showing.show_case",
@@ -138,59 +137,41 @@ FAULTS: dict[str, dict[str, Any]] = {
             "auditing.audit_cases",
         )
     },
-    "two lines": {f"{CLI}app._fail": two_lines},
-    "files by and by": {f"{CLI}output.new_file": files_by_and_by},
-    "drafts stay": {"trajgap.problem.files._remove": nothing},
-    "writing raises": {f"{CLI}output._writing": writing_raises},
-    "leaves are not proved": {
+    ("damaged case files", "two lines", 10): {f"{CLI}app._fail": two_lines},
+    ("killed", "files by and by", 12): {f"{CLI}output.new_file": files_by_and_by},
+    ("interrupted", "drafts stay", 8): {"trajgap.problem.files._remove": nothing},
+    ("full disk", "writing raises", 6): {f"{CLI}output._writing": writing_raises},
+    ("no rights", "writing raises", 6): {f"{CLI}output._writing": writing_raises},
+    ("certificates", "leaves are not proved", 120): {
         f"{VERIFY}declared.need": nothing,
         f"{VERIFY}closed_form.need": nothing,
         f"{VERIFY}any_curve.need": nothing,
     },
-    "answers are not looked at": {f"{VERIFY}verdict.check_answer": nothing},
-    "the verifier raises": {f"{VERIFY}verdict.walk": fails},
+    ("certificates", "answers are not looked at", 120): {f"{VERIFY}verdict.check_answer": nothing},
+    ("certificates", "the verifier raises", 20): {f"{VERIFY}verdict.walk": fails},
 }
-"""What stands in the place of what is attacked."""
-PLANTED: list[tuple[str, str, int]] = [
-    ("verdicts", "check passes", 20),
-    ("verdicts", "check violates", 20),
-    ("peaks", "peaks one per mille low", 10),
-    ("verdicts on motions", "digits say nothing", 200),
-    ("readings", "sides are one size", 20),
-    ("rounding boxes", "everything breaks", 20),
-    ("nasty problems", "all infeasible", 6),
-    ("optima", "one per mille long", 6),
-    ("damaged case files", "two lines", 10),
-    ("valid case files", "a fault", 2),
-    ("certificates", "leaves are not proved", 120),
-    ("certificates", "answers are not looked at", 120),
-    ("certificates", "the verifier raises", 20),
-    ("killed", "files by and by", 12),
-    ("interrupted", "drafts stay", 8),
-    ("full disk", "writing raises", 6),
-    ("no rights", "writing raises", 6),
-]
-"""Attack, fault, and the trials within which it must be found."""
+"""Of an attack, a fault and the trials within which it must be found: what is put in its place."""
 QUICK = 7
 """Trials from which a planted fault is one of the slow tests."""
 
 
 @pytest.mark.parametrize(
-    ("name", "fault", "trials"),
+    "one",
     [
         pytest.param(
-            *one, id=f"{one[0]}: {one[1]}", marks=[pytest.mark.slow] if one[2] >= QUICK else []
+            one, id=f"{one[0]}: {one[1]}", marks=[pytest.mark.slow] if one[2] >= QUICK else []
         )
         for one in PLANTED
     ],
 )
 def test_a_planted_fault_is_found(
-    name: str, fault: str, trials: int, monkeypatch: pytest.MonkeyPatch
+    one: tuple[str, str, int], monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    name, _, trials = one
     account = Account(next(a for a in ATTACKS if a.name == name))
     monkeypatch.setattr(faults, "WORKS", {k: w for k, w in faults.WORKS.items() if w.quick})
     faults._usual.cache_clear()
-    for place, other in FAULTS[fault].items():
+    for place, other in PLANTED[one].items():
         monkeypatch.setattr(place, other)
     for number in range(trials):
         tried(account, 11, number)

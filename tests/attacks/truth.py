@@ -11,6 +11,7 @@ import numpy as np
 from support import exact_route
 from support.exact_motions import Curve
 from support.papers import motions
+from support.positions import over, position_ratios
 
 from attacks.cases import Array, Asked, NoCurve
 
@@ -43,22 +44,8 @@ class Truth:
         return float(max(bounds, over(self.reach, asked.sides).max(), self.positions(asked).max()))
 
     def positions(self, asked: Asked) -> Array:
-        """1 at a limit and more beyond, in half ranges; −inf where there is none, (joints,)."""
-        low, high = asked.position_lower, asked.position_upper
-        wide = high - low
-        found = np.full(len(low), -np.inf)
-        for limit, excess in ((low, low - self.ends[0, :, 0]), (high, self.ends[0, :, 1] - high)):
-            half = np.where(np.isfinite(wide), wide / 2, np.maximum(1.0, np.abs(limit)))
-            there = np.isfinite(limit)
-            beyond = np.sign(excess[there]) * over(np.abs(excess[there]), half[there])
-            found[there] = np.maximum(found[there], 1.0 + beyond)
-        return found
-
-
-def over(reach: Array, limit: Array) -> Array:
-    """Ratios to limits: 0 where nothing moves, inf where a limit of 0 is passed."""
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return np.asarray(np.where(reach > 0, reach / limit, 0.0))
+        """Ratios to position limits, (joints,)."""
+        return position_ratios(self.ends[0], asked.position_lower, asked.position_upper)
 
 
 def truth(asked: Asked, curve: Any, h: Array) -> Truth:

@@ -1,19 +1,29 @@
 """Objectives: the death penalty and the repair by stretch, judged by the checker at every edge."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from support.positions import CURVES, SWINGING, limited
 from support.two_joints import WAYPOINTS, WITH_JERK, two_joints
+from support.uneven import CURVES as UNEVEN
+from support.uneven import uneven_problem
 from trajgap.heuristics import (
     PSO,
     Counted,
     DeathPenalty,
     Stretch,
+    find_optimizer,
     run,
     run_per_joint,
+    run_within,
+    search_box,
     uniform_rescaling,
 )
-from trajgap.heuristics.repair import judge_of
+from trajgap.heuristics.repair import compile_judge, judge_of
+from trajgap.nlp import Status, solve
 from trajgap.problem import (
+    Array,
     Limits,
     Problem,
     TrajgapError,
@@ -26,6 +36,7 @@ from trajgap.problem import (
     three_five_three,
 )
 from trajgap.problem.checker import TOLERANCE
+from trajgap.problem.curves import kernel
 
 
 def problem_with(**changes: object) -> Problem:
@@ -137,34 +148,37 @@ def test_fixed_ratios_leave_nothing_to_search() -> None:
         uniform_rescaling(problem)
 
 
-def test_fitness_is_what_the_checker_calls_feasible_and_tight_time() -> None:
-    problem = wide(duration_lower=0.0, duration_upper=np.inf)
-    batch = np.exp(np.random.default_rng(5).uniform(np.log(0.4), np.log(3.0), (40, 3)))
-    repaired, rescaled = Stretch(problem)(batch), Stretch(problem, shorten=True)(batch)
-    found = [check(problem, h) for h in batch]
-    np.testing.assert_allclose(repaired, [f.feasible_time for f in found], rtol=1e-12)
-    np.testing.assert_allclose(rescaled, [f.tight_time for f in found], rtol=1e-12)
-    assert 5 < sum(f.verdict is Verdict.PASS for f in found) < 35
-    assert (rescaled <= repaired).all()
+UNBOUNDED = {"duration_lower": 0.0, "duration_upper": np.inf}
 
 
-def test_decoded_durations_keep_every_limit_and_touch_one() -> None:
-    problem = wide()
-    batch = np.random.default_rng(6).uniform(0.15, 0.6, (40, 3))
-    for h in Stretch(problem).decode(batch):
-        found = check(problem, h)
-        assert found.verdict is Verdict.PASS
-        assert found.worst is not None
-        assert found.worst.ratio == pytest.approx(1.0, abs=1e-12)
-
-
-def test_what_keeps_the_limits_is_not_touched() -> None:
-    problem = wide()
-    batch = np.random.default_rng(7).uniform(1.5, 3.0, (20, 3))
-    assert np.isfinite(DeathPenalty(problem)(batch)).all()
-    np.testing.assert_array_equal(Stretch(problem).decode(batch), batch)
-    np.testing.assert_array_equal(Stretch(problem)(batch), DeathPenalty(problem)(batch))
-    np.testing.assert_array_equal(DeathPenalty(problem).decode(batch), batch)
+@pytest.mark.parametrize("shorten", [False, True])
+@pytest.mark.parametrize("problem", [wide(), SWINGING], ids=["jerk", "position"])
+def test_fitness_is_what_the_checker_calls_feasible_and_tight_time(
+    problem: Problem, shorten: bool
+) -> None:
+    """Where a joint swings beyond a position limit, no stretch repairs it."""
+    problem = replace(problem, **UNBOUNDED)
+    rng = np.random.default_rng(5)
+    h = rng.uniform(0.5, 1.5, (60, 3)) * np.exp(rng.uniform(-1.0, 2.0, (60, 1)))
+    judge, penal = Stretch(problem, shorten=shorten), DeathPenalty(problem)(h)
+    found = [check(problem, one) for one in h]
+    times = [f.tight_time if shorten else f.feasible_time for f in found]
+    fitness, decoded = judge(h), judge.decode(h)
+    np.testing.assert_allclose(fitness, [np.inf if t is None else t for t in times], rtol=1e-12)
+    kept = np.array([f.verdict is Verdict.PASS for f in found])
+    assert 5 < kept.sum() < 55
+    np.testing.assert_array_equal(np.isfinite(penal), kept)
+    beyond = np.isinf(fitness)
+    assert (5 <= beyond.sum() <= 55) == problem.limits.limits_position
+    # What keeps the limits, and what nothing mends, is not touched.
+    alone = beyond if shorten else beyond | kept
+    np.testing.assert_array_equal(decoded[alone], h[alone])
+    np.testing.assert_array_equal(fitness[alone], penal[alone])
+    for one in decoded[~alone]:
+        after = check(problem, one)
+        assert after.verdict is Verdict.PASS
+        assert after.worst is not None
+        assert after.worst.ratio == pytest.approx(1.0, abs=1e-12)
 
 
 def test_a_stretch_may_lift_a_duration_over_its_lower_bound() -> None:
@@ -196,3 +210,128 @@ def test_handlings_by_name() -> None:
     assert isinstance(judge_of(wide(), np.inf, "death-penalty"), DeathPenalty)
     with pytest.raises(TrajgapError, match=r"^objective: 'streched' is unknown; .*'stretch'"):
         run(PSO(), wide(), 0, 1, objective="streched")
+
+
+# --- uniform rescaling, tight by the checker ------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "limits",
+    [
+        Limits(3.0, joints=2),
+        Limits([6.0, 5.0], [8.0, 9.0]),
+        Limits(6.0, 8.0, [25.0, 30.0]),
+    ],
+    ids=["v", "va", "vaj"],
+)
+def test_equal_durations_at_the_limit(limits: Limits) -> None:
+    durations = uniform_rescaling(two_joints(limits))
+    np.testing.assert_array_equal(durations, durations[0])
+    found = check(two_joints(limits), durations)
+    assert found.verdict is Verdict.PASS
+    assert found.worst is not None
+    assert found.worst.ratio == pytest.approx(1.0, abs=1e-12)
+    tight = check(two_joints(limits), [0.7, 0.7, 0.7]).tight_time
+    assert durations.sum() == pytest.approx(tight, rel=1e-12)
+
+
+def test_set_to_lower_bounds() -> None:
+    bounds = np.array([2.0, 2.5, 3.0])
+    durations = uniform_rescaling(two_joints(Limits(6.0, 8.0, joints=2), duration_lower=bounds))
+    np.testing.assert_array_equal(durations, bounds)
+
+
+def test_set_to_an_upper_bound_that_costs_nothing() -> None:
+    waypoints = np.array([0.4, 0.5, 0.50001, 1.6])
+    problem = Problem(waypoints, Limits(1.0), three_five_three())
+    equal = uniform_rescaling(problem)
+    cap = 0.9 * equal[0]
+    capped = Problem(waypoints, Limits(1.0), three_five_three(), 0.0, [cap, 9.0, 9.0])
+    np.testing.assert_array_equal(uniform_rescaling(capped), [cap, equal[1], equal[2]])
+
+
+@pytest.mark.parametrize(
+    ("problem", "said"),
+    [
+        (
+            two_joints(Limits(6.0, 8.0, joints=2), duration_upper=0.8),
+            r"^uniform rescaling: .* s per segment set to the duration bounds is violated; no",
+        ),
+        (
+            two_joints(Limits(6.0, 8.0, position_upper=0.5, joints=2)),
+            r"lead joint 1 beyond a position limit; no uniform",
+        ),
+        (two_joints(Limits([0.0, 3.0])), "a joint with limit 0 moves"),
+        (two_joints(Limits(joints=2)), "nothing moves or nothing is limited"),
+        (two_joints(curve=cubic_spline(3, ((1, 0.5),))), "a prescribed derivative is not 0"),
+    ],
+)
+def test_what_has_no_uniform_rescaling(problem: Problem, said: str) -> None:
+    with pytest.raises(TrajgapError, match=said):
+        uniform_rescaling(problem)
+
+
+def test_where_nothing_is_limited_the_bounds_are_the_answer() -> None:
+    found = uniform_rescaling(two_joints(Limits(joints=2), duration_lower=0.4))
+    np.testing.assert_array_equal(found, [0.4, 0.4, 0.4])
+
+
+# --- under position limits ------------------------------------------------------------------------
+
+SWARM = PSO(particles=20, iterations=60, position_initial=(0.2, 4.0))
+
+
+def drawn(problem: Problem, count: int) -> Array:
+    return np.random.default_rng(5).uniform(0.3, 4.0, (count, problem.segments))
+
+
+QUESTIONS = {name: limited(curve, 0.1) for name, curve in CURVES.items()} | {
+    f"{curve}, sides that differ": replace(uneven_problem(curve), duration_upper=np.full(3, 5.0))
+    for curve in UNEVEN
+}
+
+
+@pytest.mark.parametrize("name", QUESTIONS)
+@pytest.mark.parametrize("penalty", [np.inf, 1e6])
+def test_the_penalty_falls_where_the_checker_finds_a_violation(name: str, penalty: float) -> None:
+    problem = QUESTIONS[name]
+    h = drawn(problem, 24)
+    fitness = DeathPenalty(problem, penalty)(h)
+    kept = [check(problem, one).limits is Verdict.PASS for one in h]
+    np.testing.assert_array_equal(fitness, np.where(kept, h.sum(axis=1), penalty))
+    assert name in CURVES or 0 < sum(kept) < len(h)
+
+
+def test_where_no_motion_stays_within_nothing_is_feasible() -> None:
+    """A way-point beyond its limit: `solve` proves that there is none."""
+    limits = SWINGING.limits.with_positions([-np.inf] * 2, [0.5, np.inf])
+    problem = replace(SWINGING, limits=limits)
+    assert solve(problem).status is Status.INFEASIBLE
+    for handling in ("death-penalty", "stretch", "rescale"):
+        found = run(SWARM, problem, 2, 10, handling)
+        assert not found.feasible
+        assert found.reported_time == np.inf
+        np.testing.assert_array_equal(found.durations, found.position)
+
+
+def test_equal_durations_that_swing_too_far_are_no_baseline() -> None:
+    tight = limited(cubic_spline(3), 0.001)
+    with pytest.raises(
+        TrajgapError,
+        match=r"no upper bound .* joint \d beyond a position limit; .*; give them",
+    ):
+        search_box(replace(tight, duration_upper=np.inf))
+    np.testing.assert_array_equal(search_box(tight).upper, [6.0, 6.0, 6.0])
+    one = run_within(find_optimizer("rescale"), tight, 0, 100)
+    assert one.reported_time == np.inf
+
+
+def test_processes_find_every_kernel_compiled() -> None:
+    """Ones break a limit of velocity here: a penalty alone would not look at positions."""
+    problem = limited(cubic_spline(3), 0.3, Limits(0.1, joints=3))
+    compile_judge(problem)
+    before = list(kernel.batch_peaks.signatures)
+    assert before
+    DeathPenalty(problem)(np.ones((2, 3)))
+    _ = evaluate(problem, np.ones((2, 3))).positions
+    assert kernel.batch_peaks.signatures == before

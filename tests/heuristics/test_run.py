@@ -1,22 +1,26 @@
-"""The loop: what a run says of itself, seeds, traces, joints by themselves, and interrupts."""
+"""The loop: what a run says of itself, seeds, traces, runs side by side, and interrupts."""
 
 import os
 import pickle
 import signal
 import subprocess
 import sys
-from dataclasses import replace
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from support.drawn_settings import drawn
 from support.positions import SWINGING
 from support.two_joints import WAYPOINTS, two_joints
 from trajgap.heuristics import (
     GA,
+    KINDS,
     MNAMPSO,
     PSO,
     WOA,
+    AskedRun,
     Bounds,
     ConstrainedPSO,
     DeathPenalty,
@@ -29,7 +33,9 @@ from trajgap.heuristics import (
     Stretch,
     differential_evolution,
     dual_annealing,
+    from_settings,
     run,
+    run_asked,
     run_many,
     run_many_per_joint,
     run_per_joint,
@@ -37,6 +43,7 @@ from trajgap.heuristics import (
     states,
 )
 from trajgap.heuristics.repair import judge_of
+from trajgap.heuristics.side_by_side import TOGETHER, moves_together
 from trajgap.problem import (
     Limits,
     Problem,
@@ -45,6 +52,7 @@ from trajgap.problem import (
     check,
     cubic_spline,
     quintic_spline,
+    rest_to_rest,
 )
 
 BOUNDS = {"duration_lower": 0.3, "duration_upper": 3.0}
@@ -75,7 +83,6 @@ SEARCHES = (
     shgo(),
 )
 ALGORITHMS = tuple(replace(one, iterations=200) for one in SEARCHES[:7])
-each_swarm = pytest.mark.parametrize("algorithm", ALGORITHMS[:3], ids=lambda a: a.kind)
 each_algorithm = pytest.mark.parametrize("algorithm", ALGORITHMS, ids=lambda a: a.kind)
 PENAL = Handling.DEATH_PENALTY
 
@@ -101,21 +108,12 @@ def test_the_account_of_a_run(search: Search, handling: Handling) -> None:
             assert DeathPenalty(problem)(found.durations[None])[0] == found.reported_time
 
 
-@pytest.mark.parametrize("search", SEARCHES, ids=lambda s: s.kind)
-def test_same_seed_same_bits(search: Search) -> None:
-    a, b, other = (run(search, PROBLEM, seed, 20) for seed in (7, 7, 8))
-    assert a.durations.tobytes() == b.durations.tobytes()
-    assert a.trace.tobytes() == b.trace.tobytes()
-    same = a.trace.tobytes() == other.trace.tobytes()
-    assert same == (search.kind == "shgo")  # which draws nothing
-
-
 def same_bits(a: Run, b: Run) -> None:
     for name in ("durations", "trace", "position"):
         assert getattr(a, name).tobytes() == getattr(b, name).tobytes()
     for name in (
-        "algorithm", "settings", "problem", "seed", "stream", "reported_time", "evaluations",
-        "iterations", "feasible",
+        "algorithm", "settings", "problem", "objective", "seed", "stream", "reported_time",
+        "evaluations", "iterations", "feasible",
     ):  # fmt: skip
         assert repr(getattr(a, name)) == repr(getattr(b, name))
 
@@ -169,15 +167,6 @@ def test_nothing_feasible(algorithm: PSO, penalty: float) -> None:
     assert np.isinf(found.trace).all()
     assert np.isfinite(found.durations).all()
     assert "nothing feasible found" in str(found)
-
-
-@each_swarm
-def test_an_infeasible_start_is_survived(algorithm: PSO) -> None:
-    cramped = replace(algorithm, position_initial=(0.5, 0.8))
-    found = run(cramped, PROBLEM, 1)
-    assert found.trace[0] == np.inf
-    assert found.feasible
-    assert check(PROBLEM, found.durations).verdict is Verdict.PASS
 
 
 def test_a_swarm_that_overflows_is_only_infeasible() -> None:
@@ -237,34 +226,76 @@ def test_no_seeds_and_seeds_of_numpy() -> None:
     same_bits(run(PSO(), PROBLEM, np.int64(3), 2), run(PSO(), PROBLEM, 3, 2))
 
 
-WHOLE = {
-    "^seed: expected a whole number of 0 or more, got": (
-        [-1, 1.5, "one", True, None],
-        [
-            lambda seed: run(PSO(), PROBLEM, seed, 1),
-            lambda seed: run_per_joint(PSO(), PROBLEM, seed, 1),
-            lambda seed: run_many(PSO(), PROBLEM, [0, seed], iterations=1),
-            lambda seed: run_many_per_joint(PSO(), PROBLEM, [0, seed], iterations=1),
-        ],
-    ),
-    "^workers: expected a whole number of 1 or more, got": (
-        [0, -2, 1.0],
-        [lambda workers: run_many(PSO(), PROBLEM, [0], workers)],
-    ),
-    "^pso: iterations: expected a whole number of 0": (
-        [-1, 2.5],
-        [lambda iterations: run(PSO(), PROBLEM, 0, iterations)],
-    ),
-}
+SEEDS = (-1, 1.5, "one", True, None)
 
 
-@pytest.mark.parametrize("said", WHOLE)
-def test_what_must_be_whole(said: str) -> None:
-    values, calls = WHOLE[said]
+@pytest.mark.parametrize(
+    ("call", "values", "said"),
+    [
+        (lambda x: run(PSO(), PROBLEM, x, 1), SEEDS, "seed: expected a whole number of 0"),
+        (lambda x: run_per_joint(PSO(), PROBLEM, x, 1), SEEDS, "seed: expected a whole number"),
+        (lambda x: run_many(PSO(), PROBLEM, [0, x]), SEEDS, "seed: expected a whole number"),
+        (lambda x: run_many_per_joint(PSO(), PROBLEM, [0, x]), SEEDS, "seed: expected a whole"),
+        (lambda x: run_many(PSO(), PROBLEM, [0], x), (0, -2, 1.0), "workers: .* whole .* of 1"),
+        (lambda x: run(PSO(), PROBLEM, 0, x), (-1, 2.5), "pso: iterations: .* whole number of 0"),
+    ],
+)
+def test_what_must_be_whole(
+    call: Callable[[object], object], values: tuple[object, ...], said: str
+) -> None:
     for value in values:
-        for call in calls:
-            with pytest.raises(TrajgapError, match=said):
-                call(value)
+        with pytest.raises(TrajgapError, match=f"^{said}"):
+            call(value)
+
+
+# --- side by side: each run gives the bits that it gives alone -----------------------------------
+
+
+SLOWER = Problem(WAYPOINTS, Limits([2.0, 1.5], [8.0, 3.0]), quintic_spline(3), 0.1, 4.0)
+STOPPING = Problem(WAYPOINTS, Limits([2.0, 1.5], [8.0, 3.0]), rest_to_rest(3, 5), 0.1, 4.0)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_questions_of_all_sorts_and_every_choice_together(kind: str) -> None:
+    for seed in range(13):
+        algorithm = drawn(kind, np.random.default_rng(seed)) if seed else from_settings(kind, {})
+        algorithm = replace(algorithm, iterations=12)
+        assert moves_together(algorithm) == (kind != "constrained-pso")
+        questions = [
+            AskedRun(problem, at, (), handling)
+            for problem in (PROBLEM, SLOWER, STOPPING)
+            for handling in Handling
+            for at in (3, 8)
+        ]
+        for one, found in zip(questions, run_asked(algorithm, questions), strict=True):
+            same_bits(found, run(algorithm, one.problem, one.seed, None, one.handling))
+
+
+def test_joints_and_more_seeds_than_are_moved_at_once() -> None:
+    algorithm = MNAMPSO(particles=6, iterations=3)
+    seeds = range(TOGETHER // 2 + 2)
+    for seed, found in zip(seeds, run_many_per_joint(algorithm, PROBLEM, seeds), strict=True):
+        alone = run_per_joint(algorithm, PROBLEM, seed)
+        assert found.durations.tobytes() == alone.durations.tobytes()
+        for j, (a, b) in enumerate(zip(found.runs, alone.runs, strict=True)):
+            same_bits(a, b)
+            same_bits(a, run_asked(algorithm, [AskedRun(PROBLEM.joint(j), seed, (j,))])[0])
+
+
+def test_a_subclass_that_says_nothing_is_moved_by_itself() -> None:
+    @dataclass(frozen=True)
+    class Own(PSO):
+        """Whose step may know of single swarms only."""
+
+    assert moves_together(PSO())
+    assert not moves_together(Own())
+    questions = [AskedRun(PROBLEM, seed) for seed in (1, 2)]
+    for a, b in zip(
+        run_asked(Own(iterations=4), questions),
+        run_asked(PSO(iterations=4), questions),
+        strict=True,
+    ):
+        assert a.trace.tobytes() == b.trace.tobytes()
 
 
 @pytest.mark.slow

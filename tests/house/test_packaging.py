@@ -4,7 +4,6 @@ import doctest
 import importlib
 import importlib.metadata
 import importlib.util
-import inspect
 import os
 import re
 import subprocess
@@ -14,7 +13,6 @@ from collections.abc import Iterator
 from fnmatch import fnmatch
 from pathlib import Path
 
-import pytest
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 from support.checkout import ROOT
@@ -230,17 +228,3 @@ def test_doctests() -> None:
                 if result.failed:
                     failed[name] = result.failed
     assert failed == {}
-
-
-@pytest.mark.parametrize("folder", MAY_IMPORT)
-def test_every_public_name_has_a_docstring(folder: str) -> None:
-    package = importlib.import_module(f"trajgap.{folder}")
-    bare = []
-    for name in package.__all__:
-        value = getattr(package, name)
-        if isinstance(value, type) or inspect.isroutine(value):
-            # A dataclass without a docstring is given its signature as one.
-            text = vars(value).get("__doc__") if isinstance(value, type) else value.__doc__
-            if not text or text.startswith(f"{name}("):
-                bare.append(name)
-    assert bare == []

@@ -1,17 +1,10 @@
 """The page on speed shows what the committed measurements say."""
 
-import importlib.util
-
-from support.checkout import ROOT
+from support.benchmarks import loaded
 
 
 def test_the_tables_are_those_of_the_measurements() -> None:
-    path = ROOT / "benchmarks" / "scale.py"
-    spec = importlib.util.spec_from_file_location("scale", path)
-    assert spec is not None
-    assert spec.loader is not None
-    scale = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(scale)
+    scale = loaded("scale")
     text = scale.PAGE.read_text("utf-8")
     rows = scale.read()
     assert scale.page(text, rows) == text

@@ -9,10 +9,13 @@ from __future__ import annotations
 import os
 import re
 from pathlib import Path
+from typing import Any
 
 import pytest
-from support.made_up import TWO_UNITS, one_joint
+from support.base_case import BASE
+from support.made_up import TWO_UNITS, claim, gain, one_joint, peak, row, sentence, total
 from trajgap.compare import CaseAudit, audit
+from trajgap.compare.audits import claim_text
 from trajgap.compare.cli import main
 from trajgap.compare.documents import (
     DOUBTED,
@@ -33,21 +36,9 @@ from trajgap.problem.cases import Nature
 
 SAID = Path(__file__).parent / "wording"
 """One file for each kind of page."""
-BEFORE = """
-[[claims]]
-id = "before"
-quantity = "durations"
-where = "Table 3"
-durations = ["4.2"]
-total = "4.3"
-[[claims]]
-id = "gain"
-quantity = "improvement"
-where = "abstract"
-percent = "21"
-faster = "d"
-slower = "before"
-"""
+BEFORE = row("before", "4.2", where="Table 3", total="4.3") + gain(
+    "before", "d", where="abstract", percent="21"
+)
 # A quintic from rest to rest through 1 rad within 1 rad/s takes 15/8 s.
 CASES = {
     "optimal": one_joint("0, 1", "1", "1.875", "optimal"),
@@ -157,6 +148,56 @@ def test_phrases() -> None:
     words = list(map(str, ClaimVerdict))
     said |= {f"no claim of {k}": none_said(words[:k]) for k in range(4)}
     compare("phrases", said)
+
+
+ONE: Any = {"problem": "one"}
+TIMES = row("times", "0.961 1.258 1.078", total="3.297", **ONE)
+ALONE = BASE.split("[[claims]]")[0] + TIMES
+HEAD = ALONE + TIMES.replace('"times"', '"second"')
+COUNTED: Any = {"degrees": [3, 5, 3]}
+
+
+def measured(derivative: str, measure: str, **number: Any) -> str:
+    return claim("m", "measure", of="times", derivative=derivative, measure=measure, **ONE | number)
+
+
+STATED = (
+    row("c", "0.9 1.2 1.0", **ONE),
+    row("c", "0.9 1.2 1.0", problem="two", joint="b", algorithm="pso", total="3.1"),
+    row("c", "2.7998", total="2.7998", other_curve="septic", **ONE),
+    row("c", "0.11 " * 12, total="1.3", **ONE),
+    claim("c", "maximum", of=["times"], durations=["0.9", "1.2", "1.0"], **ONE),
+    total("c", "3.5", **ONE),
+    total("c", "3.5", state="before", other_curve="straight lines", objective="e", **ONE),
+    gain("times", "second", percent="10.9"),
+    gain("times", "second", seconds="0.4"),
+    gain("times", "second"),
+    peak("c", "times", "velocity", "94.8", joint="a", **ONE),
+    peak("c", "times", "acceleration", ["7.9", "8.0"], **ONE),
+    measured("velocity", "mean", values=["36.9", "59.8"]),
+    measured("acceleration", "rms", joint="b", value="5.1"),
+    measured("velocity", "integral", value="12"),
+    measured("velocity", "integral-square", value="12"),
+    claim("c", "convergence", algorithm="pso", iterations="50"),
+    claim("c", "conditions", rest_at="ends", orders=[1, 2], count="14", **COUNTED),
+    claim("c", "conditions", rest_at="all", orders=[1, 2, 4], **COUNTED),
+    claim("c", "control_vertices", joint_rows=[["1", "1", "2", "3", "4", "4"]] * 2, **ONE),
+    sentence("c", "within_limits", "times"),
+    sentence("c", "varies_most", joint="b"),
+    sentence("c", "none", not_checkable="x"),
+    sentence("c", "none", not_checkable="x", text="It is gentle."),
+)
+
+
+def test_sentences_of_claims_without_a_text() -> None:
+    """Each is made of its quantity, joint, value and unit, with the digits that are stated."""
+    said = {}
+    for number, stated in enumerate(STATED):
+        case = parse_case(HEAD + stated, "x")
+        text = said[f"{case.claims[-1].quantity} {number}"] = claim_text(case, case.claims[-1])
+        assert {*re.findall(r"\d+\.\d+", text)} <= {*re.findall(r"\d+\.\d+", stated)}
+        assert all(digits in text for digits in re.findall(r'(?:value|total) = "(.*?)"', stated))
+    compare("claims", said)
 
 
 def test_words_are_left_and_numbers_are_not() -> None:

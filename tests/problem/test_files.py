@@ -142,34 +142,30 @@ def test_a_new_file_is_complete_or_absent(tmp_path: Path) -> None:
     assert names(tmp_path) == ["a"]
 
 
-def test_a_new_file_never_replaces_one(tmp_path: Path) -> None:
-    (tmp_path / "a").write_text("mine")
-    with pytest.raises(FileExistsError), new_file(tmp_path / "a"):
-        pass
+@pytest.mark.parametrize("links", [True, False])
+def test_a_new_file_never_replaces_one(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, links: bool
+) -> None:
+    """With hard links, and where they are not offered."""
+
+    def refuse(*_: object) -> None:
+        raise PermissionError(1, "not offered")
+
+    if not links:
+        monkeypatch.setattr(os, "link", refuse)
+    with new_file(tmp_path / "a") as write:
+        write("text")
+    assert (tmp_path / "a").read_text() == "text"
     (tmp_path / "link").symlink_to(tmp_path / "nowhere")
-    with pytest.raises(FileExistsError), new_file(tmp_path / "link"):
-        pass
+    for name in ("a", "link"):
+        with pytest.raises(FileExistsError), new_file(tmp_path / name):
+            pass
     with new_file(tmp_path / "b") as write:
         (tmp_path / "b").write_text("came in between")
         with pytest.raises(FileExistsError):
             write("text")
     assert (tmp_path / "b").read_text() == "came in between"
     assert names(tmp_path) == ["a", "b", "link"]
-
-
-def test_a_new_file_without_hard_links(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def refuse(*_: object) -> None:
-        raise PermissionError(1, "not offered")
-
-    monkeypatch.setattr(os, "link", refuse)
-    with new_file(tmp_path / "a") as write:
-        write("text")
-    assert (tmp_path / "a").read_text() == "text"
-    with new_file(tmp_path / "b") as write:
-        (tmp_path / "b").write_text("came in between")
-        with pytest.raises(FileExistsError):
-            write("text")
-    assert names(tmp_path) == ["a", "b"]
 
 
 def test_two_at_once_are_refused_before_they_compute(tmp_path: Path) -> None:

@@ -5,9 +5,11 @@ from __future__ import annotations
 import dataclasses
 import pickle
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
+from support.two_joints import WAYPOINTS, two_joints
 from trajgap.nlp import problem_seal
 from trajgap.problem import (
     QUANTITIES,
@@ -25,16 +27,7 @@ from trajgap.problem import (
     three_five_three,
 )
 
-WAYPOINTS = np.array([[0.19, -1.63], [0.82, -2.01], [0.13, -1.07], [-0.88, -1.31]])
-
-
-def problem_with(**changes: object) -> Problem:
-    given = {
-        "waypoints": WAYPOINTS,
-        "limits": Limits([5.0, 3.0], [8.0, 11.0]),
-        "curve": three_five_three(),
-    }
-    return Problem(**{**given, **changes})  # type: ignore[arg-type]
+problem_with = partial(two_joints, limits=Limits([5.0, 3.0], [8.0, 11.0]))
 
 
 FORMS = {
@@ -142,20 +135,10 @@ def test_problem_fills_in() -> None:
     pair = problem_with(limits=Limits(acceleration=[[-15, 10]]))
     np.testing.assert_array_equal(pair.limits.ends("acceleration"), [[-15, -15], [10, 10]])
     assert not pair.hull.limits.uneven
-
-
-def test_joint_alone_is_judged_alike() -> None:
-    problem = problem_with(joints=("shoulder", "elbow"), duration_lower=0.2, coupling="per-joint")
-    h = [0.7, 0.9, 0.8]
-    whole = check(problem, h)
-    for j, label in enumerate(problem.joints):
-        alone = problem.joint(j)
-        assert alone.joints == (label,)
-        assert alone.coupling is Coupling.SHARED
-        assert alone.name == f"problem, joint {label}"
-        np.testing.assert_array_equal(alone.duration_lower, problem.duration_lower)
-        mine = [p.ratio for p in check(alone, h).peaks if p.joint]
-        assert mine == [p.ratio for p in whole.peaks if p.joint == label]
+    alone = problem_with(joints=("shoulder", "elbow"), duration_lower=0.2).joint(1)
+    assert (alone.joints, alone.coupling) == (("elbow",), Coupling.SHARED)
+    assert alone.name == "problem, joint elbow"
+    np.testing.assert_array_equal(alone.duration_lower, [0.2] * 3)
 
 
 @pytest.mark.parametrize(
@@ -264,3 +247,5 @@ def test_the_seal_of_a_question_holds_its_ratios() -> None:
     assert len(seals) == 4
     assert problem_seal(posed([2, 6])) == problem_seal(posed([1, 3]))
     assert problem_seal(posed([5, 5])) == problem_seal(posed("equal"))
+    ends = [cubic_spline(3, ((1, (0.5, -0.2)),), ((1, (-0.3, last)),)) for last in (0.4, 0.5)]
+    assert len({problem_seal(problem_with(curve=one)) for one in ends}) == 2

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import PPoly
 from support import exact_route
+from support.positions import position_ratios
 from support.same_question import DRESSES, same_question
 from support.samples import DECLARATIONS, sample_problem
 from trajgap.problem import (
@@ -102,11 +103,7 @@ def exact_ratio(ends: Array, order: int, low: float, high: float) -> float:
     """What `Peak.ratio` and `Evaluation` say by definition."""
     least, most = ends
     if order == 0:
-        wide = np.isfinite(high - low)
-        beyond = [(low - least, low), (most - high, high)]
-        halves = [(high - low) / 2 if wide else max(1.0, abs(at)) for _, at in beyond]
-        both = zip(beyond, halves, strict=True)
-        return max(1 + excess / half for (excess, at), half in both if np.isfinite(at))
+        return float(position_ratios(ends[None], np.array([low]), np.array([high]))[0])
     below = max(0.0, -least) / -low if low else 0.0
     above = max(0.0, most) / high if high else 0.0
     return max(below, above)

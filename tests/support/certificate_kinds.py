@@ -66,9 +66,8 @@ def _searched(problem: Problem) -> float:
 
 
 def cubic() -> Problem:
-    q = np.array([[0.25, -0.5], [1.0, 0.125], [-0.375, 0.75], [0.5, 0.25]])
     limits = Limits([1.0, 0.9], [2.0, 1.5], [9.0, 8.0])
-    return Problem(q, limits, cubic_spline(3), (0.5, 1.5, 0.1), (6.0, 2.0, 7.0))
+    return Problem(WAYPOINTS, limits, cubic_spline(3), (0.5, 1.5, 0.1), (6.0, 2.0, 7.0))
 
 
 def any_curve() -> Problem:
@@ -89,20 +88,10 @@ def _alone(needs: np.ndarray, problem: Problem) -> float:
 
 
 def rest_optimum(problem: Problem) -> float:
-    """Each segment alone, by bisection on the checker's exact peaks."""
-    needs = []
-    for k in range(problem.segments):
-        low, high = 0.0, 1e6
-        q = problem.waypoints[k : k + 2]
-        one = Problem(q, problem.limits, rest_to_rest(1, 5))
-        if not np.ptp(q, axis=0).any():
-            needs.append(0.0)
-            continue
-        for _ in range(90):
-            middle = 0.5 * (low + high)
-            fits = float(evaluate(one, np.array([[middle]])).stretch[0]) <= 1.0
-            low, high = (low, middle) if fits else (middle, high)
-        needs.append(high)
+    """Each segment alone, stretched until it keeps its limits."""
+    each = zip(problem.waypoints[:-1], problem.waypoints[1:], strict=True)
+    alone = [Problem(np.array(q), problem.limits, rest_to_rest(1, 5)) for q in each]
+    needs = [float(evaluate(one, [[1.0]]).stretch[0]) for one in alone]
     return _alone(np.array(needs), problem)
 
 

@@ -6,14 +6,18 @@ import json
 import os
 import subprocess
 import sys
-from collections.abc import Callable
 from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 import pytest
+from support.documents import assert_valid
+from trajgap.compare.cli import main
 
 PUMA, IRB = "puma560-mnam-pso-353", "irb460-pso-353"
+ONE = (IRB, "--problem", "limit-80", "--reading", "waypoints-rad")
+NAME = f"{IRB}.limit-80.waypoints-rad"
+"""A shipped question, as commands are asked for it and as its files are called."""
 # The command asks the faces when it runs, and a face keeps what it has handed out.
 AUDITS, PAGES = (import_module(f"trajgap.compare.{name}") for name in ("audits", "pages"))
 CASE = """
@@ -37,7 +41,6 @@ acceleration = 5
 id = "plain"
 why = "as printed"
 """
-Run = Callable[..., tuple[int, str, str]]
 
 
 def strict(text: str) -> Any:
@@ -47,11 +50,30 @@ def strict(text: str) -> Any:
     return json.loads(text, parse_constant=refuse)
 
 
-def program(*arguments: str, **options: Any) -> subprocess.CompletedProcess[str]:
-    """The command line in a process of its own."""
-    return subprocess.run(
-        [sys.executable, "-c", START, *arguments], capture_output=True, text=True, **options
-    )
+class Run:
+    """The command line, called in this process."""
+
+    def __init__(self, capsys: pytest.CaptureFixture[str]) -> None:
+        self._capsys = capsys
+
+    def __call__(self, *arguments: str) -> tuple[int, str, str]:
+        """Exit code, output and errors."""
+        code = main(arguments)
+        captured = self._capsys.readouterr()
+        return code, captured.out, captured.err
+
+    def done(self, *arguments: str, code: int = 0) -> str:
+        """The output of a command that ends as it should, without a word of warning."""
+        ended, out, err = self(*arguments)
+        assert (ended, err) == (code, "")
+        return out
+
+    def document(self, *arguments: str, code: int = 0, kind: str | None = None) -> Any:
+        """The JSON of such a command, valid where its kind is given: that takes its time."""
+        found = strict(self.done(*arguments, "--json", code=code))
+        if kind is not None:
+            assert_valid(found, kind)
+        return found
 
 
 START = "import sys; from trajgap.compare.cli import main; sys.exit(main())"

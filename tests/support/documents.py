@@ -1,4 +1,4 @@
-"""What holds of every JSON document, and a small report made by hand."""
+"""What holds of every JSON document, and a small report."""
 
 from __future__ import annotations
 
@@ -8,29 +8,10 @@ from typing import Any
 
 import jsonschema
 from support.checkout import ROOT
-from trajgap.compare.audits.case_audit import AuditReport, CaseAudit
-from trajgap.compare.audits.study import Study
-from trajgap.compare.documents import (
-    Basis,
-    Cause,
-    ClaimVerdict,
-    Consequence,
-    Document,
-    Explanation,
-    Finding,
-    Judgement,
-    Reference,
-    Scope,
-    Severity,
-    Step,
-    VerdictCard,
-    Waterfall,
-    Why,
-    json_text,
-)
-from trajgap.compare.gaps.optimality_gap import gap
-from trajgap.nlp import Evidence
-from trajgap.problem import load_case
+from support.findings import audited_text
+from support.made_up import one_joint, readings
+from trajgap.compare.audits.case_audit import AuditReport
+from trajgap.compare.documents import Document, json_text
 
 SCHEMA = json.loads(
     (ROOT / "docs" / "reference" / "output.schema.json").read_text(encoding="utf-8")
@@ -95,66 +76,8 @@ def assert_reasons(document: Any) -> None:
             assert_reasons(value)
 
 
+@cache
 def report() -> AuditReport:
-    """A small report, made by hand."""
-    case = load_case("irb460-pso-353")
-    finding = Finding(
-        rule="TG302",
-        severity=Severity.WARNING,
-        verdict=ClaimVerdict.SUPPORTED,
-        scope=Scope.SOME,
-        evidence=Evidence.BEST_KNOWN,
-        basis=Basis.OPTIMUM,
-        claim="durations-80",
-        problem="limit-80",
-        reading="waypoints-rad",
-        printed="1.869 s",
-        computed="1.817 s",
-        gap=gap((1.8, 1.9), Reference(upper=1.85), feasible=False),
-        kind="distance",
-        sentences=("Text",),
-    )
-    steps = (
-        Step(name="published", time=1.9, low=1.8, high=2.0, note="printed"),
-        Step.missing("TOPPRA", "no acceleration is limited"),
-    )
-    proof = finding.model_copy(
-        update={"gap": Why("no time is set beside an optimum"), "severity": Severity.ERROR}
-    )
-    judgement = Judgement(
-        claim="durations-80",
-        verdict=ClaimVerdict.REFUTED,
-        scope=Scope.ALL,
-        evidence=Evidence.NONE,
-        why="TG302: text",
-        readings={},
-    )
-    waterfall = Waterfall(problem="limit-80", reading="waypoints-rad", claim=None, steps=steps)
-    cause = Cause(
-        severity=Severity.ERROR,
-        rule="TG302",
-        claim="durations-80",
-        says="text",
-        readings=("waypoints-rad",),
-        explanations=(Explanation(change="Printed twice.", effect="Then all is well."),),
-        consequences=(Consequence(rule="TG301", claim="time-optimal", says="more"),),
-    )
-    card = VerdictCard(
-        limits="The printed durations keep the limits.",
-        optimum="Under the default of 2 readings, 1.869 s is 2.8 % above the proven optimum.",
-        reached=Why("no run is committed"),
-        improvement=Why("no improvement is claimed"),
-        errors=("One sentence.",),
-        more=3,
-        explanation="Printed twice.",
-    )
-    one = CaseAudit(
-        case,
-        Study(case, seeds=2),
-        (finding, proof),
-        (judgement,),
-        causes=(cause,),
-        made_waterfalls=(waterfall,),
-        made=card,
-    )
-    return AuditReport((one,))
+    """The audit of a motion that is called optimal, and of half its limit: two errors."""
+    half = readings(plain={}, half={"limits": {"velocity": 0.5}})
+    return AuditReport((audited_text(one_joint("0, 1", "1", "2.5", "optimal", half)),))

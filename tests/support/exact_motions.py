@@ -11,10 +11,10 @@ from fractions import Fraction
 from functools import cached_property
 from itertools import pairwise
 
-import numpy as np
-from support.exact_route import braking, extremes, solved
+from support.exact_route import braking, extremes, fitted, solved
 from support.exact_route import derived as derived
 from support.exact_route import value as value
+from trajgap.problem import Interpolant
 
 Exact = list[Fraction]
 """Numbers, or ascending coefficients of a polynomial in the time since the start of its piece."""
@@ -68,26 +68,14 @@ def steps(times: Sequence[Fraction]) -> Exact:
 
 def hermite(rows: Sequence[Row], degree: int) -> Curve:
     """Straight lines, cubic or quintic polynomials between rows."""
+    orders = range(1, (degree + 1) // 2)
+    one_piece = Interpolant((degree,), (), (tuple((r, 0.0) for r in orders),) * 2)
     pieces = []
-    for first, last in pairwise(rows):
-        h = last.time - first.time
-        c = [first.values[0], *(one / (r + 1) for r, one in enumerate(first.values[1:]))]
-        c = c[: (degree + 1) // 2]
-        left = [
-            last.values[r] - value(derived(c, r), h) if r < len(c) else Fraction(0)
-            for r in range((degree + 1) // 2)
-        ]
-        # What is left at the end is met by the upper half of the coefficients.
-        size = len(left)
-        matrix = [
-            [
-                Fraction(np.prod(range(size + p - r + 1, size + p + 1), dtype=object) or 1)
-                * h ** (size + p - r)
-                for p in range(size)
-            ]
-            for r in range(size)
-        ]
-        pieces.append([*c, *solved(matrix, left)])
+    for ends in pairwise(rows):
+        given = {(b, r): one.values[r] for b, one in enumerate(ends) for r in orders}
+        first, last = ends
+        step = [last.time - first.time]
+        pieces += fitted(one_piece, [first.values[0], last.values[0]], step, given)
     return Curve([one.time for one in rows], pieces)
 
 

@@ -9,7 +9,7 @@ the square of the place's error.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from itertools import pairwise
 
@@ -36,9 +36,9 @@ def solved(matrix: list[list[Fraction]], right: list[Fraction]) -> list[Fraction
 
 def fitted(
     interpolant: Interpolant,
-    positions: Sequence[float],
-    durations: Sequence[float],
-    extra: dict[tuple[int, int], float] | None = None,
+    positions: Sequence[float | Fraction],
+    durations: Sequence[float | Fraction],
+    extra: Mapping[tuple[int, int], float | Fraction] | None = None,
 ) -> list[Polynomial]:
     """Ascending coefficients in time of every segment of one joint.
 

@@ -34,6 +34,11 @@ def judged(study: Study, id_: str) -> list[Finding]:
     return [f for f in group.judge(study) if f.rule == id_]
 
 
+def found_by(study: Study, *ids: str) -> list[Finding]:
+    """What the functions that judge some ids find, under whatever id."""
+    return [f for group in GROUPS if {*ids} & {*group.rules} for f in group.judge(study)]
+
+
 def said_of(study: Study, claim: str | None, id_: str) -> list[Finding]:
     """What is found on a claim under one id."""
     return [f for f in judged(study, id_) if f.claim == claim]

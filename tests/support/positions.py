@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from trajgap.problem import (
+    Array,
     Curve,
     Knots,
     Limits,
@@ -63,3 +64,23 @@ SWINGING = Problem(
     6.0,
 )
 """Left beyond the way-points: the shortest cubic spline swings further, some others do not."""
+
+
+def over(reach: Array, limit: Array) -> Array:
+    """Ratios to limits: 0 where nothing moves, inf where a limit of 0 is passed."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.asarray(np.where(reach > 0, reach / limit, 0.0))
+
+
+def position_ratios(ends: Array, low: Array, high: Array) -> Array:
+    """1 at a limit and more beyond, in half ranges; −inf where there is none.
+
+    ``ends`` has the least and the largest position of each joint, shape (joints, 2).
+    """
+    found = np.full(len(low), -np.inf)
+    for limit, excess in ((low, low - ends[:, 0]), (high, ends[:, 1] - high)):
+        half = np.where(np.isfinite(high - low), (high - low) / 2, np.maximum(1.0, np.abs(limit)))
+        there = np.isfinite(limit)
+        beyond = np.sign(excess[there]) * over(np.abs(excess[there]), half[there])
+        found[there] = np.maximum(found[there], 1.0 + beyond)
+    return found

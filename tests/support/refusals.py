@@ -2,7 +2,7 @@
 
 A block is one input. Lines behind `<` are replaced by those behind `>` (by none: left out) in the
 text that the section's `[name]` stands for; lines behind `|` are written as they are. `=` names a
-file. The line behind `!` is the message; "…" stands for any words in it.
+file, or is a whole command. The line behind `!` is the message; "…" stands for any words in it.
 """
 
 from __future__ import annotations
@@ -40,8 +40,12 @@ class Refusal:
         """The call raises the message, on one line behind a prefix such as the file's name."""
         with pytest.raises(CaseError) as caught:
             call()
+        assert self.is_said(str(caught.value), prefix), str(caught.value)
+
+    def is_said(self, line: str, prefix: str = "") -> bool:
+        """Whether a line is the message, behind a prefix."""
         words = ".*".join(map(re.escape, (prefix + self.message).split("…")))
-        assert re.fullmatch(words, str(caught.value)), str(caught.value)
+        return re.fullmatch(words, line) is not None
 
 
 def each_refusal(name: str) -> pytest.MarkDecorator:

@@ -10,10 +10,14 @@ from trajgap.problem import Array, Curve, Interpolant, Problem
 
 DRESSES = ("as it is", "mirror", "reverse", "slower", "permute", "degrees")
 SLOWER = 2.7
+OWN_UNITS = "each joint in a unit of its own"
 
 
 def same_question(name: str, problem: Problem, h: Array) -> tuple[Problem, Array]:
-    """The problem mirrored, backwards, slower, with its joints in another order, or in degrees."""
+    """The problem mirrored, backwards, slower, its joints in another order, or in other units.
+
+    Bounds and ratios of durations go with it.
+    """
     limits, q = problem.limits, problem.waypoints
     sides, low, high = limits.sides, limits.position_lower, limits.position_upper
     if name == "mirror":
@@ -26,19 +30,28 @@ def same_question(name: str, problem: Problem, h: Array) -> tuple[Problem, Array
         back[:, :, ::2] = sides[::-1, :, ::2]
         curve = ends_of(problem.curve, lambda r, v: (-1) ** r * v, back=True)
         turned = limits.with_sides(back)
-        return replace(problem, waypoints=q[::-1], limits=turned, curve=curve), h[::-1]
+        bounds = {
+            key: None if given is None else given[::-1]
+            for key in ("duration_lower", "duration_upper", "ratios")
+            for given in (getattr(problem, key),)
+        }
+        return replace(problem, waypoints=q[::-1], limits=turned, curve=curve, **bounds), h[::-1]
     if name == "slower":
         slow = limits.with_sides(sides / SLOWER ** np.arange(1, 4))
         curve = ends_of(problem.curve, lambda r, v: v / SLOWER**r)
-        return replace(problem, limits=slow, curve=curve), SLOWER * h
+        bounds = {
+            key: SLOWER * getattr(problem, key) for key in ("duration_lower", "duration_upper")
+        }
+        return replace(problem, limits=slow, curve=curve, **bounds), SLOWER * h
     if name == "permute":
-        order = [2, 1, 0]
+        order = np.arange(q.shape[1])[::-1]
         turned = limits.with_sides(sides[:, order]).with_positions(low[order], high[order])
         curve = ends_of(problem.curve, lambda r, v: v[order] if v.ndim else v)
         return replace(problem, waypoints=q[:, order], limits=turned, curve=curve), h
-    if name == "degrees":
-        scale = 180.0 / np.pi
-        wide = limits.with_sides(sides * scale).with_positions(low * scale, high * scale)
+    if name in ("degrees", OWN_UNITS):
+        first = 180.0 / np.pi if name == "degrees" else 0.8
+        scale = np.linspace(first, 180.0 / np.pi, q.shape[1])
+        wide = limits.with_sides(sides * scale[:, None]).with_positions(low * scale, high * scale)
         curve = ends_of(problem.curve, lambda r, v: scale * v)
         return replace(problem, waypoints=q * scale, limits=wide, curve=curve), h
     return problem, h

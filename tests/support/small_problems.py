@@ -27,18 +27,7 @@ FAMILIES: dict[str, Callable[[int], Interpolant]] = {
 
 
 def small_problem(family: str, seed: int) -> Problem:
-    """A problem of a family; some have a position range or bounds on the durations.
-
-    Parameters
-    ----------
-    family : str
-        One of `FAMILIES`.
-    seed : int
-
-    Returns
-    -------
-    Problem
-    """
+    """A problem of a family; some have a position range or bounds on the durations."""
     generator = np.random.default_rng([seed, len(family)])
     curve = FAMILIES[family](int(generator.integers(2, 5)))
     joints = int(generator.integers(1, 5))

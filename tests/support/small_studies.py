@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from support.command_line import CASE
-from trajgap.compare.gaps import Bracket, Trial
+from trajgap.compare.gaps import Bracket, Store, StudyPlan, Trial, study_rows
 from trajgap.problem import Limits, Problem, three_five_three
 
 HEAD = """
@@ -41,6 +41,13 @@ def written(folder: Path, text: str = STUDY) -> Path:
     path = folder / "few.toml"
     path.write_text(text, encoding="utf-8")
     return path
+
+
+def texts(plan: StudyPlan, path: Path) -> list[str]:
+    """Every row of a store, in the order of the study."""
+    with Store(path) as store:
+        assert store._data.execute("PRAGMA integrity_check").fetchone() == ("ok",)
+        return [row.text() for row in study_rows(plan, store)]
 
 
 def small_problem() -> Problem:

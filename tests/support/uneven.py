@@ -34,9 +34,3 @@ CURVES: dict[str, Callable[[], Curve]] = {
 def uneven_problem(curve: str, limits: Limits = LIMITS) -> Problem:
     """A problem of three segments and two joints."""
     return Problem(WAYPOINTS, limits, CURVES[curve]())
-
-
-def mirrored(problem: Problem) -> Problem:
-    """The same question for −q: every lower limit is an upper one."""
-    limits = problem.limits.with_sides(problem.limits.sides[::-1])
-    return Problem(-problem.waypoints, limits, problem.curve)

@@ -19,16 +19,12 @@ from support.forgeries.forgery import (
     altered,
     document,
 )
-from trajgap.verify import reading, shown_bound, verify_certificate
+from support.forgeries.of_claims import here
+from trajgap.verify import reading, shown_bound, tree, verify_certificate
 from trajgap.verify.problem import PI
 
 KINDS = sorted(path.stem for path in KEPT.glob("*.json"))
 INFEASIBLE = {**NO_ANSWER, "claim.infeasible": True}
-
-
-def here(work: Callable[..., Any], common: Any, parts: Iterable[Any]) -> Iterator[Any]:
-    """Every part of a tree, judged in this process."""
-    return (work(common, *part) for part in parts)
 
 
 def backwards(work: Callable[..., Any], common: Any, parts: Iterable[Any]) -> Iterator[Any]:
@@ -44,6 +40,22 @@ def test_each_kind_is_proved_whole_and_in_parts(kind: str) -> None:
     assert (verdict.lower, verdict.upper) == (Fraction(claim["lower"]), Fraction(claim["upper"]))
     for spread in (here, backwards):
         assert verify_certificate(document(kind), spread=spread) == verdict
+
+
+def test_a_kind_whose_leaves_leave_something_behind_is_not_handed_out(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def seen(work: Callable[..., Any], common: Any, parts: Iterable[Any]) -> Iterator[Any]:
+        handed.extend(parts)
+        return here(work, common, handed)
+
+    handed: list[Any] = []
+    monkeypatch.setattr(tree, "_PARTS", 1)
+    # The one leaf of a closed form tells its kind whether a segment is late.
+    assert verify_certificate(document("rest-to-rest"), spread=seen).proves
+    assert handed == []
+    assert verify_certificate(document("cubic-virtual"), spread=seen).proves
+    assert handed != []
 
 
 # --- just inside ----------------------------------------------------------------------------------

@@ -8,48 +8,28 @@ from typing import Any
 
 import numpy as np
 import pytest
-from scipy.interpolate import CubicSpline, make_interp_spline
 from support.forgeries.forgery import NO_ANSWER, altered, document
+from support.papers.motions import FAMILIES, Motion, nodes, vertices
 from trajgap.verify import read_problem
-from trajgap.verify.cubic.box import Box
-from trajgap.verify.cubic.system import Cubic
-from trajgap.verify.cubic.weights import least
+from trajgap.verify.cubic import FINE, Box, Cubic, least
+from trajgap.verify.cubic import box as box_module
 from trajgap.verify.curve import pieces, uniform_pieces, value_at
 from trajgap.verify.reading import Clock
 
 CLOCK = Clock(1e9)
-SPLINE_ENDS = [(1, 0.0), (2, 0.0)]
 
 
 def exact(values: Any) -> list[Fraction]:
     return [Fraction(float(x)) for x in values]
 
 
-def spline(data: dict[str, Any], h: np.ndarray, joint: int) -> Any:
-    """The declared spline of one joint, by scipy."""
+def spline(data: dict[str, Any], h: np.ndarray) -> Motion:
+    """The declared spline, by another route."""
     p = data["problem"]
-    t = np.concatenate([[0.0], np.cumsum(h)])
-    q = [float(Fraction(row[joint])) for row in p["waypoints"]]
-    if p["degrees"][0] == 5:
-        return make_interp_spline(t, q, k=5, bc_type=(SPLINE_ENDS, SPLINE_ENDS))
-    if p["virtual"]:
-        return _with_virtual(t, q)
-    ends = tuple((entries[0][0], 0.0) for entries in (p["prescribed"][0], p["prescribed"][-1]))
-    return CubicSpline(t, q, bc_type=ends)
-
-
-def _with_virtual(t: np.ndarray, q: list[float]) -> CubicSpline:
-    """At rest without acceleration: the two free positions make the accelerations vanish."""
-
-    def at(x: float, y: float) -> CubicSpline:
-        return CubicSpline(t, [q[0], x, *q[1:-1], y, q[-1]], bc_type=((1, 0.0), (1, 0.0)))
-
-    def ends(curve: CubicSpline) -> np.ndarray:
-        return np.array([curve(t[0], 2), curve(t[-1], 2)])
-
-    base = ends(at(0.0, 0.0))
-    matrix = np.array([ends(at(1.0, 0.0)) - base, ends(at(0.0, 1.0)) - base]).T
-    return at(*np.linalg.solve(matrix, -base))
+    ends = {1: "clamped cubic", 2: "natural cubic"}[p["prescribed"][0][0][0]]
+    name = "C4 quintic" if p["degrees"][0] == 5 else "virtual cubic" if p["virtual"] else ends
+    q = [[float(Fraction(x)) for x in row] for row in p["waypoints"]]
+    return FAMILIES[name].fit(np.array(q), h)
 
 
 @pytest.mark.parametrize("kind", ["cubic", "cubic-virtual", "quintic-spline"])
@@ -59,25 +39,16 @@ def test_a_declared_spline_is_that_of_scipy(kind: str) -> None:
     for _ in range(4):
         h = rng.uniform(0.4, 2.0, problem.segments)
         found = pieces(problem, exact(h), CLOCK)
-        t = np.concatenate([[0.0], np.cumsum(h)])
-        for j in range(problem.joints):
-            curve = spline(data, h, j)
-            for k, s in product(range(problem.segments), (0.0, 0.3, 1.0)):
-                own = value_at(found[j][k], Fraction(s * float(h[k])))
-                assert float(own) == pytest.approx(float(curve(t[k] + s * h[k])), abs=1e-9)
+        curve, t = spline(data, h), nodes(h)
+        for k, s in product(range(problem.segments), (0.0, 0.3, 1.0)):
+            own = [float(value_at(one[k], Fraction(s * float(h[k])))) for one in found]
+            assert own == pytest.approx(curve.at(t[[k]] + s * h[k], 0)[0], abs=1e-9)
 
 
 def test_a_uniform_b_spline_goes_through_its_points_with_two_equal_vertices_at_each_end() -> None:
     problem = read_problem(document("stretched")["problem"])
     for j, curve in enumerate(uniform_pieces(problem, CLOCK)):
-        q = [row[j] for row in problem.waypoints]
-        # Control vertices by the recursion V₋ + 4V + V₊ = 6q, V₀ = V₁ and Vₙ₊₁ = Vₙ.
-        n = len(q)
-        matrix = np.zeros((n + 2, n + 2))
-        for i in range(n):
-            matrix[i, i : i + 3] = 1, 4, 1
-        matrix[n, :2], matrix[n + 1, -2:] = (1, -1), (1, -1)
-        v = np.linalg.solve(matrix, [*(6 * float(x) for x in q), 0.0, 0.0])
+        v = vertices(np.array([[float(row[j])] for row in problem.waypoints]))[:, 0]
         for k, piece in enumerate(curve):
             a, b, c, d = v[k : k + 4]
             power = [
@@ -92,7 +63,7 @@ def test_a_uniform_b_spline_goes_through_its_points_with_two_equal_vertices_at_e
 def state(data: dict[str, Any], cubic: Cubic, h: np.ndarray) -> tuple[list[Any], list[Any]]:
     """Coordinates and each joint's unknowns of the true spline, in the units of the proof."""
     second = float(cubic.second)
-    t = np.concatenate([[0.0], np.cumsum(h)])
+    t, curve = nodes(h), spline(data, h)
     ends = t if not cubic.virtual else np.delete(t, (1, len(t) - 2))
     spans = np.diff(ends) / second
     y = [*spans]
@@ -101,9 +72,9 @@ def state(data: dict[str, Any], cubic: Cubic, h: np.ndarray) -> tuple[list[Any],
         y += [y[-2] ** 2 / spans[0], y[-1] ** 2 / spans[-1]]
     x = []
     for j in range(cubic.joints):
-        curve, angle = spline(data, h, j), 2.0 ** data["proof"]["powers"][j]
-        bends = curve(t, 2) * second**2 / angle
-        x.append([*bends, *(curve(ends, 1) * second / angle)])
+        angle = 2.0 ** data["proof"]["powers"][j]
+        bends = curve.at(t, 2)[:, j] * second**2 / angle
+        x.append([*bends, *(curve.at(ends, 1)[:, j] * second / angle)])
     return y, x
 
 
@@ -123,12 +94,11 @@ def drawn(name: str, seed: int, width: float) -> Any:
     found = [state(data, cubic, each) for each in (h, *inside)]
     ys = np.array([y[: cubic.free] for y, _ in found]) * 2**24
     box = Box(
-        cubic,
         [int(v) for v in ys.min(axis=0)],
         [int(v) + 1 for v in ys.max(axis=0)],
         [[None] * cubic.size for _ in range(2)],
-        0,
     )
+    box.trim(cubic)
     return rng, data, cubic, box, found
 
 
@@ -137,17 +107,41 @@ def drawn(name: str, seed: int, width: float) -> Any:
 def test_ranges_hold_every_spline_of_a_box(name: str, seed: int) -> None:
     for width in (0.0, 0.02, 0.3):
         _, _, cubic, box, found = drawn(name, seed, width)
-        box.narrow(CLOCK)
+        box.narrow(cubic, CLOCK)
         assert not box.empty
         for y, x in found:
-            for side, value in zip(box.sides(), y, strict=True):
+            for side, value in zip(box.sides(cubic), y, strict=True):
                 assert float(side[0]) - 1e-7 <= value <= float(side[1]) + 1e-7
             for j, v in product(range(2), range(cubic.size)):
-                low, high = box.x[j][v]
+                low, high = (end / FINE for end in box.x[j][v])
                 slack = 1e-7 * (1 + abs(x[j][v]))
                 assert float(low) - slack <= x[j][v] <= float(high) + slack
                 if width == 0.0:  # and they are worth something
                     assert float(high - low) < 1e-3 * (1 + abs(x[j][v]))
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_ranges_of_a_span_that_almost_vanishes_are_as_narrow_with_more_digits(
+    seed: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # Coincident way-points and a velocity limit alone: nothing keeps the span from 0.
+    same = {"problem.waypoints.1": document("cubic-virtual")["problem"]["waypoints"][0]}
+    limits = {"problem.limits": [["1", None, None]] * 2, "proof.cap": 2**28}
+    data = altered("cubic-virtual", {**NO_ANSWER, **same, **limits})
+    cubic, rng = Cubic(read_problem(data["problem"]), data["proof"]), np.random.default_rng(seed)
+    y = rng.uniform(1.0, 3.0, cubic.free)
+    y[0] = rng.uniform(1e-6, 4e-6)
+    y[cubic.m], y[cubic.m + 1] = 0.7 * y[0], 0.6 * y[cubic.m - 1]
+    found = []
+    for digits in (2**80, 2**200):
+        monkeypatch.setattr(box_module, "_INNER", digits)
+        low, high = ([int(z * w * 2**24) for z in y] for w in (0.999, 1.001))
+        box = Box(low, [z + 1 for z in high], [[None] * cubic.size for _ in range(2)])
+        box.trim(cubic)
+        box.narrow(cubic, CLOCK)
+        found.append(np.array(box.x, dtype=np.float64) / FINE)
+    assert np.isfinite(found[1]).all()
+    assert found[0] == pytest.approx(found[1], rel=1e-9, abs=1e-9)
 
 
 @pytest.mark.parametrize("seed", range(10))
@@ -156,7 +150,7 @@ def test_weights_bound_every_spline_of_a_box(name: str, seed: int) -> None:
     """Conditions and equations with weights, at true splines: never below what is called least."""
     for width in (0.0, 0.05):
         rng, _, cubic, box, found = drawn(name, seed, width)
-        box.narrow(CLOCK)
+        box.narrow(cubic, CLOCK)
         rows = [
             ["total", -1, 0, 1, 0],
             ["lower", -1, 1, 1, 0],
@@ -184,7 +178,7 @@ def test_weights_bound_every_spline_of_a_box(name: str, seed: int) -> None:
                 terms[j, key] = terms.get((j, key), 0) + w * z
         length = sum(type(key) is not int and z != 0 for (_, key), z in terms.items())
         mix = "".join(rng.choice(list("0g7wm"), length))
-        bound = float(least(box, target, [held, equations, mix], known))
+        bound = float(least(cubic, box, known, target, held, equations, lambda _, mix=mix: mix))
         values = []
         for y, x in found:
             value = sum(w * y[k] for k, w in target.items())
@@ -237,8 +231,9 @@ def test_squares_of_a_length_over_a_span_lie_in_their_range(sides: Any) -> None:
     low, high = [2**22] * 5, [2**25] * 5
     for k, (a, b) in ((3, sides[0]), (0, sides[1])):
         low[k], high[k] = int(a * 2**24), int(b * 2**24)
-    box = Box(cubic, low, high, [[None] * cubic.size for _ in range(2)], 0)
-    found = tuple(map(float, box.sides()[5]))
+    box = Box(low, high, [[None] * cubic.size for _ in range(2)])
+    box.trim(cubic)
+    found = tuple(map(float, box.sides(cubic)[5]))
     (h0, h1), (t0, t1) = sides
     # A piece is no longer than its span.
     assert found[0] == pytest.approx(h0 * h0 / t1, abs=1e-6)

@@ -11,10 +11,10 @@ from typing import Any
 
 from ..problem import StatedProblem
 from ..ranges import MOST_INTEGER, MOST_ROWS, TICKS
-from ..reading import Clock, listed, need, sign_of, whole
+from ..reading import Clock, listed, need, sign_of, text, whole
 from ..tree import ProofKind
 from .box import Box, Range
-from .system import Cubic
+from .system import Cubic, Number
 from .weights import least
 
 
@@ -38,23 +38,19 @@ class CubicSpline(ProofKind[Box]):
 
     def root(self) -> Box:
         """Its lower sides are stated in the file, and proved."""
+        low, high = self._root
         nothing: list[list[Range]] = [[None] * self.cubic.size for _ in range(self.cubic.joints)]
-        return Box(self.cubic, *self._root, nothing, 0)
+        box = Box(list(low), list(high), nothing)
+        box.trim(self.cubic)
+        return box
 
     def cut(self, box: Box, coordinate: int, place: Any) -> tuple[Box, Box]:
         """At the stated tick; a place outside leaves one part empty."""
         k, at = whole(coordinate, 0, self.cubic.free - 1), whole(place, 0, MOST_INTEGER)
-        parts = []
-        for lower in (True, False):
-            low, high = list(box.low), list(box.high)
-            if lower:
-                high[k] = min(at, high[k])
-            else:
-                low[k] = max(at, low[k])
-            part = Box(self.cubic, low, high, [list(x) for x in box.x], box.floor)
-            part.empty |= box.empty
-            parts.append(part)
-        return parts[0], parts[1]
+        below, above = box.again(), box.again()
+        below.move(self.cubic, k, -1, at)
+        above.move(self.cubic, k, 1, at)
+        return below, above
 
     def step(self, box: Box, tag: str, data: list[Any]) -> Box:
         """Narrow the ranges ("r"), raise the floor of the total ("f"), or move a side ("t")."""
@@ -64,28 +60,24 @@ class CubicSpline(ProofKind[Box]):
             return box
         if tag == "r":
             listed(data, 'a step "r"', 0)
-            box.narrow(self.clock)
+            box.narrow(self.cubic, self.clock)
         elif tag == "f":
             value, scale, *weights = listed(data, 'a step "f"', 5, 5)
             whole(value, 0, MOST_INTEGER)
             total = dict.fromkeys(range(self.cubic.m), whole(scale, 1, MOST_INTEGER))
-            proved = least(box, total, weights, self._known) * TICKS >= value * scale
+            proved = self._least(box, total, weights) * TICKS >= value * scale
             need(proved, "a floor is not proved")
             box.floor = max(box.floor, value)
-            box.trim()
+            box.trim(self.cubic)
         else:
             k, sign, value, scale, *weights = listed(data, 'a step "t"', 7, 7)
             whole(k, 0, self.cubic.free - 1)
             sign_of(sign)
             whole(value, -MOST_INTEGER, MOST_INTEGER)
             target = {k: sign * whole(scale, 1, MOST_INTEGER)}
-            proved = least(box, target, weights, self._known) * TICKS >= sign * value * scale
+            proved = self._least(box, target, weights) * TICKS >= sign * value * scale
             need(proved, "a side is not proved")
-            if sign > 0:
-                box.low[k] = max(box.low[k], value)
-            else:
-                box.high[k] = min(box.high[k], value)
-            box.trim()
+            box.move(self.cubic, k, sign, value)
         return box
 
     def leaf(self, box: Box, data: list[Any]) -> None:
@@ -93,6 +85,12 @@ class CubicSpline(ProofKind[Box]):
         if box.empty:
             return
         if data:
-            need(least(box, {}, data, self._known) > 0, "the box is not proved to be empty")
+            need(self._least(box, {}, data) > 0, "the box is not proved to be empty")
         else:
             need(box.floor >= self._ticks, "the floor of a box is below the total")
+
+    def _least(self, box: Box, target: dict[int, int], weights: list[Any]) -> Number:
+        """Least value of the target with weights: of conditions, of equations, and the shares."""
+        held, equations, mix = listed(weights, "weights", 3, 3)
+        text(mix, "shares of products")
+        return least(self.cubic, box, self._known, target, held, equations, lambda _: mix)

@@ -5,63 +5,61 @@ Symbols are those of docs/explanation/certificates-cubic.md.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from fractions import Fraction
 from itertools import pairwise
-from math import ceil, isqrt
+from math import ceil, floor, isqrt
 from typing import Any
 
-from ..problem import Bounds, Declaration, StatedProblem
-from ..ranges import MOST_CUBIC_SEGMENTS, MOST_INTEGER, MOST_POWER, SPOTS, TICKS
+from ..problem import Declaration, StatedProblem, in_own_units
+from ..ranges import MOST_CUBIC_SEGMENTS, MOST_INTEGER, SPOTS, TICKS
 from ..reading import listed, need, required, sign_of, whole
 
-Vector = dict[Any, Fraction]
+Number = int | Fraction
+Vector = dict[Any, Number]
 """Factors by unknown, or by (coordinate, unknown) for a product."""
-ZERO = Fraction(0)
-"""Sums begin with it, so that empty ones are exact, too."""
-_FINE = 2**60
-"""A square root is rounded up to its multiples: some digits more than a float has."""
+Condition = tuple[int, Vector, Vector, Number]
+"""Joint, terms in the unknowns, terms in the coordinates, constant: their sum is ≤ 0."""
+Sides = list[tuple[Fraction, Fraction]]
+"""Least and largest value of every coordinate."""
+FINE = 2**44
+"""Ranges and roots are multiples of 1/FINE: fine enough for gaps of 1e-9, and no number grows in a
+tree."""
 
 
 class Cubic:
     """The problem in its own units: equations, conditions, and what the limits imply."""
 
     def __init__(self, problem: StatedProblem, proof: dict[str, Any]) -> None:
-        self.problem = problem
         declared = required(problem.declaration, "the curve is no declared piecewise polynomial")
         self.ends, self.virtual = kind_of_ends(declared)
-        q = problem.waypoints
-        self.n, self.m, self.joints = problem.segments, len(q) - 1, problem.joints
+        self.n, self.m, self.joints = problem.segments, len(problem.waypoints) - 1, problem.joints
         need(self.n <= MOST_CUBIC_SEGMENTS, f"more than {MOST_CUBIC_SEGMENTS} segments")
-        stated = listed(proof["powers"], "powers", self.joints, self.joints)
-        powers = [whole(p, -MOST_POWER, MOST_POWER) for p in stated]
-        self.second = Fraction(2) ** whole(proof["second"], -MOST_POWER, MOST_POWER)
-        angle = [Fraction(2) ** p for p in powers]
-        self.steps = [
-            [(y - x) / a for x, y, a in zip(*rows, angle, strict=True)] for rows in pairwise(q)
-        ]
-
-        def loose(x: Bounds, order: int, a: Fraction) -> Fraction | None:
-            return None if x is None or x[1] <= 0 else x[1] * self.second**order / a
-
-        self.limits = [
-            [loose(x, r, a) for r, x in enumerate(row, 1)]
-            for row, a in zip(problem.limits, angle, strict=True)
-        ]
+        self.second, self.steps, self.limits = in_own_units(problem, proof)
         self.shortest = [x / self.second for x in problem.shortest]
         self.longest = [None if x is None else x / self.second for x in problem.longest]
         self.cap = Fraction(whole(proof["cap"], 1, MOST_INTEGER), TICKS)
-        self.free = self.m + (2 if self.virtual else 0)
+        self.free, self.coordinates = (self.m + (x if self.virtual else 0) for x in (2, 4))
         self.breaks = list(range(self.n + 1))
         if self.virtual:
             self.breaks = [0, *range(2, self.n - 1), self.n]
         self.size = self.n + 1 + self.m + 1
         self.lengths = [self._length(k) for k in range(self.n)]
         self.equations, self.moved = self._equations()
+        self.moving = {i: (t, sign) for i, (t, sign) in self.moved.items() if any(self.steps[t])}
 
     def rho(self) -> list[tuple[int, int, int]]:
         """Coordinates (h, T, h²/T) of the two ends with a virtual way-point."""
         m = self.m
         return [(m, 0, m + 2), (m + 1, m - 1, m + 3)] if self.virtual else []
+
+    def rough(self, span: int) -> tuple[int, int, int] | None:
+        """Of a span with a virtual way-point: breaks there and at its inner end, coordinate h."""
+        if self.virtual and span == 0:
+            return 1, 2, self.m
+        if self.virtual and span == self.m - 1:
+            return self.n - 1, self.n - 2, self.m + 1
+        return None
 
     def _length(self, k: int) -> dict[int, int]:
         m, n = self.m, self.n
@@ -73,7 +71,7 @@ class Cubic:
             return {0: 1, m: -1} if k == 1 else {m - 1: 1, m + 1: -1}
         return {k - 1: 1}
 
-    def _equations(self) -> tuple[list[Vector], dict[int, tuple[int, int]]]:
+    def _equations(self) -> tuple[list[dict[Any, int]], dict[int, tuple[int, int]]]:
         """Left-hand sides, keyed by unknown or (coordinate, unknown); right: ±6Δq/T of a span.
 
         Acceleration from a to b in a line: 2(v₁ − v₀) = T(a + b), 6v₀ + T(2a + b) = 6Δq/T. From
@@ -87,26 +85,25 @@ class Cubic:
             rows += [{speed: 1}] if order != 2 else []
             rows += [{node: 1}] if order != 1 else []
         for t, (i, k) in enumerate(pairwise(self.breaks)):
-            if self.virtual and t in (0, m - 1):
-                sign = 1 if t == 0 else -1
-                a, b = (1, 2) if t == 0 else (n - 1, n - 2)
-                h, _, r = self.rho()[0 if t == 0 else 1]
-                speed = v + 1 if t == 0 else v + m - 1
+            rough = self.rough(t)
+            if rough is not None:
+                a, b, h = rough
+                sign, speed = (1, v + 1) if t == 0 else (-1, v + m - 1)
                 rows.append({speed: 2 * sign, (t, a): -1, (t, b): -1, (h, b): 1})
                 moved[len(rows)] = (t, sign)
-                rows.append({(t, a): 2, (h, a): -1, (t, b): 1, (h, b): -2, (r, b): 1})
+                rows.append({(t, a): 2, (h, a): -1, (t, b): 1, (h, b): -2, (h + 2, b): 1})
             else:
                 rows.append({v + t + 1: 2, v + t: -2, (t, i): -1, (t, k): -1})
                 moved[len(rows)] = (t, 1)
                 rows.append({v + t: 6, (t, i): 2, (t, k): 1})
-        return [{key: Fraction(x) for key, x in row.items()} for row in rows], moved
+        return rows, moved
 
-    def condition(self, entry: Any) -> tuple[int, Vector, Vector, Fraction]:
-        """Joint, terms in the unknowns, terms in the coordinates, constant: their sum is ≤ 0."""
+    def condition(self, entry: Any) -> Condition:
+        """What a row of the file stands for."""
         kind, joint, k, sign, place = listed(entry, "a row", 5, 5)
         sign_of(sign)
         if kind == "total":
-            return -1, {}, {t: Fraction(1) for t in range(self.m)}, -self.cap
+            return -1, {}, dict.fromkeys(range(self.m), 1), -self.cap
         if kind in ("lower", "upper"):
             whole(k, 0, self.n - 1)
             bound = required(
@@ -114,8 +111,7 @@ class Cubic:
                 "a bound of a duration that is not there",
             )
             side = -1 if kind == "lower" else 1
-            along = {c: Fraction(side * x) for c, x in self.lengths[k].items()}
-            return -1, {}, along, -side * bound
+            return -1, {}, {c: side * x for c, x in self.lengths[k].items()}, -side * bound
         limits = self.limits[whole(joint, 0, self.joints - 1)]
         need(kind in ("jerk", "velocity"), "a row of an unknown kind")
         limit = required(
@@ -124,18 +120,20 @@ class Cubic:
         if kind == "jerk":
             whole(k, 0, self.n - 1)
             along = {c: -limit * x for c, x in self.lengths[k].items()}
-            return joint, {k + 1: Fraction(sign), k: Fraction(-sign)}, along, ZERO
+            return joint, {k + 1: sign, k: -sign}, along, 0
         whole(k, 0, self.m - 1)
         s = Fraction(whole(place, 0, SPOTS), SPOTS)
         # v(s) = v(0) + length·(a(0)(s − s²/2) + a(1)s²/2)
         one, two = sign * (s - s * s / 2), sign * s * s / 2
-        if self.virtual and k in (0, self.m - 1):
-            a, b, h = (1, 2, self.m) if k == 0 else (self.n - 1, self.n - 2, self.m + 1)
+        rough = self.rough(k)
+        terms: Vector
+        if rough is not None:
+            a, b, h = rough
             # Length T − h, and v(0) = h·a/2 at the virtual way-point.
             terms = {(k, a): one, (h, a): Fraction(sign, 2) - one, (k, b): two, (h, b): -two}
         else:
             i, j = self.breaks[k], self.breaks[k + 1]
-            terms = {self.n + 1 + k: Fraction(sign), (k, i): one, (k, j): two}
+            terms = {self.n + 1 + k: sign, (k, i): one, (k, j): two}
         return joint, terms, {}, -limit
 
     def fastest(self, joint: int) -> tuple[Fraction | None, Fraction | None]:
@@ -146,24 +144,25 @@ class Cubic:
         so α² ≤ 2VJ. From a rest the velocity is at most A·L, half of that between two.
         """
         velocity, acceleration, jerk = self.limits[joint]
-        a = smaller(acceleration, None if jerk is None else jerk * self.cap)
+        known = [acceleration, None if jerk is None else jerk * self.cap]
         if jerk is not None and velocity is not None:
-            a = smaller(a, _root_above(2 * velocity * jerk))
+            known.append(root_below(2 * velocity * jerk) + Fraction(1, FINE))
+        a = least_of(known)
         still = sum(order != 2 for order in self.ends)
         other = a * self.cap / still if still and a is not None else None
-        return smaller(velocity, other), a
+        return least_of([velocity, other]), a
 
     def side(self, c: int) -> tuple[Fraction, Fraction]:
         """Least and largest value of a coordinate: bounds, mean velocities, and the cap."""
         held = [k for k, x in enumerate(self.lengths) if x.get(c, 0) > 0]
         if self.virtual and c in (0, self.m - 1):
             held.append(0 if c == 0 else self.n - 1)
-        least = sum((self.shortest[k] for k in held), ZERO)
+        least = sum((self.shortest[k] for k in held), Fraction(0))
         for j in range(self.joints if c < self.m else 0):
             v, _ = self.fastest(j)
             least = max(least, abs(self.steps[c][j]) / v) if v else least
         longest = [x for x in (self.longest[k] for k in held) if x is not None]
-        return least, sum(longest, ZERO) if len(longest) == len(held) else self.cap
+        return least, sum(longest, Fraction(0)) if len(longest) == len(held) else self.cap
 
     def root(self, stated: Any) -> tuple[list[int], list[int]]:
         """Lower sides, which are proved here, and upper sides of the outermost box."""
@@ -190,11 +189,11 @@ def kind_of_ends(declared: Declaration) -> tuple[tuple[int, int], bool]:
     return (orders[0][0], orders[1][0]), False
 
 
-def _root_above(x: Fraction) -> Fraction:
-    """An upper bound of a square root."""
-    return Fraction(isqrt(ceil(x * _FINE**2)) + 1, _FINE)
+def root_below(x: Fraction) -> Fraction:
+    """A square root, rounded down to a multiple of 1/FINE."""
+    return Fraction(isqrt(floor(x * FINE**2)), FINE)
 
 
-def smaller(a: Fraction | None, b: Fraction | None) -> Fraction | None:
-    """The smaller bound; None is no bound."""
-    return a if b is None or (a is not None and a <= b) else b
+def least_of(bounds: Iterable[Fraction | None]) -> Fraction | None:
+    """The least of some bounds; None is no bound."""
+    return min((x for x in bounds if x is not None), default=None)

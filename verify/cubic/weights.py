@@ -2,62 +2,70 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from fractions import Fraction
-from math import floor, isqrt
 from typing import Any
 
 from ..ranges import MIX, MIX_DIGITS, MOST_INTEGER, MOST_WEIGHTS
-from ..reading import listed, need, required, text, whole
-from .box import FINE, Box
-from .system import ZERO
+from ..reading import listed, need, required, whole
+from .box import Box
+from .system import FINE, Condition, Cubic, Number, Sides, root_below
 
-_SLOPES = 128
-"""Tangents of ρ that are tried: the best of them is as good as the bound needs."""
+_THIRDS = 60
+"""Taken off the range of T in which the best tangent of ρ is looked for: 3e-11 of it is left."""
 
-Condition = tuple[int, dict[Any, Fraction], dict[Any, Fraction], Fraction]
-"""Joint, terms in the unknowns, terms in the coordinates, constant: their sum is ≤ 0."""
+Spot = tuple[int, int, int]
+"""Joint, coordinate and unknown of a product."""
 
 
 def least(
-    box: Box, target: dict[int, int], weights: list[Any], known: Sequence[Condition]
-) -> Fraction:
+    cubic: Cubic,
+    box: Box,
+    known: Sequence[Condition],
+    target: dict[int, int],
+    held: list[Any],
+    equations: list[Any],
+    shares: Callable[[list[Spot]], str],
+) -> Number:
     """Least value of the target plus the weighted conditions and equations over the box.
+
+    At feasible points that sum is at most the target.
 
     Parameters
     ----------
+    cubic : Cubic
     box : Box
+    known : sequence of Condition
     target : dict
         Weights of the coordinates.
-    weights : list
-        Three entries: [condition, w, …], [equation, μ, …], and the shares of the products.
-    known : sequence of Condition
+    held, equations : list
+        [condition, w, …] and [equation, μ, …].
+    shares : callable
+        Given the products that occur, a character for each: its share of the bound that is exact
+        where the unknown is lowest.
 
     Returns
     -------
-    Fraction
+    Fraction or int
 
     Raises
     ------
     Refused
         If the weights are malformed, or an unknown has no bounds.
     """
-    cubic, sides = box.cubic, box.sides()
-    first, second, third = listed(weights, "weights", 3, 3)
-    held = listed(first, "weights of conditions", 2 * MOST_WEIGHTS)
-    equations = listed(second, "weights of equations", 2 * MOST_WEIGHTS)
-    mix = text(third, "shares of products")
-    terms: dict[tuple[int, Any], Fraction] = {}
-    along = dict.fromkeys(range(len(sides)), ZERO)
-    for k, factor in target.items():
-        along[k] += factor
-    constant, inverse = ZERO, dict.fromkeys(range(cubic.m), ZERO)
+    sides = box.sides(cubic)
+    held = listed(held, "weights of conditions", 2 * MOST_WEIGHTS)
+    equations = listed(equations, "weights of equations", 2 * MOST_WEIGHTS)
     need(len(held) % 2 == 0 and len(equations) % 2 == 0, "malformed: weights come in pairs")
+    terms: dict[tuple[int, Any], Number] = {}
+    along: dict[int, Number] = {k: target.get(k, 0) for k in range(cubic.coordinates)}
+    constant: Number = 0
+    inverse = dict.fromkeys(range(cubic.m), Fraction(0))
     for number_, weight in zip(held[::2], held[1::2], strict=True):
         w = whole(weight, 0, MOST_INTEGER)
         joint, own, lengths, rest = known[whole(number_, 0, len(known) - 1)]
         for key, x in own.items():
-            terms[joint, key] = terms.get((joint, key), ZERO) + w * x
+            terms[joint, key] = terms.get((joint, key), 0) + w * x
         for k, x in lengths.items():
             along[k] += w * x
         constant += w * rest
@@ -65,44 +73,40 @@ def least(
         w = whole(weight, -MOST_INTEGER, MOST_INTEGER)
         joint, i = divmod(whole(number_, 0, cubic.joints * cubic.size - 1), cubic.size)
         for key, x in cubic.equations[i].items():
-            terms[joint, key] = terms.get((joint, key), ZERO) + w * x
+            terms[joint, key] = terms.get((joint, key), 0) + w * x
         if i in cubic.moved:
             t, sign = cubic.moved[i]
             inverse[t] -= w * sign * 6 * cubic.steps[t][joint]
-    lines: dict[tuple[int, int], Fraction] = {}
-    products = []
-    for (joint, key), x in terms.items():
-        if isinstance(key, int):
-            lines[joint, key] = lines.get((joint, key), ZERO) + x
-        elif x:
-            products.append((joint, *key, x))
-    products.sort()
+    alone = {place: x for place, x in terms.items() if isinstance(place[1], int)}
+    products = {(j, *key): x for (j, key), x in terms.items() if not isinstance(key, int) and x}
+    mix = shares(sorted(products))
     need(len(mix) == len(products), "shares and products differ in number")
     need(set(mix) <= set(MIX_DIGITS), "malformed: a share of a product")
-    for letter, (joint, k, v, x) in zip(mix, products, strict=True):
-        share = Fraction(MIX_DIGITS.index(letter), MIX)
+    for letter, (joint, k, v) in zip(mix, sorted(products), strict=True):
+        x, share = products[joint, k, v], MIX_DIGITS.index(letter)
         ends = required(box.x[joint][v], "a product of an unknown without bounds")
         # y·u ≥ corner·u + edge·y − corner·edge where (y − corner)(u − edge) ≥ 0, and so on.
-        for part, edge, first in ((share, ends[0], True), (1 - share, ends[1], False)):
-            corner = sides[k][0 if (x > 0) == first else 1]
-            lines[joint, v] = lines.get((joint, v), ZERO) + x * part * corner
-            along[k] += x * part * edge
-            constant -= x * part * corner * edge
-    for (joint, v), x in lines.items():
+        for part, end, first in ((share, ends[0], True), (MIX - share, ends[1], False)):
+            corner, edge = sides[k][0 if (x > 0) == first else 1], Fraction(end, FINE)
+            factor = x * Fraction(part, MIX)
+            alone[joint, v] = alone.get((joint, v), 0) + factor * corner
+            along[k] += factor * edge
+            constant -= factor * corner * edge
+    for (joint, v), x in alone.items():
         if x:
             ends = required(box.x[joint][v], "an unknown without bounds")
-            constant += min(x * ends[0], x * ends[1])
+            constant += Fraction(min(x * ends[0], x * ends[1])) / FINE
     return constant + _over(along, inverse, sides, cubic.rho())
 
 
 def _over(
-    along: dict[int, Fraction],
+    along: dict[int, Number],
     inverse: dict[int, Fraction],
-    sides: Sequence[tuple[Fraction, Fraction]],
+    sides: Sides,
     rho: Sequence[tuple[int, int, int]],
-) -> Fraction:
+) -> Number:
     """Least value of Σ along·y + Σ inverse/T, with ρ = h²/T."""
-    constant = ZERO
+    constant: Number = 0
     for h, t, r in rho:
         factor = along.pop(r)
         (h0, h1), t0 = sides[h], sides[t][0]
@@ -119,12 +123,12 @@ def _over(
             along[h] += factor
     for k, slope in along.items():
         low, high = sides[k]
-        e = inverse.get(k, ZERO)
+        e = inverse.get(k)
         if e:
             need(low > 0, "1/T of a span that may vanish")
             if e > 0:
                 # 1/T ≥ 2/τ − T/τ², the tangent at any τ.
-                best = _root(e / slope) if slope > 0 else high
+                best = root_below(e / slope) if slope > 0 else high
                 place = min(max(best, low), high)
                 constant += 2 * e / place
                 slope -= e / place**2
@@ -135,31 +139,33 @@ def _over(
     return constant
 
 
-def _root(x: Fraction) -> Fraction:
-    """About the square root."""
-    return Fraction(isqrt(floor(x * FINE**2)), FINE)
-
-
 def _slope(
-    factor: Fraction,
-    first: Fraction,
-    second: Fraction,
-    inverse: Fraction,
+    factor: Number,
+    first: Number,
+    second: Number,
+    inverse: Number,
     h: tuple[Fraction, Fraction],
     t: tuple[Fraction, Fraction],
 ) -> Fraction:
-    """θ whose tangent of ρ gives about the best bound: floats only choose."""
+    """θ whose tangent of ρ gives about the best bound: floats only choose.
+
+    It is h/T where first·h + second·T + inverse/T + factor·h²/T, which is convex once a negative
+    inverse is replaced by its chord, is least: there both sides of the duality meet.
+    """
     if not factor or t[0] <= 0:
-        return ZERO
-    f, a, b, e = float(factor), float(first), float(second), float(inverse)
-    (h0, h1), (t0, t1) = (float(h[0]), float(h[1])), (float(t[0]), float(t[1]))
-    start, end = h0 / t1, min(1.0, h1 / t0)
-    best, found = ZERO, -float("inf")
-    for i in range(_SLOPES + 1):
-        theta = start + (end - start) * i / _SLOPES
-        x, y = a + 2 * theta * f, b - theta**2 * f
-        middle = min(max((max(e, 0.0) / y) ** 0.5, t0), t1) if y > 0 else t1
-        value = min(x * h0, x * h1) + min(y * s + e / s for s in (t0, t1, middle))
-        if value > found:
-            best, found = Fraction(theta), value
-    return best
+        return Fraction(0)
+    f, a, b, e = map(float, (factor, first, second, inverse))
+    (h0, h1), (low, high) = map(float, h), map(float, t)
+    if e < 0:
+        b, e = b - e / (low * high), 0.0
+
+    def best(span: float) -> float:
+        return min(max(-a * span / (2 * f), h0), h1)
+
+    def value(span: float) -> float:
+        return a * best(span) + b * span + (e + f * best(span) ** 2) / span
+
+    for _ in range(_THIRDS):
+        one, other = (2 * low + high) / 3, (low + 2 * high) / 3
+        low, high = (low, other) if value(one) <= value(other) else (one, high)
+    return Fraction(best(low) / low)

@@ -3,77 +3,71 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from contextlib import suppress
 from fractions import Fraction
 
 import numpy as np
 
 from ....problem import Array
-from ....verify import MOST_CUBIC_SEGMENTS
+from ....verify import OutOfTime, Refused
 from ..certifier import Certifier
 from ..document import stated_problem
 from ..driver import grow
 from ..exact import ExactProblem
-from ..session import Ladder, Session
+from ..session import Ladder, Session, Shorter
 from .search import CubicStage
-from .system import CubicSystem, cubic_system, declares
+from .system import CubicSystem, cubic_system, declares, in_ticks
 from .tree import Prover, Tree, regrown
 
 _LADDER = Ladder((0.1, 0.01, 1e-3, 1e-4, 1e-5), 0.98, 3.0)
 """A lower cap narrows every box from the start: each stage is cheap beside the next."""
 _NEAR = 0.1
-"""A stage starts anew if a better answer lowers its goal by this share of its gap."""
+"""A stage ends if a better answer lies this share of the gap below: the next has a lower cap."""
 
 
 class _Run:
-    """The stages of one run: a tree, the ticks to prove in it, and the goal to start anew below."""
+    """What the stages of one run share."""
 
     def __init__(self, session: Session) -> None:
         self.session, self.stated = session, stated_problem(session.exact)
-        self._shortest_tried = math.inf
+        self._shortest_tried = self._ends = math.inf
 
-    def stages(self, resumed: Tree | None) -> Iterator[tuple[Tree, Callable[[], int], int]]:
-        """Stages, each when the one before is over."""
-        session = self.session
-        if session.upper is None:
-            longest = [x for x in session.exact.duration_upper if x is not None]
-            if len(longest) < session.exact.segments:
-                return
-            system = cubic_system(self.stated, sum(longest, Fraction(0)), 1)
-            cap = system.cap
-            yield self._tree(system), lambda: cap if session.upper is None else 0, cap
-        if session.upper is None:
-            return
-        if resumed is not None:
-            own = resumed.prover.system
-            yield resumed, lambda: self._ticks(0.0, own), 0
-        for gap in _LADDER.stages(session.request.gap):
-            asked = session.request.gap
-            # Near a stage that others follow is enough; the last one has to reach what is asked.
-            wanted = gap * (1 + _NEAR) if gap > asked else asked
-            while session.lower < self._target(wanted):
-                yield self._below(gap)
-
-    def _below(self, gap: float) -> tuple[Tree, Callable[[], int], int]:
-        """A stage whose cap lies this far below the answer."""
-        system = cubic_system(self.stated, self._target(gap))
-        restart = math.floor(system.cap * (1 - _NEAR * gap))
-        return self._tree(system), lambda: self._ticks(gap, system), restart
-
-    def _tree(self, system: CubicSystem) -> Tree:
+    def stage(self, target: Fraction, more: int = 0) -> Tree:
+        """Prove that no total is below ``target``, s, and so many ticks."""
+        system = cubic_system(self.stated, target, more)
         prover = Prover(system)
-        return Tree(prover, prover.root(), 0)
+        return self.grown(Tree(prover, prover.root()), system.cap * system.unit)
 
-    def _target(self, gap: float) -> Fraction:
-        assert self.session.upper is not None
-        return self.session.upper * (1 - Fraction(gap))
+    def grown(self, tree: Tree, target: Fraction) -> Tree:
+        """A tree that proves that no total is below ``target``, s, or as much as its boxes can.
 
-    def _ticks(self, gap: float, system: CubicSystem) -> int:
-        """The target for a gap, in ticks."""
-        wanted = max(gap, _LADDER.share * self.session.request.gap)
-        return math.floor(self._target(wanted) / system.unit)
+        Raises
+        ------
+        Shorter
+            If an answer turns up that is better by far.
+        OutOfTime
+            If boxes are as small as they may get, too.
+        """
+        session, before, upper = self.session, self.session.nodes, self.session.upper
+        self._ends = math.inf if upper is None else float(upper - _NEAR * (upper - target))
+        stage = CubicStage(
+            tree,
+            target,
+            self._improve,
+            lambda now, waiting, done: session.report(waiting, before + done, now.seconds),
+        )
+        try:
+            grow(stage, tree.root.leaves(), session)
+        finally:
+            tree = stage.tree
+            session.keep(tree.seconds, tree)
+            session.proposals = tree.proposed
+            session.report(sum(1 for _ in tree.root.leaves()), before + stage.boxes)
+        if stage.finest:
+            raise OutOfTime
+        return tree
 
-    def improve(self, system: CubicSystem, point: Array) -> None:
+    def _improve(self, system: CubicSystem, point: Array) -> None:
         """Start the local solver from a point of the relaxation, if it is a better start."""
         session = self.session
         h = np.array(
@@ -81,17 +75,19 @@ class _Run:
         )
         if not (h > 0).all():
             return
-        tried = session.stretched(h[None] * 2.0**system.second)[0]
+        tried = session.stretched(h[None] * float(system.exact.second))[0]
         known = math.inf if session.upper is None else float(session.upper)
         # A solve costs more than a box: what is shorter by less than a millionth is no start.
         if tried.sum() < min(known, self._shortest_tried) * (1 - 1e-6):
             self._shortest_tried = float(tried.sum())
             session.seek(tried)
+            if session.upper is not None and session.upper < self._ends:
+                raise Shorter(tried)
 
 
 def _prove(session: Session) -> bool:
-    # Judging takes a fourth to a third of the search.
-    run, nodes, session.judging = _Run(session), 0, 0.4
+    # Judging takes a fifteenth to a seventh of the search.
+    run, session.judging = _Run(session), 0.2
     # The steps that a state proposes are proved on the way, or it is refused.
     pending = None
     if session.proposals is not None:
@@ -101,36 +97,31 @@ def _prove(session: Session) -> bool:
         session.keep(pending.seconds, pending)
         session.proposals = pending.proposed
     session.seek()
-    for tree, goal, restart in run.stages(pending):
-
-        def watch(now: Tree, waiting: int, boxes: int, before: int = nodes) -> None:
-            session.report(waiting, before + boxes, now.seconds)
-
-        stage = CubicStage(tree, goal, restart, run.improve, watch)
-        try:
-            grow(stage, stage.root.leaves(), session)
-        finally:
-            nodes += stage.boxes
-            session.keep(stage.tree.seconds, stage.tree)
-            session.proposals = stage.tree.proposed
-            session.report(sum(1 for _ in stage.root.leaves()), nodes)
-        if stage.finest:
-            return False
     longest = [x for x in session.exact.duration_upper if x is not None]
-    above = len(longest) == session.exact.segments and session.lower > sum(longest)
-    session.infeasible = session.upper is None and above
+    if session.upper is None and len(longest) == session.exact.segments:
+        most = sum(longest, Fraction(0))
+        with suppress(Shorter):
+            run.stage(most, 1)
+        session.infeasible = session.upper is None and session.lower > most
+    if session.upper is None:
+        return True
+    if pending is not None:
+        last = Fraction(_LADDER.stages(session.request.gap)[-1])
+        with suppress(Shorter):
+            run.grown(pending, session.upper * (1 - last))
+    session.climb(_LADDER, in_ticks, run.stage)
     return True
 
 
 def _missing(problem: ExactProblem) -> str | None:
-    if problem.segments > MOST_CUBIC_SEGMENTS:
-        return f"more than {MOST_CUBIC_SEGMENTS} segments"
+    try:
+        exact = cubic_system(stated_problem(problem), Fraction(1)).exact
+    except Refused as error:
+        return f"{problem.curve.name}: {error}"
     if any(problem.duration_lower):
         return None
-    system = cubic_system(stated_problem(problem), Fraction(1))
-    moving = [any(step[j] for step in system.exact.steps) for j in range(len(problem.joints))]
-    bounded = any(math.isfinite(v) for (v, _), moves in zip(system.fastest, moving, strict=True)
-                  if moves)  # fmt: skip
+    moving = [any(column) for column in zip(*exact.steps, strict=True)]
+    bounded = any(exact.fastest(j)[0] is not None for j, moves in enumerate(moving) if moves)
     return None if bounded else "nothing limits the total from below"
 
 

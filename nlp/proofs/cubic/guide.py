@@ -12,15 +12,15 @@ from .system import CubicRow, CubicSystem
 
 def errors(program: BoxProgram, proposal: Proposal) -> Array:
     """How far the products of each coordinate are from being products, shape (free,)."""
-    system = program.relaxation.system
-    out = np.zeros(system.coordinates)
+    exact = program.relaxation.system.exact
+    out = np.zeros(exact.coordinates)
     scale = np.maximum(np.abs(proposal.unknowns).max(axis=1, initial=0.0), 1e-9)
     for p, (k, i) in enumerate(program.relaxation.pairs):
         miss = np.abs(proposal.products[:, p] - proposal.point[k] * proposal.unknowns[:, i])
         out[k] += float((miss / scale).sum())
-    for h, _, rho in system.exact.rho():
+    for h, _, rho in exact.rho():
         out[h] += out[rho]
-    return out[: system.free]
+    return out[: exact.free]
 
 
 def peaks(system: CubicSystem, point: Array) -> list[CubicRow]:
@@ -39,7 +39,7 @@ def peaks(system: CubicSystem, point: Array) -> list[CubicRow]:
     list of CubicRow
         Where a limit is exceeded; empty if the durations determine no spline.
     """
-    exact, (m, n) = system.exact, (system.exact.m, system.exact.n)
+    exact = system.exact
     y = np.append(point, [point[h] ** 2 / max(point[t], 1e-9) for h, t, _ in exact.rho()])
     right, spans = np.zeros((exact.size, exact.joints)), np.flatnonzero(system.moving)
     right[system.which[spans]] = system.steps[spans] / np.maximum(point[spans], 1e-9)[:, None]
@@ -49,14 +49,15 @@ def peaks(system: CubicSystem, point: Array) -> list[CubicRow]:
         return []
     found = []
     for j, (velocity, _, _) in enumerate(exact.limits):
-        for t in range(m if velocity is not None else 0):
-            if system.rough(t):
-                near, far, h = (1, 2, m) if t == 0 else (n - 1, n - 2, m + 1)
+        for t in range(exact.m if velocity is not None else 0):
+            rough = exact.rough(t)
+            if rough is not None:
+                near, far, h = rough
                 a, b, length = x[near, j], x[far, j], y[t] - y[h]
                 speed = a * y[h] / 2
             else:
                 a, b, length = x[exact.breaks[t], j], x[exact.breaks[t + 1], j], y[t]
-                speed = x[n + 1 + t, j]
+                speed = x[exact.n + 1 + t, j]
             if not a * b < 0:
                 continue
             place = round(a / (a - b) * SPOTS)

@@ -11,34 +11,40 @@ from scipy.sparse import coo_array, csr_array, hstack, vstack
 
 from ....problem import Array
 from ....verify import MIX
-from .bound import Target, Weights
-from .ranges import Side
+from ....verify.cubic import FINE, Box
 from .system import CubicRow, CubicSystem
 
 _TANGENTS = 5
 """Of 1/T and of ρ over a side: what they miss falls with the square of the box; rows cost time."""
 _LARGEST = 2**22
 """Of the integer weights."""
-_SMALLEST = 0.6
-"""Weights below it, in units of the rounding, are left out: those kept round to 1 or more."""
 
 
 @dataclass(frozen=True, eq=False)
 class Proposal:
-    """Optimum of a linear program.
+    """Optimum of a linear program, and what it proves.
 
     Attributes
     ----------
-    weights : Weights
+    target : dict
+        Weights of the coordinates in what is bounded from below; empty for a box that is empty.
     value : float
-        Bound of the target; positive for `nothing` if the box is empty.
+        Bound of the target; positive without one if the box is empty.
+    rows : list of CubicRow
+    weights : list
+        [row, w, …] by their numbers in ``rows``, and [equation, μ, …].
+    mix : ndarray of int, shape (joints, coordinates, unknowns)
+        Share, in 1/MIX, of the bound of a product that is exact where the unknown is lowest.
     point : ndarray, shape (coordinates,)
     unknowns : ndarray, shape (joints used, unknowns)
     products : ndarray, shape (joints used, pairs)
     """
 
-    weights: Weights
+    target: dict[int, int]
     value: float
+    rows: list[CubicRow]
+    weights: tuple[list[int], list[int]]
+    mix: NDArray[np.int64]
     point: Array
     unknowns: Array
     products: Array
@@ -53,7 +59,7 @@ class Relaxation:
 
     def __init__(self, system: CubicSystem, rows: list[CubicRow]) -> None:
         self.system, self.rows = system, [*rows, CubicRow("total")]
-        terms = [system.terms(row) for row in self.rows]
+        terms = [system.terms(row)[1] for row in self.rows]
         used = np.abs(system.linear).sum(axis=1) > 0
         for t in terms:
             used |= t.product != 0
@@ -65,11 +71,6 @@ class Relaxation:
         self.joint = np.array([row.joint for row in self.rows])
         dense = [np.concatenate([t.along, t.alone, t.product[k, i]]) for t in terms]
         self.entries = coo_array(np.array(dense) / self.by[:, None])
-
-    def over(self, side: Side, ranges: tuple[Array, Array]) -> BoxProgram:
-        """Its program over a box."""
-        joints = np.flatnonzero(np.isfinite(ranges[1]).all(axis=0))
-        return BoxProgram(self, side, ranges, joints)
 
 
 def _sparse(rows: list[dict[int, float]], columns: int) -> csr_array:
@@ -83,33 +84,30 @@ def _sparse(rows: list[dict[int, float]], columns: int) -> csr_array:
 class BoxProgram:
     """The linear program of a relaxation over one box."""
 
-    def __init__(
-        self,
-        relaxation: Relaxation,
-        side: Side,
-        ranges: tuple[Array, Array],
-        joints: NDArray[np.int64],
-    ) -> None:
-        self.relaxation, self.joints, self.side = relaxation, joints, side
-        system = relaxation.system
-        self.size, self.count = system.exact.size, len(relaxation.pairs)
-        self.first = system.coordinates + system.exact.m
-        self.columns = self.first + len(joints) * (self.size + self.count)
-        low, high = (r[:, joints].T for r in ranges)
+    def __init__(self, relaxation: Relaxation, box: Box) -> None:
+        self.relaxation, self.box = relaxation, box
+        exact = relaxation.system.exact
+        self.low, self.high = np.array(box.sides(exact), dtype=np.float64).T
+        self.joints = np.array([j for j, row in enumerate(box.x) if None not in row], np.int64)
+        self.size, self.count = exact.size, len(relaxation.pairs)
+        self.first = exact.coordinates + exact.m
+        self.columns = self.first + len(self.joints) * (self.size + self.count)
+        ranges = np.array([box.x[j] for j in self.joints], dtype=np.float64) / FINE
+        low, high = np.moveaxis(ranges.reshape(-1, self.size, 2), 2, 0)
         blocks = (self._conditions(), self._simple(), self._products(low, high))
         self.matrix = vstack([matrix for matrix, _ in blocks], format="csr")
         self.right = np.concatenate([right for _, right in blocks])
         self.equations, self.equal = self._equations()
         bounds = np.full((self.columns, 2), [-np.inf, np.inf])
-        bounds[: system.coordinates] = np.column_stack([side.low, side.high])
-        for j in range(len(joints)):
+        bounds[: exact.coordinates] = np.column_stack([self.low, self.high])
+        for j in range(len(self.joints)):
             at = self.first + j * (self.size + self.count)
             bounds[at : at + self.size] = np.column_stack([low[j], high[j]])
         self.bounds = bounds
 
     def _conditions(self) -> tuple[csr_array, Array]:
         """Those of joints that take part."""
-        relaxation, coordinates = self.relaxation, self.relaxation.system.coordinates
+        relaxation, coordinates = self.relaxation, self.relaxation.system.exact.coordinates
         place = np.full(relaxation.system.exact.joints, -1)
         place[self.joints] = np.arange(len(self.joints))
         own = place[relaxation.joint]
@@ -130,11 +128,11 @@ class BoxProgram:
         1/T ≥ 2/τ − T/τ² and 1/T ≤ 1/l + 1/u − T/lu for l ≤ T ≤ u; ρ ≥ 2θh − θ²T for any θ, and
         ρ ≤ h²/l ≤ ((h_l + h_u)h − h_l h_u)/l, or ρ ≤ h where l is 0.
         """
-        system, low, high = self.relaxation.system, self.side.low, self.side.high
+        system, low, high = self.relaxation.system, self.low, self.high
         rows: list[dict[int, float]] = []
         right: list[float] = []
         for t in np.flatnonzero(system.moving & (low[: system.exact.m] > 0)).tolist():
-            z = system.coordinates + t
+            z = system.exact.coordinates + t
             for place in np.geomspace(low[t], high[t], _TANGENTS):
                 rows.append({z: -1.0, t: -1.0 / place**2})
                 right.append(-2.0 / place)
@@ -162,8 +160,8 @@ class BoxProgram:
         begin = self.first + np.arange(len(self.joints)) * (self.size + self.count)
         product = begin[:, None] + self.size + np.arange(self.count)
         unknown = begin[:, None] + i
-        least = np.broadcast_to(self.side.low[k], product.shape)
-        most = np.broadcast_to(self.side.high[k], product.shape)
+        least = np.broadcast_to(self.low[k], product.shape)
+        most = np.broadcast_to(self.high[k], product.shape)
         one = np.ones(product.shape)
         blocks, right = [], []
         for corner, edge, sign in (
@@ -187,7 +185,9 @@ class BoxProgram:
         spans = np.flatnonzero(system.moving)
         for j, joint in enumerate(self.joints):
             front = np.zeros((self.size, self.first))
-            front[system.which[spans], system.coordinates + spans] = -system.steps[spans, joint]
+            front[system.which[spans], system.exact.coordinates + spans] = -system.steps[
+                spans, joint
+            ]
             before = csr_array((self.size, j * width))
             after = csr_array((self.size, (len(self.joints) - j - 1) * width))
             parts.append(hstack([csr_array(front), before, block, after]))
@@ -195,11 +195,10 @@ class BoxProgram:
             return csr_array((0, self.columns)), np.zeros(0)
         return vstack(parts, format="csr"), np.zeros(self.size * len(self.joints))
 
-    def bound(self, target: Target, capped: bool = True) -> Proposal | None:
+    def bound(self, target: dict[int, int], capped: bool = True) -> Proposal | None:
         """Propose weights for a bound of a target; None if the program has no solution."""
-        system = self.relaxation.system
         cost = np.zeros(self.columns)
-        cost[: system.coordinates] = target.weights(system)
+        cost[list(target)] = list(target.values())
         right = self.right.copy()
         if not capped:
             right[len(self.held) - 1] = 1e6  # stands for "not limited"
@@ -215,7 +214,7 @@ class BoxProgram:
         if found.status != 0:
             return None
         return self._proposal(
-            1.0, found.x, found.fun, -found.ineqlin.marginals, -found.eqlin.marginals
+            target, found.x, found.fun, -found.ineqlin.marginals, -found.eqlin.marginals
         )
 
     def emptiness(self) -> Proposal | None:
@@ -244,26 +243,20 @@ class BoxProgram:
         dual = -found.ineqlin.marginals
         count = self.matrix.shape[0]
         equal = dual[count : count + equations] - dual[count + equations :]
-        return self._proposal(0.0, found.x[:-1], found.fun, dual[:count], equal)
+        return self._proposal({}, found.x[:-1], found.fun, dual[:count], equal)
 
     def _proposal(
-        self, scale: float, x: Array, value: float, dual: Array, equal: Array
+        self, target: dict[int, int], x: Array, value: float, dual: Array, equal: Array
     ) -> Proposal:
-        system, relaxation = self.relaxation.system, self.relaxation
+        exact, relaxation, size = self.relaxation.system.exact, self.relaxation, self.size
         limits = np.maximum(dual[: len(self.held)], 0.0) / relaxation.by[self.held]
-        top = max(scale, float(limits.max(initial=0.0)), float(np.abs(equal).max(initial=0.0)))
-        unit = _LARGEST / top
-        rows = {
-            relaxation.rows[i]: round(w * unit)
-            for i, w in zip(self.held.tolist(), limits.tolist(), strict=True)
-            if w * unit > _SMALLEST
-        }
-        size = self.size
-        equations = {
-            (int(self.joints[i // size]), i % size): round(w * unit)
-            for i, w in enumerate(equal.tolist())
-            if abs(w * unit) > _SMALLEST
-        }
+        top = max(float(bool(target)), float(limits.max(initial=0.0)))
+        unit = _LARGEST / max(top, float(np.abs(equal).max(initial=0.0)))
+        # Those without weight take no part.
+        held = np.rint(limits * unit).astype(np.int64)
+        pulled = np.rint(equal * unit).astype(np.int64)
+        some, others = np.flatnonzero(held), np.flatnonzero(pulled)
+        equations = self.joints[others // size] * size + others % size
         # A product's four bounds as in `_products`: the first and the third are exact where the
         # unknown is lowest.
         parts = np.maximum(dual[dual.size - 4 * len(self.joints) * self.count :], 0.0)
@@ -271,14 +264,20 @@ class BoxProgram:
         lowest, highest = parts[0] + parts[2], parts[1] + parts[3]
         with np.errstate(invalid="ignore"):
             share = np.where(lowest + highest > 0, lowest / (lowest + highest), 0.5)
-        mix = np.full((system.exact.joints, system.coordinates, size), MIX // 2)
+        mix = np.full((exact.joints, exact.coordinates, size), MIX // 2)
         for p, (k, i) in enumerate(relaxation.pairs):
             mix[self.joints, k, i] = np.rint(share[:, p] * MIX)
         blocks = x[self.first :].reshape(len(self.joints), size + self.count)
         return Proposal(
-            Weights(round(scale * unit), rows, equations, mix),
+            {k: round(w * unit) for k, w in target.items()},
             float(value),
-            x[: system.coordinates],
+            relaxation.rows,
+            (
+                np.stack([self.held[some], held[some]], axis=1).ravel().tolist(),
+                np.stack([equations, pulled[others]], axis=1).ravel().tolist(),
+            ),
+            mix,
+            x[: exact.coordinates],
             blocks[:, :size],
             blocks[:, size:],
         )

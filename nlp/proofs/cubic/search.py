@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import NamedTuple
 
 import numpy as np
@@ -14,7 +15,6 @@ from ....verify import TICKS, OutOfTime
 from ...optimum import time_up
 from ..crew import Common
 from ..driver import Branching
-from .bound import TOTAL, Target
 from .guide import errors, peaks
 from .relaxation import BoxProgram, Proposal, Relaxation
 from .system import CubicRow, CubicSystem
@@ -96,10 +96,8 @@ class CubicStage(Branching[TickBox]):
     ----------
     tree : Tree
         To work on.
-    goal : callable
-        The ticks to prove.
-    restart : int
-        Goal below which the stage is over, since another one begins anew.
+    target : Fraction
+        The total to prove, s.
     improve : callable
         Given a system and a point of its relaxation, from which there may be a better answer.
     watch : callable
@@ -112,13 +110,13 @@ class CubicStage(Branching[TickBox]):
     def __init__(
         self,
         tree: Tree,
-        goal: Callable[[], int],
-        restart: int,
+        target: Fraction,
         improve: Callable[[CubicSystem, Array], None],
         watch: Callable[[Tree, int, int], None],
     ) -> None:
-        self.prover, self.root = tree.prover, tree.root
-        self._goal, self._restart, self._improve, self._watch = goal, restart, improve, watch
+        self._tree, self.prover = tree, tree.prover
+        self._goal = min(math.ceil(target / self.prover.system.unit), self.prover.system.cap)
+        self._improve, self._watch = improve, watch
         self.rows = self.prover.system.starting_rows()
         self.common = Common(self.prover)
         self.boxes, self.finest = 0, False
@@ -126,18 +124,15 @@ class CubicStage(Branching[TickBox]):
     @property
     def tree(self) -> Tree:
         """What is proved."""
-        lower = min((box.floor for box in self.root.leaves()), default=self.prover.cap)
-        return Tree(self.prover, self.root, lower)
+        return self._tree.grown
 
     def order(self, box: TickBox) -> int:
         """The lowest floor first."""
-        return box.floor
+        return box.own.floor
 
     def wanted(self, box: TickBox) -> bool:
         """Whether its floor is below the goal."""
-        goal = self._goal()
-        below = goal >= self._restart and box.floor < min(goal, self.prover.cap)
-        return below and not self.finest
+        return box.own.floor < self._goal and not self.finest
 
     def given(self, box: TickBox) -> tuple[TickBox, tuple[CubicRow, ...]]:
         """The box, and the rows that are known."""
@@ -145,7 +140,9 @@ class CubicStage(Branching[TickBox]):
 
     def taken(self, box: TickBox, found: WorkedBox) -> tuple[TickBox, ...]:
         """Take what came of a box, and halve it, unless it is as small as it may be."""
-        box.take(found.box)
+        # An interrupt in between leaves more steps than the box itself knows of.
+        box.steps = found.box.steps
+        box.own = found.box.own
         for point in found.points:
             self._improve(self.prover.system, point)
         self.rows += [row for row in found.rows if row not in self.rows]
@@ -174,9 +171,10 @@ class _BoxWork:
         """The coordinate to halve if it stays open, or −1."""
         prover, best = self.prover, None
         for _ in range(self.effort.rounds):
-            if not prover.narrow(box):
+            prover.narrow(box)
+            if box.closed:
                 return -1
-            program = self.relaxation.over(prover.side(box), box.ranges)
+            program = BoxProgram(self.relaxation, box.own)
             program, found = self._total(program, box)
             if found is None or box.closed:
                 break
@@ -185,7 +183,7 @@ class _BoxWork:
             self._sides(program, box, found)
             if box.closed or self._volume(box) > self.effort.again * before:
                 break
-        widths = np.array(box.high) - np.array(box.low)
+        widths = np.subtract(box.own.high, box.own.low)
         if box.closed or widths.max() < self.effort.finest:
             return -1
         score = widths / widths.max()
@@ -195,46 +193,46 @@ class _BoxWork:
         return int(np.argmax(score))
 
     def _volume(self, box: TickBox) -> float:
-        return float(np.prod(np.subtract(box.high, box.low, dtype=np.float64)))
+        return float(np.prod(np.subtract(box.own.high, box.own.low, dtype=np.float64)))
 
     def _total(self, program: BoxProgram, box: TickBox) -> tuple[BoxProgram, Proposal | None]:
         """Raise the floor by the bound of the total, with velocities at the peaks found so far.
 
         Returns the program with those velocities in it, and its answer.
         """
-        prover = self.prover
-        found = program.bound(TOTAL, capped=False)
+        prover, total = self.prover, self.prover.system.total
+        found = program.bound(total, capped=False)
         if found is not None:
-            point = found.point[: prover.system.free]
+            point = found.point[: prover.exact.free]
             self.points.append(point)
             new = [row for row in peaks(prover.system, point) if row not in self.rows]
             if new:
                 self.rows += new
                 self.relaxation = Relaxation(prover.system, self.rows)
-                program = self.relaxation.over(program.side, box.ranges)
-                found = program.bound(TOTAL, capped=False)
+                program = BoxProgram(self.relaxation, box.own)
+                found = program.bound(total, capped=False)
         if found is None:
             empty = program.emptiness()
             if empty is not None:
-                prover.clear(box, empty.weights)
+                prover.clear(box, empty)
             return program, None
-        prover.lift(box, found.weights)
+        prover.lift(box, found)
         return program, found
 
     def _sides(self, program: BoxProgram, box: TickBox, found: Proposal) -> None:
         """Move the sides inward."""
-        for k in range(self.prover.system.free):
+        for k in range(self.prover.exact.free):
             for sign in (1, -1):
                 if time_up():
                     raise OutOfTime
-                width = box.high[k] - box.low[k]
-                place = float(found.point[k]) * TICKS
-                distance = place - box.low[k] if sign > 0 else box.high[k] - place
+                low, high = box.own.low[k], box.own.high[k]
+                width, place = high - low, float(found.point[k]) * TICKS
+                distance = place - low if sign > 0 else high - place
                 if distance <= self.effort.near * width:
                     continue
-                moved = program.bound(Target(k, sign))
+                moved = program.bound({k: sign})
                 if moved is not None:
                     least = max(1, math.ceil(self.effort.worth * width))
-                    self.prover.tighten(box, k, sign, moved.weights, least)
+                    self.prover.tighten(box, k, sign, moved, least)
                     if box.closed:
                         return

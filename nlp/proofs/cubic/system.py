@@ -1,4 +1,6 @@
-"""C2 cubic splines below one cap: the verifier's equations and conditions, and these in floats.
+"""C2 cubic splines below one cap: the verifier's kind of proof, and its equations in floats.
+
+Floats only propose: what is proved is computed by the verifier.
 
 Unknowns of one joint are its accelerations at all breaks and its velocities at all way-points. The
 coordinates y are the spans T between way-points and, with virtual way-points, the first and the
@@ -9,17 +11,17 @@ last duration h with ρ = h²/T. Equations and limits are affine in y and in the
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from fractions import Fraction
 from itertools import pairwise
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ....problem import Array
-from ....verify import TICKS, Refused, StatedProblem
-from ....verify.cubic import Cubic, kind_of_ends
-from ...enclosure import EPS
+from ....verify import TICKS, Clock, Refused, StatedProblem
+from ....verify.cubic import Condition, Cubic, CubicSpline, kind_of_ends
 from ..document import stated_problem
 from ..exact import ExactProblem
 
@@ -60,18 +62,20 @@ def declares(problem: ExactProblem) -> bool:
 class CubicSystem:
     """One problem in units in which angles and times are of order 1, with a total below a cap.
 
+    Parameters
+    ----------
+    stated : StatedProblem
+    units : dict
+        ``powers``, ``second``, ``cap`` and ``root`` of the proof.
+    rows : list
+        Those that a state states.
+
     Attributes
     ----------
+    kind : CubicSpline
+        The verifier's kind of proof.
     exact : Cubic
-        The verifier's.
-    powers : list of int
-        Joint j is measured in 2**powers[j] of the problem's unit of angle.
-    second : int
-        Times are measured in 2**second s.
-    cap : int
-        Ticks.
-    free, coordinates : int
-        Coordinates that a box has sides for (spans, then first and last duration); and both ρ too.
+        Its equations and conditions.
     fixed : ndarray, shape (unknowns, unknowns)
     linear : ndarray, shape (coordinates, unknowns, unknowns)
         M(y) = fixed + Σ y_k linear[k].
@@ -79,62 +83,54 @@ class CubicSystem:
         6·displacements with sign: what stands over T on the other side.
     which : ndarray of int, shape (spans,)
         The equation that it stands in; −1 where nothing moves.
-    fastest : list of (float, float)
-        Bounds of |v| and |a| that hold whatever the durations, per joint; inf for none.
+    total : dict
+        Weights of the coordinates in the total.
     """
 
-    def __init__(self, stated: StatedProblem, powers: list[int], second: int, cap: int) -> None:
-        self.powers, self.second, self.cap = powers, second, cap
-        self.exact = exact = Cubic(stated, {"powers": powers, "second": second, "cap": cap})
-        self.free, self.coordinates = exact.free, exact.free + len(exact.rho())
-        size = exact.size
-        self.fixed, self.linear = np.zeros((size, size)), np.zeros((self.coordinates, size, size))
+    def __init__(
+        self, stated: StatedProblem, units: dict[str, Any], rows: Sequence[Any] = ()
+    ) -> None:
+        self.units = units
+        proof = {**units, "rows": list(rows)}
+        self.kind = CubicSpline(stated, proof, Fraction(0), Clock(math.inf))
+        self.exact = exact = self.kind.cubic
+        dense = [_dense(exact, equation) for equation in exact.equations]
+        self.fixed = np.array([alone for alone, _ in dense])
+        self.linear = np.stack([product for _, product in dense], axis=1)
         self.steps = np.zeros((exact.m, exact.joints))
         self.which = np.full(exact.m, -1)
-        for i, equation in enumerate(exact.equations):
-            for key, x in equation.items():
-                if isinstance(key, int):
-                    self.fixed[i, key] = x
-                else:
-                    self.linear[key[0], i, key[1]] = x
-        for i, (t, sign) in exact.moved.items():
+        for i, (t, sign) in exact.moving.items():
             self.steps[t] = [6 * sign * float(x) for x in exact.steps[t]]
-            self.which[t] = i if any(exact.steps[t]) else -1
-        self.fastest = [
-            tuple(np.inf if x is None else float(x) * (1 + 2 * EPS) for x in exact.fastest(j))
-            for j in range(exact.joints)
-        ]
-        self._dense: dict[CubicRow, DenseTerms] = {}
+            self.which[t] = i
+        self.total = dict.fromkeys(range(exact.m), 1)
+        self._terms: dict[CubicRow, tuple[Condition, DenseTerms]] = {}
+
+    @property
+    def cap(self) -> int:
+        """Ticks."""
+        return int(self.units["cap"])
 
     @property
     def unit(self) -> Fraction:
         """A tick, s."""
-        return Fraction(2) ** self.second / TICKS
+        return self.exact.second / TICKS
 
     @property
     def moving(self) -> NDArray[np.bool_]:
         """Spans in which something moves."""
         return np.asarray(self.which >= 0)
 
-    def rough(self, span: int) -> bool:
-        """Whether a span holds a virtual way-point."""
-        return self.exact.virtual and span in (0, self.exact.m - 1)
-
-    def terms(self, row: CubicRow) -> DenseTerms:
+    def terms(self, row: CubicRow) -> tuple[Condition, DenseTerms]:
         """Left-hand side of a condition ≤ 0."""
-        if row not in self._dense:
-            _, own, along, constant = self.exact.condition(list(row))
-            alone, product = np.zeros(self.exact.size), np.zeros(self.linear.shape[:2])
-            for key, x in own.items():
-                if isinstance(key, int):
-                    alone[key] = x
-                else:
-                    product[key] = x
-            lengths = np.zeros(self.coordinates)
+        if row not in self._terms:
+            condition = self.exact.condition(list(row))
+            _, own, along, constant = condition
+            alone, product = _dense(self.exact, own)
+            lengths = np.zeros(self.exact.coordinates)
             for k, x in along.items():
                 lengths[k] = x
-            self._dense[row] = DenseTerms(alone, product, lengths, float(constant))
-        return self._dense[row]
+            self._terms[row] = condition, DenseTerms(alone, product, lengths, float(constant))
+        return self._terms[row]
 
     def starting_rows(self) -> list[CubicRow]:
         """Conditions of a first relaxation: velocities at the quarters, and all others.
@@ -147,7 +143,7 @@ class CubicSystem:
                 if jerk is not None:
                     rows += [CubicRow("jerk", j, k, sign) for k in range(exact.n)]
                 for t in range(exact.m if velocity is not None else 0):
-                    places = (0, 16, 32, 48) if self.rough(t) else (16, 32, 48)
+                    places = (0, 16, 32, 48) if exact.rough(t) else (16, 32, 48)
                     rows += [CubicRow("velocity", j, t, sign, place) for place in places]
         for k in range(exact.n):
             if len(exact.lengths[k]) > 1:
@@ -155,6 +151,17 @@ class CubicSystem:
             if exact.longest[k] is not None:
                 rows.append(CubicRow("upper", at=k))
         return rows
+
+
+def _dense(exact: Cubic, terms: dict[Any, Any]) -> tuple[Array, Array]:
+    """Factors of the unknowns, and of their products with the coordinates."""
+    alone, product = np.zeros(exact.size), np.zeros((exact.coordinates, exact.size))
+    for key, x in terms.items():
+        if isinstance(key, int):
+            alone[key] = x
+        else:
+            product[key] = x
+    return alone, product
 
 
 def cubic_system(stated: StatedProblem, longest: Fraction, more: int = 0) -> CubicSystem:
@@ -176,6 +183,27 @@ def cubic_system(stated: StatedProblem, longest: Fraction, more: int = 0) -> Cub
     columns = zip(*stated.waypoints, strict=True)
     ways = [float(sum(abs(b - a) for a, b in pairwise(column))) for column in columns]
     powers = [math.frexp(way)[1] - 3 if way > 0 else 0 for way in ways]
-    second = math.frexp(float(longest))[1] - 4
-    cap = math.floor(longest / Fraction(2) ** second * TICKS)
-    return CubicSystem(stated, powers, second, cap + more)
+    second = _second(longest)
+    cap = math.floor(longest / Fraction(2) ** second * TICKS) + more
+    return CubicSystem(stated, capped(stated, powers, second, cap))
+
+
+def in_ticks(total: Fraction) -> Fraction:
+    """A total rounded down to ticks of the units in which it is between 8 and 16, s."""
+    unit = Fraction(2) ** _second(total) / TICKS
+    return math.floor(total / unit) * unit
+
+
+def _second(total: Fraction) -> int:
+    return math.frexp(float(total))[1] - 4
+
+
+def capped(stated: StatedProblem, powers: list[int], second: int, cap: int) -> dict[str, Any]:
+    """Units of a proof, with the lower sides of its outermost box.
+
+    No feasible total is below the cap where a side begins there.
+    """
+    units = {"powers": powers, "second": second, "cap": cap}
+    exact = Cubic(stated, units)
+    sides = [math.floor(exact.side(c)[0] * TICKS) for c in range(exact.free)]
+    return {**units, "root": [min(side, cap) for side in sides]}

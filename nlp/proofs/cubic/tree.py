@@ -1,4 +1,4 @@
-"""The tree of a proof: boxes in ticks, what narrowed them, and the document of it all."""
+"""The tree of a proof: the verifier's boxes, what narrowed them, and the document of it all."""
 
 from __future__ import annotations
 
@@ -8,25 +8,12 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Any
 
-import numpy as np
-
-from ....problem import Array, TrajgapError
-from ....verify import (
-    CUT,
-    LEAF,
-    MIX_DIGITS,
-    MOST_INTEGER,
-    MOST_POWER,
-    OPEN,
-    TICKS,
-    Clock,
-    StatedProblem,
-    proof_kind,
-)
+from ....problem import TrajgapError
+from ....verify import CUT, LEAF, MIX_DIGITS, MOST_INTEGER, OPEN, TICKS, Refused, StatedProblem
+from ....verify.cubic import Box, Spot, least
 from ..driver import regrow
 from ..exact import decimal
-from .bound import NOTHING, TOTAL, Target, Weights, least, multiplied
-from .ranges import Side, a_priori, narrowed, with_rho
+from .relaxation import Proposal
 from .system import CubicRow, CubicSystem
 
 Step = list[Any]
@@ -42,36 +29,27 @@ Step = list[Any]
 class TickBox:
     """A box of the tree.
 
+    Wherever an interrupt strikes, steps stand for what was done: each is written down before it is
+    taken.
+
     Attributes
     ----------
-    low, high : list of int
-        Sides in ticks, of the free coordinates.
-    ranges : tuple of ndarray
-        Of the unknowns.
-    floor : int
-        The total is at least this many ticks.
+    own : Box
+        The verifier's.
     steps : list of Step
         What was done to it, in this order.
     children : tuple of TickBox
         After a cut.
-    closed : bool
-        Nothing below the cap is feasible in it.
     """
 
-    low: list[int]
-    high: list[int]
-    ranges: tuple[Array, Array]
-    floor: int
+    own: Box
     steps: list[Step] = field(default_factory=list)
     children: tuple[TickBox, ...] = ()
-    closed: bool = False
 
-    def take(self, other: TickBox) -> None:
-        """Take over what was done to a copy; wherever an interrupt strikes, steps stand for it."""
-        if other is not self:
-            self.steps = other.steps
-            self.low, self.high, self.ranges = other.low, other.high, other.ranges
-            self.floor, self.closed = other.floor, other.closed
+    @property
+    def closed(self) -> bool:
+        """Whether nothing below the cap is feasible in it."""
+        return self.own.empty
 
     def leaves(self) -> Iterator[TickBox]:
         """Open leaves below it, itself included."""
@@ -85,116 +63,89 @@ class TickBox:
 
 
 class Prover:
-    """Carries out steps, each only if it is proved; the total is below the system's cap."""
+    """Carries out steps, each only if it is proved, by the verifier's own arithmetic."""
 
     def __init__(self, system: CubicSystem) -> None:
-        self.system, self.cap = system, system.cap
+        self.system, self.exact, self.kind = system, system.exact, system.kind
 
     def root(self) -> TickBox:
         """Box of everything feasible below the cap."""
-        low, high = [], []
-        for c in range(self.system.free):
-            least_, most = self.system.exact.side(c)
-            # No feasible total is below the cap where a side begins there.
-            low.append(min(math.floor(least_ * TICKS), self.cap))
-            high.append(min(math.ceil(most * TICKS), self.cap))
-        shape = (self.system.exact.size, self.system.exact.joints)
-        box = TickBox(low, high, (np.full(shape, -np.inf), np.full(shape, np.inf)), 0)
-        self.trim(box)
-        return box
+        return TickBox(self.kind.root())
 
-    def side(self, box: TickBox) -> Side:
-        """The box in floats, which hold ticks exactly."""
-        low, high = (np.array(x, dtype=np.float64) / TICKS for x in (box.low, box.high))
-        return with_rho(self.system, low, high)
-
-    def trim(self, box: TickBox) -> None:
-        """What the cap says about the spans, and a span about the piece in it."""
-        spans = range(self.system.exact.m)
-        total = sum(box.low[t] for t in spans)
-        for t in spans:
-            box.high[t] = min(box.high[t], self.cap - total + box.low[t])
-        for h, t, _ in self.system.exact.rho():
-            box.high[h] = min(box.high[h], box.high[t])
-        box.floor = max(box.floor, total)
-        empty = any(x > y for x, y in zip(box.low, box.high, strict=True))
-        box.closed = box.closed or empty or box.floor >= self.cap
-
-    def narrow(self, box: TickBox) -> bool:
-        """Narrow the ranges of the unknowns; False if the box turns out to be empty."""
-        side = self.side(box)
-        low, high = a_priori(self.system, side)
-        low, high = np.maximum(low, box.ranges[0]), np.minimum(high, box.ranges[1])
-        found = narrowed(self.system, side, low, high)
+    def narrow(self, box: TickBox) -> None:
+        """Narrow the ranges of the unknowns."""
         box.steps.append(["r"])
-        if found is None:
-            box.closed = True
-            return False
-        box.ranges = found
-        return True
+        box.own.narrow(self.exact, self.kind.clock)
 
-    def bound(self, box: TickBox, target: Target, weights: Weights) -> Fraction | None:
-        """Proved bound of a target (of nothing: whether it is positive), in ticks."""
-        if weights.scale < 1 and target.sign != 0:
+    def bound(self, box: TickBox, proposal: Proposal) -> tuple[Fraction, int, list[Any]] | None:
+        """Proved bound of the target, in ticks, with its weight and all others, as in a node.
+
+        Without a target, whether the bound is positive says that the box is empty.
+        """
+        system, target = self.system, proposal.target
+        scale = max((abs(w) for w in target.values()), default=1)
+        if scale < 1:
             return None
-        value = least(self.system, target, weights, self.side(box), box.ranges)
-        if not np.isfinite(value):
+        held, equations = proposal.weights
+        known = [system.terms(row)[0] for row in proposal.rows]
+        mix = ""
+
+        def shares(spots: list[Spot]) -> str:
+            nonlocal mix
+            mix = "".join(MIX_DIGITS[proposal.mix[spot]] for spot in spots)
+            return mix
+
+        try:
+            value = least(self.exact, box.own, known, target, held, equations, shares)
+        except Refused:
             return None
-        return Fraction(value) * TICKS / max(weights.scale, 1)
+        weights = _renamed([held, equations, mix], proposal.rows.__getitem__)
+        return Fraction(value) * TICKS / scale, scale, weights
 
     def tighten(
-        self, box: TickBox, coordinate: int, sign: int, weights: Weights, least_: int
+        self, box: TickBox, coordinate: int, sign: int, proposal: Proposal, worth: int
     ) -> None:
-        """Move a side inward, if by ``least_`` ticks at least."""
-        bound = self.bound(box, Target(coordinate, sign), weights)
-        if bound is None:
+        """Move a side inward, if by ``worth`` ticks at least."""
+        own = box.own
+        low, high = own.low[coordinate], own.high[coordinate]
+        old = low if sign > 0 else -high
+        # A program has few tangents: more than its bound may be proved.
+        if proposal.value * TICKS < old:
             return
-        value = math.floor(bound) if sign > 0 else math.ceil(-bound)
-        old = box.low[coordinate] if sign > 0 else box.high[coordinate]
-        if (value - old) * sign < least_:
+        found = self.bound(box, proposal)
+        if found is None or math.floor(found[0]) - old < worth:
             return
         # One tick beyond the other side says that the box is empty, which is all there is to say.
-        if sign > 0:
-            box.low[coordinate] = value = min(value, box.high[coordinate] + 1)
-        else:
-            box.high[coordinate] = value = max(value, box.low[coordinate] - 1)
-        box.steps.append(["t", coordinate, sign, value, weights.scale, *self._stated(weights)])
-        self.trim(box)
+        value = min(math.floor(found[0]), high + 1 if sign > 0 else 1 - low) * sign
+        box.steps.append(["t", coordinate, sign, value, found[1], *found[2]])
+        own.move(self.exact, coordinate, sign, value)
 
-    def lift(self, box: TickBox, weights: Weights) -> None:
+    def lift(self, box: TickBox, proposal: Proposal) -> None:
         """Raise the floor."""
-        bound = self.bound(box, TOTAL, weights)
-        if bound is not None and math.floor(bound) > box.floor:
-            box.floor = min(math.floor(bound), self.cap)
-            box.steps.append(["f", box.floor, weights.scale, *self._stated(weights)])
-            box.closed = box.floor >= self.cap
+        found = self.bound(box, proposal)
+        if found is not None and math.floor(found[0]) > box.own.floor:
+            value = min(math.floor(found[0]), self.system.cap)
+            box.steps.append(["f", value, found[1], *found[2]])
+            box.own.floor = value
+            box.own.trim(self.exact)
 
-    def clear(self, box: TickBox, weights: Weights) -> None:
+    def clear(self, box: TickBox, proposal: Proposal) -> None:
         """Close a box that is empty."""
-        bound = self.bound(box, NOTHING, weights)
-        if bound is not None and bound > 0:
-            box.steps.append([LEAF, *self._stated(weights)])
-            box.closed = True
+        found = self.bound(box, proposal)
+        if found is not None and found[0] > 0:
+            box.steps.append([LEAF, *found[2]])
+            box.own.empty = True
 
-    def _stated(self, weights: Weights) -> list[Any]:
-        """Weights of conditions and equations, and the shares of the products, as in a node."""
-        size = self.system.exact.size
-        held = [x for pair in weights.rows.items() for x in pair]
-        equations = [x for (j, i), w in weights.equations.items() for x in (j * size + i, w)]
-        shares = weights.mix[multiplied(self.system, weights)]
-        return [held, equations, "".join(MIX_DIGITS[x] for x in shares)]
-
-    def halve(self, box: TickBox, coordinate: int) -> tuple[TickBox, TickBox]:
+    def halve(self, box: TickBox, coordinate: int) -> tuple[TickBox, ...]:
         """Halve a box."""
-        at = (box.low[coordinate] + box.high[coordinate]) // 2
-        lower = TickBox(list(box.low), list(box.high), box.ranges, box.floor)
-        upper = TickBox(list(box.low), list(box.high), box.ranges, box.floor)
-        lower.high[coordinate], upper.low[coordinate] = at, at
-        for half in (lower, upper):
-            self.trim(half)
+        return self.cut(box, coordinate, (box.own.low[coordinate] + box.own.high[coordinate]) // 2)
+
+    def cut(self, box: TickBox, coordinate: int, at: int) -> tuple[TickBox, ...]:
+        """Cut a box."""
+        halves = tuple(TickBox(own) for own in self.kind.cut(box.own, coordinate, at))
         box.steps.append([CUT, coordinate, at])
-        box.children = (lower, upper)
-        return lower, upper
+        box.children = halves
+        return halves
 
 
 @dataclass(frozen=True, eq=False)
@@ -203,8 +154,15 @@ class Tree:
 
     prover: Prover
     root: TickBox
-    lower: int
+    lower: int = 0
     unfinished: bool = False
+
+    @property
+    def grown(self) -> Tree:
+        """It, with the bound that its open leaves prove by now."""
+        cap = self.prover.system.cap
+        lower = min((box.own.floor for box in self.root.leaves()), default=cap)
+        return replace(self, lower=min(lower, MOST_INTEGER))
 
     @property
     def seconds(self) -> Fraction:
@@ -225,7 +183,7 @@ class Tree:
         while stack:
             box = stack.pop()
             steps = [s for s in box.steps if s[0] != "f" or _serves(box, s)]
-            tree += [_numbered(step, rows) for step in steps]
+            tree += [_renamed(step, lambda row: rows.setdefault(row, len(rows))) for step in steps]
             if box.children:
                 stack += reversed(box.children)
             elif not (steps and steps[-1][0] == LEAF):
@@ -233,10 +191,7 @@ class Tree:
         return {
             "kind": "cubic",
             "total": decimal(self.seconds),
-            "powers": list(system.powers),
-            "second": system.second,
-            "cap": system.cap,
-            "root": self.prover.root().low,
+            **system.units,
             "rows": [list(row) for row in rows],
             "tree": tree,
         }
@@ -250,13 +205,13 @@ def _serves(box: TickBox, step: Step) -> bool:
     return step is last and next(box.leaves(), None) is not None
 
 
-def _numbered(step: Step, rows: dict[CubicRow, int]) -> Step:
-    """A step with numbers for its conditions."""
-    if len(step) < 4:
+def _renamed(step: Step, name: Callable[[Any], Any]) -> Step:
+    """A step, or weights, with other names for the conditions."""
+    if len(step) < 3 or step[0] == CUT:
         return step
     *head, held, equations, shares = step
-    own = [rows.setdefault(x, len(rows)) if isinstance(x, CubicRow) else x for x in held]
-    return [*head, own, equations, shares]
+    pairs = zip(held[::2], held[1::2], strict=True)
+    return [*head, [x for row, w in pairs for x in (name(row), w)], equations, shares]
 
 
 def regrown(stated: StatedProblem, document: dict[str, Any], clock: Callable[[], None]) -> Tree:
@@ -277,64 +232,28 @@ def regrown(stated: StatedProblem, document: dict[str, Any], clock: Callable[[],
     """
     if document["kind"] != "cubic":
         raise TrajgapError("resume: the state proposes another kind of proof")
-    kind = proof_kind("cubic")(stated, document, Fraction(0), Clock(math.inf))
-    numbers = [*document["powers"], document["second"]]
-    if not all(type(p) is int and abs(p) <= MOST_POWER for p in numbers):
-        raise TrajgapError("resume: units are malformed")
-    prover = Prover(CubicSystem(stated, document["powers"], document["second"], document["cap"]))
+    units = {key: document[key] for key in ("powers", "second", "cap", "root")}
+    prover = Prover(CubicSystem(stated, units, document["rows"]))
+    kind = prover.kind
     known = [CubicRow(*row) for row in document["rows"]]
-    judged: dict[TickBox, Any] = {}
-
-    def taken(own: Any) -> TickBox:
-        box = TickBox([], [], _floats(own), 0)
-        _follow(box, own)
-        judged[box] = own
-        return box
 
     def cut(box: TickBox, k: int, at: int) -> tuple[TickBox, ...]:
-        if box.closed:  # whatever was done to it once is not needed
-            return box, box
-        box.children = tuple(map(taken, kind.cut(judged[box], k, at)))
-        box.steps.append([CUT, k, at])
-        return box.children
-
-    def named(step: Step) -> Step:
-        if len(step) < 4:
-            return step
-        *head, held, equations, shares = step
-        rows = [x for i, w in zip(held[::2], held[1::2], strict=True) for x in (known[i], w)]
-        return [*head, rows, equations, shares]
+        # Whatever was done to a closed box once is not needed.
+        return (box, box) if box.closed else prover.cut(box, k, at)
 
     def step(box: TickBox, tag: str, data: list[Any]) -> None:
         clock()
         if not box.closed:
-            kind.step(judged[box], tag, data)
-            box.steps.append(named([tag, *data]))
-            _follow(box, judged[box])
+            kind.step(box.own, tag, data)
+            box.steps.append(_renamed([tag, *data], known.__getitem__))
 
     def leaf(box: TickBox, data: list[Any]) -> None:
         if data and not box.closed:
             clock()
-            kind.leaf(judged[box], data)
-            box.steps.append(named([LEAF, *data]))
-            box.closed = True
+            kind.leaf(box.own, data)
+            box.steps.append(_renamed([LEAF, *data], known.__getitem__))
+            box.own.empty = True
 
-    root = taken(kind.root())
+    root = prover.root()
     regrow(document["tree"], root, cut, step, leaf)
-    floor = min((box.floor for box in root.leaves()), default=prover.cap)
-    return Tree(prover, root, min(floor, MOST_INTEGER))
-
-
-def _follow(box: TickBox, own: Any) -> None:
-    """Make a box what the verifier's is."""
-    box.low, box.high, box.floor = list(own.low), list(own.high), own.floor
-    box.ranges, box.closed = _floats(own), own.empty
-
-
-def _floats(own: Any) -> tuple[Array, Array]:
-    """The verifier's ranges, shape (unknowns, joints), rounded outward."""
-    low, high = (
-        np.array([[sign * np.inf if x is None else float(x[end]) for x in row] for row in own.x])
-        for sign, end in ((-1, 0), (1, 1))
-    )
-    return np.nextafter(low.T, -np.inf), np.nextafter(high.T, np.inf)
+    return Tree(prover, root).grown

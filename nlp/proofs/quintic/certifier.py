@@ -12,11 +12,9 @@ import numpy as np
 from ....problem import Interpolant
 from ....verify import (
     MOST_POWER,
-    MOST_QUINTIC_JOINTS,
-    MOST_QUINTIC_SEGMENTS,
     SHORTEST_TOTAL,
-    SMALLEST,
     Clock,
+    Refused,
     proof_kind,
 )
 from ..certifier import Certifier
@@ -53,15 +51,11 @@ def _declares(problem: ExactProblem) -> bool:
 
 
 def _missing(problem: ExactProblem) -> str | None:
-    rest, inner = ((1, 0.0), (2, 0.0)), ((),) * (problem.segments - 1)
-    if problem.piecewise.prescribed != (rest, *inner, rest):
-        return f"{problem.curve.name}: only rest with zero acceleration at both ends is covered"
-    if problem.segments > MOST_QUINTIC_SEGMENTS or len(problem.joints) > MOST_QUINTIC_JOINTS:
-        return f"more than {MOST_QUINTIC_SEGMENTS} segments or {MOST_QUINTIC_JOINTS} joints"
     own = OwnUnits(problem)
-    sizes = np.concatenate([np.abs(own.steps).ravel(), own.limits[np.isfinite(own.limits)]])
-    if not all(x == 0.0 or SMALLEST < x < 1 / SMALLEST for x in sizes.tolist()):
-        return "a step or a limit is of unusual size"
+    try:
+        _kind(problem, own.head([]), own.time)
+    except Refused as error:
+        return f"{problem.curve.name}: {error}"
     if all(problem.duration_lower):
         return None
     if not np.isfinite(own.limits).any() and not any(problem.duration_lower):
@@ -135,10 +129,14 @@ class QuinticStages(BoxStages):
     def curves(self, target: Fraction) -> tuple[Curves, float, dict[str, Any]]:
         """Those of the verifier's own kind."""
         head = self._own.head(self._windows)
-        proof = head | {"rows": [], "tree": []}
-        stated = stated_problem(self.session.exact)
-        kind = proof_kind(_KIND)(stated, proof, target, Clock(math.inf))
+        kind = _kind(self.session.exact, head, target)
         return QuinticCurves(kind), float(self._own.time), head
+
+
+def _kind(problem: ExactProblem, head: dict[str, Any], total: Fraction) -> Any:
+    """The verifier's, without rows."""
+    proof = head | {"rows": [], "tree": []}
+    return proof_kind(_KIND)(stated_problem(problem), proof, total, Clock(math.inf))
 
 
 def _power(size: float) -> int:

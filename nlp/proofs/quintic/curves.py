@@ -60,8 +60,7 @@ class QuinticCurves(Curves):
     ) -> tuple[NDArray[np.bool_], Array, Array, Array]:
         """By limits times powers of r = 1/h, with weights of at most 2²⁰."""
         order, box = rows[..., 2], np.arange(len(tau))[:, None]
-        cap = self.kind.task.limits[rows[..., 1], order - 1]
-        norm = cap * middle.centre.r[box, rows[..., 0]] ** (2.0 - order)
+        norm = self.kind.task.cap(rows) * middle.centre.r[box, rows[..., 0]] ** (2.0 - order)
         share = np.where(weights > _SLIGHT, weights / norm, 0.0)
         tau = tau / self.kind.most
         scale = np.minimum(2.0**20 / share.max(axis=1), MOST_WEIGHT / np.maximum(abs(tau), 1e-300))

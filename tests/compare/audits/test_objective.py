@@ -10,7 +10,6 @@ from support.made_up import entry, paper, row, sentence
 from trajgap.compare.audits.case_audit import CaseAudit
 from trajgap.compare.documents import ClaimVerdict, Severity, json_text
 from trajgap.compare.sphinx import paper_row
-from trajgap.problem import CaseError
 
 AIM = "time and jerk, weighted"
 
@@ -103,8 +102,3 @@ def test_a_long_objective_leaves_the_card_short() -> None:
     card = audited("a weighted sum of many things, " * 20).card
     assert card.words <= 80
     assert "was not minimised for time alone; the shortest known motion" in card.optimum
-
-
-def test_an_empty_objective_is_refused() -> None:
-    with pytest.raises(CaseError, match="objective: is empty; fill it in or leave the key out"):
-        audited("")

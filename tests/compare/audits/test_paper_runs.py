@@ -6,18 +6,13 @@ from support.studies import changed, shipped
 from trajgap.compare.audits.paper_runs import kept_runs, reached
 from trajgap.compare.documents import Gap
 from trajgap.heuristics import from_settings, run_within
-from trajgap.problem import check, load_case
+from trajgap.problem import check, load_case, published_ids
 
-FOUR = (
-    "puma560-mnam-pso-353",
-    "irb460-pso-353",
-    "irb1600-ga-cubic-bspline",
-    "z1-woa-bspline",
-)
+PUMA, IRB = "puma560-mnam-pso-353", "irb460-pso-353"
 HANDLINGS = {"death-penalty", "stretch", "rescale"}
 
 
-@pytest.mark.parametrize("case", FOUR)
+@pytest.mark.parametrize("case", published_ids())
 def test_each_algorithm_has_its_gap_under_each_handling(case):
     found = reached(shipped(case))
     algorithms = {a.id for a in shipped(case).case.algorithms}
@@ -35,7 +30,7 @@ def test_each_algorithm_has_its_gap_under_each_handling(case):
         assert one.best == min(one.totals)
 
 
-@pytest.mark.parametrize("case", FOUR[:3])
+@pytest.mark.parametrize("case", published_ids()[:3])
 def test_evaluations_were_counted_against_the_optimum_of_today(case):
     for group in kept_runs().groups:
         if group.case == case and group.optimum is not None:
@@ -44,7 +39,7 @@ def test_evaluations_were_counted_against_the_optimum_of_today(case):
 
 
 def test_no_run_of_a_search_of_all_joints_ends_below_the_proven_bound():
-    for case in FOUR:
+    for case in published_ids():
         for one in reached(shipped(case)):
             lower = one.gap.reference.lower
             if isinstance(lower, float):
@@ -52,10 +47,8 @@ def test_no_run_of_a_search_of_all_joints_ends_below_the_proven_bound():
 
 
 def test_a_run_made_again_ends_where_it_did():
-    groups = [
-        g for g in kept_runs().groups if g.case == "irb460-pso-353" and g.problem == "limit-80"
-    ]
-    case = load_case("irb460-pso-353")
+    groups = [g for g in kept_runs().groups if g.case == IRB and g.problem == "limit-80"]
+    case = load_case(IRB)
     block = case.algorithms[0]
     problem = case.problem("limit-80", groups[0].reading)
     algorithm = from_settings(block.kind, block.parameters)
@@ -69,7 +62,7 @@ def test_a_run_made_again_ends_where_it_did():
 
 
 def test_joints_planned_one_by_one_are_set_beside_their_own_optima():
-    study = shipped(FOUR[0])
+    study = shipped(PUMA)
     apart = [one for one in reached(study) if one.searched.startswith("each joint")]
     own = study.per_joint("six-joints", study.main_reading).total_time
     shared = study.optimum("six-joints", study.main_reading).total_time
@@ -83,8 +76,8 @@ def test_joints_planned_one_by_one_are_set_beside_their_own_optima():
 
 
 def test_runs_stand_only_with_the_problem_and_the_algorithm_that_they_are_of():
-    assert reached(shipped("irb460-pso-353"))
-    other_limit = changed("irb460-pso-353", ("velocity = 80 }", "velocity = 81 }"))
+    assert reached(shipped(IRB))
+    other_limit = changed(IRB, ("velocity = 80 }", "velocity = 81 }"))
     assert {one.problem for one in reached(other_limit)} == {"limit-110"}
-    fewer = changed("irb460-pso-353", ("{ iterations = 100 }", "{ iterations = 90 }"))
+    fewer = changed(IRB, ("{ iterations = 100 }", "{ iterations = 90 }"))
     assert reached(fewer) == ()

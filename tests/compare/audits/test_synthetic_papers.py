@@ -73,7 +73,9 @@ def test_clean_papers_are_accused_of_nothing(seed: int) -> None:
         assert any(j.verdict is ClaimVerdict.SUPPORTED for j in one.judgements)
 
 
-@pytest.mark.parametrize("fault", ["sum", "control vertex digit", "limit exceeded"])
+@pytest.mark.parametrize(
+    "fault", ["sum", "control vertex digit", "limit exceeded", "suboptimal called optimal"]
+)
 def test_a_fault_beyond_what_digits_hide_is_seen(fault: str) -> None:
     found = (planted(fault, seed) for seed in range(50))
     one = next(p for p in found if p.size > p.room)

@@ -8,7 +8,6 @@ from typing import Any
 import pytest
 from support.command_line import AUDITS, CASE, PAGES, Run
 from support.documents import report
-from trajgap.compare.cli import main
 
 
 @pytest.fixture(autouse=True)
@@ -23,12 +22,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 @pytest.fixture
 def run(capsys: pytest.CaptureFixture[str]) -> Run:
-    def call(*arguments: str) -> tuple[int, str, str]:
-        code = main(arguments)
-        captured = capsys.readouterr()
-        return code, captured.out, captured.err
-
-    return call
+    return Run(capsys)
 
 
 @pytest.fixture

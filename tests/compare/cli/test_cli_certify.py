@@ -14,9 +14,8 @@ from typing import Any
 
 import pytest
 from support.checkout import ROOT
-from support.command_line import CASE, Run, strict
+from support.command_line import CASE, IRB, NAME, ONE, Run, strict
 from support.documents import assert_valid
-from support.made_up import paper
 from support.shipped_problems import COVERED_PROBLEMS
 from trajgap.compare.cli import certifying as cli_certify
 from trajgap.compare.documents import Uncovered
@@ -26,10 +25,6 @@ from trajgap.nlp.proofs.state import read_state
 from trajgap.problem import TrajgapError
 from trajgap.verify import CertifiedQuestion, Subject, seal
 from trajgap.verify import verify_certificate as verify
-
-IRB = "irb460-pso-353"
-ONE = (IRB, "--problem", "limit-80", "--reading", "waypoints-rad")
-NAME = f"{IRB}.limit-80.waypoints-rad"
 
 
 def files_of(out: str) -> list[str]:
@@ -46,8 +41,7 @@ def document() -> dict[str, Any]:
 
 
 def test_each_joint_is_certified_and_its_file_proves(run: Run) -> None:
-    code, out, err = run("solve", "mine.toml", "--certify", "--gap", "1e-3", "--out", "c.json")
-    assert (code, err) == (0, "")
+    out = run.done("solve", "mine.toml", "--certify", "--gap", "1e-3", "--out", "c.json")
     assert out.endswith("certificates: trajgap-certificates\n")
     document = strict(Path("c.json").read_text())
     assert_valid(document, "certify")
@@ -61,16 +55,13 @@ def test_each_joint_is_certified_and_its_file_proves(run: Run) -> None:
         assert str(verdict).startswith("proves: ")
         assert str(Fraction(result["lower_exact"])) == str(verdict.lower)
     files = [r["certificate"] for r in document["intervals"]]
-    code, out, err = run("verify", *files)
-    assert (code, err) == (0, "")
+    out = run.done("verify", *files)
     assert [line.partition(": proves: ")[0] for line in files_of(out)] == files
 
 
 def test_shared_durations_are_one_question(run: Run) -> None:
     arguments = ("--coupling", "shared", "--gap", "0.01", "--json")
-    code, out, _ = run("solve", "mine.toml", "--certify", *arguments)
-    assert code == 0
-    (result,) = strict(out)["intervals"]
+    (result,) = run.document("solve", "mine.toml", "--certify", *arguments)["intervals"]
     assert result["joint"] is None
     assert result["certificate"] is None
     assert not Path("trajgap-certificates").exists(), "with --json only where told"
@@ -95,24 +86,18 @@ def test_bounds_are_printed_outwards_and_the_file_names_its_question(run: Run) -
 def test_infeasible_is_proved(run: Run, folder: Path) -> None:
     text = CASE.replace("[limits]", "[durations]\nupper = 900\n\n[limits]")
     (folder / "short.toml").write_text(text)
-    code, out, _ = run("solve", "short.toml", "--certify", "--coupling", "shared")
-    assert code == 0
+    out = run.done("solve", "short.toml", "--certify", "--coupling", "shared")
     assert "infeasible: proved" in out
-    code, out, _ = run("verify", "trajgap-certificates/mine.main.plain.json")
-    assert code == 0
+    out = run.done("verify", "trajgap-certificates/mine.main.plain.json")
     assert "no durations within their bounds keep the limits" in out
 
 
 def test_a_curve_that_is_not_covered_is_named(run: Run) -> None:
     reading = "angles-rad-v-rad-a-rad-timed"
-    code, out, _ = run(
-        "solve", "irb1600-ga-cubic-bspline", "--certify", "--reading", reading, "--json"
-    )
-    assert code == cli_certify.NOT_PROVED
-    document = strict(out)
-    assert_valid(document, "certify")
-    assert document["intervals"][0]["outcome"] == Uncovered.NOT_COVERED
-    assert "time a B-spline too" in document["intervals"][0]["lower_why"]
+    asked = ("solve", "irb1600-ga-cubic-bspline", "--certify", "--reading", reading)
+    (one,) = run.document(*asked, code=cli_certify.NOT_PROVED, kind="certify")["intervals"]
+    assert one["outcome"] == Uncovered.NOT_COVERED
+    assert "time a B-spline too" in one["lower_why"]
 
 
 def test_a_time_limit_leaves_a_state_to_go_on_from(run: Run) -> None:
@@ -204,8 +189,7 @@ def test_ctrl_c_leaves_the_interval_and_a_state(run: Run) -> None:
     (result,) = strict(Path("answer.json").read_text())["intervals"]
     assert 0 < result["lower"] < result["upper"]
     assert verify(result["certificate"]).proves
-    code, _, _ = run("solve", *ONE, "--certify", "--gap", "0.01", "--resume", result["state"])
-    assert code == 0
+    run.done("solve", *ONE, "--certify", "--gap", "0.01", "--resume", result["state"])
 
 
 def test_verify_says_what_each_file_is_worth(run: Run, document: dict[str, Any]) -> None:
@@ -218,26 +202,20 @@ def test_verify_says_what_each_file_is_worth(run: Run, document: dict[str, Any])
     assert (code, err) == (1, "")
     words = [line.split(": ")[1] for line in files_of(out)]
     assert words == ["proves", "altered, still proves", "refused", "refused"]
-    for names, wanted, worth in (
+    for names, code, worth in (
         (("good", "harmless"), 0, words[:2]),
         (("broken",), 1, words[2:3]),
     ):
-        code, out, _ = run("verify", *(f"{name}.json" for name in names), "--json")
-        assert_valid(strict(out), "verify")
-        assert (code, [one["worth"] for one in strict(out)["verified"]]) == (wanted, worth)
+        files = [f"{name}.json" for name in names]
+        found = run.document("verify", *files, code=code, kind="verify")["verified"]
+        assert [one["worth"] for one in found] == worth
 
 
 def test_huge_numbers_are_no_fault(run: Run, document: dict[str, Any]) -> None:
-    def verified(lower: str) -> tuple[int, Any]:
-        document["claim"]["lower"] = lower
-        Path("huge.json").write_text(json.dumps(document))
-        code, out, _ = run("verify", "huge.json", "--json")
-        return code, strict(out)["verified"][0]
-
-    code, one = verified("-1" + "0" * 350)
-    assert (code, "no number of at most 120 digits" in one["reason"]) == (1, True)
-    code, one = verified("-" + "9" * 120 + "e99")
-    assert (code, one["lower"]) == (0, pytest.approx(-1e219))
+    document["claim"]["lower"] = "-" + "9" * 120 + "e99"
+    Path("huge.json").write_text(json.dumps(document))
+    (one,) = run.document("verify", "huge.json")["verified"]
+    assert one["lower"] == pytest.approx(-1e219)
     assert run("verify", "huge.json")[0] == 0
 
 
@@ -246,10 +224,8 @@ def test_verify_says_which_question_it_proved(run: Run, document: dict[str, Any]
     _, out, _ = run("verify", file)
     asked = f"case {IRB}, problem limit-80, reading waypoints-rad"
     assert out.splitlines()[1] == f"    {asked}; problem sha256 {seal(document['problem'])}"
-    code, out, _ = run("verify", file, "--time", "0", "--json")
-    (one,) = strict(out)["verified"]
-    assert_valid(strict(out), "verify")
-    assert (code, one["worth"], one["lower_why"]) == (1, "out of time", "out of time")
+    (one,) = run.document("verify", file, "--time", "0", code=1, kind="verify")["verified"]
+    assert (one["worth"], one["lower_why"]) == ("out of time", "out of time")
 
 
 def test_verify_compares_with_a_case_number_by_number(run: Run, document: dict[str, Any]) -> None:
@@ -324,10 +300,9 @@ def test_a_state_file_that_was_edited_is_refused(run: Run) -> None:
 
 
 def test_a_width_that_is_not_reached_is_not_called_certified(run: Run) -> None:
-    code, out, _ = run("solve", *ONE, "--certify", "--gap", "0", "--json")
-    (result,) = strict(out)["intervals"]
+    (result,) = run.document("solve", *ONE, "--certify", "--gap", "0", code=3)["intervals"]
     assert 0 < result["gap"] < 1e-9
-    assert (code, result["outcome"]) == (3, "interval")
+    assert result["outcome"] == "interval"
 
 
 def test_a_bound_over_any_curve_is_certified_verified_and_named(run: Run) -> None:
@@ -336,37 +311,9 @@ def test_a_bound_over_any_curve_is_certified_verified_and_named(run: Run) -> Non
     assert run(*certify, "--any-curve")[0] == 0
     (file,) = folder.iterdir()
     assert file.name == f"{NAME}.any-curve.json"
-    code, out, _ = run("verify", str(file), "--case", IRB, "--json")
-    (one,) = strict(out)["verified"]
-    assert (code, one["subject"]) == (0, "any curve")
+    (one,) = run.document("verify", str(file), "--case", IRB)["verified"]
+    assert one["subject"] == "any curve"
     shown = json.loads((shipped_folder() / f"{NAME}.any-curve.json").read_text("utf-8"))
     assert one["lower"] == pytest.approx(float(Fraction(shown["claim"]["lower"])), rel=1e-6)
     assert run(*certify)[0] == 0
     assert len(list(folder.iterdir())) == 2, "another question, another file"
-
-
-MOVING = paper(
-    ["0 1 0.4", "0.2 -0.3 0.5"],
-    curve={
-        "family": "cubic-spline", "end_derivatives": [[0.5, -0.2]], "finish_derivatives": [0],
-    },
-    velocity=[2, 1.5],
-    acceleration=[5, 4],
-)  # fmt: skip
-"""A joint that starts forwards and one that starts backwards."""
-
-
-def test_ends_in_motion_have_a_proof_and_a_bound_over_any_curve(run: Run) -> None:
-    Path("moving.toml").write_text(MOVING, encoding="utf-8")
-    code, _, err = run("solve", "moving.toml", "--certify", "--out", "d.json")
-    assert (code, err) == (0, "")
-    (own,) = strict(Path("d.json").read_text())["intervals"]
-    code, out, err = run("verify", own["certificate"], "--case", "moving.toml")
-    assert (code, err) == (0, "")
-    code, _, err = run("solve", "moving.toml", "--certify", "--any-curve", "--out", "c.json")
-    assert (code, err) == (0, "")
-    (found,) = strict(Path("c.json").read_text())["intervals"]
-    assert 0 < found["lower"] < own["lower"] <= own["upper"]
-    code, out, err = run("verify", found["certificate"], "--case", "moving.toml")
-    assert (code, err) == (0, "")
-    assert "proves" in out

@@ -1,12 +1,12 @@
 """`trajgap check FILE` from the command line: verdict, units, precedence, one line of fault."""
 
-import json
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
+from support.command_line import assert_refused
 from support.documents import assert_valid
-from trajgap.compare.cli import main
 
 URDF = """<robot name="a">
   <joint name="j1" type="revolute"><limit lower="-1" upper="3" velocity="1" effort="1"/></joint>
@@ -14,10 +14,9 @@ URDF = """<robot name="a">
 </robot>"""
 
 
-@pytest.fixture
-def files(tmp_path, monkeypatch):
+@pytest.fixture(autouse=True)
+def motion(folder: Path) -> None:
     """A rest-to-rest quintic of two joints: speed 15/8 · way / time at the middle."""
-    monkeypatch.chdir(tmp_path)
     s = np.linspace(0.0, 1.0, 101)
     shape = [
         10 * s**3 - 15 * s**4 + 6 * s**5,
@@ -29,31 +28,16 @@ def files(tmp_path, monkeypatch):
     names = ["j1", "j2", "j1 velocity", "j2 velocity", "j1 acceleration", "j2 acceleration"]
     header = ",".join(["time", *names])
     np.savetxt("m.csv", np.column_stack(columns), delimiter=",", header=header, comments="")
-    (tmp_path / "arm.urdf").write_text(URDF)
-    return tmp_path
+    (folder / "arm.urdf").write_text(URDF)
 
 
-def run(capsys, *arguments, code=0):
-    assert main([str(x) for x in arguments]) == code
-    said = capsys.readouterr()
-    assert (said.err == "") == (code != 2)
-    return said.err if code == 2 else said.out
-
-
-def document(capsys, *arguments, code=0, kind=None):
-    found = json.loads(run(capsys, *arguments, "--json", code=code))
-    if kind is not None:  # the schema takes as long as the command
-        assert_valid(found, kind)
-    return found
-
-
-def test_a_verdict_for_all_t_with_its_repair(files, capsys):
+def test_a_verdict_for_all_t_with_its_repair(run):
     flags = ["--urdf", "arm.urdf", "--interpolation", "quintic"]
-    found = document(capsys, "check", "m.csv", *flags, kind="motion_check")
+    found = run.document("check", "m.csv", *flags, kind="motion_check")
     result = found["result"]
     assert result["verdict"] == "pass"
     assert result["slow_down"] == 1.0
-    slower = document(capsys, "check", "m.csv", "--velocity", "0.75", "--interpolation", "quintic")[
+    slower = run.document("check", "m.csv", "--velocity", "0.75", "--interpolation", "quintic")[
         "result"
     ]
     assert slower["verdict"] == "violated"
@@ -65,44 +49,44 @@ def test_a_verdict_for_all_t_with_its_repair(files, capsys):
     assert slower["floor"]["time"] == pytest.approx(2.0 / 0.75)
 
 
-def test_without_interpolation_only_what_is_proved(files, capsys):
-    found = document(capsys, "check", "m.csv", "--velocity", "1.9")
+def test_without_interpolation_only_what_is_proved(run):
+    found = run.document("check", "m.csv", "--velocity", "1.9")
     assert found["interpolation"] == "none"
     assert found["result"]["verdict"] == "undecided"
     assert "state an --interpolation" in found["result"]["open"][0]
-    proved = document(capsys, "check", "m.csv", "--velocity", "1.8")["result"]
+    proved = run.document("check", "m.csv", "--velocity", "1.8")["result"]
     assert proved["verdict"] == "violated"
     assert proved["feasible_time"] is None
 
 
-def test_the_terminal_speaks_in_the_units_of_the_file(files, capsys):
+def test_the_terminal_speaks_in_the_units_of_the_file(run):
     flags = ["--velocity", "2,5", "--units", "deg,mm", "--interpolation", "quintic"]
-    said = run(capsys, "check", "m.csv", *flags)
+    said = run.done("check", "m.csv", *flags)
     assert "joint j1, velocity 0.9375 deg/s against 2 deg/s at 1 s (limit from flags)" in said
     assert "mm/s" in said
-    found = document(capsys, "check", "m.csv", *flags)
+    found = run.document("check", "m.csv", *flags)
     assert found["units"] == ["deg", "mm"]
     peaks = {p["joint"]: p["value"] for p in found["result"]["peaks"]}
     assert peaks == {"j1": pytest.approx(0.9375 * np.pi / 180), "j2": pytest.approx(-0.001875)}
 
 
 @pytest.mark.parametrize(("limit", "word"), [(1.1, "pass"), (0.9, "violated")])
-def test_a_grid_of_few_digits_says_what_follows_if_it_is_exact(files, capsys, limit, word):
+def test_a_grid_of_few_digits_says_what_follows_if_it_is_exact(run, limit, word):
     """Two rows 0.02 s apart, with times to 0.005 s: nearly any speed fits the digits."""
     table = np.loadtxt("m.csv", delimiter=",", skiprows=1)[:, :3]
     np.savetxt("g.csv", table, "%.2f,%.6f,%.6f", header="time,j1,j2", comments="")
     given = ("check", "g.csv", "--velocity", f"{limit * 15 / 16},{4 * limit}")
-    told = run(capsys, *given, "--interpolation", "spline")
+    told = run.done(*given, "--interpolation", "spline")
     assert "\nundecided: " in told
     assert f"the verdict is {word}: state --time-noise 0" in " ".join(told.split())
-    again = run(capsys, *given, "--interpolation", "spline", "--time-noise", "0")
+    again = run.done(*given, "--interpolation", "spline", "--time-noise", "0")
     assert f"\n{word}: " in again
 
 
-def test_flag_file_urdf_in_this_order(files, capsys):
-    (files / "l.yaml").write_text("joint_limits: {j2: {max_velocity: 3.0, max_jerk: 500}}\n")
+def test_flag_file_urdf_in_this_order(run):
+    Path("l.yaml").write_text("joint_limits: {j2: {max_velocity: 3.0, max_jerk: 500}}\n")
     sources = ["--urdf", "arm.urdf", "--limits", "l.yaml", "--jerk", "400"]
-    found = document(capsys, "check", "m.csv", *sources, "--interpolation", "quintic")
+    found = run.document("check", "m.csv", *sources, "--interpolation", "quintic")
     said = {
         (p["joint"], p["quantity"]): (p["limit"], p["source"]) for p in found["result"]["peaks"]
     }
@@ -112,34 +96,35 @@ def test_flag_file_urdf_in_this_order(files, capsys):
     assert said["j1", "position"][1] == "arm.urdf"
 
 
-def test_strict_is_for_scripts(files, capsys):
+def test_strict_is_for_scripts(run):
     flags = ["check", "m.csv", "--interpolation", "quintic", "--velocity", "2"]
     rest = ["--position", "inf", "--acceleration", "inf", "--jerk", "inf"]
     for more, code in (([], 1), (rest, 0), (rest[:4], 1), ([*rest, "--velocity", "1"], 1)):
-        found = document(capsys, *flags, *more, "--strict", code=code, kind="motion_check")
+        found = run.document(*flags, *more, "--strict", code=code)
         assert found["result"]["verdict"] == ("violated" if "1" in more else "pass")
         lacking = {one["quantity"] for one in found["result"]["not_judged"]}
         assert lacking == {"position", "acceleration", "jerk"} - {x[2:] for x in more}
     for more in ([], rest):
-        assert ("not judged" in run(capsys, *flags, *more)) == (more == [])
+        assert ("not judged" in run.done(*flags, *more)) == (more == [])
 
 
 @pytest.mark.parametrize("misspelt", ["csv", "urdf", "yaml"])
-def test_a_misspelt_joint_is_not_passed_over(files, capsys, misspelt):
+def test_a_misspelt_joint_is_not_passed_over(run, misspelt):
     """Whichever file has the other name, the joint's limits are never dropped unnoticed."""
-    (files / "l.yaml").write_text("joint_limits: {j1: {max_velocity: 9}, j2: {max_velocity: 9}}\n")
+    Path("l.yaml").write_text("joint_limits: {j1: {max_velocity: 9}, j2: {max_velocity: 9}}\n")
     changed = {"csv": "m.csv", "urdf": "arm.urdf", "yaml": "l.yaml"}[misspelt]
-    text = (files / changed).read_text()
-    (files / changed).write_text(text.replace("j2", "j_2"))
+    Path(changed).write_text(Path(changed).read_text().replace("j2", "j_2"))
     sources = ["--limits", "l.yaml", "--urdf", "arm.urdf", "--velocity", "2"]
-    said = run(capsys, "check", "m.csv", *sources, "--interpolation", "quintic", code=2)
     wanted = ("j_2", "j2") if misspelt == "csv" else ("j2", "j_2")
     file = "l.yaml" if misspelt == "csv" else changed
-    assert f"{file}: {wanted[0]}: is no joint with limits there; rename it or add it;" in said
-    assert f"did you mean {wanted[1]!r}" in said
+    assert_refused(
+        run("check", "m.csv", *sources, "--interpolation", "quintic"),
+        f"{file}: {wanted[0]}: is no joint with limits there; rename it or add it;",
+        f"did you mean {wanted[1]!r}",
+    )
 
 
-def test_thirty_thousand_samples_of_seven_joints(files, capsys):
+def test_thirty_thousand_samples_of_seven_joints(run):
     rng = np.random.default_rng(1)
     t = np.linspace(0.0, 30.0, 30_001)
     speed, phase = rng.uniform(0.5, 2.0, 7), rng.uniform(0, 6, 7)
@@ -147,15 +132,13 @@ def test_thirty_thousand_samples_of_seven_joints(files, capsys):
     v = speed * np.cos(speed * t[:, None] + phase)
     header = "time," + ",".join([f"j{k}" for k in range(7)] + [f"j{k} velocity" for k in range(7)])
     np.savetxt("long.csv", np.column_stack([t, q, v]), "%.12g", ",", header=header, comments="")
-    command = ["check", "long.csv", "--velocity", "2.1", "--interpolation", "cubic", "--json"]
+    command = ["check", "long.csv", "--velocity", "2.1", "--interpolation", "cubic"]
     begun = time.process_time()
     # %.12g writes 0.001 s with three places, as a clock of milliseconds does.
-    assert main([*command, "--time-noise", "0"]) == 0
+    found = run.document(*command, "--time-noise", "0")["result"]
     taken = time.process_time() - begun
-    found = json.loads(capsys.readouterr().out)["result"]
     assert found["verdict"] == "pass"
-    assert main(command) == 0
-    said = json.loads(capsys.readouterr().out)
+    said = run.document(*command)
     assert said["time_noise"] > 5e-4
     assert said["result"]["verdict"] == "undecided"
     assert "--time-noise 0" in said["result"]["open"][-1]
@@ -170,21 +153,17 @@ SLOW = pytest.mark.slow
 @pytest.mark.parametrize(
     "form", [pytest.param("csv", marks=SLOW), "ros", pytest.param("ppoly", marks=SLOW)]
 )
-def test_the_motion_of_an_answer_is_written_and_read_back(tmp_path, monkeypatch, capsys, form):
-    own = tmp_path / "own"
-    own.mkdir()
-    monkeypatch.chdir(own)
-    found = document(
-        capsys, "solve", "irb460-pso-353", "--problem", "limit-80", "--reading", "waypoints-deg",
-        "--samples", "out.json", "--format", form, "--rate", "250", kind="solve",
+def test_the_motion_of_an_answer_is_written_and_read_back(run, form):
+    found = run.document(
+        "solve", "irb460-pso-353", "--problem", "limit-80", "--reading", "waypoints-deg",
+        "--samples", "out.json", "--format", form, "--rate", "250",
     )  # fmt: skip
+    assert_valid(found, "solve")
     written = found["written"]
     assert (written["file"], written["form"], written["rate"]) == ("out.json", form, 250.0)
     assert written["result"]["limits_verdict"] == "pass"
     assert written["result"]["worst"]["ratio"] == pytest.approx(1.0, abs=1e-6)
     assert written["result"]["total_time"] == pytest.approx(found["results"][0]["total_time"])
     if form != "csv":
-        again = document(
-            capsys, "check", "out.json", "--velocity", "1.3962634", "--tolerance", "1e-6"
-        )
+        again = run.document("check", "out.json", "--velocity", "1.3962634", "--tolerance", "1e-6")
         assert again["result"]["limits_verdict"] == "pass"

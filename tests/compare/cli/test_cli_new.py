@@ -39,8 +39,7 @@ def test_what_new_writes_can_be_shown(
     run: Run, table: str, where: tuple[str, ...], place: str
 ) -> None:
     units = ("--position-unit", "deg", "--time-unit", "s", "--total", "3.4")
-    code, out, err = run("new", "out.toml", "--from", table, *units, *where)
-    assert (code, err) == (0, "")
+    out = run.done("new", "out.toml", "--from", table, *units, *where)
     assert out == "written: out.toml\nnext: trajgap audit out.toml  # judges what is claimed\n"
     assert [claim.where for claim in load_case("out.toml").claims] == [place]
     assert run("show", "out.toml")[0] == 0

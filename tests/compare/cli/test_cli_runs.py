@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import json
 import os
 import re
 import sys
@@ -11,8 +10,7 @@ from pathlib import Path
 
 import pytest
 from support.checkout import ROOT
-from support.command_line import Run, on_terminal, strict
-from support.documents import assert_valid
+from support.command_line import Run, on_terminal
 from support.small_studies import HEAD
 from trajgap.problem import load_case
 from trajgap.problem.suite import load_instance
@@ -24,8 +22,7 @@ GUIDE = (ROOT / "docs" / "guides" / "enter-your-optimiser.md").read_text(encodin
 
 
 def test_a_table_a_page_and_the_verdict_first(run: Run, folder: Path) -> None:
-    code, out, err = run("bench", PUMA, "--optimizer", "pso,random", *SMALL)
-    assert (code, err) == (0, "")
+    out = run.done("bench", PUMA, "--optimizer", "pso,random", *SMALL)
     head, _, rest = out.partition("\nClosest: ")
     lines = f"Closest: {rest}".splitlines()
     title = load_case(PUMA).title
@@ -50,12 +47,9 @@ def test_a_table_a_page_and_the_verdict_first(run: Run, folder: Path) -> None:
 
 
 def test_json_keeps_to_the_schema_and_repeats(run: Run, folder: Path) -> None:
-    asked = ("--reading", "durations-positive", "--set", 'pso={"particles": 9}', "--json")
+    asked = ("--reading", "durations-positive", "--set", 'pso={"particles": 9}')
     arguments = ("bench", PUMA, "--optimizer", "pso", "--optimizer", "random", *SMALL, *asked)
-    code, out, err = run(*arguments)
-    assert (code, err) == (0, "")
-    document = strict(out)
-    assert_valid(document, "bench")
+    document = run.document(*arguments, kind="bench")
     (result,) = document["results"]
     assert result["reading"] == "durations-positive"
     assert {one["optimizer"] for one in result["standings"]} == {"pso", "random"}
@@ -65,46 +59,29 @@ def test_json_keeps_to_the_schema_and_repeats(run: Run, folder: Path) -> None:
     assert '"particles":9,' in pso["settings"]
     assert '"iterations"' not in pso["settings"]
     assert not (folder / "trajgap-bench").exists()
-    assert run(*arguments)[1] == out
-
-
-def test_without_a_budget_the_paper_s_own_iterations_are_run_and_said(run: Run) -> None:
-    asked = ("bench", "irb460-pso-353", "--problem", "limit-80", "--optimizer", "constrained-pso")
-    code, out, _ = run(*asked, "--seeds", "2", "--no-baselines", "--json")
-    assert code == 0
-    (result,) = json.loads(out)["results"]
-    assert '"iterations":100' in result["standings"][0]["settings"]
-    assert (
-        "constrained-pso: 100 iterations, the algorithm's own, in 3,030 evaluations."
-        in (result["notes"])
-    )
+    assert run.document(*arguments) == document
 
 
 def test_joints_that_the_case_searches_apart_are_named(run: Run) -> None:
-    code, out, err = run("bench", "mine.toml", "--optimizer", "random", *SMALL)
-    assert (code, err) == (0, "")
+    out = run.done("bench", "mine.toml", "--optimizer", "random", *SMALL)
     assert out.splitlines()[0] == "Mine (mine)"
     assert "The case searches each joint by itself" in " ".join(out.split())
     assert ", certified" in out
 
 
 def test_an_optimiser_that_always_fails_is_shown_by_the_exit_code(run: Run) -> None:
-    arguments = ("bench", PUMA, *SMALL, "--json", "--optimizer")
-    code, out, _ = run(*arguments, "random,support.faulty:raises")
-    assert code == 1
-    assert {one["failed"] for one in strict(out)["results"][0]["standings"]} == {0, 2}
-    code, out, _ = run(*arguments, "support.faulty:raises_at_times", "--seeds", "8")
-    (standing,) = strict(out)["results"][0]["standings"]
-    assert (code, 0 < standing["failed"] < 8) == (0, True)
+    arguments = ("bench", PUMA, *SMALL, "--optimizer")
+    (result,) = run.document(*arguments, "random,support.optimizers:raises", code=1)["results"]
+    assert {one["failed"] for one in result["standings"]} == {0, 2}
+    at_times = ("support.optimizers:raises_at_times", "--seeds", "8")
+    (result,) = run.document(*arguments, *at_times)["results"]
+    assert 0 < result["standings"][0]["failed"] < 8
 
 
 def test_instances_of_the_suite_and_what_all_of_them_say(run: Run, folder: Path) -> None:
     """Two instances at once: bounds as the suite has them, every number over both by hand."""
     arguments = ("bench", "suite:septic-puma*,353-puma560", "--optimizer", "random", *SMALL)
-    code, out, err = run(*arguments, "--json", "--out", "pages", "--store", "runs.sqlite")
-    assert (code, err) == (0, "")
-    document = strict(out)
-    assert_valid(document, "bench")
+    document = run.document(*arguments, "--out", "pages", "--store", "runs.sqlite", kind="bench")
     names = ["353-puma560", "septic-puma560"]
     assert [one["problem"] for one in document["results"]] == names
     for name, one in zip(names, document["results"], strict=True):
@@ -126,8 +103,7 @@ def test_instances_of_the_suite_and_what_all_of_them_say(run: Run, folder: Path)
     assert all(f" (suite:{name})<" in page for name in names)
     # Nothing that the store holds is run again.
     began = (folder / "runs.sqlite").read_bytes()
-    code, out, _ = run(*arguments, "--store", "runs.sqlite")
-    assert code == 0
+    out = run.done(*arguments, "--store", "runs.sqlite")
     assert out.startswith("Within 1 % of the optimum most often: random, in 0 % of its runs over 2")
     assert (folder / "runs.sqlite").read_bytes() == began
 
@@ -205,13 +181,12 @@ def test_a_study_is_run_exported_and_gone_on_with(run: Run) -> None:
 
 def test_the_exit_code_is_0_where_each_optimiser_has_a_run(run: Run, study: Path) -> None:
     study.write_text(
-        FEW.replace("support.optimizers:raises", "support.faulty:raises_at_times").replace(
+        FEW.replace("support.optimizers:raises", "support.optimizers:raises_at_times").replace(
             "seeds = 2", "seeds = 8"
         ),
         encoding="utf-8",
     )
-    code, out, err = run("study", "few.toml", "--workers", "1")
-    assert (code, err) == (0, "")
+    out = run.done("study", "few.toml", "--workers", "1")
     assert "times: ZeroDivisionError: at times" in out
 
 

@@ -7,8 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from support.command_line import Run, strict
-from support.documents import assert_valid
+from support.command_line import IRB, NAME, ONE, Run
 from support.shipped_problems import COVERED_PROBLEMS
 from trajgap.compare.cli import certifying, solving
 from trajgap.nlp import shipped
@@ -18,32 +17,25 @@ from trajgap.verify import reading
 from trajgap.verify.ranges import MOST_BYTES
 
 SHARED = ("solve", "mine.toml", "--coupling", "shared")
-IRB = "irb460-pso-353"
-ONE = (IRB, "--problem", "limit-80", "--reading", "waypoints-rad")
-NAME = f"{IRB}.limit-80.waypoints-rad"
 
 
 def test_a_solve_without_time_leaves_its_best_motion_and_says_so(run: Run) -> None:
-    code, out, err = run(*SHARED, "--time", "0", "--json")
-    assert (code, err) == (0, "")
-    assert_valid(strict(out), "solve")
-    (part,) = strict(out)["results"]
+    (part,) = run.document(*SHARED, "--time", "0", kind="solve")["results"]
     assert part["status"] == "feasible"
     assert closed_forms.CUT_SHORT in part["status_why"]
     problem = load_case("mine.toml").problem()
     assert check(problem, part["segment_durations"]).limits is Verdict.PASS
-    (whole,) = strict(run(*SHARED, "--json")[1])["results"]
+    (whole,) = run.document(*SHARED)["results"]
     assert (whole["status"], whole["status_why"]) == ("optimal", None)
     assert part["total_time"] >= whole["total_time"] * (1 - 1e-9)
-    code, out, _ = run(*SHARED, "--time", "0")
-    assert code == 0
+    out = run.done(*SHARED, "--time", "0")
     assert closed_forms.CUT_SHORT in " ".join(out.split())
 
 
 def test_time_that_is_not_needed_changes_nothing(run: Run) -> None:
     answers = []
     for limit in ((), ("--time", "1e6")):
-        (found,) = strict(run(*SHARED, *limit, "--json")[1])["results"]
+        (found,) = run.document(*SHARED, *limit)["results"]
         answers.append((found["status"], found["total_time"], found["segment_durations"]))
     assert answers[0] == answers[1]
 
@@ -57,9 +49,8 @@ def test_the_limit_is_that_of_each_problem(run: Run, monkeypatch: pytest.MonkeyP
         return real(seconds)
 
     monkeypatch.setattr(solving, "stopping_after", noted)
-    code, out, _ = run("solve", IRB, "--problem", "limit-80", "--time", "0", "--json")
-    assert code == 0
-    assert asked == [0.0] * len(strict(out)["results"])
+    found = run.document("solve", IRB, "--problem", "limit-80", "--time", "0")
+    assert asked == [0.0] * len(found["results"])
     assert len(asked) > 1
 
 
@@ -68,9 +59,8 @@ def test_reading_a_file_is_part_of_the_time(run: Run) -> None:
         file.truncate(MOST_BYTES // 2)  # takes no room on the disk
     seconds = 0.9 * MOST_BYTES / 2 / reading.PACE
     for more in ((), ("--case", IRB)):
-        code, out, _ = run("verify", "hole.json", "--time", str(seconds), "--json", *more)
-        assert code == 1
-        (one,) = strict(out)["verified"]
+        asked = ("verify", "hole.json", "--time", str(seconds), *more)
+        (one,) = run.document(*asked, code=1)["verified"]
         assert one["worth"] == "out of time"
 
 
@@ -138,8 +128,7 @@ def test_a_warm_run_prints_the_same_document(run: Run, cache: Path) -> None:
 def test_the_certificates_in_the_folder_are_the_same(run: Run, cache: Path) -> None:
     asked = [*CERTIFY[:-1], "--certificates"]
     run(*asked, "cold")
-    code, out, _ = run(*asked, "warm")
-    assert code == 0
+    out = run.done(*asked, "warm")
     assert "2 kept proofs were proved again" in out
     names = sorted(file.name for file in Path("cold").iterdir())
     assert names == sorted(file.name for file in Path("warm").iterdir())
@@ -150,8 +139,7 @@ def test_no_cache_neither_keeps_nor_uses(run: Run, cache: Path) -> None:
     assert run(*CERTIFY, "--no-cache")[0] == 0
     assert not cache.exists()
     run(*CERTIFY)
-    code, out, _ = run(*CERTIFY[:-1], "--no-cache")
-    assert code == 0
+    out = run.done(*CERTIFY[:-1], "--no-cache")
     assert "kept proof" not in out
 
 

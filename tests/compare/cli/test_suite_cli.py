@@ -19,8 +19,7 @@ from trajgap.problem.suite import list_instances, load_instance, plain_text, sui
 
 
 def test_the_table_lists_every_instance(run: Run) -> None:
-    code, out, err = run("suite")
-    assert (code, err) == (0, "")
+    out = run.done("suite")
     for one in list_instances():
         (row,) = [line for line in out.splitlines() if line.startswith(f"{one.name} ")]
         assert f"{one.lower!r}" in row
@@ -35,40 +34,35 @@ def test_the_table_lists_every_instance(run: Run) -> None:
 
 
 def test_json_of_the_table_and_of_one(run: Run, folder: Path) -> None:
-    code, out, _ = run("suite", "--json", "--out", "table.json")
-    document = strict(out)
+    document = run.document("suite", "--out", "table.json")
     validator().validate(document)
-    assert code == 0
     assert [one["name"] for one in document["instances"]] == [o.name for o in list_instances()]
     assert strict((folder / "table.json").read_text("utf-8")) == document
-    quintic = strict(run("suite", "--curve", "Quintic", "--json")[1])["instances"]
+    quintic = run.document("suite", "--curve", "Quintic")["instances"]
     assert quintic == [one for one in document["instances"] if one["name"].startswith("quintic-")]
-    code, out, _ = run("suite", "show", "suite:353-puma560", "--json")
-    shown = strict(out)
+    shown = run.document("suite", "show", "suite:353-puma560")
     validator().validate(shown)
     one, found = load_instance("353-puma560"), shown["instance"]
-    assert (code, found["lower"], found["upper"]) == (0, one.lower, one.upper)
+    assert (found["lower"], found["upper"]) == (one.lower, one.upper)
     assert shown["verify"].startswith("python -m trajgap.verify ")
 
 
 def test_show_says_how_to_verify_and_the_command_does(
     run: Run, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    code, out, _ = run("suite", "show", "353-irb460")
-    assert code == 0
+    out = run.done("suite", "show", "353-irb460")
     one = load_instance("353-irb460")
     assert f"between {one.lower!r} and {one.upper!r} s" in out
     file = one.certificate_file()
     # A command stands on one line, so that it can be copied from the narrowest window.
     monkeypatch.setenv("COLUMNS", "60")
-    code, narrow, _ = run("suite", "show", "353-irb460")
+    narrow = run.done("suite", "show", "353-irb460")
     for lines in (out.splitlines(), narrow.splitlines()):
         assert one.command in lines
         assert f"python -m trajgap.verify {shlex.quote(str(file))}" in lines
     prose = [line for line in narrow.splitlines() if "trajgap" not in line]
     assert max(map(len, prose)) <= 60
-    code, out, _ = run("verify", str(file), "--case", "suite:353-irb460")
-    assert code == 0
+    out = run.done("verify", str(file), "--case", "suite:353-irb460")
     assert out.startswith(str(file))
 
 
@@ -92,8 +86,7 @@ def test_show_of_an_instance_whose_certificate_is_not_shipped(
 ) -> None:
     monkeypatch.setattr("trajgap.compare.cli.suite_listing._certificate", lambda one: None)
     one = load_instance("353-irb460")
-    code, out, _ = run("suite", "show", one.name)
-    assert code == 0
+    out = run.done("suite", "show", one.name)
     assert one.command in out.splitlines()
     assert "no certificate is shipped" in out
     assert "python -m trajgap.verify" not in out
@@ -153,18 +146,11 @@ def test_pages_of_every_instance(run: Run, folder: Path) -> None:
     assert json.loads((there / "suite.json").read_text("utf-8"))["schema"] == "trajgap/1"
 
 
-def test_other_commands_take_an_instance(run: Run) -> None:
-    code, out, _ = run("check", "suite:septic-fang2020-task1", "--durations", "4.7177", "--json")
-    assert code == 0
-    assert strict(out)["results"][0]["case"] == "septic-fang2020-task1"
-
-
 def test_the_command_of_an_instance_makes_its_certificate(run: Run, folder: Path) -> None:
     one = load_instance("septic-fang2020-task1")
     arguments = one.command.split()
     assert arguments.pop(0) == "trajgap"
-    code, _, _ = run(*arguments, "--certificates", "made")
-    assert code == 0
+    run.done(*arguments, "--certificates", "made")
     (made,) = (folder / "made").iterdir()
     own, shipped = strict(made.read_text("utf-8")), one.certificate_file()
     assert shipped is not None

@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+import pytest
 from trajgap.compare.documents import (
     DOUBTED,
     Caveat,
     CaveatKind,
     ClaimVerdict,
     Confidence,
+    Gap,
+    GapKind,
     Judgement,
     Named,
+    Reference,
     Said,
     Scope,
+    apart,
     built_remark,
     grouped,
     in_full,
@@ -146,3 +151,25 @@ def test_what_holds_by_construction_is_counted_as_no_evidence() -> None:
     )
     assert worth_little(every) == "1 by construction, 2 on doubted numbers"
     assert worth_little([judged(S), judged(R, DOUBT)]) == ""
+
+
+# --- the words for a gap, from its numbers alone --------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("lowest", "highest", "words"),
+    [
+        (4.5e-7, 4.5e-7, "4.5e-05 % above"),  # the sign of an exponent is none of a gap
+        (-7.34e-3, -7.34e-3, "0.734 % below"),
+        (0.0353, 0.0448, "3.53 to 4.48 % above"),
+        (-0.02, -0.01, "1.00 to 2.00 % below"),
+        (0.0, 0.0, "0 % above"),
+        (1.17, 1.17, "117 % above"),
+        (-0.01, 0.02, "-1.00 to +2.00 % from"),
+    ],
+)
+def test_a_gap_in_words(lowest: float, highest: float, words: str) -> None:
+    gap = Gap(
+        kind=GapKind.OPTIMALITY, lowest=lowest, highest=highest, reference=Reference(upper=1.0)
+    )
+    assert apart(gap) == words

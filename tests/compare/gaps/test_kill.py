@@ -13,13 +13,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from support.small_studies import HEAD, small_trial, written
+from support.small_studies import HEAD, small_trial, texts, written
 from trajgap.compare.gaps import (
     Engine,
     Row,
     RowStatus,
     Store,
-    StudyPlan,
     StudySession,
     Trial,
     TrialOutcome,
@@ -172,13 +171,6 @@ def session(study: Path, store: Path) -> subprocess.Popen[str]:
         text=True,
         env={**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
     )
-
-
-def texts(plan: StudyPlan, path: Path) -> list[str]:
-    """Every row of a store, in the order of the study."""
-    with Store(path) as store:
-        assert store._data.execute("PRAGMA integrity_check").fetchone() == ("ok",)
-        return [row.text() for row in study_rows(plan, store)]
 
 
 def killed_at(running: subprocess.Popen[str], rng: random.Random, most: int) -> bool:

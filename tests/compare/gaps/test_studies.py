@@ -1,10 +1,10 @@
-import re
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from support.small_studies import HEAD, OPTIMIZERS, RUNS, STUDY, written
+from support.refusals import Refusal, each_refusal
+from support.small_studies import HEAD, OPTIMIZERS, RUNS, STUDY, texts, written
 from trajgap.compare.gaps import (
     Bracket,
     Engine,
@@ -41,11 +41,6 @@ def whole(plan: StudyPlan, engine: Engine, tmp_path_factory: pytest.TempPathFact
     with Store(path) as store:
         run_study(plan, store, engine)
     return path
-
-
-def texts(plan: StudyPlan, path: Path) -> list[str]:
-    with Store(path) as store:
-        return [row.text() for row in study_rows(plan, store)]
 
 
 def test_every_combination_is_a_row_in_the_order_of_the_file(plan: StudyPlan, whole: Path) -> None:
@@ -184,43 +179,10 @@ def test_a_fault_inside_a_list_is_named_alone(tmp_path: Path) -> None:
         load_study(path)
 
 
-@pytest.mark.parametrize(
-    ("old", "new", "said"),
-    [
-        ("format = 1", "", "format: is missing; write `format = 1`"),
-        ("format = 1", "format = 2", "format: is 2; write `format = 1`"),
-        ("format = 1", "format = [", "not valid TOML"),
-        ("budget = 120", "budgets = 120", "budgets: unknown key; did you mean 'budget'?"),
-        ("budget = 120", "budget = 0", "budget: 0 is out of range; give at least 1"),
-        ("budget = 120", "budget = 1.5", "budget: "),
-        ("seeds = 4", "seeds = true", "seeds: "),
-        ("seeds = 4", "seeds = 0", "seeds: 0 is out of range; give at least 1"),
-        ("seconds = 60", "seconds = 0", "seconds: "),
-        ('"stretch"]', '"squeeze"]', "handlings[1]: 'squeeze' is not allowed; use"),
-        ('"stretch"]', '"death-penalty"]', "handlings: death-penalty is named twice; name it once"),
-        ('case = "mine.toml"', "", "problems[0].case: is missing; add it"),
-        ("mine.toml", "mine.tml", "mine.tml: no such file; check the path"),
-        ('coupling = "shared"', 'problems = "x"', "problems[0].case: "),
-        ('coupling = "shared"', 'readings = ["plain", "other"]', "reading"),
-        ('coupling = "shared"', "coupling = 1", "problems[0].coupling: "),
-        ('name = "pso"', 'name = "psso"', "optimizers[0].settings[0]: "),
-        ('name = "pso"', 'nam = "pso"', "optimizers[0].nam: unknown key; did you mean 'name'?"),
-        ("particles = 12", "particls = 12", "optimizers[0].settings[1]: pso: particls: unknown"),
-        ("particles = 12", "particles = nan", "optimizers[0].settings[1]: "),
-        ("{ particles = 12 }", "{ particles = 10, inertia = 0.65 }", "optimizers: pso {"),
-        ("optimizers:draws", "optimizers:drws", "optimizers[1]: "),
-        ("support.optimizers:draws", "pymop:DE", "optimizers[1]: "),
-    ],
-)
-def test_bad_input_is_one_line_with_file_and_field(
-    tmp_path: Path, old: str, new: str, said: str
-) -> None:
-    assert old in STUDY
-    path = written(tmp_path, STUDY.replace(old, new))
-    with pytest.raises(CaseError, match=re.escape(said)) as caught:
-        load_study(path)
-    assert str(caught.value).startswith(str(path))
-    assert "\n" not in str(caught.value)
+@each_refusal("studies")
+def test_each_fault_is_one_line_with_file_and_field(one: Refusal, tmp_path: Path) -> None:
+    path = written(tmp_path, one.text(STUDY))
+    one.said_by(lambda: load_study(path), f"{path}: ")
 
 
 def test_a_problem_that_the_objective_cannot_judge_is_refused(tmp_path: Path) -> None:

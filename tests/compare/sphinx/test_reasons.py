@@ -131,8 +131,3 @@ def test_a_whole_name_keeps_to_that_curve() -> None:
     assert {one.curve for one in instances_of("C2 cubic")} == {"C2 cubic"}
     assert {one.curve for one in select_curve("C2 cubic")} > {"C2 cubic"}
     assert instances_of(None) == list_instances()
-
-
-def test_a_curve_that_no_instance_has_is_an_error_with_those_that_there_are() -> None:
-    with pytest.raises(TrajgapError, match=r"no curve is called 'nonic'; known: .*C4 quintic"):
-        instances_of("nonic")

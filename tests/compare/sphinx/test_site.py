@@ -1,13 +1,15 @@
 """The site: results are fresh, every figure in prose is a key into them, and a wrong key fails."""
 
-import importlib.util
 import io
 import json
 import re
+import runpy
 import shutil
 import warnings
 from collections import Counter
+from functools import cache
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from support.checkout import ROOT
@@ -34,23 +36,13 @@ NO_RESULT = {"3.11": "the least Python, held by test_house", "1.0.0": "a version
 """Numbers with a point that are no figures."""
 
 
+@cache
 def program(name):
-    spec = importlib.util.spec_from_file_location(name, SITE / f"{name}.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
-def rebuilding():
-    return program("rebuild")
-
-
-def tables():
-    return program("tables")
+    return SimpleNamespace(**runpy.run_path(str(SITE / f"{name}.py")))
 
 
 def test_the_results_are_fresh():
-    made = rebuilding()
+    made = program("rebuild")
     lock = json.loads((SITE / "results" / "lock.json").read_text(encoding="utf-8"))
     assert lock["results"] == RESULTS.hashes, "a result was edited; run docs/rebuild.py"
     assert lock["code"] == made.code_hash(), "the code has changed; run docs/rebuild.py"
@@ -58,7 +50,7 @@ def test_the_results_are_fresh():
 
 def test_the_table_of_papers_in_the_readme_is_made_from_the_results():
     text = (ROOT / "README.md").read_text(encoding="utf-8")
-    assert text == rebuilding().readme(text)
+    assert text == program("rebuild").readme(text)
     papers = [n for n in RESULTS.names if RESULTS.case(n)["source"]["kind"] == "paper"]
     assert len(papers) > 4
     assert sorted(re.findall(r"\]\(docs/reports/(.+)\.md\)", text)) == papers
@@ -102,10 +94,6 @@ def test_no_figure_stands_in_prose_without_its_key(path):
     assert found == set(FIGURES.get(name, {}))
 
 
-def test_each_document_with_figures_is_there():
-    assert set(FIGURES) <= {path.relative_to(ROOT).as_posix() for path in PROSE}
-
-
 def digits(figure):
     return re.match(r"[\d.e-]+", figure)[0]
 
@@ -114,7 +102,10 @@ def explained(document, figure, said):
     """Whether a figure without a key stands where its reason says."""
     kind, _, place = said.partition(": ")
     if kind == "table":
-        return digits(figure) in tables().markdown(place) and f"<!-- csv: {place} -->" in document
+        return (
+            digits(figure) in program("tables").markdown(place)
+            and f"<!-- csv: {place} -->" in document
+        )
     if kind == "test":  # reads the page, or says why the value is so
         path = ROOT / place
         return place.startswith("tests/") and path.exists()
@@ -139,6 +130,7 @@ def test_a_figure_without_a_key_has_a_reason_that_holds():
         document = (ROOT / name).read_text(encoding="utf-8")
         assert explained(document, figure, said), (name, figure, said)
     assert len(EXPLAINED) > 50
+    assert set(FIGURES) <= {path.relative_to(ROOT).as_posix() for path in PROSE}
     for said in ("table: study-cost", "printed: irb460", "code: heuristics/hazards.py", "defined: ",
                  "test: tests/no_such_test.py", "once: python benchmarks/no_such.py"):  # fmt: skip
         assert not explained("<!-- csv: study-cost -->", "0.731", said)
@@ -152,7 +144,7 @@ def test_a_figure_in_prose_is_what_the_result_says(figure, key):
 
 
 def test_tables_of_measurements_are_those_of_their_files():
-    made, named = tables(), []
+    made, named = program("tables"), []
     for path in PROSE:
         text = path.read_text(encoding="utf-8")
         assert made.filled(text) == text, f"{path.name}: run `python docs/tables.py`"
@@ -164,7 +156,7 @@ def test_tables_of_measurements_are_those_of_their_files():
 
 
 def test_a_printed_table_is_taken_as_it_stands():
-    made = tables()
+    made = program("tables")
     printed = 'Told before.\n| a | b, c |\n|---|---|\n| 1.5 | `x` |\n|  | "y" |\n'
     text = made.taken(printed, "python benchmarks/x.py")
     assert text == '# python benchmarks/x.py\na,"b, c"\n1.5,`x`\n,"""y"""\n'

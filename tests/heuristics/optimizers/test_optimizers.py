@@ -3,26 +3,34 @@
 import sys
 import threading
 import time
+import tomllib
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 from scipy import optimize
-from support import faulty
+from support import optimizers
+from support.refusals import Refusal, each_refusal
 from support.two_joints import OPEN, PROBLEM, two_joints
 from trajgap.heuristics import (
     KINDS,
     PSO,
     Bounds,
     DeathPenalty,
+    External,
+    differential_evolution,
+    dual_annealing,
     evaluations_of,
     find_optimizer,
+    one_by_one,
     run,
     run_within,
     search_box,
+    shgo,
     uniform_rescaling,
 )
+from trajgap.heuristics.budget import Budgeted, BudgetSpent
 from trajgap.heuristics.time_limit import TimeSpent, time_limit
 from trajgap.problem import Limits, TrajgapError, Verdict, check
 
@@ -110,54 +118,30 @@ def test_one_shared_duration_is_uniform_rescaling() -> None:
         assert found.durations == pytest.approx(uniform_rescaling(PROBLEM), rel=1e-9)
 
 
-@pytest.mark.parametrize(
-    ("name", "settings", "said"),
-    [
-        ("support.faulty:fair", {"membres": 9}, "membres: unknown setting; did you mean 'members'"),
-        ("support.faulty:raises", {"step": 1}, "step: unknown setting; it has none"),
-        (faulty.fair, {"membres": 9}, "support.faulty:fair: membres: unknown setting"),
-        ("time:sleep_not", {}, "has no 'sleep_not'"),
-        ("support.faulty:generator_of", {}, "is called with fun, bounds, budget and rng; it takes"),
-        ("scipy:direct", {"maxitr": 9}, "scipy:direct: maxitr: unknown setting; did you mean"),
-        ("pso", {"particls": 3}, "pso: particls: unknown setting"),
-        ("psoo", {}, "optimizer 'psoo': unknown; did you mean 'pso'"),
-        ("scipy:diferential_evolution", {}, "did you mean 'scipy:differential_evolution'"),
-        ("scipy:de", {}, "scipy:de: unknown; did you mean 'scipy:differential_evolution'"),
-        ("de", {}, "did you mean 'scipy:differential_evolution'"),
-        ("scipy:DA", {}, "did you mean 'scipy:dual_annealing'"),
-        ("differential_evolution", {}, "did you mean 'scipy:differential_evolution'"),
-        ("dual_anealing", {}, "did you mean 'scipy:dual_annealing'"),
-        ("nowhere_at_all:f", {}, "module 'nowhere_at_all' cannot be imported"),
-        ("mine.py:f", {}, "mine.py:f: names a file; write mine:f, in the folder that holds mine"),
-        ("evolve", {}, "A function of yours is called module:function, such as mine:evolve"),
-        ("support.faulty:g", {}, "module 'support.faulty' has no 'g'; check its name"),
-        ("support.faulty:FAULTS", {}, "is no function"),
-        ("mealpy:OriginalWO", {}, "mealpy:OriginalWO: unknown; did you mean 'mealpy:OriginalWOA'"),
-        ("pymoo:DEE", {}, "pymoo:DEE: unknown; did you mean 'pymoo:DE'"),
-        ("pygmo:sad", {}, "pygmo:sad: unknown; did you mean 'pygmo:sade'"),
-    ],
-)
-def test_what_cannot_be_called_is_refused_before_it_runs(
-    name: Any, settings: dict[str, Any], said: str
-) -> None:
-    if str(name).partition(":")[0] in ("mealpy", "pymoo", "pygmo"):
-        pytest.importorskip(name.partition(":")[0])
-    with pytest.raises(TrajgapError, match=said):
-        find_optimizer(name, 90, **settings)
+@each_refusal("optimizers")
+def test_what_cannot_be_called_is_refused_before_it_runs(one: Refusal) -> None:
+    package = one.name.partition(":")[0]
+    if package in ("mealpy", "pymoo", "pygmo"):
+        pytest.importorskip(package)
+    with pytest.raises(TrajgapError) as caught:
+        find_optimizer(one.name, 90, **tomllib.loads(one.new))
+    assert one.is_said(str(caught.value))
 
 
 def test_what_has_no_signature_or_takes_anything_is_left_to_itself() -> None:
-    assert find_optimizer("support.faulty:anything", 90, whatever=3).iterations == 89
+    assert find_optimizer("support.optimizers:anything", 90, whatever=3).iterations == 89
     assert find_optimizer(dict, 90, whatever=3).iterations == 89
     for word in ("seed", "rng"):  # scipy takes both, and its signature names one
         assert find_optimizer("scipy:differential_evolution", 90, **{word: 1}).iterations == 89
 
 
 def test_a_function_by_itself_and_by_its_name() -> None:
-    given = run_within(find_optimizer(faulty.fair, 90, members=9), PROBLEM, 2, 90)
-    named = run_within(find_optimizer("support.faulty:fair", 90, members=9), PROBLEM, 2, 90)
+    given = run_within(find_optimizer(optimizers.fair, 90, members=9), PROBLEM, 2, 90)
+    named = run_within(find_optimizer("support.optimizers:fair", 90, members=9), PROBLEM, 2, 90)
     assert given.totals.tobytes() == named.totals.tobytes()
     assert given.evaluations == 90
+    with pytest.raises(TrajgapError, match=r"optimizers:fair: membres: unknown"):
+        find_optimizer(optimizers.fair, 90, membres=9)
     drawn = generator(2).uniform(0.1, 3.0, (9, 3))
     assert given.totals[8] == np.min(DeathPenalty(PROBLEM, np.inf)(drawn))
 
@@ -173,16 +157,13 @@ def test_a_function_of_the_working_folder(tmp_path: Path, monkeypatch: pytest.Mo
 # --- what an optimiser must not do ----------------------------------------------------------------
 
 
-NAMES = [function.__name__ for function in faulty.FAULTS]
-
-
-@pytest.mark.parametrize(("function", "said"), faulty.FAULTS.items(), ids=NAMES)
+@pytest.mark.parametrize(("function", "said"), optimizers.FAULTS.items())
 def test_each_fault_has_its_message(function: object, said: str) -> None:
     with pytest.raises((TrajgapError, ZeroDivisionError), match=said):
         run_within(find_optimizer(function, 40), PROBLEM, 0, 40)
 
 
-@pytest.mark.parametrize("function", [faulty.hangs, faulty.spins])
+@pytest.mark.parametrize("function", [optimizers.sleeps, optimizers.spins])
 def test_what_hangs_is_interrupted(function: object) -> None:
     began = time.monotonic()
     with pytest.raises(TrajgapError, match=r"took longer than 0.2 s; raise the time limit"):
@@ -261,3 +242,149 @@ def test_a_problem_whose_box_cannot_be_found() -> None:
     bounds = Bounds(np.zeros(3), np.full(3, np.inf))
     with pytest.raises(TrajgapError, match="random: needs finite duration bounds"):
         find_optimizer("random", 10).search(bounds, generator(0), lambda x: x.sum(axis=1))
+
+
+# --- searches that own their loop: same objective, same account, same budget ----------------------
+
+SCIPY = (differential_evolution(), dual_annealing(iterations=40), shgo())
+
+
+def drawing(objective, bounds, rng):
+    """Random search in batches of seven, for ever."""
+    while True:
+        objective(rng.uniform(bounds.lower, bounds.upper, (7, bounds.lower.size)))
+
+
+def test_differential_evolution_is_scipys() -> None:
+    """The same generator and objective, handed to scipy directly, give the same bits."""
+    found = run(differential_evolution(maxiter=20, polish=False), PROBLEM, 5)
+    judged = []
+
+    def objective(x: np.ndarray) -> np.ndarray:
+        judged.append(x.shape[1])
+        return DeathPenalty(PROBLEM, 1e6)(x.T)
+
+    rng = np.random.Generator(np.random.PCG64(5))
+    result = optimize.differential_evolution(
+        objective, [(0.1, 3.0)] * 3, rng=rng, maxiter=20, polish=False, vectorized=True,
+        updating="deferred",
+    )  # fmt: skip
+    assert found.evaluations == sum(judged)
+    np.testing.assert_array_equal(found.durations, result.x)
+    assert found.reported_time == result.fun
+
+
+def test_any_callable_and_its_budget() -> None:
+    search = External("random", drawing, iterations=9, per_iteration=10)
+    found = run(search, PROBLEM, 2)
+    rng = np.random.Generator(np.random.PCG64(2))
+    x = np.concatenate([rng.uniform(0.1, 3.0, (7, 3)) for _ in range(15)])[:100]
+    totals = np.minimum.accumulate(DeathPenalty(PROBLEM)(x))
+    np.testing.assert_array_equal(found.trace, totals[9::10])
+    assert found.evaluations == 100
+    assert (found.iterations, found.settings) == (9, search)
+
+
+def test_a_search_that_ends_early_keeps_what_it_has() -> None:
+    def twice(objective, bounds, rng):
+        objective(np.full((5, 3), 2.9))
+        objective(np.full((5, 3), 2.0))
+
+    found = run(External("twice", twice, iterations=4, per_iteration=4), PROBLEM, 0)
+    np.testing.assert_allclose(found.trace, [8.7, 6.0, 6.0, 6.0, 6.0])
+    assert found.evaluations == 10
+
+
+def test_an_answer_is_the_first_of_equally_good_ones() -> None:
+    rows = np.array([[2.0, 1.5, 2.5], [2.5, 1.5, 2.0], [2.9, 2.9, 2.9]])
+    found = run(External("three", lambda objective, *_: objective(rows)), PROBLEM, 0)
+    np.testing.assert_array_equal(found.durations, rows[0])
+
+
+def test_a_search_cannot_swallow_the_end_of_its_budget() -> None:
+    def stubborn(objective, bounds, rng):
+        while True:
+            try:
+                drawing(objective, bounds, rng)
+            except Exception:
+                continue
+
+    assert run(External("stubborn", stubborn, iterations=3), PROBLEM, 0).evaluations == 120
+
+
+def test_one_by_one() -> None:
+    single = one_by_one(lambda x: x.sum(axis=1))
+    assert single(np.array([1.0, 2.5])) == 3.5
+    assert isinstance(single(np.array([1.0])), float)
+
+
+def test_a_range_of_its_own() -> None:
+    found = run(differential_evolution(position_range=(0.2, 4.0)), OPEN, 0)
+    assert ((found.durations >= 0.2) & (found.durations <= 4.0)).all()
+    seen = []
+    search = External("look", lambda o, bounds, r: seen.append(bounds) or o(np.ones((1, 3))))
+    run(External("look", search.searching, position_range=(0.05, 1.0)), PROBLEM, 0)
+    np.testing.assert_array_equal([seen[0].lower, seen[0].upper], [[0.1] * 3, [1.0] * 3])
+
+
+def given(**changes: object) -> External:
+    return External(**{"kind": "x", "searching": drawing, **changes})
+
+
+def asking(shape: tuple[int, ...]) -> External:
+    return given(searching=lambda objective, *_: objective(np.ones(shape)))
+
+
+REFUSED = [
+    (lambda: given(iterations=-1), "^x: iterations: expected a whole number of 0 or more, got -1"),
+    (lambda: given(per_iteration=0), "^x: per_iteration: expected a whole number of 1 or more, g"),
+    (lambda: given(penalty=0), "^x: penalty: expected a positive number, got 0"),
+    (lambda: given(position_range=(2.0, 1.0)), "^x: position_range: give two numbers, the smaller"),
+    (lambda: given(searching=3), "^x: searching: expected a callable"),
+    (
+        lambda: run(given(position_range=(4.0, 5.0)), PROBLEM, 0),
+        "^x: position_range: lies outside the duration",
+    ),
+    *(
+        (lambda s=s: run(s, OPEN, 0), f"^{s.kind}: needs finite duration bounds; give")
+        for s in SCIPY
+    ),
+    *(
+        (
+            lambda name=name: differential_evolution(**{name: 1}),
+            f"^diff.*: {name}: is set by the run",
+        )
+        for name in ("rng", "seed", "workers")
+    ),
+    (
+        lambda: run(given(searching=lambda *_: None), PROBLEM, 0),
+        "^x: judged no position; call the objective",
+    ),
+    *(
+        (lambda s=shape: run(asking(s), PROBLEM, 0), r"^objective: .* \(batch, 3\).* as x\[None\]")
+        for shape in ((3,), (2, 4), (1, 2, 3))
+    ),
+]
+
+
+@pytest.mark.parametrize(("call", "message"), REFUSED)
+def test_what_cannot_be_searched_is_refused(call: Callable[[], object], message: str) -> None:
+    with pytest.raises(TrajgapError, match=message):
+        call()
+
+
+def test_a_spent_budget_judges_nothing_more() -> None:
+    calls = []
+
+    def objective(x: np.ndarray) -> np.ndarray:
+        calls.append(len(x))
+        return x[:, 0]
+
+    budgeted = Budgeted(objective, 1, 3)
+    np.testing.assert_array_equal(budgeted(np.array([[5.0], [4.0]])), [5.0, 4.0])
+    for _ in range(2):
+        with pytest.raises(BudgetSpent):
+            budgeted(np.array([[3.0], [2.0]]))
+    assert calls == [2, 1]
+    assert budgeted.totals.tolist() == [5.0, 4.0, 3.0]
+    np.testing.assert_array_equal(budgeted.best, [3.0])

@@ -12,14 +12,11 @@ from trajgap.nlp import Status, random_starts, solve_per_joint
 from trajgap.nlp.optimum import solve
 from trajgap.problem import (
     Limits,
-    Problem,
-    TrajgapError,
     Verdict,
     evaluate,
     load_case,
     quintic_spline,
     solve_in_closed_form,
-    uniform_cubic_b_spline,
 )
 
 POLISH = "irb1600-ga-cubic-bspline"
@@ -118,15 +115,6 @@ def test_degree_5_at_the_waypoints_has_the_optimum_of_the_quintic_spline() -> No
     assert found.total_time == pytest.approx(other.total_time, rel=1e-9)
 
 
-def test_segments_in_which_nothing_moves() -> None:
-    curve = uniform_cubic_b_spline(2, "stretched")
-    still = solve(Problem([[0.4], [0.4]], Limits(1.0, 2.0), curve))
-    assert still.status is Status.NOT_ATTAINED
-    assert still.infimum == 0
-    bounded = solve(Problem([[0.4], [0.4]], Limits(1.0, 2.0), curve, 0.3))
-    assert bounded.total_time == pytest.approx(0.3)
-
-
 @pytest.mark.parametrize("time", ["stretched", pytest.param("timed", marks=pytest.mark.slow)])
 def test_bounds_positions_and_impossible_limits(time: str) -> None:
     problem, _ = uniform(time, 34, count=4, joints=2)
@@ -144,8 +132,6 @@ def test_bounds_positions_and_impossible_limits(time: str) -> None:
     assert solve(replace(problem, limits=wide), starts=2).total_time == pytest.approx(
         free.total_time, rel=1e-8
     )
-    with pytest.raises(TrajgapError, match=r"initial: expected shape \(starts, 3\)"):
-        solve(problem, initial=[[1.0, 1.0]])
 
 
 def test_each_joint_by_itself() -> None:

@@ -82,15 +82,6 @@ def test_joints_by_themselves_give_the_same_total(ratios) -> None:
     assert (span.lowest, span.highest) == pytest.approx((own, own + 0.01), rel=1e-12)
 
 
-def test_the_ratios_of_all_joints_hold_for_each() -> None:
-    problem = Problem(Q, LIMITS, cubic_spline(3), ratios="chord")
-    lengths = np.linalg.norm(np.diff(Q, axis=0), axis=1)
-    for one in (problem, problem.joint(0), problem.joint(1), problem.hull):
-        np.testing.assert_allclose(one.shares, lengths / lengths.sum(), rtol=1e-14)
-    alone = np.abs(np.diff(Q[:, 0]))
-    assert not np.allclose(alone / alone.sum(), problem.shares)
-
-
 def test_a_path_that_leaves_its_range_is_not_mended_by_time() -> None:
     limits = replace(LIMITS, position_upper=[1.31, 1.1])
     problem = Problem(Q, limits, cubic_spline(3), ratios=RATIOS)
@@ -122,20 +113,6 @@ def test_a_joint_that_may_not_move() -> None:
     still = Q.copy()
     still[:, 1] = 0.5
     assert shortest(Problem(still, Limits([1.0, 0.0]), cubic_spline(3), ratios="equal")) > 0
-
-
-@pytest.mark.parametrize(
-    "problem",
-    [
-        Problem(Q, Limits(joints=2), cubic_spline(3), ratios="equal"),
-        Problem(np.zeros((3, 1)), Limits(1.0), cubic_spline(2), ratios="equal"),
-    ],
-)
-def test_nothing_keeps_the_total_from_zero(problem: Problem) -> None:
-    answer = solve(problem)
-    assert answer.status is Status.NOT_ATTAINED
-    assert answer.boundless is not None
-    assert answer.best == 0.0
 
 
 def test_a_jump_at_the_ratios_is_named() -> None:

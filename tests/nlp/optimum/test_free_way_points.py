@@ -6,13 +6,11 @@ import numpy as np
 import pytest
 from scipy.interpolate import make_interp_spline
 from scipy.optimize import minimize
-from trajgap.nlp import Status, certify
+from trajgap.nlp import Status
 from trajgap.nlp.optimum import solve
 from trajgap.problem import (
-    Interpolant,
     Limits,
     Problem,
-    TrajgapError,
     Verdict,
     check,
     cubic_spline,
@@ -119,12 +117,3 @@ def test_a_segment_at_a_virtual_break_that_shrinks_is_no_optimum() -> None:
     longer = solve(bounded, starts=2)
     assert longer.status is Status.CONVERGED
     assert longer.total_time > solution.total_time
-
-
-@pytest.mark.parametrize(
-    "curve",
-    [quintic_spline(5, virtual=(1, 3)), cubic_spline(5, virtual=(1, 4))],
-)
-def test_no_proof_is_claimed_of_such_curves(curve: Interpolant) -> None:
-    with pytest.raises(TrajgapError, match="the conditions do not determine the curve"):
-        certify(Problem(Q, LIMITS, curve, duration_lower=0.2))

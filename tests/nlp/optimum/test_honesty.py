@@ -8,6 +8,9 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 from support.benchmarks import loaded
+from support.case_texts import case_text
+from support.near_problems import NEAR
+from support.two_joints import TURNING
 from trajgap.compare import audit
 from trajgap.nlp import Solution, Status, solve_per_joint
 from trajgap.nlp.optimum import feasibility, limit_rows, solve
@@ -31,41 +34,6 @@ from trajgap.problem import (
     uniform_cubic_b_spline,
 )
 
-HEAD = """
-format = 1
-id = "near"
-title = "solver"
-[source]
-[robot]
-name = "r"
-joints = ["1"]
-[units]
-position = "rad"
-velocity = "rad/s"
-acceleration = "rad/s^2"
-jerk = "rad/s^3"
-time = "s"
-"""
-NATURAL_NEAR = """
-[waypoints]
-joint_rows = [[0.656747, 0.147626, 0.147625]]
-[limits]
-velocity = 0.796
-acceleration = 2.0
-[interpolant]
-family = "cubic-spline"
-end_orders = [2]
-"""
-QUINTIC_NEAR = Problem(
-    [[-0.9916], [1.6801773], [1.6801763], [0.5139]], Limits(0.00692, 0.00022), quintic_spline(3)
-)
-BOXED = Problem(
-    [[-0.6432], [1.66535], [1.33154], [-1.05607], [0.75371]],
-    Limits(2.24057, 2.87475, 6.80544),
-    cubic_spline(4),
-    [0.767, 0.352, 0.405, 0.378],
-    [2.408, 1.594, 1.740, 2.077],
-)
 CLAIMS = """
 [[claims]]
 id = "keeps"
@@ -81,44 +49,24 @@ of = ["keeps"]
 """
 
 
-def case(*parts: str):
-    return parse_case("".join((HEAD, *parts)), "near.toml")
-
-
-@pytest.mark.parametrize(
-    ("problem", "passes"),
-    [
-        (case(NATURAL_NEAR).problem(), [0.64009, 0.00000125908]),
-        (QUINTIC_NEAR, [700.6, 0.00076, 280.2]),
-        (BOXED, [1.9765, 0.9903, 1.7399, 2.0769]),
-    ],
-    ids=["natural", "quintic", "boxed"],
-)
-def test_no_answer_is_worse_than_a_motion_that_passes(
-    problem: Problem, passes: list[float]
-) -> None:
-    assert check(problem, passes).verdict is Verdict.PASS
-    solution = solve(problem)
-    assert solution.status is Status.CONVERGED
-    assert solution.best <= sum(passes)
-    assert check(problem, solution.durations).verdict is Verdict.PASS
-
-
 def test_an_audit_never_calls_best_known_what_its_own_checks_undercut() -> None:
-    report = audit(case(NATURAL_NEAR, CLAIMS), seeds=2, certify_seconds=0)
+    text = case_text(
+        "joint_rows = [[0.656747, 0.147626, 0.147625]]",
+        'family = "cubic-spline"\nend_orders = [2]',
+        joints="1",
+        unit="rad",
+        limits="velocity = 0.796\nacceleration = 2.0",
+        more=CLAIMS,
+    )
+    report = audit(parse_case(text, "near.toml"), seeds=2, certify_seconds=0)
     optimum = report.cases[0].study.optimum("main", "as-printed")
     assert optimum.best < 0.64009 + 0.00000125908
     relaxed = report.cases[0].study.relaxed("main", "as-printed")
     assert relaxed.best <= optimum.best * (1 + 1e-9)
 
 
-def two_joints() -> Problem:
-    q = np.array([[0.3, 1.0], [0.9, 0.2], [0.5, 0.4], [1.4, 0.8]])
-    return Problem(q, Limits([1.0, 2.0], 3.0), three_five_three())
-
-
 def test_a_known_motion_is_never_undercut_by_the_answer() -> None:
-    problem = replace(two_joints(), duration_upper=[9.0, 9.0, 9.0])
+    problem = replace(TURNING, duration_upper=[9.0, 9.0, 9.0])
     best = solve(problem)
     poor = solve(problem, initial=[[8.9, 8.9, 8.9]], known=best.durations)
     assert poor.best <= best.best * (1 + 1e-9)
@@ -132,13 +80,13 @@ def test_a_known_motion_is_kept_where_the_solver_finds_nothing(
 ) -> None:
     from trajgap.nlp.optimum import solver
 
-    problem = two_joints()
+    problem = TURNING
     known = 1.3 * solve(problem).durations
 
     def lost(one: Problem, *_: object) -> Solution:
         return Solution(one, Status.NONE_FOUND, "lost")
 
-    monkeypatch.setattr(solver, "_searched", lambda one, *_, **__: lost(one))
+    monkeypatch.setattr(solver, "_widely", lambda one, *_: lost(one))
     monkeypatch.setattr(solver, "_stretched_start", lambda one, *_: lost(one))
     assert solve(problem).status is Status.NONE_FOUND
     found = solve(problem, known=known)
@@ -147,7 +95,7 @@ def test_a_known_motion_is_kept_where_the_solver_finds_nothing(
 
 
 def test_known_motions_of_each_joint_and_of_free_curves() -> None:
-    problem = two_joints()
+    problem = TURNING
     own = solve(problem.joint(1))
     known = {"2": own.durations}
     answer = solve_per_joint(
@@ -162,14 +110,19 @@ def test_known_motions_of_each_joint_and_of_free_curves() -> None:
 
 def test_known_motions_of_a_wrong_shape_are_refused() -> None:
     with pytest.raises(TrajgapError, match=r"known: expected shape \(starts, 3\)"):
-        solve(two_joints(), known=[[1.0, 2.0]])
+        solve(TURNING, known=[[1.0, 2.0]])
     with pytest.raises(TrajgapError, match=r"known_nodal: expected shape \(1, 0, 2\)"):
-        solve(two_joints(), known=[[1.0, 2.0, 1.0]], known_nodal=[[[1.0]]])
+        solve(TURNING, known=[[1.0, 2.0, 1.0]], known_nodal=[[[1.0]]])
 
 
 @pytest.mark.parametrize(
     ("change", "reason"),
     [
+        ({"limits": Limits([0.0, 2.0], 3.0)}, "joint 1 moves, but its velocity limit is 0"),
+        ({"limits": Limits([1.0, 2.0], [3.0, 0.0])}, "joint 2 moves, but its acceleration limit"),
+        ({"duration_upper": 0.2}, "needs at least"),
+        ({"limits": Limits([[-0.5, 1.0], [-2, 1.1]]), "duration_upper": 0.1}, "velocity limit"),
+        ({"limits": Limits(1.0, 3.0, np.inf, -1.0, 1.0, joints=2)}, "outside its position limits"),
         (
             {"limits": Limits(acceleration=3.0, joints=2), "duration_upper": [0.6, 9.0, 9.0]},
             "joint 1 needs at least 0.632455 s from rest to way-point 1 at its acceleration",
@@ -197,10 +150,11 @@ def test_known_motions_of_a_wrong_shape_are_refused() -> None:
     ],
 )
 def test_infeasible_is_said_with_a_proof(change: dict[str, object], reason: str) -> None:
-    problem = replace(two_joints(), **change)
+    problem = replace(TURNING, **change)
     solution = solve(problem)
     assert solution.status is Status.INFEASIBLE
     assert reason in str(solution.why)
+    assert solution.total_time == np.inf
     # A second route: no motion of a dense grid within the bounds passes.
     upper = np.minimum(problem.duration_upper, 3.0)
     grid = np.stack(np.meshgrid(*[np.linspace(0.2, 1.0, 7)] * 3), axis=-1).reshape(-1, 3)
@@ -294,7 +248,7 @@ def test_exact_rows_have_the_gradients_of_their_excesses(
 
 
 def test_a_descent_starts_outside_the_limits_and_ends_within() -> None:
-    problem = BOXED
+    problem, _ = NEAR["boxed"]
     box = LogBox(np.log(problem.duration_lower), np.log(problem.duration_upper))
     start = np.sqrt(problem.duration_lower * problem.duration_upper)
     assert check(problem, start).verdict is Verdict.VIOLATED
@@ -343,7 +297,7 @@ def test_brute_force_improves_no_answer_and_contradicts_no_word(seed: int) -> No
 
 def test_the_benchmark_sees_wrong_words_and_improvable_answers() -> None:
     errors = loaded("solver_errors")
-    problem = two_joints()
+    problem = TURNING
     brute = errors.brute_force(problem, 0)
     good = solve(problem)
     assert errors.judged(good, brute) == ""

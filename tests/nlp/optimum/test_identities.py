@@ -9,14 +9,13 @@ import numpy as np
 import pytest
 from support.b_splines import uniform
 from support.long_problems import long_problem
+from support.same_question import DRESSES, OWN_UNITS, SLOWER, same_question
 from support.small_problems import small_problem
 from support.uneven import CURVES as UNEVEN
 from support.uneven import uneven_problem
 from trajgap.nlp import Route, Solution, Status, kkt, with_other_route
 from trajgap.nlp.optimum import solve
 from trajgap.problem import (
-    Curve,
-    Interpolant,
     Limits,
     Problem,
     Verdict,
@@ -29,7 +28,6 @@ from trajgap.problem import (
     three_five_three,
     uniform_cubic_b_spline,
 )
-from trajgap.problem.curves import Derivatives
 
 Q = np.array([[0.2, -1.0, 0.7], [0.9, 0.3, 0.1], [0.4, 1.1, -0.8], [1.3, 0.6, 0.2]])
 LIMITS = Limits([1.5, 2.0, 1.0], [4.0, 6.0, 5.0], [30.0, 50.0, 40.0])
@@ -86,66 +84,14 @@ ROUGH = {"uneven, free": 1e-6, "timed at ratios": 2e-8, "long, uneven": 1e-6}
 """Relative differences of totals beyond 1e-8: other optima nearby, or blurred by rounding."""
 
 
-def with_ends(curve: Curve, first: Derivatives, last: Derivatives) -> Curve:
-    assert isinstance(curve, Interpolant)
-    return piecewise(curve.degrees, curve.continuity[0], first, finish=last)
-
-
-def moved(at: Derivatives, factors: np.ndarray, pace: float) -> Derivatives:
-    """Prescribed derivatives times a factor for each joint, in another unit of time."""
-    return tuple((r, tuple(np.broadcast_to(v, factors.shape) * factors * pace**r)) for r, v in at)
-
-
-def prescribed(problem: Problem) -> tuple[Derivatives, Derivatives] | None:
-    """Derivatives at both ends, where they are not 0."""
-    ends = problem.curve.ends if isinstance(problem.curve, Interpolant) else ((), ())
-    moving = any(np.any(v) for at in ends for _, v in at)
-    return (ends[0], ends[1]) if moving else None
-
-
-def renamed(problem: Problem, pace: float) -> Problem:
-    """Joints in another order, all mirrored and in other units, a clock that runs faster."""
-    joints = problem.waypoints.shape[1]
-    order, unit = np.roll(np.arange(joints), 1), np.linspace(0.8, 57.3, joints)
-    given = problem.limits
-    # Mirrored, every lower side is an upper one.
-    sides = given.sides[::-1][:, order] * unit[:, None] * pace ** np.arange(1, 4)
-    limits = given.with_sides(sides).with_positions(
-        unit * (3.0 - given.position_upper[order]), unit * (3.0 - given.position_lower[order])
-    )
-    curve, ends = problem.curve, prescribed(problem)
-    if ends is not None:
-        first, last = (
-            tuple((r, tuple(np.broadcast_to(v, joints)[order])) for r, v in at) for at in ends
-        )
-        curve = with_ends(curve, moved(first, -unit, pace), moved(last, -unit, pace))
-    return replace(
-        problem,
-        waypoints=(3.0 - problem.waypoints[:, order]) * unit,
-        limits=limits,
-        curve=curve,
-        duration_lower=problem.duration_lower / pace,
-        duration_upper=problem.duration_upper / pace,
-    )
-
-
-def backwards(problem: Problem) -> Problem:
-    """Velocities and jerks change their sides, and prescribed ones their sign."""
-    sides = problem.limits.sides.copy()
-    sides[:, :, [0, 2]] = sides[::-1][:, :, [0, 2]]
-    curve, ends = problem.curve, prescribed(problem)
-    if ends is not None:
-        ones = np.ones(problem.waypoints.shape[1])
-        curve = with_ends(curve, moved(ends[1], ones, -1.0), moved(ends[0], ones, -1.0))
-    return replace(
-        problem,
-        waypoints=problem.waypoints[::-1],
-        limits=problem.limits.with_sides(sides),
-        curve=curve,
-        duration_lower=problem.duration_lower[::-1],
-        duration_upper=problem.duration_upper[::-1],
-        ratios=None if problem.ratios is None else problem.ratios[::-1],
-    )
+def dressed(problem: Problem) -> Problem:
+    """The same question in every other dress at once, and somewhere else."""
+    h = np.ones(problem.segments)
+    for dress in (*DRESSES[1:-1], OWN_UNITS):
+        problem, h = same_question(dress, problem, h)
+    limits = problem.limits
+    moved = limits.with_positions(limits.position_lower + 3.0, limits.position_upper + 3.0)
+    return replace(problem, waypoints=problem.waypoints + 3.0, limits=moved)
 
 
 @cache
@@ -159,12 +105,12 @@ def optimum(name: str) -> Solution:
 
 @pytest.mark.parametrize("name", PROBLEMS)
 def test_units_names_mirrors_and_the_way_back(name: str) -> None:
-    problem, pace = PROBLEMS[name], 1.7
+    problem = PROBLEMS[name]
     found, near = optimum(name), ROUGH.get(name, 1e-8)
     if problem.shares is None:
         assert kkt(problem, found.durations, found.nodal).residual <= 1e-7
-    other = solve(backwards(renamed(problem, pace)))
-    assert other.total_time == pytest.approx(found.total_time / pace, rel=near)
+    other = solve(dressed(problem))
+    assert other.total_time == pytest.approx(SLOWER * found.total_time, rel=near)
 
 
 @pytest.mark.parametrize("name", PROBLEMS)

@@ -12,7 +12,8 @@ from scipy.optimize import brentq, differential_evolution, fsolve, minimize_scal
 from trajgap.nlp import Solution, Status
 from trajgap.nlp.optimum import solve
 from trajgap.nlp.optimum.closed_forms import joined
-from trajgap.nlp.optimum.jumps import as_answer, jump_equations, matched, same_motions, smoother
+from trajgap.nlp.optimum.feasibility import forbidden_jumps
+from trajgap.nlp.optimum.jumps import as_answer, same_motions, smoother
 from trajgap.problem import (
     Array,
     Interpolant,
@@ -25,6 +26,7 @@ from trajgap.problem import (
     piecewise,
     rest_to_rest,
     three_five_three,
+    uniform_cubic_b_spline,
 )
 
 REST, STILL = ((1, 0.0),), ((1, 0.0), (2, 0.0))
@@ -291,47 +293,53 @@ def test_none_is_found_where_brute_force_has_none() -> None:
 @cache
 def without_a_jump() -> Array:
     """The only durations of that one joint, which two tests look at."""
-    ((found, _),) = matched(determined(ON), 0)
-    return found
+    return solve(determined(ON)).durations
 
 
 def test_bounds_on_the_durations_hold() -> None:
     free = without_a_jump()
     low = np.array([0.0, 2.0 * free[1], 0.0])
-    ((longer, _),) = matched(determined(ON, duration_lower=low), 0)
+    longer = solve(determined(ON, duration_lower=low)).durations
     np.testing.assert_allclose(longer, 2.0 * free, rtol=1e-6)
-    assert matched(determined(ON, duration_upper=0.9 * free), 0) == []
+    short = solve(determined(ON, duration_upper=0.97 * free))
+    assert short.status is Status.NONE_FOUND
 
 
 def test_proportional_joints_share_the_ratios() -> None:
     both = Problem(
         np.column_stack([ON, 0.5 - 0.4 * ON]), Limits([V] * 2, [A] * 2, [J] * 2), DETERMINED
     )
-    ((shared, _),) = matched(both, 0)
-    np.testing.assert_allclose(shared, without_a_jump(), rtol=1e-6)
+    np.testing.assert_allclose(solve(both).durations, without_a_jump(), rtol=1e-6)
     other = Problem(
         np.column_stack([ON, TURNING_BACK]), Limits([V] * 2, [A] * 2, [J] * 2), DETERMINED
     )
-    assert matched(other, 0) == []
+    assert solve(other).status is Status.NONE_FOUND
 
 
 @pytest.mark.parametrize(
-    "curve",
+    ("problem", "places"),
     [
-        cubic_spline(3),
-        rest_to_rest(3, 3),
-        piecewise((3, 3, 3), 1, ((1, 0.0),)),
-        piecewise((3, 3, 3), 1, ((1, 0.0), (2, 0.3))),
+        (determined(ON, cubic_spline(3)), []),
+        (determined(ON), [(1, 2, 0), (2, 2, 0)]),
+        (Problem(ON[:, None], Limits([V], [A], joints=1), DETERMINED), []),
+        (determined(ON, piecewise((1, 3, 3), 0, ())), [(b, r, 0) for b in (1, 2) for r in (1, 2)]),
+        (determined(np.full(4, 0.3)), []),
+        (determined(ON, uniform_cubic_b_spline(4, "timed")), []),
     ],
-    ids=["smooth", "each segment by itself", "free speeds", "no stretch"],
+    ids=["smooth", "acceleration", "no jerk limit", "velocity", "still", "B-spline"],
 )
-def test_where_nothing_is_to_be_matched(curve: object) -> None:
-    assert matched(determined(ON, curve), 0) == []
+def test_jumps_that_the_declaration_allows_and_the_limits_forbid(
+    problem: Problem, places: list[tuple[int, int, int]]
+) -> None:
+    assert forbidden_jumps(problem) == places
 
 
-def test_without_a_jerk_limit_nothing_is_matched() -> None:
-    problem = Problem(ON[:, None], Limits([V], [A], joints=1), DETERMINED)
-    assert matched(problem, 0) == []
+def test_an_acceleration_that_is_prescribed_is_no_obstacle() -> None:
+    """Its motions cannot be stretched: the NLP holds them by its equations alone."""
+    problem = determined(ON, piecewise((3, 3, 3), 1, ((1, 0.0), (2, 0.3)), finish=STILL))
+    solution = solve(problem)
+    assert solution.status is Status.FEASIBLE
+    assert check(problem, solution.durations).verdict is Verdict.PASS
 
 
 TOO_FEW = piecewise((3, 2, 3), 1, ((1, 0.0),))
@@ -409,14 +417,9 @@ def test_there_is_none_where_the_middle_turns_back() -> None:
 BOTH = np.column_stack([ONWARDS, 0.5 - 0.4 * ONWARDS])
 
 
-def test_two_joints_have_two_equations_for_two_ratios() -> None:
-    assert jump_equations(problem_through(BOTH)) == (2, 2)
-
-
-@pytest.mark.slow
 def test_joints_whose_equations_are_the_same_share_the_shortest_motion() -> None:
-    (shared, *_) = matched(problem_through(BOTH), 0)
-    assert shared[0].sum() == pytest.approx(shortest().total_time, rel=1e-5)
+    shared = solve(problem_through(BOTH))
+    assert shared.total_time == pytest.approx(shortest().total_time, rel=1e-9)
 
 
 def test_more_equations_than_ratios_are_named() -> None:
@@ -427,7 +430,7 @@ def test_more_equations_than_ratios_are_named() -> None:
 
 
 def test_without_a_jerk_limit_the_acceleration_may_jump() -> None:
-    assert jump_equations(problem_through(ONWARDS, np.inf)) == (0, 2)
+    assert forbidden_jumps(problem_through(ONWARDS, np.inf)) == []
     solution = solve(problem_through(ONWARDS, np.inf))
     assert solution.status is Status.CONVERGED
     assert solution.total_time < shortest_by_force()

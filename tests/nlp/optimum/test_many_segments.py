@@ -1,20 +1,17 @@
 """Many segments: the sparse search beside the tracked NLP, identities, every status."""
 
-from dataclasses import replace
 from functools import cache
 
 import numpy as np
 import pytest
 from support.long_problems import long_curves, long_problem
 from trajgap.nlp import Solution, Status
-from trajgap.nlp.optimum import search as search_module
-from trajgap.nlp.optimum import solve, solver
+from trajgap.nlp.optimum import rounds, solve, solver
 from trajgap.nlp.optimum.closed_forms import CUT_SHORT
-from trajgap.nlp.optimum.limit_rows import Rows
 from trajgap.nlp.optimum.optimality import kkt
+from trajgap.nlp.optimum.pieces import Rows
 from trajgap.nlp.optimum.program import Program
-from trajgap.nlp.optimum.rounds import carried, near_rows, with_loaded
-from trajgap.nlp.optimum.search import program_search
+from trajgap.nlp.optimum.rounds import beside, carried, near_rows, program_search
 from trajgap.nlp.optimum.starts import way_start, worst_ratios
 from trajgap.problem import (
     Interpolant,
@@ -28,7 +25,6 @@ from trajgap.problem import (
     fit,
     quintic_spline,
 )
-from trajgap.problem.curves import Places
 
 SEGMENTS = 26
 
@@ -167,60 +163,54 @@ def test_a_round_that_fails_begins_again_from_the_best_motion(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     problem, total = long_problem(CURVES["cubic"]), solved("cubic").total_time
-    round_ = search_module.solve_round
-    calls: list[int] = []
+    round_ = rounds.solve_round
+    calls: list[tuple[float, float]] = []
 
     def failing(
-        program: Program, rows: Rows, state: object, turn: int, within: object
-    ) -> tuple[np.ndarray, bool, int, float]:
-        duals, success, count, seconds = round_(program, rows, state, turn, within)  # type: ignore[arg-type]
-        calls.append(turn)
-        return duals, success and len(calls) != 2, count, seconds
+        program: Program,
+        rows: Rows,
+        state: object,
+        stage: tuple[float, float],
+        within: object,
+    ) -> tuple[bool, int, float]:
+        success, count, seconds = round_(program, rows, state, stage, within)  # type: ignore[arg-type]
+        calls.append(stage)
+        return success and len(calls) != 2, count, seconds
 
-    monkeypatch.setattr(search_module, "solve_round", failing)
+    monkeypatch.setattr(rounds, "solve_round", failing)
     again = solve(problem)
-    assert calls[:4] == [0, 1, 0, 1]
+    assert calls[:4] == [*rounds.STAGES[:2]] * 2
     assert again.status is Status.CONVERGED
     # From another start it may end at a neighbouring optimum: these two are 1.6e-7 apart.
     assert again.total_time == pytest.approx(total, rel=1e-6)
 
 
-def test_multipliers_go_to_the_rows_that_continue_theirs() -> None:
-    def rows(*places: tuple[int, int, int, float, float]) -> Rows:
-        j, k, r, s, sign = (np.array(column) for column in zip(*places, strict=True))
-        return Rows(Places(j, k, r, s), sign, np.zeros(len(places)))
+def rows(*places: tuple[int, int, int, float, float]) -> Rows:
+    return Rows(np.column_stack([np.array(places).reshape(-1, 5), np.full(len(places), 0.5)]))
 
+
+def test_multipliers_go_to_the_rows_that_continue_theirs() -> None:
     before = rows((0, 3, 1, 0.2, 1.0), (0, 3, 1, 0.8, 1.0), (1, 3, 1, 0.5, 1.0), (0, 4, 2, 0.9, -1))
     duals = np.array([1.0, 2.0, 3.0, 4.0])
     after = rows(
-        (0, 3, 1, 0.75, 1.0), (0, 3, 1, 0.95, 1.0), (0, 3, 1, 0.75, -1.0), (1, 3, 2, 0.5, 1.0),
-        (0, 4, 2, 0.1, -1), (0, 5, 2, 0.9, -1), (1, 3, 1, 0.51, 1.0),
+        (0, 3, 1, 0.75, 1.0), (0, 3, 1, 0.15, 1.0), (0, 3, 1, 0.75, -1.0), (1, 3, 2, 0.5, 1.0),
+        (0, 4, 2, 0.1, -1), (0, 5, 2, 0.9, -1), (1, 3, 1, 0.51, 1.0), (0, 3, 1, 0.95, 1.0),
     )  # fmt: skip
-    assert carried(before, duals, after).tolist() == [2.0, 0.0, 0.0, 0.0, 4.0, 0.0, 3.0]
-    none = rows((0, 0, 1, 0.5, 1.0))
-    none = replace(none, sign=none.sign[:0], places=Places(*(np.zeros(0, int),) * 3, np.zeros(0)))
-    assert carried(none, np.zeros(0), after).tolist() == [0.0] * 7
-    assert carried(before, duals, none).size == 0
+    assert carried(before, duals, after).tolist() == [2.0, 1.0, 0.0, 0.0, 4.0, 0.0, 3.0, 0.0]
+    # One that took two places hands on what both had.
+    assert carried(before, duals, rows((0, 3, 1, 0.6, 1.0))).tolist() == [3.0]
+    assert carried(rows(), np.zeros(0), after).tolist() == [0.0] * 8
+    assert carried(before, duals, rows()).size == 0
 
 
-def test_a_row_with_a_multiplier_stays_until_an_extremum_is_beside_it() -> None:
-    problem = long_problem(CURVES["cubic"])
-    program = Program(problem, 1.0, np.zeros(SEGMENTS))
-
-    def rows(*places: tuple[int, int, float, float]) -> Rows:
-        k, r, s, sign = (np.array(column) for column in zip(*places, strict=True))
-        return Rows(Places(np.zeros_like(k), k, r, s), sign, np.full(len(places), 0.5))
-
-    before = rows((1, 1, 0.2, 1.0), (3, 1, 0.2, 1.0), (4, 1, 0.2, 1.0), (5, 1, 0.2, -1.0))
-    now = rows((0, 1, 0.9, 1.0), (3, 1, 0.21, 1.0), (4, 1, 0.7, 1.0), (5, 1, 0.2, 1.0))
-    duals = np.array([2e-3, 2e-3, 2e-3, -2e-3])
-    found = with_loaded(program, before, duals, now, 1e-3)
-    rows_found = zip(found.places.segment, found.places.s, found.sign, found.weight, strict=True)
-    assert sorted(tuple(map(float, one)) for one in rows_found) == [
-        (0, 0.9, 1, 0.5), (1, 0.2, 1, 0), (3, 0.21, 1, 0.5), (4, 0.2, 1, 0), (4, 0.7, 1, 0.5),
-        (5, 0.2, -1, 0), (5, 0.2, 1, 0.5),
-    ]  # fmt: skip
-    assert with_loaded(program, before, duals, now, 1e-2) is now
+def test_a_row_stays_until_an_extremum_is_beside_it() -> None:
+    before = rows((0, 1, 1, 0.2, 1.0), (0, 3, 1, 0.2, 1.0), (0, 4, 1, 0.2, 1.0), (0, 5, 1, 0.2, -1))
+    now = rows((0, 0, 1, 0.9, 1.0), (0, 3, 1, 0.21, 1.0), (0, 4, 1, 0.7, 1.0), (0, 5, 1, 0.2, 1.0))
+    found = beside(now, before)
+    assert found.table[:4].tolist() == now.table.tolist()
+    assert found.table[4:, [1, 3, 4]].tolist() == [[1, 0.2, 1], [4, 0.2, 1], [5, 0.2, -1]]
+    assert not found.weight[4:].any()
+    assert beside(rows(), before).sign.size == 4
 
 
 def test_the_excess_is_that_of_the_batch_evaluator() -> None:

@@ -14,10 +14,11 @@ import pytest
 from attacks.nasty import answered, nasty, rebuilt
 from scipy.interpolate import CubicSpline
 from support.near_problems import NEAR
+from support.two_joints import TURNING
 from trajgap.nlp import Solution, Status, certify
-from trajgap.nlp.optimum import limit_rows, optimality, solve, solver
-from trajgap.nlp.optimum.closed_forms import straight_durations
-from trajgap.nlp.optimum.decided import decided
+from trajgap.nlp.optimum import limit_rows, solve, solver
+from trajgap.nlp.optimum.closed_forms import straight_shares
+from trajgap.nlp.optimum.decided import decided, incumbent
 from trajgap.nlp.optimum.limit_rows import exact_rows
 from trajgap.nlp.optimum.optimality import kkt
 from trajgap.nlp.proofs import exact_problem
@@ -32,7 +33,6 @@ from trajgap.problem import (
     piecewise,
     quintic_spline,
     rest_to_rest,
-    three_five_three,
 )
 
 MISSED = json.loads(Path(__file__).with_name("missed.json").read_text("utf-8"))
@@ -57,10 +57,8 @@ def test_no_known_durations_are_missed(kept: dict) -> None:
     answered(problem, h)
 
 
-@pytest.mark.parametrize("number", [119, *range(4)])
-def test_seeded_nasty_problems(number: int, tmp_path: Path) -> None:
-    """119: its total falls far below floors of 1e-4."""
-    nasty(np.random.default_rng([20261123, number]), tmp_path)
+def test_a_total_that_falls_far_below_floors_of_1e_4(tmp_path: Path) -> None:
+    nasty(np.random.default_rng([20261123, 119]), tmp_path)
 
 
 BEATEN = 338
@@ -80,11 +78,6 @@ def test_the_one_that_is_beaten(tmp_path: Path) -> None:
     nasty(np.random.default_rng([20261123, BEATEN]), tmp_path)
 
 
-def two_joints() -> Problem:
-    q = np.array([[0.3, 1.0], [0.9, 0.2], [0.5, 0.4], [1.4, 0.8]])
-    return Problem(q, Limits([1.0, 2.0], 3.0), three_five_three())
-
-
 def near_coincident() -> Problem:
     """Way-points 9e-10 apart: a search comes to durations at which rounding hides the spline."""
     q = [[0.00018505375872587249], [-6.026289978938524e-05], [-6.0263766136627984e-05]]
@@ -102,8 +95,7 @@ def test_rounding_that_hides_a_spline_is_undecided_and_raises_nothing(
     def singular(*_: object) -> None:
         raise SingularError("singular", 0)
 
-    for module in (limit_rows, optimality):
-        monkeypatch.setattr(module, "fit", singular)
+    monkeypatch.setattr(limit_rows, "fit", singular)
     assert exact_rows(problem, np.array(hidden)).worst == np.inf
     assert kkt(problem, np.array(hidden)).residual == np.inf
 
@@ -115,7 +107,7 @@ def test_a_search_among_singular_splines_ends() -> None:
 
 
 def test_a_value_approached_is_called_infimum_only_where_that_is_proved() -> None:
-    problem = two_joints()
+    problem = TURNING
     open_ = Solution(problem, Status.NOT_ATTAINED, vector=np.ones(3), infimum=2.5)
     assert "infimum" not in str(open_)
     assert "approached      2.500000000 s as a duration goes to 0: an estimate" in str(open_)
@@ -126,20 +118,17 @@ def test_a_value_approached_is_called_infimum_only_where_that_is_proved() -> Non
 
 def test_a_known_motion_counts_stretched_until_it_keeps_the_limits() -> None:
     """The same ratios at 0.3 and at 4 times the durations are worth as much as tight ones."""
-    problem = two_joints()
-    best = solve(problem)
-    poor = np.array([[9.0, 0.5, 0.5]])
+    problem = TURNING
+    best = solve(problem).durations
     for factor in (0.3, 4.0):
-        asked = solver.asked(problem, 1, 0, poor, factor * best.durations, None, 0.0)
-        worse = Solution(problem, Status.FEASIBLE, vector=poor[0])
-        found = solver._with_known(problem, worse, asked)
-        assert found.total_time == pytest.approx(best.total_time, rel=1e-8)
-        assert found.check.verdict is Verdict.PASS
+        known = incumbent(problem, factor * np.stack([2.0 * best[::-1], best]), None)
+        assert known.durations == pytest.approx(best, rel=1e-8)
+        assert check(problem, known.durations).verdict is Verdict.PASS
 
 
 def test_no_answer_depends_on_the_clock(monkeypatch: pytest.MonkeyPatch) -> None:
     """Under a clock on which each look takes an hour, as on a machine that does much else."""
-    problem = replace(two_joints(), duration_upper=[9.0, 9.0, 9.0])
+    problem = replace(TURNING, duration_upper=[9.0, 9.0, 9.0])
     exact = exact_problem(problem)
     asked = {"gap": 1e-9, "seconds": math.inf, "boxes": 40}
     before, proved = solve(problem), certify(exact, **asked)
@@ -206,12 +195,10 @@ def test_a_motion_at_its_duration_bound_is_decided_by_a_descent() -> None:
 def test_where_a_stretch_gives_a_feasible_motion_it_is_the_answer(
     monkeypatch: pytest.MonkeyPatch, curve: Interpolant
 ) -> None:
-    from trajgap.nlp.optimum import solver
-
     def lost(one: Problem, *_: object) -> Solution:
         return Solution(one, Status.FAILED, "lost")
 
-    monkeypatch.setattr(solver, "_searched", lambda one, *_, **__: lost(one))
+    monkeypatch.setattr(solver, "_widely", lambda one, *_: lost(one))
     monkeypatch.setattr(solver, "_programmed", lambda one, *_: lost(one))
     problem = Problem(np.array([[0.3], [1.1], [0.2]]), Limits(1.0, 2.0, joints=1), curve)
     solution = solve(problem)
@@ -275,5 +262,5 @@ def test_joints_on_one_line_share_it_and_bounds_above_do_not_matter() -> None:
     ids=["velocity", "rest", "rest-5", "lower bound", "turn", "still", "bend"],
 )
 def test_what_is_no_line_or_is_limited_is_searched(other: Problem) -> None:
-    assert straight_durations(LINE) is not None
-    assert straight_durations(other) is None
+    assert straight_shares(LINE) is not None
+    assert straight_shares(other) is None

@@ -13,8 +13,8 @@ from support.small_problems import FAMILIES, small_problem
 from support.uneven import CURVES as UNEVEN
 from support.uneven import uneven_problem
 from trajgap.nlp import build
+from trajgap.nlp.optimum.program import Program
 from trajgap.nlp.optimum.rounds import near_rows
-from trajgap.nlp.optimum.search import program_of
 from trajgap.nlp.optimum.starts import first_nodal
 from trajgap.problem import (
     Array,
@@ -72,7 +72,7 @@ def _durations(problem: Problem) -> Array:
 def test_expressions_are_those_of_the_fitted_curve(name: str) -> None:
     problem = (DECLARED | SPLINES)[name]
     h, nodal = _durations(problem), first_nodal(problem)
-    program = program_of(problem, float(h.mean()), np.zeros(h.size))
+    program = Program(problem, float(h.mean()), np.zeros(h.size))
     trajectory = fit(problem.curve, problem.waypoints, h, nodal)
     rows = near_rows(program, trajectory, 0.1)
     values = program.at_places(rows.places, rows.weight)
@@ -108,13 +108,13 @@ def test_sides_of_rows_and_bounds_are_the_limits(name: str) -> None:
     problem = DECLARED[name]
     program = build(problem)
     low, high = program.bounds()
-    at_left, number = program.left_places()
     below, above = problem.limits.sides
-    for i, (j, r) in enumerate(zip(at_left.joint, at_left.order, strict=True)):
-        if r:
+    left = zip(program.left.joint, program.left.order, strict=True)
+    for i, (j, r) in enumerate(left, problem.segments):
+        if 1 <= r <= 3 and low[i] < high[i]:  # else it is given
             unit = program.unit**r / program.angle[j]
-            assert low[number[i]] == pytest.approx(-below[j, r - 1] * unit)
-            assert high[number[i]] == pytest.approx(above[j, r - 1] * unit)
+            assert low[i] == pytest.approx(-below[j, r - 1] * unit)
+            assert high[i] == pytest.approx(above[j, r - 1] * unit)
     for side, sign in ((below, -1.0), (above, 1.0)):
         for j in range(program.joints):
             for r in (1, 2, 3):
@@ -131,7 +131,7 @@ def test_a_place_follows_its_extremum_to_second_order() -> None:
     """Value and slope at a place that follows are those of the extremum that has moved."""
     problem = small_problem("C4 quintic", 1)
     h = _durations(problem)
-    program = program_of(problem, float(h.mean()), np.zeros(h.size))
+    program = Program(problem, float(h.mean()), np.zeros(h.size))
     trajectory = fit(problem.curve, problem.waypoints, h)
     rows = near_rows(program, trajectory, 0.5)
     moved = h * np.exp(1e-3 * np.random.default_rng(2).normal(size=h.size))
@@ -156,11 +156,12 @@ def test_a_program_says_what_it_consists_of() -> None:
     said = str(build(problem))
     assert said.splitlines()[:4] == [
         "minimise the sum of 3 segment durations",
-        "  curve        3-5-3 polynomials, 6 joint(s)",
-        "  variables    69: 3 durations, 66 derivatives at left ends of segments",
-        "  equalities   54: the declaration's conditions at right ends",
+        "  curve        3-5-3 polynomials, 6 joint(s), 3 pieces",
+        "  variables    69: 3 durations, 66 derivatives at left ends of pieces",
+        "  equalities   54: the curve's conditions at right ends",
     ]
     assert "velocity, acceleration" in said
     fixed = replace(problem, ratios="equal")
     assert "fixed ratios" in str(build(fixed))
-    assert "coordinates of control points" in str(build(SPLINES["averaged knots"]))
+    assert "way-points at their times" in str(build(SPLINES["averaged knots"]))
+    assert "variables    5: 5 durations\n" in str(build(SPLINES["timed"]))

@@ -24,32 +24,27 @@ from trajgap.problem import (
 )
 
 FOUND = ("three joints", "one joint", "twice", "entering")
+MISSED = ("a four thousandth", "billionths", "natural", "two near", "boxed")
+"""Of these a search once gave longer durations, and called them converged."""
 ONE_JOINT, ENTERING = NEAR["one joint"][0], NEAR["entering"][0]
 ROUNDED = 1 + 1e-9
 """Two searches that end in one optimum differ by rounding."""
 
 
-@pytest.mark.parametrize("seed", [0, *(pytest.param(k, marks=pytest.mark.slow) for k in (1, 2, 3))])
-@pytest.mark.parametrize("name", FOUND)
-def test_the_optimum_with_a_far_shorter_segment_is_found(name: str, seed: int) -> None:
+@pytest.mark.parametrize(
+    ("name", "seed"),
+    [
+        *((name, 0) for name in (*FOUND, *MISSED)),
+        *(pytest.param(name, k, marks=pytest.mark.slow) for name in FOUND for k in (1, 2, 3)),
+    ],
+)
+def test_no_answer_is_worse_than_a_motion_that_passes(name: str, seed: int) -> None:
     problem, h = NEAR[name]
     assert check(problem, h).verdict is Verdict.PASS
     solution = solve(problem, seed=seed)
-    assert solution.status is Status.CONVERGED or seed > 0
-    assert solution.total_time <= h.sum() * ROUNDED
-    assert solution.check.verdict is Verdict.PASS
-
-
-def test_a_way_of_a_four_thousandth_does_not_double_the_total() -> None:
-    """A wide search and one in each decade ended at 11.0149 s and called it converged."""
-    q = np.array(
-        [[1.484778779903787], [2.4527124613154476], [2.453231749977215], [3.635560953069724]]
-    )
-    limits = Limits(4.18091532271024, 1.5164655868293293, joints=1)
-    problem = Problem(q, limits, three_five_three())
-    h = np.array([2.508573678, 0.000448553, 3.063363273])
-    assert check(problem, h).verdict is Verdict.PASS
-    assert solve(problem).total_time <= h.sum()
+    assert solution.status is Status.CONVERGED or seed > 0 or name == "a four thousandth"
+    assert solution.best <= h.sum() * ROUNDED
+    assert check(problem, solution.durations).verdict is Verdict.PASS
 
 
 def test_the_same_reversed_in_time() -> None:
@@ -102,15 +97,3 @@ def test_segments_that_stand_alone_are_not_searched_again(monkeypatch: pytest.Mo
     monkeypatch.setattr("trajgap.nlp.optimum.solver.shortened", never)
     rows = np.array([[0.0], [1.0], [1.0001], [2.0]])
     assert solve(Problem(rows, Limits(1.0, 1.0, joints=1), rest_to_rest(3, 5))).total_time > 0
-
-
-def test_a_way_of_billionths_has_an_attained_optimum() -> None:
-    """Its duration cannot go to 0, since the way takes time at the velocity limit."""
-    q = np.array([[-1.01242], [-1.63634], [0.667012], [0.6670120075188035]])
-    problem = Problem(q, Limits(31.6217), cubic_spline(3))
-    # What differential evolution on samples found.
-    known = [0.0409030746, 0.109872101, 7.03078214e-10]
-    assert check(problem, known).verdict is Verdict.PASS
-    found = solve(problem)
-    assert found.status is Status.CONVERGED
-    assert found.best < sum(known)

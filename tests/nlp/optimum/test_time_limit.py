@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 import pytest
+from support.clocks import Ticking
 from trajgap.nlp import Solution, Status, certify
 from trajgap.nlp.optimum import (
     basins,
@@ -18,8 +18,8 @@ from trajgap.nlp.optimum import (
     stopping_after,
     time_up,
 )
-from trajgap.nlp.optimum.rounds import fresh, near_rows, solve_round
-from trajgap.nlp.optimum.search import program_of
+from trajgap.nlp.optimum.program import Program
+from trajgap.nlp.optimum.rounds import STAGES, begun, solve_round
 from trajgap.nlp.optimum.starts import box_above
 from trajgap.nlp.proofs import clock as proof_clock
 from trajgap.nlp.proofs import session
@@ -34,27 +34,10 @@ from trajgap.problem import (
     Verdict,
     check,
     cubic_spline,
-    fit,
     three_five_three,
     uniform_cubic_b_spline,
 )
 from trajgap.verify import OutOfTime
-
-
-@dataclass
-class Ticking:
-    """A clock that goes on by one second whenever somebody looks at it."""
-
-    now: float = 0.0
-    step: float = 1.0
-    looks: int = 0
-
-    def perf_counter(self) -> float:
-        self.now += self.step
-        self.looks += 1
-        return self.now
-
-    monotonic = perf_counter
 
 
 def ticking(monkeypatch: pytest.MonkeyPatch, step: float = 1.0) -> Ticking:
@@ -140,7 +123,7 @@ def test_an_estimate_stops_after_a_start(monkeypatch: pytest.MonkeyPatch) -> Non
 def test_the_answer_of_a_certification_has_a_share_of_the_time(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    ticks = Ticking(step=0.0)
+    ticks = Ticking()
     monkeypatch.setattr(proof_clock, "time", ticks)
     monkeypatch.setattr(clock, "time", ticks)
     one = Session(exact_problem(NEAR), Request(clock=proof_clock.RunClock(100.0)))
@@ -165,7 +148,7 @@ def test_a_certification_without_time_has_an_answer() -> None:
 
 def test_a_first_population_is_as_large_as_the_time_is_there_for() -> None:
     box = box_above(MANY, np.zeros(MANY.segments))
-    h = np.exp(np.random.default_rng(3).normal(size=(3 * basins.PART, MANY.segments)))
+    h = np.exp(np.random.default_rng(3).normal(size=(3 * basins.EVOLUTION.part, MANY.segments)))
     whole = basins.excess_and_total(MANY, h.copy(), box)
     with stopping_after(1e6):
         in_parts = basins._first(MANY, h.copy(), box)
@@ -173,8 +156,8 @@ def test_a_first_population_is_as_large_as_the_time_is_there_for() -> None:
         np.testing.assert_array_equal(one, other)
     with stopping_after(0.0):
         z, excess, total = basins._first(MANY, h.copy(), box)
-    assert len(z) == len(excess) == len(total) == basins.PART
-    np.testing.assert_array_equal(z, whole[0][: basins.PART])
+    assert len(z) == len(excess) == len(total) == basins.EVOLUTION.part
+    np.testing.assert_array_equal(z, whole[0][: basins.EVOLUTION.part])
 
 
 def test_the_windows_of_a_proof_look_at_the_clock() -> None:
@@ -223,14 +206,13 @@ def test_the_time_proves_nothing(status: Status, why: str | None, said: str) -> 
 
 
 def test_ipopt_keeps_its_limit(monkeypatch: pytest.MonkeyPatch) -> None:
-    program = program_of(MANY, 5.0, np.zeros(MANY.segments))
-    motion = fit(MANY.curve, MANY.waypoints, np.full(MANY.segments, 5.0))
-    rows, box = near_rows(program, motion, 0.0), (0.1 * motion.durations, 9.0 * motion.durations)
+    program = Program(MANY, 5.0, np.zeros(MANY.segments))
+    h = np.full(MANY.segments, 5.0)
     monkeypatch.setattr(rounds, "SHORTEST", 1e-6)
-    state = fresh(program, program.pack(motion, motion.durations))
+    state, rows = begun(program, (h, None))
     with stopping_after(-1.0):
-        _, success, iterations, _ = solve_round(program, rows, state, 0, box)
+        success, iterations, _ = solve_round(program, rows, state, STAGES[0], (0.1 * h, 9.0 * h))
     assert not success
     assert iterations <= 1
-    state = fresh(program, program.pack(motion, motion.durations))
-    assert solve_round(program, rows, state, 0, box)[1]
+    state, rows = begun(program, (h, None))
+    assert solve_round(program, rows, state, STAGES[0], (0.1 * h, 9.0 * h))[0]

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from support.clocks import Ticking
 from trajgap.nlp.proofs import clock, judged, session, state
 from trajgap.nlp.proofs.answer import prove_feasible
 from trajgap.nlp.proofs.certifiers import certify
@@ -58,11 +59,11 @@ def test_a_resumed_run_without_time_replays_nothing_and_loses_nothing(
 ) -> None:
     given = stopped()
     monkeypatch.setattr(state, "verify_certificate", lambda document, **_: verify(document))
-    steps: list[Any] = []
-    real = tree._follow
-    monkeypatch.setattr(tree, "_follow", lambda *data: (steps.append(data), real(*data)))
+    boxes: list[Any] = []
+    real = tree.TickBox
+    monkeypatch.setattr(tree, "TickBox", lambda own: (boxes.append(own), real(own))[1])
     found = certify(LONG, gap=1e-3, seconds=0.0, resume=given)
-    assert len(steps) == 1, "the first box, to which nothing was done"
+    assert len(boxes) == 1, "the first box, to which nothing was done"
     assert found.outcome is Outcome.INTERVAL
     assert (str(found.lower), str(found.upper)) == tuple(
         str(Fraction(given["claim"][side])) for side in ("lower", "upper")
@@ -71,18 +72,21 @@ def test_a_resumed_run_without_time_replays_nothing_and_loses_nothing(
     assert again["proposals"] == given["proposals"]
 
 
+def late(monkeypatch: pytest.MonkeyPatch, module: Any) -> list[float]:
+    """The seconds that a module gives a verifier which decides nothing in them."""
+    asked: list[float] = []
+    monkeypatch.setattr(
+        module, "verify_certificate", lambda _, seconds, **__: (asked.append(seconds), LATE)[1]
+    )
+    return asked
+
+
 @pytest.mark.parametrize("subject", list(Subject))
 def test_what_is_not_judged_in_time_is_not_certified_and_can_be_resumed(
     monkeypatch: pytest.MonkeyPatch, subject: Subject
 ) -> None:
-    asked: list[float] = []
-
-    def late(_: Any, seconds: float, spread: Any = None) -> CertificateVerdict:
-        asked.append(seconds)
-        return LATE
-
     with monkeypatch.context() as patch:
-        patch.setattr(judged, "verify_certificate", late)
+        asked = late(patch, judged)
         found = certify(QUICK, gap=0.01, seconds=50.0, subject=subject)
     (seconds,) = asked
     assert 0 < seconds < 50.0 + RunClock.spare
@@ -115,26 +119,10 @@ def test_what_a_state_proved_stays_if_the_rest_is_not_judged_in_time(
 
 def test_a_state_is_judged_within_the_time_limit(monkeypatch: pytest.MonkeyPatch) -> None:
     given = stopped()
-    asked: list[float] = []
-
-    def late(_: Any, seconds: float, spread: Any = None) -> CertificateVerdict:
-        asked.append(seconds)
-        return LATE
-
-    monkeypatch.setattr(state, "verify_certificate", late)
+    asked = late(monkeypatch, state)
     with pytest.raises(TrajgapError, match="the state is not proved"):
         certify(LONG, seconds=7.0, resume=given)
     assert asked == [pytest.approx(7.0 + RunClock.spare, abs=0.5)]
-
-
-class Ticking:
-    """A clock that goes on by a step whenever somebody looks at it."""
-
-    now, step = 0.0, 0.0
-
-    def perf_counter(self) -> float:
-        self.now += self.step
-        return self.now
 
 
 def waiting(monkeypatch: pytest.MonkeyPatch) -> tuple[Ticking, Session]:

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 from support.executors import LastFirst
+from support.proof_problems import QUINTIC
 from trajgap.nlp.proofs import certifiers, crew
 from trajgap.nlp.proofs.certifiers import certify
 from trajgap.nlp.proofs.crew import ProofCrew
@@ -58,12 +59,6 @@ def talking(common: str, number: int) -> int:
 
 def refusing(common: str, number: int) -> int:
     raise ValueError(f"{common} {number}")
-
-
-@pytest.fixture
-def at_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Processes are started for the first pieces."""
-    monkeypatch.setattr(crew.ProofCrew, "worth", 0.0)
 
 
 @pytest.mark.usefixtures("at_once")
@@ -144,14 +139,7 @@ def test_a_cubic_proof_does_not_depend_on_who_worked_on_it(
     alone = proof(certify(ROUGH, gap=0.01))
     assert sum(node[0] == "/" for node in alone[0]["tree"]) > 4, "too few boxes for several"
     assert proof(certify(ROUGH, gap=0.01, workers=2)) == alone
-    late, waited = LastFirst(), crew.wait
-
-    def finishing(futures: Any, timeout: float) -> Any:
-        late.finish(1)
-        return waited(futures, 0.0)
-
-    monkeypatch.setattr(crew, "wait", finishing)
-    assert proof(certify(ROUGH, gap=0.01, workers=4, executor=late)) == alone
+    assert proof(certify(ROUGH, gap=0.01, workers=4, executor=LastFirst(monkeypatch))) == alone
 
 
 @pytest.mark.usefixtures("at_once")
@@ -165,12 +153,15 @@ def test_at_the_time_limit_what_others_proved_is_kept() -> None:
 
 
 @pytest.mark.usefixtures("at_once")
-def test_a_bound_over_any_curve_does_not_depend_on_who_worked_on_it() -> None:
-    alone = certify(FAST, subject=Subject.ANY, gap=1e-6)
+@pytest.mark.parametrize(
+    ("problem", "subject", "gap"), [(FAST, Subject.ANY, 1e-6), (QUINTIC, Subject.DECLARED, 0.05)]
+)
+def test_no_other_proof_does(problem: Problem, subject: Subject, gap: float) -> None:
+    alone = certify(problem, subject=subject, gap=gap)
     assert alone.nodes > 10, "too few boxes for several"
-    shared = certify(FAST, subject=Subject.ANY, gap=1e-6, workers=3)
+    shared = certify(problem, subject=subject, gap=gap, workers=3)
     assert proof(shared) == proof(alone)
-    assert shared.nodes == alone.nodes
+    assert (shared.nodes, shared.durations) == (alone.nodes, alone.durations)
 
 
 def test_no_process_begins_once_the_run_is_over() -> None:

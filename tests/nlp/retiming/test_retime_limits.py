@@ -6,11 +6,13 @@ import numpy as np
 import pytest
 from support.puma import PUMA, PUMA_LIMITS
 from support.retimed import PUMA_353, close, hermite, puma, rest_to_rest_time, trajectory
+from support.same_question import DRESSES, OWN_UNITS, same_question
 from trajgap.nlp.retiming.grid import measure, sample
 from trajgap.nlp.retiming.path import pieces
 from trajgap.nlp.retiming.toppra_check import retime, retime_joints
 from trajgap.problem import (
     Limits,
+    Problem,
     TrajgapError,
     cubic_spline,
     extrema,
@@ -20,17 +22,14 @@ from trajgap.problem import (
 )
 
 
-def test_permuted_mirrored_reversed_and_rescaled() -> None:
-    h = np.array([0.9, 0.8, 1.1])
+@pytest.mark.parametrize("dress", [*DRESSES[1:], OWN_UNITS])
+def test_another_dress_changes_no_time(dress: str) -> None:
     limits = Limits(np.linspace(2, 4, 6), np.linspace(5, 9, 6))
-    base = retime(fit(quintic_spline(3), PUMA, h), limits)
-    order = np.array([3, 0, 5, 1, 4, 2])
-    turned = Limits(limits.velocity[order], limits.acceleration[order])
-    assert close(retime(fit(quintic_spline(3), PUMA[:, order], h), turned), base.extrapolated)
-    assert close(retime(fit(quintic_spline(3), 1.0 - PUMA, h), limits), base.extrapolated)
-    assert close(retime(fit(quintic_spline(3), PUMA[::-1], h[::-1]), limits), base.extrapolated)
-    faster = Limits(3 * limits.velocity, 9 * limits.acceleration)
-    assert close(retime(fit(quintic_spline(3), PUMA, h), faster), base.extrapolated / 3)
+    problem, h = Problem(PUMA, limits, quintic_spline(3)), np.array([0.9, 0.8, 1.1])
+    other, durations = same_question(dress, problem, h)
+    base = retime(fit(problem.curve, PUMA, h), limits).extrapolated
+    found = retime(fit(other.curve, other.waypoints, durations), other.limits)
+    assert close(found, base * durations.sum() / h.sum())
 
 
 def test_each_joint_on_its_own_path() -> None:

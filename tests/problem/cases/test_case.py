@@ -10,8 +10,8 @@ from typing import Any
 import jsonschema
 import numpy as np
 import pytest
-from attacks.cases import MOVING
 from attacks.grammar import draw_case
+from attacks.judging import poses
 from support.base_case import BASE
 from support.checkout import ROOT
 from trajgap.problem.cases.case import Case
@@ -41,22 +41,7 @@ def test_drawn_files_pose_what_a_second_reading_says(draw):
         case = load(drawn.text)
         assert set(case.selections()) == set(drawn.asked)
         for pair, asked in drawn.asked.items():
-            one, near = case.problem(*pair), {"rtol": 1e-14, "atol": 0.0}
-            assert (one.joints, one.coupling) == (asked.labels, asked.coupling)
-            np.testing.assert_allclose(one.waypoints, asked.waypoints, **near)
-            np.testing.assert_allclose(one.limits.sides, asked.sides, **near)
-            for name in ("position_lower", "position_upper"):
-                np.testing.assert_allclose(
-                    getattr(one.limits, name), getattr(asked, name), err_msg=name, **near
-                )
-            for name in ("duration_lower", "duration_upper"):
-                np.testing.assert_allclose(getattr(one, name), getattr(asked, name), **near)
-            if asked.block["family"] in MOVING:
-                still = np.zeros(len(one.joints))
-                for given, wanted in zip(one.curve.ends, (asked.ends, asked.finish), strict=True):
-                    for order in dict(given).keys() | wanted.keys():
-                        value = dict(given).get(order, 0.0) + still
-                        np.testing.assert_allclose(value, wanted.get(order, still), **near)
+            poses(case.problem(*pair), asked, f"{pair}: ")
 
 
 def test_defaults():

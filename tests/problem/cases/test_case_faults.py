@@ -9,6 +9,7 @@ from decimal import Decimal
 from pathlib import Path
 
 import pytest
+from attacks.mutations import places
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from support.base_case import BASE
@@ -84,12 +85,10 @@ def test_files_that_cannot_be_read(tmp_path, data, reason):
     ("name", "message"),
     [
         ("none.toml", r"^none\.toml: no such file; check the path$"),
-        ("/dev/null", "^/dev/null: is not a regular file; name a text file$"),
-        ("/", "^/: is a directory; name a file in it$"),
         ("a\0b.toml", r"^a<U\+0000>b\.toml: no such file; check the path$"),
         ("x" * 5000 + ".toml", r"cannot be read .*; check the path"),
     ],
-    ids=["absent", "device", "folder", "null character", "long"],
+    ids=["absent", "null character", "long"],
 )
 def test_names_of_what_is_no_file(name, message):
     with pytest.raises(CaseError, match=message):
@@ -134,14 +133,6 @@ def test_unknown_ids(ask, message):
 RAW = tomllib.loads(BASE, parse_float=Decimal)
 
 
-def places(node, path=()):
-    """Every place in a document."""
-    yield path
-    if isinstance(node, dict | list):
-        for key, child in node.items() if isinstance(node, dict) else enumerate(node):
-            yield from places(child, (*path, key))
-
-
 JUNK = st.one_of(
     st.none(),
     st.booleans(),
@@ -157,7 +148,7 @@ JUNK = st.one_of(
 @given(st.data())
 def test_whatever_is_put_anywhere_either_loads_or_gives_one_line(data):
     raw = copy.deepcopy(RAW)
-    *above, last = data.draw(st.sampled_from([path for path in places(RAW) if path]))
+    *above, last = data.draw(st.sampled_from(places(RAW)))
     node = raw
     for key in above:
         node = node[key]

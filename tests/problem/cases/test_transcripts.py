@@ -62,13 +62,7 @@ FIRST = ROOT / "docs" / "examples"
 SECOND = sorted((ROOT / "tests" / "support" / "second_transcriptions").glob("*.toml"))
 
 # Examples from before, whose numbers stand a second time in tests of their own.
-IN_TESTS = {
-    "fang2020-task1",
-    "fang2020-task2",
-    "gasparetto-zanotto2008",
-    "two-joint-arm-c4-quintic",
-    "two-joint-arm-natural-cubic",
-}
+IN_TESTS = {"fang2020-task1", "fang2020-task2"}
 
 
 def test_every_other_example_is_typed_a_second_time() -> None:

@@ -6,12 +6,14 @@ import numpy as np
 import pytest
 from scipy.interpolate import BSpline, make_interp_spline
 from support.b_splines import INNER, SHARES, H, Q, clamped, given, printed, vector
+from support.papers.motions import averaged, chords, interpolated, nodes
 from trajgap.nlp import solve
 from trajgap.problem import (
     Array,
     ClampedBSpline,
     Count,
     CurveError,
+    Knots,
     Limits,
     Parameters,
     Problem,
@@ -59,53 +61,21 @@ def posed(name: str, seed: int = 0) -> tuple[Problem, Array]:
     return clamped(EACH[name], seed)
 
 
-def printed_knots(degree: int, u: Array, repeats: int) -> Array:
-    """(6) written as a loop over its index, on parameters repeated at the ends."""
-    sites = [u[0]] * repeats + list(u) + [u[-1]] * repeats
-    n = len(sites) - 1
-    inner = [sum(sites[i] for i in range(j, j + degree)) / degree for j in range(1, n - degree + 1)]
-    return np.array([u[0]] * (degree + 1) + inner + [u[-1]] * (degree + 1))
-
-
-def by_scipy(q: Array, sites: Array, knots: Array, degree: int) -> BSpline:
-    """Way-points at the sites, first and second derivative 0 at both ends, by scipy's bases."""
-    size = len(knots) - degree - 1
-    matrix = np.zeros((len(q) + 4, size))
-    for i in range(size):
-        unit = BSpline(knots, np.eye(size)[i], degree)
-        # scipy takes the last knot from the right; the last piece continues there.
-        matrix[: len(q), i] = unit(sites)
-        matrix[len(q) :, i] = [unit(x, r) for x in (sites[0], sites[-1]) for r in (1, 2)]
-    right = np.vstack([q, np.zeros((4, q.shape[1]))])
-    return BSpline(knots, np.linalg.solve(matrix, right), degree)
-
-
-def chords(q: Array) -> Array:
-    """(4) and (5) as a loop."""
-    lengths = [float(np.sqrt(((q[k] - q[k - 1]) ** 2).sum())) for k in range(1, len(q))]
-    u = [0.0]
-    for length in lengths:
-        u.append(u[-1] + length / sum(lengths))
-    return np.array(u)
-
-
 def independent(problem: Problem, h: Array, joint: int) -> tuple[BSpline, Array]:
     """One joint's spline in its parameter, and the parameter of each way-point."""
     curve, q = problem.curve, problem.waypoints
     assert isinstance(curve, ClampedBSpline)
-    times = np.concatenate([[0.0], np.cumsum(h)])
+    times = nodes(h)
     along = {"chord": chords(q), "joint-chord": chords(q[:, [joint]]), "given": np.array(SHARES)}
     u = times if curve.parameters == "times" else along[curve.parameters]
     sites = u if curve.time == "stretched" else times
     scale = sites[-1] / u[-1]
     if curve.knots == "given":
-        knots = np.array(vector(curve.degree)) * sites[-1]
-    elif curve.knots == "waypoints":
-        p = curve.degree
-        knots = np.concatenate([[0] * (p + 1), scale * u[1:-1], [sites[-1]] * (p + 1)])
+        inner = np.array(INNER[curve.degree]) * sites[-1]
     else:
-        knots = printed_knots(curve.degree, scale * u, 2)
-    return by_scipy(q[:, [joint]], sites, knots, curve.degree), sites
+        at = scale * u
+        inner = at[1:-1] if curve.knots == "waypoints" else averaged(at, curve.degree)
+    return interpolated(sites, q[:, [joint]], curve.degree, inner), sites
 
 
 # --- counts ---------------------------------------------------------------------------------------
@@ -139,13 +109,14 @@ def test_other_end_conditions_are_counted_too() -> None:
     rng = np.random.default_rng(1)
     q, h = rng.normal(size=(8, 2)) + 3, rng.uniform(0.8, 1.2, 7)
     t = np.concatenate([[0.0], np.cumsum(h)])
+    literal = np.concatenate([[t[0]] * 6, averaged(t, 5, 0), [t[-1]] * 6])
     whole = (0,) * 5 + (0.3, 0.62) + (1,) * 5
     one = [(1, np.zeros(2))]
     five = make_interp_spline(t[:5], q[:5], k=4, t=np.array(whole) * t[4], bc_type=(one, one))
     for curve, other in (
         (
             ClampedBSpline(8, 5, "averaged", "times", end_orders=()),
-            make_interp_spline(t, q, k=5, t=printed_knots(5, t, 0)),
+            make_interp_spline(t, q, k=5, t=literal),
         ),
         (
             ClampedBSpline(8, 3, "waypoints", "times", end_orders=(1,)),
@@ -252,6 +223,41 @@ def test_an_optimum_is_found_where_equal_durations_pass_no_curve() -> None:
     solution = solve(problem, starts=2)
     assert solution.found
     assert check(problem, solution.durations).verdict is Verdict.PASS
+
+
+def test_knots_are_numbers_of_one_kind_however_they_are_given():
+    whole = [0, 0, 0, 0, 0, 0.25, 0.5, 0.75, 1, 1, 1, 1, 1]
+    given = (whole, tuple(whole), np.array(whole))
+    curves = {ClampedBSpline(4, 4, Knots.GIVEN, Parameters.TIMES, knot_vector=one) for one in given}
+    assert len(curves) == 1
+    (curve,) = curves
+    assert curve.knot_vector == tuple(map(float, whole))
+    assert all(type(one) is float for one in curve.knot_vector)
+
+
+@pytest.mark.parametrize(("degree", "orders"), [(3, (1,)), (5, (1, 2))])
+def test_inner_knots_at_the_times_of_way_points_make_a_spline(
+    degree: int, orders: tuple[int, ...]
+) -> None:
+    curve = ClampedBSpline(5, degree, end_orders=orders)
+    rng = np.random.default_rng(degree)
+    q, h = rng.normal(size=(5, 2)), rng.uniform(0.5, 1.5, 4)
+    at = np.linspace(0.0, h.sum(), 41)
+    spline = curve.polynomial_form()
+    np.testing.assert_allclose(fit(spline, q, h)(at), fit(curve, q, h)(at), atol=1e-9)
+    assert spline is not curve
+    for knots, places in (
+        (Knots.WAYPOINTS, Parameters.CHORD),
+        (Knots.CONTINUED, Parameters.TIMES),
+    ):
+        other = ClampedBSpline(5, 5, knots, places)
+        assert other.polynomial_form() is other
+
+
+def test_segments_that_are_stretched_by_themselves_are_not_smooth():
+    for time, order in ((Timing.TIMED, 3), (Timing.STRETCHED, 0)):
+        curve = ClampedBSpline(5, 4, Knots.CONTINUED, Parameters.CHORD, time)
+        assert curve.smooth_order(2) == order
 
 
 # --- what is refused ------------------------------------------------------------------------------

@@ -8,6 +8,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 import pytest
+from support.exact_route import derived, value
 from support.samples import DECLARATIONS, FREE
 from trajgap.problem import Interpolant
 from trajgap.problem.curves import ConditionKind, Conditions, layout
@@ -27,9 +28,7 @@ def drawn(curve: Interpolant) -> tuple[list[Fraction], list[list[Fraction]]]:
 def derivative(c: list[Fraction], h: Fraction, order: int, end: bool) -> Fraction:
     """Of a polynomial in t, at one of its ends."""
     in_time = [x / h**p for p, x in enumerate(c)]
-    for _ in range(order):
-        in_time = [p * x for p, x in enumerate(in_time)][1:] or [Fraction(0)]
-    return sum((x * h**p for p, x in enumerate(in_time)), Fraction(0)) if end else in_time[0]
+    return value(derived(in_time, order), h if end else Fraction(0))
 
 
 def stated(table: Conditions, h: list[Fraction], c: list[list[Fraction]]) -> list[Fraction]:
@@ -100,5 +99,5 @@ def test_unknowns_are_what_no_row_gives_at_once_and_the_band_holds_them(name: st
     matrix = plan.dense(plan.entries[1])[~right][:, plan.unknown >= 0]
     assert matrix.shape == (plan.unknowns, plan.unknowns)
     equation, unknown = np.nonzero(matrix)
-    assert (equation - unknown).max(initial=0) == plan.lower
-    assert (unknown - equation).max(initial=0) == plan.upper
+    assert (equation - unknown).max(initial=0) == plan.bandwidths[0]
+    assert (unknown - equation).max(initial=0) == plan.bandwidths[1]

@@ -8,7 +8,7 @@ from functools import cache
 import numpy as np
 import pytest
 from support.b_splines import NATURAL, clamped, given, printed, uniform
-from support.positions import WAYPOINTS
+from support.positions import WAYPOINTS, position_ratios
 from support.same_question import DRESSES, SLOWER, same_question
 from support.samples import DECLARATIONS, FREE, sample_problem
 from trajgap.problem import (
@@ -141,11 +141,9 @@ def test_checker_batch_and_dense_samples_agree(name: str, uneven: bool) -> None:
         sampled = np.maximum(0.0, np.maximum(-least / below, most / above))
         assert (sampled <= found.ratios[0, :, r] * (1 + 1e-9) + 1e-9).all()
         assert found.ratios[0, :, r] == pytest.approx(sampled, rel=1e-4, abs=1e-6)
-    least, most = ends(problem, h, nodal, 0).T
-    low, high = limits.position_lower, limits.position_upper
-    half = np.where(np.isfinite(high - low), (high - low) / 2, 1.0)
-    half[0], half[1] = max(1.0, abs(high[0])), max(1.0, abs(low[1]))
-    dense = 1 + np.maximum(low - least, most - high) / half
+    dense = position_ratios(
+        ends(problem, h, nodal, 0), limits.position_lower, limits.position_upper
+    )
     assert found.positions[0] == pytest.approx(dense, abs=1e-5)
 
 

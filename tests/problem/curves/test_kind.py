@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from trajgap.heuristics import PSO, run
 from trajgap.nlp import Status, solve
-from trajgap.nlp.optimum.search import program_of
+from trajgap.nlp.optimum.program import Program
 from trajgap.problem import Array, Limits, Problem, TrajgapError, Verdict, check, fit
 from trajgap.problem.curves import MAX_COEFFICIENTS, quintic_spline, solve_in_closed_form
 from trajgap.problem.curves.kind import Shape
@@ -84,6 +84,6 @@ def test_a_kind_without_expressions_is_refused_by_name() -> None:
     q = np.array([[0.1], [0.9], [-0.3], [0.4]])
     problem = Problem(q, Limits(1.0), Unsolved())
     with pytest.raises(TrajgapError, match="curve: no NLP is known for chords; use another curve"):
-        program_of(problem, 1.0, np.zeros(3))
+        Program(problem, 1.0, np.zeros(3))
     with pytest.raises(TrajgapError, match="not stretched"):
         fit(Unsolved(), q, [1.0, 1.0, 1.0])

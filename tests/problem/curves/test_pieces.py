@@ -1,18 +1,17 @@
 """What is found over many pieces at once is what one extremum after another says."""
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pytest
+from support.long_problems import long_curves, long_problem
 from support.samples import DECLARATIONS, sample_problem
 from trajgap.problem import (
-    Limits,
     Problem,
     check,
-    cubic_spline,
     extrema,
     fit,
-    quintic_spline,
     rest_to_rest,
 )
 from trajgap.problem.curves import furthest, near_extrema, peak
@@ -78,19 +77,14 @@ def test_steps_are_those_of_the_pieces_on_both_sides() -> None:
                 assert curve.sides(b, j, order) == (left[b - 1, j], after[0], scale[b - 1, j])
 
 
-def long_problem(kind: str, segments: int, seed: int = 4) -> tuple[Problem, np.ndarray]:
-    rng = np.random.default_rng(seed)
-    q = np.cumsum(rng.normal(size=(segments + 1, 2)) * [0.4, 1.1], axis=0) - 5.0
-    curve = cubic_spline(segments) if kind == "cubic" else quintic_spline(segments)
-    limits = Limits([2.0, 3.0], [9.0, 20.0], [80.0, np.inf], q.min(axis=0) - 0.1, [np.inf, 90.0])
-    return Problem(q, limits, curve), rng.uniform(0.4, 1.7, segments)
-
-
 @pytest.mark.parametrize("kind", ["cubic", "quintic"])
 def test_pieces_that_bounds_leave_out_change_nothing(
     kind: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    problem, h = long_problem(kind, 130)
+    walk = long_problem(long_curves(130)[kind])
+    low = walk.waypoints.min(axis=0) - 0.1
+    problem = replace(walk, limits=walk.limits.with_positions(low, [np.inf, 90.0]))
+    h = np.random.default_rng(4).uniform(0.4, 1.7, 130)
     jumping = Problem(problem.waypoints, problem.limits, rest_to_rest(130, 3))
     found, jumps = check(problem, h), check(jumping, h)
     looked = []

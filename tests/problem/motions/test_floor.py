@@ -1,4 +1,4 @@
-"""The floor between standstills, against closed forms and ruckig."""
+"""The floor between standstills, against closed forms; ruckig: `test_motion_written`."""
 
 import math
 
@@ -34,21 +34,6 @@ INF = math.inf
 )
 def test_known_times(distance, limits, time):
     assert shortest(distance, *limits) == pytest.approx(time, rel=1e-12)
-
-
-def test_ruckig_takes_as_long():
-    ruckig = pytest.importorskip("ruckig")
-    rng = np.random.default_rng(2)
-    for _ in range(60):
-        limits = rng.uniform(0.3, 9.0, (3, 3)) * [[1.0], [3.0], [20.0]]
-        asked = ruckig.InputParameter(3)
-        asked.current_position, asked.target_position = rng.normal(size=(2, 3)).tolist()
-        asked.max_velocity, asked.max_acceleration, asked.max_jerk = limits.tolist()
-        answer = ruckig.Trajectory(3)
-        ruckig.Ruckig(3).calculate(asked, answer)
-        ways = np.subtract(asked.target_position, asked.current_position)
-        times = [shortest(d, *limits[:, j]) for j, d in enumerate(ways)]
-        assert answer.duration == pytest.approx(max(times), rel=1e-9)
 
 
 def trip(stops, hold=0.0):

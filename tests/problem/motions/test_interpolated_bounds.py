@@ -7,7 +7,8 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from support.exact_motions import Row, derived, hermite, spline, value
+from attacks.motion_files import DEGREES, through
+from support.exact_motions import Row, derived, spline, value
 from trajgap.problem import Verdict
 from trajgap.problem.motions import (
     HalfUnits,
@@ -20,7 +21,6 @@ from trajgap.problem.motions import (
     read_motion,
 )
 
-DEGREE = {"linear": 1, "cubic": 3, "quintic": 5}
 EPS = Fraction(2.0**-52)
 
 
@@ -44,11 +44,7 @@ def exact(how: str, samples: Samples, shaken: np.random.Generator | None):
 
     times = moved(samples.time, samples.clock)
     columns = [moved(samples.given(r)[:, 0], samples.doubt(r)[0]) for r in range(3)]
-    if how == "spline":
-        return spline(times, columns[0])
-    return hermite(
-        [Row(*x) for x in zip(times, zip(*columns, strict=True), strict=True)], DEGREE[how]
-    )
+    return through([Row(*x) for x in zip(times, zip(*columns, strict=True), strict=True)], how)
 
 
 def check_bounds(how, samples, curve):
@@ -67,7 +63,7 @@ def check_bounds(how, samples, curve):
     return motion
 
 
-@pytest.mark.parametrize("how", [*DEGREE, "spline"])
+@pytest.mark.parametrize("how", [*DEGREES, "spline"])
 @pytest.mark.parametrize("uneven", [False, True])
 @pytest.mark.parametrize("shaken", [False, True])
 def test_bounds_hold_for_exact_and_for_shaken_samples(how, uneven, shaken):
@@ -85,7 +81,7 @@ def test_bounds_hold_for_exact_and_for_shaken_samples(how, uneven, shaken):
             assert np.abs(motion.error / np.array([1, 1e1, 1e3, 1e4])[:, None]).max() < 1e-11
 
 
-@pytest.mark.parametrize("how", ["linear", "cubic", "quintic", "spline"])
+@pytest.mark.parametrize("how", [*DEGREES, "spline"])
 def test_times_that_noise_may_swap_bound_nothing(how):
     samples = drawn(1, False)
     step = float(np.diff(samples.time).min())

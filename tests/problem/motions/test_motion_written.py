@@ -28,6 +28,7 @@ from trajgap.problem.motions import (
     motion_text,
     read_back,
     sampled,
+    shortest,
 )
 
 WAYPOINTS = np.array([[0.1, -2.0], [0.9, -1.2], [1.4, 0.4], [0.7, 1.0]])
@@ -245,18 +246,23 @@ def test_toppras_grid_may_meet_knots_up_to_rounding():
 
 
 def test_ruckigs_profiles():
+    """From rest, they take as long as the closed form says."""
     ruckig = pytest.importorskip("ruckig")
     rng = np.random.default_rng(5)
-    for _ in range(20):
+    for speed in [0.5] * 20 + [0.0] * 40:
         asked = ruckig.InputParameter(3)
         asked.current_position, asked.target_position = rng.normal(size=(2, 3)).tolist()
-        asked.current_velocity = rng.uniform(-0.5, 0.5, 3).tolist()
+        asked.current_velocity = rng.uniform(-speed, speed, 3).tolist()
         limits = rng.uniform(0.6, 3.0, (3, 3)) * [[1.0], [3.0], [20.0]]
         asked.max_velocity, asked.max_acceleration, asked.max_jerk = limits.tolist()
         answer = ruckig.Trajectory(3)
         ruckig.Ruckig(3).calculate(asked, answer)
         motion = as_motion(answer, ("a", "b", "c"))
         assert motion.total_time == pytest.approx(answer.duration)
+        if not speed:
+            ways = np.subtract(asked.target_position, asked.current_position)
+            times = [shortest(d, *limits[:, j]) for j, d in enumerate(ways)]
+            assert answer.duration == pytest.approx(max(times), rel=1e-9)
         same(motion, lambda t, order, a=answer: a.at_time(t)[order], loose=1e-6)
         found = check_motion(motion, JointLimits.from_values(motion.joints, *limits))
         assert found.verdict is Verdict.PASS, str(found)

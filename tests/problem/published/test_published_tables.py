@@ -226,7 +226,7 @@ def test_polish_settings():
 
 def test_whale_limits():
     case, table = load_case(WHALE), rows(f"{WHALE}.table-2")
-    assert case.dh is not None
+    assert case.dh.convention == "standard"
     units = {"rad": 1.0, "deg": np.pi / 180}
     for velocity in units:
         for acceleration in units:

@@ -10,7 +10,6 @@ from math import acos, atan2, cos, pi, sin, sqrt
 
 import numpy as np
 import pytest
-from support.case_texts import case_text
 from trajgap.problem import (
     Chain,
     Convention,
@@ -21,7 +20,6 @@ from trajgap.problem import (
     inverse_kinematics,
     load_case,
     load_robot,
-    parse_case,
 )
 
 ARM = load_robot("irb460")
@@ -113,26 +111,6 @@ def test_it_lands_on_every_printed_position() -> None:
             np.testing.assert_allclose(printed_pose(*found), level, rtol=0, atol=2e-9)
             assert abs(found[2]) == pytest.approx(pi / 3, abs=2e-4)
     assert len(closed_form_inverse(ARM, level)) == 4
-
-
-def test_a_straight_move_from_a_case_file() -> None:
-    """Pick to lift as ctraj goes, from a case file: first and last by the closed form."""
-    ends = []
-    for x, z in ((-1.0, 0.1), (-0.9, 0.5)):
-        level = np.eye(4)
-        level[:3, 3] = [x, 0.2, z]
-        ends.append(closed_form_inverse(ARM, level)[1].tolist())
-    first, last = ends
-    text = case_text(
-        f"line = {{ first = {first}, last = {last}, points = 5 }}",
-        'family = "cubic-spline"',
-        joints="1 2 3 4 5",
-        robot='model = "irb460"',
-        unit="rad",
-    )
-    q = parse_case(text, "move.toml").problem().waypoints
-    at = np.array([printed_pose(*row)[:3, 3] for row in q])
-    np.testing.assert_allclose(at, np.linspace([-1.0, 0.2, 0.1], [-0.9, 0.2, 0.5], 5), atol=1e-8)
 
 
 # The printed equations

@@ -42,10 +42,6 @@ LARGEST_SUITE = 15_000_000
 """Bytes that the certificates may take together."""
 
 
-def words(name: str) -> Any:
-    return next(one for one in benchmark("suite_cases")["instances"]() if one.name == name)
-
-
 # --- what is there --------------------------------------------------------------------------------
 
 

@@ -104,7 +104,7 @@ def _still_below(data: Document) -> None:
 
 
 ANY = [
-    Forgery("any_curve._Row.read: a row of an unknown kind", "any-curve",
+    Forgery("any_curve.AnyCurve.row: a row of an unknown kind", "any-curve",
             {"proof.rows.0.0": "magic"}),
     *beyond("any-curve", {
         "proof.rows.0.1": (0, 1), "proof.rows.0.2": (0, 1), "proof.rows.0.4": (-(10**18), 10**18),
@@ -246,8 +246,8 @@ CUBICS = [
     *(Forgery(_ENDS + "an end that is neither clamped nor natural", "cubic",
               {**NO_ANSWER, "problem.prescribed.0": entry})
       for entry in ([[1, "0"], [2, "0"]], [], [[3, "0"]])),
-    Forgery(_WEIGHTS + "least: malformed: weights come in pairs", "cubic", {"proof.tree.1.5": [0]}),
-    Forgery(_WEIGHTS + "least: malformed: weights come in pairs", "cubic", {"proof.tree.1.6": [0]}),
+    *(Forgery(_WEIGHTS + "least: malformed: weights come in pairs", "cubic", {path: [0]})
+      for path in ("proof.tree.1.5", "proof.tree.1.6")),
     Forgery(_WEIGHTS + "least: shares and products differ in number", "cubic",
             {"proof.tree.1.7": "0wf0"}),
     Forgery(_WEIGHTS + "least: malformed: a share of a product", "cubic",

@@ -22,9 +22,9 @@ RATIOS = (
     "verdict._read_proof: at fixed ratios of the durations the kind of proof is {_OF_RATIOS}, "
     "and only there"
 )
-DEEP = "tree._walk: the tree is too deep"
-OPEN = "tree._walk: the tree leaves a part open"
-MANY = "tree._walk: the tree has too many nodes"
+DEEP = "tree._walked: the tree is too deep"
+OPEN = "tree._walked: the tree leaves a part open"
+MANY = "tree._walked: the tree has too many nodes"
 
 CALLED_INFEASIBLE = {**NO_ANSWER, "claim.infeasible": True}
 NO_CONDITIONS = {
@@ -62,7 +62,7 @@ def _lost(work: Callable[..., Any], common: Any, parts: Iterable[tuple[Any, ...]
     return iter([work(common, *part) for part in parts][:-1])
 
 
-def _here(work: Callable[..., Any], common: Any, parts: Iterable[tuple[Any, ...]]) -> Iterator[Any]:
+def here(work: Callable[..., Any], common: Any, parts: Iterable[tuple[Any, ...]]) -> Iterator[Any]:
     return (work(common, *part) for part in parts)
 
 
@@ -190,7 +190,7 @@ TREES = [
               "by hand", {"proof.tree": [node]}) for node in ([], ".[", None, True)),
     Forgery("tree._below: leaf at node {count}: {error}",
             "by hand", {"proof.tree.0.1.3": "1.8750001"}),
-    *(Forgery("tree._open: the tree leaves a part open: node {count}",
+    *(Forgery("tree._below: the tree leaves a part open: node {count}",
               kind, {"proof.tree": [["?"]]}) for kind in ("by hand", "any-curve", "cubic")),
     Forgery(MANY, "by hand", lambda data: data["proof"]["tree"].append(["."])),
     Forgery(MANY, "declared", lambda data: data["proof"]["tree"].append([".", 0, 0, 1])),
@@ -198,13 +198,13 @@ TREES = [
     Forgery(OPEN, "any-curve", lambda data: data["proof"]["tree"].pop()),
     Forgery(OPEN, "cubic", lambda data: data["proof"]["tree"].pop()),
     Forgery(DEEP, "cubic", _deep),
-    Forgery("tree._walked_above: the tree is too deep", "cubic", _deep, spread=_here),
-    Forgery("tree._walk_parts: why or ", "cubic-virtual",
-            {"proof.tree.-1": ["?"]}, spread=_here),
+    Forgery("tree._walked: the tree is too deep", "cubic", _deep, spread=here),
+    Forgery("tree.walk: why or ", "cubic-virtual",
+            {"proof.tree.-1": ["?"]}, spread=here),
     # Both trees are one part, the cubic one below a chain of steps.
-    *(Forgery("tree._walk_parts: a part of the tree was not judged", kind, {}, spread=spread)
+    *(Forgery("tree.walk: a part of the tree was not judged", kind, {}, spread=spread)
       for kind in ("cubic-virtual", "quintic-spline") for spread in (_none, _lost)),
-    Forgery("tree._walk_parts: a part of the tree was not judged", "quintic-spline", {},
+    Forgery("tree.walk: a part of the tree was not judged", "quintic-spline", {},
             {"boxes.Boxes.apart": 8}, spread=_first),
 ]  # fmt: skip
 FORGERIES = [*ANSWERS, *CLAIMS, *TREES]

@@ -10,7 +10,7 @@ from support.forgeries.forgery import GONE, NO_ANSWER, WHOLE, Document, Forgery,
 _KIND, _COVERED, _BOXES = "declared.DeclaredCurve.", "declared.covered: ", "boxes.Boxes."
 NOT_PROVED = _BOXES + "end: a leaf with limits is not proved"
 UNDETERMINED = "declared_form.linear_form: the conditions do not determine the curve"
-NOT_THERE = _KIND + "__init__: a row leans on a limit that is not there"
+NOT_THERE = "boxes.Boxes.read_rows: a row leans on a limit that is not there"
 
 
 def _leaf(change: Callable[[list[Any]], Any], least: int = 0) -> Callable[[Document], None]:

@@ -54,7 +54,7 @@ FORGERIES = [
           ("problem.limits.0.1", "1e31"), ("problem.limits.0.1", "1e-31"))),
     *(Forgery(_KIND + "__init__: segment {k + 1}: its least duration is not proved",
               "quintic-spline", {f"proof.low.{k}": low})
-      for k, low in ((0, "0.875"), (0, "0.7"), (0, "-0.5"), (1, "1.5"), (2, "0.9375"))),
+      for k, low in ((0, "0.9375"), (0, "0.7"), (0, "-0.5"), (1, "1.5"), (2, "0.9375"))),
     Forgery(_BOXES + "cut: the place of a cut is not stated in this kind of proof",
             "quintic-spline", {"proof.tree": [["/", 0, "1"], ["."], ["."]]}),
     *(Forgery(_BOXES + "leaf: it is not empty", "quintic-spline", {"proof.tree": tree})
@@ -91,7 +91,7 @@ FORGERIES = [
             "quintic-spline", spline(3, 5, 13)),
     *(Forgery("reading.sign_of: malformed: a sign is neither 1 nor -1", "quintic-spline",
               {"proof.rows.0.3": sign}) for sign in (0, 2, -2)),
-    *(Forgery(_KIND + "__init__: a row leans on a limit that is not there",
+    *(Forgery(_BOXES + "read_rows: a row leans on a limit that is not there",
               "quintic-spline", changes)
       for changes in ({"proof.rows.0.2": 3}, {**NO_ANSWER, "problem.limits.0.0": "0"},
                       {**NO_ANSWER, "problem.limits.0.0": ["-1", None]})),

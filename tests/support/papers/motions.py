@@ -131,7 +131,8 @@ def _of_ppoly(curve: PPoly) -> Pieces:
     return Pieces(lengths[kept], c * powers[:, :, None])
 
 
-def _breaks(h: Array) -> Array:
+def nodes(h: Array) -> Array:
+    """Times at which segments begin and end."""
     return np.concatenate([[0.0], np.cumsum(h)])
 
 
@@ -187,12 +188,13 @@ def _rest(degree: int) -> Callable[[Array, Array], Pieces]:
     def fitted(points: Array, h: Array) -> Pieces:
         none = np.zeros_like(points)
         values = np.stack([points] + [none] * ((degree - 1) // 2), axis=1)
-        return _of_ppoly(PPoly.from_bernstein_basis(BPoly.from_derivatives(_breaks(h), values)))
+        return _of_ppoly(PPoly.from_bernstein_basis(BPoly.from_derivatives(nodes(h), values)))
 
     return fitted
 
 
-def _interpolated(at: Array, points: Array, degree: int, inner: Array) -> BSpline:
+def interpolated(at: Array, points: Array, degree: int, inner: Array) -> BSpline:
+    """Through points at parameters, at rest at both ends, over clamped knots."""
     knots = np.concatenate([np.full(degree + 1, at[0]), inner, np.full(degree + 1, at[-1])])
     none = np.zeros(points.shape[1])
     still = [(1, none), (2, none)]
@@ -220,15 +222,16 @@ def _of_spline(curve: BSpline) -> Pieces:
     return Pieces(np.diff(breaks), _taylor(curve, breaks))
 
 
-def _averaged(at: Array, degree: int) -> Array:
-    """Averages of so many parameters, the first and last of which count for the end conditions."""
-    every = np.concatenate([[at[0]] * 2, at, [at[-1]] * 2])
+def averaged(at: Array, degree: int, repeats: int = 2) -> Array:
+    """Averages of so many parameters, whose ends count once more for each end condition."""
+    every = np.concatenate([[at[0]] * repeats, at, [at[-1]] * repeats])
     return np.array([every[j : j + degree].mean() for j in range(1, len(every) - degree)])
 
 
-def _chords(points: Array) -> Array:
+def chords(points: Array) -> Array:
+    """Shares of the way from way-point to way-point."""
     lengths = np.linalg.norm(np.diff(points, axis=0), axis=1)
-    return _breaks(lengths) / lengths.sum()
+    return nodes(lengths) / lengths.sum()
 
 
 def clamped(
@@ -237,12 +240,12 @@ def clamped(
     """A clamped B-spline over the times, or over chords; these in proportion, or stretched."""
 
     def fitted(points: Array, h: Array) -> Pieces:
-        at = _breaks(h)
-        own, scale = (at, 1.0) if parameters == "times" else (_chords(points), float(at[-1]))
-        inner = own[1:-1] if knots == "waypoints" else _averaged(own, degree)
+        at = nodes(h)
+        own, scale = (at, 1.0) if parameters == "times" else (chords(points), float(at[-1]))
+        inner = own[1:-1] if knots == "waypoints" else averaged(own, degree)
         if stretched:
-            return _stretched(_interpolated(own, points, degree, inner), own, h)
-        return _of_spline(_interpolated(at, points, degree, scale * inner))
+            return _stretched(interpolated(own, points, degree, inner), own, h)
+        return _of_spline(interpolated(at, points, degree, scale * inner))
 
     return fitted
 
@@ -278,7 +281,7 @@ def uniform_stretched(points: Array, h: Array) -> Pieces:
 
 
 def uniform_timed(points: Array, h: Array) -> Timed:
-    time = _uniform(_breaks(h)[:, None])
+    time = _uniform(nodes(h)[:, None])
     c = time.derived(1)[:, :, 0]
     share = np.linspace(0, 1, 21)
     if (poly.polyval(share, c.T) <= 0.02 * h.mean()).any():
@@ -287,12 +290,12 @@ def uniform_timed(points: Array, h: Array) -> Timed:
 
 
 def _cubic(bc: str) -> Callable[[Array, Array], Pieces]:
-    return lambda points, h: _of_ppoly(CubicSpline(_breaks(h), points, bc_type=bc))
+    return lambda points, h: _of_ppoly(CubicSpline(nodes(h), points, bc_type=bc))
 
 
 def _quintic(points: Array, h: Array) -> Pieces:
-    at = _breaks(h)
-    return _of_spline(_interpolated(at, points, 5, at[1:-1]))
+    at = nodes(h)
+    return _of_spline(interpolated(at, points, 5, at[1:-1]))
 
 
 @dataclass(frozen=True)

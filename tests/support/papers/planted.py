@@ -8,8 +8,10 @@ first order: a fault whose size is below its room cannot be told from rounding b
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from decimal import Decimal
+from typing import TypeVar
 
 import numpy as np
 from support.papers.claims import draw, peak_claim, state_durations, vertices_claim
@@ -17,6 +19,7 @@ from support.papers.drafts import Answer, Draft, answer, fitted
 from support.papers.motions import FAMILIES, Array, Motion, NoCurveError, ratios, vertices
 from support.papers.printing import ORDERS, last_place, moved, printed
 
+Made = TypeVar("Made")
 ATTEMPTS = 400
 """Papers drawn until one has what the fault needs."""
 HELD = ("3-5-3", "4-3-4", "clamped cubic", "C4 quintic", "rest 5", "rest 7", "virtual cubic")
@@ -39,21 +42,30 @@ class UnfitError(Exception):
 Fault = Callable[[np.random.Generator, Draft], Planted]
 
 
+def first_fit(what: str, make: Callable[[np.random.Generator], Made], *key: int) -> Made:
+    """What is made of the first paper that has what it takes."""
+    for attempt in range(ATTEMPTS):
+        with suppress(UnfitError, NoCurveError):
+            return make(np.random.default_rng([*key, attempt]))
+    raise RuntimeError(f"{what}: no paper of {ATTEMPTS} can carry it")
+
+
+def shared(rng: np.random.Generator, seed: int, families: tuple[str, ...]) -> Draft:
+    """A paper in which all joints share their durations."""
+    draft = draw(int(rng.integers(2**40)), families)
+    draft.seed, draft.other_reading = seed, False
+    if draft.coupling != "shared":
+        raise UnfitError
+    return draft
+
+
 def planted(fault: str, seed: int) -> Planted:
     """A paper with a fault."""
     plant, families = FAULTS[fault]
     number = list(FAULTS).index(fault)
-    for attempt in range(ATTEMPTS):
-        rng = np.random.default_rng([20261123, number, seed, attempt])
-        draft = draw(int(rng.integers(2**40)), families)
-        draft.seed, draft.other_reading = seed, False
-        if draft.coupling != "shared":
-            continue
-        try:
-            return plant(rng, draft)
-        except (UnfitError, NoCurveError):
-            continue
-    raise RuntimeError(f"{fault}: no paper of {ATTEMPTS} can carry it")
+    return first_fit(
+        fault, lambda rng: plant(rng, shared(rng, seed, families)), 20261123, number, seed
+    )
 
 
 # --- what the digits say, by this route -----------------------------------------------------------
@@ -220,10 +232,10 @@ def _swapped(rng: np.random.Generator, draft: Draft) -> Planted:
         raise UnfitError
     texts[a], texts[b] = texts[b], texts[a]
     claim["durations"] = texts
-    return _observed(draft)
+    return observed(draft)
 
 
-def _observed(draft: Draft) -> Planted:
+def observed(draft: Draft) -> Planted:
     """A fault that shows in a limit or a peak, whichever tells most."""
     seen = [excess(draft)]
     seen += [peak_distance(draft, c) for c in draft.claims if c["quantity"] == "peak"]
@@ -255,7 +267,7 @@ def _waypoint(rng: np.random.Generator, draft: Draft) -> Planted:
     if other == "0" and k == places[0] and text[k + 1 : k + 2].isdigit():
         other = "2" if text[k] == "1" else "1"  # no number is printed as 02
     draft.points[j][i] = text[:k] + other + text[k + 1 :]
-    return _observed(draft)
+    return observed(draft)
 
 
 def _vertex(rng: np.random.Generator, draft: Draft) -> Planted:
@@ -359,7 +371,7 @@ def _unit(rng: np.random.Generator, draft: Draft) -> Planted:
     unit = draft.units[ORDERS[order]]
     other = unit.replace("deg", "rad") if "deg" in unit else unit.replace("rad", "deg")
     draft.units[ORDERS[order]] = other
-    return _observed(draft)
+    return observed(draft)
 
 
 FAULTS: dict[str, tuple[Fault, tuple[str, ...]]] = {

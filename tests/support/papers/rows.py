@@ -15,7 +15,7 @@ import numpy as np
 from support.papers.claims import state_durations
 from support.papers.drafts import Answer, Draft, answer, fitted, problem, shortest, some_shape
 from support.papers.motions import FAMILIES, Array, NoCurveError
-from support.papers.planted import HELD
+from support.papers.planted import HELD, first_fit
 from support.papers.printing import last_place, moved, places_for, printed
 
 APART = tuple(name for name, family in FAMILIES.items() if family.apart)
@@ -41,12 +41,7 @@ def row_paper(kind: str, seed: int) -> Paper:
     """A paper of a kind: one of `HONEST` or of `FAULTY`."""
     make = (HONEST | FAULTY)[kind]
     number = list(HONEST | FAULTY).index(kind)
-    for attempt in range(100):
-        try:
-            return make(np.random.default_rng([20261124, number, seed, attempt]), seed)
-        except NoCurveError:
-            continue
-    raise RuntimeError(f"{kind}: no paper could be drawn")
+    return first_fit(kind, lambda rng: make(rng, seed), 20261124, number, seed)
 
 
 # --- parts ----------------------------------------------------------------------------------------

@@ -10,16 +10,12 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from support.papers.claims import draw
 from support.papers.drafts import TIGHT, Draft, answer, some_shape
-from support.papers.motions import NoCurveError
-from support.papers.planted import HELD, UnfitError, excess, peak_distance, restated
+from support.papers.planted import HELD, UnfitError, first_fit, observed, restated, shared
 from support.papers.printing import last_place
 
 CLEAR = 3.0
 """Multiple of what rounding hides that a fault is at least: nobody could name a smaller one."""
-ATTEMPTS = 400
-"""Papers drawn until one can carry the slip."""
 
 
 @dataclass(frozen=True)
@@ -33,21 +29,18 @@ class Slipped:
 
 def slipped(kind: str, seed: int) -> Slipped:
     """A paper with a misprint of a kind."""
-    number = list(SLIPS).index(kind)
-    for attempt in range(ATTEMPTS):
-        rng = np.random.default_rng([20261123, 26, number, seed, attempt])
-        draft = draw(int(rng.integers(2**40)), HELD)
-        draft.seed, draft.other_reading = seed, False
-        if draft.coupling != "shared" or draft.segments > 5:
-            continue
-        try:
-            restated(rng, draft, answer(draft, some_shape(rng, draft), TIGHT))
-            printed, meant = SLIPS[kind](rng, draft)
-            if _clear(kind, draft):
-                return Slipped(draft, printed, meant)
-        except (UnfitError, NoCurveError):
-            continue
-    raise RuntimeError(f"{kind}: no paper of {ATTEMPTS} can carry it")
+
+    def misprinted(rng: np.random.Generator) -> Slipped:
+        draft = shared(rng, seed, HELD)
+        if draft.segments > 5:
+            raise UnfitError
+        restated(rng, draft, answer(draft, some_shape(rng, draft), TIGHT))
+        one = Slipped(draft, *SLIPS[kind](rng, draft))
+        if not _clear(kind, draft):
+            raise UnfitError
+        return one
+
+    return first_fit(kind, misprinted, 20261123, 26, list(SLIPS).index(kind), seed)
 
 
 def named(one: Slipped, found: Any) -> bool:
@@ -64,9 +57,8 @@ def _clear(kind: str, draft: Draft) -> bool:
         text = claim["total"] if kind == "total" else draft.claim("abstract")["value"]
         far = abs(float(text) - sum(map(float, claim["durations"])))
         return far > CLEAR * len(claim["durations"]) * max(unit, last_place(text))
-    seen = [excess(draft)]
-    seen += [peak_distance(draft, c) for c in draft.claims if c["quantity"] == "peak"]
-    return any(size > CLEAR * room for size, room in seen)
+    shown = observed(draft)
+    return shown.size > CLEAR * shown.room
 
 
 def _misprint(rng: np.random.Generator, text: str) -> str:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import re
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -31,11 +30,9 @@ from trajgap.compare.pages.markdown_text import markdown
 from trajgap.compare.pages.writer import case_page
 from trajgap.compare.pictures.drawing import svg
 from trajgap.compare.pictures.instances import instances_picture
-from trajgap.compare.sphinx import Results
 from trajgap.nlp import Evidence
 from trajgap.problem import (
     Case,
-    CaseError,
     TrajgapError,
     evaluate,
     forward_kinematics,
@@ -332,39 +329,15 @@ def test_the_picture_shows_every_pair(result: InstancesResult) -> None:
     assert "printed: 24.56 to 25.44 %" in picture.description
 
 
-# --- a user finds the way-points ------------------------------------------------------------------
-
-
-def documented() -> str:
-    """The page about families, as far as it shows an audit's own instances."""
-    page = ROOT / "docs" / "measurements" / "families.md"
-    return page.read_text(encoding="utf-8").partition("\n\n## Sixty instances")[0]
-
-
-DOCUMENTED = re.compile(r"^\| `([\w-]+)` \| (.*) \|$", re.MULTILINE)
-"""A reading in the table of the documentation, and the keys of its medians."""
-
-
-def shown(key: str) -> Any:
-    return Results(ROOT / "docs" / "results").value(key)
-
-
-def test_the_documented_digits_are_those_of_the_case_and_the_rule() -> None:
-    page = documented()
-    study = Study(load_case(WHALE), seeds=2, certify_seconds=0)
-    (block,) = study.case.instances
-    claim = study.case.claim(block.claim)
-    for side, name in ((claim.slower, "quintic"), (claim.faster, "b-spline")):
-        total = study.case.claim(side)
-        assert (total.problem, f"{total.value} s" in page) == (name, True)
-    keys = [f"{WHALE}:families.0.printed_{end}" for end in ("lowest", "highest")]
-    assert all(f"{{trajgap}}`{key}|.2%`" in page for key in keys)
-    assert [shown(key) for key in keys] == pytest.approx(printed_reduction(study, block))
+def test_the_page_names_the_readings_and_the_share_of_the_rule() -> None:
+    page = (ROOT / "docs" / "measurements" / "families.md").read_text(encoding="utf-8")
+    page, _, _ = page.partition("\n\n## Sixty instances")
+    (block,) = load_case(WHALE).instances
     assert f"{100 * MIDDLE:g} %" in page
-    assert [reading for reading, _ in DOCUMENTED.findall(page)] == list(block.readings)
+    assert re.findall(r"^\| `([\w-]+)` \| ", page, re.MULTILINE) == list(block.readings)
 
 
-# --- what is refused ------------------------------------------------------------------------------
+# --- instances are resampled ----------------------------------------------------------------------
 
 
 def test_instances_are_resampled_and_not_pairs_of_runs(result: InstancesResult) -> None:
@@ -382,28 +355,3 @@ def test_instances_are_resampled_and_not_pairs_of_runs(result: InstancesResult) 
     twice = (replace(s, totals=np.concatenate([s.totals] * 2, axis=2)) for s in result.samples)
     doubled = replace(result, samples=tuple(twice))
     assert doubled.median_interval(reading, Effect.BOTH) == pytest.approx((low, high))
-
-
-@pytest.mark.parametrize(
-    ("old", "new", "message"),
-    [
-        ('claim = "better"', 'claim = "bettr"',
-         "families[0].claim: 'bettr' is not the id of any of the claims; did you mean 'better'?"),
-        ('claim = "better"', 'claim = "settles"',
-         "families[0].claim: 'settles' is a claim of quantity 'convergence'; name an improvement"),
-        ('algorithm = "plain"\n', "",
-         "families[0].claim: claim 'old-total' does not name its problem and its algorithm; add"),
-        ("samples = 50", 'readings = ["joined", "x"]',
-         "families[0].readings[1]: 'x' is not the id"),
-        ("[0.3, 0.9]", "[0.3, 0]", "families[0].steps[1]: is 0; a step moves something, give more"),
-        ("[0.3, 0.9]", "[0.3, 0.30]", "families[0].steps[1]: 0.30 is given twice; leave one out"),
-        ("instances = 2", "instances = 0", "families[0].instances:"),
-        ('kind = "joint"', 'kind = "wrist"', "families[0].kind:"),
-        ("samples = 50", 'objectives = ["mercy"]', "families[0].objectives[0]:"),
-        (SMALL[SMALL.index("[robot.dh]") : SMALL.index("[units]")], "",
-         "families[0].id: way-points are drawn from the robot's workspace; add robot.dh"),
-    ],
-)  # fmt: skip
-def test_faults_of_a_family(old: str, new: str, message: str) -> None:
-    with pytest.raises(CaseError, match=re.escape(f"small.toml: {message}")):
-        small((old, new))

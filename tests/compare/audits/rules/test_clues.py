@@ -11,7 +11,6 @@ from support.made_up import Numbers, entry, paper, readings, row, sentence
 from trajgap.compare.audits.rules.clues import held_otherwise, reading_clues
 from trajgap.compare.audits.study import Study
 from trajgap.compare.documents import HeldOtherwise, ReadingClue, Speaks
-from trajgap.problem import CaseError, parse_case
 
 FOR, AGAINST = Speaks.FOR, Speaks.AGAINST
 UNITS = readings(
@@ -157,38 +156,3 @@ def test_every_limit_is_held_at_the_samples(limits: dict[str, float], low: float
     curve = {"family": "cubic-spline"}
     study = study_of(paper([[0, 1.2, 1.1]], row("d", "1.0 1.5"), curve=curve, **limits))
     assert held(study).sampled == pytest.approx(low, abs=1e-4)
-
-
-@pytest.mark.parametrize(
-    ("tail", "message"),
-    [
-        (axis([0]), "ticks: are all 0; give the labels of the axis"),
-        (
-            axis([1], unit="rad/s"),
-            "unit: 'rad/s' is no unit of acceleration; use one of rad/s^2, "
-            "deg/s^2, m/s^2, cm/s^2, mm/s^2",
-        ),
-        (axis([1], of=["e"]), "of[0]: 'e' is not the id of a claim; known: d, s"),
-        (
-            axis([1], of=["s"]),
-            "of[0]: 's' is a claim of quantity 'statement'; name one that states durations",
-        ),
-        (sheet(1, 2), "values: 2 values for 1 joints; give one each"),
-        (sheet(0), "values: hold a number that is not positive; a limit is"),
-        (
-            turns(kind="half-turn"),
-            "kind: 'half-turn' is no kind of clue; did you mean 'half-turns'?",
-        ),
-        (turns(joint="2"), "joint: joint '2' is unknown; robot.joints lists 1"),
-    ],
-)
-def test_a_wrong_clue_is_refused_in_one_line(tail: str, message: str) -> None:
-    with pytest.raises(CaseError) as caught:
-        parse_case(paper([[0, 1]], MOVED, tail, velocity=3), "made-up.toml")
-    assert str(caught.value) == f"made-up.toml: clues[0].{message}"
-
-
-def test_a_reason_for_the_default_goes_with_the_default() -> None:
-    text = paper([[0, 1]], MOVED, UNITS.replace("default = true\n", ""), velocity=3)
-    with pytest.raises(CaseError, match=r"readings\[0\].default_why: goes with default = true"):
-        parse_case(text, "made-up.toml")

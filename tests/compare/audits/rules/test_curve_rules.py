@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
+from functools import partial
 from typing import Any
 
 import numpy as np
 import pytest
-from support.b_splines import uniform
+from support.b_splines import NATURAL, uniform
 from support.findings import judged, said_of, study_of
 from support.made_up import claim, paper, readings
 from support.papers.motions import vertices as solved
@@ -21,11 +22,9 @@ from trajgap.compare.documents import Basis, ClaimVerdict, Finding, Severity
 from trajgap.nlp.enclosure.balls import Ball
 from trajgap.nlp.enclosure.uniform import centred_stretched, centred_timed
 from trajgap.problem import (
-    CaseError,
     extrema,
     fit,
     load_case,
-    parse_case,
     peak_gradients,
 )
 
@@ -120,29 +119,16 @@ def test_vertices_of_another_curve_are_not_held_to_the_uniform_splines(
     assert words == (one if curve is STRETCHED else apart)
 
 
-@pytest.mark.parametrize(
-    ("rows", "message"),
-    [
-        ([["1"] * 5], r"joint_rows\[0\]: 5 control vertices for 4 way-points; give 6"),
-        ([["1"] * 6] * 2, "joint_rows: gives 2 joints, but robot.joints lists 1"),
-    ],
-)
-def test_control_vertices_are_counted(rows: list[list[str]], message: str) -> None:
-    printed = claim("v", "control_vertices", joint_rows=rows)
-    text = paper(["0.1 1.2 -0.4 0.7"], printed, curve=STRETCHED, velocity=3)
-    with pytest.raises(CaseError, match=message):
-        parse_case(text, "made-up.toml")
-
-
 # --- rounding boxes -------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("time", TIMES)
+@pytest.mark.parametrize("time", [*TIMES, NATURAL])
 def test_balls_hold_values_and_gradients_all_over_the_box(time: str) -> None:
     problem, h = uniform(time, 41, count=5)
     curve, q = problem.curve, problem.waypoints
     trajectory = fit(curve, q, h)
-    centred, highest = (centred_timed, 2) if time == "timed" else (centred_stretched, 3)
+    own = {"stretched": (centred_stretched, 3), NATURAL: (partial(centred_timed, natural=True), 2)}
+    centred, highest = own.get(time, (centred_timed, 2))
     orders = range(1, highest + 1)
     points = [e for j in range(3) for r in orders for e in extrema(trajectory, j, r)]
     joint, segment, order = (

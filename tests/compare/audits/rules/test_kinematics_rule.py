@@ -228,24 +228,6 @@ def test_equations_are_judged_and_never_held_against_a_paper() -> None:
         assert ("cannot be told" in found.message) == (verdict == "not checkable")
 
 
-@pytest.mark.parametrize(
-    ("table", "part", "message"),
-    [
-        ("", entry("equations", id="e", where="(4)", printed="px = py"),
-         "equations[0]: needs the robot's table; add robot.dh"),
-        (TABLE, entry("equations", id="e", where="(4)", printed="px = c4"),
-         "equations[0].printed: 'c4' is no name of this robot; see check_equation"),
-        (TABLE, entry("equations", id="e", where="(4)", printed="px = py", mend="a sign"),
-         "equations[0].mended: is missing; mended and mend stand together"),
-        (TABLE, sentence("holds", "equations"),
-         "claims[0].checks: equations needs printed ones; add [[equations]]"),
-    ],
-)  # fmt: skip
-def test_equations_that_cannot_be_judged(table: str, part: str, message: str) -> None:
-    with pytest.raises(CaseError, match=re.escape(message)):
-        findings(case_text([], table, part, angle="deg"))
-
-
 # The palletiser
 
 

@@ -4,11 +4,23 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from numpy.typing import NDArray
 from support.findings import audited_text, finding, said_of, study_of, verdicts
 from support.made_up import Numbers, claim, paper, row, sentence, total
+from trajgap.compare.audits.parabolic_blends import (
+    Between,
+    Blended,
+    EndBlends,
+    by_blend_accelerations,
+    by_blend_times,
+)
+from trajgap.compare.audits.rounding import RoundingBox
 from trajgap.compare.documents import ClaimVerdict, Finding
-from trajgap.problem import CaseError, parse_case
+from trajgap.problem import parse_case
 
 SUPPORTED, REFUTED, OPEN = "supported", "refuted", "not checkable"
 CURVE = {"other_curve": "linear segments with parabolic blends"}
@@ -102,30 +114,8 @@ def test_a_total_elsewhere_may_count_half_the_end_blends_too(value: str) -> None
     assert finding(wrong, "abstract", "TG105").verdict is ClaimVerdict.INCONSISTENT
 
 
-@pytest.mark.parametrize(
-    ("keys", "said"),
-    [
-        ({"blends": [0.4, 0.4]}, "2 blends for 4 way-points"),
-        ({"blend_acceleration": [50, 50]}, "2 values for 1 joints"),
-        (WITHIN, "goes with blends or blend_acceleration"),
-        ({"blends": 0.4, "blend_acceleration": 50}, "keep one of the two"),
-    ],
-)
-def test_what_does_not_fit_is_refused_in_a_line(keys: dict[str, Any], said: str) -> None:
-    with pytest.raises(CaseError, match=said):
-        parse_case(made_up(**keys), "made-up.toml")
-
-
-def test_blends_go_with_another_curve() -> None:
-    with pytest.raises(CaseError, match=r"\.blends: goes with other_curve"):
-        parse_case(paper([WAY], row("row", "2 1 3", blends=0.4), velocity=1), "made-up.toml")
-
-
-def test_a_maximum_is_of_the_curve_of_its_rows() -> None:
-    """Otherwise the case's own curve would be built from durations of blends."""
+def test_a_maximum_may_be_of_blended_rows() -> None:
     times = {"of": ["row"], "durations": ["2.00", "1.00", "3.00"]}
-    with pytest.raises(CaseError, match="is not that of 'row', whose durations it takes"):
-        parse_case(made_up(claim("longest", "maximum", **times), blends=0.4), "made-up.toml")
     parse_case(made_up(claim("longest", "maximum", **times, **CURVE), blends=0.4), "made-up.toml")
 
 
@@ -166,3 +156,98 @@ def test_a_sentence_on_several_rows_speaks_of_this_one_too(
     )
     assert words["all"] == verdict
     assert words["rest"] == words["smooth"] == OPEN
+
+
+# --- blends against Craig's example and motions integrated in time --------------------------------
+
+Array = NDArray[np.float64]
+
+
+def exact(*numbers: float) -> RoundingBox:
+    return RoundingBox.exact(np.array(numbers, dtype=np.float64))
+
+
+def column(*angles: float) -> RoundingBox:
+    return RoundingBox.exact(np.array(angles, dtype=np.float64)[:, None])
+
+
+def test_the_example_of_craig() -> None:
+    """Introduction to Robotics, example 7.3: 10, 35, 25, 10° in 2, 1, 3 s with 50 °/s².
+
+    The book rounds the first blend to 0.27 s and the speed to 13.50; its straight parts take
+    1.50 and 2.849 s.
+    """
+    found = by_blend_accelerations(
+        column(10, 35, 25, 10), exact(2, 1, 3), exact(50), EndBlends.WITHIN
+    )
+    speeds = found.velocity.low[:, 0]
+    assert speeds == pytest.approx([13.40, -10.0, -5.09], abs=0.005)
+    assert speeds[0] / 50 == pytest.approx(0.27, abs=0.005)
+    assert (speeds[0] - speeds[1]) / 50 == pytest.approx(0.47, abs=0.005)
+    assert found.room.low[[0, 2], 0] == pytest.approx([1.50, 2.849], abs=0.005)
+
+
+def moved(points: Array, durations: Array, blends: Array, ends: EndBlends) -> Array:
+    """Where the motion ends that speeds up and down as its description says, from the start."""
+    found = by_blend_times(column(*points), exact(*durations), exact(*blends), ends)
+    speeds = np.concatenate([[0.0], found.velocity.low[:, 0], [0.0]])
+    at = points[0]
+    for k, tau in enumerate(blends):
+        at += 0.5 * (speeds[k] + speeds[k + 1]) * tau
+        if k < len(durations):
+            at += speeds[k + 1] * found.room.low[k, 0]
+    assert found.acceleration.low[:, 0] * blends == pytest.approx(np.abs(np.diff(speeds)))
+    return np.array([at])
+
+
+@given(
+    st.lists(st.floats(-3, 3), min_size=2, max_size=5),
+    st.data(),
+    st.sampled_from(list(EndBlends)),
+)
+def test_such_a_motion_ends_at_the_last_way_point(
+    points: list[float], data: st.DataObject, ends: EndBlends
+) -> None:
+    n = len(points) - 1
+    h = np.array(data.draw(st.lists(st.floats(1.0, 3.0), min_size=n, max_size=n)))
+    tau = np.array(data.draw(st.lists(st.floats(0.05, 0.45), min_size=n + 1, max_size=n + 1)))
+    assert moved(np.array(points), h, tau, ends) == pytest.approx([points[-1]], abs=1e-12)
+
+
+@given(st.data(), st.sampled_from(list(EndBlends)))
+def test_bounds_hold_for_everything_in_the_boxes(data: st.DataObject, ends: EndBlends) -> None:
+    n = data.draw(st.integers(1, 3))
+    value = st.floats(-2, 2)
+    q = np.array(data.draw(st.lists(value, min_size=n + 1, max_size=n + 1)))[:, None]
+    h = np.array(data.draw(st.lists(st.floats(0.3, 3.0), min_size=n, max_size=n)))
+    a = np.array(data.draw(st.lists(st.floats(0.5, 30.0), min_size=1, max_size=1)))
+    seed = np.random.default_rng(data.draw(st.integers(0, 2**32)))
+
+    def box(x: Array) -> RoundingBox:
+        return RoundingBox(x, x - 0.01, x + 0.01)
+
+    wide = by_blend_accelerations(box(q), box(h), box(a), ends)
+    timed = by_blend_times(box(q), box(h), box(np.full(n + 1, 0.1)), ends)
+    for _ in range(20):
+        inner = [RoundingBox.exact(x + seed.uniform(-0.01, 0.01, x.shape)) for x in (q, h, a)]
+        tau = RoundingBox.exact(0.1 + seed.uniform(-0.01, 0.01, n + 1))
+        held(by_blend_accelerations(*inner, ends), wide)
+        held(by_blend_times(inner[0], inner[1], tau, ends), timed)
+
+
+def held(one: Blended, wide: Blended) -> None:
+    for name in ("velocity", "acceleration", "room"):
+        inner: Between = getattr(one, name)
+        outer: Between = getattr(wide, name)
+        known = inner.low == inner.high  # no bounds are known where a blend leaves no time
+        slack = 1e-9 * (1.0 + np.abs(inner.low))
+        assert (~known | (outer.low <= inner.low + slack)).all()
+        assert (~known | (outer.high >= inner.high - slack)).all()
+
+
+def test_too_long_a_way_has_no_speed_that_is_high_enough() -> None:
+    short = by_blend_accelerations(column(0, 1), exact(1.9), exact(1.0), EndBlends.WITHIN)
+    assert short.room.high[0, 0] < 0
+    just = by_blend_accelerations(column(0, 1), exact(2.0), exact(1.0), EndBlends.WITHIN)
+    assert just.velocity.low[0, 0] == pytest.approx(1.0)
+    assert just.room.low[0, 0] == pytest.approx(0.0, abs=1e-12)

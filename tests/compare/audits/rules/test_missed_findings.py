@@ -177,13 +177,6 @@ def test_a_row_that_fits_another_joint_is_found() -> None:
     assert not said_of(study, "r1", "TG108")
 
 
-def test_distances_support_nothing() -> None:
-    text = one_joint("0, 1", "1.9", "1.61", "within_limits")  # 63 % above
-    found = finding(text, "d", "TG302")
-    assert found.verdict is ClaimVerdict.NOT_CHECKABLE
-    assert "1.61 s (sum of the printed durations) is 62.6 to 63.7 % longer" in found.message
-
-
 def test_an_audit_of_odd_tables_ends() -> None:
     """Durations of another curve and of another number pass through everything that is computed."""
     odd = (

@@ -17,12 +17,10 @@ from trajgap.compare.audits.rules.motion_numbers import NumberBeside
 from trajgap.compare.audits.rules.norms import _top, largest_norm
 from trajgap.compare.documents import ClaimVerdict, Confidence
 from trajgap.problem import (
-    CaseError,
     Curve,
     Printed,
     cubic_spline,
     fit,
-    parse_case,
     rest_to_rest,
     uniform_cubic_b_spline,
 )
@@ -93,22 +91,6 @@ def test_a_printed_instant_is_an_interval() -> None:
     curve = CubicSpline([0, 1, 1.5, 3], EXAM, bc_type="clamped")
     for time, verdict in (("1.3", ClaimVerdict.SUPPORTED), (1.3, ClaimVerdict.INCONSISTENT)):
         assert verdict_of("position", time=time, value=f"{float(curve(1.34)):.3f}") is verdict
-
-
-@pytest.mark.parametrize(
-    ("rows", "keys", "said"),
-    [
-        ([EXAM], {"place": "5"}, "'5' is no place of the motion"),
-        ([EXAM], {}, "or time is needed"),
-        ([EXAM, EXAM], {"place": "1"}, "is one number for 2 joints"),
-        ([EXAM], {"place": "1", "time": 1}, "or time is needed, and not both"),
-    ],
-)
-def test_a_place_is_asked_for_in_one_line(
-    rows: list[list[float]], keys: dict[str, Any], said: str
-) -> None:
-    with pytest.raises(CaseError, match=said):
-        parse_case(made_up("velocity", rows, value=1, **keys), "made-up.toml")
 
 
 H = 1.25

@@ -11,7 +11,7 @@ from support.made_up import Numbers, entry, paper, sentence
 from support.toml_text import block
 from trajgap.compare.documents import ClaimVerdict, Severity
 from trajgap.nlp import Status, solve
-from trajgap.problem import CaseError, Limits, Problem, load_case, parse_case, three_five_three
+from trajgap.problem import Limits, Problem, load_case, three_five_three
 
 LINKS = {"joints": ["1", "2"], "d": [0, 0], "a": [0.7, 0.4], "alpha": [0, 0]}
 UNITS = {"convention": "standard", "length_unit": "m", "angle_unit": "deg"}
@@ -128,42 +128,6 @@ def test_replays_of_two_algorithms_stand_beside_the_sentence_that_compares_them(
     assert found.verdict is ClaimVerdict.NOT_CHECKABLE
     said = "one run of the long is no longer than one of the short with probability 100 %"
     assert said in found.message
-
-
-@pytest.mark.parametrize(
-    ("said", "message"),
-    [
-        (
-            sentence("m", "varies_much"),
-            "joint: is missing; name the joint that is said to vary m",
-        ),
-        (
-            sentence("m", "varies_most"),
-            "joint: is missing; name the joint that is said to vary most",
-        ),
-        (
-            sentence("m", "above"),
-            'positions: names two positions, and goes with checks = "above" only',
-        ),
-        (
-            sentence("m", "above", positions=["p", "r"]),
-            "positions[1]: 'r' is not the id of any of the carte",
-        ),
-        (
-            sentence("m", "none", not_checkable="x", against="y"),
-            "against: goes with algorithm; name the one that is compared with it",
-        ),
-    ],
-)
-def test_wrong_statements_are_refused(said: str, message: str) -> None:
-    with pytest.raises(CaseError) as caught:
-        parse_case(arm(position("p", "A", 1, 0, 0), said), "made-up.toml")
-    assert str(caught.value).startswith(f"made-up.toml: claims[0].{message}")
-
-
-def test_kinematics_without_positions_is_refused() -> None:
-    with pytest.raises(CaseError, match=r"kinematics needs printed positions; add \[\[cartesian"):
-        parse_case(arm(sentence("table", "kinematics")), "made-up.toml")
 
 
 @pytest.mark.parametrize(("unit", "total"), [(1.0, "77.68"), (np.pi / 180, "1.356")])

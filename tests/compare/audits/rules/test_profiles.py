@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from math import inf
 from typing import Any
 
 import numpy as np
@@ -19,7 +18,6 @@ from trajgap.compare.audits.rules.profiles import (
     trapezoidal,
 )
 from trajgap.compare.documents import ClaimVerdict, Finding
-from trajgap.problem import CaseError, parse_case
 
 STEPS = 120
 
@@ -181,18 +179,6 @@ def test_how_the_joints_go_together_is_said(
 
 
 @pytest.mark.parametrize(
-    ("keys", "message"),
-    [
-        (CLAIM | STRAIGHT, r"claims\[0\].path: goes with profile; add it, or leave this"),
-        ({"profile": "trapezoidal"}, r"claims\[0\].profile: goes with other_curve; name the curve"),
-    ],
-)
-def test_what_a_profile_goes_with(keys: dict[str, str], message: str) -> None:
-    with pytest.raises(CaseError, match=message):
-        parse_case(paper(TWO, total("t", "2.00", **keys), **SLOW), "two.toml")
-
-
-@pytest.mark.parametrize(
     ("ends", "verdict"),
     [
         ({"end_derivatives": [0.4]}, ClaimVerdict.NOT_CHECKABLE),
@@ -207,27 +193,6 @@ def test_a_profile_between_moving_ends_is_not_set_beside_one_from_rest_to_rest(
     """From rest 2 s; a motion that starts or ends at speed takes another time, here 1.85 s."""
     curve = {"family": "polynomials", "degrees": [3], "end_orders": [1]} | ends
     assert judged("trapezoidal", "1.85", TWO, curve, **SLOW).verdict is verdict
-
-
-@pytest.mark.parametrize(
-    ("profile", "limits", "message"),
-    [
-        ("sine-jerk", SLOW, r'"sine-jerk" needs limits.jerk, and none is stated; add it, or leave'),
-        ("s-curve", SLOW | {"jerk": [9, inf]}, r'"s-curve" needs limits.jerk, .* for joint 2; '),
-        ("trapezoidal", SLOW, None),
-        ("s-curve", SLOW | {"jerk": [9, 7]}, None),
-        ("trapezoidal", {"velocity": 2}, r'"trapezoidal" needs limits.acceleration, and none is'),
-    ],
-)
-def test_a_profile_needs_the_limit_that_makes_it(
-    profile: str, limits: dict[str, Any], message: str | None
-) -> None:
-    text = profiled(profile, "2.00", TWO, **limits)
-    if message is None:
-        parse_case(text, "two.toml")
-        return
-    with pytest.raises(CaseError, match=r"two.toml: claims\[0\].profile: " + message):
-        parse_case(text, "two.toml")
 
 
 def test_a_joint_that_must_not_move_and_does_is_no_fault_of_the_total() -> None:

@@ -8,17 +8,15 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from support.any_curve_proofs import certify_any, interval, proved
-from support.any_motions import verified
-from support.joint_splines import spline_problem
+from support.any_curve_proofs import certify_any, interval, proved, spline_problem, verified
+from support.shipped_problems import printed_problems
 from trajgap.nlp.proofs import evidence
 from trajgap.nlp.proofs.any_curve.estimate import estimate_any_curve
 from trajgap.nlp.proofs.any_curve.question import missing, question
-from trajgap.nlp.proofs.any_curve.reach import furthest, reachable
+from trajgap.nlp.proofs.any_curve.reach import reachable
 from trajgap.nlp.proofs.any_curve.search import Search
 from trajgap.nlp.proofs.any_curve.tangents import KINDS, matrix
 from trajgap.nlp.proofs.document import certificate
-from trajgap.nlp.proofs.evidence import printed_problem_or_none
 from trajgap.nlp.proofs.exact import exact_problem
 from trajgap.nlp.proofs.outcome import Outcome
 from trajgap.problem import (
@@ -26,12 +24,9 @@ from trajgap.problem import (
     Knots,
     Limits,
     Problem,
-    load_case,
-    published_ids,
 )
 from trajgap.verify import TANGENT_UNIT, Subject
 from trajgap.verify import verify_certificate as verify
-from trajgap.verify.any_curve import _furthest as verified_reach
 
 Array = NDArray[np.float64]
 
@@ -121,35 +116,15 @@ def test_rows_of_search_and_verifier_are_the_same(seed: int) -> None:
         assert right[0] * size[0] * each == pytest.approx(float(own[3]), rel=1e-12, abs=1e-12)
 
 
-@pytest.mark.parametrize("seed", range(20))
-def test_search_and_verifier_reach_equally_far(seed: int) -> None:
-    rng = np.random.default_rng(seed)
-    h, top, bend = rng.uniform(0.3, 3.0, 3)
-    first = rng.uniform(-1.0, 1.0) * top
-    last = max(-top, min(top, first + rng.uniform(-1.0, 1.0) * bend * h))
-    exact = [Fraction(float(x)) for x in (first, last, h, top, bend)]
-    for limit, given in ((np.inf, None), (top, exact[3])):
-        found = furthest(*(np.array(x) for x in (first, last, h, limit, bend)))
-        theirs = verified_reach(*exact[:3], given, exact[4])
-        assert float(found) == pytest.approx(float(theirs), rel=1e-12, abs=1e-12)
-
-
 def test_every_shipped_question_has_a_bound_that_is_proved() -> None:
-    for case_id in published_ids():
-        case = load_case(case_id)
-        for problem in case.problems:
-            for reading in case.readings:
-                statement = case.statement(problem.id, reading.id)
-                exact = printed_problem_or_none(statement) if statement.complete else None
-                if exact is None or missing(exact) is not None:
-                    continue
-                name = f"{case_id}, {problem.id}, {reading.id}"
-                found = evidence.proved(exact, Subject.ANY)
-                assert found is not None, f"{name}: run benchmarks/any_curve_bound.py"
-                assert found.upper - found.lower <= found.upper / 10**5, name
-                estimate = estimate_any_curve(statement.problem(), starts=1).total_time
-                assert float(found.lower) <= estimate * (1 + 1e-12), name
-                assert float(found.upper) == pytest.approx(estimate, rel=1e-9), name
+    for name, statement, exact in printed_problems():
+        if missing(exact) is None:
+            found = evidence.proved(exact, Subject.ANY)
+            assert found is not None, f"{name}: run benchmarks/any_curve_bound.py"
+            assert found.upper - found.lower <= found.upper / 10**5, name
+            estimate = estimate_any_curve(statement.problem(), starts=1).total_time
+            assert float(found.lower) <= estimate * (1 + 1e-12), name
+            assert float(found.upper) == pytest.approx(estimate, rel=1e-9), name
 
 
 @pytest.mark.parametrize("orders", [(1, 2), (2,)])

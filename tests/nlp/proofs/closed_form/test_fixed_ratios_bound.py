@@ -10,7 +10,6 @@ import pytest
 from trajgap.nlp import solve
 from trajgap.nlp.proofs.answer import keeps_limits
 from trajgap.nlp.proofs.certifiers import certify, covered
-from trajgap.nlp.proofs.closed_form.formulas import MOST_REBUILT
 from trajgap.nlp.proofs.document import certificate, fits
 from trajgap.nlp.proofs.evidence import interval_of, printed_problem_or_none
 from trajgap.nlp.proofs.exact import exact_problem
@@ -30,12 +29,13 @@ from trajgap.problem import (
     three_five_three,
     uniform_cubic_b_spline,
 )
-from trajgap.verify import STATE_FORMAT, Subject, verify_certificate
+from trajgap.verify import Subject
 from trajgap.verify import verify_certificate as verify
 
 Q = np.array([[0.25, -0.5], [1.0, 0.125], [-0.375, 0.75], [0.5, 0.25]])
 LIMITS = Limits([1.0, 0.9], [2.0, 1.5], [12.0, 9.0])
 RATIOS = [1.0, 1.75, 1.25]
+UNEVEN = LIMITS.with_sides([LIMITS.derivatives, 0.7 * LIMITS.derivatives])
 CURVES = [
     three_five_three(),
     cubic_spline(3),
@@ -43,18 +43,32 @@ CURVES = [
     rest_to_rest(3, 5),
     uniform_cubic_b_spline(4, "stretched"),
 ]
+CLOSED = {
+    **{
+        f"{curve.name} at ratios, {name}": Problem(Q, limits, curve, ratios=RATIOS)
+        for curve in CURVES
+        for name, limits in (("even", LIMITS), ("uneven", UNEVEN))
+    },
+    # A cubic's acceleration jumps at the way-points, which no jerk limit survives.
+    **{
+        f"rest to rest {degree}": Problem(
+            Q, Limits([1.1, 0.8], [2.0, np.inf], jerk), rest_to_rest(3, degree), (0.2, 0.2, 3.4)
+        )
+        for degree, jerk in ((3, np.inf), (5, [np.inf, 9.0]), (7, [np.inf, 9.0]), (9, [9.0, 9.0]))
+    },
+}
 
 
-@pytest.mark.parametrize("curve", CURVES, ids=lambda curve: curve.name)
-@pytest.mark.parametrize("uneven", [False, True])
-def test_it_is_proved_to_the_last_digits(curve, uneven: bool) -> None:
-    limits = LIMITS.with_sides([LIMITS.derivatives, 0.7 * LIMITS.derivatives]) if uneven else LIMITS
-    problem = Problem(Q, limits, curve, ratios=RATIOS)
+@pytest.mark.parametrize("name", CLOSED)
+def test_it_is_proved_to_the_last_digits(name: str) -> None:
+    problem = CLOSED[name]
     found = certify(problem, gap=1e-12)
     assert found.outcome is Outcome.CERTIFIED
     assert float(found.lower) == pytest.approx(solve(problem).total_time, rel=1e-9)
-    total = sum(found.durations, Fraction(0))
-    assert [h / total for h in found.durations] == [Fraction(r) / 4 for r in RATIOS]
+    assert verify(certificate(found)).lower == found.lower
+    if problem.ratios is not None:
+        total = sum(found.durations, Fraction(0))
+        assert [h / total for h in found.durations] == [Fraction(r) / 4 for r in RATIOS]
 
 
 def test_a_bound_on_a_duration_may_ask_for_most() -> None:
@@ -71,12 +85,6 @@ def test_a_proof_of_one_question_is_none_of_the_other() -> None:
     assert interval_of(own, exact_problem(fixed)) is not None
     for document, asked in ((own, free), (other, fixed)):
         assert interval_of(document, exact_problem(asked)) is None
-    # The verifier refuses either proof beside the problem of the other.
-    for proof, problem in ((own, other), (other, own)):
-        mixed = {**proof, "problem": problem["problem"]}
-        found = verify_certificate(mixed)
-        assert not found.proves
-        assert "at fixed ratios of the durations the kind of proof is fixed-ratios" in found.reason
     # Nor are other ratios the same question; their scale is.
     assert interval_of(own, exact_problem(replace(fixed, ratios=[1, 2, 1]))) is None
     assert interval_of(own, exact_problem(replace(fixed, ratios=[4, 7, 5]))) is not None
@@ -88,27 +96,6 @@ def test_any_curve_is_bounded_whatever_the_ratios() -> None:
     free = replace(fixed, ratios=None)
     assert fits(certificate(found), exact_problem(free), Subject.ANY)
     assert 0 < float(found.lower) <= solve(free).total_time <= solve(fixed).total_time
-
-
-@pytest.mark.parametrize(
-    ("curve", "said"),
-    [
-        (uniform_cubic_b_spline(4, "timed"), "not rebuilt in rational numbers; at fixed ratios"),
-        (piecewise((5, 5, 5)), "coefficients free: not covered at fixed ratios"),
-    ],
-)
-def test_what_is_not_covered_says_so(curve, said: str) -> None:
-    problem = Problem(Q, LIMITS, curve, ratios=RATIOS)
-    assert said in str(covered(exact_problem(problem)))
-    with pytest.raises(TrajgapError, match="certify: "):
-        certify(problem)
-
-
-def test_long_splines_are_left_to_the_formula() -> None:
-    n = MOST_REBUILT + 1
-    q = np.cumsum(np.arange(1.0, n + 2.0))[:, None] % 1.7
-    problem = Problem(q, Limits(1.0), cubic_spline(n), ratios="equal")
-    assert f"more than {MOST_REBUILT} segments" in str(covered(exact_problem(problem)))
 
 
 CASE = """
@@ -161,15 +148,6 @@ def test_chord_lengths_of_several_joints_are_not_rational() -> None:
     own = certificate(certify(replace(exact, shares=(Fraction(1, 4), Fraction(3, 4)), chord=False)))
     stated = {**own["problem"], "ratios": "chord"}
     assert not fits({**own, "problem": stated}, replace(exact, chord=False), Subject.DECLARED)
-    for claim in (own["claim"], {**own["claim"], "durations": None, "upper": None}):
-        found = verify_certificate({**own, "problem": stated, "claim": claim})
-        assert found.reason == "the problem fixes no ratios that are rational numbers"
-    free = certificate(certify(replace(exact, chord=False), gap=0.1))
-    mixed = verify_certificate({**free, "problem": stated})
-    assert "the kind of proof is fixed-ratios" in mixed.reason
-    state = {**free, "format": STATE_FORMAT, "problem": stated, "proof": None, "proposals": None}
-    claim = {**free["claim"], "lower": "0"}
-    assert "no durations are exactly" in verify_certificate({**state, "claim": claim}).reason
 
 
 JUMPS = {
@@ -183,7 +161,7 @@ JUMPS = {
 
 @pytest.mark.parametrize("sides", ["both", "upper", "lower"])
 @pytest.mark.parametrize("name", JUMPS)
-def test_a_jump_is_no_answer_of_prover_check_or_verifier(name: str, sides: str) -> None:
+def test_a_jump_is_no_answer_of_prover_or_check(name: str, sides: str) -> None:
     curve, sizes = JUMPS[name]
     none = np.full((1, 3), np.inf)
     pair = [none if sides == "upper" else np.array([sizes]),
@@ -200,11 +178,6 @@ def test_a_jump_is_no_answer_of_prover_check_or_verifier(name: str, sides: str) 
     except TrajgapError:  # nothing bounds the total from below
         return
     assert found.upper is None
-    if found.proof is None:
-        return
-    document = certificate(found)
-    document["claim"] |= {"durations": ["2", "3"], "upper": "5"}
-    assert "jumps" in verify_certificate(document).reason
 
 
 def random_problem(seed: int) -> Problem:
@@ -240,7 +213,5 @@ def test_positions_are_judged() -> None:
     curve = uniform_cubic_b_spline(4, "stretched")
     tight = Problem(q, Limits(1.0, position_upper=1.0), curve)
     assert certify(tight).outcome is Outcome.OPEN
-    wide = certificate(certify(Problem(q, Limits(1.0, position_upper=1.2), curve)))
-    assert verify(wide).proves
-    wide["problem"]["position_upper"] = ["1"]
-    assert "derivative 0 exceeds" in verify(wide).reason
+    wide = certify(Problem(q, Limits(1.0, position_upper=1.2), curve))
+    assert verify(certificate(wide)).proves

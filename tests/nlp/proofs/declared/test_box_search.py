@@ -6,13 +6,11 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from fractions import Fraction
 from functools import cache
-from typing import Any
 
 import numpy as np
 import pytest
-from scipy.interpolate import make_interp_spline
 from support.executors import LastFirst
-from trajgap.nlp.proofs import crew
+from support.papers.motions import FAMILIES
 from trajgap.nlp.proofs.certifiers import certify
 from trajgap.nlp.proofs.clock import RunClock
 from trajgap.nlp.proofs.crew import ProofCrew
@@ -20,8 +18,8 @@ from trajgap.nlp.proofs.declared import search
 from trajgap.nlp.proofs.declared.certifier import BoxStages
 from trajgap.nlp.proofs.driver import grow
 from trajgap.nlp.proofs.exact import exact_problem
-from trajgap.nlp.proofs.outcome import Outcome, Request
-from trajgap.nlp.proofs.quintic.certifier import QUINTIC, QuinticStages
+from trajgap.nlp.proofs.outcome import Request
+from trajgap.nlp.proofs.quintic.certifier import QuinticStages
 from trajgap.nlp.proofs.session import Session, Shorter
 from trajgap.problem import Limits, Problem, TrajgapError, quintic_spline
 from trajgap.verify import OutOfTime
@@ -72,12 +70,6 @@ def found_of(
     return boxes.found
 
 
-@pytest.fixture
-def at_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Processes are started for the first pieces."""
-    monkeypatch.setattr(crew.ProofCrew, "worth", 0.0)
-
-
 @KINDS
 def test_parts_join_to_one_tree(stages: type[BoxStages], monkeypatch: pytest.MonkeyPatch) -> None:
     curves = curves_of(stages)
@@ -85,14 +77,7 @@ def test_parts_join_to_one_tree(stages: type[BoxStages], monkeypatch: pytest.Mon
     assert len(here.cuts) > 5 * 8, "too few boxes for many parts"
     with ThreadPoolExecutor(3) as threads:
         assert here == found_of(curves, session(ProofCrew(3, threads)))
-    late, waited = LastFirst(), crew.wait
-
-    def finishing(futures: Any, timeout: float) -> Any:
-        late.finish(1)
-        return waited(futures, 0.0)
-
-    monkeypatch.setattr(crew, "wait", finishing)
-    assert here == found_of(curves, session(ProofCrew(4, late)))
+    assert here == found_of(curves, session(ProofCrew(4, LastFirst(monkeypatch))))
     # Every cut has both its parts, and every part is cut or excluded.
     below = {child for node in here.cuts for child in (2 * node, 2 * node + 1)}
     assert below | {1} == {*here.cuts, *here.leaves}
@@ -149,19 +134,12 @@ def test_the_clock_ends_it_and_leaves_nothing_waiting(monkeypatch: pytest.Monkey
         if asked > 5:
             raise OutOfTime
 
-    late, waited, every = LastFirst(), crew.wait, set[Any]()
-
-    def finishing(futures: Any, timeout: float) -> Any:
-        every.update(future for future, _ in late.held)
-        late.finish(1)
-        return waited(futures, 0.0)
-
-    monkeypatch.setattr(crew, "wait", finishing)
+    late = LastFirst(monkeypatch)
     with pytest.raises(OutOfTime):
         found_of(curves_of(QuinticStages), session(ProofCrew(2, late)), watch=watch)
     assert asked == 6
-    assert len(every) > 3
-    assert all(future.done() for future in every)
+    assert len(late.handed) > 3
+    assert all(future.done() for future in late.handed)
 
 
 def test_a_part_ends_with_the_time_of_its_search() -> None:
@@ -186,13 +164,7 @@ def test_the_middle_of_a_box_is_the_spline_there(stages: type[BoxStages]) -> Non
         return curves.middle(np.array([[at * 0.98, at / 0.98]]))
 
     def spline(at: np.ndarray) -> np.ndarray:
-        t = np.concatenate([[0.0], np.cumsum(at)])
-        rest = [(1, np.zeros(2)), (2, np.zeros(2))]
-        found = make_interp_spline(t, way - way[0], k=5, bc_type=(rest, rest))
-        factor = [1, 1, 2, 6, 24, 120]
-        inside = t[:-1] + 1e-9 * at
-        each = [found(inside, p) * at[:, None] ** p / factor[p] for p in range(6)]
-        return np.stack(each, axis=1)
+        return FAMILIES["C4 quintic"].fit(way - way[0], at).coefficients
 
     own = middle(h)
     assert own.h[0] == pytest.approx(h, rel=1e-3)
@@ -203,16 +175,6 @@ def test_the_middle_of_a_box_is_the_spline_there(stages: type[BoxStages]) -> Non
         there = [own.h[0] * np.exp(step * sign * (np.arange(3) == m)) for sign in (-1, 1)]
         slope = (spline(there[1]) - spline(there[0]))[:, 1:] / (2 * step)
         np.testing.assert_allclose(own.moved[0, m][:, 1:] * unit, slope, atol=1e-4)
-
-
-def test_the_result_is_the_same_with_two_workers() -> None:
-    one, two = (
-        certify(PROBLEM, gap=0.05, seconds=1e6, workers=workers, certifier=QUINTIC)
-        for workers in (1, 2)
-    )
-    assert one.outcome is two.outcome is Outcome.CERTIFIED
-    assert (one.lower, one.upper, one.durations) == (two.lower, two.upper, two.durations)
-    assert one.proof.document() == two.proof.document()
 
 
 def test_workers_are_counted_from_one() -> None:

