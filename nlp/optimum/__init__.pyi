@@ -1,6 +1,7 @@
 from .clock import call_cap, seconds_left, stopping_after, time_up
 from .feasibility import apart
 from .judgement import SAME
+from .limit_rows import exact_rows
 from .optimality import KKT, KKT_TOLERANCE, Active, kkt
 from .other_route import with_other_route
 from .per_joint import OPTIMUM_SLACK, PerJointSolution, Range, solve_per_joint
@@ -30,6 +31,7 @@ __all__ = [
     "ca",
     "call_cap",
     "close",
+    "exact_rows",
     "free_values",
     "kkt",
     "random_starts",

@@ -12,7 +12,7 @@ from ....problem import Array
 from ....verify import Clock, Refused, StatedProblem, check_motion, spans_of
 from ..document import stated_problem
 from ..exact import ExactProblem
-from ..rounding import STRETCHES, up
+from ..rounding import ROOMS, up
 
 Bounds = tuple[Fraction, Fraction] | None
 """Rational bounds of a limit; None where there is none."""
@@ -142,7 +142,7 @@ def prove_motion(asked: FreeQuestion, durations: Array, speeds: Array) -> Motion
     tuple of (durations, speeds), or None
         Stretched by at most 1e-7.
     """
-    for stretch in STRETCHES:
+    for stretch in map(Fraction, (0, *ROOMS)):
         h = [
             max(up(Fraction(float(x)) * (1 + stretch), 16), low)
             for x, low in zip(durations, asked.shortest, strict=True)

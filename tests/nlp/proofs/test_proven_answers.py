@@ -16,6 +16,7 @@ from trajgap.nlp import (
     printed_problem,
     solve,
 )
+from trajgap.nlp.proofs.answer import keeps_limits, prove_feasible
 from trajgap.nlp.proofs.certifiers import prompt
 from trajgap.problem import (
     Limits,
@@ -23,6 +24,7 @@ from trajgap.problem import (
     cubic_spline,
     evaluate,
     load_case,
+    piecewise,
     quintic_spline,
     three_five_three,
 )
@@ -118,3 +120,31 @@ def test_a_long_spline_has_the_sharper_kind():
     assert prompt(exact_problem(Problem(q, Limits(2.0, 6.0), cubic_spline(9)))).boxes == 16
     assert prompt(exact_problem(Problem(q[:4], Limits(2.0, 6.0), cubic_spline(3)))).boxes > 16
     assert prompt(exact_problem(Problem(q, Limits(2.0, 6.0), quintic_spline(9)))).prepares is False
+
+
+def beside_a_range(velocity, acceleration, jerk, start=0.0, **bounds):
+    """3-5-3 polynomials that end at a limit of position, and are not feasible by some roundings."""
+    ends = ((1, start), (2, 0.0)), ((1, 0.0), (2, 0.0))
+    way, low, high = bounds.pop("way"), bounds.pop("low"), bounds.pop("high")
+    limits = Limits(velocity, acceleration, jerk, low, high, joints=1)
+    curve = piecewise((3, 5, 3), 2, ends[0], finish=ends[1])
+    return Problem(np.array([way]).T, limits, curve, **bounds)
+
+
+@pytest.mark.parametrize(
+    "problem",
+    [
+        beside_a_range(8.21, 53.99, 1191.16, way=[2.82, 2.47, 3.2, 2.95], low=2.21, high=3.25),
+        beside_a_range(11.31, 48.19, np.inf, way=[-1.79, -0.58, -1.42, 0.62], low=-2.29, high=1.18),
+        beside_a_range(
+            2.52, 7.88, 37.38, 0.6456890384074596, way=[0.66, 0.44, 0.77, 1.16], low=-0.19,
+            high=1.28, duration_lower=[0.94, 1.12, 0.94], duration_upper=[4.37, 1.89, 1.87],
+        ),
+    ],
+)  # fmt: skip
+def test_an_answer_at_a_limit_that_no_stretch_keeps_is_proved_feasible(problem):
+    exact, found = exact_problem(problem), optimum.solve(problem)
+    proved = prove_feasible(exact, found.durations)
+    assert proved is not None
+    assert keeps_limits(exact, proved)
+    assert float(sum(proved)) <= found.total_time * (1 + 1e-11)
