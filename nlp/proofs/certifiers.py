@@ -121,7 +121,7 @@ def allowance(problem: ExactProblem) -> int:
     """
     certifier = _certifier(problem, Subject.DECLARED)
     assert certifier is not None
-    return certifier.boxes
+    return certifier.allowance(problem)
 
 
 def certify(
@@ -210,7 +210,7 @@ def certify(
     certifier = certifier or _certifier(exact, subject)
     assert certifier is not None
     if boxes is None:
-        boxes = MINUTE * certifier.boxes if seconds is None else math.inf
+        boxes = MINUTE * certifier.allowance(exact) if seconds is None else math.inf
     clock = RunClock(math.inf if seconds is None else seconds)
     where = None if resume is not None or cache is False else cache
     kept = KeptProofs(cache_folder() if where is True else where)

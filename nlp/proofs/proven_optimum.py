@@ -111,7 +111,7 @@ def _searched(
         kind = prompt(exact)
         if kind is None:
             return None
-        boxes = max(1.0, round(prove * kind.boxes))
+        boxes = max(1.0, round(prove * kind.allowance(exact)))
         answer = certify(exact, seconds=seconds, boxes=boxes, known=found.durations, certifier=kind)
     except TrajgapError:  # nothing limits the total from below, or no certificate can state it
         return None

@@ -26,6 +26,7 @@ from trajgap.problem import (
     load_case,
     piecewise,
     quintic_spline,
+    septic_spline,
     three_five_three,
 )
 
@@ -120,6 +121,16 @@ def test_a_long_spline_has_the_sharper_kind():
     assert prompt(exact_problem(Problem(q, Limits(2.0, 6.0), cubic_spline(9)))).boxes == 16
     assert prompt(exact_problem(Problem(q[:4], Limits(2.0, 6.0), cubic_spline(3)))).boxes > 16
     assert prompt(exact_problem(Problem(q, Limits(2.0, 6.0), quintic_spline(9)))).prepares is False
+
+
+def test_fewer_segments_are_allowed_more_boxes():
+    def allowed(n):
+        q = np.random.default_rng(3).normal(size=(n + 1, 1))
+        exact = exact_problem(Problem(q, Limits(2.0, 6.0, 40.0), septic_spline(n)))
+        return prompt(exact).allowance(exact)
+
+    assert allowed(7) == allowed(9) > 0
+    assert [allowed(n) * n // 7 for n in (2, 4)] == [allowed(7), allowed(7)]
 
 
 def beside_a_range(velocity, acceleration, jerk, start=0.0, **bounds):
