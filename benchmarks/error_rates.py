@@ -142,7 +142,8 @@ def _shares(rows: Sequence[Row]) -> str:
     def share(curve: str, trait: str) -> str:
         own = [r for r in rows if {curve, trait} - {"all"} <= set(r.kind.split(", "))]
         said = sum(r.answers for r in own)
-        return f"{sum(r.answers for r in own if r.status == Status.OPTIMAL) / said:.1%} of {said:,}"
+        proved = sum(r.answers for r in own if r.status == Status.OPTIMAL)
+        return f"{proved / said:.1%} of {said:,}" if said else ""
 
     lines = [f"| | {' | '.join([*traits, 'all'])} |", "|---" * (len(traits) + 2) + "|"]
     for curve in [*curves, "all"]:
