@@ -123,25 +123,16 @@ def _place(problem: Problem, waypoints: int, joints: int) -> int | None:
 
     A problem in floats is that of a certificate if each of its numbers is the printed one, rounded.
     """
-    wanted = None
-    for place, (_, stated) in enumerate(_declared_certificates(waypoints, joints)):
-        if not _near(problem, stated):
-            continue
-        if wanted is None:
-            try:
-                wanted = question(problem_document(exact_problem(problem)))
-            except Refused:  # a number with more digits than a certificate may state
-                return None
-        if _same(stated, wanted):
-            return place
-    return None
-
-
-def _near(problem: Problem, stated: dict[str, Any]) -> bool:
-    """Whether the way-points agree in floats, which says *no* of nearly every problem at once."""
-    angles = _floats(stated["waypoints"]).reshape(problem.waypoints.shape)
-    angles *= _factors(stated["unit"], len(problem.joints))
-    return bool(np.isclose(angles, problem.waypoints, 2.0 * _ROUNDED, 0.0).all())
+    angles = _declared_waypoints(waypoints, joints)
+    near = np.isclose(angles, problem.waypoints, 2.0 * _ROUNDED, 0.0).all(axis=(1, 2))
+    if not near.any():  # of nearly every problem
+        return None
+    try:
+        wanted = question(problem_document(exact_problem(problem)))
+    except Refused:  # a number with more digits than a certificate may state
+        return None
+    every = _declared_certificates(waypoints, joints)
+    return next((k for k in np.flatnonzero(near).tolist() if _same(every[k][1], wanted)), None)
 
 
 @lru_cache(maxsize=64)
@@ -157,6 +148,16 @@ def _declared_certificates(
         for one, stated in asked
         if (len(stated["waypoints"]), len(stated["joints"])) == (waypoints, joints)
     )
+
+
+@lru_cache(maxsize=64)
+def _declared_waypoints(waypoints: int, joints: int) -> Array:
+    """Way-points of these certificates in SI, shape (certificate, way-point, joint)."""
+    every = [
+        _floats(stated["waypoints"]).reshape(waypoints, joints) * _factors(stated["unit"], joints)
+        for _, stated in _declared_certificates(waypoints, joints)
+    ]
+    return np.array(every).reshape(-1, waypoints, joints)
 
 
 @lru_cache(maxsize=256)

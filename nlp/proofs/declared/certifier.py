@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import partial
+from functools import lru_cache, partial
 from typing import Any
 
 import numpy as np
@@ -124,7 +124,9 @@ def _declares(problem: ExactProblem) -> bool:
     return isinstance(problem.curve, Interpolant) and free
 
 
+@lru_cache(maxsize=64)
 def _missing(problem: ExactProblem) -> str | None:
+    # Asked several times of one problem, and answered by the exact form of its curve.
     limited = any(x is not None for j in range(len(problem.joints)) for r in (1, 2, 3)
                   for x in problem.sides(j, r))  # fmt: skip
     if not limited and not any(problem.duration_lower):
