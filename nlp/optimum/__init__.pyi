@@ -1,4 +1,5 @@
 from .clock import call_cap, seconds_left, stopping_after, time_up
+from .descent import KEPT
 from .feasibility import apart
 from .judgement import SAME
 from .limit_rows import exact_rows
@@ -13,6 +14,7 @@ from .starts import random_starts
 from .symbolic import ca
 
 __all__ = [
+    "KEPT",
     "KKT",
     "KKT_TOLERANCE",
     "OPTIMUM_SLACK",

@@ -10,21 +10,15 @@ from typing import Any
 
 import numpy as np
 
-from ...problem import TrajgapError, Verdict, check
+from ...problem import TOLERANCE, TrajgapError, Verdict, check
 from ...problem.cases import Statement
 from ...verify import CertificateVerdict, Subject, verify_certificate
-from ..optimum import Solution, Status, close, solve
+from ..optimum import KEPT, Solution, Status, close, solve
 from .certifiers import certify, covered, instant
 from .document import certificate, fits, shipped
 from .exact import ExactProblem, printed_problem
 from .judged import why_too_large
 from .outcome import GAP
-
-_SAME = 1e-9
-"""Relative excess within which a solver's total is the certificate's: what its tolerance is."""
-_BELOW = 1e-12
-"""Relative distance below the bound that rounding explains: `newton_kernel.KEPT`, the excess over a
-limit that a search in floats takes for kept."""
 
 
 @dataclass(frozen=True)
@@ -147,20 +141,20 @@ def with_interval(solution: Solution, found: ProvedInterval | None) -> Solution:
     -------
     Solution
         Solved once more from the certificate's durations if these are shorter; at these durations
-        if the answer lies below the bound by rounding alone. It is *optimal* where the bound comes
-        within a millionth of its total. Unchanged if nothing is proved, or if the answer lies
-        farther below the bound: then one of the two is wrong.
+        if the answer lies below the bound by no more than a descent takes for kept. It is *optimal*
+        where the bound comes within a millionth of its total. Unchanged if nothing is proved, or if
+        the answer lies farther below the bound: then one of the two is wrong.
     """
     if found is None or found.upper is None or found.durations is None:
         return solution
-    if not solution.best <= float(found.upper) * (1 + _SAME):
+    if not solution.best <= float(found.upper) * (1 + TOLERANCE):
         start = np.array([float(h) for h in found.durations])
         again = solve(solution.problem, initial=start, known=start)
         solution = again if again.best < solution.best else solution
     lower = float(found.lower)
     if Fraction(lower) > found.lower:
         lower = math.nextafter(lower, -math.inf)
-    if solution.infimum is None and lower * (1.0 - _BELOW) <= solution.best < lower:
+    if solution.infimum is None and lower * (1.0 - KEPT) <= solution.best < lower:
         solution = _proved_answer(solution, found.durations)
     if not lower <= solution.best < math.inf:
         return solution

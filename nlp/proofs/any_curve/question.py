@@ -51,12 +51,6 @@ class FreeQuestion:
     longest: list[Number]
     ends: list[list[Number]]
 
-    def floor(self, segment: int) -> Fraction:
-        """Least duration of a segment in which limits hold: its bound, no joint above its speed."""
-        pairs = zip(self.steps[segment], self.velocity, strict=True)
-        ways = [abs(step) / limit[0] for step, limit in pairs if limit is not None]
-        return max([self.shortest[segment], *ways])
-
 
 def question(problem: ExactProblem) -> FreeQuestion:
     """Strip a problem of what does not matter for curves of any kind.

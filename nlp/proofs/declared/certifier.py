@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ....problem import Array, Interpolant, Verdict, check
+from ....problem import TOLERANCE, Array, Interpolant, Verdict, check
 from ....verify import (
     PLACES,
     Clock,
@@ -46,10 +46,6 @@ _FINE = 1e-9
 """A gap below it may be too narrow for the rounding of floats: no stage before it is left out."""
 _DIGITS = 11
 """Of a total after its first: short in a certificate, and 1e-11 of a gap is no loss."""
-_SLIGHT = 1e-9
-"""Share by which durations must be shorter to be worth a new start of the ladder."""
-_LOOKS = 3
-"""Directions of a batch that are checked for a better answer: the shortest ones."""
 _JUDGING = 0.4
 """Seconds that judging takes for one of search: 0.1 to 0.3 were measured."""
 _ABOVE = 1 + Fraction(1, 2**40)
@@ -173,8 +169,9 @@ class BoxStages:
         tried = self.session.stretched(durations) if rest else durations
         totals = tried.sum(axis=1)
         totals[(tried > floats.duration_upper).any(axis=1)] = math.inf
-        for best in totals.argsort()[:_LOOKS]:
-            if not totals[best] < float(target) * (1 - _SLIGHT):
+        for best in totals.argsort():
+            # What is shorter by less than the tolerance is not worth a new start of the ladder.
+            if not totals[best] < float(target) * (1 - TOLERANCE):
                 break
             # The stretch knows nothing of positions, and there is none for ends in motion.
             if check(floats, tried[best]).verdict is Verdict.PASS:
