@@ -15,7 +15,7 @@ from ...problem.cases import Statement
 from ...verify import CertificateVerdict, Subject, verify_certificate
 from ..optimum import KEPT, Solution, Status, close, solve
 from .certifiers import certify, covered, instant
-from .document import certificate, fits, shipped
+from .document import fits, shipped
 from .exact import ExactProblem, printed_problem
 from .judged import why_too_large
 from .outcome import GAP
@@ -65,11 +65,8 @@ def proved(problem: ExactProblem, subject: Subject = Subject.DECLARED) -> Proved
         if not instant(problem):
             return None
         found = certify(problem)
-        document = None if found.proof is None else certificate(found)
-        verdict = found.verdict
-    else:
-        verdict = None if document is None else verify_certificate(document)
-    return None if document is None or verdict is None else narrow(document, verdict)
+        return _narrow(interval_in(found.verdict, found.durations))
+    return None if document is None else proved_again(document)
 
 
 def interval_of(
@@ -97,25 +94,33 @@ def interval_of(
     """
     if why_too_large(problem) is not None or not fits(document, problem, subject):
         return None
-    return narrow(document, verdict or verify_certificate(document))
+    return proved_again(document, verdict)
 
 
-def narrow(document: dict[str, Any], verdict: CertificateVerdict) -> ProvedInterval | None:
+def proved_again(
+    document: dict[str, Any], verdict: CertificateVerdict | None = None
+) -> ProvedInterval | None:
     """What a certificate proves; None if that is nothing, or wider than 1 %."""
-    found = interval_in(document, verdict)
+    verdict = verdict or verify_certificate(document)
+    if not verdict.proves:
+        return None
+    given = document["claim"]["durations"]
+    durations = None if given is None else tuple(Fraction(h) for h in given)
+    return _narrow(interval_in(verdict, durations))
+
+
+def _narrow(found: ProvedInterval | None) -> ProvedInterval | None:
     if found is None or found.upper is None or close(float(found.lower), float(found.upper)):
         return found
     return None
 
 
 def interval_in(
-    document: dict[str, Any], verdict: CertificateVerdict | None
+    verdict: CertificateVerdict | None, durations: tuple[Fraction, ...] | None
 ) -> ProvedInterval | None:
-    """What a certificate proves, however wide; None if that is nothing."""
+    """What is proved of an answer, however wide; None if that is nothing."""
     if verdict is None or not verdict.proves or verdict.lower is None:
         return None
-    given = document["claim"]["durations"]
-    durations = None if given is None else tuple(Fraction(h) for h in given)
     return ProvedInterval(verdict.lower, verdict.upper, durations, verdict.infeasible)
 
 

@@ -11,12 +11,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...problem import Array, Problem, TrajgapError, scale
-from ...verify import Refused, Subject, verify_certificate
+from ...verify import Refused, Subject
 from .. import optimum
 from ..optimum import STARTS, Solution, seconds_left
 from .certifiers import certify, prompt
-from .document import all_shipped, certificate, problem_document, question, suite_documents
-from .evidence import ProvedInterval, interval_in, narrow, proved, with_interval
+from .document import all_shipped, problem_document, question, suite_documents
+from .evidence import ProvedInterval, interval_in, proved, proved_again, with_interval
 from .exact import ExactProblem, exact_problem
 
 PROVING = 0.1
@@ -115,7 +115,7 @@ def _searched(
         answer = certify(exact, seconds=seconds, boxes=boxes, known=found.durations, certifier=kind)
     except TrajgapError:  # nothing limits the total from below, or no certificate can state it
         return None
-    return None if answer.proof is None else interval_in(certificate(answer), answer.verdict)
+    return interval_in(answer.verdict, answer.durations)
 
 
 def _place(problem: Problem, waypoints: int, joints: int) -> int | None:
@@ -164,7 +164,7 @@ def _declared_waypoints(waypoints: int, joints: int) -> Array:
 def _proved(waypoints: int, joints: int, place: int) -> ProvedInterval | None:
     """What one of `_declared_certificates` proves, proved again once a process."""
     document, _ = _declared_certificates(waypoints, joints)[place]
-    return narrow(document, verify_certificate(document))
+    return proved_again(document)
 
 
 def _same(stated: dict[str, Any], wanted: dict[str, Any]) -> bool:
