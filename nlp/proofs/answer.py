@@ -93,6 +93,8 @@ def _moved_inside(problem: ExactProblem, durations: Array, room: float) -> Array
     from scipy.optimize import linprog  # half a second to import; most answers need none
 
     rows = exact_rows(floats, durations)
+    if rows.worst == np.inf:  # they define no curve
+        return durations
     near = rows.excess + ROOMS[-1] * np.abs(rows.gradient).sum(axis=1) > -room
     with np.errstate(divide="ignore"):
         ends = np.log([floats.duration_lower / durations, floats.duration_upper / durations])

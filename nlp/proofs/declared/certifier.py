@@ -55,8 +55,6 @@ _DOUBLINGS = 20
 _FEW = {3: 5, 5: 3}
 """Segments of cubic and quintic splines up to which these boxes close every committed one to its
 gap in no more seconds than its own kind takes; beyond, some last, and certificates are longer."""
-_ROUNDS = 40
-"""Halvings of the distance, in logarithms, to a total that equals its own least durations."""
 
 
 class DeclaredCurves(Curves):
@@ -199,11 +197,13 @@ def _rising(session: Session) -> Iterator[Fraction]:
     if len(longest) == session.exact.segments:
         yield sum(longest, Fraction(0)) * _ABOVE
         return
-    total = Fraction(1)
-    for _ in range(_ROUNDS):
-        # Least durations shrink as the total grows.
+    # The total that its own least durations add up to. They shrink as it grows, by its square at
+    # most, so that each step halves the distance in logarithms at least.
+    before, total = Fraction(0), Fraction(1)
+    while abs(total - before) > TOLERANCE * total:
         kind = _kind(session.exact, total)
-        total = Fraction(math.sqrt(float(total) * sum(kind.shortest) * float(kind.second)))
+        least = sum(kind.shortest) * float(kind.second)
+        before, total = total, Fraction(math.sqrt(float(total) * least))
     for _ in range(_DOUBLINGS):
         total *= 2
         yield total
