@@ -1,23 +1,15 @@
 """Rates of the solver's errors: what blocks of `solver_errors.py` counted, added up.
 
-    RATES=docs/measurements/solver-errors.csv
-    python benchmarks/solver_errors.py --count 1000 --seed 0 --write $RATES
-    python benchmarks/error_rates.py $RATES [--code COMMIT --add OUTPUT...]
-
-The first runs a block of seeds and enters it; the second enters what earlier runs with `--verbose`
-printed. Both write the tables of docs/measurements/solver-errors.md. A block that is there already
-is replaced.
+A row counts one word of `solve` over one block of seeds of one kind of problem; the tables of
+docs/measurements/solver-errors.md are made of them.
 """
 
 from __future__ import annotations
 
-import argparse
 import csv
 import io
 import itertools
-import re
 import subprocess
-import sys
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import astuple, dataclass, fields
@@ -29,12 +21,12 @@ from trajgap.nlp import Status
 ROOT = Path(__file__).parents[1]
 CSV = ROOT / "docs" / "measurements" / "solver-errors.csv"
 PAGE = ROOT / "docs" / "measurements" / "solver-errors.md"
-BEGIN, END = "<!-- solver errors: begin -->", "<!-- solver errors: end -->"
-"""Between these lines of the page stand the tables."""
 SURE = 0.95
 """Confidence of the upper limits."""
 WORDS = tuple(str(word) for word in Status)
 """Every word of `solve`, in the order of the table."""
+HARD = "hard"
+"""The kind of `solver_errors.random_problem`."""
 WHOLE = {"first_seed", "problems", "answers", "improvable", "not_passing", "wrong"}
 """Columns that are numbers."""
 
@@ -45,22 +37,28 @@ class Row:
 
     code: str
     """Version of the code, as git describes it."""
+    kind: str
+    """Of `proved_problems.KINDS`, or `HARD`."""
     first_seed: int
     problems: int
     status: str
     answers: int
     improvable: int
-    """Answers that brute force shortens by more than 1e-4."""
+    """Answers that brute force shortens by more than 1e-4; proved ones by more than 1e-6."""
     not_passing: int
     """Answers that `check` does not pass."""
     wrong: int
-    """No answer, where brute force has one."""
+    """No answer, where brute force has one; or a lower bound above its total."""
     failing_seeds: str
     """All seeds in error, with a blank between."""
 
 
 def rows_of(
-    code: str, first_seed: int, words: Counter[str], faults: Iterable[tuple[int, str, str]]
+    code: str,
+    kind: str,
+    first_seed: int,
+    words: Counter[str],
+    faults: Iterable[tuple[int, str, str]],
 ) -> list[Row]:
     """Rows of a block, from its counts of words and its faults (seed, fault, word)."""
     faults = sorted(faults)
@@ -71,6 +69,7 @@ def rows_of(
         rows.append(
             Row(
                 code,
+                kind,
                 first_seed,
                 sum(words.values()),
                 word,
@@ -84,29 +83,23 @@ def rows_of(
     return rows
 
 
-def rows_printed(code: str, text: str) -> list[Row]:
-    """Rows of a block, from what ``solver_errors.py --verbose`` printed; none if it has no end."""
-    end = re.search(r"^(\d+) problems, seeds (\d+) to (\d+)$", text, re.MULTILINE)
-    if end is None:
-        return []
-    pattern = r"^\| status \| ([a-z_ ]+) \| (\d+) \|"
-    words = Counter({w: int(n) for w, n in re.findall(pattern, text, re.MULTILINE)})
-    found = re.findall(r"^(\d+): ([^,]+), ([a-z_ ]+), ", text, re.MULTILINE)
-    counted = re.findall(r"^\| fault \| ([^|]+) \| (\d+) \|", text, re.MULTILINE)
-    if sum(words.values()) != int(end[1]) or len(found) != sum(int(n) for _, n in counted):
-        raise ValueError(f"seeds {end[2]} to {end[3]}: counts do not add up, run with --verbose")
-    return rows_of(code, int(end[2]), words, [(int(k), fault, word) for k, fault, word in found])
+def block(row: Row) -> tuple[str, int, int]:
+    """Kind, first seed and size of the block of a row."""
+    return row.kind, row.first_seed, row.problems
 
 
 def merged(before: Sequence[Row], new: Sequence[Row]) -> list[Row]:
     """All rows, those of the same block replaced, sorted; blocks must not overlap."""
-    blocks = {(row.first_seed, row.problems) for row in new}
-    rows = [row for row in before if (row.first_seed, row.problems) not in blocks] + list(new)
-    every = sorted({(row.first_seed, row.problems) for row in rows})
-    for (first, count), (following, _) in itertools.pairwise(every):
-        if following < first + count:
-            raise ValueError(f"the blocks from seed {first} and from seed {following} overlap")
-    return sorted(rows, key=lambda row: (row.first_seed, WORDS.index(row.status)))
+    blocks = {block(row) for row in new}
+    rows = [row for row in before if block(row) not in blocks] + list(new)
+    for (kind, first, count), (other, following, _) in itertools.pairwise(
+        sorted(set(map(block, rows)))
+    ):
+        if other == kind and following < first + count:
+            raise ValueError(
+                f"{kind}: the blocks from seed {first} and from seed {following} overlap"
+            )
+    return sorted(rows, key=lambda row: (block(row), WORDS.index(row.status)))
 
 
 def csv_text(rows: Sequence[Row]) -> str:
@@ -131,9 +124,32 @@ def upper_limit(errors: int, tried: int) -> float:
     return 1.0 if errors >= tried else float(beta.ppf(SURE, errors + 1, tried - errors))
 
 
-def tables(rows: Sequence[Row]) -> str:
-    """What the page shows: which runs, the rates of each word, the seeds in error."""
-    return "\n\n".join([_runs(rows), _rates(rows), _seeds(rows)])
+def tables(rows: Sequence[Row]) -> dict[str, str]:
+    """What the page shows under each mark: of hard problems, and of those by kind."""
+    hard = [row for row in rows if row.kind == HARD]
+    others = [row for row in rows if row.kind != HARD]
+    return {
+        "solver errors": "\n\n".join([_runs(hard), _rates(hard), _seeds(hard)]),
+        "proved shares": "\n\n".join([_shares(others), _rates(others), _seeds(others)]),
+    }
+
+
+def _shares(rows: Sequence[Row]) -> str:
+    """Which share of the problems is proved, by curve and by what a problem has beside limits."""
+    names = [tuple(kind.split(", ")) for kind in dict.fromkeys(row.kind for row in rows)]
+    traits, curves = (list(dict.fromkeys(name[k] for name in names)) for k in (1, 0))
+
+    def share(curve: str, trait: str) -> str:
+        own = [r for r in rows if {curve, trait} - {"all"} <= set(r.kind.split(", "))]
+        said = sum(r.answers for r in own)
+        proved = sum(r.answers for r in own if r.status == Status.OPTIMAL)
+        return f"{proved / said:.1%} of {said:,}" if said else ""
+
+    lines = [f"| | {' | '.join([*traits, 'all'])} |", "|---" * (len(traits) + 2) + "|"]
+    for curve in [*curves, "all"]:
+        lines.append(f"| {curve} | {' | '.join(share(curve, t) for t in [*traits, 'all'])} |")
+    codes = ", ".join(f"`{code}`" for code in dict.fromkeys(row.code for row in rows))
+    return "\n".join([*lines, "", f"Versions of the code: {codes}."])
 
 
 def _runs(rows: Sequence[Row]) -> str:
@@ -179,15 +195,21 @@ KINDS = ("improvable", "not_passing", "wrong")
 
 
 def _seeds(rows: Sequence[Row]) -> str:
-    named = [f"{s} (`{row.status}`)" for row in rows for s in row.failing_seeds.split()]
+    named = [
+        f"{seed} ({'' if row.kind == HARD else f'{row.kind}, '}`{row.status}`)"
+        for row in rows
+        for seed in row.failing_seeds.split()
+    ]
     return f"Seeds in error: {', '.join(named) if named else 'none'}."
 
 
-def page_with(page: str, shown: str) -> str:
-    """The page with other tables between its markers."""
-    before, rest = page.split(BEGIN)
-    _, after = rest.split(END)
-    return f"{before}{BEGIN}\n{shown}\n{END}{after}"
+def page_with(page: str, shown: dict[str, str]) -> str:
+    """The page with other tables between its marks."""
+    for name, table in shown.items():
+        before, rest = page.split(f"<!-- {name}: begin -->")
+        _, after = rest.split(f"<!-- {name}: end -->")
+        page = f"{before}<!-- {name}: begin -->\n{table}\n<!-- {name}: end -->{after}"
+    return page
 
 
 def described() -> str:
@@ -202,32 +224,14 @@ def described() -> str:
     return answer.stdout.strip() or "unknown"
 
 
+def entered(path: Path) -> list[Row]:
+    """The rows of a CSV; none if there is no such file."""
+    return read_rows(path.read_text("utf-8")) if path.exists() else []
+
+
 def enter(path: Path, new: Sequence[Row]) -> None:
     """Add rows to a CSV; that of the docs rewrites its page."""
-    before = read_rows(path.read_text("utf-8")) if path.exists() else []
-    rows = merged(before, new)
+    rows = merged(entered(path), new)
     path.write_text(csv_text(rows), encoding="utf-8")
     if path.resolve() == CSV.resolve():
         PAGE.write_text(page_with(PAGE.read_text("utf-8"), tables(rows)), encoding="utf-8")
-
-
-def main() -> int:
-    """Enter printed runs into a CSV, and write the page; 1 if a run has no end."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
-    parser.add_argument("csv", type=Path)
-    parser.add_argument("--add", type=Path, nargs="+", default=[], metavar="OUTPUT")
-    parser.add_argument("--code", help="version of the code of these runs; default: this checkout")
-    given = parser.parse_args()
-    code, late, new = given.code or described(), 0, []
-    for path in given.add:
-        rows = rows_printed(code, path.read_text("utf-8"))
-        if not rows:
-            print(f"{path}: not finished, left out", file=sys.stderr)
-            late = 1
-        new += rows
-    enter(given.csv, new)
-    return late
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -14,6 +14,7 @@ from .problem import CHORD, StatedProblem, read_problem
 from .ranges import (
     MIX,
     MIX_DIGITS,
+    MOST_DEPTH,
     MOST_INTEGER,
     MOST_POWER,
     MOST_WEIGHT,
@@ -46,6 +47,7 @@ __all__ = [
     "LEAF",
     "MIX",
     "MIX_DIGITS",
+    "MOST_DEPTH",
     "MOST_INTEGER",
     "MOST_POWER",
     "MOST_WEIGHT",

@@ -15,10 +15,11 @@ def least_durations(problem: StatedProblem, total: Fraction) -> list[Fraction]:
     """Least durations of any feasible answer of at most this total, s; 0 where none is proved.
 
     A segment between two way-points takes at least |Δq|/V. Where the velocity is continuous, and
-    u and w at the ends, |a| ≤ A keeps it below (|u| + |w| + A·total)/2, so that V is at most that;
-    and where it and the acceleration are continuous and 0 at the ends, |j| ≤ J keeps the velocity
-    below J·total²/8. A segment that begins or ends at rest, with the derivatives below order r at
-    0, takes at least (r!·|Δq|/limit)^(1/r).
+    u and w at the ends, |a| ≤ A keeps it below (|u| + |w| + A·total)/2, so that V is at most that.
+    Where the acceleration is continuous too, v less the parabola J·t(T − t)/2 is convex for
+    |j| ≤ J, and so nowhere above its chord: V is at most max(|u|, |w|) + J·total²/8. A segment that
+    begins or ends at rest, with the derivatives below order r at 0, takes at least
+    (r!·|Δq|/limit)^(1/r).
 
     Parameters
     ----------
@@ -61,15 +62,14 @@ def _speeds(
     """Upper bounds of the speed that follow from limits of acceleration and jerk."""
     inner, held = range(1, len(declared.degrees)), declared.prescribed
     smooth = [all(r in held[b] or declared.continuity[b - 1] >= r for b in inner) for r in (1, 2)]
-    ends = [[end[r][joint] if r in end else None for end in (held[0], held[-1])] for r in (1, 2)]
     _, acceleration, jerk = caps
     found: list[Fraction | None] = []
-    velocities = [abs(x) for x in ends[0] if x is not None]
+    velocities = [abs(end[1][joint]) for end in (held[0], held[-1]) if 1 in end]
     if smooth[0] and len(velocities) == 2:
         if acceleration is not None:
             found.append((sum(velocities) + acceleration * total) / 2)
-        if smooth[1] and ends == [[0, 0], [0, 0]] and jerk is not None:
-            found.append(jerk * total * total / 8)
+        if smooth[1] and jerk is not None:
+            found.append(max(velocities) + jerk * total * total / 8)
     return found
 
 

@@ -1,6 +1,8 @@
 from .clock import call_cap, seconds_left, stopping_after, time_up
+from .descent import KEPT
 from .feasibility import apart
 from .judgement import SAME
+from .limit_rows import exact_rows
 from .optimality import KKT, KKT_TOLERANCE, Active, kkt
 from .other_route import with_other_route
 from .per_joint import (
@@ -18,6 +20,7 @@ from .solver import STARTS, solve
 from .starts import random_starts
 
 __all__ = [
+    "KEPT",
     "KKT",
     "KKT_TOLERANCE",
     "OPTIMUM_SLACK",
@@ -36,6 +39,7 @@ __all__ = [
     "ca",
     "call_cap",
     "close",
+    "exact_rows",
     "free_values",
     "kkt",
     "longest_status",

@@ -10,9 +10,10 @@ import numpy as np
 
 from ...problem import Array, Limits, Problem
 from ...verify import Clock, Refused, StatedProblem, check_answer
+from ..optimum import exact_rows
 from .document import stated_problem
 from .exact import ExactProblem, Real
-from .rounding import STRETCHES, up
+from .rounding import ROOMS, up
 
 
 def _tight(size: Real | None) -> float:
@@ -60,9 +61,9 @@ def prove_feasible(
 ) -> tuple[Fraction, ...] | None:
     """Rational durations near the given ones, proved feasible; None if none was found.
 
-    The durations are stretched uniformly by a tiny factor, rounded up to 15 digits, and never
-    beyond their upper bounds; where ratios are fixed, their total is, and they have these ratios
-    exactly.
+    They are rounded up to 15 digits, and never lie beyond their bounds; where ratios are fixed,
+    they have these ratios exactly. If they exceed a limit all the same, by what rounding hides,
+    they are moved inside all limits, by 1e-13 first and by 1e-7 at most.
 
     Raises
     ------
@@ -70,12 +71,40 @@ def prove_feasible(
         If the clock ends it.
     """
     stated = stated_problem(problem)
-    for stretch in STRETCHES:
-        longer = [Fraction(float(h)) * (1 + stretch) for h in durations]
-        found = _within_bounds(stated, longer)
+    for room in (0.0, *ROOMS):
+        moved = durations if room == 0.0 else _moved_inside(problem, durations, room)
+        found = _within_bounds(stated, [Fraction(float(h)) for h in moved])
         if keeps_limits(problem, found, clock):
             return tuple(found)
     return None
+
+
+def _moved_inside(problem: ExactProblem, durations: Array, room: float) -> Array:
+    """Durations moved inside all limits by a share of them, to first order.
+
+    A uniform stretch does it where no position is limited, no duration has an upper bound and the
+    ends stand still. Elsewhere the logarithms change by room·x, where x is the cheapest change,
+    min Σ h x, with excess + gradient·room·x ≤ −room for all limits.
+    """
+    floats = float_problem(problem)
+    stays = floats.limits.limits_position or np.isfinite(floats.duration_upper).any()
+    if floats.ratios is not None or (floats.curve.homogeneous and not stays):
+        return durations * (1.0 + room)
+    from scipy.optimize import linprog  # half a second to import; most answers need none
+
+    rows = exact_rows(floats, durations)
+    if rows.worst == np.inf:  # they define no curve
+        return durations
+    near = rows.excess + ROOMS[-1] * np.abs(rows.gradient).sum(axis=1) > -room
+    with np.errstate(divide="ignore"):
+        ends = np.log([floats.duration_lower / durations, floats.duration_upper / durations])
+    found = linprog(
+        durations,
+        A_ub=rows.gradient[near],
+        b_ub=-rows.excess[near] / room - 1.0,
+        bounds=np.clip(ends.T, -ROOMS[-1], ROOMS[-1]) / room,
+    )
+    return durations * (np.exp(room * found.x) if found.status == 0 else 1.0 + room)
 
 
 def _within_bounds(stated: StatedProblem, durations: Sequence[Fraction]) -> list[Fraction]:

@@ -32,8 +32,8 @@ class Certifier:
     instant : bool
         Whether it is a closed form.
     boxes : int
-        Boxes that an audit allows one problem by default: some ten seconds' worth, measured where
-        nothing else ran.
+        Boxes that an audit allows a problem of seven segments by default: some ten seconds' worth,
+        measured where nothing else ran.
     prepares : bool
         Whether a search begins with what takes seconds for long curves, too long for an answer that
         was not asked to be proved.
@@ -54,6 +54,13 @@ class Certifier:
     prepares: bool = False
     sided: bool = False
     moving: bool = False
+
+    def allowance(self, exact: ExactProblem) -> int:
+        """Boxes that an audit allows a problem by default.
+
+        What is computed of a box grows with the segments at least: fewer have as many boxes more.
+        """
+        return self.boxes * max(7, exact.segments) // exact.segments
 
     def run(self, exact: ExactProblem, request: Request) -> Certified:
         """Prove an interval of the optimum; the time limit and Ctrl-C end it with what is proved.

@@ -23,7 +23,6 @@ from .exact import MOVING, ExactProblem, exact_problem
 from .judged import judged, why_too_large
 from .kept import KeptProofs, cache_folder
 from .outcome import GAP, Certified, Progress, Request
-from .session import Session
 from .state import resumed
 
 CERTIFIERS: tuple[str, ...] = (
@@ -121,7 +120,7 @@ def allowance(problem: ExactProblem) -> int:
     """
     certifier = _certifier(problem, Subject.DECLARED)
     assert certifier is not None
-    return certifier.boxes
+    return certifier.allowance(problem)
 
 
 def certify(
@@ -210,7 +209,7 @@ def certify(
     certifier = certifier or _certifier(exact, subject)
     assert certifier is not None
     if boxes is None:
-        boxes = MINUTE * certifier.boxes if seconds is None else math.inf
+        boxes = MINUTE * certifier.allowance(exact) if seconds is None else math.inf
     clock = RunClock(math.inf if seconds is None else seconds)
     where = None if resume is not None or cache is False else cache
     kept = KeptProofs(cache_folder() if where is True else where)
@@ -221,10 +220,8 @@ def certify(
         request = Request(gap, clock, seed, report=report, crew=crew, boxes=boxes)
         before = None
         if resume is not None:
-            taken_up = resumed(exact, resume, subject, clock.left + clock.spare, crew)
-            request = replace(request, resume=taken_up)
-            before = Session(exact, request).result(False, subject)
-            before = replace(before, verdict=taken_up.verdict)
+            before = resumed(exact, resume, subject, gap, clock.left + clock.spare, crew)
+            request = replace(request, resume=before)
         if known is not None:
             request = replace(request, known=np.asarray(known, dtype=np.float64))
         found = judged(certifier.run(exact, request), clock, before, crew)

@@ -10,21 +10,15 @@ from typing import Any
 
 import numpy as np
 
-from ...problem import TrajgapError, Verdict, check
+from ...problem import TOLERANCE, TrajgapError, Verdict, check
 from ...problem.cases import Statement
 from ...verify import CertificateVerdict, Subject, verify_certificate
-from ..optimum import Solution, Status, close, solve
+from ..optimum import KEPT, Solution, Status, close, solve
 from .certifiers import certify, covered, instant
-from .document import certificate, fits, shipped
+from .document import fits, shipped
 from .exact import ExactProblem, printed_problem
 from .judged import why_too_large
 from .outcome import GAP
-
-_SAME = 1e-9
-"""Relative excess within which a solver's total is the certificate's: what its tolerance is."""
-_BELOW = 1e-12
-"""Relative distance below the bound that rounding explains: `newton_kernel.KEPT`, the excess over a
-limit that a search in floats takes for kept."""
 
 
 @dataclass(frozen=True)
@@ -71,11 +65,8 @@ def proved(problem: ExactProblem, subject: Subject = Subject.DECLARED) -> Proved
         if not instant(problem):
             return None
         found = certify(problem)
-        document = None if found.proof is None else certificate(found)
-        verdict = found.verdict
-    else:
-        verdict = None if document is None else verify_certificate(document)
-    return None if document is None or verdict is None else narrow(document, verdict)
+        return _narrow(interval_in(found.verdict, found.durations))
+    return None if document is None else proved_again(document)
 
 
 def interval_of(
@@ -103,25 +94,33 @@ def interval_of(
     """
     if why_too_large(problem) is not None or not fits(document, problem, subject):
         return None
-    return narrow(document, verdict or verify_certificate(document))
+    return proved_again(document, verdict)
 
 
-def narrow(document: dict[str, Any], verdict: CertificateVerdict) -> ProvedInterval | None:
+def proved_again(
+    document: dict[str, Any], verdict: CertificateVerdict | None = None
+) -> ProvedInterval | None:
     """What a certificate proves; None if that is nothing, or wider than 1 %."""
-    found = interval_in(document, verdict)
+    verdict = verdict or verify_certificate(document)
+    if not verdict.proves:
+        return None
+    given = document["claim"]["durations"]
+    durations = None if given is None else tuple(Fraction(h) for h in given)
+    return _narrow(interval_in(verdict, durations))
+
+
+def _narrow(found: ProvedInterval | None) -> ProvedInterval | None:
     if found is None or found.upper is None or close(float(found.lower), float(found.upper)):
         return found
     return None
 
 
 def interval_in(
-    document: dict[str, Any], verdict: CertificateVerdict | None
+    verdict: CertificateVerdict | None, durations: tuple[Fraction, ...] | None
 ) -> ProvedInterval | None:
-    """What a certificate proves, however wide; None if that is nothing."""
+    """What is proved of an answer, however wide; None if that is nothing."""
     if verdict is None or not verdict.proves or verdict.lower is None:
         return None
-    given = document["claim"]["durations"]
-    durations = None if given is None else tuple(Fraction(h) for h in given)
     return ProvedInterval(verdict.lower, verdict.upper, durations, verdict.infeasible)
 
 
@@ -147,20 +146,20 @@ def with_interval(solution: Solution, found: ProvedInterval | None) -> Solution:
     -------
     Solution
         Solved once more from the certificate's durations if these are shorter; at these durations
-        if the answer lies below the bound by rounding alone. It is *optimal* where the bound comes
-        within a millionth of its total. Unchanged if nothing is proved, or if the answer lies
-        farther below the bound: then one of the two is wrong.
+        if the answer lies below the bound by no more than a descent takes for kept. It is *optimal*
+        where the bound comes within a millionth of its total. Unchanged if nothing is proved, or if
+        the answer lies farther below the bound: then one of the two is wrong.
     """
     if found is None or found.upper is None or found.durations is None:
         return solution
-    if not solution.best <= float(found.upper) * (1 + _SAME):
+    if not solution.best <= float(found.upper) * (1 + TOLERANCE):
         start = np.array([float(h) for h in found.durations])
         again = solve(solution.problem, initial=start, known=start)
         solution = again if again.best < solution.best else solution
     lower = float(found.lower)
     if Fraction(lower) > found.lower:
         lower = math.nextafter(lower, -math.inf)
-    if solution.infimum is None and lower * (1.0 - _BELOW) <= solution.best < lower:
+    if solution.infimum is None and lower * (1.0 - KEPT) <= solution.best < lower:
         solution = _proved_answer(solution, found.durations)
     if not lower <= solution.best < math.inf:
         return solution

@@ -12,6 +12,7 @@ import json
 import os
 import sys
 from contextlib import suppress
+from dataclasses import replace
 from fractions import Fraction
 from functools import cache
 from pathlib import Path
@@ -22,7 +23,6 @@ from ...verify import (
     CertifiedQuestion,
     Refused,
     Subject,
-    number,
     read_document,
     seal,
     verify_certificate,
@@ -31,7 +31,7 @@ from .clock import RunClock
 from .crew import ProofCrew
 from .document import certificate, fits, problem_document
 from .exact import ExactProblem
-from .outcome import Certified, Outcome, WrittenProof
+from .outcome import Certified, Outcome, claimed
 
 VARIABLE = "TRAJGAP_CACHE"
 """Environment variable with another folder for what is kept; empty for none."""
@@ -115,23 +115,8 @@ class KeptProofs:
                 return None
             if verdict.question != CertifiedQuestion():
                 return None  # words that no run has put there
-            claim = document["claim"]
-            durations, speeds = claim["durations"], claim["speeds"]
-            found = Certified(
-                problem,
-                Outcome.INFEASIBLE if verdict.infeasible else Outcome.CERTIFIED,
-                verdict.lower,
-                verdict.upper,
-                None if durations is None else tuple(map(number, durations)),
-                nodes,
-                0,
-                0.0,
-                WrittenProof(document["proof"]),
-                subject=subject,
-                speeds=None if speeds is None else tuple(tuple(map(number, row)) for row in speeds),
-                verdict=verdict,
-                kept=True,
-            )
+            found = claimed(problem, document, verdict, gap, subject)
+            found = replace(found, nodes=nodes, kept=True)
         except _ODD:
             return None
         return found if _settled(found, gap) else None

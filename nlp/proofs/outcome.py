@@ -10,7 +10,7 @@ from fractions import Fraction
 from typing import Any, Protocol
 
 from ...problem import Array
-from ...verify import CertificateVerdict, Subject, shown_bound
+from ...verify import CertificateVerdict, Subject, number, shown_bound
 from .clock import RunClock
 from .crew import ProofCrew
 from .exact import ExactProblem
@@ -62,33 +62,6 @@ class WrittenProof:
         return self.proof
 
 
-@dataclass(frozen=True, eq=False)
-class Resumed:
-    """What a stopped run left.
-
-    Attributes
-    ----------
-    lower : Fraction
-        Proved by ``proof``, s; 0 without it.
-    proof : WrittenProof or None
-    durations : tuple of Fraction or None
-        Proved to keep the limits.
-    speeds : tuple or None
-        At the way-points, for an answer of any curve.
-    proposals : dict or None
-        What the run had not finished: nothing in it is trusted.
-    verdict : CertificateVerdict
-        What `trajgap.verify` said of it.
-    """
-
-    lower: Fraction
-    proof: WrittenProof | None
-    durations: tuple[Fraction, ...] | None
-    speeds: tuple[tuple[Fraction, ...], ...] | None
-    proposals: dict[str, Any] | None
-    verdict: CertificateVerdict
-
-
 @dataclass(frozen=True)
 class Request:
     """What is asked of a certifier.
@@ -105,8 +78,8 @@ class Request:
         An answer that a local search has found already, s.
     seed : int
         Of the starts of a local solver.
-    resume : Resumed or None
-        Where a stopped run is to go on.
+    resume : Certified or None
+        Where a stopped run is to go on: proved again.
     report : callable or None
         Called with a `Progress` now and then.
     crew : ProofCrew
@@ -116,7 +89,7 @@ class Request:
     gap: float = GAP
     clock: RunClock = field(default_factory=lambda: RunClock(math.inf))
     seed: int = 0
-    resume: Resumed | None = None
+    resume: Certified | None = None
     report: Callable[[Progress], None] | None = None
     crew: ProofCrew = field(default_factory=ProofCrew)
     boxes: float = math.inf
@@ -200,3 +173,48 @@ class Certified:
             )
         left = "" if self.left_out is None else f"; left out: {self.left_out}"
         return f"{self.problem.name}: {head}; {self.nodes} boxes, {self.seconds:.1f} s{left}"
+
+
+def claimed(
+    problem: ExactProblem,
+    document: dict[str, Any],
+    verdict: CertificateVerdict,
+    gap: float,
+    subject: Subject,
+) -> Certified:
+    """What stands in a problem's certificate or state, which `trajgap.verify` has proved again.
+
+    ``gap`` is the one up to which its interval counts as certified.
+    """
+    claim, written = document["claim"], document["proof"]
+    durations, speeds = claim["durations"], claim["speeds"]
+    proof = None if written is None else WrittenProof(written)
+    pending = document.get("proposals")
+    answer = None if durations is None else tuple(map(number, durations))
+    lower = Fraction(0) if proof is None or verdict.lower is None else verdict.lower
+    upper = None if answer is None else sum(answer, Fraction(0))
+    outcome = outcome_of(lower, upper, gap)
+    return Certified(
+        problem,
+        Outcome.INFEASIBLE if verdict.infeasible else outcome,
+        lower,
+        upper,
+        answer,
+        0,
+        0,
+        0.0,
+        proof,
+        stopped=outcome is not Outcome.CERTIFIED and not verdict.infeasible,
+        proposals=None if pending is None else WrittenProof(pending),
+        subject=subject,
+        speeds=None if speeds is None else tuple(tuple(map(number, row)) for row in speeds),
+        verdict=verdict,
+    )
+
+
+def outcome_of(lower: Fraction, upper: Fraction | None, gap: float) -> Outcome:
+    """What an interval amounts to; without a proof the lower end is 0."""
+    if upper is None:
+        return Outcome.OPEN
+    near = lower > 0 and upper - lower <= upper * Fraction(gap)
+    return Outcome.CERTIFIED if near else Outcome.INTERVAL

@@ -11,12 +11,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...problem import Array, Problem, TrajgapError, scale
-from ...verify import Refused, Subject, verify_certificate
+from ...verify import Refused, Subject
 from .. import optimum
 from ..optimum import STARTS, Solution, seconds_left
 from .certifiers import certify, prompt
-from .document import all_shipped, certificate, problem_document, question, suite_documents
-from .evidence import ProvedInterval, interval_in, narrow, proved, with_interval
+from .document import all_shipped, problem_document, question, suite_documents
+from .evidence import ProvedInterval, interval_in, proved, proved_again, with_interval
 from .exact import ExactProblem, exact_problem
 
 PROVING = 0.1
@@ -111,11 +111,11 @@ def _searched(
         kind = prompt(exact)
         if kind is None:
             return None
-        boxes = max(1.0, round(prove * kind.boxes))
+        boxes = max(1.0, round(prove * kind.allowance(exact)))
         answer = certify(exact, seconds=seconds, boxes=boxes, known=found.durations, certifier=kind)
     except TrajgapError:  # nothing limits the total from below, or no certificate can state it
         return None
-    return None if answer.proof is None else interval_in(certificate(answer), answer.verdict)
+    return interval_in(answer.verdict, answer.durations)
 
 
 def _place(problem: Problem, waypoints: int, joints: int) -> int | None:
@@ -123,25 +123,16 @@ def _place(problem: Problem, waypoints: int, joints: int) -> int | None:
 
     A problem in floats is that of a certificate if each of its numbers is the printed one, rounded.
     """
-    wanted = None
-    for place, (_, stated) in enumerate(_declared_certificates(waypoints, joints)):
-        if not _near(problem, stated):
-            continue
-        if wanted is None:
-            try:
-                wanted = question(problem_document(exact_problem(problem)))
-            except Refused:  # a number with more digits than a certificate may state
-                return None
-        if _same(stated, wanted):
-            return place
-    return None
-
-
-def _near(problem: Problem, stated: dict[str, Any]) -> bool:
-    """Whether the way-points agree in floats, which says *no* of nearly every problem at once."""
-    angles = _floats(stated["waypoints"]).reshape(problem.waypoints.shape)
-    angles *= _factors(stated["unit"], len(problem.joints))
-    return bool(np.isclose(angles, problem.waypoints, 2.0 * _ROUNDED, 0.0).all())
+    angles = _declared_waypoints(waypoints, joints)
+    near = np.isclose(angles, problem.waypoints, 2.0 * _ROUNDED, 0.0).all(axis=(1, 2))
+    if not near.any():  # of nearly every problem
+        return None
+    try:
+        wanted = question(problem_document(exact_problem(problem)))
+    except Refused:  # a number with more digits than a certificate may state
+        return None
+    every = _declared_certificates(waypoints, joints)
+    return next((k for k in np.flatnonzero(near).tolist() if _same(every[k][1], wanted)), None)
 
 
 @lru_cache(maxsize=64)
@@ -159,11 +150,21 @@ def _declared_certificates(
     )
 
 
+@lru_cache(maxsize=64)
+def _declared_waypoints(waypoints: int, joints: int) -> Array:
+    """Way-points of these certificates in SI, shape (certificate, way-point, joint)."""
+    every = [
+        _floats(stated["waypoints"]).reshape(waypoints, joints) * _factors(stated["unit"], joints)
+        for _, stated in _declared_certificates(waypoints, joints)
+    ]
+    return np.array(every).reshape(-1, waypoints, joints)
+
+
 @lru_cache(maxsize=256)
 def _proved(waypoints: int, joints: int, place: int) -> ProvedInterval | None:
     """What one of `_declared_certificates` proves, proved again once a process."""
     document, _ = _declared_certificates(waypoints, joints)[place]
-    return narrow(document, verify_certificate(document))
+    return proved_again(document)
 
 
 def _same(stated: dict[str, Any], wanted: dict[str, Any]) -> bool:

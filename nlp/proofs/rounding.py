@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from fractions import Fraction
 
-STRETCHES = (Fraction(0), *(Fraction(1, 10**k) for k in range(13, 6, -1)))
-"""Shares by which an answer is stretched until it is feasible, tried in turn: from some roundings
-of a float to a tenth of the gap that is asked for by default."""
+ROOMS = tuple(10.0**-k for k in range(13, 6, -1))
+"""Shares of its limits by which an answer is moved inside them until it is feasible, tried in turn:
+from some roundings of a float to a tenth of the gap that is asked for by default."""
 
 
 def up(value: Fraction, digits: int) -> Fraction:

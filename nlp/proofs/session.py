@@ -17,7 +17,7 @@ from ...verify import OutOfTime as OutOfTime
 from ..optimum import solve, stopping_after
 from .answer import float_problem, prove_feasible
 from .exact import ExactProblem
-from .outcome import Argument, Certified, Outcome, Progress, Request, WrittenProof
+from .outcome import Argument, Certified, Outcome, Progress, Request, outcome_of
 
 T = TypeVar("T")
 
@@ -140,8 +140,7 @@ class Session:
                 self.answer = resumed.durations, resumed.speeds
             self.lower, self.proof = resumed.lower, resumed.proof
             self._unsearched = resumed.proof is None
-            if resumed.proposals is not None:
-                self.proposals = WrittenProof(resumed.proposals)
+            self.proposals = resumed.proposals
 
     def read(self, state: Callable[[], T]) -> T:
         """What a kind of proof reads in a state, in which it trusts nothing.
@@ -333,15 +332,11 @@ class Session:
         upper = self.upper
         if upper is not None and upper < self.lower:
             raise TrajgapError("certify: the proof contradicts the answer, one of them is wrong")
-        if upper is not None:
-            near = self.proof is not None and upper - self.lower <= upper * Fraction(
-                self.request.gap
-            )
-            outcome = Outcome.CERTIFIED if near else Outcome.INTERVAL
-        elif self.infeasible:
+        outcome = outcome_of(self.lower, upper, self.request.gap)
+        if outcome is Outcome.OPEN and self.infeasible:
             outcome = Outcome.INFEASIBLE
-        else:
-            outcome = Outcome.INTERVAL if self.one_sided else Outcome.OPEN
+        elif outcome is Outcome.OPEN and self.one_sided:
+            outcome = Outcome.INTERVAL
         return Certified(
             self.exact,
             outcome,

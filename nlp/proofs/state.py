@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
@@ -14,14 +13,13 @@ from ...verify import (
     CertifiedQuestion,
     Refused,
     Subject,
-    number,
     read_document,
     verify_certificate,
 )
 from .crew import ProofCrew
 from .document import document_of, fits, sealed
 from .exact import ExactProblem
-from .outcome import Certified, Resumed, WrittenProof
+from .outcome import GAP, Certified, claimed
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,9 +99,10 @@ def resumed(
     problem: ExactProblem,
     state: Certified | dict[str, Any],
     subject: Subject = Subject.DECLARED,
+    gap: float = GAP,
     seconds: float = SECONDS,
     crew: ProofCrew | None = None,
-) -> Resumed:
+) -> Certified:
     """What a stopped run left, its proof and its answer proved again by `trajgap.verify`.
 
     Parameters
@@ -112,6 +111,8 @@ def resumed(
     state : Certified or dict
         The run, or its `state_document`.
     subject : Subject
+    gap : float
+        Up to which an interval counts as certified.
     seconds : float
         Time limit.
     crew : ProofCrew, optional
@@ -119,7 +120,7 @@ def resumed(
 
     Returns
     -------
-    Resumed
+    Certified
 
     Raises
     ------
@@ -135,13 +136,4 @@ def resumed(
         raise TrajgapError(f"resume: the state is not proved ({verdict.reason})")
     if not fits(document, problem, subject):
         raise TrajgapError("resume: the state is about another problem; start without it")
-    claim, proof = document["claim"], document["proof"]
-    durations, speeds = claim["durations"], claim["speeds"]
-    return Resumed(
-        Fraction(0) if proof is None else number(claim["lower"]),
-        None if proof is None else WrittenProof(proof),
-        None if durations is None else tuple(map(number, durations)),
-        None if speeds is None else tuple(tuple(map(number, row)) for row in speeds),
-        document["proposals"],
-        verdict,
-    )
+    return claimed(problem, document, verdict, gap, subject)

@@ -84,7 +84,7 @@ def _way(rng: Rng, points: int, joints: int) -> tuple[Array, list[int]]:
     return q, short
 
 
-def _reached(bare: Any, h: Array) -> tuple[Array, Array, Array]:
+def reached(bare: Any, h: Array) -> tuple[Array, Array, Array]:
     """Peaks to each side of these durations, shape (2, joints, 3), and the range of positions."""
     from trajgap.problem import extrema, fit
 
@@ -127,7 +127,7 @@ def draw(rng: Rng) -> tuple[Any, Array] | None:
     q, h = q * size, h * pace
     bare = Problem(q, Limits(joints=joints), curve)
     try:
-        tops, low, high = _reached(bare, h)
+        tops, low, high = reached(bare, h)
         limits = _limits(rng, tops, low, high, np.ptp(q, axis=0))
         lower, upper = np.zeros(n), np.full(n, np.inf)
         if rng.random() < 0.45:

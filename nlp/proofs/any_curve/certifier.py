@@ -16,7 +16,6 @@ from ..driver import grow
 from ..rounding import down
 from ..session import Session, Shorter
 from .estimate import estimate_any_curve
-from .local import LocalQuestion, local_optimum
 from .proof import DIGITS, free_bound, regrown
 from .question import FreeQuestion, Motion, keeps, missing, prove_motion, question
 from .search import Cutting, Node, Search
@@ -31,7 +30,9 @@ class _Run:
         self.longest = [x for x in self.asked.longest if x is not None]
         self.bounded = len(self.longest) == len(self.asked.longest)
         self.motion: Motion | None = None
-        for found in (session.answer, self._first()):
+        with session.sharing_the_time():
+            first = self._local()
+        for found in (session.answer, first):
             if found is not None and found[1] is not None:
                 self.take((found[0], found[1]))
 
@@ -48,8 +49,8 @@ class _Run:
             self.session.answer = motion
         return True
 
-    def _first(self) -> Motion | None:
-        """The best motion that the local solver finds, proved."""
+    def _local(self, durations: Array | None = None) -> Motion | None:
+        """The best motion of the local solver, proved: from given durations or its own starts."""
         exact = self.session.exact
         free = (None,) * len(exact.joints)
         alone = replace(
@@ -58,8 +59,13 @@ class _Run:
             position_lower=free,
             position_upper=free,
         )
-        with self.session.sharing_the_time():
-            known = estimate_any_curve(float_problem(alone), seed=self.session.request.seed)
+        problem, seed = float_problem(alone), self.session.request.seed
+        if durations is None:
+            known = estimate_any_curve(problem, seed=seed)
+        else:
+            pieces = np.diff(problem.curve.waypoint_breaks)
+            start = np.repeat(durations / pieces, pieces)
+            known = estimate_any_curve(problem, starts=0, initial=start)
         if known.durations is None or known.nodal_velocities is None:
             return None
         speeds = known.nodal_velocities[:, list(self.asked.joints)]
@@ -81,7 +87,7 @@ class _Run:
 
     def improve(self, durations: Array) -> None:
         """Raise `Shorter` if a motion that is shorter lies near durations."""
-        better = _local_motion(self.asked, durations)
+        better = self._local(durations)
         if better is not None and self.take(better):
             raise Shorter(durations)
 
@@ -145,33 +151,6 @@ ANY_CURVE = Certifier(
     "every C1 motion", lambda _: True, missing, _prove, subject=Subject.ANY, boxes=200, moving=True
 )
 """Takes every curve, since of a curve only the velocities at its two ends count."""
-
-
-def _local_motion(asked: FreeQuestion, durations: Array) -> Motion | None:
-    """A locally best motion from given durations, proved."""
-    bent = [j for j, a in enumerate(asked.acceleration) if a is not None]
-
-    def tight(limits: list[tuple[Fraction, Fraction] | None]) -> Array:
-        own = [limits[j] for j in bent]
-        return np.array([np.inf if x is None else float(x[0]) for x in own])
-
-    ends = [
-        [np.nan if v is None else float(v) for v in (side[j] for j in bent)] for side in asked.ends
-    ]
-    core = LocalQuestion(
-        np.array([[float(row[j]) for j in bent] for row in asked.steps]),
-        tight(asked.velocity),
-        tight(asked.acceleration),
-        np.array([float(asked.floor(k)) for k in range(len(asked.steps))]),
-        np.array([np.inf if x is None else float(x) for x in asked.longest]),
-        np.array(ends).reshape(2, -1),
-    )
-    answer = local_optimum(core, durations) if bent else None
-    if answer is None:
-        return None
-    speeds = np.full((len(durations) + 1, len(asked.joints)), np.nan)
-    speeds[:, bent] = answer[1]
-    return prove_motion(asked, answer[0], speeds)
 
 
 def _floats(asked: FreeQuestion, motion: Motion | None) -> tuple[Array, Array]:

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import math
+import pickle
 from dataclasses import dataclass, field, replace
-from functools import cached_property, lru_cache
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ....problem import Problem, TrajgapError
+from ....problem import TOLERANCE, Problem, TrajgapError
 from ...optimum import Evidence, seconds_left, time_up
-from .local import KEPT, LocalQuestion, local_optimum, starting_points
+from .local import LocalQuestion, local_optimum, starting_points
 from .reach import profile
 
 STARTS = 6
@@ -113,7 +114,7 @@ def estimate_any_curve(
         return AnyCurveEstimate(None, why=reason)
     matter = _matter(problem)
     question = _question(problem, matter)
-    short = np.flatnonzero(question.lower > question.upper * (1 + KEPT))
+    short = np.flatnonzero(question.lower > question.upper * (1 + TOLERANCE))
     if short.size:
         return AnyCurveEstimate(
             None, why=f"segment {short[0] + 1} cannot be done within its upper bound"
@@ -142,9 +143,9 @@ def estimate_any_curve(
             ends=question.ends[:, bounded],
         )
         points = starting_points(core, starts, np.random.default_rng(seed), given[:, moving])
-        search = _Search(core, points)
         # Where the time is limited an answer depends on the clock, and is not kept.
-        answers, count = _kept(search) if seconds_left() == math.inf else _searched(search)
+        kept = seconds_left() == math.inf
+        answers, count = _kept(pickle.dumps((core, points))) if kept else _searched(core, points)
         if not answers:
             return AnyCurveEstimate(
                 None, why=f"none of {count} starts led to an answer", starts=count
@@ -168,41 +169,24 @@ _Answer = tuple[NDArray[np.float64], NDArray[np.float64]]
 """Durations and nodal velocities of a local optimum."""
 
 
-@dataclass(frozen=True, eq=False)
-class _Search:
-    """All that a search depends on: readings that differ in their curve alone ask the same."""
-
-    question: LocalQuestion
-    points: NDArray[np.float64]
-
-    @cached_property
-    def _key(self) -> tuple[object, ...]:
-        asked = self.question
-        arrays = (asked.steps, asked.velocity, asked.acceleration, asked.lower, asked.upper)
-        every = (*arrays, asked.ends, self.points)
-        return tuple((x.shape, np.ascontiguousarray(x).tobytes()) for x in every)
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Search) and self._key == other._key
-
-    def __hash__(self) -> int:
-        return hash(self._key)
-
-
-def _searched(search: _Search) -> tuple[tuple[_Answer, ...], int]:
+def _searched(
+    question: LocalQuestion, points: NDArray[np.float64]
+) -> tuple[tuple[_Answer, ...], int]:
     """The answers of all starts that led to one, and how many were begun."""
     answers, count = [], 0
-    for h in search.points:
+    for h in points:
         if count and time_up():
             break
         count += 1
-        if (answer := local_optimum(search.question, h)) is not None:
+        if (answer := local_optimum(question, h)) is not None:
             answers.append(answer)
     return tuple(answers), count
 
 
-_kept = lru_cache(maxsize=64)(_searched)
-"""Found once a process: an audit asks under each reading, of which a case has some dozen."""
+@lru_cache(maxsize=64)
+def _kept(packed: bytes) -> tuple[tuple[_Answer, ...], int]:
+    """Found once a process: an audit asks under each reading, of which a case has some dozen."""
+    return _searched(*pickle.loads(packed))
 
 
 def _merge(problem: Problem, values: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -298,7 +282,7 @@ def _outside_range(
             top, bend = limits.velocity[j], limits.acceleration[j]
             curve = profile(end - start, v0, v1, durations[k], top, bend)
             least, most = curve.position_range()
-            slack = KEPT * max(1.0, abs(start))
+            slack = TOLERANCE * max(1.0, abs(start))
             if start + least < low - slack or start + most > high + slack:
                 return (
                     f"position is limited, and the curve found leaves the range of joint "
@@ -315,10 +299,10 @@ def _not_attained(question: LocalQuestion, durations: NDArray[np.float64]) -> st
     for j in np.flatnonzero(np.isinf(question.acceleration)):
         # A joint that needs its full speed all through a segment has it at both of its ends.
         steps = question.steps[:, j]
-        full = np.abs(steps) >= question.velocity[j] * durations * (1 - KEPT)
+        full = np.abs(steps) >= question.velocity[j] * durations * (1 - TOLERANCE)
         wanted = np.where(full, np.sign(steps) * question.velocity[j], np.nan)
         first, last = question.ends[:, j]
         before, after = np.append(first, wanted), np.append(wanted, last)
-        if (np.abs(before - after) > KEPT * question.velocity[j]).any():
+        if (np.abs(before - after) > TOLERANCE * question.velocity[j]).any():
             return "only velocity is limited: it would have to jump between its limits"
     return None

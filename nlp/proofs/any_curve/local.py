@@ -9,11 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ....problem import TOLERANCE
 from ...optimum import ca, call_cap
 from .reach import reachable
-
-KEPT = 1e-9
-"""Relative excess over a bound that still counts as keeping it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -161,7 +159,7 @@ def _repaired(
         longer, w = stretched(c)
         limits = (question.velocity, question.acceleration)
         inside = reachable(question.steps, w[:-1], w[1:], longer[:, None], *limits)
-        return bool(inside.all() and (longer <= question.upper * (1 + KEPT)).all())
+        return bool(inside.all() and (longer <= question.upper * (1 + TOLERANCE)).all())
 
     if keeps(1.0):
         return stretched(1.0)

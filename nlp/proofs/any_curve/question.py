@@ -12,7 +12,7 @@ from ....problem import Array
 from ....verify import Clock, Refused, StatedProblem, check_motion, spans_of
 from ..document import stated_problem
 from ..exact import ExactProblem
-from ..rounding import STRETCHES, up
+from ..rounding import ROOMS, up
 
 Bounds = tuple[Fraction, Fraction] | None
 """Rational bounds of a limit; None where there is none."""
@@ -50,12 +50,6 @@ class FreeQuestion:
     shortest: list[Fraction]
     longest: list[Number]
     ends: list[list[Number]]
-
-    def floor(self, segment: int) -> Fraction:
-        """Least duration of a segment in which limits hold: its bound, no joint above its speed."""
-        pairs = zip(self.steps[segment], self.velocity, strict=True)
-        ways = [abs(step) / limit[0] for step, limit in pairs if limit is not None]
-        return max([self.shortest[segment], *ways])
 
 
 def question(problem: ExactProblem) -> FreeQuestion:
@@ -142,7 +136,7 @@ def prove_motion(asked: FreeQuestion, durations: Array, speeds: Array) -> Motion
     tuple of (durations, speeds), or None
         Stretched by at most 1e-7.
     """
-    for stretch in STRETCHES:
+    for stretch in map(Fraction, (0, *ROOMS)):
         h = [
             max(up(Fraction(float(x)) * (1 + stretch), 16), low)
             for x, low in zip(durations, asked.shortest, strict=True)

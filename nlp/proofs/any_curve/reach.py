@@ -74,11 +74,6 @@ class Profile:
         """Integral of the velocity, rad."""
         return float(np.trapezoid(self.velocity, self.time))
 
-    @property
-    def peak_speed(self) -> float:
-        """Largest |velocity|, rad/s."""
-        return float(np.abs(self.velocity).max())
-
     def position_range(self) -> tuple[float, float]:
         """Least and largest displacement on the way, rad."""
         steps = np.diff(self.time)

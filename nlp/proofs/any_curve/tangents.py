@@ -25,7 +25,7 @@ KINDS = ("reach", "brake", "change")
 """Names of the kinds of rows in a certificate, in the order of the integers."""
 REACH, BRAKE, CHANGE = range(3)
 """The kinds as integers."""
-_LARGEST = 1e5
+_LARGEST = 2**53 // TANGENT_UNIT
 """Largest slope in a row: times `TANGENT_UNIT` it is an integer that a float holds exactly."""
 
 

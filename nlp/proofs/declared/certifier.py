@@ -6,13 +6,13 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import partial
+from functools import lru_cache, partial
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ....problem import Array, Interpolant, Verdict, check
+from ....problem import TOLERANCE, Array, Interpolant, Verdict, check
 from ....verify import (
     PLACES,
     Clock,
@@ -46,10 +46,6 @@ _FINE = 1e-9
 """A gap below it may be too narrow for the rounding of floats: no stage before it is left out."""
 _DIGITS = 11
 """Of a total after its first: short in a certificate, and 1e-11 of a gap is no loss."""
-_SLIGHT = 1e-9
-"""Share by which durations must be shorter to be worth a new start of the ladder."""
-_LOOKS = 3
-"""Directions of a batch that are checked for a better answer: the shortest ones."""
 _JUDGING = 0.4
 """Seconds that judging takes for one of search: 0.1 to 0.3 were measured."""
 _ABOVE = 1 + Fraction(1, 2**40)
@@ -59,8 +55,6 @@ _DOUBLINGS = 20
 _FEW = {3: 5, 5: 3}
 """Segments of cubic and quintic splines up to which these boxes close every committed one to its
 gap in no more seconds than its own kind takes; beyond, some last, and certificates are longer."""
-_ROUNDS = 40
-"""Halvings of the distance, in logarithms, to a total that equals its own least durations."""
 
 
 class DeclaredCurves(Curves):
@@ -124,7 +118,9 @@ def _declares(problem: ExactProblem) -> bool:
     return isinstance(problem.curve, Interpolant) and free
 
 
+@lru_cache(maxsize=64)
 def _missing(problem: ExactProblem) -> str | None:
+    # Asked several times of one problem, and answered by the exact form of its curve.
     limited = any(x is not None for j in range(len(problem.joints)) for r in (1, 2, 3)
                   for x in problem.sides(j, r))  # fmt: skip
     if not limited and not any(problem.duration_lower):
@@ -171,8 +167,9 @@ class BoxStages:
         tried = self.session.stretched(durations) if rest else durations
         totals = tried.sum(axis=1)
         totals[(tried > floats.duration_upper).any(axis=1)] = math.inf
-        for best in totals.argsort()[:_LOOKS]:
-            if not totals[best] < float(target) * (1 - _SLIGHT):
+        for best in totals.argsort():
+            # What is shorter by less than the tolerance is not worth a new start of the ladder.
+            if not totals[best] < float(target) * (1 - TOLERANCE):
                 break
             # The stretch knows nothing of positions, and there is none for ends in motion.
             if check(floats, tried[best]).verdict is Verdict.PASS:
@@ -200,11 +197,13 @@ def _rising(session: Session) -> Iterator[Fraction]:
     if len(longest) == session.exact.segments:
         yield sum(longest, Fraction(0)) * _ABOVE
         return
-    total = Fraction(1)
-    for _ in range(_ROUNDS):
-        # Least durations shrink as the total grows.
+    # The total that its own least durations add up to. They shrink as it grows, by its square at
+    # most, so that each step halves the distance in logarithms at least.
+    before, total = Fraction(0), Fraction(1)
+    while abs(total - before) > TOLERANCE * total:
         kind = _kind(session.exact, total)
-        total = Fraction(math.sqrt(float(total) * sum(kind.shortest) * float(kind.second)))
+        least = sum(kind.shortest) * float(kind.second)
+        before, total = total, Fraction(math.sqrt(float(total) * least))
     for _ in range(_DOUBLINGS):
         total *= 2
         yield total

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....problem import Array
-from ....verify import LEAF
+from ....verify import LEAF, MOST_DEPTH
 from ...optimum import time_up
 from ..crew import Common
 from ..driver import Branching
@@ -22,8 +22,6 @@ from .simplex import best_weights
 _NARROW = 1e-8
 """Width of a logarithm at which a box is as small as it may get: what second-order terms change in
 it is below rounding."""
-_DEEPEST = 600
-"""Cuts above a box that is as small as it may get: beside 0 no logarithm says so."""
 _LOOKS = 3
 """Directions of a batch that are looked at for a better answer: the shortest ones."""
 
@@ -182,7 +180,7 @@ def search_part(curves: Curves, bundle: Bundle) -> Part:
             else:
                 full.append((node, box))
         if full:
-            if max(full)[0].bit_length() > _DEEPEST:
+            if max(full)[0].bit_length() > MOST_DEPTH:  # beside 0 no logarithm says so
                 raise TooSmall
             with np.errstate(all="ignore"):
                 sides = np.array([box for _, box in full])

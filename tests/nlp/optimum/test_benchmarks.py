@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import sys
 from collections import Counter
+from dataclasses import replace
 from pathlib import Path
 from types import ModuleType
-from typing import Any
 
 import numpy as np
 import pytest
+from attacks.nasty import keeps_all
 from scipy.stats import binomtest
 from support.benchmarks import loaded
 from support.checkout import ROOT
@@ -24,20 +25,6 @@ from trajgap.problem import (
     quintic_spline,
 )
 
-PRINTED = """6324: improvable, optimal, C2 cubic spline, gain 0.000935
-6950: wrong none found, none found, rest-to-rest polynomials of degree 5, gain 1
-6955: answer does not pass, feasible, C2 cubic spline, gain nan
-1000 problems, seeds 6000 to 6999
-solve 441 s, brute force 710 s
-| status | optimal | 900 | 90.0000% |
-| status | none found | 55 | 5.5000% |
-| status | not_attained | 38 | 3.8000% |
-| status | feasible | 7 | 0.7000% |
-| fault | improvable | 1 | 0.1000% |
-| fault | wrong none found | 1 | 0.1000% |
-| fault | answer does not pass | 1 | 0.1000% |
-"""
-
 
 @pytest.fixture
 def rates() -> ModuleType:
@@ -48,9 +35,8 @@ def test_the_page_shows_the_rows(rates: ModuleType) -> None:
     rows = rates.read_rows(rates.CSV.read_text("utf-8"))
     assert rates.csv_text(rows) == rates.CSV.read_text("utf-8")
     assert rates.merged(rows, []) == rows
-    for first in {row.first_seed for row in rows}:
-        block = [row for row in rows if row.first_seed == first]
-        assert sum(row.answers for row in block) == block[0].problems
+    for block in set(map(rates.block, rows)):
+        assert sum(row.answers for row in rows if rates.block(row) == block) == block[2]
     for row in rows:
         seeds = [int(seed) for seed in row.failing_seeds.split()]
         assert len(seeds) == row.improvable + row.not_passing + row.wrong
@@ -59,52 +45,64 @@ def test_the_page_shows_the_rows(rates: ModuleType) -> None:
     assert rates.page_with(page, rates.tables(rows)) == page
 
 
-def test_what_was_printed_becomes_rows(rates: ModuleType) -> None:
-    rows = {row.status: row for row in rates.rows_printed("abc", PRINTED)}
-    assert list(rows) == ["optimal", "feasible", "none found", "not_attained"]
-    assert {row.problems for row in rows.values()} == {1000}
-    assert {(row.code, row.first_seed) for row in rows.values()} == {("abc", 6000)}
-
-    def cells(word: str) -> tuple[Any, ...]:
-        row = rows[word]
-        return row.answers, row.improvable, row.not_passing, row.wrong, row.failing_seeds
-
-    assert cells("optimal") == (900, 1, 0, 0, "6324")
-    assert cells("feasible") == (7, 0, 1, 0, "6955")
-    assert cells("none found") == (55, 0, 0, 1, "6950")
-    assert cells("not_attained") == (38, 0, 0, 0, "")
-    assert rates.read_rows(rates.csv_text(list(rows.values()))) == list(rows.values())
+def test_no_answer_that_is_called_optimal_was_improved(rates: ModuleType) -> None:
+    rows = [r for r in rates.entered(rates.CSV) if r.kind != rates.HARD and r.status == "optimal"]
+    assert {row.kind for row in rows} <= set(PROVED.KINDS)
+    assert sum(row.improvable + row.not_passing + row.wrong for row in rows) == 0
 
 
-def test_a_run_without_an_end_and_one_that_hides_its_seeds(rates: ModuleType) -> None:
-    assert rates.rows_printed("abc", PRINTED.split("1000 problems")[0]) == []
-    hidden = "\n".join(PRINTED.splitlines()[1:])
-    with pytest.raises(ValueError, match="seeds 6000 to 6999: counts do not add up"):
-        rates.rows_printed("abc", hidden)
+def test_faults_are_counted_by_word_and_kind(rates: ModuleType) -> None:
+    words = Counter({"none found": 55, "optimal": 900, "feasible": 7})
+    faults = [
+        (6950, "wrong none found", "none found"),
+        (6955, "answer does not pass", "feasible"),
+        (6324, "improvable", "optimal"),
+        (6325, "wrong bound", "optimal"),
+    ]
+    rows = rates.rows_of("abc", rates.HARD, 6000, words, faults)
+    cells = [
+        (r.status, r.answers, r.improvable, r.not_passing, r.wrong, r.failing_seeds) for r in rows
+    ]
+    assert cells == [
+        ("optimal", 900, 1, 0, 1, "6324 6325"),
+        ("feasible", 7, 0, 1, 0, "6955"),
+        ("none found", 55, 0, 0, 1, "6950"),
+    ]
+    assert {(r.code, r.kind, r.first_seed, r.problems) for r in rows} == {
+        ("abc", "hard", 6000, 962)
+    }
+    assert rates.read_rows(rates.csv_text(rows)) == rows
 
 
 def test_blocks_add_up_and_are_replaced(rates: ModuleType) -> None:
-    first = rates.rows_of("a", 0, Counter(optimal=98, failed=2), [(5, "wrong failed", "failed")])
-    second = rates.rows_of("b", 100, Counter(optimal=50), [(120, "improvable", "optimal")])
+    lost = [(5, "wrong failed", "failed")]
+    first = rates.rows_of("a", "hard", 0, Counter(optimal=98, failed=2), lost)
+    second = rates.rows_of("b", "hard", 100, Counter(optimal=50), [(120, "improvable", "optimal")])
     rows = rates.merged(second, first)
     assert [(row.code, row.status) for row in rows] == [
         ("a", "optimal"),
         ("a", "failed"),
         ("b", "optimal"),
     ]
-    shown = rates.tables(rows)
+    shown = rates.tables(rows)["solver errors"]
     assert "| `a` | 100 | 0 to 99 |" in shown
     assert "| `b` | 50 | 100 to 149 |" in shown
     assert "| `optimal` | 148 | 1 | 0 | 0 | 0.676% |" in shown
     assert "| `failed` | 2 | 0 | 0 | 1 | 50.000% |" in shown
     assert "| all | 150 | 1 | 0 | 1 | 1.333% |" in shown
     assert "5 (`failed`), 120 (`optimal`)" in shown
-    again = rates.rows_of("c", 100, Counter(optimal=50), [])
-    replaced = rates.merged(rows, again)
+    replaced = rates.merged(rows, rates.rows_of("c", "hard", 100, Counter(optimal=50), []))
     assert [row.code for row in replaced] == ["a", "a", "c"]
-    assert "Seeds in error: 5 (`failed`)." in rates.tables(replaced)
-    with pytest.raises(ValueError, match="from seed 0 and from seed 99 overlap"):
-        rates.merged(rows[:2], rates.rows_of("c", 99, Counter(optimal=50), []))
+    assert "Seeds in error: 5 (`failed`)." in rates.tables(replaced)["solver errors"]
+    with pytest.raises(ValueError, match="hard: the blocks from seed 0 and from seed 99 overlap"):
+        rates.merged(rows[:2], rates.rows_of("c", "hard", 99, Counter(optimal=50), []))
+    # Other kinds have seeds of their own.
+    other = rates.rows_of("c", "cubic, boxes", 99, Counter(optimal=3, converged=1), [])
+    assert rates.merged(rows, other)[-3:] == rows
+    shares = rates.tables([*rows, *other])["proved shares"]
+    assert "| | boxes | all |" in shares
+    assert "| cubic | 75.0% of 4 | 75.0% of 4 |" in shares
+    assert "| all | 75.0% of 4 | 75.0% of 4 |" in shares
 
 
 @pytest.mark.parametrize(("errors", "tried"), [(0, 7), (0, 10000), (2, 3625), (9, 10), (7, 7)])
@@ -115,7 +113,7 @@ def test_limits_are_those_of_clopper_and_pearson(
     assert rates.upper_limit(errors, tried) == pytest.approx(exact.high, rel=1e-9)
 
 
-def test_a_run_enters_its_counts(
+def test_a_run_enters_its_counts_and_goes_on_where_it_ended(
     rates: ModuleType,
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
@@ -124,19 +122,46 @@ def test_a_run_enters_its_counts(
     errors = loaded("solver_errors")
     to = tmp_path / "rates.csv"
     monkeypatch.setattr(errors, "brute_force", lambda *_: errors.Brute(1e-9, None))
-    given = ["solver_errors.py", "--count", "2", "--seed", "3", "--verbose", "--write", str(to)]
-    monkeypatch.setattr(sys, "argv", given)
-    assert errors.main() == 0
-    rows = rates.read_rows(to.read_text("utf-8"))
-    assert sum(row.answers for row in rows) == 2
-    assert {(row.first_seed, row.problems) for row in rows} == {(3, 2)}
-    assert sum(row.improvable for row in rows) == sum(
-        row.answers
-        for row in rows
-        if row.status in ("optimal", "converged", "feasible", "not_attained")
-    )
-    # What the run printed says the same.
-    assert rates.rows_printed(rows[0].code, capsys.readouterr().out) == rows
+    for count, blocks in ((2, {("hard", 3, 2)}), (3, {("hard", 3, 2), ("hard", 5, 1)})):
+        given = ["solver_errors.py", "--block", "2", "--count", str(count), "--seed", "3"]
+        monkeypatch.setattr(sys, "argv", [*given, "--write", str(to)])
+        assert errors.main() == 0
+        rows = rates.entered(to)
+        assert set(map(rates.block, rows)) == blocks
+        assert sum(row.answers for row in rows) == count
+        found = ("optimal", "converged", "feasible", "not_attained")
+        faults = sum(row.answers for row in rows if row.status in found)
+        assert sum(row.improvable + row.wrong for row in rows) == faults
+    assert capsys.readouterr().out.count("hard, seeds 3 to 4:") == 1
+
+
+PROVED = loaded("proved_problems")
+
+
+@pytest.mark.parametrize("kind", PROVED.KINDS)
+def test_problems_with_proofs_are_kept_by_what_they_are_made_of(kind: str) -> None:
+    family, trait = kind.split(", ")
+    for seed in range(8):
+        problem, h = PROVED.known_problem(kind, seed)
+        assert keeps_all(problem, h)
+        assert problem.segments <= PROVED.MOST_SEGMENTS
+        assert len(problem.joints) <= PROVED.MOST_JOINTS
+        assert problem.limits.limits_position == (trait in ("positions", "all three"))
+        assert np.isfinite(problem.duration_upper).any() == (trait in ("boxes", "all three"))
+        assert problem.curve.homogeneous == (trait not in ("moving ends", "all three"))
+        degree = {"3-5-3": 5, "4-3-4": 4, "cubic": 3, "quintic": 5, "septic": 7}
+        assert max(problem.curve.degrees) == degree[family]
+
+
+@pytest.mark.parametrize("kind", ["3-5-3, positions", "cubic, moving ends", "septic, all three"])
+def test_answers_called_optimal_are_not_improved(kind: str) -> None:
+    errors = loaded("solver_errors")
+    solution, brute = errors.tried(kind, 1)
+    assert solution.status is Status.OPTIMAL
+    assert errors.judged(solution, brute) == ""
+    assert errors.judged(solution, errors.Brute(solution.best * (1 - 3e-6), None)) == "wrong bound"
+    bare = replace(solution, lower_bound=None)
+    assert errors.judged(bare, errors.Brute(solution.best * (1 - 3e-6), None)) == "improvable"
 
 
 QUINTIC = loaded("quintic_instances")

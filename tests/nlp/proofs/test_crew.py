@@ -17,6 +17,7 @@ from support.proof_problems import QUINTIC
 from trajgap.nlp.proofs import certifiers, crew
 from trajgap.nlp.proofs.certifiers import certify
 from trajgap.nlp.proofs.crew import ProofCrew
+from trajgap.nlp.proofs.cubic import CUBIC
 from trajgap.nlp.proofs.document import certificate
 from trajgap.nlp.proofs.outcome import Certified, Outcome
 from trajgap.nlp.proofs.processes import Processes, ProcessGone
@@ -101,10 +102,10 @@ def test_no_process_is_started_below_a_second(monkeypatch: pytest.MonkeyPatch) -
 
     monkeypatch.setattr(certifiers, "ProofCrew", Seen)
     monkeypatch.setattr(crew.ProofCrew, "worth", np.inf)
-    assert certify(ROUGH, gap=0.1, workers=2).outcome is Outcome.CERTIFIED
+    assert certify(ROUGH, certifier=CUBIC, gap=0.1, workers=2).outcome is Outcome.CERTIFIED
     assert [one.processes for one in crews] == [0]
     monkeypatch.setattr(crew.ProofCrew, "worth", 0.0)
-    assert certify(ROUGH, gap=0.1, workers=2).outcome is Outcome.CERTIFIED
+    assert certify(ROUGH, certifier=CUBIC, gap=0.1, workers=2).outcome is Outcome.CERTIFIED
     assert [one.processes for one in crews] == [0, 2]
 
 
@@ -136,19 +137,20 @@ def proof(found: Certified) -> Any:
 def test_a_cubic_proof_does_not_depend_on_who_worked_on_it(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    alone = proof(certify(ROUGH, gap=0.01))
+    alone = proof(certify(ROUGH, certifier=CUBIC, gap=0.01))
     assert sum(node[0] == "/" for node in alone[0]["tree"]) > 4, "too few boxes for several"
-    assert proof(certify(ROUGH, gap=0.01, workers=2)) == alone
-    assert proof(certify(ROUGH, gap=0.01, workers=4, executor=LastFirst(monkeypatch))) == alone
+    assert proof(certify(ROUGH, certifier=CUBIC, gap=0.01, workers=2)) == alone
+    late = LastFirst(monkeypatch)
+    assert proof(certify(ROUGH, certifier=CUBIC, gap=0.01, workers=4, executor=late)) == alone
 
 
 @pytest.mark.usefixtures("at_once")
 def test_at_the_time_limit_what_others_proved_is_kept() -> None:
     """The boxes that are under way end with the time, and nothing of them is lost."""
-    part = certify(ROUGH, gap=1e-6, seconds=1.0, workers=2)
+    part = certify(ROUGH, certifier=CUBIC, gap=1e-6, seconds=1.0, workers=2)
     assert part.outcome is Outcome.INTERVAL
     assert verify_certificate(certificate(part)).proves
-    whole = certify(ROUGH, gap=0.1, workers=2, resume=part)
+    whole = certify(ROUGH, certifier=CUBIC, gap=0.1, workers=2, resume=part)
     assert whole.outcome is Outcome.CERTIFIED
 
 

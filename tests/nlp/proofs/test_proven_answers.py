@@ -17,13 +17,16 @@ from trajgap.nlp import (
     printed_problem,
     solve,
 )
+from trajgap.nlp.proofs.answer import keeps_limits, prove_feasible
 from trajgap.nlp.proofs.certifiers import prompt
 from trajgap.problem import (
     Limits,
     Problem,
     cubic_spline,
     load_case,
+    piecewise,
     quintic_spline,
+    septic_spline,
     three_five_three,
 )
 
@@ -111,3 +114,41 @@ def test_a_long_spline_has_the_sharper_kind():
     assert prompt(exact_problem(Problem(q, Limits(2.0, 6.0), cubic_spline(9)))).boxes == 16
     assert prompt(exact_problem(Problem(q[:4], Limits(2.0, 6.0), cubic_spline(3)))).boxes > 16
     assert prompt(exact_problem(Problem(q, Limits(2.0, 6.0), quintic_spline(9)))).prepares is False
+
+
+def test_fewer_segments_are_allowed_more_boxes():
+    def allowed(n):
+        q = np.random.default_rng(3).normal(size=(n + 1, 1))
+        exact = exact_problem(Problem(q, Limits(2.0, 6.0, 40.0), septic_spline(n)))
+        return prompt(exact).allowance(exact)
+
+    assert allowed(7) == allowed(9) > 0
+    assert [allowed(n) * n // 7 for n in (2, 4)] == [allowed(7), allowed(7)]
+
+
+def beside_a_range(velocity, acceleration, jerk, start=0.0, **bounds):
+    """3-5-3 polynomials that end at a limit of position, and are not feasible by some roundings."""
+    ends = ((1, start), (2, 0.0)), ((1, 0.0), (2, 0.0))
+    way, low, high = bounds.pop("way"), bounds.pop("low"), bounds.pop("high")
+    limits = Limits(velocity, acceleration, jerk, low, high, joints=1)
+    curve = piecewise((3, 5, 3), 2, ends[0], finish=ends[1])
+    return Problem(np.array([way]).T, limits, curve, **bounds)
+
+
+@pytest.mark.parametrize(
+    "problem",
+    [
+        beside_a_range(8.21, 53.99, 1191.16, way=[2.82, 2.47, 3.2, 2.95], low=2.21, high=3.25),
+        beside_a_range(11.31, 48.19, np.inf, way=[-1.79, -0.58, -1.42, 0.62], low=-2.29, high=1.18),
+        beside_a_range(
+            2.52, 7.88, 37.38, 0.6456890384074596, way=[0.66, 0.44, 0.77, 1.16], low=-0.19,
+            high=1.28, duration_lower=[0.94, 1.12, 0.94], duration_upper=[4.37, 1.89, 1.87],
+        ),
+    ],
+)  # fmt: skip
+def test_an_answer_at_a_limit_that_no_stretch_keeps_is_proved_feasible(problem):
+    exact, found = exact_problem(problem), optimum.solve(problem)
+    proved = prove_feasible(exact, found.durations)
+    assert proved is not None
+    assert keeps_limits(exact, proved)
+    assert float(sum(proved)) <= found.total_time * (1 + 1e-11)

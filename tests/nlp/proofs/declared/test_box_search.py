@@ -116,9 +116,9 @@ def test_directions_are_looked_at_in_the_same_order_anywhere() -> None:
             assert np.array_equal(first, shorter(ProofCrew(3, threads)))
 
 
-@pytest.mark.parametrize("place", ["_DEEPEST", "_NARROW"])
+@pytest.mark.parametrize("place", ["MOST_DEPTH", "_NARROW"])
 def test_boxes_that_are_too_small_end_it(place: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(search, place, {"_DEEPEST": 4, "_NARROW": 10.0}[place])
+    monkeypatch.setattr(search, place, {"MOST_DEPTH": 4, "_NARROW": 10.0}[place])
     with pytest.raises(search.TooSmall):
         found_of(curves_of(QuinticStages), session())
     with pytest.raises(OutOfTime):
