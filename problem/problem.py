@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .arrays import Array
-from .curves import Curve, Interpolant, as_curve
+from .curves import Curve, Interpolant, as_curve, as_piecewise
 from .duration_ratios import RatioWord, as_ratios, no_formula
 from .errors import TrajgapError
 from .limits import Limits
@@ -195,7 +195,7 @@ class Problem:
         TrajgapError
             If it is of another kind.
         """
-        polynomials = self.curve.piecewise
+        polynomials = as_piecewise(self.curve)
         if polynomials is None:
             raise TrajgapError(
                 f"curve: {self.curve.name} is no piecewise polynomial with breaks at "

@@ -8,7 +8,7 @@ import numpy as np
 
 from ...nlp import Evidence, Status
 from ...nlp.optimum import apart
-from ...problem import Array, Problem
+from ...problem import Array, Problem, as_piecewise
 from ...problem.cases import Claim, Digits
 from .rounding import same_limits
 from .study import Study
@@ -117,7 +117,7 @@ def _farther(study: Study, problem: Problem, pid: str, rid: str) -> Array | None
     joints = problem.waypoints.shape[1]
     if np.array_equal(box.lower, box.upper):
         return np.ones(joints)
-    if problem.curve.piecewise is None or problem.ratios is not None or not apart(problem):
+    if as_piecewise(problem.curve) is None or problem.ratios is not None or not apart(problem):
         return None
     steps = np.abs(np.diff(problem.waypoints, axis=0))
     down, up = problem.waypoints - box.lower, box.upper - problem.waypoints

@@ -36,6 +36,7 @@ from ...problem import (
     ProcessError,
     TrajgapError,
     Verdict,
+    as_piecewise,
     check,
     fit,
     reachable_total,
@@ -158,7 +159,7 @@ class Study(ReplayedCase):
 
         def compute() -> Solution:
             problem = self.problem(pid, rid)
-            given = problem.curve.piecewise
+            given = as_piecewise(problem.curve)
             if given is None:
                 why = "only a declared piecewise polynomial is a member of its relaxed family"
                 return Solution(problem, Status.FAILED, why)

@@ -20,6 +20,7 @@ from ...problem import (
     Problem,
     TrajgapError,
     Verdict,
+    as_piecewise,
     check,
     extrema,
 )
@@ -48,7 +49,7 @@ def straight_shares(problem: Problem) -> Array | None:
     ndarray, shape (segments,), or None
         Shares of the total.
     """
-    curve = problem.curve.piecewise
+    curve = as_piecewise(problem.curve)
     if curve is None or curve.free or curve.virtual or problem.duration_lower.any():
         return None
     given = [entry for b in range(curve.segments + 1) for entry in curve.prescribed_at(b)]
@@ -111,7 +112,7 @@ def joined(problem: Problem) -> Array | str | None:
     ndarray, shape (segments,), or str, or None
         s; the reason is a proof.
     """
-    if problem.curve.piecewise is None or not apart(problem):
+    if as_piecewise(problem.curve) is None or not apart(problem):
         return None
     wide = _ratios(problem, BEYOND)
     if np.isneginf(wide.low).all() and np.isposinf(wide.high).all():

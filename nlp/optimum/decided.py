@@ -13,6 +13,7 @@ from ...problem import (
     Check,
     Problem,
     Verdict,
+    as_piecewise,
     check,
     evaluate,
     half_range,
@@ -37,7 +38,7 @@ Motion = tuple[Array, Array | None]
 
 def kept(problem: Problem, verdict: Check) -> bool:
     """Whether a motion counts as feasible: curves that always jump are judged by their limits."""
-    if problem.curve.piecewise is not None:
+    if as_piecewise(problem.curve) is not None:
         return verdict.verdict is Verdict.PASS
     return verdict.limits is Verdict.PASS
 

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from ...problem import QUANTITIES, Array, Problem, Verdict, check
+from ...problem import QUANTITIES, Array, Problem, Verdict, as_piecewise, check
 from ...verify import shown_bound
 
 SURE = 1.0 + 1e-6
@@ -79,7 +79,7 @@ def _smooth(problem: Problem, order: int) -> bool:
     """
     curve = problem.curve
     inner = range(1, curve.segments)
-    return curve.piecewise is not None or all(curve.smooth_order(b) >= order for b in inner)
+    return as_piecewise(curve) is not None or all(curve.smooth_order(b) >= order for b in inner)
 
 
 def _room(problem: Problem) -> tuple[Array, Array]:
@@ -166,7 +166,7 @@ def _too_sharp_a_turn(problem: Problem) -> str | None:
 
 def apart(problem: Problem) -> bool:
     """Whether each segment's curve depends on its own duration only, by a stretch."""
-    curve = problem.curve.piecewise
+    curve = as_piecewise(problem.curve)
     if curve is None:
         return problem.curve.shape(problem.waypoints) is not None
     given = [{order for order, _ in curve.prescribed_at(b)} for b in range(1, curve.segments)]
@@ -189,7 +189,7 @@ def forbidden_jumps(problem: Problem) -> list[tuple[int, int, int]]:
     list of (break, order, joint)
         Of joints that move: of velocity, and of acceleration where jerk is limited.
     """
-    curve, moving = problem.curve.piecewise, np.ptp(problem.waypoints, axis=0) > 0
+    curve, moving = as_piecewise(problem.curve), np.ptp(problem.waypoints, axis=0) > 0
     return [
         (b, order, int(j))
         for b in range(1, 0 if curve is None else curve.segments)

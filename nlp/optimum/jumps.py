@@ -12,7 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...problem import Array, Problem, TrajgapError, check, fit
+from ...problem import Array, Problem, TrajgapError, as_piecewise, check, fit
 from .decided import kept
 from .program import free_values
 from .solution import Solution, Status
@@ -30,7 +30,7 @@ def smoother(problem: Problem) -> Problem | None:
     Problem or None
         None where nothing is to be raised, or no curve is left or its freedom is not nodal.
     """
-    curve = problem.curve.piecewise
+    curve = as_piecewise(problem.curve)
     if curve is None or not curve.free:
         return None
     order = 2 if _jerk_limited(problem).any() else 1

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...problem import Array, Problem, check, fit
+from ...problem import Array, Problem, as_piecewise, check, fit
 from .clock import time_up
 from .limit_rows import NEAR
 from .pieces import ca
@@ -291,7 +291,7 @@ def solve_per_joint(
             total = float(durations.sum())
             most = float((problem.duration_upper / shares).min())
             ranges = [Range(slack, total, min(total + slack, most)) for slack in slacks]
-        elif problem.curve.piecewise is None:
+        elif as_piecewise(problem.curve) is None:
             why = "ranges are computed for declared piecewise polynomials only"
         elif problem.segments > _MOST_SEGMENTS:
             why = f"ranges are computed for at most {_MOST_SEGMENTS} segments"

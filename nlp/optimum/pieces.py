@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...problem import Array, ClampedBSpline, Interpolant, Problem, TrajgapError
+from ...problem import Array, ClampedBSpline, Interpolant, Problem, TrajgapError, as_piecewise
 from ...problem.curves import (
     Places,
     TimedUniformBSpline,
@@ -165,8 +165,9 @@ def pieces_of(problem: Problem) -> CurvePieces:
         If the kind of curve gives the NLP nothing to work with.
     """
     curve, q = problem.curve, problem.waypoints
-    if curve.piecewise is not None:
-        return CurvePieces(np.array(curve.piecewise.degrees, dtype=np.int64), curve.piecewise)
+    declared = as_piecewise(curve)
+    if declared is not None:
+        return CurvePieces(np.array(declared.degrees, dtype=np.int64), declared)
     shape = curve.shape(q)
     if shape is not None:
         widths = np.zeros((1, shape.share.size, curve.segments))

@@ -20,7 +20,7 @@ from typing import Any
 
 import numpy as np
 
-from ...problem import QUANTITIES, Array, Interpolant, Problem
+from ...problem import QUANTITIES, Array, Interpolant, Problem, as_piecewise
 from ...problem.curves import ConditionKind, Conditions, Places, Trajectory, derivative_rows
 from .feasibility import forbidden_jumps
 from .pieces import Clock, Indices, Rows, Sides, ca, clocked_bend, left_derivatives, pieces_of
@@ -354,7 +354,7 @@ class Program:
 
     def motion(self, x: Array) -> tuple[Array, Array | None]:
         """Durations, s, and free derivatives, where the declaration leaves some."""
-        h, curve, at = x[: self.segments], self.problem.curve.piecewise, self.left
+        h, curve, at = x[: self.segments], as_piecewise(self.problem.curve), self.left
         if curve is None or not curve.free:
             return h * self.unit, None
         scaled = np.zeros((self.segments, 1 + len(self._held), self.joints))

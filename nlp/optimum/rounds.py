@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from ...problem import TOLERANCE, Array, CurveError, Problem, check, fit
+from ...problem import TOLERANCE, Array, CurveError, Problem, as_piecewise, check, fit
 from ...problem.curves import Trajectory
 from .clock import seconds_left, time_up
 from .decided import kept
@@ -357,7 +357,7 @@ def _report(
     """Optimality conditions: at the multipliers of the round, or dense ones of few segments."""
     problem, (h, nodal) = program.problem, motion
     curve = problem.curve
-    if curve.piecewise is None or curve.free or problem.segments <= DENSE:
+    if as_piecewise(curve) is None or curve.free or problem.segments <= DENSE:
         return kkt(problem, h, nodal)
     assert state.bounds is not None
     moved = program.followed(trajectory, rows)

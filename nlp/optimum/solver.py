@@ -12,7 +12,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...problem import TOLERANCE, Array, Problem, TrajgapError, check
+from ...problem import TOLERANCE, Array, Problem, TrajgapError, as_piecewise, check
 from .basins import basins, exact_search, shortened
 from .clock import stopping_after, time_up
 from .closed_forms import (
@@ -208,14 +208,14 @@ def _continued(problem: Problem, motion: Local, route: Route) -> Solution:
     floor, found = np.minimum(made_up(problem, FLOORS[1]), 0.5 * h), [motion]
     if route is Route.DESCENT:
         found += exact_search(problem, h[None], floor)
-    elif problem.curve.piecewise is not None:
+    elif as_piecewise(problem.curve) is not None:
         found += _rounds(problem, h[None], floor, motion.nodal)
     return judged(problem, found, floor, 1, route)
 
 
 def _moves_throughout(problem: Problem) -> bool:
     """Whether rounds of the NLP apply: each segment moves, and something is limited."""
-    curve, sides = problem.curve.piecewise, problem.limits.sides
+    curve, sides = as_piecewise(problem.curve), problem.limits.sides
     moves = np.abs(np.diff(problem.waypoints, axis=0)).max(axis=1) > 0
     limited = (np.isfinite(sides) & (sides > 0)).any()
     return curve is not None and not curve.free and bool(moves.all() and limited)
@@ -225,7 +225,7 @@ def _programmed(problem: Problem, ask: _Ask, many: int = 1) -> Solution:
     """Rounds of the NLP from the usual start and random ones, or from those that are given."""
     starts = ask.initial
     if starts is None:
-        plain = problem.curve.piecewise is not None and not problem.curve.free
+        plain = as_piecewise(problem.curve) is not None and not problem.curve.free
         usual = way_start(problem) if plain else equal_start(problem)
         more = random_starts(problem, many - 1, np.random.default_rng(ask.seed))
         starts = np.vstack([usual, more])

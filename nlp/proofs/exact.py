@@ -18,6 +18,7 @@ from ...problem import (
     Quantity,
     Scale,
     TrajgapError,
+    as_piecewise,
     scale,
 )
 from ...problem.cases import Statement
@@ -356,7 +357,7 @@ def _joined_units(each: Sequence[str]) -> str:
 
 def _in_motion(statement: Statement, curve: Curve) -> tuple[Interpolant, Prescribed]:
     """A curve whose ends move, in the unit of the way-points, and its exact derivatives."""
-    polynomials = curve.piecewise
+    polynomials = as_piecewise(curve)
     if polynomials is None or any(polynomials.prescribed[1:-1]):
         raise TrajgapError("certify: derivatives are prescribed between the ends")
     if statement.loose_ends:

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from ..arrays import Array
-from ..curves import MOST_OPEN, Curve, Derivatives, counts_in_words
+from ..curves import MOST_OPEN, Curve, Derivatives, as_piecewise, counts_in_words
 from ..duration_ratios import ratio_word
 from ..errors import CaseError, RatiosError, TrajgapError
 from ..fields import LimitPair
@@ -246,7 +246,7 @@ class Statement:
                 f"{len(curve.waypoint_breaks)} way-points, but {count} are given; "
                 "change the family, the degrees or the way-points",
             )
-        polynomials = curve.piecewise
+        polynomials = as_piecewise(curve)
         if polynomials is not None and polynomials.free and polynomials.coefficients > MOST_OPEN:
             raise self.fail(
                 "interpolant",

@@ -19,6 +19,7 @@ from .families import (
 from .interpolant import (
     MOST_OPEN,
     Interpolant,
+    as_piecewise,
     coefficients_of_many,
     layout,
     right_hand_sides,
@@ -77,6 +78,7 @@ __all__ = [
     "Trajectory",
     "as_curve",
     "as_durations",
+    "as_piecewise",
     "average_matrix",
     "bernstein",
     "clamped_control_points",

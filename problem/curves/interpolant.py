@@ -165,11 +165,6 @@ class Interpolant(Curve):
         """Coefficients left to the optimiser."""
         return self.coefficients - self.conditions
 
-    @property
-    def piecewise(self) -> Interpolant:
-        """The declaration itself."""
-        return self
-
     def prescribed_at(self, break_index: int) -> Derivatives:
         """Derivatives that both sides take at a break."""
         return self.prescribed[break_index]
@@ -431,3 +426,8 @@ _ENDS: tuple[tuple[ConditionKind, Callable[[int, int], bool]], ...] = (
     (ConditionKind.RIGHT_VALUE, lambda b, n: b < n),
 )
 """Kinds of condition on a value, and at which of the breaks 0..n their side exists."""
+
+
+def as_piecewise(curve: Curve) -> Interpolant | None:
+    """The declaration as polynomials with breaks at the ends of segments, where it is one."""
+    return curve if isinstance(curve, Interpolant) else None

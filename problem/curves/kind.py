@@ -5,7 +5,6 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,9 +14,6 @@ from ..errors import TrajgapError
 from .peak import Extremum, PeakGradients
 from .polynomials import PERM
 from .trajectory import Trajectory
-
-if TYPE_CHECKING:
-    from .interpolant import Interpolant
 
 _LONGEST = 1e30
 """Durations, s, beyond which, or below whose reciprocal, ninth powers leave float64's range."""
@@ -119,11 +115,6 @@ class Curve(ABC):
     def free(self) -> int:
         """Coefficients of one joint that are left to the optimiser."""
         return 0
-
-    @property
-    def piecewise(self) -> Interpolant | None:
-        """The declaration as polynomials with breaks at the ends of segments, where it is one."""
-        return None
 
     def smooth_shares(self, waypoints: Array) -> Array | None:
         """Proportions of durations with which a curve whose segments are stretched does not jump.

@@ -223,6 +223,8 @@ def rounding(rng: Rng, folder: Path) -> str | None:
 
 def poses(problem: Any, asked: Asked, what: str) -> None:
     """Break where a problem is not what a second reading of its file asks, to the last bits."""
+    from trajgap.problem import as_piecewise
+
     compared = [
         ("way-points", asked.waypoints, problem.waypoints),
         ("limits", asked.sides, problem.limits.sides),
@@ -231,7 +233,7 @@ def poses(problem: Any, asked: Asked, what: str) -> None:
         ("lower bounds", asked.duration_lower, problem.duration_lower),
         ("upper bounds", asked.duration_upper, problem.duration_upper),
     ]
-    form, still = problem.curve.piecewise, np.zeros(len(asked.labels))
+    form, still = as_piecewise(problem.curve), np.zeros(len(asked.labels))
     for at, ends in ((0, asked.ends), (-1, asked.finish)) if form is not None else ():
         given = dict(form.prescribed[at])
         for r in given.keys() | ends.keys():

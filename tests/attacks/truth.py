@@ -50,10 +50,13 @@ class Truth:
 
 def truth(asked: Asked, curve: Any, h: Array) -> Truth:
     """The motion of durations; of a ``curve`` that is declared polynomials, to every digit."""
+    from trajgap.problem import as_piecewise
+
     if not (np.isfinite(h).all() and (h > 0).all()):
         raise NoCurve
-    if curve.piecewise is not None:
-        return _exact(asked, curve.piecewise, h)
+    declared = as_piecewise(curve)
+    if declared is not None:
+        return _exact(asked, declared, h)
     try:
         return _by_scipy(asked, h)
     except motions.NoCurveError:

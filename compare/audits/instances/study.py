@@ -12,7 +12,7 @@ import numpy as np
 from ....heuristics import Algorithm, AskedRun, Run, compile_judge, in_processes, run_asked
 from ....nlp import Solution
 from ....nlp.optimum import solve
-from ....problem import TOLERANCE, Array, Coupling, Problem, check
+from ....problem import TOLERANCE, Array, Coupling, Problem, as_piecewise, check
 from ...gaps import SETTLED, settled_at
 from .result import Optimum, Sample
 
@@ -165,7 +165,7 @@ def _judged(problem: Problem, done: Run) -> tuple[float, int]:
 def _optimum(kept: Kept, problem: Problem) -> Optimum:
     key = _key(problem)
     if key not in kept:
-        polynomials = problem.curve.piecewise
+        polynomials = as_piecewise(problem.curve)
         alone = polynomials is not None and set(polynomials.continuity) <= {0}
         kept[key] = _ended(solve(problem, starts=1 if alone else STARTS))
     known: Optimum = kept[key]

@@ -8,7 +8,7 @@ from math import perm
 
 import numpy as np
 
-from ....problem import QUANTITIES, Curve, counts_in_words, fit
+from ....problem import QUANTITIES, Curve, as_piecewise, counts_in_words, fit
 from ....problem.cases import AnyClaim, ConditionsClaim, StatementClaim
 from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..stated import prints_durations
@@ -54,7 +54,7 @@ def _virtual(study: Study, claim: ConditionsClaim) -> int:
     """Virtual way-points of the curve that a statement is about, if it has as many segments."""
     for pid, rid in study.pairs:
         if claim.problem in (None, pid) and rid == study.main_reading:
-            curve = study.problem(pid, rid).curve.piecewise
+            curve = as_piecewise(study.problem(pid, rid).curve)
             if curve is not None and curve.segments == len(claim.degrees):
                 return len(curve.virtual)
     return 0
