@@ -90,15 +90,6 @@ def _turned(leaf: list[Any]) -> None:
     leaf[1] = -leaf[1]
 
 
-def _first_leaf(change: Callable[[list[Any]], Any]) -> Callable[[Document], None]:
-    """A change of the first leaf."""
-
-    def altered(data: Document) -> None:
-        change(next(node for node in data["proof"]["tree"] if type(node) is list))
-
-    return altered
-
-
 def _narrow(*durations: str, total: str, leaf: list[Any]) -> Callable[[Document], None]:
     """One box from these durations on, which are the lower bounds of the problem."""
 
@@ -148,13 +139,13 @@ FORGERIES = [
     Forgery("quintic._covered: more than {MOST_QUINTIC_JOINTS} joints",
             "quintic-spline", spline(3, 5, 13)),
     *(Forgery(WHOLE, "quintic-spline",
-              _first_leaf(lambda leaf, at=at, x=x: leaf.__setitem__(at, x)))
+              _leaf(lambda leaf, at=at, x=x: leaf.__setitem__(at, x)))
       for at, x in ((1, 2**52 + 1), (1, -(2**52) - 1), (2, 9999), (2, -1), (3, -1),
                     (3, 2**52 + 1))),
     Forgery("boxes.Boxes.end: a leaf misses a weight", "quintic-spline",
-            _first_leaf(lambda leaf: leaf.append(0))),
+            _leaf(lambda leaf: leaf.append(0))),
     Forgery("boxes.Boxes.end: a leaf has too many rows", "quintic-spline",
-            _first_leaf(lambda leaf: leaf.extend([0, 1] * 64))),
+            _leaf(lambda leaf: leaf.extend([0, 1] * 64))),
     # Two way-points so near in time that the equations hang on one digit.
     Forgery(NOT_PROVED, "quintic-spline",
             _narrow("1", "1/1048576", "1", total="2.00000095367431640625", leaf=[".", 1, 0, 1])),
