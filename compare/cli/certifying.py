@@ -132,9 +132,8 @@ def certify_case(
     states = _states(resume, asked)
     folder = CERTIFICATE_FOLDER if folder is None and not as_json else folder
     if not 0 <= gap < 1:
-        raise CaseError(
-            case.file, "--gap", f"{gap:g} is no relative width; give 0 or more, below 1"
-        )
+        why = f"{gap:g} is no relative width; give 0 or more, below 1"
+        raise CaseError(case.file, "--gap", why)
     if folder is not None:
         check_certificates(folder)
         _check_files(folder, asked)

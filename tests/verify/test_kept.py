@@ -19,7 +19,7 @@ from support.forgeries.forgery import (
     altered,
     document,
 )
-from support.forgeries.of_claims import here
+from support.forgeries.of_documents import here
 from trajgap.verify import reading, shown_bound, tree, verify_certificate
 from trajgap.verify.problem import PI
 

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import csv
 import json
 import re
 import tomllib
 from decimal import Decimal
+from itertools import product
 
 import numpy as np
 import pytest
@@ -18,7 +18,6 @@ from trajgap.problem import (
     uniform_cubic_b_spline,
 )
 from trajgap.problem.cases import StatementClaim
-from trajgap.problem.cases.claim import MaximumClaim
 from trajgap.problem.cases.load import load_case, parse_case, published_ids
 from trajgap.problem.printed import Printed
 
@@ -28,127 +27,54 @@ POLISH, WHALE = "irb1600-ga-cubic-bspline", "z1-woa-bspline"
 FOLDER = ROOT / "problem" / "published"
 
 
-def rows(name: str) -> dict[str, list[str]]:
-    """Rows of a transcribed table by their first cell, minus signs in ASCII."""
-    with (TABLES / f"{name}.csv").open(encoding="utf-8", newline="") as file:
-        table = list(csv.reader(file))
-    assert len({len(row) for row in table}) == 1
-    return {row[0]: [cell.replace("−", "-") for cell in row[1:]] for row in table[1:]}
+def typed(case_id: str) -> dict:
+    """The second transcription: what stands in the paper's tables, and nothing else."""
+    return tomllib.loads((TABLES / f"{case_id}.toml").read_text(encoding="utf-8"))
 
 
-def texts(numbers):
-    """Digits of printed numbers; none of them may be exact."""
-    assert not any(number.exact for number in numbers)
-    return [number.text for number in numbers]
+def written(case_id: str) -> dict:
+    """The case file, with the robot's table from wherever the file takes it."""
+    found = tomllib.loads((FOLDER / f"{case_id}.toml").read_text(encoding="utf-8"))
+    if dh := load_case(case_id).dh:
+        table = {name: [x.text for x in getattr(dh, name)] for name in ("d", "a", "alpha")}
+        found["robot"]["dh"] = {"joints": dh.joints and [*dh.joints], **table}
+    return found
 
 
-def settings(case, index=0):
-    """Settings of an algorithm that are numbers, as a table prints them."""
-    return {
-        key: [";".join(f"{x:g}" for x in np.atleast_1d(value))]
-        for key, value in case.algorithms[index].settings.items()
-        if not isinstance(value, str)
-    }
-
-
-def by_joint(case, block):
-    return dict(zip(case.robot.joints, map(texts, block), strict=True))
-
-
-def robot(case, *columns):
-    """Of the palletiser exact zeros too, and its rows by the labels of the table."""
-    printed = [[entry.text for entry in getattr(case.dh, name)] for name in columns]
-    labels = case.dh.joints or [str(k + 1) for k in range(len(printed[0]))]
-    return dict(zip(labels, map(list, zip(*printed, strict=True)), strict=True))
-
-
-def durations(case, table):
-    """Rows of a table by joint, or by the claim where a row is of all joints."""
-    for claim in case.table_claims(table):
-        box = case.claim_durations(claim)
-        np.testing.assert_allclose(box.upper - box.lower, 10.0**-claim.total.places, rtol=1e-9)
-        if claim.id != "before":
-            assert claim.algorithm == {t.id: t.algorithm for t in case.tables}[table]
-        if isinstance(claim, MaximumClaim):
-            assert claim.of == tuple(c.id for c in case.table_claims(table)[:-1])
-            yield "longest", texts([*claim.durations, claim.total])
-        else:
-            yield claim.joint or claim.id, texts([*claim.durations, claim.total])
-
-
-def held(case):
-    """What a case file holds of each transcribed table: its digits by the table's first cell."""
-    claim, points = case.claim, case.document.waypoints
-    columns = {one.id: texts(one.values) for one in case.columns}
-    if case.id == PUMA:
-        return {
-            "table-1": by_joint(case, points.joint_rows),
-            "table-2": dict(durations(case, "table-2")),
-            "table-3": dict(durations(case, "table-3")),
-            "settings": settings(case, 1),
-            "text": {
-                "total of the standard algorithm": texts([claim("pso-total").value]),
-                "total of the improved algorithm": texts([claim("mnam-total").value]),
-                "reduction in percent": texts([claim("improvement").percent]),
-                "iterations until most joints converge": texts([claim("convergence").iterations]),
-            },
-        }
-    if case.id == IRB:
-        limits = [texts(claim(f"durations-{limit}").durations) for limit in (80, 110)]
-        return {
-            "table-1": robot(case, "d", "a", "alpha"),
-            # Zeros without decimals are meant exactly, an assumption of the file; nothing else is.
-            "table-2": {
-                c.label.replace(" ", "-"): [v.text for v in c.values]
-                for c in case.cartesian
-                if all(v.exact == (v.text == "0") for v in c.values)
-            },
-            "table-3": {
-                "1": columns["joint-1"],
-                "3": columns["joint-3"],
-                "5": texts(points.joint_rows[0]),
-            },
-            "table-4": {f"t1{k + 1}": [one[k] for one in limits] for k in range(3)},
-            "text": {
-                "iterations until the particles converge": texts([claim("convergence").iterations]),
-                "iterations": settings(case)["iterations"],
-                "conditions": [claim("conditions-14").count.text],
-            },
-        }
-    if case.id == POLISH:
-        return {
-            "table-1": by_joint(case, points.joint_rows),
-            "table-2": by_joint(case, claim("control-vertices").joint_rows),
-            "table-4": dict(durations(case, "table-4")),
-            "text": {
-                "time saved": texts([claim("improvement").seconds]),
-                "resolution of time": columns["time-resolution"],
-            },
-        }
-    return {
-        "table-1": robot(case, "d", "alpha", "a"),
-        "settings": settings(case),
-        "text": {
-            "total of the B-spline": texts([claim("b-spline-total").value]),
-            "total of the quintic": texts([claim("quintic-total").value]),
-            "iterations until flat": texts([claim("convergence").iterations]),
-            "shortest duration searched": columns["search-bounds"][:1],
-            "longest duration searched": columns["search-bounds"][1:],
-        },
-    }
-
-
-AS_NUMBERS = {POLISH: {"table-3", "settings"}, WHALE: {"table-2"}, IRB: {"figure-5c"}}
-"""Tables whose digits the file does not hold: limits and settings have tests of their own."""
+def lacking(held, wanted, place: str = ""):
+    """Places at which a file holds something else than the transcription; digits are texts."""
+    name = place.rpartition(".")[2]
+    if isinstance(wanted, dict):
+        if name == "settings":
+            held = {key: value for key, value in held.items() if not isinstance(value, str)}
+            yield from () if held.keys() == wanted.keys() else (place,)
+        for key, value in wanted.items():
+            yield from lacking(held.get(key), value, f"{place}.{key}")
+    elif isinstance(wanted, list) and isinstance(wanted[0], dict):
+        own, other = ({one["id"]: one for one in many} for many in (held, wanted))
+        if name in ("cartesian", "columns") and own.keys() != other.keys():
+            yield place
+        for id_, one in other.items():
+            yield from lacking(own.get(id_, {}), one, f"{place}.{id_}")
+    elif held != wanted:
+        yield place
 
 
 @pytest.mark.parametrize("case_id", [PUMA, IRB, POLISH, WHALE])
 def test_the_file_holds_every_transcribed_table(case_id):
-    found = held(load_case(case_id))
-    printed = {path.stem.removeprefix(f"{case_id}.") for path in TABLES.glob(f"{case_id}.*.csv")}
-    assert found.keys() == printed - AS_NUMBERS.get(case_id, set())
-    for name, table in found.items():
-        assert table == rows(f"{case_id}.{name}"), name
+    case, claims = load_case(case_id), typed(case_id)["claims"]
+    assert list(lacking(written(case_id), typed(case_id))) == []
+    for table in case.tables:
+        for claim in case.table_claims(table.id):
+            if claim.quantity == "control_vertices":
+                continue
+            assert claim.algorithm == (None if claim.id == "before" else table.algorithm)
+            if claim.total is not None:
+                box = case.claim_durations(claim)
+                last = 10.0**-claim.total.places
+                np.testing.assert_allclose(box.upper - box.lower, last, rtol=1e-9)
+        rows = [one["id"] for one in claims if one.get("table") == table.id]
+        assert rows == [claim.id for claim in case.table_claims(table.id)]
 
 
 def test_puma_settings_limits_and_bounds():
@@ -179,9 +105,9 @@ def test_irb_readings_change_the_unit_of_the_waypoints_only():
 
 
 def test_polish_limits_and_readings():
-    case, table = load_case(POLISH), rows(f"{POLISH}.table-3")
-    printed = np.array([[float(cell) for cell in row] for row in table.values()])
-    angles = np.array([[float(c) for c in row] for row in rows(f"{POLISH}.table-1").values()]).T
+    case, table = load_case(POLISH), typed(POLISH)
+    velocity, acceleration = (np.array(table["limits"][k]) for k in ("velocity", "acceleration"))
+    angles = np.array(table["waypoints"]["joint_rows"], float).T
     units = {"rad": 1.0, "deg": np.pi / 180}
     seen = set()
     mixes = [r for r in case.readings if "modulo" not in r.id and "natural" not in r.id]
@@ -189,10 +115,8 @@ def test_polish_limits_and_readings():
         _, q, _, v, _, a, time = reading.id.split("-")
         problem = case.problem("nine-segments", reading.id)
         np.testing.assert_allclose(problem.waypoints, angles * units[q], rtol=1e-15)
-        np.testing.assert_allclose(problem.limits.velocity, printed[:, 0] * units[v], rtol=1e-15)
-        np.testing.assert_allclose(
-            problem.limits.acceleration, printed[:, 1] * units[a], rtol=1e-15
-        )
+        np.testing.assert_allclose(problem.limits.velocity, velocity * units[v], rtol=1e-15)
+        np.testing.assert_allclose(problem.limits.acceleration, acceleration * units[a], rtol=1e-15)
         assert np.isinf(problem.limits.jerk).all()
         assert problem.curve == uniform_cubic_b_spline(10, time)
         seen.add((q, v, a, time))
@@ -210,33 +134,21 @@ def test_polish_limits_and_readings():
         np.testing.assert_allclose(np.exp(1j * problem.waypoints), np.exp(1j * angles), atol=1e-12)
         np.testing.assert_array_equal(problem.waypoints[1:], angles[1:])
         assert np.abs(problem.waypoints).max() < np.pi + 1e-4
-        np.testing.assert_array_equal(problem.limits.velocity, printed[:, 0])
+        np.testing.assert_array_equal(problem.limits.velocity, velocity)
     assert case.default_reading.id == "angles-rad-v-rad-a-rad-timed"  # slopes are said to be equal
 
 
-def test_polish_settings():
-    case = load_case(POLISH)
-    printed = {name: float(cell) for name, (cell,) in rows(f"{POLISH}.settings").items()}
-    improved, traditional = case.algorithms
-    assert {k: improved.settings[k] for k in printed} == printed
-    resolution = float(rows(f"{POLISH}.text")["resolution of time"][0])
-    assert improved.settings == {**printed, "resolution": resolution}
-    assert traditional.settings == {"resolution": resolution}
-
-
 def test_whale_limits():
-    case, table = load_case(WHALE), rows(f"{WHALE}.table-2")
+    case, table = load_case(WHALE), typed(WHALE)["limits"]
     assert case.dh.convention == "standard"
     units = {"rad": 1.0, "deg": np.pi / 180}
-    for velocity in units:
-        for acceleration in units:
-            statement = case.statement("b-spline", f"v-{velocity}-a-{acceleration}")
-            _, limits, lower, upper = statement.data()
-            for name, unit in (("velocity", velocity), ("acceleration", acceleration)):
-                printed = np.array([float(cell) for cell in table[name]])
-                np.testing.assert_allclose(getattr(limits, name), printed * units[unit], rtol=1e-15)
-            np.testing.assert_array_equal(lower, np.zeros(7))
-            np.testing.assert_array_equal(upper, np.full(7, 5.0))
+    for v, a in product(units, repeat=2):
+        _, limits, lower, upper = case.statement("b-spline", f"v-{v}-a-{a}").data()
+        for name, unit in (("velocity", v), ("acceleration", a)):
+            printed = np.array(table[name]) * units[unit]
+            np.testing.assert_allclose(getattr(limits, name), printed, rtol=1e-15)
+        np.testing.assert_array_equal(lower, np.zeros(7))
+        np.testing.assert_array_equal(upper, np.full(7, 5.0))
 
 
 def test_whale_settings():
@@ -294,15 +206,9 @@ def quoted_numbers(node: object) -> set[str]:
 @pytest.mark.parametrize("case_id", [PUMA, IRB, POLISH, WHALE])
 def test_no_number_is_in_the_file_that_is_not_in_the_transcription(case_id):
     document = tomllib.loads((FOLDER / f"{case_id}.toml").read_text(encoding="utf-8"))
-    transcribed = {
-        cell
-        for path in TABLES.glob(f"{case_id}.*.csv")
-        for row in rows(path.stem).values()
-        for cell in row
-    }
     numbers = quoted_numbers(document)
     assert len(numbers) >= (5 if case_id == WHALE else 16)
-    assert numbers <= transcribed
+    assert numbers <= quoted_numbers(typed(case_id))
 
 
 @pytest.mark.parametrize("case_id", published_ids())

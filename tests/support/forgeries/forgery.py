@@ -24,6 +24,7 @@ Changes = dict[str, Any] | Callable[[Document], None]
 FOLDER = Path(verify.__file__).resolve().parent
 """Where the verifier that judges was installed, which is not always the checkout."""
 KEPT = Path(__file__).with_name("certificates")
+FORGED = Path(__file__).with_name("forged")
 GONE = object()
 """Stands for a value that is taken out."""
 NO_ANSWER = {"claim.durations": None, "claim.upper": None, "claim.speeds": None}
@@ -63,16 +64,29 @@ class Forgery:
     spread: Any = None
 
 
-WHOLE = "reading.whole: malformed: no integer in {low}..{high}: {shown(repr(value))}"
+def listed() -> list[Forgery]:
+    """The forgeries of `forged/`: below each check, by certificate, values by path as JSON.
 
-
-def beyond(base: str, ranges: dict[str, tuple[int, int]]) -> list[Forgery]:
-    """One below and one above the least and the largest of each whole number."""
-    return [
-        Forgery(WHOLE, base, {path: value})
-        for path, (low, high) in ranges.items()
-        for value in (low - 1, high + 1)
-    ]
+    With "no answer" the answer is taken out too; "beyond" gives the least and the largest whole
+    number allowed, and stands for one below and one above.
+    """
+    found: list[Forgery] = []
+    for file in sorted(FORGED.glob("*.txt")):
+        check = ""
+        for line in file.read_text("utf-8").splitlines():
+            if line.startswith("= "):
+                check = line.removeprefix("= ")
+            elif line and not line.startswith("#"):
+                named, _, text = line.partition(": ")
+                base, _, word = named.partition(", ")
+                changes = json.loads(text)
+                if word == "beyond":
+                    ((path, (low, high)),) = changes.items()
+                    found += [Forgery(check, base, {path: x}) for x in (low - 1, high + 1)]
+                else:
+                    assert word in ("", "no answer"), line
+                    found.append(Forgery(check, base, (NO_ANSWER if word else {}) | changes))
+    return found
 
 
 def spline(n: int, degree: int = 3, joints: int = 1) -> Callable[[Document], None]:

@@ -106,7 +106,7 @@ def test_a_bound_that_is_too_high_is_refused(monkeypatch: pytest.MonkeyPatch) ->
 
 @pytest.mark.parametrize(("key", "bound"), [("position_upper", 4.0), ("position_lower", 6.0)])
 def test_a_joint_that_stays_where_it_must_not_be_has_no_answer(key: str, bound: float) -> None:
-    """The verifier refuses one: `support.forgeries.of_bounds`."""
+    """The verifier refuses one: `support/forgeries/forged/of_bounds.txt`."""
     side = {key: (np.inf if key == "position_upper" else -np.inf, bound)}
     limits = Limits(1.0, 1.0, joints=2, **side)
     problem = replace(spline_problem([[0.0, 5.0], [1.0, 5.0]], 1.0, 1.0), limits=limits)
