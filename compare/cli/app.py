@@ -130,7 +130,7 @@ def verify(
 ) -> int:
     """Prove certificates again, apart from the solver.
 
-    The code that does so shares nothing with it.
+    The code that does so imports nothing of it.
     """
     from .certifying import verify_files
 

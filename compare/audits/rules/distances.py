@@ -442,10 +442,9 @@ def _shorter(
         return None
     distance = gap(interval, Reference(upper=reached), feasible=_kept(study, claim, pid, rid))
     jumps = solution.check is not None and any(j.order == 1 for j in solution.check.jumps)
-    kind = "a checked motion whose velocity may jump at the via-points under this reading"
+    kind = " whose velocity may jump at the via-points under this reading" if jumps else ""
     said = (
-        f"{called(claim)} prints {shown}, and {kind if jumps else 'a checked motion'}"
-        f"{at_ratios(solution.problem)} takes at most "
-        f"{shown_bound(reached, 'upper', places=6)} s"
+        f"{called(claim)} prints {shown}, and a checked motion{kind}{at_ratios(solution.problem)} "
+        f"takes at most {shown_bound(reached, 'upper', places=6)} s"
     )
     return said, distance
