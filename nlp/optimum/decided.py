@@ -123,7 +123,8 @@ def incumbent(problem: Problem, known: Array, nodal: Array | None) -> Local | No
     for h, v in zip(known, [None] * len(known) if nodal is None else nodal, strict=True):
         motions.append((h, v))
         c = float(evaluate(stretching(problem), h[None], v).stretch[0])
-        if problem.curve.homogeneous and 0 < c < np.inf:
+        # What rounding alone could shorten is tight as it is, in the digits that somebody has.
+        if problem.curve.homogeneous and 0 < c < np.inf and not 1 - TOLERANCE <= c <= 1:
             tight = np.clip(h * c, problem.duration_lower, problem.duration_upper)
             motions.append((tight, None if v is None else slowed(problem, v, c)))
     best: Local | None = None

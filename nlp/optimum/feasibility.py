@@ -125,9 +125,9 @@ def _too_little_time(problem: Problem) -> str | None:
         with np.errstate(divide="ignore", invalid="ignore"):
             share = math.factorial(order) * distance / problem.limits.derivatives[:, order - 1]
         needed = np.where(distance > 0, share, 0.0) ** (1.0 / order)
-        late = np.argwhere(needed > room[:, None] * SURE)
-        if late.size:
-            w, j = (int(x) for x in late[0])
+        late = needed / room[:, None]
+        if late.max(initial=0.0) > SURE:
+            w, j = (int(x) for x in np.unravel_index(late.argmax(), late.shape))
             return (
                 f"joint {problem.joints[j]} needs at least {shown_bound(needed[w, j], 'lower')} s "
                 f"{words(w)} at its {QUANTITIES[order - 1]} limit; "
@@ -195,6 +195,7 @@ def forbidden_jumps(problem: Problem) -> list[tuple[int, int, int]]:
         for b in range(1, 0 if curve is None else curve.segments)
         for order in (1, 2)
         if curve is not None and order > curve.smooth_order(b)
+        if order not in dict(curve.prescribed_at(b))
         for j in np.flatnonzero(moving)
         if order == 1 or problem.limits.limited[j, 2]
     ]

@@ -325,8 +325,9 @@ def test_proportional_joints_share_the_ratios() -> None:
         (determined(ON, piecewise((1, 3, 3), 0, ())), [(b, r, 0) for b in (1, 2) for r in (1, 2)]),
         (determined(np.full(4, 0.3)), []),
         (determined(ON, uniform_cubic_b_spline(4, "timed")), []),
+        (determined(ON, rest_to_rest(3, 5)), []),
     ],
-    ids=["smooth", "acceleration", "no jerk limit", "velocity", "still", "B-spline"],
+    ids=["smooth", "acceleration", "no jerk limit", "velocity", "still", "B-spline", "rest"],
 )
 def test_jumps_that_the_declaration_allows_and_the_limits_forbid(
     problem: Problem, places: list[tuple[int, int, int]]
