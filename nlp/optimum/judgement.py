@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...problem import TOLERANCE, Array, Problem, Verdict, check
-from .decided import decided, kept, longer_than_tight
+from .decided import decided, kept, longer_than_tight, stretched
 from .optimality import KKT, KKT_TOLERANCE, SHARP, UNKNOWN, Local, kkt, sharpened, unmet
 from .solution import Route, Solution, Status
 from .starts import DENSE
@@ -138,13 +138,11 @@ def _sharper(problem: Problem, durations: Array, report: KKT) -> tuple[Array, KK
     if h is None or not stretch <= 1 + ROUNDED:
         return durations, report
     h = np.clip(h * max(1.0, stretch), problem.duration_lower, problem.duration_upper)
-    before, after, better = check(problem, durations), check(problem, h), kkt(problem, h)
-    alike = (
-        h.sum() <= durations.sum() * (1 + ROUNDED)
-        and after.max_violation <= max(1e-15, before.max_violation)
-        and (kept(problem, after) or not kept(problem, before))
-    )
-    return (h, better) if alike and better.residual < report.residual else (durations, report)
+    passing = stretched(problem, h, None)  # rounding may blur the very optimum
+    if passing is None or passing[0].sum() > durations.sum() * (1 + ROUNDED):
+        return durations, report
+    better = kkt(problem, passing[0])
+    return (passing[0], better) if better.residual < report.residual else (durations, report)
 
 
 def on_floor(durations: Array, floor: Array) -> NDArray[np.bool_]:

@@ -287,8 +287,7 @@ def program_search(
     """
     began = time.perf_counter()
     program = Program(problem, float(start.mean()), floor)
-    given = int((np.subtract(*program.bounds()) == 0.0).sum())
-    if program.equalities.numel() + given > program.variables.numel():
+    if program.equalities.numel() > program.variables.numel():
         return None  # such as more jumps that are forbidden than durations can avoid
     state, rows = begun(program, (start, nodal))
     build, iterations = time.perf_counter() - began, 0

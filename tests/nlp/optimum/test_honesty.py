@@ -125,7 +125,7 @@ def test_known_motions_of_a_wrong_shape_are_refused() -> None:
         ({"limits": Limits(1.0, 3.0, np.inf, -1.0, 1.0, joints=2)}, "outside its position limits"),
         (
             {"limits": Limits(acceleration=3.0, joints=2), "duration_upper": [0.6, 9.0, 9.0]},
-            "joint 1 needs at least 0.632455 s from rest to way-point 1 at its acceleration",
+            "joint 2 needs at least 0.730296 s from rest to way-point 1 at its acceleration",
         ),
         (
             {"limits": Limits(acceleration=3.0, joints=2), "duration_upper": [9.0, 9.0, 0.7]},
