@@ -180,6 +180,11 @@ def returns_nan(fun: Any, bounds: Any, budget: int, rng: Any) -> object:
     return np.full(len(bounds), np.nan)
 
 
+def returns_part_nan(fun: Any, bounds: Any, budget: int, rng: Any) -> object:
+    fun(bounds[:, 1])
+    return np.stack([bounds[:, 1], np.full(len(bounds), np.nan)])
+
+
 def leaves_bounds(fun: Any, bounds: Any, budget: int, rng: Any) -> None:
     fun(bounds[:, 1] + [0.0, 7.0, 0.0])
 
@@ -243,6 +248,7 @@ def asks_words(fun: Any, bounds: Any, budget: int, rng: Any) -> None:
 FAULTS = {
     asks_nan: "asked for the fitness of NaN",
     returns_nan: "returned NaN",
+    returns_part_nan: "returned NaN",
     leaves_bounds: "asked for the fitness of 10 s for duration 2, outside its bounds 0.1 to 3 s",
     returns_outside: "returned -0.9 s for duration 1, outside its bounds 0.1 to 3 s",
     swallows: "went on after its budget of 40 evaluations was spent",

@@ -317,6 +317,18 @@ def test_bad_boxes_are_refused():
             judge_rounding(asked, *box)
 
 
+def test_floats_at_the_ends_of_a_box_are_on_the_safe_side_of_the_digits() -> None:
+    """0.3 is the float below 3/10, 1.1 the one above 11/10: what is tried stays within the digits,
+    and what is cut off to them is all held."""
+    for sign in (1.0, -1.0):
+        ends = sorted((sign * 0.3, sign * 1.1))
+        low, high = RoundingBox(0.7 * sign, *ends).inside()
+        assert min(abs(Fraction(float(x))) for x in (low, high)) >= Fraction("0.3")
+        assert max(abs(Fraction(float(x))) for x in (low, high)) <= Fraction("1.1")
+        cut = RoundingBox(0.2 * sign, *sorted((sign * 0.15, sign * 0.25))).or_cut_off()
+        assert max(abs(Fraction(float(x))) for x in (cut.lower, cut.upper)) >= Fraction("0.3")
+
+
 def test_a_motion_whose_limited_derivative_vanishes_is_not_searched() -> None:
     """Two way-points of a timed uniform cubic B-spline: a straight line, whose jerk is 0."""
     curve = uniform_cubic_b_spline(2, "timed")

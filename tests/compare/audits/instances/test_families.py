@@ -218,6 +218,7 @@ def test_quantiles_of_every_pair_of_runs() -> None:
     spread = distribution(values)
     assert (spread.pairs, spread.missing, spread.shorter) == (4, 2, 1.0)
     assert (spread.lowest, spread.median, spread.highest) == (0.5, 0.625, 0.75)
+    assert (spread.lower_quarter, spread.upper_quarter) == (0.5625, 0.6875)
     assert str(spread) == "median 62.5 % (50.0 to 75.0 %), 2 of 4 without answer"
     assert found.reductions("as-printed", Effect.CURVE).tolist() == [0.5]
     worse = distribution(np.array([-0.25, 0.0]))
