@@ -177,11 +177,6 @@ def asks_nan(fun: Any, bounds: Any, budget: int, rng: Any) -> None:
 
 def returns_nan(fun: Any, bounds: Any, budget: int, rng: Any) -> object:
     fun(bounds[:, 1])
-    return np.full(len(bounds), np.nan)
-
-
-def returns_part_nan(fun: Any, bounds: Any, budget: int, rng: Any) -> object:
-    fun(bounds[:, 1])
     return np.stack([bounds[:, 1], np.full(len(bounds), np.nan)])
 
 
@@ -248,7 +243,6 @@ def asks_words(fun: Any, bounds: Any, budget: int, rng: Any) -> None:
 FAULTS = {
     asks_nan: "asked for the fitness of NaN",
     returns_nan: "returned NaN",
-    returns_part_nan: "returned NaN",
     leaves_bounds: "asked for the fitness of 10 s for duration 2, outside its bounds 0.1 to 3 s",
     returns_outside: "returned -0.9 s for duration 1, outside its bounds 0.1 to 3 s",
     swallows: "went on after its budget of 40 evaluations was spent",
