@@ -87,6 +87,8 @@ def test_limits_and_bounds_themselves_are_within(judge: type) -> None:
     problem = problem_with(duration_lower=[1.5, 1.5, 1.5], duration_upper=[1.5, 2.0, 2.5])
     batch = np.array([[1.5, 1.5, 1.5], [1.5, 2.0, 2.5]])
     np.testing.assert_array_equal(judge(problem)(batch), [4.5, 6.0])
+    # They keep the limits too, and no stretch makes up for what the bounds ask.
+    np.testing.assert_array_equal(judge(problem)(batch - [0.0, 0.0, 1.01]), [np.inf, np.inf])
     # From rest to rest no position lies beyond those of the way-points.
     q = WAYPOINTS
     ranged = WITH_JERK.with_positions(q.min(axis=0), q.max(axis=0))
@@ -114,6 +116,7 @@ def test_a_penalty_is_above_every_admissible_total(judge: type, penalty: float, 
     with pytest.raises(TrajgapError, match=said):
         judge(problem_with(), penalty)
     judge(problem_with(), 7.6)
+    judge(problem_with(duration_upper=0.3), 0.95)  # 3 · 0.3 s at most
     free = piecewise((5, 5, 5), 2, ((1, 0.0), (2, 0.0)))
     with pytest.raises(TrajgapError, match=r"leaves 4 derivatives per joint free.*prescribe them"):
         judge(problem_with(curve=free))

@@ -177,7 +177,7 @@ def asks_nan(fun: Any, bounds: Any, budget: int, rng: Any) -> None:
 
 def returns_nan(fun: Any, bounds: Any, budget: int, rng: Any) -> object:
     fun(bounds[:, 1])
-    return np.full(len(bounds), np.nan)
+    return np.stack([bounds[:, 1], np.full(len(bounds), np.nan)])
 
 
 def leaves_bounds(fun: Any, bounds: Any, budget: int, rng: Any) -> None:

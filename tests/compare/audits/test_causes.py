@@ -116,6 +116,14 @@ def test_one_claim_under_many_readings_is_one_error() -> None:
     assert [(c.rule, c.claim) for c in cause.consequences] == [("TG201", "s")]
 
 
+def test_what_is_too_long_is_told_by_the_least_distance_of_all_readings() -> None:
+    """A quintic over 1 rad takes 15/(8 v): 0.8 or 1 s, where 1.95 to 2.05 s are printed."""
+    more = readings(fast={"limits": {"velocity": 2.34375}}, slow={})
+    one = audited_text(one_joint("0, 1", "1.875", "2.0", "optimal", more))
+    (gap,) = [c.head.gap for c in one.causes if c.head and c.head.kind == "longer"]
+    assert gap.highest == pytest.approx(2.05 / 1.0 - 1, rel=1e-3)
+
+
 def test_a_longest_duration_of_another_row_is_named() -> None:
     """Joints that need 2, 1, 2 s and 1, 2, 1 s; the last row takes 1 s in place of 2 s."""
     last = {"durations": ["2.000", "1.000", "2.000"], "total": "6.000"}

@@ -13,7 +13,7 @@ from support.studies import EVERY, audited_alone
 from trajgap.compare.audits import CaseAudit, audit
 from trajgap.compare.audits.draft import advise
 from trajgap.compare.audits.edits import edited
-from trajgap.compare.documents import Advice, Urgency, Why
+from trajgap.compare.documents import Advice, ClaimVerdict, Urgency, Why
 from trajgap.problem import Case, Verdict, check, parse_case
 
 CONTRADICTED = paper(
@@ -183,4 +183,6 @@ def test_every_cause_has_its_advice_in_plain_words(case_id: str) -> None:
     found = advise(one.study, one.causes, one.judgements, one.edits)
     assert len([a for a in found if a.urgency is not Urgency.OPEN]) >= len(one.causes)
     assert all(advice.says and advice.change for advice in found)
+    undecided = (ClaimVerdict.NOT_CHECKABLE, ClaimVerdict.DEPENDS)
+    assert {j.claim for j in one.judgements if j.verdict in undecided} <= {a.claim for a in found}
     assert not [a for a in found if "None as" in a.change or "Print None" in a.change]

@@ -19,7 +19,7 @@ from trajgap.compare.audits.waterfall import waterfalls
 from trajgap.compare.cli.auditing import audited
 from trajgap.compare.documents import AuditDocument, Why, facts
 from trajgap.compare.pages.verdicts import problems_audited
-from trajgap.nlp import Evidence, Solution, Status, certificate, certify, printed_problem
+from trajgap.nlp import Evidence, Outcome, Solution, Status, certificate, certify, printed_problem
 from trajgap.problem import Case, parse_case
 
 TEXT = paper(
@@ -93,6 +93,15 @@ def test_boxes_are_counted_unless_seconds_are_asked_for(monkeypatch: pytest.Monk
     none = Intervals((), None, lambda _: None)
     assert none.interval(exact) is None
     assert none.left_out == ["the optimum: no boxes were left"]
+
+
+def test_a_lower_bound_alone_is_no_interval(monkeypatch: pytest.MonkeyPatch) -> None:
+    exact = printed_problem(stated().statement())
+    bounded = replace(certify(exact, gap=1e-2), outcome=Outcome.OPEN, upper=None, durations=None)
+    monkeypatch.setattr(intervals, "certify", lambda *_, **__: bounded)
+    none = Intervals((), None, lambda _: None)
+    assert none.interval(exact) is None
+    assert none.left_out[0].startswith("the optimum, tried with ")
 
 
 def test_a_given_certificate_counts_once_it_is_proved_again() -> None:

@@ -7,8 +7,9 @@ from itertools import permutations
 
 import pytest
 from support.studies import audited, source
+from trajgap.compare.audits import provenance as proving
 from trajgap.compare.audits.judging import judge
-from trajgap.compare.audits.provenance import commit, provenance, today
+from trajgap.compare.audits.provenance import certificate_files, commit, provenance, today
 from trajgap.compare.audits.stated import claim_text, place, stated_claims, stated_source
 from trajgap.compare.audits.study import Study
 from trajgap.compare.documents import (
@@ -41,6 +42,15 @@ def test_hashes_are_those_of_the_files():
     assert made.case_sha256 in made.citation
     assert "year = {2026}" in made.citation
     assert made.citation.count("{") == made.citation.count("}")
+
+
+def test_only_joints_that_move_one_by_one_have_certificates_of_their_own(monkeypatch) -> None:
+    monkeypatch.setattr(proving, "proved", lambda *_: True)
+    text = source("puma560-mnam-pso-353")
+    for coupling in ("per-joint", "shared"):
+        case = parse_case(text.replace('"per-joint"', f'"{coupling}"'), "puma.toml")
+        found = certificate_files(Study(case, seeds=2, reading="durations-positive"))
+        assert any(".joint-" in file.name for file, _ in found) == (coupling == "per-joint")
 
 
 def test_the_command_makes_the_same_selection_again(tmp_path):

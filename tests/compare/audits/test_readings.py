@@ -132,6 +132,13 @@ def test_every_reading_has_its_outcome_and_the_segments_of_a_dense_sample() -> N
         assert {e.segment for e in o.excesses} == over
 
 
+def test_an_excess_is_over_the_limit_of_its_own_side() -> None:
+    """A quintic over 0.4 rad in 1 s peaks at 15/8 · 0.4 = 0.75 rad/s, and never runs backwards."""
+    text = paper([[0, 0.4]], TWO_UNITS, row("d", [1]), velocity=[[-0.5, 0.7]])
+    (excess,) = summary_of(summed(study_of(text), {"main": "d"})).outcomes[0].excesses
+    assert excess.ratio == pytest.approx(0.75 / 0.7)
+
+
 def test_the_fit_is_the_factor_that_makes_the_printed_durations_tight() -> None:
     one = five()
     found = summary_of(one)

@@ -317,6 +317,13 @@ def test_bad_boxes_are_refused():
             judge_rounding(asked, *box)
 
 
+def test_floats_at_the_ends_of_a_box_are_on_the_safe_side_of_the_digits() -> None:
+    """0.3 is the float below 3/10, and 1.1 is the one above 11/10."""
+    low, high = map(Fraction, RoundingBox(0.7, 0.3, 1.1).inside())
+    assert Fraction("0.3") <= low <= high <= Fraction("1.1")
+    assert Fraction(float(RoundingBox(-0.2, -0.25, -0.15).or_cut_off().lower)) <= Fraction("-0.3")
+
+
 def test_a_motion_whose_limited_derivative_vanishes_is_not_searched() -> None:
     """Two way-points of a timed uniform cubic B-spline: a straight line, whose jerk is 0."""
     curve = uniform_cubic_b_spline(2, "timed")

@@ -96,6 +96,14 @@ def test_a_claim_is_judged_reading_by_reading(found, verdict, scope) -> None:
     assert (judged.verdict, judged.scope) == (verdict, scope)
 
 
+def test_what_leaves_a_reading_open_is_no_reason_for_what_another_decides() -> None:
+    undecided = finding(N, "b", sentences=("Nothing is known.",), evidence=Evidence.CERTIFIED)
+    judged = judge("c", [finding(R, "a"), undecided], ["a", "b"])
+    assert judged.verdict is D
+    assert "Nothing is known" not in judged.why
+    assert judged.evidence is Evidence.NONE
+
+
 def test_a_verdict_speaks_of_the_readings_that_were_computed() -> None:
     judged = judge("c", [finding(R, "a")], ["a", "b"], ["a"])
     assert (judged.verdict, judged.scope, judged.readings) == (R, Scope.SOME, {"a": R})

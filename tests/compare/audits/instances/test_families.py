@@ -23,7 +23,7 @@ from trajgap.compare.audits.instances.result import (
     distribution,
     reproduced,
 )
-from trajgap.compare.audits.rules.on_instances import judge_instances
+from trajgap.compare.audits.rules.on_instances import _under, judge_instances
 from trajgap.compare.audits.study import Study
 from trajgap.compare.documents import ClaimVerdict, Effect, Procedure, json_text
 from trajgap.compare.pages.markdown_text import markdown
@@ -218,11 +218,22 @@ def test_quantiles_of_every_pair_of_runs() -> None:
     spread = distribution(values)
     assert (spread.pairs, spread.missing, spread.shorter) == (4, 2, 1.0)
     assert (spread.lowest, spread.median, spread.highest) == (0.5, 0.625, 0.75)
+    assert (spread.lower_quarter, spread.upper_quarter) == (0.5625, 0.6875)
     assert str(spread) == "median 62.5 % (50.0 to 75.0 %), 2 of 4 without answer"
     assert found.reductions("as-printed", Effect.CURVE).tolist() == [0.5]
     worse = distribution(np.array([-0.25, 0.0]))
     assert worse.shorter == 0.0
     assert str(worse) == "median −12.5 % (−25.0 to 0.0 %)"
+
+
+def test_the_sentences_of_a_reading_hold_its_numbers() -> None:
+    """Totals of 2 and 4 s beside 1 s: reductions of 50 and 75 %, of which one reaches 51 %."""
+    runs = made([2.0, 4.0], [1.0, 1.0], (0.51, 0.52))
+    told = _under(replace(runs, printed_totals=(None, "1.2 s")), "as-printed").message
+    assert "by the printed numbers is usual here: it lies within the middle" in told
+    assert "50 % of them are at least as large." in told
+    assert "Where 1.2 s is printed, the procedure of the paper takes 1 s at the median" in told
+    assert "compared with the paper's" not in told
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from support.b_splines import NATURAL, uniform
 from support.findings import judged, said_of, study_of
-from support.made_up import claim, paper, readings
+from support.made_up import claim, paper, readings, row, sentence
 from support.papers.motions import vertices as solved
 from support.studies import changed, shipped
 from trajgap.compare.audits.rules.continuous_time import judge_motions
@@ -209,6 +209,16 @@ def test_the_printed_durations_are_optimal_under_no_reading() -> None:
             assert found.message.startswith(said)
             jumps = "whose velocity may jump at the via-points" in found.message
             assert jumps == reading.endswith("stretched")
+
+
+def test_a_stretched_curve_is_smooth_only_with_the_proportions_of_its_chords() -> None:
+    """Of ways of 1.001 and 2 rad, whose proportions no two decimals state."""
+    curve = CLAMPED | {"time": "stretched"}
+    for times, kind in (("0.50 1.00", "may be smooth"), ("0.75 0.75", "jumps")):
+        parts = row("d", times), sentence("s", "continuous", "d")
+        text = paper([[0, 1.001, 3.001]], *parts, curve=curve, velocity=9)
+        (found,) = said_of(study_of(text), "s", "TG202")
+        assert found.kind == kind
 
 
 def test_acceleration_said_to_jump_does_in_the_reading_that_stretches(

@@ -251,3 +251,5 @@ def test_too_long_a_way_has_no_speed_that_is_high_enough() -> None:
     just = by_blend_accelerations(column(0, 1), exact(2.0), exact(1.0), EndBlends.WITHIN)
     assert just.velocity.low[0, 0] == pytest.approx(1.0)
     assert just.room.low[0, 0] == pytest.approx(0.0, abs=1e-12)
+    still = by_blend_accelerations(column(0, 0), exact(2.0), exact(0.0), EndBlends.WITHIN)
+    assert (still.velocity.low[0, 0], still.velocity.high[0, 0]) == (0.0, 0.0)

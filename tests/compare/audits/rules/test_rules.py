@@ -7,6 +7,7 @@ from support.findings import judged
 from support.studies import changed
 from trajgap.compare.audits.case_audit import audit
 from trajgap.compare.audits.rules.condition_count import count_conditions, judge_counts
+from trajgap.compare.audits.rules.distances import _optimal_statement
 from trajgap.compare.audits.study import Study
 from trajgap.compare.documents import ClaimVerdict, Finding, Severity
 from trajgap.nlp import Evidence
@@ -142,6 +143,12 @@ def test_an_audit_keeps_to_a_chosen_problem_and_reading() -> None:
     report = audit(IRB, seeds=2, problem="limit-80", reading="waypoints-rad")
     assert {f.problem for f in report.cases[0].findings} <= {"limit-80", None}
     assert {f.reading for f in report.cases[0].findings} <= {"waypoints-rad", None}
+
+
+def test_of_a_problem_that_is_not_chosen_nothing_is_called_optimal() -> None:
+    study = Study(load_case(IRB), seeds=2, certify_seconds=0, problem="limit-80")
+    elsewhere = study.case.claim("time-optimal").model_copy(update={"of": ("durations-110",)})
+    assert list(_optimal_statement(study, elsewhere)) == []
 
 
 def test_a_replay_needs_a_spread() -> None:
