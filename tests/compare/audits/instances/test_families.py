@@ -23,7 +23,7 @@ from trajgap.compare.audits.instances.result import (
     distribution,
     reproduced,
 )
-from trajgap.compare.audits.rules.on_instances import judge_instances
+from trajgap.compare.audits.rules.on_instances import _under, judge_instances
 from trajgap.compare.audits.study import Study
 from trajgap.compare.documents import ClaimVerdict, Effect, Procedure, json_text
 from trajgap.compare.pages.markdown_text import markdown
@@ -232,6 +232,8 @@ def test_quantiles_of_every_pair_of_runs() -> None:
 def test_reproduced_means_within_the_middle(printed: tuple[float, float], expected: bool) -> None:
     runs = made([2.0], [1.0], printed)
     assert reproduced(runs, "as-printed") is expected
+    said = "usual here: it lies within" if expected else "unusual here: it lies outside"
+    assert f" is {said} the middle" in _under(runs, "as-printed").message
     assert not reproduced(replace(runs, printed=None), "as-printed")
 
 
