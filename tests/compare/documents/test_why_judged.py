@@ -76,7 +76,6 @@ def test_two_numbers_of_one_reading_stay_two_reasons() -> None:
     first = [*said("a", "Row 1: 3 s."), *said("b", "Row 1: 4 s.")]
     found = grouped([*first, *said("a", "Row 2: 5 s.")], READINGS, NAMED)
     assert [one.sentences for one in found] == [("Row 1: 3 s.",), ("Row 2: 5 s.",)]
-    assert [one.readings for one in found] == [("a", "b"), ("a",)]
 
 
 def test_the_strongest_word_stands_first_then_the_default_and_implausible_ones_last() -> None:

@@ -119,7 +119,6 @@ SLIGHTLY = positions(THIRD, elbow=(0.7004, 0.3996))
         (PLACES, MODIFIED, column(), "inconsistent", ""),
         (PLACES, MODIFIED + OTHER_TOO, column(), "supported",
          "(standard convention)"),
-        # What another one leaves open is left open.
         (HANGING, MODIFIED + UNSURE + OTHER_TOO, column(), "not checkable",
          "With other signs of the twists"),
         # Axes of the base that are swapped keep the distance from its origin.
