@@ -45,10 +45,7 @@ def _raised(number: Printed) -> Interval:
 
     Times are often printed so, for a longer motion keeps the limits too.
     """
-    value = number.fraction
-    return (
-        Interval(value - number.unit, value) if value >= 0 else Interval(value, value + number.unit)
-    )
+    return Interval(number.fraction - number.unit, number.fraction)
 
 
 def _either(a: Interval, b: Interval) -> Interval:

@@ -169,7 +169,8 @@ def _total(study: Study, claim: AnyClaim) -> Iterator[Finding]:
     """The printed total beside the runs under the listed choices and under spread settings."""
     rid = study.main_reading
     total = study.claim_total(claim, rid)
-    if claim.algorithm is None or total is None:
+    assert total is not None
+    if claim.algorithm is None:
         return
     shown, (low, high) = total
     for pid, reading in study.claim_pairs(claim):

@@ -10,8 +10,9 @@ from typing import Any
 import pytest
 from support.findings import audited_text, study_of, verdicts
 from support.made_up import CUBIC, algorithms, claim, entry, gain, paper, row, sentence, total
+from support.studies import shipped
 from trajgap.compare.audits.card_optimum import _beside_profiles, optimum_line
-from trajgap.compare.audits.waterfall import waterfalls
+from trajgap.compare.audits.waterfall import _free, waterfalls
 from trajgap.compare.documents import ClaimVerdict
 
 # A cubic from rest to rest over d in h peaks at 1.5 d/h.
@@ -181,10 +182,25 @@ def test_what_is_called_optimal_is_found_wherever_it_stands(rows: str) -> None:
         # Of several without a word the last is taken.
         ((OWN, RIVAL), "rival"),
         ((OWN, row("rival", "2.50", state="before")), "own"),
+        # Where one joint is all there is, its row is that of all joints.
+        ((row("own", "1.90", joint="1"),), "own"),
     ],
 )
 def test_a_rival_is_not_where_it_starts(parts: tuple[str, ...], claim: str) -> None:
     assert [one.claim for one in waterfalls(study_of(asked(*parts)))] == [claim]
+
+
+@pytest.mark.parametrize(("value", "differs"), [("900.6", False), ("900.7", True)])
+def test_a_total_that_is_not_the_sum_has_the_sum_below_it(value: str, differs: bool) -> None:
+    """Added up, the durations miss 900.6 in the last bit."""
+    rows = row("d", "300.1 300.2 300.3", total=value)
+    (found,) = waterfalls(study_of(paper([[0, 1, 2, 3]], rows, velocity=1)))
+    assert (found.steps[1].name == "sum of the printed durations") == differs
+
+
+def test_a_shipped_proof_of_any_curve_stands_below_all_that_is_shorter() -> None:
+    step = _free(shipped("irb460-pso-353"), "limit-80", "waypoints-rad")
+    assert "no motion within the limits is shorter than" in step.note
 
 
 def test_the_state_before_is_no_result_where_a_bare_total_is() -> None:

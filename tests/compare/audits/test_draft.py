@@ -14,6 +14,8 @@ from trajgap.compare.audits import CaseAudit, audit
 from trajgap.compare.audits.draft import advise
 from trajgap.compare.audits.edits import edited
 from trajgap.compare.documents import Advice, ClaimVerdict, Urgency, Why
+from trajgap.compare.pages.advised import advised
+from trajgap.compare.pages.claims import against
 from trajgap.problem import Case, Verdict, check, parse_case
 
 CONTRADICTED = paper(
@@ -87,8 +89,11 @@ def test_a_total_that_is_no_sum_is_replaced_by_one_number() -> None:
     """0.9000 + 1.1000 + 0.8500 is 2.8500, and no paper prints an interval."""
     one = drafted("0.9000 1.1000 0.8500", "2.900")
     assert on(one, "best").change == "Print 2.850 s as the total, or correct the parts."
-    (found,) = [a for a in drafted("1.000 1.000 1.000", "2.500").advice if "add up" in a.says]
+    other = drafted("1.000 1.000 1.000", "2.500", "jumps")
+    (found,) = [a for a in other.advice if "add up" in a.says]
     assert "3.0" in found.change
+    assert advised(other).blocks[-1].title == "1 things that a reader cannot check"
+    assert "The causes" in str(against(other).blocks)
 
 
 def test_durations_that_break_a_limit_are_lengthened_until_they_keep_it() -> None:

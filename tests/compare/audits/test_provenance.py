@@ -6,11 +6,12 @@ from datetime import date
 from itertools import permutations
 
 import pytest
+from support.made_up import gain, paper, row
 from support.studies import audited, source
 from trajgap.compare.audits import provenance as proving
 from trajgap.compare.audits.judging import judge
 from trajgap.compare.audits.provenance import certificate_files, commit, provenance, today
-from trajgap.compare.audits.stated import claim_text, place, stated_claims, stated_source
+from trajgap.compare.audits.stated import claim_text, digits_of, place, stated_claims, stated_source
 from trajgap.compare.audits.study import Study
 from trajgap.compare.documents import (
     UNDECIDED,
@@ -29,6 +30,13 @@ from trajgap.problem import TrajgapError, load_case, parse_case, published_ids
 from trajgap.problem.cases import ConditionsClaim, StatementClaim
 
 ID = "irb460-pso-353"
+
+
+def test_words_of_two_segments_and_digits_of_seconds_gained():
+    rows = row("old", "2.0 1.5") + row("new", "1.5 0.8") + gain("old", "new", seconds="1.2")
+    case = parse_case(paper([[0, 1, 2]], rows, velocity=2), "x")
+    assert claim_text(case, case.claim("new")).endswith("segments take 1.5 and 0.8 s.")
+    assert digits_of(case, case.claim("gain")) == "1.2 s"
 
 
 def test_hashes_are_those_of_the_files():

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
 from pathlib import Path
 
 import pytest
 from support.command_line import IRB, PUMA, Run
 from support.made_up import claim, paper, total
 from trajgap.compare.audits import Study, asked_as, in_words
+from trajgap.compare.cli import solving
 from trajgap.problem import load_case
 
 TITLE = "Shortest time of joint 5 under 80 °/s"
@@ -59,7 +61,8 @@ COUNTS: list[tuple[str, dict[str, int]]] = [
         f"audit c.toml {AUDIT} --out pages",
         {"not checkable, 2 claims: Without durations, this cannot be computed": 1,
          "Without durations, this cannot be computed": 1,
-         "18.0 s was not minimised for time alone": 1, "not checkable, abstract": 0},
+         "18.0 s was not minimised for time alone": 1, "not checkable, abstract": 0,
+         "TOPPRA on the path of the relaxed family: no acceleration": 1},
     ),
     (
         "study few.toml --workers 1",
@@ -90,8 +93,12 @@ def test_a_problem_is_called_by_what_tells_it_from_others() -> None:
     assert in_words(alone, "main", "as-printed") == alone.title
 
 
-def test_what_an_audit_is_doing_is_said_in_words() -> None:
+def test_what_is_being_done_is_said_in_words(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     said: list[str] = []
+    monkeypatch.setattr(solving, "progress", lambda *_: nullcontext(said.append))
+    run.done("solve", IRB, *ONE.split())
+    assert said == [WORDS]
+    said.clear()
     study = Study(load_case(IRB), seeds=2, certify_seconds=0, progress=said.append)
     study.claim_rounding(study.case.claim("durations-110"), "limit-110", "waypoints-rad")
     assert said == [f"{IRB}: rounding of Table 4, column 110 °/s; {WORDS.replace('80', '110')}"]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from typing import Any
 
 import jsonschema
@@ -31,6 +32,7 @@ from trajgap.compare.documents import (
     show_document,
     solve_result,
 )
+from trajgap.compare.documents.certified import outwards
 from trajgap.compare.documents.export import SCHEMA_FILE, named
 from trajgap.nlp import Solution, Status, solve, solve_per_joint
 from trajgap.nlp.retiming.toppra_check import Retiming, retime
@@ -55,6 +57,10 @@ WAYPOINTS = np.array([[0.3, -1.0], [1.1, 0.4], [0.9, 1.7], [2.0, 1.2]])
 def problem_with(limits: Limits | None = None, **changes: Any) -> Problem:
     limits = limits or Limits(velocity=[2.0, 3.0], acceleration=[5.0, 4.0])
     return Problem(WAYPOINTS, limits, three_five_three(), **changes)
+
+
+def test_a_bound_that_is_a_float_is_not_moved() -> None:
+    assert [outwards(Fraction(1, 2), "", side) for side in (-1, 1)] == [0.5, 0.5]
 
 
 def test_the_schema_is_one_and_knows_each_document() -> None:

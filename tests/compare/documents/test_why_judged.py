@@ -73,8 +73,9 @@ def test_reasons_that_differ_in_numbers_alone_are_one_with_those_of_the_default(
 
 
 def test_two_numbers_of_one_reading_stay_two_reasons() -> None:
-    found = grouped([*said("a", "Row 1: 3 s."), *said("a", "Row 2: 4 s.")], READINGS, NAMED)
-    assert [one.sentences for one in found] == [("Row 1: 3 s.",), ("Row 2: 4 s.",)]
+    first = [*said("a", "Row 1: 3 s."), *said("b", "Row 1: 4 s.")]
+    found = grouped([*first, *said("a", "Row 2: 5 s.")], READINGS, NAMED)
+    assert [one.sentences for one in found] == [("Row 1: 3 s.",), ("Row 2: 5 s.",)]
 
 
 def test_the_strongest_word_stands_first_then_the_default_and_implausible_ones_last() -> None:

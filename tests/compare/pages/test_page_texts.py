@@ -7,8 +7,11 @@ from dataclasses import replace
 from math import radians
 
 import pytest
+from support.findings import study_of
+from support.made_up import paper, row
 from support.page_tree import Tree
 from support.studies import EVERY, audited_alone, page_alone
+from support.toml_text import Bare
 from trajgap.compare.audits import KEPT
 from trajgap.compare.audits.case_audit import CaseAudit
 from trajgap.compare.audits.study import Study
@@ -24,6 +27,7 @@ from trajgap.compare.documents import (
 from trajgap.compare.pages.blocks import Cell, Claimed, Folded, Grid, Page, Prose, Section, word
 from trajgap.compare.pages.environment import environment, style
 from trajgap.compare.pages.markdown_text import markdown
+from trajgap.compare.pages.motions_shown import _totals
 from trajgap.compare.pages.numbers import where_time_goes
 from trajgap.compare.pages.said_once import shown_once
 from trajgap.compare.pages.units import both_units
@@ -95,6 +99,12 @@ def test_many_readings_share_a_table_and_few_have_pictures() -> None:
     for cell, step in zip(tables[0].rows[0][1:], known, strict=True):
         assert cell.text.startswith(f"{step.time:.4f} s")
         assert str(step.evidence) in (*cell.text.split("\n"), "none")
+
+
+def test_a_total_that_nothing_limits_is_no_line_among_those_of_runs() -> None:
+    for velocity, shown in ((1, 1), (Bare("inf"), 0)):
+        study = study_of(paper([[0, 1]], row("d", "1.90"), velocity=velocity))
+        assert len(_totals(study, *study.pairs[0])[0]) == shown
 
 
 def test_a_section_that_holds_nothing_is_left_out() -> None:

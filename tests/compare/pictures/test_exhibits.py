@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from matplotlib.text import Annotation
 from support.drawn import sound
-from support.studies import shipped
+from support.studies import changed, shipped
 from trajgap.compare.audits.rules.printed_vertices import Vertex
 from trajgap.compare.audits.study import Study
 from trajgap.compare.pages.exhibits import exhibits_of_motion, exhibits_of_search
@@ -175,6 +175,8 @@ def test_the_palletiser_reaches_every_printed_position() -> None:
     assert picture.name == "workspace"
     assert "standard convention" in picture.caption
     assert "Some joint values reach each of them" in picture.caption
+    (far,) = exhibits_of_motion(changed("irb460-pso-353", ('["-0.450", ', '["-2.450", ')))
+    assert "the end misses above place by " in far.blocks[0].caption
 
 
 def test_exhibits_are_sound(stretched: Problem, scatter: TentScatter) -> None:

@@ -243,6 +243,8 @@ def test_the_sentences_of_a_reading_hold_its_numbers() -> None:
 def test_reproduced_means_within_the_middle(printed: tuple[float, float], expected: bool) -> None:
     runs = made([2.0], [1.0], printed)
     assert reproduced(runs, "as-printed") is expected
+    said = "usual here: it lies within" if expected else "unusual here: it lies outside"
+    assert f" is {said} the middle" in _under(runs, "as-printed").message
     assert not reproduced(replace(runs, printed=None), "as-printed")
 
 

@@ -50,6 +50,7 @@ PLACES = positions(THIRD)
 EXACT = TABLE.replace('"0.700", "0.400"', "0.7, 0.4")
 UNSURE = 'alpha_signs = "uncertain"\n'
 MODIFIED = TABLE.replace('"standard"', '"modified"')
+OTHER_TOO = 'other_conventions = ["standard"]\n'
 ROWS = [[f"{x:.2f}" for x in ANGLES[j]] for j in "ab"]
 
 
@@ -116,8 +117,13 @@ SLIGHTLY = positions(THIRD, elbow=(0.7004, 0.3996))
         (LOST, TABLE, column(), "inconsistent", ""),
         # Another admitted convention may fit.
         (PLACES, MODIFIED, column(), "inconsistent", ""),
-        (PLACES, MODIFIED + 'other_conventions = ["standard"]\n', column(), "supported",
+        (PLACES, MODIFIED + OTHER_TOO, column(), "supported",
          "(standard convention)"),
+        (HANGING, MODIFIED + UNSURE + OTHER_TOO, column(), "not checkable",
+         "With other signs of the twists"),
+        # Axes of the base that are swapped keep the distance from its origin.
+        ([[y, x, z] for x, y, z in PLACES], MODIFIED + OTHER_TOO, column(), "inconsistent",
+         "m (modified); in the standard convention it need not."),
         # Nothing to say, or not enough.
         (positions(), "", "", "not checkable", "but no table of the robot."),
         (positions(), TABLE + SLIDES, "", "not checkable",

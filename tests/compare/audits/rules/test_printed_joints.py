@@ -98,6 +98,7 @@ def placed(*above: str, kinematics: str = sentence("table", "kinematics")) -> st
         ("0.50 0.30 0.25", "not checkable", "another sign of y it would be 0 m"),
         ("-0.50 0.30 0.25", "not checkable", "another sign of x and y"),
         ("0.90 -0.30 0.25", "not checkable", "stands 0.4 m beside place"),
+        ("0.10 -0.30 0.25", "not checkable", "stands 0.4 m beside place"),
     ],
 )
 def test_a_position_above_another(values: str, verdict: str, words: str) -> None:

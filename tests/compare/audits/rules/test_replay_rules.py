@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from support.checkout import ROOT
+from support.findings import study_of
+from support.made_up import algorithms, paper, row
 from support.studies import hurried
 from support.suite import benchmark
 from trajgap.compare.audits import comparisons
@@ -92,6 +94,13 @@ def test_replays_inform_and_judge_nothing() -> None:
     (convergence,) = [f for f in found if f.rule == "TG403"]
     assert "within 0.1 %" in convergence.message
     assert "within 0.5 %" in convergence.message
+
+
+def test_an_algorithm_without_replays_has_the_reason_beside_totals_of_all_joints_alone() -> None:
+    rows = row("all", "1.9", algorithm="a") + row("one", "1.9", joint="1", algorithm="a")
+    study = study_of(paper([[0, 1], [0, 2]], algorithms("a"), rows, velocity=2))
+    (found,) = judge_replays(study)
+    assert (found.claim, found.kind, found.decides) == ("all", "not replayed", False)
 
 
 def test_a_total_beside_spread_settings_names_the_nearest() -> None:
