@@ -5,8 +5,14 @@ from importlib.metadata import version as installed
 from pathlib import Path
 from typing import Any
 
+from pygments.lexers.special import TextLexer
+from sphinx.highlighting import lexers
+
 sys.path.insert(0, str(Path(__file__).parent))
 from made_pages import write_pages
+
+# Hosts draw the plan in CONTRIBUTING.md; here it stands as text.
+lexers["mermaid"] = TextLexer()
 
 project = "trajgap"
 author = "The trajgap authors"
