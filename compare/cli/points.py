@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import sys
 import tomllib
 from decimal import Decimal
 from typing import Any
 
 import numpy as np
 
-from ...problem import QUANTITIES, Case, CaseError, TrajgapError, is_linear, scaffold
+from ...problem import QUANTITIES, Case, CaseError, TrajgapError, is_linear, scaffold, visible
 from ...problem.cases import check_case
 from ...problem.motions import factors_of
 from .motion_checking import MotionOptions, stated_limits, words
@@ -47,7 +48,8 @@ def points_case(
     joints = raw["robot"]["joints"]
     factors = factors_of(units, len(joints), "--units")
     try:
-        limits = stated_limits(joints, factors, options).two_sided
+        stated = stated_limits(joints, factors, options)
+        limits = stated.two_sided
     except CaseError:
         raise
     except TrajgapError as error:
@@ -63,7 +65,15 @@ def points_case(
         raw["units"][quantity] = [("m" if s else "rad") + _POWERS[quantity] for s in slides]
     for name in ("position_lower", "position_upper"):
         block[name] = [_number(x) for x in getattr(limits, name) / factors]
-    return check_case(raw, source)
+    case = check_case(raw, source)
+    slower = [j for j, x in zip(joints, stated.deceleration, strict=True) if np.isfinite(x)]
+    if slower:
+        sys.stderr.write(
+            f"trajgap: {visible(source)}: deceleration has its own limit at joint "
+            f"{visible(', '.join(slower))}; here the smaller value limits acceleration and "
+            "deceleration alike, so a motion that uses the larger one may be shorter\n"
+        )
+    return case
 
 
 def _number(value: float) -> Any:

@@ -23,7 +23,7 @@ def _evidence(data: dict[str, Any]) -> Evidence:
     return Evidence.BEST_KNOWN if isinstance(data.get("lower"), Why) else Evidence.CERTIFIED
 
 
-_OPEN_WORDS = 60
+_OPENING_WORDS = 60
 """Words of the opening of a reason: a verdict and its numbers have room."""
 UNDECIDED = Why("it decides nothing")
 """Why a finding that is not checkable has no confidence."""
@@ -69,7 +69,7 @@ def _whole(data: dict[str, Any]) -> str:
 
 
 def _opening(data: dict[str, Any]) -> str | None:
-    shown, rest = opened(data["sentences"], _OPEN_WORDS)
+    shown, rest = opened(data["sentences"], _OPENING_WORDS)
     return " ".join(shown) if rest else None
 
 

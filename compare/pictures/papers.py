@@ -88,7 +88,8 @@ def papers_picture(bars: Sequence[PaperBar], *, title: str) -> Picture:
         axes.minorticks_off()
         axes.spines[["left"]].set_visible(False)
         axes.set_xlabel(
-            "printed total over the optimum of the same problem, at the printed digits", color=MUTED
+            "printed total over the shortest known: first problem, default reading, printed digits",
+            color=MUTED,
         )
         figure.legend(
             [

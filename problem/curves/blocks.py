@@ -117,8 +117,11 @@ def _factor(  # type: ignore[no-untyped-def]
             for c in range(n):
                 found, doubt = -1.0 if c == i else 0.0, 0.0
                 for m in range(n):
-                    found += t[i, m] * s[m, c]
                     doubt += abs(t[i, m]) * blur[m, c]
+                    term = t[i, m] * s[m, c]
+                    if term != 0.0:  # the sum rounds, of exact entries too, unless it is 0 now
+                        found += term
+                        doubt += 1.2e-16 * abs(found)
                 defect[k, i, c] = abs(found) + doubt
             for c in range(upper):
                 for m in range(max(0, n + c - upper), n):

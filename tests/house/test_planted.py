@@ -136,6 +136,7 @@ def test_the_tool_tells_what_tests_find_and_goes_on_where_it_ended(tmp_path: Pat
     for name, text in (
         ("tests/planted/verify.toml", FAULTS),
         ("tests/verify/test_count.py", TESTS),
+        ("pyproject.toml", "[tool.pytest.ini_options]\n"),  # none of a folder above is taken
         ("__init__.py", ""),
         ("verify/__init__.py", ""),
         ("verify/count.py", COUNT),
