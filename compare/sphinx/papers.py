@@ -83,7 +83,7 @@ class Distance:
         if not self.timed:
             return _NONE
         if not any(self.shares):
-            said = "the optimum"
+            said = "the optimum" if self.evidence == Evidence.CERTIFIED else "the best known total"
         elif self.least:
             said = f"at least {at_least_percent(self.least)}"
         else:

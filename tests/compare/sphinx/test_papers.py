@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 from support.checkout import ROOT
 from trajgap.compare.sphinx import Results, paper_row, paper_rows, papers_drawn
-from trajgap.compare.sphinx.papers import cited, reference
+from trajgap.compare.sphinx.papers import Distance, cited, reference
 
 RESULTS = Results(ROOT / "docs" / "results")
 
@@ -59,6 +59,14 @@ def test_a_distance_that_rounding_may_explain_says_so() -> None:
     assert 0 < row.distance.least < 1.869 / 1.8175 - 1
     assert row.cells[2].startswith("at least ")
     assert steps[0]["time"] == row.distance.printed
+
+
+@pytest.mark.parametrize(
+    ("evidence", "said"), [("certified", "the optimum"), ("best known", "the best known total")]
+)
+def test_only_a_proven_optimum_is_called_one(evidence: str, said: str) -> None:
+    one = Distance(2.0, (1.995, 2.005), 2.001, 2.001, None, evidence, False, True)
+    assert (one.above, one.shares) == (said, (0.0, 0.0))
 
 
 def test_the_picture_shows_every_paper_that_minimises_time_alone() -> None:
