@@ -28,7 +28,7 @@ extensions = [
     "trajgap.compare.sphinx",  # our own: audits, certificates, values by key
 ]
 source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
-exclude_patterns = ["results", "examples", "gallery/examples", "_build", "_templates"]
+exclude_patterns = ["paper", "results", "examples", "gallery/examples", "_build", "_templates"]
 myst_enable_extensions = ["colon_fence", "deflist"]
 myst_heading_anchors = 4
 suppress_warnings = ["myst.xref_missing_file_extension"]

@@ -13,7 +13,9 @@ from collections.abc import Iterator
 from fnmatch import fnmatch
 from pathlib import Path
 
+import yaml
 from packaging.requirements import Requirement
+from packaging.specifiers import SpecifierSet
 from packaging.utils import canonicalize_name
 from support.checkout import ROOT
 from support.house_files import MAY_IMPORT, source_modules
@@ -120,6 +122,20 @@ def test_constraints_pin_every_requirement() -> None:
             extras = requirement.extras or {""}
             if below.marker is None or any(below.marker.evaluate({"extra": e}) for e in extras):
                 pending.append(below)
+
+
+def test_the_conda_recipe_asks_for_the_same() -> None:
+    recipe = yaml.safe_load((ROOT / ".ci" / "conda" / "meta.yaml").read_text("utf-8"))
+    other_names = {"lazy-loader": "lazy_loader", "matplotlib": "matplotlib-base"}
+    wanted = {"python": SpecifierSet(PYPROJECT["project"]["requires-python"])}
+    for line in PYPROJECT["project"]["dependencies"]:
+        one = Requirement(line)
+        wanted[other_names.get(one.name, one.name)] = one.specifier
+    stated = map(str.split, recipe["requirements"]["run"])
+    assert {name: SpecifierSet(versions) for name, versions in stated} == wanted
+    assert recipe["package"]["version"] == PYPROJECT["project"]["version"]
+    name, entry = recipe["build"]["entry_points"][0].split(" = ")
+    assert PYPROJECT["project"]["scripts"] == {name: entry}
 
 
 def test_version_is_one() -> None:
