@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -69,6 +70,15 @@ def check(
             "--strict", help="Of a motion: exit with 1 unless it passes and all of it is judged."
         ),
     ] = False,
+    repair: Annotated[
+        Path | None,
+        typer.Option(
+            "--repair",
+            metavar="OUT",
+            help="Of a motion that breaks a limit: write it to this new file as it came in (a "
+            "table as CSV, a message as JSON), slowed down until it keeps every limit.",
+        ),
+    ] = None,
     as_json: AsJson = False,
     out: Out = None,
 ) -> int:
@@ -100,6 +110,7 @@ def check(
         topic,
         tolerance,
         strict,
+        repair,
     )
     if math.isnan(tolerance):
         raise typer.BadParameter("--tolerance is no number; give one from 0 to 1")

@@ -19,7 +19,7 @@ from ...problem.motions import (
 from ..audits import in_words
 from ..documents import WrittenMotion, value_or_none
 from .input import Selected
-from .motion_checking import checked_motion
+from .motion_results import checked_motion
 
 _RATE = 500.0
 """Rows a second by default: what arms of today are commanded at."""

@@ -75,6 +75,7 @@ from .motion_checked import (
     MotionJumpShown,
     MotionPeakShown,
     NotJudged,
+    RepairedMotion,
     WrittenMotion,
 )
 from .provenance import Provenance, UsedCertificate
@@ -288,6 +289,7 @@ __all__ = [
     "Reason",
     "Reduction",
     "Reference",
+    "RepairedMotion",
     "Rounding",
     "RoundingExhibit",
     "Rule",

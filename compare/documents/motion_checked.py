@@ -83,6 +83,16 @@ class CheckedMotion(Entry):
     """What does not follow from the file."""
 
 
+class RepairedMotion(Entry):
+    """The motion slowed down until it keeps its limits, in a file that was read back."""
+
+    file: str
+    form: MotionForm
+    slow_down: Real
+    """Factor on all durations."""
+    result: CheckedMotion
+
+
 class MotionCheckDocument(Document):
     """What `trajgap check FILE --json` prints for a motion."""
 
@@ -99,6 +109,8 @@ class MotionCheckDocument(Document):
     time_noise: Real
     """What times may be off by, s."""
     result: CheckedMotion
+    repaired: OrWhy[RepairedMotion]
+    """What `--repair` wrote."""
 
 
 class WrittenMotion(Entry):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -88,6 +88,16 @@ class Motion:
                 raise TrajgapError(
                     "polynomials: a derivative is beyond the range of float64; give rad and s"
                 )
+
+    def slowed(self, factor: float) -> Motion:
+        """The same way, so many times slower."""
+        start = self.breaks[0]
+        powers = factor ** -np.arange(4.0)
+        return replace(
+            self,
+            breaks=start + factor * (self.breaks - start),
+            error=self.error * powers[:, None],
+        )
 
     @classmethod
     def of_polynomial(

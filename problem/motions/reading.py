@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -16,10 +17,11 @@ from .digits import HalfUnits
 from .motion import Motion
 from .parquet_file import read_parquet
 from .plain_data import read_json, read_yaml
-from .polynomial_file import motion_of_json
-from .ros import samples_of_message, trajectories
+from .polynomial_file import motion_of_json, polynomial_json
+from .ros import message_of_samples, samples_of_message, trajectories
 from .samples import Samples
 from .tables import read_csv
+from .written import MotionForm, csv_text
 
 UNITS = ("rad", "deg", "m", "cm", "mm")
 """Units of positions in a file without units of its own."""
@@ -58,6 +60,45 @@ class ForeignFile:
     def joints(self) -> tuple[str, ...]:
         """Labels of the joints."""
         return self.content.joints
+
+    @property
+    def form(self) -> MotionForm:
+        """The format that holds the same in writing; CSV for every table."""
+        if isinstance(self.content, Motion):
+            return MotionForm.PPOLY
+        return MotionForm.ROS if self.controller else MotionForm.CSV
+
+    def slowed(self, factor: float) -> ForeignFile:
+        """The same way, taken so many times slower from its start.
+
+        The numbers of the slower motion are meant exactly: no digit of it was rounded off.
+
+        Parameters
+        ----------
+        factor : float
+            What every duration is multiplied by.
+
+        Returns
+        -------
+        ForeignFile
+        """
+        return replace(self, content=self.content.slowed(factor))
+
+    def written(self) -> str:
+        """Text of a file with this motion: `read_motion` reads it with the same units and joints.
+
+        Returns
+        -------
+        str
+            Tables are in `units`, messages and polynomials in rad and m.
+        """
+        content = self.content
+        if isinstance(content, Motion):
+            slides = [one not in ("rad", "deg") for one in self.units]
+            return json.dumps(polynomial_json(content, slides)) + "\n"
+        if self.controller:
+            return json.dumps(message_of_samples(content), indent=1) + "\n"
+        return csv_text(content, factors_of(self.units, len(self.joints), "--units"))
 
 
 def read_motion(

@@ -172,7 +172,7 @@ def message_of_samples(samples: Samples) -> dict[str, Any]:
             ("velocities", samples.velocity),
             ("accelerations", samples.acceleration),
         ):
-            row[key] = [] if given is None else given[k].tolist()
+            row[key] = [] if given is None or np.isnan(given[k]).any() else given[k].tolist()
         row["effort"] = []
         row["time_from_start"] = {
             "sec": nanoseconds // 10**9,

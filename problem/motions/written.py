@@ -112,10 +112,25 @@ def _rows(breaks: Array, step: float, all_breaks: bool) -> Array:
     return np.asarray(np.unique(np.append(fixed, grid[near > _APART * step])))
 
 
-def csv_text(samples: Samples) -> str:
-    """Samples as CSV, rad or m and s, with the 17 digits that determine a float64.
+def csv_text(samples: Samples, units: Array | float = 1.0) -> str:
+    """Samples as CSV with the 17 digits that determine a float64.
 
     Zeros at the end are written too: the digits of a file say how far its numbers are known.
+
+    Parameters
+    ----------
+    samples : Samples
+    units : float or ndarray, shape (joints,)
+        What 1 of the written positions is, in rad or m; times are in s.
+
+    Returns
+    -------
+    str
+
+    Raises
+    ------
+    TrajgapError
+        If the name of a joint holds a separator.
     """
     given = [("", samples.position), (" velocity", samples.velocity)]
     given.append((" acceleration", samples.acceleration))
@@ -123,7 +138,7 @@ def csv_text(samples: Samples) -> str:
     head = ["time", *(f"{joint}{word}" for word, _ in there for joint in samples.joints)]
     if any(sign in "".join(head) for sign in ',;\t\n\r#"'):
         raise TrajgapError("joints: a name holds a separator; rename it for CSV")
-    table = np.column_stack([samples.time, *(values for _, values in there)])
+    table = np.column_stack([samples.time, *(values / units for _, values in there)])
     stream = io.StringIO()
     stream.write(",".join(head) + "\n")
     for row in table.tolist():

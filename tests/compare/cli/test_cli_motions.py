@@ -1,5 +1,6 @@
 """`trajgap check FILE` from the command line: verdict, units, precedence, one line of fault."""
 
+import json
 import time
 from pathlib import Path
 
@@ -167,3 +168,62 @@ def test_the_motion_of_an_answer_is_written_and_read_back(run, form):
     if form != "csv":
         again = run.document("check", "out.json", "--velocity", "1.3962634", "--tolerance", "1e-6")
         assert again["result"]["limits_verdict"] == "pass"
+
+
+@pytest.mark.parametrize("units", ["rad", "deg,mm"])
+def test_a_repaired_table_takes_the_same_way_within_the_limits(run, units):
+    flags = ["--velocity", "0.75", "--acceleration", "1.2", "--jerk", "9", "--units", units]
+    flags += ["--interpolation", "quintic"]
+    found = run.document("check", "m.csv", *flags, "--repair", "slow.csv", kind="motion_check")
+    repaired = found["repaired"]
+    assert found["result"]["verdict"] == "violated"
+    assert repaired["result"]["verdict"] == "pass"
+    assert repaired["slow_down"] == pytest.approx(found["result"]["slow_down"])
+    before, after = (np.loadtxt(x, delimiter=",", skiprows=1) for x in ("m.csv", "slow.csv"))
+    powers = np.array([-1, 0, 0, 1, 1, 2, 2])
+    np.testing.assert_allclose(after * repaired["slow_down"] ** powers, before, atol=1e-12)
+    again = run.document("check", "slow.csv", *flags)["result"]
+    assert again == repaired["result"]
+    assert again["total_time"] == pytest.approx(found["result"]["feasible_time"])
+
+
+def test_a_repaired_message_and_polynomials_come_as_they_came_in(run, folder):
+    flags = ["--velocity", "0.75"]
+    text = run.done("check", "m.csv", *flags, "--interpolation", "quintic", "--repair", "s.csv")
+    assert "s.csv: the motion 2.500000 times slower, as csv; read back: pass" in text
+    points = [
+        {"positions": [0.0, 0.0], "time_from_start": {"sec": 0, "nanosec": 0}},
+        {"positions": [1.0, -2.0], "time_from_start": {"sec": 1, "nanosec": 333333333}},
+    ]
+    message = {"joint_names": ["j1", "j2"], "points": points}
+    (folder / "goal.json").write_text(json.dumps(message))
+    found = run.document("check", "goal.json", *flags, "--repair", "slow.yaml")["repaired"]
+    assert found["result"]["verdict"] == "pass"
+    slow = json.loads((folder / "slow.yaml").read_text())["points"]
+    assert [one["positions"] for one in slow] == [one["positions"] for one in points]
+    assert slow[1]["time_from_start"] == {"sec": 2, "nanosec": pytest.approx(666666667, abs=1)}
+    assert slow[0]["velocities"] == []
+    cubic = {"joints": ["j1"], "breaks": [1.0, 3.0], "c": [[[-0.25]], [[0.75]], [[0.0]], [[0.0]]]}
+    cubic["x"] = cubic.pop("breaks")
+    (folder / "p.json").write_text(json.dumps(cubic))
+    found = run.document("check", "p.json", "--velocity", "0.5", "--repair", "q.json")["repaired"]
+    assert found["result"]["verdict"] == "pass"
+    assert found["slow_down"] == pytest.approx(1.5)
+    assert json.loads((folder / "q.json").read_text())["breaks"] == [1.0, pytest.approx(4.0)]
+
+
+def test_what_no_slow_down_repairs_is_not_written(run, folder):
+    flags = ["--position", "-1:1", "--interpolation", "quintic", "--repair", "slow.csv"]
+    found = run.document("check", "m.csv", *flags)
+    assert found["repaired"] is None
+    assert "going slower does not move the path" in found["repaired_why"]
+    assert not (folder / "slow.csv").exists()
+    assert_refused(
+        run(
+            "check", "m.csv", "--velocity", "9", "--interpolation", "quintic", "--repair", "s.json"
+        ),
+        "s.json",
+        "--repair",
+        "use .csv or .txt",
+    )
+    assert not (folder / "s.json").exists()

@@ -18,7 +18,7 @@ from trajgap.nlp.optimum.basins import exact_search
 from trajgap.nlp.optimum.descent import descend, least_point, restored
 from trajgap.nlp.optimum.limit_rows import exact_rows
 from trajgap.nlp.optimum.optimality import kkt
-from trajgap.nlp.optimum.starts import LogBox, box_above
+from trajgap.nlp.optimum.starts import LogBox, box_above, least_durations, slowed
 from trajgap.problem import (
     Limits,
     Problem,
@@ -26,6 +26,7 @@ from trajgap.problem import (
     Verdict,
     check,
     cubic_spline,
+    fit,
     parse_case,
     piecewise,
     quintic_spline,
@@ -106,6 +107,29 @@ def test_known_motions_of_each_joint_and_of_free_curves() -> None:
     best = solve(free)
     kept = solve(free, initial=[[9.0, 9.0, 9.0]], known=best.durations, known_nodal=[best.nodal])
     assert kept.best <= best.best * (1 + 1e-9)
+
+
+def test_a_known_motion_far_above_a_proved_bound_ends_no_search() -> None:
+    best = solve(TURNING).total_time
+    known = 1.4 * solve(TURNING).durations
+    found = solve(TURNING, known=[known], lower=0.9 * best)
+    assert found.total_time == pytest.approx(best, rel=1e-9)
+
+
+def test_free_derivatives_of_a_slower_motion_are_those_of_the_same_way() -> None:
+    problem = Problem([[0.0], [1.0], [-0.5], [0.3]], Limits(1.0, 2.0), piecewise((5, 5, 5), 2))
+    rng = np.random.default_rng(2)
+    h, nodal = rng.uniform(0.5, 2.0, 3), rng.normal(size=(problem.curve.free, 1))
+    quick = fit(problem.curve, problem.waypoints, h, nodal)
+    slow = fit(problem.curve, problem.waypoints, 3.0 * h, slowed(problem, nodal, 3.0))
+    t = np.linspace(0.0, float(h.sum()), 50)
+    np.testing.assert_allclose(slow(3.0 * t), quick(t), atol=1e-12)
+
+
+def test_least_durations_are_ways_over_the_speed_in_their_direction() -> None:
+    line, limits = [[0.0], [1.0], [-1.0]], Limits(velocity=[[-0.5, 2.0]])
+    found = least_durations(Problem(line, limits, cubic_spline(2)))
+    assert found == pytest.approx([0.5, 4.0], rel=1e-5)
 
 
 def test_known_motions_of_a_wrong_shape_are_refused() -> None:

@@ -6,9 +6,10 @@ from fractions import Fraction
 import numpy as np
 import pytest
 from support.shipped_problems import COVERED_PROBLEMS
-from trajgap.nlp import Status, kkt, random_starts, shipped
+from trajgap.nlp import Solution, Status, kkt, random_starts, shipped
 from trajgap.nlp.optimum import solve
-from trajgap.nlp.optimum.optimality import sharpened
+from trajgap.nlp.optimum.basins import EVOLUTION
+from trajgap.nlp.optimum.optimality import sharpened, sparse_kkt
 from trajgap.problem import (
     Limits,
     Problem,
@@ -22,6 +23,7 @@ from trajgap.problem import (
     three_five_three,
     uniform_cubic_b_spline,
 )
+from trajgap.problem.curves.adjoint import Places
 
 PUMA = "puma560-mnam-pso-353"
 
@@ -151,6 +153,42 @@ def test_starts_of_the_wrong_length_or_number_are_refused() -> None:
         solve(puma(), starts=0)
     with pytest.raises(TrajgapError, match=r"initial: expected shape \(starts, 3\)"):
         solve(puma(), initial=[[1.0, 1.0]])
+
+
+@pytest.mark.parametrize("side", ["lower", "upper"])
+def test_what_a_bound_on_a_duration_costs_is_a_difference_of_totals(side: str) -> None:
+    problem = Problem(Q, LIMITS, three_five_three())
+    free = solve(problem).durations
+    bound = np.zeros(3) if side == "lower" else np.full(3, 9.0)
+    bound[1] = free[1] * (1.2 if side == "lower" else 0.9)
+
+    def bounded(factor: float) -> Solution:
+        return solve(replace(problem, **{f"duration_{side}": bound * factor}))
+
+    (wall,) = [a for a in bounded(1.0).active if a.quantity == "duration"]
+    step = 1e-4
+    slope = (bounded(1 + step).total_time - bounded(1 - step).total_time) / (2 * step)
+    assert wall.segment == 1
+    assert wall.multiplier == pytest.approx(abs(slope), rel=1e-4)
+    assert wall.sensitivity == pytest.approx(0.1 * slope, rel=1e-4)
+
+
+def test_a_limit_reached_at_a_break_belongs_to_the_segment_before() -> None:
+    """Both segments reach it there: by the banded conditions as by the dense ones."""
+    problem = Problem([[0.0], [1.0], [2.0]], Limits(1.0, 9.0), cubic_spline(2))
+    durations = np.array([1.5, 1.5])  # by symmetry the speed is largest at the break
+    one, none = np.zeros(1, dtype=np.int64), np.zeros(1)
+    places = Places(one, one + 1, one + 1, none)
+    found = sparse_kkt(problem, durations, places, np.array([1.0]), np.zeros(2))
+    assert [(a.segment, a.time) for a in found.active] == [(0, 1.5)]
+    assert [a.segment for a in kkt(problem, durations).active] == [0]
+
+
+def test_the_grid_of_ratios_is_the_same_when_time_runs_backwards() -> None:
+    for segments in (2, 3):
+        axis = EVOLUTION.axis(segments)
+        assert np.ptp(axis) > 8
+        np.testing.assert_allclose(axis, -axis[::-1])
 
 
 Q = np.array([[0.2, -1.0, 0.7], [0.9, 0.3, 0.1], [0.4, 1.1, -0.8], [1.3, 0.6, 0.2]])

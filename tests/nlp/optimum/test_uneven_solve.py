@@ -27,6 +27,9 @@ def test_a_closed_form() -> None:
     assert found.durations == pytest.approx([0.75, 6.0], rel=1e-9)
     found = solve(Problem(line, Limits(acceleration=[[-1.5, 6.0]]), curve))
     assert found.durations == pytest.approx([2.0, np.sqrt(8.0)], rel=1e-9)
+    # The motion never turns back, so that it may be forbidden to.
+    found = solve(Problem(line[:2], Limits(velocity=[[0.0, 2.0]]), rest_to_rest(1, 3)))
+    assert found.durations == pytest.approx([0.75], rel=1e-9)
 
 
 def test_position_limits_hold_beside_uneven_ones() -> None:

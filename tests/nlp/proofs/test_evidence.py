@@ -35,6 +35,7 @@ from trajgap.nlp import solve as solve_and_prove
 from trajgap.nlp.optimum import solve
 from trajgap.nlp.optimum.solution import WIDEST
 from trajgap.nlp.proofs import interval_of, printed_problem_or_none
+from trajgap.nlp.proofs.evidence import _proved_answer
 from trajgap.nlp.proofs.exact import exact_problem, printed_problem
 from trajgap.problem import (
     Limits,
@@ -309,3 +310,14 @@ def test_a_problem_that_no_certificate_can_state_is_not_certified() -> None:
     assert interval_of(document, exact) is None
     found = interval_of(document, other)
     assert found.upper is not None
+
+
+def test_proved_durations_are_rounded_up_to_floats() -> None:
+    """Rounded to the nearest float, some would be shorter than what is proved."""
+    problem = Problem([[0.0], [1.0], [0.4], [0.9]], Limits(1.0, 2.0), rest_to_rest(3, 3))
+    answer = solve(problem)
+    durations = tuple(Fraction(h) for h in answer.durations.tolist())
+    tiny = Fraction(1, 10**25)
+    found = _proved_answer(answer, (durations[0] - tiny, durations[1], durations[2] + tiny))
+    longer = np.nextafter(answer.durations[2], np.inf)
+    assert found.durations.tolist() == [*answer.durations[:2].tolist(), longer]

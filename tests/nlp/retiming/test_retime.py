@@ -5,7 +5,9 @@ import pytest
 from scipy.optimize import brentq
 from support.puma import PUMA_LIMITS
 from support.retimed import PUMA_353, close, hermite, puma, rest_to_rest_time, trajectory
-from trajgap.nlp.retiming.toppra_check import extrapolate, retime
+from trajgap.nlp.retiming.grid import measure, sample
+from trajgap.nlp.retiming.path import pieces
+from trajgap.nlp.retiming.toppra_check import extrapolate, retime, retime_joints
 from trajgap.problem import (
     Limits,
     Problem,
@@ -205,6 +207,29 @@ def test_the_duration_belongs_to_the_path_and_not_to_its_timing() -> None:
     one, two = (retime(c, PUMA_LIMITS) for c in (curve, slow))
     assert one.durations == pytest.approx(two.durations, rel=1e-5)
     assert two.inequality_holds
+
+
+def test_each_joint_by_itself_has_a_path_of_its_own() -> None:
+    curve = fit(rest_to_rest(2, 5), CORNERS[0][:3], [1.0, 1.6])
+    limits = Limits([1.5, 1.9, 1.1], [4.0, 3.0, 5.0])
+    found = retime_joints(curve, limits)
+    ways = np.abs(np.diff(CORNERS[0][:3], axis=0))
+    wanted = [
+        sum(rest_to_rest_time(np.array([way]), [v], [a]) for way in ways[:, j] if way > 0)
+        for j, (v, a) in enumerate([(1.5, 4.0), (1.9, 3.0), (1.1, 5.0)])
+    ]
+    assert len(found) == 3
+    assert all(close(one, time) for one, time in zip(found, wanted, strict=True))
+
+
+def test_a_path_from_rest_to_rest_has_a_speed_in_between() -> None:
+    (piece,), _ = pieces(fit(rest_to_rest(1, 5), [[0.0, 0.0], [3.0, 4.0]], [2.0]))
+    sampled = sample(piece, measure(piece), 40)
+    # |q'| of a quintic from rest to rest over 5 rad in 2 s, at the share of the way that is s.
+    u = np.linspace(0.0, 1.0, 100_001)
+    way, speed = (10 - 15 * u + 6 * u**2) * u**3, 30 * u**2 * (1 - u) ** 2
+    wanted = np.interp(sampled.s / sampled.s[-1], way, speed) * 5.0 / 2.0
+    np.testing.assert_allclose(sampled.speed, wanted, atol=1e-6)
 
 
 def test_a_path_whose_parameter_is_not_linear_in_time_is_a_path_as_any_other() -> None:

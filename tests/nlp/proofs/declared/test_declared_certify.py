@@ -30,6 +30,7 @@ from trajgap.problem import (
     TrajgapError,
     evaluate,
     piecewise,
+    rest_to_rest,
     three_five_three,
 )
 from trajgap.verify import Subject
@@ -99,6 +100,18 @@ def test_a_way_point_beyond_a_position_limit_is_proved_infeasible(
     found = certify(Problem(factor * q, Limits(1.0, **{key: 0.9375 * factor}), curve))
     assert found.outcome is Outcome.INFEASIBLE
     assert verify(certificate(found)).proves
+
+
+@pytest.mark.parametrize("factor", [1.0, -1.0])
+def test_a_way_point_on_a_position_limit_is_within_it(factor: float) -> None:
+    """Motions stop there: they pass neither, and the answer is that without the limit."""
+    q = factor * np.array([[0.0], [0.5], [1.0]])
+    key = "position_upper" if factor > 0.0 else "position_lower"
+    curve = rest_to_rest(2, 3)
+    free = certify(Problem(q, Limits(1.0, 2.0), curve))
+    held = certify(Problem(q, Limits(1.0, 2.0, **{key: factor}), curve))
+    assert held.outcome is free.outcome is Outcome.CERTIFIED
+    assert float(held.upper) == pytest.approx(float(free.upper), rel=1e-6)
 
 
 def test_weights_are_those_of_a_linear_program() -> None:

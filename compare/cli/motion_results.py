@@ -1,0 +1,221 @@
+"""A verdict on a motion as an entry of documents, and as the terminal shows it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+
+from rich.console import RenderableType
+
+from ...problem import Verdict, from_si
+from ...problem.motions import Floor, Interpolation, MotionCheck, MotionPeak, unstated_words
+from ...verify import shown_bound
+from ..documents import (
+    CheckedMotion,
+    MotionCheckDocument,
+    MotionFloor,
+    MotionJumpShown,
+    MotionPeakShown,
+    MotionQuantity,
+    NotJudged,
+    Why,
+    known,
+    value_or_none,
+)
+from .table import Columns, line
+
+
+def checked_motion(found: MotionCheck) -> CheckedMotion:
+    """The entry of a verdict on a motion."""
+    return CheckedMotion(
+        verdict=found.verdict,
+        limits_verdict=found.limits,
+        not_judged=tuple(
+            NotJudged(joint=joint, quantity=MotionQuantity(quantity))
+            for joint, quantity in found.not_judged
+        ),
+        tolerance=found.tolerance,
+        total_time=found.total_time,
+        worst=Why("nothing is limited") if found.worst is None else _peak(found.worst),
+        slow_down=found.stretch,
+        feasible_time=known(found.feasible_time, found.feasible_why),
+        floor=known(None if found.floor is None else _floor(found.floor), found.floor_why),
+        peaks=tuple(map(_peak, found.peaks)),
+        jumps=tuple(
+            MotionJumpShown(
+                joint=one.joint,
+                quantity=MotionQuantity(one.quantity),
+                time=one.time,
+                size=one.size,
+                breaks=one.count,
+            )
+            for one in found.jumps
+        ),
+        concluded=found.concluded,
+        open=found.open,
+    )
+
+
+def _floor(one: Floor) -> MotionFloor:
+    return MotionFloor(time=one.time, standstills=one.stops, waiting=one.waiting, above=one.above)
+
+
+def _peak(one: MotionPeak) -> MotionPeakShown:
+    return MotionPeakShown(
+        joint=one.joint,
+        quantity=MotionQuantity(one.quantity),
+        time=one.time,
+        value=one.value,
+        limit=one.limit,
+        ratio=one.ratio,
+        ratio_at_least=one.least_ratio,
+        ratio_at_most=one.most_ratio,
+        source=one.source,
+    )
+
+
+_POWERS = {
+    MotionQuantity.POSITION: "",
+    MotionQuantity.VELOCITY: "/s",
+    MotionQuantity.ACCELERATION: "/s²",
+    MotionQuantity.DECELERATION: "/s²",
+    MotionQuantity.JERK: "/s³",
+}
+"""What follows the unit of positions."""
+
+
+def shown_check(document: MotionCheckDocument) -> list[RenderableType]:
+    """Lines and the table that `check` prints for a motion."""
+    result = document.result
+    units = dict(zip(document.joints, document.units, strict=True))
+    how = value_or_none(document.interpolation)
+    between = "" if how is None else f", interpolation {how}"
+    joints = len(document.joints)
+    head = (
+        f"{document.file}: {document.format}, {joints} joint{'s' * (joints > 1)}, "
+        f"{document.rows:,} {'breaks' if how is None else 'samples'}{between}, "
+        f"{result.total_time:.6g} s"
+    )
+    parts: list[RenderableType] = [line(head, "bold"), *_verdict(document, units)]
+    if result.not_judged:
+        parts.append(line(_STATE_IT, "dim"))
+    written = value_or_none(document.repaired)
+    if written is not None:
+        slower = f"{written.slow_down:.6f} times slower" if written.slow_down > 1 else "as it is"
+        said = f"{written.file}: the motion {slower}, as {written.form}"
+        parts.append(line(f"{said}; read back: {written.result.verdict}"))
+    rows = [
+        (
+            one.joint,
+            one.quantity,
+            _number(one.value, units[one.joint]),
+            _number(one.limit, units[one.joint]),
+            units[one.joint] + _POWERS[one.quantity],
+            _ratio(one, how is Interpolation.NONE),
+            f"{one.time:.6g}",
+            one.source,
+        )
+        for one in result.peaks
+    ]
+    columns = ("joint", "quantity", ">nearest", ">limit", "unit", ">ratio", ">at s", "~from")
+    return [*parts, Columns(columns, rows)] if rows else parts
+
+
+def _ratio(one: MotionPeakShown, samples_alone: bool) -> str:
+    """The ratio with the digits that it is known to; its bounds where noise leaves it open."""
+    low, high = max(0.0, one.ratio_at_least), one.ratio_at_most
+    if not math.isfinite(one.ratio):
+        return "unbounded"
+    least = shown_bound(low, "lower", digits=4)
+    if samples_alone or not math.isfinite(high):
+        return f"{least} or more"
+    if high - low <= 1e-6 * max(1.0, high):
+        return f"{one.ratio:.6f}"
+    return f"{least} to {shown_bound(high, 'upper', digits=4)}"
+
+
+def _verdict(document: MotionCheckDocument, units: Mapping[str, str]) -> list[RenderableType]:
+    result = document.result
+    parts: list[RenderableType] = [
+        line(f"{result.verdict}: {_sentence(result, tuple(units))}", "bold"),
+    ]
+    worst = value_or_none(result.worst)
+    if worst is not None:
+        unit = units[worst.joint] + _POWERS[worst.quantity]
+        parts.append(
+            line(
+                f"worst: joint {worst.joint}, {worst.quantity} "
+                f"{_number(worst.value, units[worst.joint])} {unit} against "
+                f"{_number(worst.limit, units[worst.joint])} {unit} at {worst.time:.6g} s"
+                f" (limit from {worst.source})"
+            )
+        )
+    for one in _gravest(result):
+        unit = units[one.joint] + _POWERS[one.quantity]
+        parts.append(
+            line(
+                f"jump: {one.quantity} of joint {one.joint} by "
+                f"{_number(one.size, units[one.joint])} {unit} at {one.time:.6g} s; "
+                f"it jumps at {one.breaks} break{'s' * (one.breaks > 1)}"
+            )
+        )
+    repaired = value_or_none(result.feasible_time)
+    if repaired is None:
+        parts.append(line(f"repair: none, {document.repaired}"))
+    elif result.slow_down > 1 + result.tolerance:
+        slower = shown_bound(result.slow_down, "upper", places=6)
+        whole = shown_bound(repaired, "upper", places=6)
+        parts.append(line(f"repair: {slower} times slower keeps the limits, {whole} s"))
+    floor = value_or_none(result.floor)
+    if floor is None:
+        parts.append(line(f"floor: none, {result.floor}", "dim"))
+    else:
+        least = shown_bound(floor.time, "lower", places=6)
+        above = shown_bound(100 * floor.above, "upper", places=1)
+        way = "(way-points that it passes without stopping do not count)"
+        here = f"is at most {above} % above {way}" if floor.above >= 0 else "is too fast"
+        parts.append(
+            line(
+                f"floor: no motion within the limits takes less than {least} s between the same "
+                f"{floor.standstills} standstills; this one {here}"
+            )
+        )
+    parts += [line(text, "dim") for text in (*result.concluded, *result.open)]
+    return parts
+
+
+def _gravest(result: CheckedMotion) -> Sequence[MotionJumpShown]:
+    """The largest jump of the lowest derivative that jumps."""
+    if not result.jumps:
+        return ()
+    order = list(MotionQuantity)
+    return [min(result.jumps, key=lambda one: (order.index(one.quantity), -abs(one.size)))]
+
+
+_SENTENCES = {
+    Verdict.PASS: "every {limit} is kept at every instant",
+    Verdict.VIOLATED: "a limit is exceeded",
+    Verdict.DISCONTINUOUS: "the motion jumps",
+    Verdict.UNDECIDED: "it is not shown whether every {limit} is kept",
+}
+"""What a verdict means, in a few words."""
+
+
+_STATE_IT = "What is not judged: state its limit, or inf where it has none. --strict refuses it."
+"""How the verdict comes to speak of everything."""
+
+
+def _sentence(result: CheckedMotion, joints: Sequence[str]) -> str:
+    silent = unstated_words([(one.joint, one.quantity) for one in result.not_judged], joints)
+    limit = "stated limit" if silent else "limit"
+    sentence = _SENTENCES[result.verdict].format(limit=limit)
+    if result.verdict is Verdict.DISCONTINUOUS:
+        kept = "kept" if result.limits_verdict is Verdict.PASS else "not decided"
+        sentence += f"; limits, jumps apart: {kept}"
+    if silent:
+        sentence += f"; not judged: {silent}"
+    return f"{sentence} (relative tolerance {result.tolerance:g})"
+
+
+def _number(value: float, unit: str) -> str:
+    return f"{from_si(value, unit):.6g}"
