@@ -25,7 +25,7 @@ sys.path[:] = [str(_HERE.parent), *(x for x in sys.path if Path(x or ".").resolv
 
 from planted.choosing import Map, batches  # noqa: E402
 from planted.faults import FOLDERS, Fault, UnfitError, listed  # noqa: E402
-from planted.run import Crew, Job, asked, preload  # noqa: E402
+from planted.run import COMPILED, Crew, Job, asked, preload  # noqa: E402
 
 ROOT = _HERE.parents[1]
 KEPT = ROOT / ".pytest_cache" / "planted"
@@ -85,6 +85,7 @@ def plant(
                     seconds,
                     fault.file,
                     source,
+                    interpreted=fault.file in COMPILED,
                 )
             )
         else:

@@ -10,11 +10,11 @@ from typing import Any
 
 from planted import asked as asking
 from planted.faults import FOLDERS, MODULE, Fault
-from planted.run import OPTIONS, Crew, Job
+from planted.run import COMPILING, OPTIONS, Crew, Job
 
 MIRRORS = {
     "verify": ("verify", "nlp/proofs"),  # proofs are made, and forged, where the prover is
-    "nlp": ("nlp", "compare/audits/test_rounding_enclosures.py"),
+    "nlp": ("nlp", "compare/audits/test_rounding_enclosures.py", "compare/audits/test_rounding.py"),
 }
 """Folders of tests for a folder of the source, where they are not its mirror alone."""
 FIRST = 2.0
@@ -53,6 +53,7 @@ class Map:
                         file,
                         lambda root, file=file: asking.recorded(root, FOLDERS, file, OPTIONS),  # type: ignore[misc]
                         MAP_SECONDS,
+                        interpreted=Path(file).parent == Path(COMPILING).parent,
                     )
                 )
         for number, (file, text) in enumerate(crew.done(jobs), 1):

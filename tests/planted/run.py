@@ -34,8 +34,14 @@ OPTIONS = [
     "-Wignore::RuntimeWarning",  # of kernels, which are silent where they are compiled
 ]  # fmt: skip
 """Of every run: nothing is kept between runs, and a file of tests may be loaded again."""
+COMPILING = "tests/problem/curves/test_kernels.py"
+"""Tests that call every function that numba compiles."""
+COMPILED = ("problem/curves/kernel.py", "problem/curves/blocks.py")
+"""Sources of compiled functions: with a fault, they are interpreted, since compiling takes longer.
+
+Their callers are known of the tests beside them alone, which are recorded without the compiler.
+"""
 ENVIRONMENT = {
-    "NUMBA_DISABLE_JIT": "1",  # a changed kernel would be compiled anew, which takes longer
     "OPENBLAS_NUM_THREADS": "1",  # cores are shared out by -n
     "OMP_NUM_THREADS": "1",
     "TRAJGAP_CACHE": "",
@@ -56,6 +62,12 @@ class Copy:
             target.parent.mkdir(parents=True, exist_ok=True)
             shutil.copy2(root / name, target, follow_symlinks=False)
         self._times = 0
+        # What is compiled lies beside its source: no test that is watched waits for it.
+        subprocess.run(
+            [sys.executable, "-m", "pytest", COMPILING, *OPTIONS],
+            cwd=self.root, env=os.environ | {"PYTHONPATH": str(self.root.parent)},
+            capture_output=True, check=False,
+        )  # fmt: skip
 
     @contextmanager
     def with_source(self, file: str, source: str) -> Iterator[None]:
@@ -126,6 +138,8 @@ class Child:
             for stream in (1, 2):
                 os.dup2(log, stream)
             os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
+            if job.interpreted:
+                os.environ["NUMBA_DISABLE_JIT"] = "1"  # numba reads it when it is imported
             os.chdir(copy.root)
             _own_paths(copy.root)
             signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -236,6 +250,8 @@ class Job:
     """Seconds that it may take."""
     file: str | None = None
     source: str = ""
+    interpreted: bool = False
+    """Whether functions that numba compiles run as Python, so that their calls are seen."""
 
 
 class First:
