@@ -1,8 +1,12 @@
 from .adjoint import Adjoint, Places, places_of
-from .clamped import ClampedBSpline, clamped_control_points
-from .clamped_counts import ClampedReading, Count, clamped_readings
-from .clamped_declaration import average_matrix, fractions_of
-from .clamped_knots import Knots, Parameters
+from .clamped import (
+    ClampedBSpline,
+    ClampedReading,
+    Count,
+    clamped_control_points,
+    clamped_readings,
+)
+from .clamped_declaration import Knots, Parameters, average_matrix, fractions_of
 from .compilation import compiler
 from .condition import Condition, ConditionKind, Conditions, Layout, counts_in_words
 from .families import (
@@ -24,7 +28,7 @@ from .interpolant import (
     layout,
     right_hand_sides,
 )
-from .kind import Curve, Derivatives, Enclosed, as_curve, as_durations, fit
+from .kind import Curve, Derivatives, Enclosed, Timing, as_curve, as_durations, fit
 from .peak import (
     Extremum,
     Furthest,
@@ -43,11 +47,18 @@ from .polynomials import (
     roots_in_unit,
     valued,
 )
-from .stretched import Timing, segment_peaks, shape_of, solve_in_closed_form
+from .stretched import segment_peaks, shape_of, solve_in_closed_form
 from .timed import ClockedTrajectory, numerators
 from .trajectory import Trajectory
-from .uniform import StretchedUniformBSpline, TimedUniformBSpline, uniform_cubic_b_spline
-from .uniform_matrices import clock_matrix, control_vertices, shape_matrix, vertex_matrix
+from .uniform import (
+    StretchedUniformBSpline,
+    TimedUniformBSpline,
+    clock_matrix,
+    control_vertices,
+    shape_matrix,
+    uniform_cubic_b_spline,
+    vertex_matrix,
+)
 
 __all__ = [
     "MAX_COEFFICIENTS",

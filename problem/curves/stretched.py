@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from enum import StrEnum
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -23,15 +21,6 @@ from .kind import (
 from .peak import Extremum, PeakGradients, rows_at
 from .polynomials import derived, tops
 from .trajectory import Trajectory
-
-
-class Timing(StrEnum):
-    """How time enters a curve that is given in a parameter e."""
-
-    STRETCHED = "stretched"
-    """Each segment by itself: time grows linearly in e, so velocity may jump between segments."""
-    TIMED = "timed"
-    """Time is itself a smooth function of e, or e is time."""
 
 
 def shape_of(curve: Curve, waypoints: Array) -> Shape:
