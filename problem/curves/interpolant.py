@@ -28,6 +28,7 @@ from .population import batch_coefficients, batch_reach
 from .refined import refined_coefficients
 from .system import DENSE_UNKNOWNS, coefficients, system
 from .trajectory import Trajectory
+from .tridiagonal import tridiagonal_fit
 
 MOST_OPEN = 600
 """Coefficients up to which a case file may leave some free: finding the derivatives that complete
@@ -210,10 +211,23 @@ class Interpolant(Curve):
 
         if self.coefficients <= DENSE_UNKNOWNS:
             return found(True)
+        if self._velocities_suffice:
+            first = tridiagonal_fit(self.ends, waypoints, durations)
+            if first is not None:
+                return replace(first, closer=partial(found, True))
         try:
             return replace(found(False), closer=partial(found, True))
         except SingularError:
             return found(True)
+
+    @cached_property
+    def _velocities_suffice(self) -> bool:
+        """Whether it is a C2 cubic spline with one velocity or acceleration given at each end."""
+        plain = {*self.degrees} == {3} and {*self.continuity} == {2} and not self.virtual
+        inside = any(self.prescribed[1:-1])
+        return (
+            plain and not inside and all(len(end) == 1 and end[0][0] in (1, 2) for end in self.ends)
+        )
 
     def motion_values(self, waypoints: Array, nodal: Array | None = None) -> Array:
         """Right-hand sides of the conditions, positions counted from the first way-point.
