@@ -98,9 +98,10 @@ class Interpolant(Curve):
                 f"{f'1 to {n - 1}' if n > 1 else 'of which one segment has none'}"
             )
         # Long declarations state few different things: each is looked at once.
-        same = {id(entries): entries for entries in self.prescribed}
+        keys = list(map(id, self.prescribed))
+        same = dict(zip(keys, self.prescribed, strict=True))
         merged = {key: merged_values(entries) for key, entries in same.items()}
-        object.__setattr__(self, "prescribed", tuple(merged[id(e)] for e in self.prescribed))
+        object.__setattr__(self, "prescribed", tuple(map(merged.__getitem__, keys)))
         stated = {*self.prescribed}
         counts = {len(v) for at in stated for _, v in at if isinstance(v, tuple)}
         if len(counts) > 1:
@@ -156,10 +157,21 @@ class Interpolant(Curve):
         """Number of coefficients of one joint."""
         return sum(self.degrees) + self.segments
 
+    @cached_property
+    def _velocities_suffice(self) -> bool:
+        """Whether it is a C2 cubic spline with one velocity or acceleration given at each end.
+
+        Its conditions are as many as its coefficients, and regular: see `tridiagonal`.
+        """
+        cubic = {*self.degrees} == {3} and {*self.continuity} <= {2} and not self.virtual
+        ends = [order for end in self.ends for order, _ in end]
+        each = all(len(end) == 1 for end in self.ends)
+        return cubic and each and {*ends} <= {1, 2} and not any(self.prescribed[1:-1])
+
     @property
     def conditions(self) -> int:
         """Number of conditions on them."""
-        return self.table.kinds.size
+        return self.coefficients if self._velocities_suffice else self.table.kinds.size
 
     @property
     def free(self) -> int:
@@ -202,9 +214,9 @@ class Interpolant(Curve):
 
     def enclosed(self, waypoints: Array, durations: Array, nodal: Array | None = None) -> Enclosed:
         """`fit` with the bound of `refined_coefficients`, of long splines in float64 first."""
-        values = right_hand_sides(self, waypoints, nodal)
 
         def found(extended: bool) -> Enclosed:
+            values = right_hand_sides(self, waypoints, nodal)
             scaled, error = refined_coefficients(self.layout, values, durations, extended)
             trajectory = Trajectory(durations, scaled, self.degrees)
             return Enclosed(trajectory, value_errors(trajectory, error))
@@ -219,15 +231,6 @@ class Interpolant(Curve):
             return replace(found(False), closer=partial(found, True))
         except SingularError:
             return found(True)
-
-    @cached_property
-    def _velocities_suffice(self) -> bool:
-        """Whether it is a C2 cubic spline with one velocity or acceleration given at each end."""
-        plain = {*self.degrees} == {3} and {*self.continuity} == {2} and not self.virtual
-        inside = any(self.prescribed[1:-1])
-        return (
-            plain and not inside and all(len(end) == 1 and end[0][0] in (1, 2) for end in self.ends)
-        )
 
     def motion_values(self, waypoints: Array, nodal: Array | None = None) -> Array:
         """Right-hand sides of the conditions, positions counted from the first way-point.
@@ -310,6 +313,8 @@ class Interpolant(Curve):
     @cached_property
     def rank(self) -> int:
         """Rank of the conditions for equal durations."""
+        if self._velocities_suffice:
+            return self.conditions
         if self.conditions == self.coefficients > DENSE_UNKNOWNS:
             return self.conditions if self._banded_regular() else self.conditions - 1
         return int(np.linalg.matrix_rank(_unit_matrix(self.table)))

@@ -185,7 +185,7 @@ def furthest(trajectory: Trajectory, order: int, errors: Array) -> Furthest:
     """
     pieces = np.arange(len(trajectory.durations))
     if trajectory.polynomial_in_time:
-        pieces = _reaching(trajectory.derivatives(order), errors)
+        pieces = _reaching(trajectory, order, errors)
     places, values = trajectory.turns(order, pieces)
     none, near = np.isnan(places), errors[pieces]
     # By time: pieces first, places of one after another.
@@ -201,15 +201,20 @@ def furthest(trajectory: Trajectory, order: int, errors: Array) -> Furthest:
     return Furthest(order, *(np.array(part) for part in zip(*found, strict=True)))
 
 
-def _reaching(a: Array, errors: Array) -> NDArray[np.int64]:
+def _reaching(trajectory: Trajectory, order: int, errors: Array) -> NDArray[np.int64]:
     """Pieces that may have the least or largest value of a joint, or one that counts with errors.
 
     Bernstein coefficients bound a polynomial; a piece that stays within what the ends of others
     surely have, with errors on both sides, is left out.
     """
-    hull = bernstein(a) if len(a) > 2 else a.cumsum(axis=0)
-    room = LOOSE * np.abs(a).sum(axis=0) + errors
-    one, other = hull[0], hull[-1]
-    least = hull.min(axis=0) - room > over_rows(np.minimum, np.minimum(one, other) + room)
-    most = hull.max(axis=0) + room < over_rows(np.maximum, np.maximum(one, other) - room)
-    return np.flatnonzero(~(least & most).all(axis=1))
+    a = trajectory.derivatives(order)
+    start, end, sizes = trajectory.edges(order)
+    room = LOOSE * sizes + errors
+    low, high = np.minimum(start, end), np.maximum(start, end)
+    least = over_rows(np.minimum, low + room)
+    most = over_rows(np.maximum, high - room)
+    if len(a) > 2:
+        inner = bernstein(a)[1:-1]
+        low, high = np.minimum(low, inner.min(axis=0)), np.maximum(high, inner.max(axis=0))
+    inside = (low - room > least) & (high + room < most)
+    return np.flatnonzero(~inside.all(axis=1))
