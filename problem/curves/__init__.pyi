@@ -7,7 +7,6 @@ from .clamped import (
     clamped_readings,
 )
 from .clamped_declaration import Knots, Parameters, average_matrix, fractions_of
-from .compilation import compiler
 from .condition import Condition, ConditionKind, Conditions, Layout, counts_in_words
 from .families import (
     cubic_spline,
@@ -96,7 +95,6 @@ __all__ = [
     "clamped_readings",
     "clock_matrix",
     "coefficients_of_many",
-    "compiler",
     "control_vertices",
     "counts_in_words",
     "critical_points",

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from ..arrays import Array, over_rows
 from .condition import Layout
 from .kernel import compiled
-from .system import System
+from .system import POSITIVE, System
 
 _EPS = float(np.finfo(np.float64).eps)
 """Spacing of float64 at 1."""
@@ -31,9 +31,6 @@ _SUMS = 1.0 + 1e-6
 """Covers the rounding of sums of up to nine billion terms of one sign, through all blocks."""
 ENTRY = 24 * _EPS
 """Relative rounding of an entry: of a ninth power of a ratio, a whole factor and a scale."""
-POSITIVE = 1e-290
-"""Added to every bound, so that none is 0: far below any angle, far above the least float even
-after division by hʳ."""
 
 
 @compiled

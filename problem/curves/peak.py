@@ -87,7 +87,7 @@ def extrema(trajectory: Trajectory, joint: int, order: int) -> list[Extremum]:
         The largest absolute value over all t is among them.
     """
     pieces, places, values = near_extrema(trajectory, joint, order, np.inf, -np.inf)
-    times = trajectory.times_of(pieces, places).tolist()
+    times = trajectory.times(pieces, places).tolist()
     rows = zip(pieces.tolist(), places.tolist(), times, values.tolist(), strict=True)
     return [Extremum(joint, k, order, s, time, value) for k, s, time, value in rows]
 

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array, over_rows
-from .blocks import POSITIVE, Blocks, blocks_of
 from .condition import Layout
-from .system import System, inverse, singular, system
+from .system import POSITIVE, System, inverse, singular, system
+
+if TYPE_CHECKING:
+    from .blocks import Blocks
 
 WIDTHS = (1, 2, 4, 8, 16, 32)
 """Segments in a block, tried in turn: one gives a close bound for splines of degrees 3 and 5, two
@@ -81,6 +84,8 @@ def _by_blocks(
     layout: Layout, rows: System, values: Array, durations: Array
 ) -> tuple[NDArray[np.floating], Array | None]:
     """The same by blocks of segments, wider ones where the bound is not close."""
+    from .blocks import blocks_of  # compiled
+
     narrow = rows.narrow
     best: tuple[NDArray[np.floating], Array | None] = (values, None)
     for segments in WIDTHS:

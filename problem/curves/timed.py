@@ -200,12 +200,8 @@ class ClockedTrajectory(Trajectory):
         numerator, speed = self._numerators[order - 1][piece, joint], _derived(self.clock[piece])
         return _in_time(numerator, speed, order, places)
 
-    def times(self, piece: int, places: Array) -> Array:
-        """Times of places of a piece, s."""
-        return np.asarray(_valued(self.clock[piece], places))
-
-    def times_of(self, pieces: NDArray[np.int64], places: Array) -> Array:
-        """Times of places, each on a piece of its own, s."""
+    def times(self, pieces: int | NDArray[np.int64], places: Array) -> Array:
+        """As `Trajectory.times`, by the clock."""
         return np.asarray(_valued(self.clock[pieces], places))
 
     def level(self, piece: int, joint: int, order: int, value: float) -> Array:

@@ -147,12 +147,8 @@ class Trajectory:
         """Derivative in time at places, 0..1, of a piece."""
         return valued(self.derivative(piece, joint, order), places)
 
-    def times(self, piece: int, places: Array) -> Array:
-        """Times of places of a piece, s."""
-        return np.asarray(self.breaks[piece] + places * self.durations[piece])
-
-    def times_of(self, pieces: NDArray[np.int64], places: Array) -> Array:
-        """Times of places, each on a piece of its own, s."""
+    def times(self, pieces: int | NDArray[np.int64], places: Array) -> Array:
+        """Times of places of a piece, or each on a piece of its own, s."""
         return np.asarray(self.breaks[pieces] + places * self.durations[pieces])
 
     def level(self, piece: int, joint: int, order: int, value: float) -> Array:
@@ -178,8 +174,3 @@ class Trajectory:
         """
         start, end, sizes = self.edges(order)
         return end[:-1], start[1:], sizes[:-1] + sizes[1:]
-
-    def sides(self, break_index: int, joint: int, order: int) -> tuple[float, float, float]:
-        """`steps` at one inner break, counted from 1, of one joint."""
-        left, right, scale = (float(one[break_index - 1, joint]) for one in self.steps(order))
-        return left, right, scale

@@ -74,7 +74,6 @@ def test_steps_are_those_of_the_pieces_on_both_sides() -> None:
                 assert left[b - 1, j] == pytest.approx(before.sum(), abs=1e-14 * terms)
                 assert right[b - 1, j] == after[0]
                 assert scale[b - 1, j] == pytest.approx(terms, rel=1e-14)
-                assert curve.sides(b, j, order) == (left[b - 1, j], after[0], scale[b - 1, j])
 
 
 @pytest.mark.parametrize("kind", ["cubic", "quintic"])

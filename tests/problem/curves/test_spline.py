@@ -25,7 +25,7 @@ from trajgap.problem import (
 )
 from trajgap.problem.curves import adjoint as adjoint_module
 from trajgap.problem.curves import places_of, refined, right_hand_sides, system
-from trajgap.problem.curves.banded import Factors, factorise
+from trajgap.problem.curves.system import Factors, factorise
 
 STEPS = (0.7, 0.5, 1.4, 0.3, 1.5, 0.7, 1.6)
 FIRST, LAST, BENT = (0.5, -0.2, 0.0), (-0.3, 0.4, 0.7), (0.0, 1.1, -0.6)

@@ -72,7 +72,7 @@ def test_a_solution_that_is_off_is_bounded_all_the_same(
     assert right is not None
     away = np.abs(found.trajectory.scaled - right.trajectory.scaled)[:, 1] / h[:, None]
     assert (away <= found.error[:, 1] + right.error[:, 1]).all()
-    assert (found.error[:, 1, 0] < 2e-3).all()
+    assert (found.error[:, 1, 0] < 3e-3).all()
 
 
 @pytest.mark.parametrize("name", ENDS)
