@@ -7,7 +7,7 @@ from .clamped import (
     clamped_readings,
 )
 from .clamped_declaration import Knots, Parameters, average_matrix, fractions_of
-from .condition import Condition, ConditionKind, Conditions, Layout, counts_in_words
+from .condition import ConditionKind, Conditions, Layout, counts_in_words
 from .families import (
     cubic_spline,
     cubic_spline_virtual,
@@ -24,7 +24,6 @@ from .interpolant import (
     Interpolant,
     as_piecewise,
     coefficients_of_many,
-    layout,
     right_hand_sides,
 )
 from .kind import Curve, Derivatives, Enclosed, Timing, as_curve, as_durations, fit
@@ -67,7 +66,6 @@ __all__ = [
     "ClampedBSpline",
     "ClampedReading",
     "ClockedTrajectory",
-    "Condition",
     "ConditionKind",
     "Conditions",
     "Count",
@@ -107,7 +105,6 @@ __all__ = [
     "fractions_of",
     "furthest",
     "jtraj",
-    "layout",
     "near_extrema",
     "numerators",
     "piecewise",

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
+from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ..arrays import Array
 from ..errors import SingularError, TrajgapError
 from .adjoint import Adjoint, places_of
-from .condition import Condition, ConditionKind, Conditions, Layout, conditions_of, counts_in_words
+from .condition import ConditionKind, Conditions, Layout, conditions_of, counts_in_words
 from .kind import (
     Curve,
     Derivatives,
@@ -278,11 +278,6 @@ class Interpolant(Curve):
         return conditions_of(given, self.continuity, self.degrees)
 
     @cached_property
-    def rows(self) -> tuple[Condition, ...]:
-        """The conditions one by one."""
-        return self.table.one_by_one
-
-    @cached_property
     def layout(self) -> Layout:
         """The determined system; free derivatives, if any, become prescribed rows."""
         full = self.completed() if self.free else self
@@ -327,25 +322,21 @@ class Interpolant(Curve):
         """
         if self.free == 0:
             return ()
-        rows = set(self.rows)
-        chosen: list[tuple[int, int]] = []
-        matrix, rank = _unit_matrix(self.table), self.rank
-        for order in range(max(self.degrees) + 1):
-            for b in range(self.segments + 1):
-                for kind, there in _ENDS:
-                    row = Condition(kind, b, order)
-                    if rank == self.coefficients or row in rows or not there(b, self.segments):
-                        continue
-                    shared = b in (0, self.segments) or order <= self.continuity[b - 1]
-                    if (b, order) in chosen or not shared:
-                        continue
-                    kinds, breaks, orders = np.array([[kind], [b], [order]])
-                    one = Conditions(kinds, breaks, orders, self.table.degrees)
-                    extended = np.vstack([matrix, _unit_matrix(one)])
-                    if np.linalg.matrix_rank(extended) > rank:
-                        matrix, rank = extended, rank + 1
-                        rows.add(row)
-                        chosen.append((b, order))
+        table, n, chosen = self.table, self.segments, []
+        stated = {*map(tuple, np.stack([table.kinds, table.breaks, table.orders], 1).tolist())}
+        matrix, rank = _unit_matrix(table), self.rank
+        for order, b in product(range(max(self.degrees) + 1), range(n + 1)):
+            shared = b in (0, n) or order <= self.continuity[b - 1]
+            # Either side's row says the same of what both share.
+            kind = ConditionKind.LEFT_VALUE if b > 0 else ConditionKind.RIGHT_VALUE
+            if not shared or (kind, b, order) in stated or rank == self.coefficients:
+                continue
+            kinds, breaks, orders = np.array([[kind], [b], [order]])
+            one = Conditions(kinds, breaks, orders, table.degrees)
+            extended = np.vstack([matrix, _unit_matrix(one)])
+            if np.linalg.matrix_rank(extended) > rank:
+                matrix, rank = extended, rank + 1
+                chosen.append((b, order))
         return tuple(chosen)
 
     def completed(self) -> Interpolant:
@@ -383,11 +374,6 @@ class Interpolant(Curve):
             return False
         pivots = np.abs(system(self.layout, np.ones(self.segments)).factors.diagonal)
         return bool(pivots.min() > 1e-13 * pivots.max())
-
-
-def layout(interpolant: Interpolant) -> Layout:
-    """`Interpolant.layout`, which all numbers of a declared curve come from."""
-    return interpolant.layout
 
 
 def right_hand_sides(interpolant: Interpolant, waypoints: Array, nodal: Array | None) -> Array:
@@ -438,13 +424,6 @@ def _unit_matrix(conditions: Conditions) -> Array:
 def _values(entries: Derivatives) -> list[float]:
     """All values that are prescribed at a break, of every joint."""
     return [x for _, v in entries for x in (v if isinstance(v, tuple) else (v,))]
-
-
-_ENDS: tuple[tuple[ConditionKind, Callable[[int, int], bool]], ...] = (
-    (ConditionKind.LEFT_VALUE, lambda b, n: b > 0),
-    (ConditionKind.RIGHT_VALUE, lambda b, n: b < n),
-)
-"""Kinds of condition on a value, and at which of the breaks 0..n their side exists."""
 
 
 def as_piecewise(curve: Curve) -> Interpolant | None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
@@ -35,7 +34,7 @@ def vertex_matrix(waypoints: int, natural: bool = False) -> tuple[tuple[Fraction
     m = waypoints
     end = Fraction(1) if natural else 5 * _SIXTH
     diagonal = [end, *([4 * _SIXTH] * (m - 2)), end]
-    rows = [[Fraction(int(i == k)) for k in range(m)] for i in range(m)]
+    rows = np.eye(m, dtype=int) * Fraction(1)
 
     def beside(i: int) -> Fraction:
         """Weight of a neighbour in row i."""
@@ -44,14 +43,13 @@ def vertex_matrix(waypoints: int, natural: bool = False) -> tuple[tuple[Fraction
     for i in range(1, m):
         factor = beside(i) / diagonal[i - 1]
         diagonal[i] -= factor * beside(i - 1)
-        rows[i] = [a - factor * b for a, b in zip(rows[i], rows[i - 1], strict=True)]
-    for i in range(m - 1, -1, -1):
-        above = rows[i + 1] if i + 1 < m else [Fraction(0)] * m
-        rows[i] = [(a - beside(i) * b) / diagonal[i] for a, b in zip(rows[i], above, strict=True)]
+        rows[i] -= factor * rows[i - 1]
+    rows[-1] /= diagonal[-1]
+    for i in range(m - 2, -1, -1):
+        rows[i] = (rows[i] - beside(i) * rows[i + 1]) / diagonal[i]
     first, last = rows[0], rows[-1]
     if natural:
-        first = [2 * a - b for a, b in zip(rows[0], rows[1], strict=True)]
-        last = [2 * a - b for a, b in zip(rows[-1], rows[-2], strict=True)]
+        first, last = 2 * rows[0] - rows[1], 2 * rows[-1] - rows[-2]
     return tuple(map(tuple, (first, *rows, last)))
 
 
@@ -70,23 +68,13 @@ def shape_matrix(waypoints: int, natural: bool = False) -> NDArray[np.longdouble
     ndarray of longdouble, shape (segments, 4, way-points)
         Exact rational numbers, rounded once.
     """
-    v = vertex_matrix(waypoints, natural)
-
-    def combined(k: int, weights: Sequence[int], divisor: int) -> list[Fraction]:
-        rows = [v[k + i] for i in range(4)]
-        return [
-            sum((w * row[i] for w, row in zip(weights, rows, strict=True)), Fraction(0)) / divisor
-            for i in range(waypoints)
-        ]
-
+    v = np.array(vertex_matrix(waypoints, natural))
     # The four basis functions of (1) in powers of e.
-    blocks = [((1, 4, 1, 0), 6), ((-1, 0, 1, 0), 2), ((1, -2, 1, 0), 2), ((-1, 3, -3, 1), 6)]
-    matrix = np.array(
-        [
-            [[_wide(x) for x in combined(k, weights, d)] for weights, d in blocks]
-            for k in range(waypoints - 1)
-        ]
-    )
+    basis = np.array([(1, 4, 1, 0), (-3, 0, 3, 0), (3, -6, 3, 0), (-1, 3, -3, 1)]) * _SIXTH
+    exact = np.array([basis @ v[k : k + 4] for k in range(waypoints - 1)])
+    high = exact.astype(np.float64)
+    low = exact - np.vectorize(Fraction, otypes=[object])(high)
+    matrix = high.astype(np.longdouble) + low.astype(np.float64)
     matrix.setflags(write=False)
     return matrix
 
@@ -112,11 +100,6 @@ def clock_matrix(waypoints: int, natural: bool = False) -> NDArray[np.longdouble
     return matrix
 
 
-def _wide(x: Fraction) -> np.longdouble:
-    high = float(x)
-    return np.longdouble(high) + np.longdouble(float(x - Fraction(high)))
-
-
 def control_vertices(waypoints: ArrayLike) -> Array:
     """Control vertices of the uniform cubic B-spline through way-points.
 
@@ -133,14 +116,7 @@ def control_vertices(waypoints: ArrayLike) -> Array:
         In the same unit.
     """
     q = np.asarray(waypoints, dtype=np.float64)
-    matrix = np.array([[float(x) for x in row] for row in vertex_matrix(q.shape[0])])
-    return np.asarray(matrix @ q)
-
-
-@lru_cache(maxsize=16)
-def _nodes(waypoints: int, natural: bool) -> Array:
-    """The clock's matrix in float64."""
-    return np.asarray(clock_matrix(waypoints, natural), dtype=np.float64)
+    return np.asarray(np.array(vertex_matrix(q.shape[0])).astype(np.float64) @ q)
 
 
 @dataclass(frozen=True)
@@ -259,7 +235,7 @@ class TimedUniformBSpline(UniformBSpline):
         least: int = 1,
     ) -> Array:
         """Of all pieces at once."""
-        nodes = _nodes(self.waypoints, self.natural_clock)
+        nodes = self.clock.astype(np.float64)
         clocks, valid = runs_forwards(nodes, as_batch(self, durations))
         found = np.zeros((len(clocks), len(sides), *wanted.shape))
         if wanted.any():
