@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from math import comb
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,11 +13,10 @@ from ..errors import CurveError
 from .clamped_declaration import ClampedDeclaration, average_matrix, fractions_of, inside_support
 from .kind import STEP, Enclosed, Shape, are_durations, masked, value_errors
 from .peak import Extremum, PeakGradients, rows_at
-from .polynomials import MAX_COEFFICIENTS, PERM, derived, tops
+from .polynomials import MAX_COEFFICIENTS, PERM, Numbers, derived, tops
 from .refined import contained
 from .trajectory import Trajectory
 
-Numbers = NDArray[Any]
 _EPS = np.finfo(np.float64).eps
 """Spacing of float64 at 1: twice the unit roundoff, so that bounds have room."""
 _SLIVER = 1e-12

@@ -74,7 +74,7 @@ def shape_matrix(waypoints: int, natural: bool = False) -> NDArray[np.longdouble
     exact = np.array([basis @ v[k : k + 4] for k in range(waypoints - 1)])
     high = exact.astype(np.float64)
     low = exact - np.vectorize(Fraction, otypes=[object])(high)
-    matrix = high.astype(np.longdouble) + low.astype(np.float64)
+    matrix: NDArray[np.longdouble] = high.astype(np.longdouble) + low.astype(np.float64)
     matrix.setflags(write=False)
     return matrix
 
@@ -237,9 +237,9 @@ class TimedUniformBSpline(UniformBSpline):
         """Of all pieces at once."""
         nodes = self.clock.astype(np.float64)
         clocks, valid = runs_forwards(nodes, as_batch(self, durations))
-        found = np.zeros((len(clocks), len(sides), *wanted.shape))
+        found = np.zeros((valid.size, len(sides), *wanted.shape))
         if wanted.any():
-            found[valid] = clocked_reach(values, clocks[valid], wanted, sides, least)
+            found[valid] = clocked_reach(values, clocks[:, valid], wanted, sides, least)
         return masked(found, wanted, valid)
 
     def value_gradients(
@@ -256,11 +256,11 @@ class TimedUniformBSpline(UniformBSpline):
         by_duration = np.empty((len(points), self.segments))
         by_waypoint = np.empty((len(points), self.waypoints))
         for i, e in enumerate(points):
-            q, t = scaled[e.segment, :, e.joint], clock[e.segment]
-            steps = t + 1j * STEP * nodes[e.segment].T
+            q, t = scaled[e.segment, :, e.joint, None], clock[e.segment, :, None]
+            steps = t + 1j * STEP * nodes[e.segment]
             by_duration[i] = value_at(q, steps, e).imag / STEP
             # The numerators are linear in q.
-            by_waypoint[i] = value_at(matrix[e.segment].T, t, e)
+            by_waypoint[i] = value_at(matrix[e.segment], t, e)
         return PeakGradients(by_duration, by_waypoint, np.empty((len(points), 0)))
 
 
