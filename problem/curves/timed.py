@@ -32,8 +32,8 @@ if TYPE_CHECKING:
 def _product(a: Numbers, b: Numbers) -> Numbers:
     shape = len(a) + len(b) - 1, *np.broadcast_shapes(a.shape[1:], b.shape[1:])
     out = np.zeros(shape, dtype=np.result_type(a, b))
-    for k, factor in enumerate(b):
-        out[k : k + len(a)] += a * factor
+    for k in range(len(b)):
+        out[k : k + len(a)] += a * b[k : k + 1]
     return out
 
 
