@@ -167,13 +167,6 @@ class Layout(Conditions):
         open_[self.first[self.breaks[right]] + self.orders[right]] = False
         return np.where(open_, np.cumsum(open_) - 1, -1)
 
-    @cached_property
-    def column(self) -> Indices:
-        """`unknown` by segment and power, shape (segments, 10)."""
-        out = np.full((self.segments, MAX_COEFFICIENTS), -1)
-        out[self.places] = self.unknown
-        return out
-
     @property
     def unknowns(self) -> int:
         """How many."""

@@ -26,7 +26,7 @@ from .peak import Extremum, PeakGradients
 from .polynomials import MAX_COEFFICIENTS
 from .population import batch_coefficients, batch_reach
 from .refined import refined_coefficients
-from .system import DENSE_UNKNOWNS, coefficients, system
+from .system import DENSE_UNKNOWNS, system
 from .trajectory import Trajectory
 from .tridiagonal import tridiagonal_fit
 
@@ -210,7 +210,7 @@ class Interpolant(Curve):
     def fitted(self, waypoints: Array, durations: Array, nodal: Array | None = None) -> Trajectory:
         """`fit` by one elimination."""
         values = right_hand_sides(self, waypoints, nodal)
-        return Trajectory(durations, coefficients(self.layout, values, durations), self.degrees)
+        return Trajectory(durations, system(self.layout, durations).fitted(values), self.degrees)
 
     def enclosed(self, waypoints: Array, durations: Array, nodal: Array | None = None) -> Enclosed:
         """`fit` with the bound of `refined_coefficients`, of long splines in float64 first."""
