@@ -31,7 +31,6 @@ from .peak import (
     Extremum,
     Furthest,
     PeakGradients,
-    critical_points,
     extrema,
     furthest,
     near_extrema,
@@ -45,7 +44,7 @@ from .polynomials import (
     roots_in_unit,
     valued,
 )
-from .stretched import segment_peaks, shape_of, solve_in_closed_form
+from .stretched import shape_of, solve_in_closed_form
 from .timed import ClockedTrajectory, numerators
 from .trajectory import Trajectory
 from .uniform import (
@@ -95,7 +94,6 @@ __all__ = [
     "coefficients_of_many",
     "control_vertices",
     "counts_in_words",
-    "critical_points",
     "cubic_spline",
     "cubic_spline_virtual",
     "derivative_rows",
@@ -114,7 +112,6 @@ __all__ = [
     "rest_to_rest",
     "right_hand_sides",
     "roots_in_unit",
-    "segment_peaks",
     "septic_spline",
     "shape_matrix",
     "shape_of",

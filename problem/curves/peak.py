@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array, over_rows
-from .polynomials import LOOSE, bernstein, derivative_rows, derived, roots_in_unit
+from .polynomials import LOOSE, bernstein, derivative_rows
 from .trajectory import Trajectory
 
 
@@ -62,12 +62,6 @@ def rows_at(points: list[Extremum]) -> Array:
     """Weights of ten coefficients in derivatives by s at some places, shape (places, 10)."""
     orders = np.array([e.order for e in points], dtype=np.int64)
     return derivative_rows(np.array([e.s for e in points]), orders)
-
-
-def critical_points(a: Array) -> Array:
-    """Places in (0, 1) where the polynomial with ascending coefficients ``a`` turns."""
-    places = roots_in_unit(derived(a, 1))
-    return places[~np.isnan(places)]
 
 
 def extrema(trajectory: Trajectory, joint: int, order: int) -> list[Extremum]:

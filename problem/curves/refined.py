@@ -71,7 +71,7 @@ def refined_coefficients(
 
 def _densely(rows: System, values: Array) -> tuple[NDArray[np.floating], Array | None]:
     """Coefficients, and an error that contains its own image, by the inverse of all rows."""
-    flat = _refined(rows, values, rows.solve)
+    flat = _refined(rows, values, rows.inverse.__matmul__)
     matrix = rows.layout.dense(rows.narrow.values)
     return flat, contained(rows.inverse, matrix, _excess(rows, values, flat, len(matrix)))
 

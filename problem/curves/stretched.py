@@ -39,26 +39,6 @@ def shape_of(curve: Curve, waypoints: Array) -> Shape:
     return form
 
 
-def segment_peaks(curve: Curve, waypoints: ArrayLike) -> Array:
-    """Largest |q′|, |q″|, |q‴| of every segment when its duration is 1 s.
-
-    A duration l divides them by l, l², l³.
-
-    Parameters
-    ----------
-    curve : Curve
-        One whose segments are stretched.
-    waypoints : array_like, shape (way-points, joints)
-        rad.
-
-    Returns
-    -------
-    ndarray, shape (segments, joints, 3)
-    """
-    sides = _segment_sides(curve, as_waypoints(curve, waypoints))[:, :, 1:]
-    return np.asarray(sides.max(axis=1).transpose(0, 2, 1))
-
-
 def _segment_sides(curve: Curve, waypoints: Array) -> Array:
     """How far q and its derivatives go below 0 and above, shape (segments, 2, 4, joints)."""
     form = shape_of(curve, waypoints - waypoints[0])
@@ -94,7 +74,9 @@ def solve_in_closed_form(curve: Curve, waypoints: ArrayLike, limits: ArrayLike) 
         s; 0 for a segment in which nothing that is limited moves, infinite where a joint with
         limit 0 moves.
     """
-    peaks = segment_peaks(curve, waypoints)
+    # Largest |q′|, |q″|, |q‴| of every segment when its duration is 1 s.
+    sides = _segment_sides(curve, as_waypoints(curve, waypoints))[:, :, 1:]
+    peaks = sides.max(axis=1).transpose(0, 2, 1)
     bound = np.asarray(limits, dtype=np.float64)
     with np.errstate(divide="ignore", invalid="ignore"):
         ratios = np.where(peaks > 0.0, peaks / bound, 0.0)

@@ -151,7 +151,12 @@ class System:
         """Solution in float64, or that with the transposed rows, for right-hand sides by rows."""
         if self.in_band:
             return self.factors.solve(right, transposed)
-        return np.asarray((self.inverse.T if transposed else self.inverse) @ right)
+        if transposed:  # gradients ask for many
+            return np.asarray(self.inverse.T @ right)
+        try:
+            return np.linalg.solve(self.layout.dense(self.values), right)
+        except np.linalg.LinAlgError:
+            raise self.singular() from None
 
     def fitted(self, values: Array) -> Array:
         """Coefficients in the segments' own parameter s in [0, 1], shape (segments, 10, joints).

@@ -236,6 +236,27 @@ def _trajectory(scaled: Array, clock: Array) -> ClockedTrajectory:
     return ClockedTrajectory(np.diff(breaks), scaled, (3,) * len(clock), clock)
 
 
+def combined(matrix: Numbers, numbers: Array) -> tuple[Array, Array]:
+    """Combinations in extended precision of way-points, or durations, and a bound on their error.
+
+    Parameters
+    ----------
+    matrix : ndarray of longdouble, shape (pieces, 4, numbers)
+    numbers : ndarray, shape (numbers, joints)
+
+    Returns
+    -------
+    scaled, error : ndarray, shape (pieces, 10, joints)
+    """
+    wide = numbers.astype(np.longdouble)
+    tiny = np.finfo(np.longdouble).eps * (len(numbers) + 5)
+    scaled, error = np.zeros((2, len(matrix), MAX_COEFFICIENTS, numbers.shape[1]))
+    scaled[:, :4] = matrix @ wide
+    error[:, :4] = tiny * (np.abs(matrix) @ np.abs(wide))
+    error += np.finfo(np.float64).eps * np.abs(scaled)
+    return scaled, error
+
+
 def enclosed_with_clock(q: Numbers, t: Numbers, waypoints: Array, durations: Array) -> Enclosed:
     """Trajectory of q(e) and t(e), with a bound on the error of every extremum.
 
@@ -250,15 +271,8 @@ def enclosed_with_clock(q: Numbers, t: Numbers, waypoints: Array, durations: Arr
     CurveError
         If the clock does not run forwards everywhere.
     """
-    wide, long = waypoints.astype(np.longdouble), durations.astype(np.longdouble)
-    epsilon = np.finfo(np.float64).eps
-    tiny = np.finfo(np.longdouble).eps * (waypoints.shape[0] + 4)
-    n, joints = durations.size, waypoints.shape[1]
-    scaled, error = np.zeros((2, n, MAX_COEFFICIENTS, joints))
-    scaled[:, :4] = q @ wide
-    error[:, :4] = tiny * (np.abs(q) @ np.abs(wide)) + epsilon * np.abs(scaled[:, :4])
-    clock = np.asarray(t @ long, dtype=np.float64)
-    clock_error = np.asarray(tiny * (np.abs(t) @ long) + epsilon * np.abs(clock))
+    scaled, error = combined(q, waypoints)
+    clock, clock_error = (one[:, :4, 0] for one in combined(t, durations[:, None]))
     _checked_clock(clock)
     found = _trajectory(scaled, clock)
     return Enclosed(found, _errors(found, error, clock_error))

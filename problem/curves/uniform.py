@@ -16,7 +16,7 @@ from .kind import STEP, Curve, Enclosed, Shape, Timing, as_batch, masked
 from .peak import Extremum, PeakGradients
 from .polynomials import MAX_COEFFICIENTS
 from .stretched import StretchedCurve
-from .timed import clocked_reach, enclosed_with_clock, runs_forwards, value_at
+from .timed import clocked_reach, combined, enclosed_with_clock, runs_forwards, value_at
 
 _SIXTH = Fraction(1, 6)
 """Weight of either neighbour in (2); exact, so that the matrices are."""
@@ -165,13 +165,7 @@ class StretchedUniformBSpline(UniformBSpline, StretchedCurve):
         """One cubic a segment, from exact rational numbers."""
         matrix = shape_matrix(self.waypoints)
         n, joints = self.segments, waypoints.shape[1]
-        wide = waypoints.astype(np.longdouble)
-        exact = matrix @ wide
-        epsilon = np.finfo(np.longdouble).eps * (self.waypoints + 4)
-        scaled, error = np.zeros((2, n, MAX_COEFFICIENTS, joints))
-        scaled[:, :4] = exact
-        error[:, :4] = epsilon * (np.abs(matrix) @ np.abs(wide))
-        error += np.finfo(np.float64).eps * np.abs(scaled)
+        scaled, error = combined(matrix, waypoints)
         by_waypoint = np.zeros((n, MAX_COEFFICIENTS, self.waypoints))
         by_waypoint[:, :4] = matrix
         return Shape(
