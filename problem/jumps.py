@@ -54,11 +54,12 @@ def jumps_of(problem: Problem, trajectory: Trajectory, error: Array) -> tuple[li
     for order in range(3):
         left, right, scale = trajectory.steps(order)
         size, room = right - left, 1e-9 * scale
-        bound = error[:-1, order] + error[1:, order] + room
-        hidden = hidden or bool(((np.abs(size) > room) & (np.abs(size) <= bound)).any())
-        found += [(b, j, order, size[b, j]) for b, j in np.argwhere(np.abs(size) > bound).tolist()]
-    jumps = [
+        steps = np.argwhere(np.abs(size) > room)
+        b, j = steps.T
+        jumps = np.abs(size[b, j]) > error[b, order, j] + error[b + 1, order, j] + room[b, j]
+        hidden = hidden or not jumps.all()
+        found += [(b, j, order, size[b, j]) for b, j in steps[jumps].tolist()]
+    return [
         Jump(problem.joints[j], order, b + 1, float(trajectory.breaks[b + 1]), float(step))
         for b, j, order, step in sorted(found)
-    ]
-    return jumps, hidden
+    ], hidden

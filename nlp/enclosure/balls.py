@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...problem import Array, Interpolant
-from ...problem.curves import PERM, ConditionKind, layout, right_hand_sides
+from ...problem.curves import PERM, ConditionKind, right_hand_sides
 
 EPS = float(np.finfo(np.float64).eps)
 """Spacing of float64 at 1, 2u: see the error argument above."""
@@ -207,7 +207,7 @@ def enclose_spline(
     """
     if not (durations.mid - durations.rad > 0.0).all():
         return None
-    plan = layout(interpolant)
+    plan = interpolant.layout
     n, joints = interpolant.segments, waypoints.mid.shape[1]
     size = plan.kinds.size
     columns, factors = plan.entries

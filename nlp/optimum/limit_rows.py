@@ -191,7 +191,7 @@ def exact_rows(problem: Problem, h: Array, nodal: Array | None = None) -> ExactR
             at.segment,
             at.order,
             at.s,
-            trajectory.times_of(at.segment, at.s),
+            trajectory.times(at.segment, at.s),
             value,
         )
         points = [Extremum(*row) for row in zip(*(c.tolist() for c in columns), strict=True)]

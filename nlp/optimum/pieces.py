@@ -275,11 +275,10 @@ def _evaluated(a: Any, s: Any) -> Any:
 
 def clocked_bend(trajectory: Any, places: Places) -> Array:
     """Second derivatives by s of derivatives in time, N_{r+1}′ over t′²ʳ where these turn."""
-    q = trajectory.scaled[:, : trajectory.clock.shape[1]].transpose(0, 2, 1)
-    every = [q, *numerators(q, trajectory.clock[:, None, :], 4)]
+    every = [trajectory.derivatives(0), *trajectory.numerators]
     out, k, power = np.zeros(places.s.size), places.segment, np.polynomial.polynomial
     for i, (j, r, s) in enumerate(zip(places.joint, places.order, places.s, strict=True)):
         speed = power.polyval(s, power.polyder(trajectory.clock[k[i]]))
-        slope = power.polyval(s, power.polyder(every[r + 1][k[i], j]))
+        slope = power.polyval(s, power.polyder(every[r + 1][:, k[i], j]))
         out[i] = slope / speed ** (2 * r)
     return out

@@ -1,10 +1,13 @@
 from .adjoint import Adjoint, Places, places_of
-from .clamped import ClampedBSpline, clamped_control_points
-from .clamped_counts import ClampedReading, Count, clamped_readings
-from .clamped_declaration import average_matrix, fractions_of
-from .clamped_knots import Knots, Parameters
-from .compilation import compiler
-from .condition import Condition, ConditionKind, Conditions, Layout, counts_in_words
+from .clamped import (
+    ClampedBSpline,
+    ClampedReading,
+    Count,
+    clamped_control_points,
+    clamped_readings,
+)
+from .clamped_declaration import Knots, Parameters, average_matrix, fractions_of
+from .condition import ConditionKind, Conditions, Layout, counts_in_words
 from .families import (
     cubic_spline,
     cubic_spline_virtual,
@@ -21,15 +24,13 @@ from .interpolant import (
     Interpolant,
     as_piecewise,
     coefficients_of_many,
-    layout,
     right_hand_sides,
 )
-from .kind import Curve, Derivatives, Enclosed, as_curve, as_durations, fit
+from .kind import Curve, Derivatives, Enclosed, Timing, as_curve, as_durations, fit
 from .peak import (
     Extremum,
     Furthest,
     PeakGradients,
-    critical_points,
     extrema,
     furthest,
     near_extrema,
@@ -43,11 +44,18 @@ from .polynomials import (
     roots_in_unit,
     valued,
 )
-from .stretched import Timing, segment_peaks, shape_of, solve_in_closed_form
+from .stretched import shape_of, solve_in_closed_form
 from .timed import ClockedTrajectory, numerators
 from .trajectory import Trajectory
-from .uniform import StretchedUniformBSpline, TimedUniformBSpline, uniform_cubic_b_spline
-from .uniform_matrices import clock_matrix, control_vertices, shape_matrix, vertex_matrix
+from .uniform import (
+    StretchedUniformBSpline,
+    TimedUniformBSpline,
+    clock_matrix,
+    control_vertices,
+    shape_matrix,
+    uniform_cubic_b_spline,
+    vertex_matrix,
+)
 
 __all__ = [
     "MAX_COEFFICIENTS",
@@ -57,7 +65,6 @@ __all__ = [
     "ClampedBSpline",
     "ClampedReading",
     "ClockedTrajectory",
-    "Condition",
     "ConditionKind",
     "Conditions",
     "Count",
@@ -85,10 +92,8 @@ __all__ = [
     "clamped_readings",
     "clock_matrix",
     "coefficients_of_many",
-    "compiler",
     "control_vertices",
     "counts_in_words",
-    "critical_points",
     "cubic_spline",
     "cubic_spline_virtual",
     "derivative_rows",
@@ -98,7 +103,6 @@ __all__ = [
     "fractions_of",
     "furthest",
     "jtraj",
-    "layout",
     "near_extrema",
     "numerators",
     "piecewise",
@@ -108,7 +112,6 @@ __all__ = [
     "rest_to_rest",
     "right_hand_sides",
     "roots_in_unit",
-    "segment_peaks",
     "septic_spline",
     "shape_matrix",
     "shape_of",

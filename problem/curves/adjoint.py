@@ -17,7 +17,7 @@ from ..arrays import Array
 from .condition import Layout
 from .peak import Extremum, PeakGradients
 from .polynomials import derivative_rows
-from .system import coefficients, inverse, system
+from .system import system
 
 CHUNK = 10_000_000
 """Entries of the multipliers y that are held at once, some hundred megabytes with all they need."""
@@ -65,12 +65,11 @@ class Adjoint:
     def __init__(self, layout: Layout, values: Array, durations: Array) -> None:
         rows = system(layout, durations)
         self._layout, self._rows, self._durations = layout, rows, durations
-        self._inverse = None if rows.in_band else inverse(rows, layout, durations)
-        self._scaled = coefficients(layout, values, durations)
+        self._scaled = rows.fitted(values)
         flat = layout.flat(self._scaled)
         self._links, slots = layout.links
         self._after, orders = layout.breaks[self._links], layout.orders[self._links]
-        own, column = (of[self._links, slots] for of in (rows.values, rows.columns))
+        own, column = (of[self._links, slots] for of in (rows.values, layout.entries[0]))
         self._slope = (orders * own)[:, None] * flat[column]
         self._given = np.flatnonzero(layout.powers)
         self._at = layout.segment[self._given]
@@ -87,7 +86,7 @@ class Adjoint:
         load = np.zeros((len(self._rows.values), self._scaled.shape[2]))
         column, basis = self._loads(places)
         np.add.at(load, (column, places.joint[:, None]), basis * weights[:, None])
-        found = self._by_durations(self._solved(load), slice(None)).sum(axis=1)
+        found = self._by_durations(self._rows.solve(load, transposed=True), slice(None)).sum(axis=1)
         np.add.at(found, places.segment, weights * self._own(places))
         return np.asarray(found)
 
@@ -105,7 +104,7 @@ class Adjoint:
             v = np.arange(at.stop - start)
             load = np.zeros((size, v.size))
             np.add.at(load, (column[at], v[:, None]), basis[at])
-            y = self._solved(load)
+            y = self._rows.solve(load, transposed=True)
             by_duration[at] = self._by_durations(y, places.joint[at]).T
             by_duration[at][v, places.segment[at]] += own[at]
             for out, number in zip(given, numbers, strict=True):
@@ -114,11 +113,6 @@ class Adjoint:
                 np.add.at(part, number[i], self._rows.factor[i, None] * y[i])
                 out[at] = part.T
         return PeakGradients(by_duration, *given)
-
-    def _solved(self, right: Array) -> Array:
-        if self._inverse is None:
-            return self._rows.factors.solve(right, transposed=True)
-        return np.asarray(self._inverse.T @ right)
 
     def _basis(self, places: Places) -> Array:
         rate = self._durations[places.segment] ** places.order

@@ -21,9 +21,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array, over_rows
-from .condition import Layout
 from .kernel import compiled
-from .system import System
+from .system import POSITIVE, System
 
 _EPS = float(np.finfo(np.float64).eps)
 """Spacing of float64 at 1."""
@@ -31,9 +30,6 @@ _SUMS = 1.0 + 1e-6
 """Covers the rounding of sums of up to nine billion terms of one sign, through all blocks."""
 ENTRY = 24 * _EPS
 """Relative rounding of an entry: of a ninth power of a ratio, a whole factor and a scale."""
-POSITIVE = 1e-290
-"""Added to every bound, so that none is 0: far below any angle, far above the least float even
-after division by hʳ."""
 
 
 @compiled
@@ -266,15 +262,12 @@ class Blocks:
         found += more * (largest * (_SUMS / (1.0 - theta)))
         return found
 
-    def residual(
-        self, layout: Layout, values: Array, flat: NDArray[np.floating]
-    ) -> tuple[Array, Array]:
+    def residual(self, values: Array, flat: NDArray[np.floating]) -> tuple[Array, Array]:
         """Right-hand sides less the rows times ``flat``, and a bound on the rounding of that."""
         out, doubt = np.empty(values.shape), np.empty(values.shape)
-        rows = self.rows
-        _residual(
-            rows.values, rows.columns, rows.factor, layout.orders, values, flat, ENTRY, out, doubt
-        )
+        rows, layout = self.rows, self.rows.layout
+        columns = layout.entries[0]
+        _residual(rows.values, columns, rows.factor, layout.orders, values, flat, ENTRY, out, doubt)
         return out, doubt
 
     def _swept(
@@ -285,8 +278,9 @@ class Blocks:
         return out
 
 
-def blocks_of(layout: Layout, rows: System, segments: int) -> Blocks:
+def blocks_of(rows: System, segments: int) -> Blocks:
     """Factors by blocks of so many segments, and more where bands are wider than a block."""
+    layout = rows.layout
     order, lower, upper = layout.order
     # No block is narrower than the bands: each meets its neighbours alone.
     step = max(segments, -(-max(lower, upper) // int(layout.degrees.min() + 1)))
@@ -297,7 +291,7 @@ def blocks_of(layout: Layout, rows: System, segments: int) -> Blocks:
     carry, after = np.zeros((count, lower, most)), np.zeros((count, most, upper))
     carry_doubt, after_doubt = np.zeros(carry.shape), np.zeros(after.shape)
     _factor(
-        rows.values, rows.columns, order, cuts, lower, upper, ENTRY, inverse, defect, carry,
+        rows.values, layout.entries[0], order, cuts, lower, upper, ENTRY, inverse, defect, carry,
         carry_doubt, after, after_doubt,
     )  # fmt: skip
     return Blocks(rows, order, cuts, inverse, defect, carry, carry_doubt, after, after_doubt)

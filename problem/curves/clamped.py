@@ -1,14 +1,25 @@
-"""The clamped B-spline of z1, evaluated."""
+"""The clamped B-spline of z1: evaluated, and the readings of it that are determined."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from enum import StrEnum
+from itertools import product
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import Array
-from .clamped_declaration import ClampedDeclaration, fractions_of
+from ..errors import TrajgapError
+from .clamped_declaration import (
+    RULES,
+    ClampedDeclaration,
+    Knots,
+    Parameters,
+    count_inner_knots,
+    fractions_of,
+    nearest_reading,
+)
 from .clamped_fit import (
     clamped_enclosed,
     clamped_gradients,
@@ -16,13 +27,14 @@ from .clamped_fit import (
     clamped_shape,
     splines_of,
 )
-from .clamped_knots import Knots, Parameters
+from .condition import counts_in_words
 from .families import piecewise, quintic_spline
 from .kind import (
     Curve,
     Derivatives,
     Enclosed,
     Shape,
+    Timing,
     as_batch,
     as_durations,
     as_waypoints,
@@ -118,7 +130,7 @@ class ClampedBSpline(ClampedDeclaration, StretchedCurve):
         return int(np.searchsorted(inner, point.time, side="left"))
 
     def enclosed(self, waypoints: Array, durations: Array, nodal: Array | None = None) -> Enclosed:
-        """Solved in extended precision, as `clamped_system.interpolated` bounds it."""
+        """Solved in extended precision, as `clamped_fit` bounds it."""
         if self.stretched:
             return super().enclosed(waypoints, durations)
         return clamped_enclosed(self, waypoints, durations)
@@ -184,8 +196,151 @@ def clamped_control_points(
     splines = splines_of(curve, q, h)
     p = curve.degree
     columns = [
-        np.concatenate([np.zeros(p), s.knots, np.full(p, s.knots[-1])])
+        np.concatenate([np.zeros(p), s.breaks, np.full(p, s.breaks[-1])])
         for s in splines
         for _ in range(s.scaled.shape[2])
     ]
     return np.concatenate([s.control for s in splines], axis=1), np.stack(columns, axis=1)
+
+
+DEGREES = (3, 4, 5, 6, 7)
+"""Degrees that `ClampedBSpline` takes: from C2 in time up to the highest compared anywhere."""
+
+
+class Count(StrEnum):
+    """Conditions against control points."""
+
+    DETERMINED = "determined"
+    """As many conditions as control points."""
+    OVER = "over-determined"
+    """More conditions than control points: impossible but for special way-points."""
+    UNDER = "under-determined"
+    """Control points are left free."""
+
+
+@dataclass(frozen=True)
+class ClampedReading:
+    """One way of reading degree, knots and parameters, with its count.
+
+    Attributes
+    ----------
+    degree : int
+    knots : Knots
+    parameters : Parameters
+    time : Timing
+    conditions, control_points : int
+        Of one joint.
+    count : Count
+    curve : ClampedBSpline or None
+        The declaration, if it is determined.
+    words : str
+        What holds of this reading, and the nearest one that works.
+    """
+
+    degree: int
+    knots: Knots
+    parameters: Parameters
+    time: Timing
+    conditions: int
+    control_points: int
+    count: Count
+    curve: ClampedBSpline | None
+    words: str
+
+    def __str__(self) -> str:
+        return (
+            f"degree {self.degree}, knots {self.knots}, parameters {self.parameters}, "
+            f"{self.time}: {self.words}"
+        )
+
+
+def clamped_readings(
+    waypoints: int, end_orders: tuple[int, ...] = (1, 2), degrees: tuple[int, ...] = DEGREES
+) -> tuple[ClampedReading, ...]:
+    """Every reading of `z1-woa-bspline`, (1) to (12), for a number of way-points.
+
+    Parameters
+    ----------
+    waypoints : int
+    end_orders : tuple of int
+        Derivatives that are 0 at both ends.
+    degrees : tuple of int
+
+    Returns
+    -------
+    tuple of ClampedReading
+        By degree, then knots, then parameters; stretched ones only where parameters come from
+        chords. Degrees not above the highest of `end_orders` are left out.
+
+    Raises
+    ------
+    TrajgapError
+        If there are fewer than two way-points.
+
+    Examples
+    --------
+    >>> first = clamped_readings(8, degrees=(5,))[0]
+    >>> first.words
+    'determined, 12 conditions for 12 control points'
+    """
+    if waypoints < 2:
+        raise TrajgapError("interpolant: at least two way-points are needed")
+    found = []
+    sources = [one for one in Parameters if one is not Parameters.GIVEN]
+    able = [degree for degree in degrees if degree > max(end_orders, default=0)]
+    for degree, knots, parameters, time in product(able, RULES, sources, Timing):
+        if time is Timing.STRETCHED and parameters is Parameters.TIMES:
+            continue
+        found.append(_read(waypoints, degree, knots, parameters, time, end_orders))
+    return tuple(found)
+
+
+def _read(
+    waypoints: int,
+    degree: int,
+    knots: Knots,
+    parameters: Parameters,
+    time: Timing,
+    end_orders: tuple[int, ...],
+) -> ClampedReading:
+    conditions = waypoints + 2 * len(end_orders)
+    inner = count_inner_knots(knots, waypoints, degree, end_orders)
+    points = inner + degree + 1
+    counted = counts_in_words(conditions, points, "control points")
+    count, curve, why = Count.OVER, None, nearest_reading(knots, degree, end_orders)
+    if inner < 0:
+        words = (
+            f"impossible as the text has it: degree {degree} needs more way-points; "
+            "lower the degree"
+        )
+    elif points == conditions:
+        count = Count.DETERMINED
+        curve = ClampedBSpline(waypoints, degree, knots, parameters, time, end_orders)
+        words = f"determined, {counted}{'' if parameters is Parameters.TIMES else _CHORDS[time]}"
+    elif points < conditions:
+        # Only the printed rule, taken at its letter, is called impossible.
+        literal = "impossible as the text has it: " if knots is Knots.AVERAGED else ""
+        words = f"{literal}over-determined, {counted}; {why}"
+    else:
+        count, free = Count.UNDER, points - conditions
+        words = f"under-determined, {counted}: {free} left free per joint"
+        if parameters is Parameters.TIMES:
+            words += (
+                f', which family "polynomials" of degree {degree}, continuity {degree - 1} and '
+                f"free = {free} leaves to the optimiser"
+            )
+        words += f"; {why}"
+    return ClampedReading(degree, knots, parameters, time, conditions, points, count, curve, words)
+
+
+_CHORDS = {
+    Timing.TIMED: (
+        "; chords place the knots, times the way-points: passes only durations not too far from "
+        "the chords' proportions"
+    ),
+    Timing.STRETCHED: (
+        "; chords place knots and way-points, velocity jumps where a segment's duration leaves the "
+        "chords' proportions. With one u = t/T for all, only the total is left of the durations"
+    ),
+}
+"""What is added to the words of a determined reading with chord parameters."""

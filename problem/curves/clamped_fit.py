@@ -1,93 +1,235 @@
-"""From a clamped B-spline's declaration to polynomial pieces between its knots."""
+"""From a clamped B-spline's declaration to bounded polynomial pieces between its knots."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import comb
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array
-from .clamped_declaration import ClampedDeclaration, average_matrix, fractions_of
-from .clamped_knots import inside_support
-from .clamped_system import (
-    EPS,
-    Numbers,
-    Spline,
-    all_sites,
-    conditions_at,
-    interpolated,
-    knot_vector,
-    places_on,
-    span_bases,
-)
+from ..errors import CurveError
+from .clamped_declaration import ClampedDeclaration, average_matrix, fractions_of, inside_support
 from .kind import STEP, Enclosed, Shape, are_durations, masked, value_errors
 from .peak import Extremum, PeakGradients, rows_at
-from .polynomials import MAX_COEFFICIENTS, derived, tops
+from .polynomials import MAX_COEFFICIENTS, PERM, Numbers, derived, tops
+from .refined import contained
 from .trajectory import Trajectory
 
+_EPS = np.finfo(np.float64).eps
+"""Spacing of float64 at 1: twice the unit roundoff, so that bounds have room."""
 _SLIVER = 1e-12
 """Breaks nearer than this share of the whole differ by rounding alone."""
 _RESOLVED = 1e13
 """Growth of control points over way-points beyond which float64 resolves nothing of them."""
 
 
-def _times(durations: Numbers) -> Numbers:
-    return np.concatenate([np.zeros(1, dtype=durations.dtype), np.cumsum(durations)])
-
-
-def splines_of(curve: ClampedDeclaration, waypoints: Numbers, durations: Numbers) -> list[Spline]:
-    """Splines of the joints in time: one for all, or one for each."""
-    times = _times(durations)
-    average = average_matrix(curve)
-    fractions = fractions_of(curve, waypoints.real)
-    if fractions is None:
-        return [interpolated(curve, times, average @ times, waypoints)]
-    rows = [average @ np.array(row) * times[-1] for row in fractions]
-    if len(rows) == 1:
-        return [interpolated(curve, times, rows[0], waypoints)]
-    return [
-        interpolated(curve, times, inner, waypoints[:, j : j + 1]) for j, inner in enumerate(rows)
-    ]
-
-
-def _cut(spline: Spline, breaks: Numbers) -> tuple[Numbers, Array, Numbers]:
-    """Coefficients, errors and derivatives by way-points on finer pieces."""
-    real = np.asarray(breaks.real, dtype=np.float64)
-    own = np.asarray(spline.knots.real, dtype=np.float64)
-    middle = 0.5 * (real[:-1] + real[1:])
-    parent = np.clip(np.searchsorted(own, middle, side="right") - 1, 0, own.size - 2)
-    width = spline.knots[parent + 1] - spline.knots[parent]
-    low = (breaks[:-1] - spline.knots[parent]) / width
-    high = (breaks[1:] - spline.knots[parent]) / width
-    size = spline.scaled.shape[1]
-    shift = np.zeros((middle.size, size, size), dtype=breaks.dtype)
-    for m in range(size):
-        for k in range(m, size):
-            shift[:, m, k] = comb(k, m) * low ** (k - m) * (high - low) ** m
-    moved = np.einsum("pmk,pkj->pmj", shift, spline.scaled[parent])
-    if np.iscomplexobj(moved):
-        return moved, np.empty(0), np.empty(0)
-    error = np.einsum("pmk,pkj->pmj", np.abs(shift), spline.error[parent])
-    error = error + 4 * size * EPS * np.einsum(
-        "pmk,pkj->pmj", np.abs(shift), np.abs(spline.scaled[parent])
-    )
-    return moved, error, np.einsum("pmk,pkw->pmw", shift, spline.by_waypoint[parent])
-
-
 @dataclass(frozen=True, eq=False)
-class Pieces:
-    """All joints on common pieces.
+class Spline:
+    """Polynomial pieces of joints that share their breaks.
 
-    ``breaks`` (pieces + 1,), ``scaled`` and ``error`` (pieces, 10, joints), ``by_waypoint``
-    (joints, pieces, 10, way-points).
+    Attributes
+    ----------
+    breaks : ndarray, shape (pieces + 1,)
+        Where the pieces meet, without repetition.
+    scaled, error : ndarray, shape (pieces, powers, joints)
+        Ascending coefficients in the piece's own 0..1, and a bound on their error; no bound of
+        complex numbers.
+    by_waypoint : ndarray, shape (1 or joints, pieces, powers, way-points)
+        Their derivatives by the joint's way-points; not of complex numbers.
+    control : ndarray, shape (control points, joints)
     """
 
     breaks: Numbers
     scaled: Numbers
     error: Array
     by_waypoint: Numbers
+    control: Numbers
+
+    @property
+    def lengths(self) -> Array:
+        """Of the pieces, in float64."""
+        return np.diff(np.asarray(self.breaks, dtype=np.float64))
+
+
+def _span_bases(knots: Numbers, degree: int, sign: int = -1) -> Numbers:
+    """Powers of the basis functions on every span, shape (..., pieces, functions, powers).
+
+    Cox–de Boor (2) on polynomials in the span's own 0..1, for all spans and knot vectors (last
+    axis) at once and any kind of number. With ``sign`` + the terms are added instead, which bounds
+    their sizes.
+    """
+    p = degree
+    pieces = knots.shape[-1] - 2 * p - 1
+    at = p + np.arange(pieces)
+    start = knots[..., at]
+    width = (knots[..., at + 1] - start)[..., None]
+    bases = np.zeros((*knots.shape[:-1], pieces, p + 1, p + 1), dtype=knots.dtype)
+    bases[..., 0, 0] = 1
+    for q in range(1, p + 1):
+        raised = np.zeros_like(bases)
+        for a in range(q):
+            left, right = knots[..., at - q + 1 + a], knots[..., at + 1 + a]
+            c = bases[..., a, :q] / (right - left)[..., None]
+            raised[..., a + 1, :q] += (start - left)[..., None] * c
+            raised[..., a + 1, 1 : q + 1] += width * c
+            raised[..., a, :q] += (right - start)[..., None] * c
+            raised[..., a, 1 : q + 1] += sign * width * c
+        bases = raised
+    return bases
+
+
+def _places_on(knots: Numbers, degree: int, sites: Numbers) -> tuple[NDArray[np.int64], Numbers]:
+    """Span of each site, and where in it; both along the last axis."""
+    p = degree
+    inner = np.asarray(knots.real[..., p : knots.shape[-1] - p], dtype=np.float64)
+    passed = inner[..., None, :] <= np.asarray(sites.real, dtype=np.float64)[..., None]
+    span = np.clip(passed.sum(axis=-1) - 1, 0, inner.shape[-1] - 2)
+    low, high = (np.take_along_axis(knots, p + span + i, axis=-1) for i in (0, 1))
+    return span, np.asarray((sites - low) / (high - low))
+
+
+def _conditions_at(
+    bases: Numbers, span: NDArray[np.int64], place: Numbers, end_orders: tuple[int, ...]
+) -> Numbers:
+    """Conditions (3) at the sites and of the ends on the control points, one row each."""
+    (*lead, pieces, functions, _), sites = bases.shape, span.shape[-1]
+    size = (*lead, sites + 2 * len(end_orders), pieces + functions - 1)
+    matrix, every = np.zeros(size, bases.dtype), np.arange(functions)
+    own = np.take_along_axis(bases, span[..., None, None], axis=-3)
+    values = (own @ (place[..., None] ** every)[..., None])[..., 0]
+    np.put_along_axis(matrix[..., :sites, :], span[..., None] + every, values, axis=-1)
+    for i, r in enumerate(end_orders):
+        row = sites + 2 * i
+        # Scaled by the span's width to the order, which does not matter for a derivative of 0.
+        matrix[..., row, :functions] = bases[..., 0, :, r]
+        matrix[..., row + 1, pieces - 1 :] = bases[..., -1, :, :] @ PERM[:functions, r]
+    return matrix
+
+
+def _with_ends(inner: Numbers, start: Numbers, end: Numbers, times: int) -> Numbers:
+    """Numbers with both ends, (..., 1), so many times before and after; along the last axis."""
+    repeats = [1] * (inner.ndim - 1) + [times]
+    return np.concatenate([np.tile(start, repeats), inner, np.tile(end, repeats)], axis=-1)
+
+
+def _knots(inner: Numbers, end: Numbers, degree: int) -> Numbers:
+    """All knots, from the inner ones and the last, (..., 1)."""
+    return _with_ends(inner, 0 * end, end, degree + 1)
+
+
+def _inside(curve: ClampedDeclaration, knots: Array, sites: Array) -> NDArray[np.bool_]:
+    """Which way-points, ends as often as something is asked there, Schoenberg and Whitney allow."""
+    asked = _with_ends(sites, sites[..., :1], sites[..., -1:], len(curve.end_orders))
+    return inside_support(knots, asked, curve.degree)
+
+
+def _interpolated(
+    curve: ClampedDeclaration, sites: Numbers, inner: Numbers, waypoints: Numbers
+) -> Spline:
+    """Solve for the control points of the B-spline through the way-points at the sites.
+
+    In extended precision where the sites are: an approximate inverse B of the system A in float64
+    refines the solution, and (I − |BA − I|)⁻¹ |B| |residual| bounds its error, entry by entry.
+
+    Raises
+    ------
+    CurveError
+        If a site leaves the support of its basis function (Schoenberg and Whitney).
+    """
+    p = curve.degree
+    knots = _knots(inner, sites[-1:], p)
+    bases = _span_bases(knots, p)
+    span, place = _places_on(knots, p, sites)
+    matrix = _conditions_at(bases, span, place, curve.end_orders)
+    inside = _inside(curve, *(np.asarray(of.real, dtype=np.float64) for of in (knots, sites)))
+    if not inside.all():
+        raise _not_passing(curve, int(np.argmin(inside)) - len(curve.end_orders))
+    right = np.zeros((matrix.shape[0], waypoints.shape[1]), dtype=matrix.dtype)
+    right[: sites.size] = waypoints
+    index = np.arange(bases.shape[0])[:, None] + np.arange(p + 1)
+    breaks, none = knots[p : knots.size - p], np.empty(0)
+
+    def powers(control: Numbers, of: Numbers) -> Numbers:
+        return np.asarray(np.einsum("pam,paj->pmj", of, control[index]))
+
+    if np.iscomplexobj(matrix):
+        solved = np.linalg.solve(matrix, right)
+        return Spline(breaks, powers(solved, bases), none, none, solved)
+    narrow = matrix.astype(np.float64)
+    try:
+        inverse = np.linalg.inv(narrow)
+    except np.linalg.LinAlgError:
+        raise _not_passing(curve, 0) from None
+    control: Numbers = inverse @ right.astype(np.float64)
+    for _ in range(2):
+        control = control + inverse @ (right - matrix @ control).astype(np.float64)
+    sizes = _span_bases(knots, p, 1)
+    absolute = np.abs(_conditions_at(sizes, span, np.abs(place), curve.end_orders))
+    gap = float(np.diff(breaks).min() / sites[-1])
+    # Knots carry a rounding of their own, which counts against the smallest gap between them.
+    rounding = float(np.finfo(matrix.dtype).eps) * (4 * p + 12 + matrix.shape[0]) * (1 + 2 / gap)
+    residual = np.abs(right - matrix @ control) + rounding * (
+        absolute @ np.abs(control) + np.abs(right)
+    )
+    unsure = contained(inverse, narrow, residual.astype(np.float64))
+    if unsure is None:
+        raise _not_passing(curve, 0)
+    scaled = powers(control, bases)
+    error = powers(unsure.astype(matrix.dtype), sizes) + rounding * powers(np.abs(control), sizes)
+    by_waypoint = powers(inverse[:, : sites.size].astype(matrix.dtype), bases)[None]
+    breaks, scaled, error, by_waypoint, control = (
+        np.asarray(one, dtype=np.float64) for one in (breaks, scaled, error, by_waypoint, control)
+    )
+    return Spline(breaks, scaled, error + _EPS * np.abs(scaled), by_waypoint, control)
+
+
+def _not_passing(curve: ClampedDeclaration, waypoint: int) -> CurveError:
+    k = min(max(waypoint, 0), curve.segments - 1)
+    return CurveError(
+        f"durations: no {curve.name} passes the way-points at these times (way-point {waypoint} "
+        "lies outside the support of its basis function); bring the durations nearer to the "
+        "proportions of the knots",
+        k,
+        0.0,
+    )
+
+
+def splines_of(curve: ClampedDeclaration, waypoints: Numbers, durations: Numbers) -> list[Spline]:
+    """Splines of the joints in time: one for all, or one for each."""
+    times = np.concatenate([np.zeros(1, dtype=durations.dtype), np.cumsum(durations)])
+    average, fractions = average_matrix(curve), fractions_of(curve, waypoints.real)
+    if fractions is None:
+        return [_interpolated(curve, times, average @ times, waypoints)]
+    rows = [average @ np.array(row) * times[-1] for row in fractions]
+    groups = np.array_split(np.arange(waypoints.shape[1]), len(rows))
+    return [
+        _interpolated(curve, times, inner, waypoints[:, own])
+        for inner, own in zip(rows, groups, strict=True)
+    ]
+
+
+def _cut(spline: Spline, breaks: Numbers) -> Spline:
+    """The same on finer pieces."""
+    real, knots = breaks.real.astype(np.float64), spline.breaks
+    own = np.asarray(knots.real, dtype=np.float64)
+    middle = 0.5 * (real[:-1] + real[1:])
+    parent = np.clip(np.searchsorted(own, middle, side="right") - 1, 0, own.size - 2)
+    width = knots[parent + 1] - knots[parent]
+    low = (breaks[:-1] - knots[parent]) / width
+    high = (breaks[1:] - knots[parent]) / width
+    size = spline.scaled.shape[1]
+    shift = np.zeros((middle.size, size, size), dtype=breaks.dtype)
+    for m in range(size):
+        for k in range(m, size):
+            shift[:, m, k] = comb(k, m) * low ** (k - m) * (high - low) ** m
+    moved = replace(spline, breaks=breaks, scaled=shift @ spline.scaled[parent])
+    if np.iscomplexobj(breaks):
+        return moved
+    sizes = spline.error[parent] + 4 * size * _EPS * np.abs(spline.scaled[parent])
+    by_waypoint = shift @ spline.by_waypoint[:, parent]
+    return replace(moved, error=np.abs(shift) @ sizes, by_waypoint=by_waypoint)
 
 
 def _union(breaks: list[Numbers]) -> Numbers:
@@ -106,74 +248,66 @@ def _union(breaks: list[Numbers]) -> Numbers:
     return np.asarray(kept)
 
 
-def _joined(splines: list[Spline], joints: int, cuts: Numbers | None = None) -> Pieces:
-    """Common pieces of splines with different knots, also cut at ``cuts``."""
-    parts = [s.knots for s in splines] + ([] if cuts is None else [cuts])
-    if len(parts) == 1:
-        breaks, cut = parts[0], [(s.scaled, s.error, s.by_waypoint) for s in splines]
-    else:
-        breaks = _union(parts)
-        cut = [_cut(s, breaks) for s in splines]
-    pieces, size = breaks.size - 1, cut[0][0].shape[1]
-    scaled = np.zeros((pieces, MAX_COEFFICIENTS, joints), dtype=cut[0][0].dtype)
-    scaled[:, :size] = np.concatenate([c[0] for c in cut], axis=2)
+def _joined(splines: list[Spline], cuts: tuple[Numbers, ...] = ()) -> Spline:
+    """All joints on common pieces, also cut at ``cuts``, with ten coefficients each."""
+    if len(splines) > 1 or cuts:
+        breaks = _union([*(s.breaks for s in splines), *cuts])
+        splines = [_cut(s, breaks) for s in splines]
+    more = MAX_COEFFICIENTS - splines[0].scaled.shape[1]
+
+    def padded(parts: list[Numbers], axis: int) -> Numbers:
+        widths = [(0, more if i == parts[0].ndim - 2 else 0) for i in range(parts[0].ndim)]
+        return np.pad(np.concatenate(parts, axis=axis), widths)
+
+    scaled = padded([s.scaled for s in splines], 2)
+    found = replace(splines[0], scaled=scaled)
     if np.iscomplexobj(scaled):
-        return Pieces(breaks, scaled, np.empty(0), np.empty(0))
-    error = np.zeros(scaled.shape)
-    error[:, :size] = np.concatenate([c[1] for c in cut], axis=2)
-    waypoints = cut[0][2].shape[2]
-    by_waypoint = np.zeros((len(cut), pieces, MAX_COEFFICIENTS, waypoints))
-    by_waypoint[:, :, :size] = np.array([c[2] for c in cut])
-    by_waypoint = np.broadcast_to(by_waypoint, (joints, *by_waypoint.shape[1:]))
-    return Pieces(breaks, scaled, error, by_waypoint)
-
-
-def _pieces(curve: ClampedDeclaration, waypoints: Array, durations: Numbers) -> Pieces:
-    return _joined(splines_of(curve, waypoints, durations), waypoints.shape[1])
+        return found
+    by_waypoint = padded([s.by_waypoint for s in splines], 0)
+    return replace(
+        found,
+        error=padded([s.error for s in splines], 2),
+        by_waypoint=np.broadcast_to(by_waypoint, (scaled.shape[2], *by_waypoint.shape[1:])),
+    )
 
 
 def clamped_shape(curve: ClampedDeclaration, waypoints: Array) -> Shape:
     """The curve in its parameter, every segment on an axis of its own."""
     fractions = fractions_of(curve, waypoints)
     assert fractions is not None
-    average, joints = average_matrix(curve), waypoints.shape[1]
-    wide = waypoints.astype(np.longdouble)
-    # Every segment has its own 0..1 on the axis of e, so that joints with other parameters meet.
-    axis = np.arange(curve.waypoints, dtype=np.longdouble)
-    splines, groups = [], len(fractions)
-    for g, row in enumerate(fractions):
+    average, wide = average_matrix(curve), waypoints.astype(np.longdouble)
+    groups = np.array_split(np.arange(waypoints.shape[1]), len(fractions))
+    splines = []
+    for row, own in zip(fractions, groups, strict=True):
         sites = np.array(row, dtype=np.longdouble)
-        columns = slice(None) if groups == 1 else slice(g, g + 1)
-        spline = interpolated(curve, sites, average @ sites, wide[:, columns])
+        spline = _interpolated(curve, sites, average @ sites, wide[:, own])
         splines.append(_on_axis(spline, np.asarray(sites, dtype=np.float64)))
-    found = _joined(splines, joints, axis.astype(np.float64))
-    lengths = np.diff(found.breaks)
-    middle = 0.5 * (found.breaks[:-1] + found.breaks[1:])
+    found = _joined(splines, (np.arange(curve.waypoints, dtype=np.float64),))
     return Shape(
-        segment=np.asarray(middle, dtype=np.int64),
-        share=np.asarray(lengths, dtype=np.float64),
+        segment=(0.5 * (found.breaks[:-1] + found.breaks[1:])).astype(np.int64),
+        share=found.lengths,
         degree=curve.degree,
-        scaled=np.asarray(found.scaled, dtype=np.float64),
+        scaled=found.scaled,
         error=found.error,
-        by_waypoint=np.asarray(found.by_waypoint, dtype=np.float64),
+        by_waypoint=found.by_waypoint,
     )
 
 
 def _on_axis(spline: Spline, sites: Array) -> Spline:
-    """The spline cut at its sites, its parameter replaced by the segment's number plus 0..1."""
-    breaks = _union([spline.knots, sites])
-    scaled, error, by_waypoint = _cut(spline, breaks)
-    mapped = np.interp(np.asarray(breaks, dtype=np.float64), sites, np.arange(sites.size))
-    return Spline(mapped, scaled, error, by_waypoint, spline.control)
+    """The spline cut at its sites, its parameter replaced by the segment's number plus 0..1.
+
+    So joints with other parameters meet.
+    """
+    cut = _cut(spline, _union([spline.breaks, sites]))
+    return replace(cut, breaks=np.interp(cut.breaks, sites, np.arange(sites.size)))
 
 
 def clamped_enclosed(curve: ClampedDeclaration, waypoints: Array, durations: Array) -> Enclosed:
     """Trajectory with pieces between knots, and a bound on the error of every extremum."""
-    wide = waypoints.astype(np.longdouble)
-    found = _joined(splines_of(curve, wide, durations.astype(np.longdouble)), waypoints.shape[1])
-    lengths = np.diff(np.asarray(found.breaks, dtype=np.float64))
-    scaled = np.asarray(found.scaled, dtype=np.float64)
-    trajectory = Trajectory(lengths, scaled, (curve.degree,) * lengths.size)
+    wide, long = waypoints.astype(np.longdouble), durations.astype(np.longdouble)
+    found = _joined(splines_of(curve, wide, long))
+    degrees = (curve.degree,) * found.lengths.size
+    trajectory = Trajectory(found.lengths, found.scaled, degrees)
     return Enclosed(trajectory, value_errors(trajectory, found.error))
 
 
@@ -181,23 +315,22 @@ def clamped_gradients(
     curve: ClampedDeclaration, waypoints: Array, durations: Array, points: list[Extremum]
 ) -> PeakGradients:
     """Gradients of the values at fixed places: by complex steps in the durations."""
-    found = _pieces(curve, waypoints, durations)
-    lengths = np.diff(found.breaks)
-    n = curve.segments
-    by_duration = np.empty((len(points), n))
+    found = _joined(splines_of(curve, waypoints, durations))
+    by_duration = np.empty((len(points), curve.segments))
     by_waypoint = np.empty((len(points), curve.waypoints))
     rows = rows_at(points)
-    for k in range(n):
+    for k in range(curve.segments):
         step = durations.astype(np.complex128)
         step[k] += 1j * STEP
-        moved = _pieces(curve, waypoints, step)
+        moved = _joined(splines_of(curve, waypoints, step))
         scaled, widths = moved.scaled.imag / STEP, np.diff(moved.breaks).imag / STEP
         for i, (e, row) in enumerate(zip(points, rows, strict=True)):
-            change = row @ scaled[e.segment, :, e.joint] / lengths[e.segment] ** e.order
-            fade = e.order * e.value * widths[e.segment] / lengths[e.segment]
-            by_duration[i, k] = change - fade
+            length = found.lengths[e.segment]
+            change = row @ scaled[e.segment, :, e.joint] / length**e.order
+            by_duration[i, k] = change - e.order * e.value * widths[e.segment] / length
     for i, (e, row) in enumerate(zip(points, rows, strict=True)):
-        by_waypoint[i] = row @ found.by_waypoint[e.joint, e.segment] / lengths[e.segment] ** e.order
+        scale = found.lengths[e.segment] ** e.order
+        by_waypoint[i] = row @ found.by_waypoint[e.joint, e.segment] / scale
     return PeakGradients(by_duration, by_waypoint, np.empty((len(points), 0)))
 
 
@@ -219,9 +352,8 @@ def clamped_reach(
     if fractions is not None:
         inner = [times[:, -1:] * (average @ np.array(row)) for row in fractions]
     for own, place in zip(np.array_split(np.arange(len(wanted)), len(inner)), inner, strict=True):
-        knots = knot_vector(place, times[:, -1:], curve.degree)
-        asked = all_sites(times, curve.end_orders)
-        valid &= inside_support(knots, asked, curve.degree).all(axis=1)
+        knots = _knots(place, times[:, -1:], curve.degree)
+        valid &= _inside(curve, knots, times).all(axis=1)
         valid &= (np.diff(knots[:, curve.degree : -curve.degree], axis=1) > 0.0).all(axis=1)
         at = np.flatnonzero(valid)
         q = waypoints[:, own] - waypoints[0, own]
@@ -243,8 +375,8 @@ def _polynomials(
     what float64 resolves has none.
     """
     p = curve.degree
-    bases = span_bases(knots, p)
-    matrix = conditions_at(bases, *places_on(knots, p, times), curve.end_orders)
+    bases = _span_bases(knots, p)
+    matrix = _conditions_at(bases, *_places_on(knots, p, times), curve.end_orders)
     right = np.zeros((matrix.shape[-1], waypoints.shape[1]))
     right[: len(waypoints)] = waypoints
     regular = np.asarray(np.linalg.slogdet(matrix)[0] != 0.0)

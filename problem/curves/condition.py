@@ -39,15 +39,6 @@ class ConditionKind(IntEnum):
     """A derivative is the same on both sides of the break."""
 
 
-@dataclass(frozen=True)
-class Condition:
-    """One condition: at break ``at``, derivative ``order``, of the kind ``kind``."""
-
-    kind: ConditionKind
-    at: int
-    order: int
-
-
 @dataclass(frozen=True, eq=False)
 class Conditions:
     """Conditions in order, ordered by break, so that their linear system is banded.
@@ -62,15 +53,6 @@ class Conditions:
     breaks: Indices
     orders: Indices
     degrees: Indices
-
-    @property
-    def one_by_one(self) -> tuple[Condition, ...]:
-        """The same as objects."""
-        columns = (self.kinds.tolist(), self.breaks.tolist(), self.orders.tolist())
-        return tuple(
-            Condition(ConditionKind(kind), at, order)
-            for kind, at, order in zip(*columns, strict=True)
-        )
 
     @cached_property
     def first(self) -> Indices:
@@ -184,13 +166,6 @@ class Layout(Conditions):
         right = self.kinds == ConditionKind.RIGHT_VALUE
         open_[self.first[self.breaks[right]] + self.orders[right]] = False
         return np.where(open_, np.cumsum(open_) - 1, -1)
-
-    @cached_property
-    def column(self) -> Indices:
-        """`unknown` by segment and power, shape (segments, 10)."""
-        out = np.full((self.segments, MAX_COEFFICIENTS), -1)
-        out[self.places] = self.unknown
-        return out
 
     @property
     def unknowns(self) -> int:

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
+from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ..arrays import Array
 from ..errors import SingularError, TrajgapError
 from .adjoint import Adjoint, places_of
-from .condition import Condition, ConditionKind, Conditions, Layout, conditions_of, counts_in_words
+from .condition import ConditionKind, Conditions, Layout, conditions_of, counts_in_words
 from .kind import (
     Curve,
     Derivatives,
@@ -26,8 +26,9 @@ from .peak import Extremum, PeakGradients
 from .polynomials import MAX_COEFFICIENTS
 from .population import batch_coefficients, batch_reach
 from .refined import refined_coefficients
-from .system import DENSE_UNKNOWNS, coefficients, system
+from .system import DENSE_UNKNOWNS, system
 from .trajectory import Trajectory
+from .tridiagonal import tridiagonal_fit
 
 MOST_OPEN = 600
 """Coefficients up to which a case file may leave some free: finding the derivatives that complete
@@ -97,9 +98,10 @@ class Interpolant(Curve):
                 f"{f'1 to {n - 1}' if n > 1 else 'of which one segment has none'}"
             )
         # Long declarations state few different things: each is looked at once.
-        same = {id(entries): entries for entries in self.prescribed}
+        keys = list(map(id, self.prescribed))
+        same = dict(zip(keys, self.prescribed, strict=True))
         merged = {key: merged_values(entries) for key, entries in same.items()}
-        object.__setattr__(self, "prescribed", tuple(merged[id(e)] for e in self.prescribed))
+        object.__setattr__(self, "prescribed", tuple(map(merged.__getitem__, keys)))
         stated = {*self.prescribed}
         counts = {len(v) for at in stated for _, v in at if isinstance(v, tuple)}
         if len(counts) > 1:
@@ -155,10 +157,21 @@ class Interpolant(Curve):
         """Number of coefficients of one joint."""
         return sum(self.degrees) + self.segments
 
+    @cached_property
+    def _velocities_suffice(self) -> bool:
+        """Whether it is a C2 cubic spline with one velocity or acceleration given at each end.
+
+        Its conditions are as many as its coefficients, and regular: see `tridiagonal`.
+        """
+        cubic = {*self.degrees} == {3} and {*self.continuity} <= {2} and not self.virtual
+        ends = [order for end in self.ends for order, _ in end]
+        each = all(len(end) == 1 for end in self.ends)
+        return cubic and each and {*ends} <= {1, 2} and not any(self.prescribed[1:-1])
+
     @property
     def conditions(self) -> int:
         """Number of conditions on them."""
-        return self.table.kinds.size
+        return self.coefficients if self._velocities_suffice else self.table.kinds.size
 
     @property
     def free(self) -> int:
@@ -197,19 +210,23 @@ class Interpolant(Curve):
     def fitted(self, waypoints: Array, durations: Array, nodal: Array | None = None) -> Trajectory:
         """`fit` by one elimination."""
         values = right_hand_sides(self, waypoints, nodal)
-        return Trajectory(durations, coefficients(self.layout, values, durations), self.degrees)
+        return Trajectory(durations, system(self.layout, durations).fitted(values), self.degrees)
 
     def enclosed(self, waypoints: Array, durations: Array, nodal: Array | None = None) -> Enclosed:
         """`fit` with the bound of `refined_coefficients`, of long splines in float64 first."""
-        values = right_hand_sides(self, waypoints, nodal)
 
         def found(extended: bool) -> Enclosed:
+            values = right_hand_sides(self, waypoints, nodal)
             scaled, error = refined_coefficients(self.layout, values, durations, extended)
             trajectory = Trajectory(durations, scaled, self.degrees)
             return Enclosed(trajectory, value_errors(trajectory, error))
 
         if self.coefficients <= DENSE_UNKNOWNS:
             return found(True)
+        if self._velocities_suffice:
+            first = tridiagonal_fit(self.ends, waypoints, durations)
+            if first is not None:
+                return replace(first, closer=partial(found, True))
         try:
             return replace(found(False), closer=partial(found, True))
         except SingularError:
@@ -261,11 +278,6 @@ class Interpolant(Curve):
         return conditions_of(given, self.continuity, self.degrees)
 
     @cached_property
-    def rows(self) -> tuple[Condition, ...]:
-        """The conditions one by one."""
-        return self.table.one_by_one
-
-    @cached_property
     def layout(self) -> Layout:
         """The determined system; free derivatives, if any, become prescribed rows."""
         full = self.completed() if self.free else self
@@ -296,6 +308,8 @@ class Interpolant(Curve):
     @cached_property
     def rank(self) -> int:
         """Rank of the conditions for equal durations."""
+        if self._velocities_suffice:
+            return self.conditions
         if self.conditions == self.coefficients > DENSE_UNKNOWNS:
             return self.conditions if self._banded_regular() else self.conditions - 1
         return int(np.linalg.matrix_rank(_unit_matrix(self.table)))
@@ -308,25 +322,21 @@ class Interpolant(Curve):
         """
         if self.free == 0:
             return ()
-        rows = set(self.rows)
-        chosen: list[tuple[int, int]] = []
-        matrix, rank = _unit_matrix(self.table), self.rank
-        for order in range(max(self.degrees) + 1):
-            for b in range(self.segments + 1):
-                for kind, there in _ENDS:
-                    row = Condition(kind, b, order)
-                    if rank == self.coefficients or row in rows or not there(b, self.segments):
-                        continue
-                    shared = b in (0, self.segments) or order <= self.continuity[b - 1]
-                    if (b, order) in chosen or not shared:
-                        continue
-                    kinds, breaks, orders = np.array([[kind], [b], [order]])
-                    one = Conditions(kinds, breaks, orders, self.table.degrees)
-                    extended = np.vstack([matrix, _unit_matrix(one)])
-                    if np.linalg.matrix_rank(extended) > rank:
-                        matrix, rank = extended, rank + 1
-                        rows.add(row)
-                        chosen.append((b, order))
+        table, n, chosen = self.table, self.segments, []
+        stated = {*map(tuple, np.stack([table.kinds, table.breaks, table.orders], 1).tolist())}
+        matrix, rank = _unit_matrix(table), self.rank
+        for order, b in product(range(max(self.degrees) + 1), range(n + 1)):
+            shared = b in (0, n) or order <= self.continuity[b - 1]
+            # Either side's row says the same of what both share.
+            kind = ConditionKind.LEFT_VALUE if b > 0 else ConditionKind.RIGHT_VALUE
+            if not shared or (kind, b, order) in stated or rank == self.coefficients:
+                continue
+            kinds, breaks, orders = np.array([[kind], [b], [order]])
+            one = Conditions(kinds, breaks, orders, table.degrees)
+            extended = np.vstack([matrix, _unit_matrix(one)])
+            if np.linalg.matrix_rank(extended) > rank:
+                matrix, rank = extended, rank + 1
+                chosen.append((b, order))
         return tuple(chosen)
 
     def completed(self) -> Interpolant:
@@ -364,11 +374,6 @@ class Interpolant(Curve):
             return False
         pivots = np.abs(system(self.layout, np.ones(self.segments)).factors.diagonal)
         return bool(pivots.min() > 1e-13 * pivots.max())
-
-
-def layout(interpolant: Interpolant) -> Layout:
-    """`Interpolant.layout`, which all numbers of a declared curve come from."""
-    return interpolant.layout
 
 
 def right_hand_sides(interpolant: Interpolant, waypoints: Array, nodal: Array | None) -> Array:
@@ -419,13 +424,6 @@ def _unit_matrix(conditions: Conditions) -> Array:
 def _values(entries: Derivatives) -> list[float]:
     """All values that are prescribed at a break, of every joint."""
     return [x for _, v in entries for x in (v if isinstance(v, tuple) else (v,))]
-
-
-_ENDS: tuple[tuple[ConditionKind, Callable[[int, int], bool]], ...] = (
-    (ConditionKind.LEFT_VALUE, lambda b, n: b > 0),
-    (ConditionKind.RIGHT_VALUE, lambda b, n: b < n),
-)
-"""Kinds of condition on a value, and at which of the breaks 0..n their side exists."""
 
 
 def as_piecewise(curve: Curve) -> Interpolant | None:

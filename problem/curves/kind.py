@@ -5,6 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from enum import StrEnum
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -24,6 +25,15 @@ _SIDES = (-1.0, 1.0)
 Derivatives = tuple[tuple[int, float | tuple[float, ...]], ...]
 """Derivatives ``(order, value)`` prescribed at one break, rad/sᵒʳᵈᵉʳ: one value for all joints, or
 one for each where they differ."""
+
+
+class Timing(StrEnum):
+    """How time enters a curve that is given in a parameter e."""
+
+    STRETCHED = "stretched"
+    """Each segment by itself: time grows linearly in e, so velocity may jump between segments."""
+    TIMED = "timed"
+    """Time is itself a smooth function of e, or e is time."""
 
 
 @dataclass(frozen=True, eq=False)

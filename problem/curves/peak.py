@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array, over_rows
-from .polynomials import LOOSE, bernstein, derivative_rows, derived, roots_in_unit
+from .polynomials import LOOSE, bernstein, derivative_rows
 from .trajectory import Trajectory
 
 
@@ -64,12 +64,6 @@ def rows_at(points: list[Extremum]) -> Array:
     return derivative_rows(np.array([e.s for e in points]), orders)
 
 
-def critical_points(a: Array) -> Array:
-    """Places in (0, 1) where the polynomial with ascending coefficients ``a`` turns."""
-    places = roots_in_unit(derived(a, 1))
-    return places[~np.isnan(places)]
-
-
 def extrema(trajectory: Trajectory, joint: int, order: int) -> list[Extremum]:
     """Ends and interior turning points of one derivative of one joint, in order of time.
 
@@ -87,7 +81,7 @@ def extrema(trajectory: Trajectory, joint: int, order: int) -> list[Extremum]:
         The largest absolute value over all t is among them.
     """
     pieces, places, values = near_extrema(trajectory, joint, order, np.inf, -np.inf)
-    times = trajectory.times_of(pieces, places).tolist()
+    times = trajectory.times(pieces, places).tolist()
     rows = zip(pieces.tolist(), places.tolist(), times, values.tolist(), strict=True)
     return [Extremum(joint, k, order, s, time, value) for k, s, time, value in rows]
 
@@ -185,7 +179,7 @@ def furthest(trajectory: Trajectory, order: int, errors: Array) -> Furthest:
     """
     pieces = np.arange(len(trajectory.durations))
     if trajectory.polynomial_in_time:
-        pieces = _reaching(trajectory.derivatives(order), errors)
+        pieces = _reaching(trajectory, order, errors)
     places, values = trajectory.turns(order, pieces)
     none, near = np.isnan(places), errors[pieces]
     # By time: pieces first, places of one after another.
@@ -201,15 +195,20 @@ def furthest(trajectory: Trajectory, order: int, errors: Array) -> Furthest:
     return Furthest(order, *(np.array(part) for part in zip(*found, strict=True)))
 
 
-def _reaching(a: Array, errors: Array) -> NDArray[np.int64]:
+def _reaching(trajectory: Trajectory, order: int, errors: Array) -> NDArray[np.int64]:
     """Pieces that may have the least or largest value of a joint, or one that counts with errors.
 
     Bernstein coefficients bound a polynomial; a piece that stays within what the ends of others
     surely have, with errors on both sides, is left out.
     """
-    hull = bernstein(a) if len(a) > 2 else a.cumsum(axis=0)
-    room = LOOSE * np.abs(a).sum(axis=0) + errors
-    one, other = hull[0], hull[-1]
-    least = hull.min(axis=0) - room > over_rows(np.minimum, np.minimum(one, other) + room)
-    most = hull.max(axis=0) + room < over_rows(np.maximum, np.maximum(one, other) - room)
-    return np.flatnonzero(~(least & most).all(axis=1))
+    a = trajectory.derivatives(order)
+    start, end, sizes = trajectory.edges(order)
+    room = LOOSE * sizes + errors
+    low, high = np.minimum(start, end), np.maximum(start, end)
+    least = over_rows(np.minimum, low + room)
+    most = over_rows(np.maximum, high - room)
+    if len(a) > 2:
+        inner = bernstein(a)[1:-1]
+        low, high = np.minimum(low, inner.min(axis=0)), np.maximum(high, inner.max(axis=0))
+    inside = (low - room > least) & (high + room < most)
+    return np.flatnonzero(~inside.all(axis=1))

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array
 
+Numbers = NDArray[Any]
+"""Real or complex, of any precision, or objects: gradients are taken by complex steps."""
 MAX_COEFFICIENTS = 10
 """Coefficients of degree 9, the highest that a declaration may have."""
 PERM = np.array(
@@ -22,7 +25,7 @@ _SETTLED = 2.0**-52
 """Step after which a root in the unit interval is known to the last bit: the spacing at 1."""
 
 
-def derived(a: Array, order: int) -> Array:
+def derived(a: Numbers, order: int) -> Numbers:
     """Coefficients of a derivative by s; ascending powers lead, and one at least is left."""
     if order >= len(a):
         return np.zeros((1, *a.shape[1:]))
@@ -37,7 +40,7 @@ def derivative_rows(s: Array, order: NDArray[np.int64]) -> Array:
     return np.asarray(powers * PERM[:, order].T)
 
 
-def valued(a: Array, s: Array) -> Array:
+def valued(a: Numbers, s: float | Array) -> Numbers:
     """Values at places, by Horner's scheme; powers lead, the other axes are broadcast."""
     value = a[-1] + 0.0 * s
     for coefficient in a[-2::-1]:

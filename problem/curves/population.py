@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array
-from . import kernel
 from .condition import Layout
 from .polynomials import PERM
 
@@ -41,6 +40,8 @@ def batch_reach(
     ndarray, shape (batch, sides, joints, orders)
         rad/sᵒʳᵈᵉʳ; the same bits whatever the order, the size or the threads.
     """
+    from . import kernel
+
     vectors, joints = len(durations), values.shape[1]
     peaks = np.empty((vectors, len(sides), *wanted.shape))
     rows = layout.rows
@@ -65,6 +66,8 @@ def batch_coefficients(layout: Layout, values: Array, durations: Array) -> Array
 
     Not finite where the system is singular.
     """
+    from . import kernel
+
     vectors, joints = len(durations), values.shape[1]
     flat = np.empty((int(layout.first[-1]), joints * vectors))
     lower, upper = layout.bandwidths

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array, over_rows
-from .blocks import POSITIVE, Blocks, blocks_of
 from .condition import Layout
-from .system import System, inverse, singular, system
+from .system import POSITIVE, System, system
+
+if TYPE_CHECKING:
+    from .blocks import Blocks
 
 WIDTHS = (1, 2, 4, 8, 16, 32)
 """Segments in a block, tried in turn: one gives a close bound for splines of degrees 3 and 5, two
@@ -34,9 +37,8 @@ def refined_coefficients(
 
     and every ``error`` that contains its own image, |B||r| + |I − BA| error ≤ error, is a bound if
     the first term is positive: |I − BA| then shrinks a positive vector, so its spectral radius is
-    below 1 and repeated use of the inequality ends in |e| ≤ error. That holds for any B, also for
-    one with the far entries left out, as `banded.image` makes it for long splines. An image of a
-    bound is a bound itself, and the closer one.
+    below 1 and repeated use of the inequality ends in |e| ≤ error. That holds for any B. An image
+    of a bound is a bound itself, and the closer one. Long systems are bounded by `blocks`.
 
     Parameters
     ----------
@@ -59,37 +61,34 @@ def refined_coefficients(
     wide = durations.astype(np.longdouble) if extended else durations
     with np.errstate(all="ignore"):  # what is no number has no bound, and is refused
         rows = system(layout, wide)
-        flat, error = (_by_blocks if rows.in_band else _densely)(layout, rows, values, durations)
+        flat, error = (_by_blocks if rows.in_band else _densely)(rows, values)
     if error is None or not np.isfinite(flat).all():
-        raise singular(layout, durations)
+        raise rows.singular()
     rounded = flat.astype(np.float64, copy=False)
     error += np.finfo(np.float64).eps * np.abs(rounded)
     return layout.unflat(rounded), layout.unflat(error, int(layout.degrees.max()) + 1)
 
 
-def _densely(
-    layout: Layout, rows: System, values: Array, durations: Array
-) -> tuple[NDArray[np.floating], Array | None]:
+def _densely(rows: System, values: Array) -> tuple[NDArray[np.floating], Array | None]:
     """Coefficients, and an error that contains its own image, by the inverse of all rows."""
-    approximate = inverse(rows, layout, durations)
-    flat = _refined(layout, rows, values, lambda residual: approximate @ residual)
-    matrix = layout.dense(rows.narrow.values)
-    return flat, contained(approximate, matrix, _excess(rows, values, flat, len(matrix)))
+    flat = _refined(rows, values, rows.inverse.__matmul__)
+    matrix = rows.layout.dense(rows.narrow.values)
+    return flat, contained(rows.inverse, matrix, _excess(rows, values, flat, len(matrix)))
 
 
-def _by_blocks(
-    layout: Layout, rows: System, values: Array, durations: Array
-) -> tuple[NDArray[np.floating], Array | None]:
+def _by_blocks(rows: System, values: Array) -> tuple[NDArray[np.floating], Array | None]:
     """The same by blocks of segments, wider ones where the bound is not close."""
+    from .blocks import blocks_of  # compiled
+
     narrow = rows.narrow
     best: tuple[NDArray[np.floating], Array | None] = (values, None)
     for segments in WIDTHS:
-        blocks = blocks_of(layout, narrow, segments)
+        blocks = blocks_of(narrow, segments)
         if narrow is rows:
-            flat, excess = _solved(layout, blocks, values)
+            flat, excess = _solved(blocks, values)
         else:
-            flat = _refined(layout, rows, values, blocks.solve)
-            excess = _excess(rows, values, flat, rows.columns.shape[1])
+            flat = _refined(rows, values, blocks.solve)
+            excess = _excess(rows, values, flat, rows.values.shape[1])
         error = blocks.bound(excess)
         if error is None:
             continue
@@ -102,23 +101,21 @@ def _by_blocks(
     return best
 
 
-def _solved(layout: Layout, blocks: Blocks, values: Array) -> tuple[NDArray[np.floating], Array]:
+def _solved(blocks: Blocks, values: Array) -> tuple[NDArray[np.floating], Array]:
     """Coefficients in float64, and a bound on their residual.
 
     What a step of refinement would gain is less than the rounding of the residual.
     """
-    flat = blocks.rows.begun(layout, values)
-    flat += blocks.solve(blocks.residual(layout, values, flat)[0])
-    residual, excess = blocks.residual(layout, values, flat)
+    flat = blocks.rows.begun(values)
+    flat += blocks.solve(blocks.residual(values, flat)[0])
+    residual, excess = blocks.residual(values, flat)
     excess += np.abs(residual)
     return flat, excess
 
 
-def _refined(
-    layout: Layout, rows: System, values: Array, solve: Callable[[Array], Array]
-) -> NDArray[np.floating]:
+def _refined(rows: System, values: Array, solve: Callable[[Array], Array]) -> NDArray[np.floating]:
     """Coefficients after a solution and two steps of refinement, in extended precision."""
-    flat = rows.begun(layout, values)
+    flat = rows.begun(values)
     for _ in range(3):
         flat = flat + solve((rows.right(values) - rows.times(flat)).astype(np.float64))
     return flat

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from enum import StrEnum
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -25,15 +23,6 @@ from .polynomials import derived, tops
 from .trajectory import Trajectory
 
 
-class Timing(StrEnum):
-    """How time enters a curve that is given in a parameter e."""
-
-    STRETCHED = "stretched"
-    """Each segment by itself: time grows linearly in e, so velocity may jump between segments."""
-    TIMED = "timed"
-    """Time is itself a smooth function of e, or e is time."""
-
-
 def shape_of(curve: Curve, waypoints: Array) -> Shape:
     """`Curve.shape`, refused where segments are not stretched.
 
@@ -48,26 +37,6 @@ def shape_of(curve: Curve, waypoints: Array) -> Shape:
             "which is needed here"
         )
     return form
-
-
-def segment_peaks(curve: Curve, waypoints: ArrayLike) -> Array:
-    """Largest |q′|, |q″|, |q‴| of every segment when its duration is 1 s.
-
-    A duration l divides them by l, l², l³.
-
-    Parameters
-    ----------
-    curve : Curve
-        One whose segments are stretched.
-    waypoints : array_like, shape (way-points, joints)
-        rad.
-
-    Returns
-    -------
-    ndarray, shape (segments, joints, 3)
-    """
-    sides = _segment_sides(curve, as_waypoints(curve, waypoints))[:, :, 1:]
-    return np.asarray(sides.max(axis=1).transpose(0, 2, 1))
 
 
 def _segment_sides(curve: Curve, waypoints: Array) -> Array:
@@ -105,7 +74,9 @@ def solve_in_closed_form(curve: Curve, waypoints: ArrayLike, limits: ArrayLike) 
         s; 0 for a segment in which nothing that is limited moves, infinite where a joint with
         limit 0 moves.
     """
-    peaks = segment_peaks(curve, waypoints)
+    # Largest |q′|, |q″|, |q‴| of every segment when its duration is 1 s.
+    sides = _segment_sides(curve, as_waypoints(curve, waypoints))[:, :, 1:]
+    peaks = sides.max(axis=1).transpose(0, 2, 1)
     bound = np.asarray(limits, dtype=np.float64)
     with np.errstate(divide="ignore", invalid="ignore"):
         ratios = np.where(peaks > 0.0, peaks / bound, 0.0)

@@ -13,36 +13,28 @@ from ..arrays import Array
 from ..errors import CurveError, TrajgapError
 from .kind import Enclosed, are_durations
 from .peak import Extremum
-from .polynomials import LOOSE, MAX_COEFFICIENTS, bernstein, roots_in_unit, tops
+from .polynomials import (
+    LOOSE,
+    MAX_COEFFICIENTS,
+    Numbers,
+    bernstein,
+    derived,
+    roots_in_unit,
+    tops,
+    valued,
+)
 from .trajectory import Trajectory
 
 if TYPE_CHECKING:
     from scipy.interpolate import PPoly
 
-Numbers = NDArray[np.inexact]
-"""Real or complex, of any precision: gradients are taken by complex steps."""
-
-
-def _derived(a: Numbers) -> Numbers:
-    """Derivatives of polynomials, ascending powers along the last axis."""
-    return np.asarray(a[..., 1:] * np.arange(1, a.shape[-1]))
-
 
 def _product(a: Numbers, b: Numbers) -> Numbers:
-    out = np.zeros(
-        (*np.broadcast_shapes(a.shape[:-1], b.shape[:-1]), a.shape[-1] + b.shape[-1] - 1),
-        dtype=np.result_type(a, b),
-    )
-    for k in range(b.shape[-1]):
-        out[..., k : k + a.shape[-1]] += a * b[..., k : k + 1]
+    shape = len(a) + len(b) - 1, *np.broadcast_shapes(a.shape[1:], b.shape[1:])
+    out = np.zeros(shape, dtype=np.result_type(a, b))
+    for k in range(len(b)):
+        out[k : k + len(a)] += a * b[k : k + 1]
     return out
-
-
-def _valued(a: Numbers, e: float | Array) -> Numbers:
-    value = a[..., -1]
-    for m in range(a.shape[-1] - 2, -1, -1):
-        value = value * e + a[..., m]
-    return value
 
 
 def numerators(q: Numbers, t: Numbers, highest: int, sign: int = -1) -> list[Numbers]:
@@ -52,7 +44,7 @@ def numerators(q: Numbers, t: Numbers, highest: int, sign: int = -1) -> list[Num
 
     Parameters
     ----------
-    q, t : ndarray, shape (..., 4)
+    q, t : ndarray, shape (4, ...)
         Ascending coefficients; complex ones too.
     highest : int
     sign : int
@@ -60,38 +52,30 @@ def numerators(q: Numbers, t: Numbers, highest: int, sign: int = -1) -> list[Num
 
     Returns
     -------
-    list of ndarray, shape (..., powers)
+    list of ndarray, shape (powers, ...)
     """
-    speed = _derived(t)
-    bend = _derived(speed)
-    found = [_derived(q)]
+    speed, bend = derived(t, 1), derived(t, 2)
+    found = [derived(q, 1)]
     for r in range(1, highest):
         a = found[-1]
-        following = _product(_derived(a), speed) + sign * (2 * r - 1) * _product(a, bend)
+        following = _product(derived(a, 1), speed) + sign * (2 * r - 1) * _product(a, bend)
         # The leading terms of q″t′ and q′t″ cancel for two cubics.
-        found.append(following[..., :3] if r == 1 and sign < 0 else following)
+        found.append(following[:3] if r == 1 and sign < 0 else following)
     return found
 
 
-def _in_time(numerator: Numbers, speed: Numbers, order: int, places: Array) -> Array:
-    """Derivative in time, N_r/t′²ʳ⁻¹, at places; powers along the last axis, places lead."""
-    rate = _valued(speed, places) ** (2 * order - 1)
-    return np.asarray(_valued(numerator, places) / rate)
+def _in_time(numerator: Numbers, speed: Numbers, order: int, places: float | Array) -> Numbers:
+    """Derivative in time, N_r/t′²ʳ⁻¹, at places; powers lead in both, then places do."""
+    return np.asarray(valued(numerator, places) / valued(speed, places) ** (2 * order - 1))
 
 
-def _turns(following: Array) -> Array:
-    """Places where a derivative turns: roots of the next one's numerator; NaN for none."""
-    return roots_in_unit(np.moveaxis(following, -1, 0))
-
-
-def least_speed(speed: Numbers) -> tuple[Array, Array]:
-    """Smallest value on [0, 1] of quadratics, ascending along the last axis, and its place."""
-    b, c = np.asarray(speed[..., 1], np.float64), np.asarray(speed[..., 2], np.float64)
+def _least_speed(speed: Array) -> tuple[Array, Array]:
+    """Smallest value on [0, 1] of quadratics, ascending powers leading, and its place."""
     with np.errstate(divide="ignore", invalid="ignore"):
-        turn = -0.5 * b / c
-    turn = np.where((c > 0.0) & (turn > 0.0) & (turn < 1.0), turn, 0.0)
+        turn = -0.5 * speed[1] / speed[2]
+    turn = np.where((speed[2] > 0.0) & (turn > 0.0) & (turn < 1.0), turn, 0.0)
     places = np.stack([np.zeros(turn.shape), np.ones(turn.shape), turn])
-    values = np.asarray(_valued(speed, places), dtype=np.float64)
+    values = valued(speed, places)
     at = values.argmin(axis=0)[None]
     return np.take_along_axis(values, at, 0)[0], np.take_along_axis(places, at, 0)[0]
 
@@ -125,10 +109,14 @@ class ClockedTrajectory(Trajectory):
         return np.append(self.clock[:, 0], self.clock[-1].sum())
 
     @cached_property
-    def _numerators(self) -> list[Array]:
-        """N_1 to N_4, each of shape (pieces, joints, powers)."""
-        q = self.scaled[:, :4].transpose(0, 2, 1)
-        found = numerators(q, self.clock[:, None, :], 4)
+    def _time(self) -> Array:
+        """The clock with powers leading, shape (4, pieces, 1)."""
+        return np.ascontiguousarray(self.clock.T[:, :, None])
+
+    @cached_property
+    def numerators(self) -> list[Array]:
+        """N_1 to N_4, each of shape (powers, pieces, joints)."""
+        found = numerators(self.derivatives(0), self._time, 4)
         return [np.ascontiguousarray(a, dtype=np.float64) for a in found]
 
     def __call__(self, time: ArrayLike, order: int = 0) -> Array:
@@ -147,12 +135,12 @@ class ClockedTrajectory(Trajectory):
         """Parameter of the piece at which a time is reached; Newton steps within bisection."""
         a = self.clock[piece].copy()
         a[0] -= time
-        slope = _derived(a)
+        slope = derived(a, 1)
         low, high, e = 0.0, 1.0, 0.5
         for _ in range(100):
-            value = float(_valued(a, e))
+            value = float(valued(a, e))
             low, high = (e, high) if value < 0 else (low, e)
-            step = e - value / float(_valued(slope, e))
+            step = e - value / float(valued(slope, e))
             step = step if low <= step <= high else 0.5 * (low + high)
             if abs(step - e) <= 1e-16:
                 break
@@ -164,11 +152,11 @@ class ClockedTrajectory(Trajectory):
         if order == 0:
             return super().turns(0, pieces)
         own = slice(None) if pieces is None else pieces
-        inner = _turns(self._numerators[order][own])
+        inner = roots_in_unit(self.numerators[order][:, own])
         edge = np.zeros((1, *inner.shape[1:]))
         places = np.concatenate([edge, inner, edge + 1.0])
-        speed = _derived(self.clock[own])[:, None, :]
-        return places, _in_time(self._numerators[order - 1][own], speed, order, places)
+        speed = derived(self._time[:, own], 1)
+        return places, _in_time(self.numerators[order - 1][:, own], speed, order, places)
 
     def derivative(self, segment: int, joint: int, order: int) -> Array:
         """Refuse: a derivative in time is no polynomial.
@@ -179,7 +167,7 @@ class ClockedTrajectory(Trajectory):
             For every order above 0.
         """
         if order == 0:
-            return self.scaled[segment, :4, joint].copy()
+            return super().derivative(segment, joint, 0)
         raise TrajgapError("trajectory: time is not linear here, derivatives are no polynomials")
 
     @property
@@ -196,38 +184,31 @@ class ClockedTrajectory(Trajectory):
     def values(self, piece: int, joint: int, order: int, places: Array) -> Array:
         """Derivative in time, up to order 4, at places of a piece."""
         if order == 0:
-            return np.asarray(_valued(self.scaled[piece, :4, joint], places))
-        numerator, speed = self._numerators[order - 1][piece, joint], _derived(self.clock[piece])
-        return _in_time(numerator, speed, order, places)
+            return super().values(piece, joint, 0, places)
+        speed = derived(self.clock[piece], 1)
+        return _in_time(self.numerators[order - 1][:, piece, joint], speed, order, places)
 
-    def times(self, piece: int, places: Array) -> Array:
-        """Times of places of a piece, s."""
-        return np.asarray(_valued(self.clock[piece], places))
-
-    def times_of(self, pieces: NDArray[np.int64], places: Array) -> Array:
-        """Times of places, each on a piece of its own, s."""
-        return np.asarray(_valued(self.clock[pieces], places))
+    def times(self, pieces: int | NDArray[np.int64], places: Array) -> Array:
+        """As `Trajectory.times`, by the clock."""
+        return valued(self.clock[pieces].T, places)
 
     def level(self, piece: int, joint: int, order: int, value: float) -> Array:
         """N_r − value·t′²ʳ⁻¹, as t′ > 0."""
         if order == 0:
             return super().level(piece, joint, order, value)
-        speed = np.polynomial.polynomial.polypow(_derived(self.clock[piece]), 2 * order - 1)
-        found = self._numerators[order - 1][piece, joint]
+        speed = np.polynomial.polynomial.polypow(derived(self.clock[piece], 1), 2 * order - 1)
+        found = self.numerators[order - 1][:, piece, joint]
         return np.asarray(np.polynomial.polynomial.polysub(found, value * speed))
 
     def steps(self, order: int) -> tuple[Array, Array, Array]:
         """Derivative, up to order 2, before and after each inner break, and its terms' size."""
-        q = self.scaled[:, :4].transpose(0, 2, 1)
-        edges = np.stack([np.zeros(q.shape[:2]), np.ones(q.shape[:2])])
         if order == 0:
-            values, sizes = (np.asarray(_valued(one, edges), np.float64) for one in (q, np.abs(q)))
-        else:
-            clock = self.clock[:, None, :]
-            terms = numerators(np.abs(q), np.abs(clock), order, 1)[-1]
-            speed = _derived(clock)
-            values = _in_time(self._numerators[order - 1], speed, order, edges)
-            sizes = _in_time(terms, speed, order, edges)
+            return super().steps(0)
+        q, speed = self.derivatives(0), derived(self._time, 1)
+        edges = np.stack([np.zeros(q.shape[1:]), np.ones(q.shape[1:])])
+        terms = numerators(np.abs(q), np.abs(self._time), order, 1)[-1]
+        values = _in_time(self.numerators[order - 1], speed, order, edges)
+        sizes = _in_time(terms, speed, order, edges)
         return values[1, :-1], values[0, 1:], sizes[1, :-1] + sizes[0, 1:]
 
 
@@ -238,7 +219,7 @@ def _checked_clock(clock: Array) -> None:
     ------
     CurveError
     """
-    values, places = least_speed(_derived(clock))
+    values, places = _least_speed(derived(clock.T, 1))
     k = int(values.argmin())
     value, e = float(values[k]), float(places[k])
     if not value > 0:
@@ -255,6 +236,27 @@ def _trajectory(scaled: Array, clock: Array) -> ClockedTrajectory:
     return ClockedTrajectory(np.diff(breaks), scaled, (3,) * len(clock), clock)
 
 
+def combined(matrix: Numbers, numbers: Array) -> tuple[Array, Array]:
+    """Combinations in extended precision of way-points, or durations, and a bound on their error.
+
+    Parameters
+    ----------
+    matrix : ndarray of longdouble, shape (pieces, 4, numbers)
+    numbers : ndarray, shape (numbers, joints)
+
+    Returns
+    -------
+    scaled, error : ndarray, shape (pieces, 10, joints)
+    """
+    wide = numbers.astype(np.longdouble)
+    tiny = np.finfo(np.longdouble).eps * (len(numbers) + 5)
+    scaled, error = np.zeros((2, len(matrix), MAX_COEFFICIENTS, numbers.shape[1]))
+    scaled[:, :4] = matrix @ wide
+    error[:, :4] = tiny * (np.abs(matrix) @ np.abs(wide))
+    error += np.finfo(np.float64).eps * np.abs(scaled)
+    return scaled, error
+
+
 def enclosed_with_clock(q: Numbers, t: Numbers, waypoints: Array, durations: Array) -> Enclosed:
     """Trajectory of q(e) and t(e), with a bound on the error of every extremum.
 
@@ -269,15 +271,8 @@ def enclosed_with_clock(q: Numbers, t: Numbers, waypoints: Array, durations: Arr
     CurveError
         If the clock does not run forwards everywhere.
     """
-    wide, long = waypoints.astype(np.longdouble), durations.astype(np.longdouble)
-    epsilon = np.finfo(np.float64).eps
-    tiny = np.finfo(np.longdouble).eps * (waypoints.shape[0] + 4)
-    n, joints = durations.size, waypoints.shape[1]
-    scaled, error = np.zeros((2, n, MAX_COEFFICIENTS, joints))
-    scaled[:, :4] = q @ wide
-    error[:, :4] = tiny * (np.abs(q) @ np.abs(wide)) + epsilon * np.abs(scaled[:, :4])
-    clock = np.asarray(t @ long, dtype=np.float64)
-    clock_error = np.asarray(tiny * (np.abs(t) @ long) + epsilon * np.abs(clock))
+    scaled, error = combined(q, waypoints)
+    clock, clock_error = (one[:, :4, 0] for one in combined(t, durations[:, None]))
     _checked_clock(clock)
     found = _trajectory(scaled, clock)
     return Enclosed(found, _errors(found, error, clock_error))
@@ -290,16 +285,15 @@ def _errors(found: ClockedTrajectory, error: Array, clock_error: Array) -> Array
     division by t′²ʳ⁻¹ adds (2r − 1) δt′/t′ of the largest value.
     """
     epsilon = 64 * np.finfo(np.float64).eps
-    q = np.abs(found.scaled[:, :4]).transpose(0, 2, 1)
-    t = np.abs(found.clock)[:, None, :]
-    dq = error[:, :4].transpose(0, 2, 1) + epsilon * q
-    dt = clock_error[:, None, :] + epsilon * t
-    least = least_speed(_derived(found.clock))[0][:, None]
-    slow = _derived(dt).sum(axis=-1) / least
+    q, t = np.abs(found.derivatives(0)), np.abs(found.clock.T[:, :, None])
+    dq = error[:, :4].transpose(1, 0, 2) + epsilon * q
+    dt = clock_error.T[:, :, None] + epsilon * t
+    least = _least_speed(derived(found.clock.T, 1))[0][:, None]
+    slow = derived(dt, 1).sum(axis=0) / least
     bounds = np.empty((len(found.clock), 4, found.joints))
-    bounds[:, 0] = 2.0 * dq.sum(axis=-1)
-    terms = [a.sum(axis=-1) for a in numerators(q, t, 4, 1)]
-    moved = [a.sum(axis=-1) for a in numerators(q + dq, t + dt, 4, 1)]
+    bounds[:, 0] = 2.0 * dq.sum(axis=0)
+    terms = [a.sum(axis=0) for a in numerators(q, t, 4, 1)]
+    moved = [a.sum(axis=0) for a in numerators(q + dq, t + dt, 4, 1)]
     for r in range(1, 4):
         sway = moved[r - 1] - terms[r - 1] + epsilon * terms[r - 1]
         power = least ** (2 * r - 1)
@@ -311,11 +305,10 @@ def _errors(found: ClockedTrajectory, error: Array, clock_error: Array) -> Array
 
 
 def value_at(q: Numbers, t: Numbers, e: Extremum) -> Numbers:
-    """Derivatives at the place of an extremum, for coefficients along the last axis."""
+    """Derivatives at the place of an extremum, for coefficients along the first axis."""
     if e.order == 0:
-        return _valued(q, e.s)
-    n = numerators(q, t, e.order)[-1]
-    return np.asarray(_valued(n, e.s) / _valued(_derived(t), e.s) ** (2 * e.order - 1))
+        return np.asarray(valued(q, e.s))
+    return _in_time(numerators(q, t, e.order)[-1], derived(t, 1), e.order, e.s)
 
 
 def runs_forwards(nodes: Array, durations: Array) -> tuple[Array, NDArray[np.bool_]]:
@@ -330,13 +323,13 @@ def runs_forwards(nodes: Array, durations: Array) -> tuple[Array, NDArray[np.boo
 
     Returns
     -------
-    clocks : ndarray, shape (batch, pieces, 4)
+    clocks : ndarray, shape (4, batch, pieces)
     valid : ndarray of bool, shape (batch,)
     """
     valid = are_durations(durations)
     h = np.where(valid[:, None], durations, 1.0)
-    clocks = np.einsum("vs,kps->vkp", h, nodes)  # the same bits for any number of vectors
-    least = least_speed(_derived(clocks))[0].min(axis=1)
+    clocks = np.einsum("vs,kps->pvk", h, nodes)  # the same bits for any number of vectors
+    least = _least_speed(derived(clocks, 1))[0].min(axis=1)
     return clocks, np.asarray(valid & (least > 0.0))
 
 
@@ -352,7 +345,7 @@ def clocked_reach(
     ----------
     q : ndarray, shape (pieces, 4, joints)
         Coefficients of q(e).
-    clocks : ndarray, shape (batch, pieces, 4)
+    clocks : ndarray, shape (4, batch, pieces)
         Of t(e).
     wanted, sides, least
         As `Curve.batch_reach` takes them.
@@ -361,16 +354,16 @@ def clocked_reach(
     -------
     ndarray, shape (batch, sides, joints, orders)
     """
-    found = np.zeros((len(clocks), len(sides), *wanted.shape))
+    found = np.zeros((clocks.shape[1], len(sides), *wanted.shape))
     orders = (np.flatnonzero(wanted.any(axis=0)) + least).tolist()
-    t = clocks[:, :, None, :]
-    speed = np.asarray(_derived(t), dtype=np.float64)
-    slowest = least_speed(speed)[0]
-    known = numerators(q.transpose(0, 2, 1), t, max(orders) + 1) if max(orders) else []
+    a, t = q.transpose(1, 0, 2)[:, None], clocks[..., None]
+    speed = derived(t, 1)
+    slowest = _least_speed(speed)[0]
+    known = numerators(a, t, max(orders) + 1) if max(orders) else []
     for r in orders:
         for side, sign in enumerate(sides):
             if r == 0:
-                top = tops(q.transpose(1, 0, 2)[:, None], sign)
+                top = tops(a, sign)
             else:
                 top = _tops_in_time(known[r - 1 : r + 1], speed, slowest ** (2 * r - 1), r, sign)
             found[:, side, :, r - least] = top
@@ -385,15 +378,15 @@ def _tops_in_time(
     def sized(value: Array) -> Array:
         return np.abs(value) if side == 0.0 else side * value
 
-    shape = (*known[1].shape[:-1], known[0].shape[-1])
-    a = np.asarray(np.broadcast_to(known[0], shape), dtype=np.float64)
-    edges = np.stack([np.zeros(shape[:-1]), np.ones(shape[:-1])])
+    shape = known[1].shape[1:]
+    a = np.asarray(np.broadcast_to(known[0], (len(known[0]), *shape)), dtype=np.float64)
+    edges = np.stack([np.zeros(shape), np.ones(shape)])
     found = sized(_in_time(a, speed, order, edges)).max(axis=(0, 2))
-    bound = sized(bernstein(np.moveaxis(a, -1, 0))).max(axis=0) + LOOSE * np.abs(a).sum(axis=-1)
+    bound = sized(bernstein(a)).max(axis=0) + LOOSE * np.abs(a).sum(axis=0)
     open_ = ~(bound < (found[:, None] * slowest)) | ~(found[:, None] >= 0.0)
-    places = _turns(known[1][open_])
-    rate = np.broadcast_to(speed, (*shape[:-1], 3))[open_]
-    inner = np.where(np.isnan(places), -np.inf, sized(_in_time(a[open_], rate, order, places)))
+    places = roots_in_unit(known[1][:, open_])
+    rate = np.broadcast_to(speed, (3, *shape))[:, open_]
+    inner = np.where(np.isnan(places), -np.inf, sized(_in_time(a[:, open_], rate, order, places)))
     vector, _, joint = np.nonzero(open_)
     np.maximum.at(found, (vector, joint), inner.max(axis=0, initial=-np.inf))
     return np.asarray(found)

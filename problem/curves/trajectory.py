@@ -81,6 +81,11 @@ class Trajectory:
         return {}
 
     @cached_property
+    def _at_edges(self) -> dict[int, tuple[Array, Array, Array]]:
+        """`edges` by order: bounds and jumps ask for the same."""
+        return {}
+
+    @cached_property
     def _turned(self) -> dict[int, tuple[Array, Array]]:
         """`turns` of all pieces by order: extrema are asked for joint by joint."""
         return {}
@@ -93,7 +98,7 @@ class Trajectory:
         if order not in self._known:
             if order == 0:
                 powers = self.scaled[:, : max(self.degrees) + 1].transpose(1, 0, 2)
-                self._known[0] = np.array(powers, order="C")
+                self._known[0] = np.ascontiguousarray(powers).view()
             else:
                 found = derived(self.derivatives(0), order)
                 found /= self.durations[:, None] ** order
@@ -142,12 +147,8 @@ class Trajectory:
         """Derivative in time at places, 0..1, of a piece."""
         return valued(self.derivative(piece, joint, order), places)
 
-    def times(self, piece: int, places: Array) -> Array:
-        """Times of places of a piece, s."""
-        return np.asarray(self.breaks[piece] + places * self.durations[piece])
-
-    def times_of(self, pieces: NDArray[np.int64], places: Array) -> Array:
-        """Times of places, each on a piece of its own, s."""
+    def times(self, pieces: int | NDArray[np.int64], places: Array) -> Array:
+        """Times of places of a piece, or each on a piece of its own, s."""
         return np.asarray(self.breaks[pieces] + places * self.durations[pieces])
 
     def level(self, piece: int, joint: int, order: int, value: float) -> Array:
@@ -156,16 +157,20 @@ class Trajectory:
         found[0] -= value
         return found
 
+    def edges(self, order: int) -> tuple[Array, Array, Array]:
+        """Derivative at the start and the end of each piece, and the size of its terms.
+
+        Each of shape (pieces, joints).
+        """
+        if order not in self._at_edges:
+            a = self.derivatives(order)
+            self._at_edges[order] = a[0], a.sum(axis=0), np.abs(a).sum(axis=0)
+        return self._at_edges[order]
+
     def steps(self, order: int) -> tuple[Array, Array, Array]:
         """Derivative before and after each inner break, and the size of their terms.
 
         Each of shape (breaks, joints).
         """
-        a = self.derivatives(order)
-        sizes = np.abs(a).sum(axis=0)
-        return a.sum(axis=0)[:-1], a[0, 1:], sizes[:-1] + sizes[1:]
-
-    def sides(self, break_index: int, joint: int, order: int) -> tuple[float, float, float]:
-        """`steps` at one inner break, counted from 1, of one joint."""
-        left, right, scale = (float(one[break_index - 1, joint]) for one in self.steps(order))
-        return left, right, scale
+        start, end, sizes = self.edges(order)
+        return end[:-1], start[1:], sizes[:-1] + sizes[1:]

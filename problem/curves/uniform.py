@@ -1,28 +1,122 @@
-"""The uniform cubic B-spline of irb1600, in two readings of time."""
+"""The uniform cubic B-spline of irb1600: exact matrices, and curves in two readings of time."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import lru_cache
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import Array
 from ..errors import TrajgapError
-from .kind import STEP, Curve, Enclosed, Shape, as_batch, masked
+from .kind import STEP, Curve, Enclosed, Shape, Timing, as_batch, masked
 from .peak import Extremum, PeakGradients
 from .polynomials import MAX_COEFFICIENTS
-from .stretched import StretchedCurve, Timing
-from .timed import clocked_reach, enclosed_with_clock, runs_forwards, value_at
-from .uniform_matrices import clock_matrix, shape_matrix
+from .stretched import StretchedCurve
+from .timed import clocked_reach, combined, enclosed_with_clock, runs_forwards, value_at
+
+_SIXTH = Fraction(1, 6)
+"""Weight of either neighbour in (2); exact, so that the matrices are."""
 
 
-@lru_cache(maxsize=16)
-def _nodes(waypoints: int, natural: bool) -> Array:
-    """The clock's matrix in float64."""
-    return np.asarray(clock_matrix(waypoints, natural), dtype=np.float64)
+@lru_cache(maxsize=64)
+def vertex_matrix(waypoints: int, natural: bool = False) -> tuple[tuple[Fraction, ...], ...]:
+    """Control vertices as exact combinations of the way-points, (m + 2) rows of m numbers.
+
+    (V_{i−1} + 4 V_i + V_{i+1})/6 = W_i (2) with V_1 = V_0 and V_{m+1} = V_m (3). Rows sum to 1;
+    the sum of the absolute values of a row is at most 3, since the diagonal of the system exceeds
+    the rest of its row by at least 2/6. A natural curve has no curvature at its ends instead of
+    (3): V_0 − 2 V_1 + V_2 = 0, so that V_1 = W_0 by (2), and the same at the other end.
+    """
+    m = waypoints
+    end = Fraction(1) if natural else 5 * _SIXTH
+    diagonal = [end, *([4 * _SIXTH] * (m - 2)), end]
+    rows = np.eye(m, dtype=int) * Fraction(1)
+
+    def beside(i: int) -> Fraction:
+        """Weight of a neighbour in row i."""
+        return Fraction(0) if natural and i in (0, m - 1) else _SIXTH
+
+    for i in range(1, m):
+        factor = beside(i) / diagonal[i - 1]
+        diagonal[i] -= factor * beside(i - 1)
+        rows[i] -= factor * rows[i - 1]
+    rows[-1] /= diagonal[-1]
+    for i in range(m - 2, -1, -1):
+        rows[i] = (rows[i] - beside(i) * rows[i + 1]) / diagonal[i]
+    first, last = rows[0], rows[-1]
+    if natural:
+        first, last = 2 * rows[0] - rows[1], 2 * rows[-1] - rows[-2]
+    return tuple(map(tuple, (first, *rows, last)))
+
+
+@lru_cache(maxsize=64)
+def shape_matrix(waypoints: int, natural: bool = False) -> NDArray[np.longdouble]:
+    """Coefficients in e of each segment as combinations of the way-points.
+
+    Parameters
+    ----------
+    waypoints : int
+    natural : bool
+        As in `vertex_matrix`.
+
+    Returns
+    -------
+    ndarray of longdouble, shape (segments, 4, way-points)
+        Exact rational numbers, rounded once.
+    """
+    v = np.array(vertex_matrix(waypoints, natural))
+    # The four basis functions of (1) in powers of e.
+    basis = np.array([(1, 4, 1, 0), (-3, 0, 3, 0), (3, -6, 3, 0), (-1, 3, -3, 1)]) * _SIXTH
+    exact = np.array([basis @ v[k : k + 4] for k in range(waypoints - 1)])
+    high = exact.astype(np.float64)
+    low = exact - np.vectorize(Fraction, otypes=[object])(high)
+    matrix: NDArray[np.longdouble] = high.astype(np.longdouble) + low.astype(np.float64)
+    matrix.setflags(write=False)
+    return matrix
+
+
+@lru_cache(maxsize=64)
+def clock_matrix(waypoints: int, natural: bool = False) -> NDArray[np.longdouble]:
+    """Coefficients in e of t on each segment as combinations of the durations.
+
+    Parameters
+    ----------
+    waypoints : int
+    natural : bool
+        As in `vertex_matrix`, for the time nodes.
+
+    Returns
+    -------
+    ndarray of longdouble, shape (segments, 4, segments)
+    """
+    nodes = shape_matrix(waypoints, natural)
+    # Node i is the sum of the durations before it.
+    matrix = np.cumsum(nodes[:, :, :0:-1], axis=2)[:, :, ::-1]
+    matrix.setflags(write=False)
+    return matrix
+
+
+def control_vertices(waypoints: ArrayLike) -> Array:
+    """Control vertices of the uniform cubic B-spline through way-points.
+
+    Source: `irb1600-ga-cubic-bspline`, (2) and (3).
+
+    Parameters
+    ----------
+    waypoints : array_like, shape (m, joints)
+        In any unit.
+
+    Returns
+    -------
+    ndarray, shape (m + 2, joints)
+        In the same unit.
+    """
+    q = np.asarray(waypoints, dtype=np.float64)
+    return np.asarray(np.array(vertex_matrix(q.shape[0])).astype(np.float64) @ q)
 
 
 @dataclass(frozen=True)
@@ -71,13 +165,7 @@ class StretchedUniformBSpline(UniformBSpline, StretchedCurve):
         """One cubic a segment, from exact rational numbers."""
         matrix = shape_matrix(self.waypoints)
         n, joints = self.segments, waypoints.shape[1]
-        wide = waypoints.astype(np.longdouble)
-        exact = matrix @ wide
-        epsilon = np.finfo(np.longdouble).eps * (self.waypoints + 4)
-        scaled, error = np.zeros((2, n, MAX_COEFFICIENTS, joints))
-        scaled[:, :4] = exact
-        error[:, :4] = epsilon * (np.abs(matrix) @ np.abs(wide))
-        error += np.finfo(np.float64).eps * np.abs(scaled)
+        scaled, error = combined(matrix, waypoints)
         by_waypoint = np.zeros((n, MAX_COEFFICIENTS, self.waypoints))
         by_waypoint[:, :4] = matrix
         return Shape(
@@ -141,11 +229,11 @@ class TimedUniformBSpline(UniformBSpline):
         least: int = 1,
     ) -> Array:
         """Of all pieces at once."""
-        nodes = _nodes(self.waypoints, self.natural_clock)
+        nodes = self.clock.astype(np.float64)
         clocks, valid = runs_forwards(nodes, as_batch(self, durations))
-        found = np.zeros((len(clocks), len(sides), *wanted.shape))
+        found = np.zeros((valid.size, len(sides), *wanted.shape))
         if wanted.any():
-            found[valid] = clocked_reach(values, clocks[valid], wanted, sides, least)
+            found[valid] = clocked_reach(values, clocks[:, valid], wanted, sides, least)
         return masked(found, wanted, valid)
 
     def value_gradients(
@@ -162,11 +250,11 @@ class TimedUniformBSpline(UniformBSpline):
         by_duration = np.empty((len(points), self.segments))
         by_waypoint = np.empty((len(points), self.waypoints))
         for i, e in enumerate(points):
-            q, t = scaled[e.segment, :, e.joint], clock[e.segment]
-            steps = t + 1j * STEP * nodes[e.segment].T
+            q, t = scaled[e.segment, :, e.joint, None], clock[e.segment, :, None]
+            steps = t + 1j * STEP * nodes[e.segment]
             by_duration[i] = value_at(q, steps, e).imag / STEP
             # The numerators are linear in q.
-            by_waypoint[i] = value_at(matrix[e.segment].T, t, e)
+            by_waypoint[i] = value_at(matrix[e.segment], t, e)
         return PeakGradients(by_duration, by_waypoint, np.empty((len(points), 0)))
 
 

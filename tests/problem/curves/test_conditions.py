@@ -11,7 +11,7 @@ import pytest
 from support.exact_route import derived, value
 from support.samples import DECLARATIONS, FREE
 from trajgap.problem import Interpolant
-from trajgap.problem.curves import ConditionKind, Conditions, layout
+from trajgap.problem.curves import ConditionKind, Conditions
 
 CURVES = {**DECLARATIONS, **FREE}
 each = pytest.mark.parametrize("name", CURVES)
@@ -34,8 +34,8 @@ def derivative(c: list[Fraction], h: Fraction, order: int, end: bool) -> Fractio
 def stated(table: Conditions, h: list[Fraction], c: list[list[Fraction]]) -> list[Fraction]:
     """Left-hand sides: the derivative, or what both sides differ by, in the row's unit of time."""
     found = []
-    for row in table.one_by_one:
-        b, r = row.at, row.order
+    rows = (table.kinds.tolist(), table.breaks.tolist(), table.orders.tolist())
+    for kind, b, r in zip(*rows, strict=True):
         left = derivative(c[b - 1], h[b - 1], r, True) if b > 0 else Fraction(0)
         right = derivative(c[b], h[b], r, False) if b < len(h) else Fraction(0)
         found.append(
@@ -43,7 +43,7 @@ def stated(table: Conditions, h: list[Fraction], c: list[list[Fraction]]) -> lis
                 ConditionKind.LEFT_VALUE: h[b - 1] ** r * left if b > 0 else Fraction(0),
                 ConditionKind.RIGHT_VALUE: h[b] ** r * right if b < len(h) else Fraction(0),
                 ConditionKind.MATCH: h[b - 1] ** r * (left - right),
-            }[row.kind]
+            }[kind]
         )
     return found
 
@@ -53,7 +53,7 @@ def test_rows_are_derivatives_in_time_exactly(name: str) -> None:
     curve = CURVES[name]
     h, c = drawn(curve)
     exact = np.array(h, dtype=object)
-    for table in (curve.table, layout(curve)):
+    for table in (curve.table, curve.layout):
         rows = table.dense(table.matrix(exact)) @ np.array(
             [x for piece in c for x in piece], dtype=object
         )
@@ -65,7 +65,7 @@ def test_rows_are_derivatives_in_time_exactly(name: str) -> None:
 @each
 @pytest.mark.parametrize("kind", [np.float64, np.longdouble])
 def test_floats_of_any_precision_round_the_fractions(name: str, kind: Any) -> None:
-    plan = layout(CURVES[name])
+    plan = CURVES[name].layout
     h = drawn(CURVES[name])[0]
     exact = plan.matrix(np.array(h, dtype=object))
     wide = np.array([kind(x.numerator) / kind(x.denominator) for x in h])
@@ -78,7 +78,7 @@ def test_floats_of_any_precision_round_the_fractions(name: str, kind: Any) -> No
 
 @each
 def test_symbols_are_the_same_numbers(name: str) -> None:
-    plan = layout(CURVES[name])
+    plan = CURVES[name].layout
     symbol = ca.SX.sym("h", plan.segments)
     h = np.empty(plan.segments, dtype=object)
     h[:] = ca.vertsplit(symbol)
@@ -92,7 +92,7 @@ def test_symbols_are_the_same_numbers(name: str) -> None:
 
 @each
 def test_unknowns_are_what_no_row_gives_at_once_and_the_band_holds_them(name: str) -> None:
-    plan = layout(CURVES[name])
+    plan = CURVES[name].layout
     right = plan.kinds == ConditionKind.RIGHT_VALUE
     given = plan.first[plan.breaks[right]] + plan.orders[right]
     assert sorted(given) == np.flatnonzero(plan.unknown < 0).tolist()

@@ -31,7 +31,7 @@ from trajgap.problem import (
     quintic_spline,
     rest_to_rest,
 )
-from trajgap.problem.curves.clamped_knots import chord_fractions
+from trajgap.problem.curves.clamped_declaration import chord_fractions
 
 FIRST, LAST, BENT = (0.5, -0.2, 0.0), (-0.3, 0.4, 0.7), (0.0, 1.1, -0.6)
 MOVING = {

@@ -21,7 +21,13 @@ from trajgap.problem import (
     check,
     evaluate,
 )
-from trajgap.problem.curves.peak import critical_points
+from trajgap.problem.curves import derived, roots_in_unit
+
+
+def critical_points(a: np.ndarray) -> np.ndarray:
+    """Places in (0, 1) where the polynomial with ascending coefficients turns."""
+    places = roots_in_unit(derived(a, 1))
+    return places[~np.isnan(places)]
 
 
 def as_problem(velocity: np.ndarray) -> Problem:

@@ -14,7 +14,7 @@ from trajgap.problem import (
     fit,
     rest_to_rest,
 )
-from trajgap.problem.curves import furthest, near_extrema, peak
+from trajgap.problem.curves import Trajectory, furthest, near_extrema, peak
 
 NAMES = ("3-5-3", "cubic", "quintic", "rest 7", "4-2-3", "lines", "uneven")
 
@@ -74,7 +74,6 @@ def test_steps_are_those_of_the_pieces_on_both_sides() -> None:
                 assert left[b - 1, j] == pytest.approx(before.sum(), abs=1e-14 * terms)
                 assert right[b - 1, j] == after[0]
                 assert scale[b - 1, j] == pytest.approx(terms, rel=1e-14)
-                assert curve.sides(b, j, order) == (left[b - 1, j], after[0], scale[b - 1, j])
 
 
 @pytest.mark.parametrize("kind", ["cubic", "quintic"])
@@ -89,9 +88,9 @@ def test_pieces_that_bounds_leave_out_change_nothing(
     found, jumps = check(problem, h), check(jumping, h)
     looked = []
 
-    def every(a: np.ndarray, errors: np.ndarray) -> np.ndarray:
-        looked.append(reaching(a, errors).size)
-        return np.arange(a.shape[1])
+    def every(trajectory: Trajectory, order: int, errors: np.ndarray) -> np.ndarray:
+        looked.append(reaching(trajectory, order, errors).size)
+        return np.arange(trajectory.durations.size)
 
     curve = problem.curve.fitted(problem.waypoints, h)
     errors = np.random.default_rng(2).lognormal(-2.0, 3.0, (130, 2))

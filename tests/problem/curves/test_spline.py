@@ -23,9 +23,8 @@ from trajgap.problem import (
     septic_spline,
     three_five_three,
 )
-from trajgap.problem.curves import adjoint as adjoint_module
 from trajgap.problem.curves import places_of, refined, right_hand_sides, system
-from trajgap.problem.curves.banded import Factors, factorise
+from trajgap.problem.curves.system import Factors, System, factorise
 
 STEPS = (0.7, 0.5, 1.4, 0.3, 1.5, 0.7, 1.6)
 FIRST, LAST, BENT = (0.5, -0.2, 0.0), (-0.3, 0.4, 0.7), (0.0, 1.1, -0.6)
@@ -201,7 +200,7 @@ def test_singular_is_said(banded: bool, monkeypatch: pytest.MonkeyPatch) -> None
 
     if banded:
         monkeypatch.setattr(system, "DENSE_UNKNOWNS", 0)
-        monkeypatch.setattr(Factors, "solve", lambda self, right: np.nan * right)
+        monkeypatch.setattr(Factors, "solve", lambda self, right, transposed: np.nan * right)
     monkeypatch.setattr(np.linalg, "solve", fails)
     with pytest.raises(
         TrajgapError, match=r"3-5-3 polynomials: singular for durations \[1. 1. 1.\]"
@@ -267,7 +266,7 @@ def test_blocks_of_segments_bound_the_error_like_the_whole_inverse(
     _, whole = refined_coefficients(interpolant, q, h)
     monkeypatch.setattr(system, "DENSE_UNKNOWNS", 0)
     monkeypatch.setattr(refined, "WIDTHS", (width,))
-    monkeypatch.setattr(refined, "inverse", refuse_inverse)
+    monkeypatch.setattr(System, "inverse", property(refuse_inverse))
     values = right_hand_sides(interpolant, q, None)
     found, error = refined.refined_coefficients(interpolant.layout, values, h, extended)
     for j in range(2):
@@ -297,7 +296,7 @@ def test_blocks_that_bound_nothing_are_refused(monkeypatch: pytest.MonkeyPatch) 
 
 
 def test_a_spline_of_1000_segments_needs_no_dense_inverse(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(refined, "inverse", refuse_inverse)
+    monkeypatch.setattr(System, "inverse", property(refuse_inverse))
     q = np.cumsum(waypoints(1001), axis=0)
     h = np.random.default_rng(8).uniform(0.3, 3.0, 1000)
     times = np.concatenate([[0.0], np.cumsum(h)])
@@ -319,7 +318,7 @@ def test_gradients_by_bands_are_those_of_the_dense_system(
     points = [e for j in range(3) for r in range(4) for e in extrema(curve, j, r)]
     dense, places = interpolant.value_gradients(problem.waypoints, h, points), places_of(points)
     monkeypatch.setattr(system, "DENSE_UNKNOWNS", 0)
-    monkeypatch.setattr(adjoint_module, "inverse", refuse_inverse)
+    monkeypatch.setattr(System, "inverse", property(refuse_inverse))
     adjoint = interpolant.adjoint(problem.waypoints, h)
     found = adjoint.gradients(places)
     for kind in ("durations", "waypoints"):

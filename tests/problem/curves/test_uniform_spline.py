@@ -28,7 +28,7 @@ from trajgap.problem import (
     solve_in_closed_form,
     uniform_cubic_b_spline,
 )
-from trajgap.problem.curves.uniform_matrices import vertex_matrix
+from trajgap.problem.curves.uniform import vertex_matrix
 
 # --- control vertices -----------------------------------------------------------------------------
 
