@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from fractions import Fraction
 from itertools import pairwise
 
-from .curve import UNIFORM, derivative, nonnegative, pieces, uniform_pieces, value_at
+from .curve import UNIFORM, derivative, nonnegative, pieces
 from .problem import StatedProblem
 from .reading import Clock, need
 
@@ -46,21 +46,16 @@ def check_answer(problem: StatedProblem, h: Sequence[Fraction], clock: Clock) ->
         total = sum(clock.each(h), Fraction(0))
         alike = all(x == share * total for x, share in zip(h, problem.shares, strict=True))
         need(alike, "answer: the durations have other ratios")
-    if problem.curve == UNIFORM:
-        # Each piece takes 1; the derivatives of order r are divided by hʳ.
-        for j, curve in enumerate(uniform_pieces(problem, clock)):
-            for k, piece in enumerate(curve):
-                _keeps(problem, j, k, piece, Fraction(1), h[k], clock)
-        return
     for j, curve in enumerate(pieces(problem, h, clock)):
         jerk = any(side[j][2] is not None for side in problem.sides)
-        for order, what in ((1, "velocity"), (2, "acceleration"))[: 2 if jerk else 1]:
+        smooth = ((1, "velocity"), (2, "acceleration"))[: 2 if jerk else 1]
+        for order, what in () if problem.curve == UNIFORM else smooth:
             slopes = [derivative(piece, order) for piece in curve]
-            for k, (left, right) in enumerate(pairwise(slopes)):
-                clock.check()
-                need(value_at(left, h[k]) == right[0], f"answer: the {what} jumps")
+            ends = [(c[0] / x**order, sum(c) / x**order) for c, x in zip(slopes, h, strict=True)]
+            for (_, left), (right, _) in clock.each(pairwise(ends)):
+                need(left == right, f"answer: the {what} jumps")
         for k, piece in enumerate(curve):
-            _keeps(problem, j, k, piece, h[k], Fraction(1), clock)
+            _keeps(problem, j, k, piece, h[k], clock)
 
 
 def _keeps(
@@ -68,13 +63,12 @@ def _keeps(
     joint: int,
     segment: int,
     piece: Sequence[Fraction],
-    end: Fraction,
-    unit: Fraction,
+    duration: Fraction,
     clock: Clock,
 ) -> None:
-    """Refuse a piece on [0, end] that exceeds a limit; its time is counted in ``unit`` s."""
+    """Refuse a piece that exceeds a limit."""
     limits = [
-        (r, s, x[0] * unit**r)
+        (r, s, x[0] * duration**r)
         for s, side in ((1, problem.sides[1]), (-1, problem.sides[0]))
         for r, x in enumerate(side[joint], 1)
         if x is not None
@@ -87,7 +81,7 @@ def _keeps(
         rest = [-sign * c for c in derivative(piece, order)]
         rest[0] += limit
         need(
-            nonnegative(rest, end, clock),
+            nonnegative(rest, clock),
             f"answer: joint {joint + 1}, segment {segment + 1}, "
             f"derivative {order} exceeds its limit",
         )

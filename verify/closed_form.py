@@ -9,7 +9,7 @@ from abc import abstractmethod
 from fractions import Fraction
 from typing import Any, NoReturn
 
-from .curve import UNIFORM, Pieces, derivative, pieces, uniform_pieces, value_at
+from .curve import UNIFORM, derivative, pieces, value_at
 from .problem import StatedProblem
 from .ranges import PLACES
 from .reading import Clock, Refused, listed, need, number, required, whole
@@ -17,19 +17,17 @@ from .tree import ProofKind
 
 
 class ClosedForm(ProofKind[None]):
-    """What all of them have in common: pieces, each in a time of its own from 0 to 1."""
+    """What all of them have in common: pieces for given durations, in a time from 0 to 1."""
 
     def __init__(
         self, problem: StatedProblem, proof: dict[str, Any], total: Fraction, clock: Clock
     ) -> None:
         super().__init__(problem, proof, total, clock)
-        uniform = problem.curve == UNIFORM
-        self._pieces = uniform_pieces(problem, clock) if uniform else self.pieces()
-        self._late = False
+        self._pieces, self._late = pieces(problem, self.durations(), clock), False
 
     @abstractmethod
-    def pieces(self) -> Pieces:
-        """Of a declared piecewise polynomial."""
+    def durations(self) -> list[Fraction]:
+        """For which the curve is solved; its pieces for all others follow by stretching."""
 
     def root(self) -> None:
         """All durations."""
@@ -66,15 +64,18 @@ class EachAlone(ClosedForm):
     the segments: where neighbours differ in duration, the velocity jumps.
     """
 
-    def pieces(self) -> Pieces:
-        """For durations of 1."""
-        declared, n = self.problem.declaration, self.problem.segments
+    def durations(self) -> list[Fraction]:
+        """All 1."""
+        declared = self.problem.declaration
         apart = declared is not None and declared.at_rest and not declared.virtual
         if declared is not None:
             inner = zip(declared.continuity, declared.prescribed[1:-1], strict=True)
             apart &= all(set(range(1, order + 1)) <= set(held) for order, held in inner)
-        need(apart, "declaration not covered: no curve whose segments stand alone")
-        return pieces(self.problem, [Fraction(1)] * n, self.clock)
+        need(
+            apart or self.problem.curve == UNIFORM,
+            "declaration not covered: no curve whose segments stand alone",
+        )
+        return [Fraction(1)] * self.problem.segments
 
     def leaf(self, box: None, data: list[Any]) -> None:
         """[joint, order, place, least duration] of every segment.
@@ -112,19 +113,16 @@ class FixedRatios(ClosedForm):
         both = zip(self._shares, problem.longest, strict=True)
         self._late = any(top is not None and total * share > top for share, top in both)
 
-    def pieces(self) -> Pieces:
-        """For a total of 1."""
+    def durations(self) -> list[Fraction]:
+        """Those of a total of 1."""
         declared = self.problem.declaration
         # A derivative prescribed other than 0 does not fall with the total.
         known = declared is not None and declared.at_rest
-        need(known, "declaration not covered: no curve that may be stretched in time")
-        return [
-            [
-                [c * share**p for p, c in enumerate(piece)]
-                for piece, share in zip(curve, self._shares, strict=True)
-            ]
-            for curve in pieces(self.problem, self._shares, self.clock)
-        ]
+        need(
+            known or self.problem.curve == UNIFORM,
+            "declaration not covered: no curve that may be stretched in time",
+        )
+        return self._shares
 
     def leaf(self, box: None, data: list[Any]) -> None:
         """[joint, order, segment, place]; joint −1 stands for the segment's own lower bound."""

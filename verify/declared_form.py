@@ -106,18 +106,18 @@ def linear_form(
             if other != column:
                 factors[column, place[other]] = -x
 
-    def scaled(segment: int, t: Fraction, order: int, values: list[Fraction]) -> list[Solved]:
+    def scaled(segment: int, end: int, order: int, values: list[Fraction]) -> list[Solved]:
         """Factors by unknown, and a value for each joint."""
         if segment == n:
             return [0 * factors[0], np.array(values)]
-        own = at_end(declared, segment, t, order).items()
+        own = at_end(declared, segment, end, order).items()
         return [
             np.asarray(sum((x * table[first[segment] + p] for p, x in own), 0 * table[0]))
             for table in (factors, constants)
         ]
 
-    ends = [scaled(k, one, order, x) for k, _, order, x in clock.each(agreeing)]
-    starts = [scaled(k, 0 * one, order, x) for _, k, order, x in clock.each(agreeing)]
+    ends = [scaled(k, 1, order, x) for k, _, order, x in clock.each(agreeing)]
+    starts = [scaled(k, 0, order, x) for _, k, order, x in clock.each(agreeing)]
     between = list(dict.fromkeys((left, right) for left, right, _, _ in agreeing))
     most, p = max(declared.degrees) + 1, len(agreeing)
     basis, fixed = np.zeros((n, most, p)), np.zeros((n, most, joints))
