@@ -10,8 +10,9 @@ on any path, 2.3e-13 of the same sum over absolute values: `ROUND` of that sum i
 from __future__ import annotations
 
 from copy import copy
+from dataclasses import dataclass
 from math import comb
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -47,24 +48,24 @@ POWERS = LOAD_POWERS[:, None] - np.array([1, 1, 2, 2])
 """Powers of r in M: a velocity comes with h, an acceleration with h²."""
 
 
+@dataclass(frozen=True, eq=False)
 class Task:
     """What all leaves with limits have in common.
 
-    Parameters
+    Attributes
     ----------
     steps : ndarray, shape (segments, joints)
     limits : ndarray, shape (joints, 3)
         inf where there is none.
     total : float
-
-    Attributes
-    ----------
     basis : ndarray, shape (5, 6)
         Powers of s in a piece with (step, v0, v1, a0, a1).
     """
 
-    def __init__(self, steps: Array, limits: Array, total: float) -> None:
-        self.steps, self.limits, self.total, self.basis = steps, limits, total, HERMITE[1:]
+    steps: Array
+    limits: Array
+    total: float
+    basis: ClassVar[Array] = HERMITE[1:]
 
     def cap(self, rows: Rows) -> Array:
         """Limit of each row."""
@@ -103,35 +104,34 @@ class Centre:
 
     def _parts(self) -> None:
         """Taylor coefficients of M and b, segment by segment, and R with RᵀR ≈ M0⁻¹."""
-        n, size, unknowns = self.n, self.size, 2 * (self.n - 1)
-        top = self.r + self.e
-        self.blocks = np.zeros((4, size, n, 4, 4))
-        self.m0 = np.zeros((size, unknowns, unknowns))
-        self.load = np.zeros((5, size, n, unknowns))
-        self.stiff_top = np.zeros((size, unknowns, unknowns))
-        self.load_top = np.zeros((size, n, unknowns))
-        self.places = [
-            [(a, 2 * (k + a % 2 - 1) + a // 2) for a in range(4) if 0 < k + a % 2 < n]
-            for k in range(n)
-        ]
-        for k in range(n):
-            for a, i in self.places[k]:
-                power = int(LOAD_POWERS[a])
-                for o in range(power + 1):
-                    term = comb(power, o) * LOAD[a] * self.r[:, k] ** (power - o)
-                    self.load[o, :, k, i] = term
-                self.load_top[:, k, i] = abs(LOAD[a]) * top[:, k] ** power
-                for b, j in self.places[k]:
-                    power = int(POWERS[a, b])
-                    for o in range(power + 1):
-                        term = comb(power, o) * STIFFNESS[a, b] * self.r[:, k] ** (power - o)
-                        self.blocks[o, :, k, a, b] = term
-                    self.m0[:, i, j] += self.blocks[0, :, k, a, b]
-                    self.stiff_top[:, i, j] += abs(STIFFNESS[a, b]) * top[:, k] ** power
+        self.places = []
+        for k in range(self.n):
+            a = np.array([a for a in range(4) if 0 < k + a % 2 < self.n])
+            self.places.append((a, 2 * (k + a % 2 - 1) + a // 2))
+        powers, top = (x[..., None] ** np.arange(5) for x in (self.r, self.r + self.e))
+        self.blocks = _taylor(STIFFNESS, POWERS, powers)[:4]
+        self.m0 = self._assembled(self.blocks[0])
+        self.load = self._placed(_taylor(LOAD, LOAD_POWERS, powers))
+        self.stiff_top = self._assembled(np.abs(STIFFNESS) * top[..., POWERS])
+        self.load_top = self._placed(np.abs(LOAD) * top[..., LOAD_POWERS])
         try:
             self.root = np.linalg.inv(np.linalg.cholesky(self.m0))
         except np.linalg.LinAlgError:
             raise Refused("the matrix of a leaf is not positive definite") from None
+
+    def _placed(self, own: Array) -> Array:
+        """What is said of v₀, v₁, a₀ and a₁ of each segment (..., segment, 4), by unknown."""
+        found = np.zeros((*own.shape[:-1], 2 * self.n - 2))
+        for k, (a, i) in enumerate(self.places):
+            found[..., k, i] = own[..., k, a]
+        return found
+
+    def _assembled(self, blocks: Array) -> Array:
+        """The matrix of all unknowns from those of the segments (leaf, segment, 4, 4)."""
+        found = np.zeros((len(blocks), 2 * self.n - 2, 2 * self.n - 2))
+        for k, (a, i) in enumerate(self.places):
+            found[:, i[:, None], i] += blocks[:, k, a[:, None], a]
+        return found
 
     def pick(self, leaf: NDArray[Any], joint: int | slice = slice(None)) -> Centre:
         """Some of the boxes, and of one joint."""
@@ -146,15 +146,10 @@ class Centre:
     def _acting(self, vectors: Array, first: int = 0) -> Array:
         """M_k,o v of vectors (leaf, vector, unknown) for o ≥ first: (o, leaf, segment, …)."""
         own = np.zeros((self.size, self.n, vectors.shape[1], 4))
-        for k, places in enumerate(self.places):
-            for a, i in places:
-                own[:, k, :, a] = vectors[:, :, i]
+        for k, (a, i) in enumerate(self.places):
+            own[:, k][..., a] = vectors[..., i]
         moved = own @ np.swapaxes(self.blocks[first:], 3, 4)
-        found = np.zeros((4 - first, self.size, self.n, *vectors.shape[1:]))
-        for k, places in enumerate(self.places):
-            for a, i in places:
-                found[:, :, k, :, i] = moved[:, :, k, :, a]
-        return found
+        return np.swapaxes(self._placed(np.swapaxes(moved, 2, 3)), 2, 3)
 
     def _framed(self, matrix: Array) -> tuple[Array, Array]:
         """R A Rᵀ, and the largest row sum of its rounding."""
@@ -173,13 +168,10 @@ class Centre:
         frame, rounding = self._framed(self.m0)
         off = np.abs(frame - np.eye(frame.shape[1])).sum(axis=2).max(axis=1) + rounding
         share = self.e / self.r
-        part = np.zeros_like(self.m0)
-        for k in range(self.n):
-            for a, i in self.places[k]:
-                for b, j in self.places[k]:
-                    if a < 2 and b < 2:
-                        part[:, i, j] += STIFFNESS[a, b] * self.r[:, k] ** 3 * share[:, k] ** 2
-        power, rounding = self._framed(part)
+        moving = self.blocks[0] * (share**2)[..., None, None]
+        moving[..., 2:, :] = 0.0
+        moving[..., 2:] = 0.0
+        power, rounding = self._framed(self._assembled(moving))
         power = 0.5 * (power + np.swapaxes(power, 1, 2))
         largest, exponent = np.ones(self.size), 1.0
         for _ in range(5):
@@ -359,6 +351,15 @@ class Centre:
             "adjoint": adjoint,
             "residual": residual,
         }
+
+
+def _taylor(factors: Array, exponents: Rows, powers: Array) -> Array:
+    """Coefficients of δᵒ in factors·(r + δ)^exponents, given powers of r: (o, leaf, segment, …)."""
+    found = [
+        np.vectorize(comb)(exponents, o) * factors * powers[..., np.maximum(exponents - o, 0)]
+        for o in range(powers.shape[-1])
+    ]
+    return np.stack(found)
 
 
 def _pairs(n: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
