@@ -14,7 +14,7 @@ from typing import Any
 from .answer import check_durations
 from .problem import Bounds, StatedProblem
 from .ranges import MOST_ROWS, MOST_TANGENT, MOST_WEIGHTS, TANGENT_UNIT
-from .reading import Clock, listed, need, number, required, sign_of, text, whole
+from .reading import Clock, listed, need, number, required, sign_of, text, weights, whole
 from .tree import ProofKind, Subject
 
 Zero = Fraction(0)
@@ -179,12 +179,8 @@ class AnyCurve(ProofKind[Sides]):
         """[row, weight, row, weight, …]: they bound the total from below in the box."""
         if any(low > high for low, high in box):
             return  # no durations at all
-        listed(data, "weights", 2 * MOST_WEIGHTS)
-        need(len(data) % 2 == 0, "malformed: weights come in pairs")
-        weighted = [
-            (self._rows[whole(row, 0, len(self._rows) - 1)], number(weight))
-            for row, weight in zip(data[::2], data[1::2], strict=True)
-        ]
+        stated = weights(data, len(self._rows), MOST_WEIGHTS)
+        weighted = [(self._rows[row], number(weight)) for row, weight in stated]
         need(all(weight >= 0 for _, weight in weighted), "a weight is negative")
         proved = self.least_total(box, weighted)
         need(proved >= self.total, f"it proves only {float(proved):.12g} s")

@@ -26,11 +26,6 @@ from .ranges import (
 from .reading import Clock, need, required, whole
 from .tree import LEAF
 
-_NUMBERS = 2_000_000
-"""In the largest array of a batch: 16 MB, beyond which numpy is no faster."""
-_LEAVES = 512
-"""In a batch at most: from there on numpy's own work outweighs the calls."""
-
 _NO_FLOOR = "no limit of a joint that moves in it, and no bound, keeps its duration above 0"
 """Why a problem is not covered: logarithms of durations have to be bounded."""
 
@@ -43,6 +38,7 @@ class DeclaredCurve(Boxes):
     """
 
     keys = ("rows",)
+    centres = Centre
 
     def __init__(
         self, problem: StatedProblem, proof: dict[str, Any], total: Fraction, clock: Clock
@@ -57,9 +53,16 @@ class DeclaredCurve(Boxes):
         both = zip(exact, self._returning(declared), strict=True)
         self.shortest = [max(nextafter(float(x), 0.0), y) for x, y in both]
         self.rows = self.read_rows(proof["rows"], 0, PLACES)
-        self.most, self.batch = self.task.total, self._batch()
-        nodes = proof["tree"]
-        self._hopeless = type(nodes) is list and len(nodes) == 1 and _single(nodes[0])
+        self.longest = [
+            self.task.total * (1.0 + SLACK) if x is None else nextafter(float(x / self.second), inf)
+            for x in problem.longest
+        ]
+        self.most, m, breaks = self.task.total, self.task.unknowns, self.task.breaks
+        self.together(m * breaks * max(m, breaks * problem.joints))
+        self._hopeless = False
+        match proof["tree"]:
+            case [[tag, _]] if tag == LEAF:
+                self._hopeless = True
 
     @property
     def infeasible(self) -> bool:
@@ -134,22 +137,11 @@ class DeclaredCurve(Boxes):
                 least[own] = max(least[own], found * (1.0 - SLACK))
         return least
 
-    def _batch(self) -> int:
-        """Leaves that are judged together: long curves fewer."""
-        task = self.task
-        m, breaks = task.unknowns, task.breaks
-        most = max(1, m * breaks * max(m, breaks * task.joints))
-        return int(max(1, min(_LEAVES, _NUMBERS // most)))
-
     def root(self) -> Sides:
-        """From the least durations, which are proved, to the total or the upper bounds."""
+        """As any kind has it, where no duration may go to 0."""
         zero = [k for k, x in enumerate(self.shortest, 1) if x <= 0]
         need(self._hopeless or not zero, f"segment {min(zero, default=0)}: {_NO_FLOOR}")
-        high = [
-            self.task.total * (1.0 + SLACK) if x is None else nextafter(float(x / self.second), inf)
-            for x in self.problem.longest
-        ]
-        return self.shrunk(self.shortest, high)
+        return super().root()
 
     @staticmethod
     def middle(low: float, high: float) -> float:
@@ -173,15 +165,6 @@ class DeclaredCurve(Boxes):
             return False
         angle = self.problem.waypoints[at - sum(b < at for b in virtual)][joint]
         return sign * angle > max(sign * x for x in ends)
-
-    def centre(self, sides: Array) -> Centre:
-        """Of the declared curve."""
-        return Centre(self.task, sides[:, 0], sides[:, 1])
-
-
-def _single(node: Any) -> bool:
-    """Whether a node is a leaf with one row alone."""
-    return type(node) is list and len(node) == 2 and node[0] == LEAF
 
 
 def covered(problem: StatedProblem) -> Declaration:

@@ -28,16 +28,12 @@ from .ranges import (
 )
 from .reading import Clock, listed, need, number, whole
 
-_LEAVES = 256
-"""In a batch: from there on numpy's own work outweighs the calls."""
-_NUMBERS = 4_000_000
-"""In the largest array of a batch: 32 MB; long splines have smaller batches."""
-
 
 class QuinticSpline(Boxes):
     """Boxes in the simplex of durations whose sum is the total; windows beside weighted limits."""
 
     keys = ("powers", "second", "low", "windows", "rows")
+    centres = Centre
 
     def __init__(
         self, problem: StatedProblem, proof: dict[str, Any], total: Fraction, clock: Clock
@@ -64,7 +60,7 @@ class QuinticSpline(Boxes):
         )
         self.rows = self.read_rows(proof["rows"], 1, QUINTIC_PLACES)
         self.windows = self._terms(read_windows)
-        self._low = []
+        self.shortest, self.longest = [], [self.most] * n
         proved = least_durations(problem, total)
         for k, stated_low in enumerate(listed(proof["low"], "low", n, n)):
             x = number(stated_low)
@@ -72,12 +68,8 @@ class QuinticSpline(Boxes):
                 Fraction(float(x / second)) == x / second >= 0 and x <= proved[k],
                 f"segment {k + 1}: its least duration is not proved",
             )
-            self._low.append(float(x / second))
-        self.batch = max(1, min(_LEAVES, _NUMBERS // (16 * n**3)))
-
-    def root(self) -> Sides:
-        """From the least durations, which are proved, to the total."""
-        return self.shrunk(self._low, [self.most] * len(self._low))
+            self.shortest.append(float(x / second))
+        self.together(16 * n**3)
 
     @staticmethod
     def middle(low: float, high: float) -> float:
@@ -95,10 +87,6 @@ class QuinticSpline(Boxes):
         need(usual, "a window's tau is of unusual size")
         least = self.over_windows(np.array(which), np.array(float(exact)), *map(np.array, box))
         need(bool(least > 0.0), "it is not proved by its window")
-
-    def centre(self, sides: Array) -> Centre:
-        """Of the splines."""
-        return Centre(self.task, sides[:, 0], sides[:, 1])
 
     def _terms(self, windows: list[list[int]]) -> tuple[Array, Array, Array]:
         """p, q and d of windows Σ (p_k/h_k − q_k h_k) − d ≤ 0: Σ cΔ/h − A Σ m h − V Σ|c + ψ' h|."""

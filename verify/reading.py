@@ -134,6 +134,13 @@ def whole(value: Any, low: int, high: int) -> int:
     return value
 
 
+def weights(value: Any, known: int, most: int) -> list[tuple[int, Any]]:
+    """[row, weight, row, weight, …] as pairs: numbers of known rows, and weights as they stand."""
+    flat = listed(value, "weights", 2 * most)
+    need(len(flat) % 2 == 0, "malformed: weights come in pairs")
+    return [(whole(row, 0, known - 1), w) for row, w in zip(flat[::2], flat[1::2], strict=True)]
+
+
 def sign_of(value: Any) -> int:
     """1 or −1."""
     need(type(value) is int and value in (1, -1), "malformed: a sign is neither 1 nor -1")

@@ -66,7 +66,7 @@ class Box:
         total = sum(self.low[:m])
         for t in range(m):
             self.high[t] = min(self.high[t], cap - total + self.low[t])
-        for h, t, _ in cubic.rho():
+        for h, t, _ in cubic.rho:
             self.high[h] = min(self.high[h], self.high[t])
         self.floor = max(self.floor, total)
         self.empty |= any(a > b for a, b in zip(self.low, self.high, strict=True))
@@ -78,7 +78,7 @@ class Box:
             (Fraction(a, TICKS), Fraction(b, TICKS))
             for a, b in zip(self.low, self.high, strict=True)
         ]
-        for h, t, _ in cubic.rho():
+        for h, t, _ in cubic.rho:
             most = out[h][1] ** 2 / out[t][0] if out[t][0] else out[h][1]
             least = out[h][0] ** 2 / out[t][1] if out[t][1] else Fraction(0)
             out.append((least, max(least, min(most, out[h][1]))))

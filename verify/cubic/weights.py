@@ -7,7 +7,7 @@ from fractions import Fraction
 from typing import Any
 
 from ..ranges import MIX, MIX_DIGITS, MOST_INTEGER, MOST_WEIGHTS
-from ..reading import listed, need, required, whole
+from ..reading import need, required, weights, whole
 from .box import Box
 from .system import FINE, Condition, Cubic, Number, Sides, root_below
 
@@ -54,24 +54,21 @@ def least(
         If the weights are malformed, or an unknown has no bounds.
     """
     sides = box.sides(cubic)
-    held = listed(held, "weights of conditions", 2 * MOST_WEIGHTS)
-    equations = listed(equations, "weights of equations", 2 * MOST_WEIGHTS)
-    need(len(held) % 2 == 0 and len(equations) % 2 == 0, "malformed: weights come in pairs")
     terms: dict[tuple[int, Any], Number] = {}
     along: dict[int, Number] = {k: target.get(k, 0) for k in range(cubic.coordinates)}
     constant: Number = 0
     inverse = dict.fromkeys(range(cubic.m), Fraction(0))
-    for number_, weight in zip(held[::2], held[1::2], strict=True):
+    for row, weight in weights(held, len(known), MOST_WEIGHTS):
         w = whole(weight, 0, MOST_INTEGER)
-        joint, own, lengths, rest = known[whole(number_, 0, len(known) - 1)]
+        joint, own, lengths, rest = known[row]
         for key, x in own.items():
             terms[joint, key] = terms.get((joint, key), 0) + w * x
         for k, x in lengths.items():
             along[k] += w * x
         constant += w * rest
-    for number_, weight in zip(equations[::2], equations[1::2], strict=True):
+    for row, weight in weights(equations, cubic.joints * cubic.size, MOST_WEIGHTS):
         w = whole(weight, -MOST_INTEGER, MOST_INTEGER)
-        joint, i = divmod(whole(number_, 0, cubic.joints * cubic.size - 1), cubic.size)
+        joint, i = divmod(row, cubic.size)
         for key, x in cubic.equations[i].items():
             terms[joint, key] = terms.get((joint, key), 0) + w * x
         if i in cubic.moved:
@@ -96,7 +93,7 @@ def least(
         if x:
             ends = required(box.x[joint][v], "an unknown without bounds")
             constant += Fraction(min(x * ends[0], x * ends[1])) / FINE
-    return constant + _over(along, inverse, sides, cubic.rho())
+    return constant + _over(along, inverse, sides, cubic.rho)
 
 
 def _over(

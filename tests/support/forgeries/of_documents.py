@@ -142,9 +142,9 @@ FORGERIES = [
               _leaf(lambda leaf, at=at, x=x: leaf.__setitem__(at, x)))
       for at, x in ((1, 2**52 + 1), (1, -(2**52) - 1), (2, 9999), (2, -1), (3, -1),
                     (3, 2**52 + 1))),
-    Forgery("boxes.Boxes.end: a leaf misses a weight", "quintic-spline",
+    Forgery("reading.weights: malformed: weights come in pairs", "quintic-spline",
             _leaf(lambda leaf: leaf.append(0))),
-    Forgery("boxes.Boxes.end: a leaf has too many rows", "quintic-spline",
+    Forgery("reading.listed: malformed: {what}: not {least} to {most} entries", "quintic-spline",
             _leaf(lambda leaf: leaf.extend([0, 1] * 64))),
     # Two way-points so near in time that the equations hang on one digit.
     Forgery(NOT_PROVED, "quintic-spline",

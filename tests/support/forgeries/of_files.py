@@ -85,6 +85,6 @@ FORGERIES = [
     Forgery("reading.text: malformed: {what}: no text, or too long",
             "by hand", {"problem.joints": ["1" * 10_001]}),
     Forgery(MISSING, "declared", {"proof.rows": GONE}),
-    Forgery("boxes.Boxes.end: a leaf has too many rows", "declared",
+    Forgery("reading.listed: malformed: {what}: not {least} to {most} entries", "declared",
             {"proof.tree": [[".", 0, *[0, 1] * 65]]}),
 ]  # fmt: skip
