@@ -30,10 +30,8 @@ def check_answer(problem: StatedProblem, h: Sequence[Fraction], clock: Clock) ->
 
     Parameters
     ----------
-    problem : StatedProblem
     h : sequence of Fraction
         Durations, s.
-    clock : Clock
 
     Raises
     ------

@@ -228,12 +228,10 @@ def check_motion(
 
     Parameters
     ----------
-    problem : StatedProblem
     h : sequence of Fraction
         Durations between way-points, s.
     speeds : list, [way-point][joint], or None
         Velocities at the way-points, for joints whose acceleration is limited.
-    clock : Clock
 
     Raises
     ------

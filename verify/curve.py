@@ -33,10 +33,8 @@ def pieces(problem: StatedProblem, h: Sequence[Fraction], clock: Clock) -> Piece
 
     Parameters
     ----------
-    problem : StatedProblem
     h : sequence of Fraction
         Durations, s, positive.
-    clock : Clock
 
     Raises
     ------

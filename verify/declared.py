@@ -12,17 +12,12 @@ from typing import Any
 
 import numpy as np
 
+from . import ranges
 from .boxes import SLACK, Array, Boxes, Sides
 from .declared_bound import Centre, Task
 from .declared_form import linear_form
 from .floors import least_durations
 from .problem import Bounds, Declaration, StatedProblem
-from .ranges import (
-    MOST_DECLARED_SEGMENTS,
-    MOST_DECLARED_UNKNOWNS,
-    PLACES,
-    SMALLEST_CAP,
-)
 from .reading import Clock, need, required, whole
 from .tree import LEAF
 
@@ -52,7 +47,7 @@ class DeclaredCurve(Boxes):
         exact = [x / self.second for x in least_durations(problem, total)]
         both = zip(exact, self._returning(declared), strict=True)
         self.shortest = [max(nextafter(float(x), 0.0), y) for x, y in both]
-        self.rows = self.read_rows(proof["rows"], 0, PLACES)
+        self.rows = self.read_rows(proof["rows"], 0, ranges.PLACES)
         self.longest = [
             self.task.total * (1.0 + SLACK) if x is None else nextafter(float(x / self.second), inf)
             for x in problem.longest
@@ -83,14 +78,14 @@ class DeclaredCurve(Boxes):
             for at in declared.prescribed
         ]
         sizes = [abs(x) for at in prescribed for row in at.values() for x in row if x]
-        usual = all(SMALLEST_CAP < x < 1 / SMALLEST_CAP for x in sizes)
+        usual = all(ranges.within(x, ranges.SMALLEST_CAP) for x in sizes)
         need(usual, "a prescribed derivative is of unusual size")
         form = linear_form(
             replace(declared, prescribed=prescribed),
             [[q / unit for q, unit in zip(row, units, strict=True)] for row in moved],
             self.clock,
         )
-        need(len(form.orders) <= MOST_DECLARED_UNKNOWNS, "the curve has too many unknowns")
+        need(len(form.orders) <= ranges.MOST_DECLARED_UNKNOWNS, "the curve has too many unknowns")
         caps = np.full((2, joints, 4), inf)
         for j, unit in enumerate(units):
             for s, sign in enumerate((-1, 1)):
@@ -160,8 +155,8 @@ class DeclaredCurve(Boxes):
         """Whether a way-point is there that is beyond a position limit."""
         declared, ends = self.problem.declaration, self.problem.position[(1 + sign) // 2][joint]
         virtual = [] if declared is None else declared.virtual
-        at = segment + place // PLACES
-        if order != 0 or place % PLACES != 0 or at in virtual or ends is None:
+        at = segment + place // ranges.PLACES
+        if order != 0 or place % ranges.PLACES != 0 or at in virtual or ends is None:
             return False
         angle = self.problem.waypoints[at - sum(b < at for b in virtual)][joint]
         return sign * angle > max(sign * x for x in ends)
@@ -174,7 +169,8 @@ def covered(problem: StatedProblem) -> Declaration:
     )
     n = problem.segments
     need(n > 1 or not declared.at_rest, "one segment alone has no inner break")
-    need(n <= MOST_DECLARED_SEGMENTS, f"more than {MOST_DECLARED_SEGMENTS} segments")
+    most = ranges.MOST_DECLARED_SEGMENTS
+    need(n <= most, f"more than {most} segments")
     return declared
 
 
@@ -188,4 +184,4 @@ def _cap(size: Bounds, unit: Fraction) -> float:
     if size is None:
         return inf
     own = size[1] * unit
-    return float(own) if SMALLEST_CAP < own < 1 / SMALLEST_CAP else inf
+    return float(own) if ranges.within(own, ranges.SMALLEST_CAP) else inf

@@ -72,7 +72,6 @@ class Centre:
 
     Parameters
     ----------
-    task : Task
     low, high : ndarray, shape (box, segments)
     """
 

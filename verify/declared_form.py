@@ -64,14 +64,8 @@ def linear_form(
 
     Parameters
     ----------
-    declared : Declaration
     waypoints : sequence of sequence of Fraction
         In the unit of the prescribed derivatives.
-    clock : Clock
-
-    Returns
-    -------
-    Form
 
     Raises
     ------

@@ -112,16 +112,7 @@ class StatedProblem:
 
 
 def read_problem(data: Any) -> StatedProblem:
-    """Read the problem of a certificate.
-
-    Parameters
-    ----------
-    data : Any
-        ``problem`` of the file.
-
-    Returns
-    -------
-    StatedProblem
+    """Read ``problem`` of a certificate.
 
     Raises
     ------

@@ -77,7 +77,6 @@ class Centre:
 
     Parameters
     ----------
-    task : Task
     low, high : ndarray, shape (leaf, segments)
     """
 

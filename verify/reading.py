@@ -37,12 +37,7 @@ class OutOfTime(Exception):
 
 
 class Clock:
-    """What is left of the time that was given.
-
-    Parameters
-    ----------
-    seconds : float
-    """
+    """What is left of the seconds that were given."""
 
     def __init__(self, seconds: float) -> None:
         self.seconds = seconds
@@ -167,10 +162,6 @@ def read_document(path: str | Path, clock: Clock | None = None) -> Any:
     path : str or Path
     clock : Clock, optional
         Without one there is no limit of time.
-
-    Returns
-    -------
-    Any
 
     Raises
     ------

@@ -103,12 +103,10 @@ def walk(kind: ProofKind[B], tree: Any, clock: Clock, spread: Spread | None = No
 
     Parameters
     ----------
-    kind : ProofKind
     tree : Any
         List of nodes: an integer k or ``["/", k, place]`` cuts a box across coordinate k, and the
         lower part comes first; ``[".", ...]`` is a leaf; a list with another tag is a step, after
         which the smaller box comes.
-    clock : Clock
     spread : callable, optional
         Where parts of the tree are walked, if its kind has parts; see `verify_certificate`.
 

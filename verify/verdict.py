@@ -138,16 +138,7 @@ class CertificateVerdict:
 
 
 def seal(part: Any) -> str:
-    """SHA-256 of the canonical JSON of a document or a part of it.
-
-    Parameters
-    ----------
-    part : Any
-
-    Returns
-    -------
-    str
-    """
+    """SHA-256 of the canonical JSON of a document or a part of it."""
     words = json.dumps(part, sort_keys=True, separators=(",", ":"), ensure_ascii=True)
     return hashlib.sha256(words.encode()).hexdigest()
 

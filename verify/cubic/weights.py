@@ -33,9 +33,6 @@ def least(
 
     Parameters
     ----------
-    cubic : Cubic
-    box : Box
-    known : sequence of Condition
     target : dict
         Weights of the coordinates.
     held, equations : list
@@ -43,10 +40,6 @@ def least(
     shares : callable
         Given the products that occur, a character for each: its share of the bound that is exact
         where the unknown is lowest.
-
-    Returns
-    -------
-    Fraction or int
 
     Raises
     ------

@@ -134,9 +134,9 @@ FORGERIES = [
         proof={"kind": "quintic-spline", "total": data["proof"]["total"], "tree": [["."]],
                "powers": [0, 0], "second": 0, "low": ["0"] * 3, "windows": [], "rows": []})),
     Forgery(NOT_QUINTIC, "quintic-spline", spline(1, 5)),
-    Forgery("quintic._covered: more than {MOST_QUINTIC_SEGMENTS} segments",
+    Forgery("quintic._covered: more than {most} segments",
             "quintic-spline", spline(27, 5)),
-    Forgery("quintic._covered: more than {MOST_QUINTIC_JOINTS} joints",
+    Forgery("quintic._covered: more than {most} joints",
             "quintic-spline", spline(3, 5, 13)),
     *(Forgery(WHOLE, "quintic-spline",
               _leaf(lambda leaf, at=at, x=x: leaf.__setitem__(at, x)))
@@ -156,7 +156,7 @@ FORGERIES = [
     Forgery("declared.DeclaredCurve._task: the curve has too many unknowns",
             "declared", spline(12, 9)),
     Forgery("declared.covered: one segment alone has no inner break", "declared", spline(1)),
-    Forgery("declared.covered: more than {MOST_DECLARED_SEGMENTS} segments",
+    Forgery("declared.covered: more than {most} segments",
             "declared", spline(13)),
     Forgery("declared.covered: declaration not covered: no declared piecewise polynomial",
             "stretched", lambda data: data.update(
