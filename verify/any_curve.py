@@ -113,16 +113,14 @@ class AnyCurve(ProofKind[Sides]):
     subject = Subject.ANY
     keys = ("cap", "rows")
 
-    def __init__(
-        self, problem: StatedProblem, proof: dict[str, Any], total: Fraction, clock: Clock
-    ) -> None:
-        super().__init__(problem, proof, total, clock)
-        self._asked = spans_of(problem)
+    def read(self, proof: dict[str, Any]) -> None:
+        """The cap of the total, and the table of rows."""
+        self._asked = spans_of(self.problem)
         self._cap = number(proof["cap"])
-        need(0 < total <= self._cap, "the total exceeds the cap below which the boxes lie")
+        need(0 < self.total <= self._cap, "the total exceeds the cap below which the boxes lie")
         rows = listed(proof["rows"], "rows", MOST_ROWS)
-        self._rows = [self.row(row) for row in clock.each(rows)]
-        self.speeds = [self._speed(joint) for joint in range(problem.joints)]
+        self._rows = [self.row(row) for row in self.clock.each(rows)]
+        self.speeds = [self._speed(joint) for joint in range(self.problem.joints)]
 
     def row(self, entry: Any) -> _Row:
         """Read [kind, span, joint, sign, m₀, m₁, n]."""

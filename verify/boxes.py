@@ -5,16 +5,14 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections.abc import Callable
 from copy import copy
-from fractions import Fraction
 from itertools import permutations
 from typing import Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .problem import StatedProblem
 from .ranges import MOST_LIMITS, MOST_ROWS, MOST_WEIGHT
-from .reading import Clock, listed, need, sign_of, weights, whole
+from .reading import listed, need, sign_of, weights, whole
 from .tree import ProofKind
 
 Array = NDArray[np.float64]
@@ -63,10 +61,8 @@ class Boxes(ProofKind[Sides]):
     rows: Rows
     task: Any
 
-    def __init__(
-        self, problem: StatedProblem, proof: dict[str, Any], total: Fraction, clock: Clock
-    ) -> None:
-        super().__init__(problem, proof, total, clock)
+    def read(self, proof: dict[str, Any]) -> None:
+        """A kind reads the proof; no leaf waits."""
         self._waiting: list[tuple[Sides, list[Any]]] = []
 
     def read_rows(self, stated: Any, first: int, places: int) -> Rows:

@@ -10,20 +10,18 @@ from fractions import Fraction
 from typing import Any, NoReturn
 
 from .curve import UNIFORM, derivative, pieces, value_at
-from .problem import StatedProblem
 from .ranges import PLACES
-from .reading import Clock, Refused, listed, need, number, required, whole
+from .reading import Refused, listed, need, number, required, whole
 from .tree import ProofKind
 
 
 class ClosedForm(ProofKind[None]):
     """What all of them have in common: pieces for given durations, in a time from 0 to 1."""
 
-    def __init__(
-        self, problem: StatedProblem, proof: dict[str, Any], total: Fraction, clock: Clock
-    ) -> None:
-        super().__init__(problem, proof, total, clock)
-        self._pieces, self._late = pieces(problem, self.durations(), clock), False
+    def read(self, proof: dict[str, Any]) -> None:
+        """The curve."""
+        self._pieces = pieces(self.problem, self.durations(), self.clock)
+        self._least = [Fraction(0)] * self.problem.segments
 
     @abstractmethod
     def durations(self) -> list[Fraction]:
@@ -53,7 +51,8 @@ class ClosedForm(ProofKind[None]):
     @property
     def infeasible(self) -> bool:
         """Whether a segment needs more than its upper bound."""
-        return self._late
+        both = zip(self._least, self.problem.longest, strict=True)
+        return any(top is not None and x > top for x, top in both)
 
 
 class EachAlone(ClosedForm):
@@ -82,7 +81,7 @@ class EachAlone(ClosedForm):
 
         Joint −1 stands for the duration's own lower bound.
         """
-        problem, n, least = self.problem, self.problem.segments, []
+        problem, n = self.problem, self.problem.segments
         for k, entry in enumerate(listed(data, "one bound per segment", n, n)):
             self.clock.check()
             joint, order, place, stated = listed(entry, "a bound", 4, 4)
@@ -93,28 +92,18 @@ class EachAlone(ClosedForm):
             else:
                 r, power = self.at(joint, k, order, place)
                 need(x**r <= power, f"segment {k + 1}: its least duration is not proved")
-            least.append(x)
-        reached = sum(self.clock.each(least), Fraction(0))
+            self._least[k] = x
+        reached = sum(self.clock.each(self._least), Fraction(0))
         need(self.total <= reached, "the total is not proved")
-        both = zip(least, problem.longest, strict=True)
-        self._late = any(top is not None and x > top for x, top in both)
 
 
 class FixedRatios(ClosedForm):
     """Fixed ratios of the durations, where the total is the one unknown."""
 
-    def __init__(
-        self, problem: StatedProblem, proof: dict[str, Any], total: Fraction, clock: Clock
-    ) -> None:
-        self._shares = required(
-            problem.shares, "the problem fixes no ratios that are rational numbers"
-        )
-        super().__init__(problem, proof, total, clock)
-        both = zip(self._shares, problem.longest, strict=True)
-        self._late = any(top is not None and total * share > top for share, top in both)
-
     def durations(self) -> list[Fraction]:
         """Those of a total of 1."""
+        shares = self.problem.shares
+        self._shares = required(shares, "the problem fixes no ratios that are rational numbers")
         declared = self.problem.declaration
         # A derivative prescribed other than 0 does not fall with the total.
         known = declared is not None and declared.at_rest
@@ -132,6 +121,7 @@ class FixedRatios(ClosedForm):
         own = self.total * self._shares[k]
         if whole(joint, -1, problem.joints - 1) == -1:
             need(own <= problem.shortest[k], "above its lower bound")
-            return
-        r, power = self.at(joint, k, order, place)
-        need(own**r <= power, "the total is not proved")
+        else:
+            r, power = self.at(joint, k, order, place)
+            need(own**r <= power, "the total is not proved")
+        self._least = [self.total * share for share in self._shares]

@@ -18,7 +18,7 @@ from .declared_bound import Centre, Task
 from .declared_form import linear_form
 from .floors import least_durations
 from .problem import Bounds, Declaration, StatedProblem
-from .reading import Clock, need, required, whole
+from .reading import need, required, whole
 from .tree import LEAF
 
 _NO_FLOOR = "no limit of a joint that moves in it, and no bound, keeps its duration above 0"
@@ -35,11 +35,10 @@ class DeclaredCurve(Boxes):
     keys = ("rows",)
     centres = Centre
 
-    def __init__(
-        self, problem: StatedProblem, proof: dict[str, Any], total: Fraction, clock: Clock
-    ) -> None:
-        super().__init__(problem, proof, total, clock)
-        declared = covered(problem)
+    def read(self, proof: dict[str, Any]) -> None:
+        """The curve and its limits in units of the proof, least durations, and the rows."""
+        super().read(proof)
+        problem, total, declared = self.problem, self.total, covered(self.problem)
         need(total > 0, "the total is not positive")
         self.second = Fraction(2) ** _power(total)
         self.stretches = declared.at_rest and not any(x is not None for x in problem.longest)

@@ -16,7 +16,7 @@ from .boxes import Array, Boxes, Rows, Sides
 from .floors import least_durations
 from .problem import Declaration, StatedProblem, in_own_units
 from .quintic_bound import ROUND, Centre, Task
-from .reading import Clock, listed, need, number, whole
+from .reading import listed, need, number, whole
 
 
 class QuinticSpline(Boxes):
@@ -25,10 +25,10 @@ class QuinticSpline(Boxes):
     keys = ("powers", "second", "low", "windows", "rows")
     centres = Centre
 
-    def __init__(
-        self, problem: StatedProblem, proof: dict[str, Any], total: Fraction, clock: Clock
-    ) -> None:
-        super().__init__(problem, proof, total, clock)
+    def read(self, proof: dict[str, Any]) -> None:
+        """Steps and limits in units of the proof, least durations, windows, and rows."""
+        super().read(proof)
+        problem, total, clock = self.problem, self.total, self.clock
         _covered(problem)
         n, joints = problem.segments, problem.joints
         second, steps, limits = in_own_units(problem, proof)

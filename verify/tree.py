@@ -67,6 +67,11 @@ class ProofKind(ABC, Generic[B]):
         self, problem: StatedProblem, proof: dict[str, Any], total: Fraction, clock: Clock
     ) -> None:
         self.problem, self.total, self.clock = problem, total, clock
+        self.read(proof)
+
+    @abstractmethod
+    def read(self, proof: dict[str, Any]) -> None:
+        """Read what ``proof`` states beside its tree, and refuse a problem that is not covered."""
 
     @abstractmethod
     def root(self) -> B:

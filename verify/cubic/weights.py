@@ -4,15 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from fractions import Fraction
+from math import sqrt
 from typing import Any
 
 from ..ranges import MIX, MIX_DIGITS, MOST_INTEGER, MOST_WEIGHTS
 from ..reading import need, required, weights, whole
 from .box import Box
 from .system import FINE, Condition, Cubic, Number, Sides, root_below
-
-_THIRDS = 60
-"""Taken off the range of T in which the best tangent of ρ is looked for: 3e-11 of it is left."""
 
 Spot = tuple[int, int, int]
 """Joint, coordinate and unknown of a product."""
@@ -155,7 +153,8 @@ def _slope(
     def value(span: float) -> float:
         return a * best(span) + b * span + (e + f * best(span) ** 2) / span
 
-    for _ in range(_THIRDS):
-        one, other = (2 * low + high) / 3, (low + 2 * high) / 3
-        low, high = (low, other) if value(one) <= value(other) else (one, high)
-    return Fraction(best(low) / low)
+    # Between the ends of T the sum is least where h is free, or at an end of h.
+    quotients = [(e, b - a * a / (4 * f)), (e + f * h0 * h0, b), (e + f * h1 * h1, b)]
+    turns = [sqrt(over / under) for over, under in quotients if under > 0]
+    span = min((min(max(x, low), high) for x in (low, high, *turns)), key=value)
+    return Fraction(best(span) / span)
