@@ -12,7 +12,7 @@ from itertools import pairwise
 from typing import Any
 
 from .answer import check_durations
-from .problem import Bounds, StatedProblem
+from .problem import StatedProblem
 from .ranges import MOST_ROWS, MOST_TANGENT, MOST_WEIGHTS, TANGENT_UNIT
 from .reading import Clock, listed, need, number, required, sign_of, text, weights, whole
 from .tree import ProofKind, Subject
@@ -31,34 +31,20 @@ class Spans:
 
     steps: list[list[Fraction]]
     """[span][joint]: from one way-point to the next."""
-    velocity: list[Bounds]
-    acceleration: list[Bounds]
     shortest: list[Fraction]
     longest: list[Fraction | None]
-    ends: list[list[Fraction | None]]
-    """[0 start, 1 end][joint]: velocity prescribed there, None where it is free."""
 
 
 def spans_of(problem: StatedProblem) -> Spans:
     """What remains of a problem if the curve is left open: a virtual way-point is none."""
     virtual = [] if problem.declaration is None else problem.declaration.virtual
-    held: list[list[int]] = []
-    for k in range(problem.segments):
-        if k in virtual:
-            held[-1].append(k)
-        else:
-            held.append([k])
-    longest: list[Fraction | None] = []
-    for span in held:
-        tops = [x for x in (problem.longest[k] for k in span) if x is not None]
-        longest.append(sum(tops, Zero) if len(tops) == len(span) else None)
+    firsts = [k for k in range(problem.segments) if k not in virtual]
+    held = [slice(a, b) for a, b in pairwise([*firsts, problem.segments])]
+    tops = [problem.longest[span] for span in held]
     return Spans(
         [[b - a for a, b in zip(*rows, strict=True)] for rows in pairwise(problem.waypoints)],
-        [row[0] for row in problem.limits],
-        [row[1] for row in problem.limits],
-        [sum((problem.shortest[k] for k in span), Zero) for span in held],
-        longest,
-        problem.ends,
+        [sum(problem.shortest[span], Zero) for span in held],
+        [None if None in each else sum(filter(None, each), Zero) for each in tops],
     )
 
 
@@ -139,10 +125,10 @@ class AnyCurve(ProofKind[Sides]):
 
     def _speed(self, joint: int) -> Fraction | None:
         """No motion with a total below the cap is faster; None if nothing bounds the speed."""
-        velocity, acceleration = self._asked.velocity[joint], self._asked.acceleration[joint]
+        velocity, acceleration, _ = self.problem.limits[joint]
         if velocity is not None:
             return velocity[1]
-        known = [abs(v) for v in (side[joint] for side in self._asked.ends) if v is not None]
+        known = [abs(v) for v in (side[joint] for side in self.problem.ends) if v is not None]
         if not known or acceleration is None:
             return None
         return min(known) + acceleration[1] * self._cap
@@ -152,7 +138,7 @@ class AnyCurve(ProofKind[Sides]):
         asked = self._asked
         least = list(asked.shortest)
         for k, steps in enumerate(asked.steps):
-            for step, limit in zip(steps, asked.velocity, strict=True):
+            for step, (limit, *_) in zip(steps, self.problem.limits, strict=True):
                 if step and limit is not None:
                     need(limit[1] > 0, "a joint that moves has the velocity limit 0")
                     least[k] = max(least[k], abs(step) / limit[1])
@@ -196,7 +182,7 @@ class AnyCurve(ProofKind[Sides]):
             self.clock.check()
             k, joint = row.span, row.joint
             v_max = fastest[joint] = required(self.speeds[joint], _NO_LIMIT)
-            bend = required(asked.acceleration[joint], _NO_LIMIT)[1]
+            bend = required(self.problem.limits[joint][1], _NO_LIMIT)[1]
             need(v_max > 0 and bend > 0, "a row leans on a limit of 0")
             time, first, last, right = row.terms(asked.steps[k][joint], v_max, bend, box[k])
             result += weight * right
@@ -208,7 +194,7 @@ class AnyCurve(ProofKind[Sides]):
         for (at, joint), c in slope.items():
             self.clock.check()
             side = 0 if at == 0 else 1 if at == len(box) else None
-            end = None if side is None else asked.ends[side][joint]
+            end = None if side is None else self.problem.ends[side][joint]
             result += c * end if end is not None else -abs(c) * fastest[joint]
         return result
 
@@ -240,17 +226,17 @@ def check_motion(
     need(alike, "answer: lower and upper limits differ, which no answer of any curve keeps")
     asked = spans_of(problem)
     check_durations(h, asked.shortest, asked.longest)
-    for j, (velocity, bend) in enumerate(zip(asked.velocity, asked.acceleration, strict=True)):
+    for j, (velocity, bend, jerk) in enumerate(problem.limits):
         clock.check()
         steps = [row[j] for row in asked.steps]
-        given = [side[j] for side in asked.ends]
+        given = [side[j] for side in problem.ends]
         if not any(steps) and all(v in (None, 0) for v in given):
             # It stays where it is.
             low, high, place = *(side[j] for side in problem.position), problem.waypoints[0][j]
             inside = (low is None or low[1] <= place) and (high is None or place <= high[0])
             need(inside, f"answer: joint {j + 1} is outside its position limits")
             continue
-        need(problem.limits[j][2] is None, "answer: jerk is limited")
+        need(jerk is None, "answer: jerk is limited")
         free = problem.position[0][j] is None and problem.position[1][j] is None
         need(free, "answer: position is limited")
         named = f"answer: joint {j + 1}, segment"

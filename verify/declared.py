@@ -110,10 +110,11 @@ class DeclaredCurve(Boxes):
         for p, (b, order) in enumerate(zip(form.breaks, form.orders, strict=True)):
             before, behind = form.sides[b].tolist()
             # Seen from the segment, time runs away from the neighbour.
-            for own, other, free, value, turn in (
-                (behind, before, form.ends[p], form.end[p], 1.0),
-                (before, behind, form.starts[p], form.start[p], (-1.0) ** order),
+            for own, other, stated, turn in (
+                (behind, before, form.ends[p], 1.0),
+                (before, behind, form.starts[p], (-1.0) ** order),
             ):
+                free, value = np.split(stated, [task.unknowns])
                 if own < n and not free.any():
                     longest = task.total * (1.0 + SLACK) if other < n else 1.0
                     known[own, int(b), int(order)] = value * turn / longest**order
