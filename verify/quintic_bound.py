@@ -222,8 +222,7 @@ class Centre:
         bent = np.zeros((self.size, n))
         np.add.at(bent, (every, k), shape[:, 0] * task.steps[k, j])
         against = np.zeros((3, self.size, n))  # limits: constant, times r, times 1/r
-        for o, where in ((2, 0), (1, 1), (3, 2)):
-            np.add.at(against[where], (every[order == o], k[order == o]), cap[order == o])
+        np.add.at(against, (np.array([0, 1, 0, 2])[order], every, k), cap)
         top, bottom = r + e, r - e
         moved = np.zeros((self.size, n))
         np.add.at(moved, (every, k), np.abs(shape[:, 0] * task.steps[k, j]))
@@ -231,79 +230,77 @@ class Centre:
         size += np.abs(tau) * (task.total + (1.0 / bottom).sum(axis=1))
         # Taylor coefficients of what depends on one duration; joints add to them below.
         # 1/(r + δ) = 1/r − δ/r² + δ²/r³ − δ³/r⁴ + δ⁴/(r⁴(r + δ)).
-        alone = np.zeros((5, self.size, n))
         change = tau[:, None] - against[2]
-        alone[0] = bent * r**2 - against[0] - against[1] * r + change / r
-        alone[1] = 2.0 * bent * r - against[1] - change / r**2
-        alone[2] = bent + change / r**3
-        alone[3] = -change / r**4
-        error = (np.abs(change) * e**4 / (r**4 * bottom)).sum(axis=1)
-        second = np.zeros((self.size, n, n))
-        first = np.zeros((self.size, n))
-        value = -tau * task.total
-        # πᵀM⁻¹ρ = ½(c + s)·(Rπ)ᵀ(Rρ) + what is at most ½(c − s)·‖Rπ‖‖Rρ‖.
+        alone = [
+            bent * r**2 - against[0] - against[1] * r + change / r,
+            2.0 * bent * r - against[1] - change / r**2,
+            bent + change / r**3,
+            -change / r**4,
+            np.zeros((self.size, n)),
+        ]
+        sums = {
+            "alone": np.stack(alone, axis=1),
+            "first": np.zeros((self.size, n)),
+            "second": np.zeros((self.size, n, n)),
+            "cubes": np.zeros((self.size, n, n, n)),
+            "error": (np.abs(change) * e**4 / (r**4 * bottom)).sum(axis=1),
+            "size": size,
+            "blame": np.zeros((self.size, n)),
+        }
         small, large = self._spectrum()
         middle, spread = 0.5 * (large + small), 0.5 * (large - small) + ROUND * large
-        same, (one, other) = np.arange(n), _pairs(n)
-        cubes = np.zeros((self.size, n, n, n))
-        self.blame, sides = np.zeros((self.size, n)), np.eye(n)[one] + np.eye(n)[other]
+        speeds = np.array([1.0, 1.0, 0.0, 0.0])
         for joint in range(self.joints):
             mine = j == joint
             if not mine.any():
                 continue
             leaf, at = np.unique(every[mine], return_inverse=True)
-            own = self.pick(leaf, joint)
-            # Of velocities times r and of accelerations, then both in absolute values.
-            phi = np.zeros((4, own.size, n, 2 * n - 2))
-            for a in range(4):
-                node = k[mine] + a % 2
-                on = (node > 0) & (node < n)
-                spots, each = (at[on], k[mine][on], 2 * node[on] - 2 + a // 2), shape[mine][on]
-                np.add.at(phi[a // 2], spots, each[:, a + 1])
-                np.add.at(phi[2 + a // 2], spots, np.abs(each[:, a + 1]))
-            part_of = own._joint(task.steps[:, joint], phi)
-            alone[:, leaf] += part_of["alone"]
-            first[leaf] += part_of["first"]
-            second[leaf] += part_of["second"]
-            size[leaf] += part_of["size"]
-            adjoint, residual = part_of["adjoint"], part_of["residual"]
-            both = adjoint.leading @ np.swapaxes(residual.leading, 1, 2) * middle[leaf, None, None]
-            part = np.zeros((own.size, n, n, n))
-            part[:, :, one, other] = both
-            wide = own.e[:, :, None] ** 2 * own.e[:, None]
-            part[:, same, same] += part_of["squared"] * wide
-            cubes[leaf] += part
-            rounding = ROUND * adjoint.lengths * residual.lengths
-            error[leaf] += middle[leaf] * (rounding + adjoint.beyond(residual))
-            error[leaf] += spread[leaf] * adjoint.most * residual.most + part_of["quartic"]
-            blame = adjoint.shares * residual.most[:, None]
-            blame += (residual.shares * adjoint.most[:, None]) @ sides
-            self.blame[leaf] += spread[leaf, None] * blame
-        value += alone[0].sum(axis=1)
-        first += alone[1]
+            own, each = self.pick(leaf, joint), shape[mine, 1:]
+            phi = np.zeros((2, own.size, n, 4))
+            np.add.at(phi[0], (at, k[mine]), each)
+            np.add.at(phi[1], (at, k[mine]), np.abs(each))
+            phi = own._placed(np.stack([phi * speeds, phi * (1.0 - speeds)]))
+            parts = own._joint(task.steps[:, joint], phi, middle[leaf], spread[leaf])
+            for name, part in parts.items():
+                sums[name][leaf] += part
+        self.blame, alone, cubes = sums["blame"], np.swapaxes(sums["alone"], 0, 1), sums["cubes"]
+        same = np.arange(n)
         cubes[:, same, same, same] += alone[3] * e**3
-        error += (np.abs(alone[4]) * e**4).sum(axis=1) + most_of_cubes(cubes)
-        second[:, same, same] += 2.0 * alone[2]
-        value += least_of_quadratic(first, second, e)
+        sums["second"][:, same, same] += 2.0 * alone[2]
+        value = alone[0].sum(axis=1) - tau * task.total
+        value += least_of_quadratic(sums["first"] + alone[1], sums["second"], e)
+        error = sums["error"] + (np.abs(alone[4]) * e**4).sum(axis=1) + most_of_cubes(cubes)
         found = value - error * (1.0 + 1e-9) - 10.0 * ROUND * size
         return np.where(np.isfinite(found), found, -np.inf)
 
-    def _joint(self, step: Array, phi: Array) -> dict[str, Any]:
-        """One joint's part: F = φᵀx̃ + μᵀ(b − M x̃) + (φ − M μ)ᵀ(x − x̃), x̃ = x0 + Σ X_m δ_m."""
-        n, r, e = self.n, self.r, self.e
+    def _joint(self, step: Array, phi: Array, middle: Array, spread: Array) -> dict[str, Array]:
+        """One joint's part: F = φᵀx̃ + μᵀ(b − M x̃) + πᵀM⁻¹ρ, x̃ = x0 + Σ X_m δ_m.
+
+        With π = φ − M μ and ρ = b − M x̃, πᵀM⁻¹ρ is ½(c + s)·(Rπ)ᵀ(Rρ) and what is at most
+        ½(c − s)·‖Rπ‖‖Rρ‖.
+
+        Parameters
+        ----------
+        step : ndarray, shape (segments,)
+        phi : ndarray, shape (2, 2, leaf, segment, unknown)
+            Of velocities times r and of accelerations; each, then in absolute values.
+        middle, spread : ndarray, shape (leaf,)
+            ½(c + s) and ½(c − s).
+        """
+        n, r, e, (speed, bend) = self.n, self.r, self.e, phi
         load = self.load * step[:, None]
         x0, on_x0, rise, slope = self.x0, self.on_x0, self.rise, self.slope
-        full = phi[1] + phi[0] * r[:, :, None]
+        full = bend[0] + speed[0] * r[:, :, None]
         mu = self._solve(full.sum(axis=1)[:, None])
         on_mu, mu = self._acting(mu, 1)[:, :, :, 0], mu[:, 0]
         wide = np.abs(x0) + np.einsum("lm,lmi->li", e, np.abs(slope))
         reach = (self.load_top * np.abs(step)[:, None]).sum(axis=1)
         reach += np.einsum("lij,lj->li", self.stiff_top, wide)
-        # π = φ − M μ: constant, then Taylor parts of each segment.
+        # π: constant, then Taylor parts of each segment.
         rest = full.sum(axis=1) - np.einsum("lij,lj->li", self.m0, mu)
         gain = -on_mu
-        gain[0] += phi[0]
-        high = phi[3] + phi[2] * (r + e)[:, :, None]
+        gain[0] += speed[0]
+        high = bend[1] + speed[1] * (r + e)[:, :, None]
         weak = high.sum(axis=1) + np.einsum("lij,lj->li", self.stiff_top, np.abs(mu))
         outer = np.abs(self.root)
         loose = np.abs(rest) + ROUND * weak
@@ -313,7 +310,7 @@ class Centre:
             self._rooted(gain[1]) * (e**2)[:, :, None],
             later + np.linalg.norm(np.einsum("lij,lj->li", outer, loose), axis=1),
         )
-        # ρ = b − M x̃: constant and linear parts, which are 0 but for rounding; then, o ≥ 2,
+        # ρ: constant and linear parts, which are 0 but for rounding; then, o ≥ 2,
         # (b_o − M_o x0 − M_(o−1) X_k) δ_kᵒ of each segment k, and −M_o X_m δ_kᵒ δ_m for m ≠ k.
         pulled = self._acting(slope, 1)
         zero = load[0].sum(axis=1) - np.einsum("lij,lj->li", self.m0, x0)
@@ -333,22 +330,28 @@ class Centre:
             third.reshape(self.size, n * n, -1),
             later + np.linalg.norm(np.einsum("lij,lj->li", outer, loose), axis=1),
         )
-        alone = np.zeros((5, self.size, n))
-        for o in range(5):
-            part = load[o] if o == 4 else load[o] - on_x0[o]
-            alone[o] = np.einsum("li,lki->lk", mu, part)
-        alone[0] += np.einsum("lki,li->lk", full, x0)
-        alone[1] += np.einsum("lki,li->lk", phi[0], x0)
+        moved = load - np.concatenate([on_x0, 0.0 * on_x0[:1]])
+        alone = np.einsum("li,olki->lok", mu, moved)
+        alone[:, 0] += np.einsum("lki,li->lk", full, x0)
+        alone[:, 1] += np.einsum("lki,li->lk", speed[0], x0)
         mixed = np.einsum("olki,lmi->olkm", gain, slope)
+        cubes = np.zeros((self.size, n, n, n))
+        both = adjoint.leading @ np.swapaxes(residual.leading, 1, 2)
+        cubes[:, :, k, m] = both * middle[:, None, None]
+        cubes[:, each, each] += mixed[1] * wide_3
+        error = middle * (ROUND * adjoint.lengths * residual.lengths + adjoint.beyond(residual))
+        error += spread * adjoint.most * residual.most
+        error += np.einsum("lkm,lk,lm->l", np.abs(mixed[2]), e**3, e)
+        blame = (residual.shares * adjoint.most[:, None]) @ (np.eye(n)[k] + np.eye(n)[m])
+        blame += adjoint.shares * residual.most[:, None]
         return {
             "alone": alone,
             "first": np.einsum("li,lmi->lm", rest, slope),
             "second": mixed[0] + np.swapaxes(mixed[0], 1, 2),
-            "squared": mixed[1],
-            "quartic": np.einsum("lkm,lk,lm->l", np.abs(mixed[2]), e**3, e),
+            "cubes": cubes,
+            "error": error,
             "size": (high.sum(axis=1) * wide).sum(axis=1) + (np.abs(mu) * reach).sum(axis=1),
-            "adjoint": adjoint,
-            "residual": residual,
+            "blame": spread[:, None] * blame,
         }
 
 
