@@ -8,7 +8,6 @@ docs/explanation/certificates.md.
 
 from .answer import check_answer
 from .any_curve import check_motion, spans_of
-from .bounds import shown_bound
 from .floors import least_durations
 from .problem import CHORD, StatedProblem, read_problem
 from .ranges import (
@@ -78,7 +77,6 @@ __all__ = [
     "read_problem",
     "seal",
     "shown",
-    "shown_bound",
     "spans_of",
     "verify_certificate",
 ]

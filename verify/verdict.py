@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 from dataclasses import dataclass, replace
+from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 from fractions import Fraction
 from importlib import import_module
 from pathlib import Path
@@ -12,7 +13,6 @@ from typing import Any
 
 from . import any_curve
 from .answer import check_answer
-from .bounds import shown_bound
 from .problem import StatedProblem, read_problem
 from .ranges import MOST_SEGMENTS
 from .reading import (
@@ -246,14 +246,20 @@ def _judged(document: dict[str, Any], clock: Clock, spread: Spread | None) -> Ce
             kind is not None and (above or kind.infeasible),
             "infeasible only above the sum of all upper bounds, or by a proof of its own",
         )
-    said = f"the least total of {subject} is at least {shown_bound(lower, 'lower', digits=12)} s"
+    said = f"the least total of {subject} is at least {_digits(lower, ROUND_FLOOR)} s"
     if infeasible:
         said = "no durations within their bounds keep the limits: infeasible"
     elif upper is not None:
-        said += f" and at most {shown_bound(upper, 'upper', digits=12)} s"
+        said += f" and at most {_digits(upper, ROUND_CEILING)} s"
     return CertificateVerdict(
         True, said, lower=lower, upper=upper, infeasible=infeasible, subject=subject
     )
+
+
+def _digits(bound: Fraction, rounding: str) -> str:
+    """Twelve digits, rounded to the side on which they are a bound as well."""
+    quotient = Context(12, rounding).divide(Decimal(bound.numerator), Decimal(bound.denominator))
+    return f"{quotient.normalize():f}"
 
 
 def _read_answer(

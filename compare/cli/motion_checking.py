@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from rich.console import RenderableType
 
-from ...problem import Array, CaseError, TrajgapError, Verdict, from_si, read_float
+from ...problem import Array, CaseError, TrajgapError, Verdict, from_si, read_float, shown_bound
 from ...problem.limit_files import StatedLimits, limits_of_flags, merge, read_limits, read_urdf
 from ...problem.motions import (
     Floor,
@@ -28,7 +28,6 @@ from ...problem.motions import (
     read_motion,
     unstated_words,
 )
-from ...verify import shown_bound
 from ..documents import (
     CheckedMotion,
     MotionCheckDocument,
