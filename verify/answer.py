@@ -53,18 +53,19 @@ def check_answer(problem: StatedProblem, h: Sequence[Fraction], clock: Clock) ->
             for (_, left), (right, _) in clock.each(pairwise(ends)):
                 need(left == right, f"answer: the {what} jumps")
         for k, piece in enumerate(curve):
-            _keeps(problem, j, k, piece, h[k], clock)
+            for order, sign, limit in clock.each(_limits(problem, j, h[k])):
+                rest = [-sign * c for c in derivative(piece, order)]
+                rest[0] += limit
+                need(
+                    nonnegative(rest, clock),
+                    f"answer: joint {j + 1}, segment {k + 1}, derivative {order} exceeds its limit",
+                )
 
 
-def _keeps(
-    problem: StatedProblem,
-    joint: int,
-    segment: int,
-    piece: Sequence[Fraction],
-    duration: Fraction,
-    clock: Clock,
-) -> None:
-    """Refuse a piece that exceeds a limit."""
+def _limits(
+    problem: StatedProblem, joint: int, duration: Fraction
+) -> list[tuple[int, int, Fraction]]:
+    """Order, side and size of a joint's limits, in the time of a piece that lasts so long."""
     limits = [
         (r, s, x[0] * duration**r)
         for s, side in ((1, problem.sides[1]), (-1, problem.sides[0]))
@@ -74,12 +75,4 @@ def _keeps(
     low, high = (side[joint] for side in problem.position)
     limits += [] if high is None else [(0, 1, high[0])]
     limits += [] if low is None else [(0, -1, -low[1])]
-    for order, sign, limit in limits:
-        clock.check()
-        rest = [-sign * c for c in derivative(piece, order)]
-        rest[0] += limit
-        need(
-            nonnegative(rest, clock),
-            f"answer: joint {joint + 1}, segment {segment + 1}, "
-            f"derivative {order} exceeds its limit",
-        )
+    return limits

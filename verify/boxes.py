@@ -6,6 +6,7 @@ from abc import abstractmethod
 from collections.abc import Callable
 from copy import copy
 from itertools import permutations
+from math import perm
 from typing import Any, ClassVar, Self
 
 import numpy as np
@@ -163,9 +164,7 @@ class Boxes(ProofKind[Sides]):
 def shapes(rows: Rows, powers: int, places: int) -> Array:
     """Sign times the derivative of each power of s at a row's place: (..., power)."""
     s, order = rows[..., 4] / places, rows[..., 2]
-    factors = np.ones((4, powers))
-    for r in range(3):
-        factors[r + 1] = factors[r] * np.maximum(np.arange(powers) - r, 0)
+    factors = np.array([[perm(p, r) for p in range(powers)] for r in range(4)], np.float64)
     power = np.ones((*s.shape, powers))
     for p in range(1, powers):
         # The power of s that is left of sᵖ.

@@ -277,15 +277,8 @@ class Centre:
         """One joint's part: F = φᵀx̃ + μᵀ(b − M x̃) + πᵀM⁻¹ρ, x̃ = x0 + Σ X_m δ_m.
 
         With π = φ − M μ and ρ = b − M x̃, πᵀM⁻¹ρ is ½(c + s)·(Rπ)ᵀ(Rρ) and what is at most
-        ½(c − s)·‖Rπ‖‖Rρ‖.
-
-        Parameters
-        ----------
-        step : ndarray, shape (segments,)
-        phi : ndarray, shape (2, 2, leaf, segment, unknown)
-            Of velocities times r and of accelerations; each, then in absolute values.
-        middle, spread : ndarray, shape (leaf,)
-            ½(c + s) and ½(c − s).
+        ½(c − s)·‖Rπ‖‖Rρ‖. ``phi`` are those of velocities times r and of accelerations; each, then
+        in absolute values. ``middle`` and ``spread`` are ½(c + s) and ½(c − s).
         """
         n, r, e, (speed, bend) = self.n, self.r, self.e, phi
         load = self.load * step[:, None]
