@@ -7,7 +7,7 @@ import os
 import re
 import stat
 import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from fractions import Fraction
 from pathlib import Path
 from typing import Any, NoReturn, TypeVar
@@ -107,6 +107,11 @@ def listed(value: Any, what: str, most: int, least: int = 0) -> list[Any]:
     return list(value)
 
 
+def exactly(value: Any, what: str, count: int, read: Callable[[Any], T]) -> list[T]:
+    """A list with so many entries, each read by a function."""
+    return [read(entry) for entry in listed(value, what, count, count)]
+
+
 def text(value: Any, what: str) -> str:
     """A text of bounded length."""
     need(type(value) is str and len(value) <= MOST_TEXT, f"malformed: {what}: no text, or too long")
@@ -120,6 +125,11 @@ def number(value: Any) -> Fraction:
         raise Refused(f"malformed: {shape}: {shown(repr(value))}")
     mantissa, _, exponent = value.partition("e")
     return Fraction(mantissa) * Fraction(10) ** int(exponent or 0)
+
+
+def optional(value: Any) -> Fraction | None:
+    """A rational, or nothing."""
+    return None if value is None else number(value)
 
 
 def whole(value: Any, low: int, high: int) -> int:
@@ -172,11 +182,11 @@ def read_document(path: str | Path, clock: Clock | None = None) -> Any:
     """
     try:
         content = _read(path, clock)
+    except Refused:
+        raise
     except OSError as error:
         raise Refused(f"cannot be read ({error.strerror}); check the path") from None
-    except ValueError as error:
-        if isinstance(error, Refused):
-            raise
+    except ValueError:
         raise Refused("cannot be read (no name of a file); check the path") from None
     try:
         return json.loads(

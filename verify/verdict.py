@@ -19,6 +19,7 @@ from .reading import (
     Clock,
     OutOfTime,
     Refused,
+    exactly,
     fields,
     listed,
     need,
@@ -275,10 +276,8 @@ def _read_answer(
         return h, None, number(claim["upper"])
     need(subject is Subject.ANY, "speeds belong to an answer of any curve")
     n, joints = len(problem.waypoints), problem.joints
-    rows = [
-        listed(row, "speeds", joints, joints) for row in listed(claim["speeds"], "speeds", n, n)
-    ]
-    return h, [[number(x) for x in row] for row in rows], number(claim["upper"])
+    rows = exactly(claim["speeds"], "speeds", n, lambda row: exactly(row, "speeds", joints, number))
+    return h, rows, number(claim["upper"])
 
 
 def _read_proof(

@@ -122,10 +122,9 @@ class Box:
                 bounds = [a]
                 if v is not None and reach[b]:
                     bounds.append(8 * v / reach[b])
-                if jerk is not None and cubic.ends[0] != 1:
-                    bounds.append(jerk * sum(most[:b]))
-                if jerk is not None and cubic.ends[1] != 1:
-                    bounds.append(jerk * sum(most[b:]))
+                for order, since in zip(cubic.ends, (most[:b], most[b:]), strict=True):
+                    if jerk is not None and order != 1:
+                        bounds.append(jerk * sum(since))
                 self._cut(j, b, bounds)
             for w in range(n + 1, cubic.size):
                 self._cut(j, w, [v])
