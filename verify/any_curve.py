@@ -14,7 +14,7 @@ from typing import Any
 from .answer import check_durations
 from .problem import StatedProblem
 from .ranges import MOST_ROWS, MOST_TANGENT, MOST_WEIGHTS, TANGENT_UNIT
-from .reading import Clock, listed, need, number, required, sign_of, text, weights, whole
+from .reading import Clock, listed, need, number, required, sign_of, weights, whole
 from .tree import ProofKind, Subject
 
 Zero = Fraction(0)
@@ -111,17 +111,10 @@ class AnyCurve(ProofKind[Sides]):
     def row(self, entry: Any) -> _Row:
         """Read [kind, span, joint, sign, m₀, m₁, n]."""
         kind, span, joint, sign, m0, m1, n = listed(entry, "a row", 7, 7)
-        kind = text(kind, "a row")
         need(kind in ("change", "reach", "brake"), "a row of an unknown kind")
-        return _Row(
-            kind,
-            whole(span, 0, len(self._asked.steps) - 1),
-            whole(joint, 0, self.problem.joints - 1),
-            sign_of(sign),
-            whole(m0, -MOST_TANGENT, MOST_TANGENT),
-            whole(m1, -MOST_TANGENT, MOST_TANGENT),
-            whole(n, 0, MOST_TANGENT),
-        )
+        k, j = whole(span, 0, len(self._asked.steps) - 1), whole(joint, 0, self.problem.joints - 1)
+        m0, m1 = (whole(m, -MOST_TANGENT, MOST_TANGENT) for m in (m0, m1))
+        return _Row(kind, k, j, sign_of(sign), m0, m1, whole(n, 0, MOST_TANGENT))
 
     def _speed(self, joint: int) -> Fraction | None:
         """No motion with a total below the cap is faster; None if nothing bounds the speed."""

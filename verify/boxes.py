@@ -36,31 +36,21 @@ class Boxes(ProofKind[Sides]):
     keeps the limits: boxes are then those of the simplex of durations whose sum is the total, and
     its multiplier τ may have either sign.
 
-    Attributes
-    ----------
-    most : float
-        The total, in the proof's unit of time.
-    stretches : bool
-    rows : ndarray of int, shape (row, 5)
-        Segment, joint, order, sign and place of limits that leaves lean on.
-    batch : int
-        Leaves that are judged together.
-    task : Any
-        Whose ``cap`` is the limit of each row.
-    centres : callable
-        Given the task and sides of boxes: the curves at their centres, with the bound of leaves.
-    shortest, longest : list of float
-        Sides of the box that holds all answers.
     """
 
     apart = 500  # a batch of leaves
     centres: ClassVar[Callable[..., Any]]
+    """Given the task and sides of boxes: the curves at their centres, with the bound of leaves."""
     most: float
+    """The total, in the proof's unit of time."""
     shortest: list[float]
     longest: list[float]
+    """Sides of the box that holds all answers."""
     stretches = True
     rows: Rows
+    """Segment, joint, order, sign and place of limits that leaves lean on."""
     task: Any
+    """Its ``cap`` is the limit of each row."""
 
     def read(self, proof: dict[str, Any]) -> None:
         """A kind reads the proof; no leaf waits."""
@@ -123,7 +113,7 @@ class Boxes(ProofKind[Sides]):
     def leaf(self, box: Sides, data: list[Any]) -> None:
         """Nothing, if the box is empty; or [τ, row, weight, row, weight, …]."""
         if not data:
-            need(empty(box), "it is not empty")
+            need(any(a > b for a, b in zip(*box, strict=True)), "it is not empty")
             return
         self._waiting.append((box, data))
         if len(self._waiting) == self.batch:
@@ -170,11 +160,6 @@ def shapes(rows: Rows, powers: int, places: int) -> Array:
         # The power of s that is left of sᵖ.
         power[..., p] = np.where(p > order, power[..., p - 1] * s, 1.0)
     return np.asarray(rows[..., 3, None] * factors[order] * power)
-
-
-def empty(box: Sides) -> bool:
-    """Whether no durations are in a box."""
-    return any(a > b for a, b in zip(*box, strict=True))
 
 
 def least_of_quadratic(gradient: Array, bend: Array, e: Array) -> Array:

@@ -17,7 +17,7 @@ from .boxes import SLACK, Array, Boxes, Sides
 from .declared_bound import Centre, Task
 from .declared_form import linear_form
 from .floors import least_durations
-from .problem import Bounds, Declaration, StatedProblem
+from .problem import Bounds, Declaration
 from .reading import need, required, whole
 from .tree import LEAF
 
@@ -38,7 +38,17 @@ class DeclaredCurve(Boxes):
     def read(self, proof: dict[str, Any]) -> None:
         """The curve and its limits in units of the proof, least durations, and the rows."""
         super().read(proof)
-        problem, total, declared = self.problem, self.total, covered(self.problem)
+        problem, total, n, most = (
+            self.problem,
+            self.total,
+            self.problem.segments,
+            ranges.MOST_DECLARED_SEGMENTS,
+        )
+        declared = required(
+            problem.declaration, "declaration not covered: no declared piecewise polynomial"
+        )
+        need(n > 1 or not declared.at_rest, "one segment alone has no inner break")
+        need(n <= most, f"more than {most} segments")
         need(total > 0, "the total is not positive")
         self.second = Fraction(2) ** _power(total)
         self.stretches = declared.at_rest and not any(x is not None for x in problem.longest)
@@ -160,18 +170,6 @@ class DeclaredCurve(Boxes):
             return False
         angle = self.problem.waypoints[at - sum(b < at for b in virtual)][joint]
         return sign * angle > max(sign * x for x in ends)
-
-
-def covered(problem: StatedProblem) -> Declaration:
-    """The declaration of a problem, if this kind of proof speaks about it."""
-    declared = required(
-        problem.declaration, "declaration not covered: no declared piecewise polynomial"
-    )
-    n = problem.segments
-    need(n > 1 or not declared.at_rest, "one segment alone has no inner break")
-    most = ranges.MOST_DECLARED_SEGMENTS
-    need(n <= most, f"more than {most} segments")
-    return declared
 
 
 def _power(size: Fraction) -> int:

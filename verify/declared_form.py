@@ -27,31 +27,22 @@ Solved = NDArray[np.object_]
 
 @dataclass(frozen=True, eq=False)
 class Form:
-    """Floats nearest to what was solved exactly; p counts the derivatives that are to agree.
-
-    Attributes
-    ----------
-    basis : ndarray, shape (segments, degree + 1, unknowns)
-        N by segment and power; 0 above a segment's degree.
-    fixed : ndarray, shape (segments, degree + 1, joints)
-        c₀.
-    ends, starts : ndarray, shape (p, unknowns + joints)
-        The scaled derivative at the end of the segment before, and at the start of the one behind:
-        α N and β N by unknown, then what c₀ adds for each joint. Of a neighbour beyond an end: 0,
-        then the derivative that is prescribed.
-    breaks, orders : ndarray of int, shape (p,)
-    sides : ndarray of int, shape (breaks, 2)
-        Segments before and behind each break; as many as there are segments stands for a neighbour
-        that takes 1.
-    """
+    """Floats nearest to what was solved exactly; p counts the derivatives that are to agree."""
 
     basis: Array
+    """N by segment, power and unknown; 0 above a segment's degree."""
     fixed: Array
+    """c₀ by segment, power and joint."""
     ends: Array
+    """The scaled derivative p at the end of the segment before: α N by unknown, then what c₀ adds
+    for each joint. Of a neighbour beyond an end: 0, then the derivative that is prescribed."""
     starts: Array
+    """The same at the start of the segment behind, with β N."""
     breaks: NDArray[np.int64]
     orders: NDArray[np.int64]
     sides: NDArray[np.int64]
+    """Segments before and behind each break; as many as there are segments stands for a neighbour
+    that takes 1."""
 
 
 def linear_form(

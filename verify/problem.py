@@ -38,24 +38,15 @@ _KEYS = (
 
 @dataclass(frozen=True)
 class Declaration:
-    """A piecewise polynomial.
-
-    Attributes
-    ----------
-    degrees : list of int
-        Of each piece.
-    continuity : list of int
-        The highest derivative that agrees at each inner break.
-    prescribed : list of dict
-        At each break, the values of some derivatives, by order: one for each joint.
-    virtual : list of int
-        Breaks without a way-point.
-    """
+    """A piecewise polynomial."""
 
     degrees: list[int]
     continuity: list[int]
+    """The highest derivative that agrees at each inner break."""
     prescribed: list[dict[int, list[Fraction]]]
+    """At each break, the values of some derivatives, by order: one for each joint."""
     virtual: list[int]
+    """Breaks without a way-point."""
 
     @property
     def at_rest(self) -> bool:
@@ -65,40 +56,29 @@ class Declaration:
 
 @dataclass(frozen=True)
 class StatedProblem:
-    """The problem in a certificate, every number rational.
-
-    Attributes
-    ----------
-    waypoints : list, [way-point][joint]
-    limits : list, [joint][order − 1]
-        The larger size of both sides: a bound from below that holds within it holds here.
-    sides : list, [0 lower, 1 upper][joint][order − 1]
-        Size of the limit on each side, which an answer keeps.
-    position : list, [0 lower, 1 upper][joint]
-    shortest, longest : list, one per segment
-    declaration : Declaration or None
-        None for a curve that is no piecewise polynomial with breaks at the way-points.
-    curve : str or None
-        Name of such a curve.
-    ends : list, [0 start, 1 end][joint]
-        Velocity prescribed there; None where it is free.
-    shares : list, one per segment, or None
-        Shares of the segments in the total, where ratios fix them.
-    chord : bool
-        Whether they are fixed by chord lengths, which are no rational numbers; without shares.
-    """
+    """The problem in a certificate, every number rational."""
 
     waypoints: list[list[Fraction]]
+    """[way-point][joint]."""
     limits: list[list[Bounds]]
+    """[joint][order − 1]: the larger size of both sides. A bound from below that holds within it
+    holds here."""
     sides: list[list[list[Bounds]]]
+    """[0 lower, 1 upper][joint][order − 1]: size on each side, which an answer keeps."""
     position: list[list[Bounds]]
+    """[0 lower, 1 upper][joint]."""
     shortest: list[Fraction]
     longest: list[Fraction | None]
     declaration: Declaration | None
+    """None for a curve that is no piecewise polynomial with breaks at the way-points."""
     curve: str | None
+    """Name of such a curve."""
     ends: list[list[Fraction | None]]
+    """[0 start, 1 end][joint]: velocity prescribed there; None where it is free."""
     shares: list[Fraction] | None = None
+    """Of the segments in the total, where ratios fix them."""
     chord: bool = False
+    """Whether they are fixed by chord lengths, which are no rational numbers; without shares."""
 
     @property
     def joints(self) -> int:

@@ -14,7 +14,7 @@ import numpy as np
 from . import ranges
 from .boxes import Array, Boxes, Rows, Sides
 from .floors import least_durations
-from .problem import Declaration, StatedProblem, in_own_units
+from .problem import Declaration, in_own_units
 from .quintic_bound import ROUND, Centre, Task
 from .reading import listed, need, number, whole
 
@@ -29,8 +29,16 @@ class QuinticSpline(Boxes):
         """Steps and limits in units of the proof, least durations, windows, and rows."""
         super().read(proof)
         problem, total, clock = self.problem, self.total, self.clock
-        _covered(problem)
         n, joints = problem.segments, problem.joints
+        rest = {order: [Fraction(0)] * joints for order in (1, 2)}
+        spline = Declaration([5] * n, [4] * (n - 1), [rest, *[{}] * (n - 1), rest], [])
+        need(
+            n > 1 and problem.declaration == spline,
+            "declaration not covered: no C4 quintic spline at rest at the ends",
+        )
+        longest, most = ranges.MOST_QUINTIC_SEGMENTS, ranges.MOST_QUINTIC_JOINTS
+        need(n <= longest, f"more than {longest} segments")
+        need(joints <= most, f"more than {most} joints")
         second, steps, limits = in_own_units(problem, proof)
         own = total / second
         need(
@@ -111,20 +119,6 @@ class QuinticSpline(Boxes):
             size = np.abs(tau) * (2.0 * total + high.sum(axis=-1)) + (pay * high).sum(axis=-1)
             size += fixed + np.abs(least).sum(axis=-1)
             return np.asarray(least.sum(axis=-1) - fixed - tau * total - 10.0 * ROUND * size)
-
-
-def _covered(problem: StatedProblem) -> None:
-    rest = {order: [Fraction(0)] * problem.joints for order in (1, 2)}
-    n = problem.segments
-    spline = Declaration([5] * n, [4] * (n - 1), [rest, *[{}] * (n - 1), rest], [])
-    need(
-        n > 1 and problem.declaration == spline,
-        "declaration not covered: no C4 quintic spline at rest at the ends",
-    )
-    most = ranges.MOST_QUINTIC_SEGMENTS
-    need(n <= most, f"more than {most} segments")
-    most = ranges.MOST_QUINTIC_JOINTS
-    need(problem.joints <= most, f"more than {most} joints")
 
 
 def _window(entry: Any, n: int, joints: int) -> list[int]:

@@ -27,25 +27,17 @@ Range = tuple[int, int] | None
 
 @dataclass(eq=False)
 class Box:
-    """Part of the durations below the cap.
-
-    Attributes
-    ----------
-    low, high : list of int
-        Sides in ticks.
-    x : list, [joint][unknown]
-        Ranges.
-    floor : int
-        The total is at least this many ticks.
-    empty : bool
-        Nothing below the cap is feasible in it.
-    """
+    """Part of the durations below the cap."""
 
     low: list[int]
     high: list[int]
+    """Sides in ticks."""
     x: list[list[Range]]
+    """[joint][unknown]."""
     floor: int = 0
+    """The total is at least this many ticks."""
     empty: bool = False
+    """Nothing below the cap is feasible in it."""
 
     def again(self) -> Box:
         """A copy, of which nothing is shared."""
