@@ -38,22 +38,17 @@ class DeclaredCurve(Boxes):
     def read(self, proof: dict[str, Any]) -> None:
         """The curve and its limits in units of the proof, least durations, and the rows."""
         super().read(proof)
-        problem, total, n, most = (
-            self.problem,
-            self.total,
-            self.problem.segments,
-            ranges.MOST_DECLARED_SEGMENTS,
-        )
+        problem, n, most = self.problem, self.problem.segments, ranges.MOST_DECLARED_SEGMENTS
         declared = required(
             problem.declaration, "declaration not covered: no declared piecewise polynomial"
         )
         need(n > 1 or not declared.at_rest, "one segment alone has no inner break")
         need(n <= most, f"more than {most} segments")
-        need(total > 0, "the total is not positive")
-        self.second = Fraction(2) ** _power(total)
+        need(self.total > 0, "the total is not positive")
+        self.second = Fraction(2) ** _power(self.total)
         self.stretches = declared.at_rest and not any(x is not None for x in problem.longest)
         self.task = self._task(declared)
-        exact = [x / self.second for x in least_durations(problem, total)]
+        exact = [x / self.second for x in least_durations(problem, self.total)]
         both = zip(exact, self._returning(declared), strict=True)
         self.shortest = [max(nextafter(float(x), 0.0), y) for x, y in both]
         self.rows = self.read_rows(proof["rows"], 0, ranges.PLACES)
@@ -79,21 +74,17 @@ class DeclaredCurve(Boxes):
         start = problem.waypoints[0]
         moved = [[q - a for q, a in zip(row, start, strict=True)] for row in problem.waypoints]
         units = [Fraction(2) ** _power(max(map(abs, way))) for way in zip(*moved, strict=True)]
-        prescribed = [
-            {
-                r: [x * self.second**r / u for x, u in zip(row, units, strict=True)]
-                for r, row in at.items()
-            }
-            for at in declared.prescribed
-        ]
+
+        def own(row: list[Fraction], order: int = 0) -> list[Fraction]:
+            return [x * self.second**order / u for x, u in zip(row, units, strict=True)]
+
+        stated = declared.prescribed
+        prescribed = [{r: own(row, r) for r, row in at.items()} for at in stated]
         sizes = [abs(x) for at in prescribed for row in at.values() for x in row if x]
         usual = all(ranges.within(x, ranges.SMALLEST_CAP) for x in sizes)
         need(usual, "a prescribed derivative is of unusual size")
-        form = linear_form(
-            replace(declared, prescribed=prescribed),
-            [[q / unit for q, unit in zip(row, units, strict=True)] for row in moved],
-            self.clock,
-        )
+        scaled = replace(declared, prescribed=prescribed)
+        form = linear_form(scaled, list(map(own, moved)), self.clock)
         need(len(form.orders) <= ranges.MOST_DECLARED_UNKNOWNS, "the curve has too many unknowns")
         caps = np.full((2, joints, 4), inf)
         for j, unit in enumerate(units):

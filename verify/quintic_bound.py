@@ -50,22 +50,15 @@ POWERS = LOAD_POWERS[:, None] - np.array([1, 1, 2, 2])
 
 @dataclass(frozen=True, eq=False)
 class Task:
-    """What all leaves with limits have in common.
-
-    Attributes
-    ----------
-    steps : ndarray, shape (segments, joints)
-    limits : ndarray, shape (joints, 3)
-        inf where there is none.
-    total : float
-    basis : ndarray, shape (5, 6)
-        Powers of s in a piece with (step, v0, v1, a0, a1).
-    """
+    """What all leaves with limits have in common."""
 
     steps: Array
+    """By segment and joint."""
     limits: Array
+    """By joint and order, from 1 on; inf where there is none."""
     total: float
     basis: ClassVar[Array] = HERMITE[1:]
+    """Powers of s in a piece with (step, v0, v1, a0, a1)."""
 
     def cap(self, rows: Rows) -> Array:
         """Limit of each row."""

@@ -42,7 +42,6 @@ class ProofKind(ABC, Generic[B]):
 
     Parameters
     ----------
-    problem : StatedProblem
     proof : dict
         With the keys ``kind``, ``total``, ``tree`` and those in `keys`.
     total : Fraction
