@@ -16,7 +16,9 @@ MANY = "tree._walked: the tree has too many nodes"
 NOT_JUDGED = "tree.walk: a part of the tree was not judged"
 OUTSIDE = "any_curve.check_motion: answer: joint {j + 1} is outside its position limits"
 NOT_PROVED = "boxes.Boxes.end: a leaf with limits is not proved"
-NOT_QUINTIC = "quintic.QuinticSpline.read: declaration not covered: no C4 quintic spline at rest at the ends"
+QUINTIC = "quintic.QuinticSpline.read: "
+NOT_QUINTIC = f"{QUINTIC}declaration not covered: no C4 quintic spline at rest at the ends"
+DECLARED = "declared.DeclaredCurve.read: "
 
 
 # --- the walk through a tree ----------------------------------------------------------------------
@@ -134,9 +136,9 @@ FORGERIES = [
         proof={"kind": "quintic-spline", "total": data["proof"]["total"], "tree": [["."]],
                "powers": [0, 0], "second": 0, "low": ["0"] * 3, "windows": [], "rows": []})),
     Forgery(NOT_QUINTIC, "quintic-spline", spline(1, 5)),
-    Forgery("quintic.QuinticSpline.read: more than {longest} segments",
+    Forgery(QUINTIC + "more than {longest} segments",
             "quintic-spline", spline(27, 5)),
-    Forgery("quintic.QuinticSpline.read: more than {most} joints",
+    Forgery(QUINTIC + "more than {most} joints",
             "quintic-spline", spline(3, 5, 13)),
     *(Forgery(WHOLE, "quintic-spline",
               _leaf(lambda leaf, at=at, x=x: leaf.__setitem__(at, x)))
@@ -155,10 +157,10 @@ FORGERIES = [
             "quintic-spline", {}, {"quintic_bound.STIFFNESS": -quintic_bound.STIFFNESS}),
     Forgery("declared.DeclaredCurve._task: the curve has too many unknowns",
             "declared", spline(12, 9)),
-    Forgery("declared.DeclaredCurve.read: one segment alone has no inner break", "declared", spline(1)),
-    Forgery("declared.DeclaredCurve.read: more than {most} segments",
+    Forgery(DECLARED + "one segment alone has no inner break", "declared", spline(1)),
+    Forgery(DECLARED + "more than {most} segments",
             "declared", spline(13)),
-    Forgery("declared.DeclaredCurve.read: declaration not covered: no declared piecewise polynomial",
+    Forgery(DECLARED + "declaration not covered: no declared piecewise polynomial",
             "stretched", lambda data: data.update(
                 proof={"kind": "declared", "total": data["proof"]["total"],
                        "rows": [], "tree": [["."]]})),
