@@ -49,6 +49,8 @@ class Boxes(ProofKind[Sides]):
     stretches = True
     rows: Rows
     """Segment, joint, order, sign and place of limits that leaves lean on."""
+    batch: int
+    """Leaves that are judged together."""
     task: Any
     """Its ``cap`` is the limit of each row."""
 
