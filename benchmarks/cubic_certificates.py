@@ -125,7 +125,7 @@ def by_width(name: str, found: Certified) -> str:
         sum(h[k] for k in range(exact.n) if exact.lengths[k].get(t, 0) > 0)
         for t in range(exact.free)
     ]
-    for end, (first, _, _) in zip((0, exact.n - 1), exact.rho(), strict=False):
+    for end, (first, _, _) in zip((0, exact.n - 1), exact.rho, strict=False):
         at[0 if end == 0 else exact.m - 1] += h[end]
         at[first] = h[end]
     gaps = []

@@ -1,4 +1,5 @@
 from .arrays import Array
+from .bounds import shown_bound
 from .cases import (
     Case,
     CaseFile,
@@ -207,6 +208,7 @@ __all__ = [
     "scaffold",
     "scale",
     "septic_spline",
+    "shown_bound",
     "shown_unit",
     "solve_in_closed_form",
     "three_five_three",

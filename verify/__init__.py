@@ -6,79 +6,41 @@ polynomials and C4 quintic splines need numpy. Format and mathematics are in
 docs/explanation/certificates.md.
 """
 
-from .answer import check_answer
-from .any_curve import check_motion, spans_of
-from .bounds import shown_bound
-from .floors import least_durations
-from .problem import CHORD, StatedProblem, read_problem
-from .ranges import (
-    MIX,
-    MIX_DIGITS,
-    MOST_DEPTH,
-    MOST_INTEGER,
-    MOST_POWER,
-    MOST_WEIGHT,
-    PLACES,
-    QUINTIC_PLACES,
-    SHORTEST_TOTAL,
-    SPOTS,
-    TANGENT_UNIT,
-    TICKS,
-    WINDOW_UNIT,
-)
-from .reading import Clock, OutOfTime, Refused, number, read_document, shown
-from .tree import CUT, LEAF, OPEN, Subject
-from .verdict import (
-    CERTIFICATE_FORMAT,
-    OLD_FORMATS,
-    SECONDS,
-    STATE_FORMAT,
-    CertificateVerdict,
-    CertifiedQuestion,
-    proof_kind,
-    seal,
-    verify_certificate,
-)
-
-__all__ = [
-    "CERTIFICATE_FORMAT",
-    "CHORD",
-    "CUT",
-    "LEAF",
-    "MIX",
-    "MIX_DIGITS",
-    "MOST_DEPTH",
-    "MOST_INTEGER",
-    "MOST_POWER",
-    "MOST_WEIGHT",
-    "OLD_FORMATS",
-    "OPEN",
-    "PLACES",
-    "QUINTIC_PLACES",
-    "SECONDS",
-    "SHORTEST_TOTAL",
-    "SPOTS",
-    "STATE_FORMAT",
-    "TANGENT_UNIT",
-    "TICKS",
-    "WINDOW_UNIT",
-    "CertificateVerdict",
-    "CertifiedQuestion",
-    "Clock",
-    "OutOfTime",
-    "Refused",
-    "StatedProblem",
-    "Subject",
-    "check_answer",
-    "check_motion",
-    "least_durations",
-    "number",
-    "proof_kind",
-    "read_document",
-    "read_problem",
-    "seal",
-    "shown",
-    "shown_bound",
-    "spans_of",
-    "verify_certificate",
-]
+from .answer import check_answer as check_answer
+from .any_curve import check_motion as check_motion
+from .any_curve import spans_of as spans_of
+from .problem import CHORD as CHORD
+from .problem import StatedProblem as StatedProblem
+from .problem import read_problem as read_problem
+from .ranges import MIX as MIX
+from .ranges import MIX_DIGITS as MIX_DIGITS
+from .ranges import MOST_DEPTH as MOST_DEPTH
+from .ranges import MOST_INTEGER as MOST_INTEGER
+from .ranges import MOST_POWER as MOST_POWER
+from .ranges import MOST_WEIGHT as MOST_WEIGHT
+from .ranges import PLACES as PLACES
+from .ranges import QUINTIC_PLACES as QUINTIC_PLACES
+from .ranges import SHORTEST_TOTAL as SHORTEST_TOTAL
+from .ranges import SPOTS as SPOTS
+from .ranges import TANGENT_UNIT as TANGENT_UNIT
+from .ranges import TICKS as TICKS
+from .ranges import WINDOW_UNIT as WINDOW_UNIT
+from .reading import Clock as Clock
+from .reading import OutOfTime as OutOfTime
+from .reading import Refused as Refused
+from .reading import number as number
+from .reading import read_document as read_document
+from .reading import shown as shown
+from .tree import CUT as CUT
+from .tree import LEAF as LEAF
+from .tree import OPEN as OPEN
+from .tree import Subject as Subject
+from .verdict import CERTIFICATE_FORMAT as CERTIFICATE_FORMAT
+from .verdict import OLD_FORMATS as OLD_FORMATS
+from .verdict import SECONDS as SECONDS
+from .verdict import STATE_FORMAT as STATE_FORMAT
+from .verdict import CertificateVerdict as CertificateVerdict
+from .verdict import CertifiedQuestion as CertifiedQuestion
+from .verdict import proof_kind as proof_kind
+from .verdict import seal as seal
+from .verdict import verify_certificate as verify_certificate

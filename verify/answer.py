@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from fractions import Fraction
 from itertools import pairwise
 
-from .curve import UNIFORM, derivative, nonnegative, pieces, uniform_pieces, value_at
+from .curve import UNIFORM, derivative, nonnegative, pieces
 from .problem import StatedProblem
 from .reading import Clock, need
 
@@ -30,10 +30,8 @@ def check_answer(problem: StatedProblem, h: Sequence[Fraction], clock: Clock) ->
 
     Parameters
     ----------
-    problem : StatedProblem
     h : sequence of Fraction
         Durations, s.
-    clock : Clock
 
     Raises
     ------
@@ -46,35 +44,30 @@ def check_answer(problem: StatedProblem, h: Sequence[Fraction], clock: Clock) ->
         total = sum(clock.each(h), Fraction(0))
         alike = all(x == share * total for x, share in zip(h, problem.shares, strict=True))
         need(alike, "answer: the durations have other ratios")
-    if problem.curve == UNIFORM:
-        # Each piece takes 1; the derivatives of order r are divided by hʳ.
-        for j, curve in enumerate(uniform_pieces(problem, clock)):
-            for k, piece in enumerate(curve):
-                _keeps(problem, j, k, piece, Fraction(1), h[k], clock)
-        return
     for j, curve in enumerate(pieces(problem, h, clock)):
         jerk = any(side[j][2] is not None for side in problem.sides)
-        for order, what in ((1, "velocity"), (2, "acceleration"))[: 2 if jerk else 1]:
+        smooth = ((1, "velocity"), (2, "acceleration"))[: 2 if jerk else 1]
+        for order, what in () if problem.curve == UNIFORM else smooth:
             slopes = [derivative(piece, order) for piece in curve]
-            for k, (left, right) in enumerate(pairwise(slopes)):
-                clock.check()
-                need(value_at(left, h[k]) == right[0], f"answer: the {what} jumps")
+            ends = [(c[0] / x**order, sum(c) / x**order) for c, x in zip(slopes, h, strict=True)]
+            for (_, left), (right, _) in clock.each(pairwise(ends)):
+                need(left == right, f"answer: the {what} jumps")
         for k, piece in enumerate(curve):
-            _keeps(problem, j, k, piece, h[k], Fraction(1), clock)
+            for order, sign, limit in clock.each(_limits(problem, j, h[k])):
+                rest = [-sign * c for c in derivative(piece, order)]
+                rest[0] += limit
+                need(
+                    nonnegative(rest, clock),
+                    f"answer: joint {j + 1}, segment {k + 1}, derivative {order} exceeds its limit",
+                )
 
 
-def _keeps(
-    problem: StatedProblem,
-    joint: int,
-    segment: int,
-    piece: Sequence[Fraction],
-    end: Fraction,
-    unit: Fraction,
-    clock: Clock,
-) -> None:
-    """Refuse a piece on [0, end] that exceeds a limit; its time is counted in ``unit`` s."""
+def _limits(
+    problem: StatedProblem, joint: int, duration: Fraction
+) -> list[tuple[int, int, Fraction]]:
+    """Order, side and size of a joint's limits, in the time of a piece that lasts so long."""
     limits = [
-        (r, s, x[0] * unit**r)
+        (r, s, x[0] * duration**r)
         for s, side in ((1, problem.sides[1]), (-1, problem.sides[0]))
         for r, x in enumerate(side[joint], 1)
         if x is not None
@@ -82,12 +75,4 @@ def _keeps(
     low, high = (side[joint] for side in problem.position)
     limits += [] if high is None else [(0, 1, high[0])]
     limits += [] if low is None else [(0, -1, -low[1])]
-    for order, sign, limit in limits:
-        clock.check()
-        rest = [-sign * c for c in derivative(piece, order)]
-        rest[0] += limit
-        need(
-            nonnegative(rest, end, clock),
-            f"answer: joint {joint + 1}, segment {segment + 1}, "
-            f"derivative {order} exceeds its limit",
-        )
+    return limits

@@ -12,9 +12,9 @@ from itertools import pairwise
 from typing import Any
 
 from .answer import check_durations
-from .problem import Bounds, StatedProblem
+from .problem import StatedProblem
 from .ranges import MOST_ROWS, MOST_TANGENT, MOST_WEIGHTS, TANGENT_UNIT
-from .reading import Clock, listed, need, number, required, sign_of, text, whole
+from .reading import Clock, listed, need, number, required, sign_of, weights, whole
 from .tree import ProofKind, Subject
 
 Zero = Fraction(0)
@@ -31,34 +31,20 @@ class Spans:
 
     steps: list[list[Fraction]]
     """[span][joint]: from one way-point to the next."""
-    velocity: list[Bounds]
-    acceleration: list[Bounds]
     shortest: list[Fraction]
     longest: list[Fraction | None]
-    ends: list[list[Fraction | None]]
-    """[0 start, 1 end][joint]: velocity prescribed there, None where it is free."""
 
 
 def spans_of(problem: StatedProblem) -> Spans:
     """What remains of a problem if the curve is left open: a virtual way-point is none."""
     virtual = [] if problem.declaration is None else problem.declaration.virtual
-    held: list[list[int]] = []
-    for k in range(problem.segments):
-        if k in virtual:
-            held[-1].append(k)
-        else:
-            held.append([k])
-    longest: list[Fraction | None] = []
-    for span in held:
-        tops = [x for x in (problem.longest[k] for k in span) if x is not None]
-        longest.append(sum(tops, Zero) if len(tops) == len(span) else None)
+    firsts = [k for k in range(problem.segments) if k not in virtual]
+    held = [slice(a, b) for a, b in pairwise([*firsts, problem.segments])]
+    tops = [problem.longest[span] for span in held]
     return Spans(
         [[b - a for a, b in zip(*rows, strict=True)] for rows in pairwise(problem.waypoints)],
-        [row[0] for row in problem.limits],
-        [row[1] for row in problem.limits],
-        [sum((problem.shortest[k] for k in span), Zero) for span in held],
-        longest,
-        problem.ends,
+        [sum(problem.shortest[span], Zero) for span in held],
+        [None if None in each else sum(filter(None, each), Zero) for each in tops],
     )
 
 
@@ -113,38 +99,29 @@ class AnyCurve(ProofKind[Sides]):
     subject = Subject.ANY
     keys = ("cap", "rows")
 
-    def __init__(
-        self, problem: StatedProblem, proof: dict[str, Any], total: Fraction, clock: Clock
-    ) -> None:
-        super().__init__(problem, proof, total, clock)
-        self._asked = spans_of(problem)
+    def read(self, proof: dict[str, Any]) -> None:
+        """The cap of the total, and the table of rows."""
+        self._asked = spans_of(self.problem)
         self._cap = number(proof["cap"])
-        need(0 < total <= self._cap, "the total exceeds the cap below which the boxes lie")
+        need(0 < self.total <= self._cap, "the total exceeds the cap below which the boxes lie")
         rows = listed(proof["rows"], "rows", MOST_ROWS)
-        self._rows = [self.row(row) for row in clock.each(rows)]
-        self.speeds = [self._speed(joint) for joint in range(problem.joints)]
+        self._rows = [self.row(row) for row in self.clock.each(rows)]
+        self.speeds = [self._speed(joint) for joint in range(self.problem.joints)]
 
     def row(self, entry: Any) -> _Row:
         """Read [kind, span, joint, sign, m₀, m₁, n]."""
         kind, span, joint, sign, m0, m1, n = listed(entry, "a row", 7, 7)
-        kind = text(kind, "a row")
         need(kind in ("change", "reach", "brake"), "a row of an unknown kind")
-        return _Row(
-            kind,
-            whole(span, 0, len(self._asked.steps) - 1),
-            whole(joint, 0, self.problem.joints - 1),
-            sign_of(sign),
-            whole(m0, -MOST_TANGENT, MOST_TANGENT),
-            whole(m1, -MOST_TANGENT, MOST_TANGENT),
-            whole(n, 0, MOST_TANGENT),
-        )
+        k, j = whole(span, 0, len(self._asked.steps) - 1), whole(joint, 0, self.problem.joints - 1)
+        m0, m1 = (whole(m, -MOST_TANGENT, MOST_TANGENT) for m in (m0, m1))
+        return _Row(kind, k, j, sign_of(sign), m0, m1, whole(n, 0, MOST_TANGENT))
 
     def _speed(self, joint: int) -> Fraction | None:
         """No motion with a total below the cap is faster; None if nothing bounds the speed."""
-        velocity, acceleration = self._asked.velocity[joint], self._asked.acceleration[joint]
+        velocity, acceleration, _ = self.problem.limits[joint]
         if velocity is not None:
             return velocity[1]
-        known = [abs(v) for v in (side[joint] for side in self._asked.ends) if v is not None]
+        known = [abs(v) for v in (side[joint] for side in self.problem.ends) if v is not None]
         if not known or acceleration is None:
             return None
         return min(known) + acceleration[1] * self._cap
@@ -154,7 +131,7 @@ class AnyCurve(ProofKind[Sides]):
         asked = self._asked
         least = list(asked.shortest)
         for k, steps in enumerate(asked.steps):
-            for step, limit in zip(steps, asked.velocity, strict=True):
+            for step, (limit, *_) in zip(steps, self.problem.limits, strict=True):
                 if step and limit is not None:
                     need(limit[1] > 0, "a joint that moves has the velocity limit 0")
                     least[k] = max(least[k], abs(step) / limit[1])
@@ -179,12 +156,8 @@ class AnyCurve(ProofKind[Sides]):
         """[row, weight, row, weight, …]: they bound the total from below in the box."""
         if any(low > high for low, high in box):
             return  # no durations at all
-        listed(data, "weights", 2 * MOST_WEIGHTS)
-        need(len(data) % 2 == 0, "malformed: weights come in pairs")
-        weighted = [
-            (self._rows[whole(row, 0, len(self._rows) - 1)], number(weight))
-            for row, weight in zip(data[::2], data[1::2], strict=True)
-        ]
+        stated = weights(data, len(self._rows), MOST_WEIGHTS)
+        weighted = [(self._rows[row], number(weight)) for row, weight in stated]
         need(all(weight >= 0 for _, weight in weighted), "a weight is negative")
         proved = self.least_total(box, weighted)
         need(proved >= self.total, f"it proves only {float(proved):.12g} s")
@@ -202,7 +175,7 @@ class AnyCurve(ProofKind[Sides]):
             self.clock.check()
             k, joint = row.span, row.joint
             v_max = fastest[joint] = required(self.speeds[joint], _NO_LIMIT)
-            bend = required(asked.acceleration[joint], _NO_LIMIT)[1]
+            bend = required(self.problem.limits[joint][1], _NO_LIMIT)[1]
             need(v_max > 0 and bend > 0, "a row leans on a limit of 0")
             time, first, last, right = row.terms(asked.steps[k][joint], v_max, bend, box[k])
             result += weight * right
@@ -214,7 +187,7 @@ class AnyCurve(ProofKind[Sides]):
         for (at, joint), c in slope.items():
             self.clock.check()
             side = 0 if at == 0 else 1 if at == len(box) else None
-            end = None if side is None else asked.ends[side][joint]
+            end = None if side is None else self.problem.ends[side][joint]
             result += c * end if end is not None else -abs(c) * fastest[joint]
         return result
 
@@ -232,12 +205,10 @@ def check_motion(
 
     Parameters
     ----------
-    problem : StatedProblem
     h : sequence of Fraction
         Durations between way-points, s.
     speeds : list, [way-point][joint], or None
         Velocities at the way-points, for joints whose acceleration is limited.
-    clock : Clock
 
     Raises
     ------
@@ -248,17 +219,17 @@ def check_motion(
     need(alike, "answer: lower and upper limits differ, which no answer of any curve keeps")
     asked = spans_of(problem)
     check_durations(h, asked.shortest, asked.longest)
-    for j, (velocity, bend) in enumerate(zip(asked.velocity, asked.acceleration, strict=True)):
+    for j, (velocity, bend, jerk) in enumerate(problem.limits):
         clock.check()
         steps = [row[j] for row in asked.steps]
-        given = [side[j] for side in asked.ends]
+        given = [side[j] for side in problem.ends]
         if not any(steps) and all(v in (None, 0) for v in given):
             # It stays where it is.
             low, high, place = *(side[j] for side in problem.position), problem.waypoints[0][j]
             inside = (low is None or low[1] <= place) and (high is None or place <= high[0])
             need(inside, f"answer: joint {j + 1} is outside its position limits")
             continue
-        need(problem.limits[j][2] is None, "answer: jerk is limited")
+        need(jerk is None, "answer: jerk is limited")
         free = problem.position[0][j] is None and problem.position[1][j] is None
         need(free, "answer: position is limited")
         named = f"answer: joint {j + 1}, segment"

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from abc import abstractmethod
+from collections.abc import Callable
 from copy import copy
-from fractions import Fraction
 from itertools import permutations
-from typing import Any, Self
+from math import perm
+from typing import Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .problem import StatedProblem
 from .ranges import MOST_LIMITS, MOST_ROWS, MOST_WEIGHT
-from .reading import Clock, listed, need, sign_of, whole
+from .reading import listed, need, sign_of, weights, whole
 from .tree import ProofKind
 
 Array = NDArray[np.float64]
@@ -21,6 +21,10 @@ Rows = NDArray[np.int64]
 Sides = tuple[list[float], list[float]]
 """Least and largest durations, in the proof's unit of time."""
 
+_NUMBERS = 2_000_000
+"""In the largest array of a batch: 16 MB, beyond which numpy is no faster."""
+_LEAVES = 512
+"""In a batch at most: from there on numpy's own work outweighs the calls."""
 SLACK = 1e-12
 """Of the sides of a box: far more than the rounding of the sums that shrink it."""
 
@@ -32,30 +36,26 @@ class Boxes(ProofKind[Sides]):
     keeps the limits: boxes are then those of the simplex of durations whose sum is the total, and
     its multiplier τ may have either sign.
 
-    Attributes
-    ----------
-    most : float
-        The total, in the proof's unit of time.
-    stretches : bool
-    rows : ndarray of int, shape (row, 5)
-        Segment, joint, order, sign and place of limits that leaves lean on.
-    batch : int
-        Leaves that are judged together.
-    task : Any
-        Whose ``cap`` is the limit of each row.
     """
 
     apart = 500  # a batch of leaves
+    centres: ClassVar[Callable[..., Any]]
+    """Given the task and sides of boxes: the curves at their centres, with the bound of leaves."""
     most: float
+    """The total, in the proof's unit of time."""
+    shortest: list[float]
+    longest: list[float]
+    """Sides of the box that holds all answers."""
     stretches = True
     rows: Rows
+    """Segment, joint, order, sign and place of limits that leaves lean on."""
     batch: int
+    """Leaves that are judged together."""
     task: Any
+    """Its ``cap`` is the limit of each row."""
 
-    def __init__(
-        self, problem: StatedProblem, proof: dict[str, Any], total: Fraction, clock: Clock
-    ) -> None:
-        super().__init__(problem, proof, total, clock)
+    def read(self, proof: dict[str, Any]) -> None:
+        """A kind reads the proof; no leaf waits."""
         self._waiting: list[tuple[Sides, list[Any]]] = []
 
     def read_rows(self, stated: Any, first: int, places: int) -> Rows:
@@ -76,6 +76,14 @@ class Boxes(ProofKind[Sides]):
         limited = np.isfinite(self.task.cap(rows)).all()
         need(bool(limited), "a row leans on a limit that is not there")
         return rows
+
+    def together(self, size: int) -> None:
+        """Judge as many leaves at a time as arrays allow, the largest of which has a size each."""
+        self.batch = max(1, min(_LEAVES, _NUMBERS // max(1, size)))
+
+    def root(self) -> Sides:
+        """From the least durations, which are proved, to the total or the upper bounds."""
+        return self.shrunk(self.shortest, self.longest)
 
     def shrunk(self, low: list[float], high: list[float]) -> Sides:
         """Part of a box whose durations can add up to the total, with something to spare."""
@@ -107,7 +115,7 @@ class Boxes(ProofKind[Sides]):
     def leaf(self, box: Sides, data: list[Any]) -> None:
         """Nothing, if the box is empty; or [τ, row, weight, row, weight, …]."""
         if not data:
-            need(empty(box), "it is not empty")
+            need(any(a > b for a, b in zip(*box, strict=True)), "it is not empty")
             return
         self._waiting.append((box, data))
         if len(self._waiting) == self.batch:
@@ -125,46 +133,35 @@ class Boxes(ProofKind[Sides]):
         if not waiting:
             return
         taus, leaves = [], []
-        for _, (tau, *pairs) in waiting:
+        for _, (tau, *stated) in waiting:
             taus.append(whole(tau, -MOST_WEIGHT if self.stretches else 0, MOST_WEIGHT))
-            need(len(pairs) % 2 == 0, "a leaf misses a weight")
-            need(len(pairs) <= 2 * MOST_LIMITS, "a leaf has too many rows")
-            which = [whole(row, 0, len(self.rows) - 1) for row in pairs[::2]]
-            leaves.append((which, [whole(weight, 0, MOST_WEIGHT) for weight in pairs[1::2]]))
-        most = max(len(which) for which, _ in leaves)
-        ids, weights = np.zeros((len(leaves), most), np.int64), np.zeros((len(leaves), most))
-        for at, (which, each) in enumerate(leaves):
-            ids[at, : len(which)], weights[at, : len(each)] = which, each
+            pairs = weights(stated, len(self.rows), MOST_LIMITS)
+            leaves.append([(row, whole(weight, 0, MOST_WEIGHT)) for row, weight in pairs])
+        most = max(map(len, leaves))
+        ids, shares = np.zeros((len(leaves), most), np.int64), np.zeros((len(leaves), most))
+        for at, pairs in enumerate(leaves):
+            for place, (row, weight) in enumerate(pairs):
+                ids[at, place], shares[at, place] = row, weight
         sides = np.array([box for box, _ in waiting])
         with np.errstate(all="ignore"):  # what is not finite fails every comparison
-            found = self.least(sides, np.array(taus, np.float64), ids, weights)
+            centre = self.centre(sides)
+            found = centre.least(np.array(taus, np.float64), self.rows[ids], shares)
         need(bool((found > 0.0).all()), "a leaf with limits is not proved")
 
-    def least(self, sides: Array, tau: Array, ids: Rows, weights: Array) -> Array:
-        """Lower bound of each leaf's weighted limits and τ over its box, by numbers of rows."""
-        return np.asarray(self.centre(sides).least(tau, self.rows[ids], weights))
-
-    @abstractmethod
     def centre(self, sides: Array) -> Any:
         """The curves at the centres of boxes (box, least or largest, segment)."""
+        return self.centres(self.task, sides[:, 0], sides[:, 1])
 
 
 def shapes(rows: Rows, powers: int, places: int) -> Array:
     """Sign times the derivative of each power of s at a row's place: (..., power)."""
     s, order = rows[..., 4] / places, rows[..., 2]
-    factors = np.ones((4, powers))
-    for r in range(3):
-        factors[r + 1] = factors[r] * np.maximum(np.arange(powers) - r, 0)
+    factors = np.array([[perm(p, r) for p in range(powers)] for r in range(4)], np.float64)
     power = np.ones((*s.shape, powers))
     for p in range(1, powers):
         # The power of s that is left of sᵖ.
         power[..., p] = np.where(p > order, power[..., p - 1] * s, 1.0)
     return np.asarray(rows[..., 3, None] * factors[order] * power)
-
-
-def empty(box: Sides) -> bool:
-    """Whether no durations are in a box."""
-    return any(a > b for a, b in zip(*box, strict=True))
 
 
 def least_of_quadratic(gradient: Array, bend: Array, e: Array) -> Array:

@@ -9,27 +9,23 @@ from abc import abstractmethod
 from fractions import Fraction
 from typing import Any, NoReturn
 
-from .curve import UNIFORM, Pieces, derivative, pieces, uniform_pieces, value_at
-from .problem import StatedProblem
+from .curve import UNIFORM, derivative, pieces, value_at
 from .ranges import PLACES
-from .reading import Clock, Refused, listed, need, number, required, whole
+from .reading import Refused, listed, need, number, required, whole
 from .tree import ProofKind
 
 
 class ClosedForm(ProofKind[None]):
-    """What all of them have in common: pieces, each in a time of its own from 0 to 1."""
+    """What all of them have in common: pieces for given durations, in a time from 0 to 1."""
 
-    def __init__(
-        self, problem: StatedProblem, proof: dict[str, Any], total: Fraction, clock: Clock
-    ) -> None:
-        super().__init__(problem, proof, total, clock)
-        uniform = problem.curve == UNIFORM
-        self._pieces = uniform_pieces(problem, clock) if uniform else self.pieces()
-        self._late = False
+    def read(self, proof: dict[str, Any]) -> None:
+        """The curve."""
+        self._pieces = pieces(self.problem, self.durations(), self.clock)
+        self._least = [Fraction(0)] * self.problem.segments
 
     @abstractmethod
-    def pieces(self) -> Pieces:
-        """Of a declared piecewise polynomial."""
+    def durations(self) -> list[Fraction]:
+        """For which the curve is solved; its pieces for all others follow by stretching."""
 
     def root(self) -> None:
         """All durations."""
@@ -55,7 +51,8 @@ class ClosedForm(ProofKind[None]):
     @property
     def infeasible(self) -> bool:
         """Whether a segment needs more than its upper bound."""
-        return self._late
+        both = zip(self._least, self.problem.longest, strict=True)
+        return any(top is not None and x > top for x, top in both)
 
 
 class EachAlone(ClosedForm):
@@ -66,22 +63,25 @@ class EachAlone(ClosedForm):
     the segments: where neighbours differ in duration, the velocity jumps.
     """
 
-    def pieces(self) -> Pieces:
-        """For durations of 1."""
-        declared, n = self.problem.declaration, self.problem.segments
+    def durations(self) -> list[Fraction]:
+        """All 1."""
+        declared = self.problem.declaration
         apart = declared is not None and declared.at_rest and not declared.virtual
         if declared is not None:
             inner = zip(declared.continuity, declared.prescribed[1:-1], strict=True)
             apart &= all(set(range(1, order + 1)) <= set(held) for order, held in inner)
-        need(apart, "declaration not covered: no curve whose segments stand alone")
-        return pieces(self.problem, [Fraction(1)] * n, self.clock)
+        need(
+            apart or self.problem.curve == UNIFORM,
+            "declaration not covered: no curve whose segments stand alone",
+        )
+        return [Fraction(1)] * self.problem.segments
 
     def leaf(self, box: None, data: list[Any]) -> None:
         """[joint, order, place, least duration] of every segment.
 
         Joint −1 stands for the duration's own lower bound.
         """
-        problem, n, least = self.problem, self.problem.segments, []
+        problem, n = self.problem, self.problem.segments
         for k, entry in enumerate(listed(data, "one bound per segment", n, n)):
             self.clock.check()
             joint, order, place, stated = listed(entry, "a bound", 4, 4)
@@ -92,39 +92,26 @@ class EachAlone(ClosedForm):
             else:
                 r, power = self.at(joint, k, order, place)
                 need(x**r <= power, f"segment {k + 1}: its least duration is not proved")
-            least.append(x)
-        reached = sum(self.clock.each(least), Fraction(0))
+            self._least[k] = x
+        reached = sum(self.clock.each(self._least), Fraction(0))
         need(self.total <= reached, "the total is not proved")
-        both = zip(least, problem.longest, strict=True)
-        self._late = any(top is not None and x > top for x, top in both)
 
 
 class FixedRatios(ClosedForm):
     """Fixed ratios of the durations, where the total is the one unknown."""
 
-    def __init__(
-        self, problem: StatedProblem, proof: dict[str, Any], total: Fraction, clock: Clock
-    ) -> None:
-        self._shares = required(
-            problem.shares, "the problem fixes no ratios that are rational numbers"
-        )
-        super().__init__(problem, proof, total, clock)
-        both = zip(self._shares, problem.longest, strict=True)
-        self._late = any(top is not None and total * share > top for share, top in both)
-
-    def pieces(self) -> Pieces:
-        """For a total of 1."""
+    def durations(self) -> list[Fraction]:
+        """Those of a total of 1."""
+        shares = self.problem.shares
+        self._shares = required(shares, "the problem fixes no ratios that are rational numbers")
         declared = self.problem.declaration
         # A derivative prescribed other than 0 does not fall with the total.
         known = declared is not None and declared.at_rest
-        need(known, "declaration not covered: no curve that may be stretched in time")
-        return [
-            [
-                [c * share**p for p, c in enumerate(piece)]
-                for piece, share in zip(curve, self._shares, strict=True)
-            ]
-            for curve in pieces(self.problem, self._shares, self.clock)
-        ]
+        need(
+            known or self.problem.curve == UNIFORM,
+            "declaration not covered: no curve that may be stretched in time",
+        )
+        return self._shares
 
     def leaf(self, box: None, data: list[Any]) -> None:
         """[joint, order, segment, place]; joint −1 stands for the segment's own lower bound."""
@@ -134,6 +121,7 @@ class FixedRatios(ClosedForm):
         own = self.total * self._shares[k]
         if whole(joint, -1, problem.joints - 1) == -1:
             need(own <= problem.shortest[k], "above its lower bound")
-            return
-        r, power = self.at(joint, k, order, place)
-        need(own**r <= power, "the total is not proved")
+        else:
+            r, power = self.at(joint, k, order, place)
+            need(own**r <= power, "the total is not proved")
+        self._least = [self.total * share for share in self._shares]

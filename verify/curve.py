@@ -11,41 +11,48 @@ from .problem import Declaration, StatedProblem
 from .reading import Clock, need, required
 
 Pieces = list[list[list[Fraction]]]
-"""Coefficients [joint][segment][power] in the time since the start of the segment."""
+"""Coefficients [joint][segment][power] in s, the time since the start of the segment divided by its
+duration: from 0 to 1."""
 
 Sparse = dict[int, Fraction]
 Condition = tuple[Sparse, list[Fraction]]
 """Factors by coefficient, and a right-hand side for each joint."""
 
 UNIFORM = "uniform cubic B-spline, segments stretched in time"
-"""Name of the curve whose pieces have a time of their own."""
+"""Name of the curve whose pieces, in s, do not change with the durations."""
 
 _HALVINGS = 60
 """Of a piece, to see that a polynomial is nowhere negative on it: beyond any float."""
 
 
 def pieces(problem: StatedProblem, h: Sequence[Fraction], clock: Clock) -> Pieces:
-    """The curve of a declared piecewise polynomial, from its conditions by elimination.
+    """A declared piecewise polynomial or `UNIFORM`, from its conditions by elimination.
+
+    `UNIFORM` is a C2 cubic spline for durations of 1 whose first two and last two control vertices
+    are equal: q′ = q″/2 at the start and q′ = −q″/2 at the end.
 
     Parameters
     ----------
-    problem : StatedProblem
-        With a declaration.
     h : sequence of Fraction
         Durations, s, positive.
-    clock : Clock
-
-    Returns
-    -------
-    Pieces
 
     Raises
     ------
     Refused
         If the conditions do not determine the curve, or contradict each other.
     """
-    declared = required(problem.declaration, "the curve is no declared piecewise polynomial")
-    rows = conditions(declared, problem.waypoints, h)
+    declared, n = problem.declaration, problem.segments
+    if problem.curve == UNIFORM:
+        declared = Declaration([3] * n, [2] * (n - 1), [{}] * (n + 1), [])
+        one, none = Fraction(1), [Fraction(0)] * problem.joints
+        rows = [
+            ({1: one, 2: -one}, none),
+            *conditions(declared, problem.waypoints, [one] * n),
+            ({4 * n - 3: one, 4 * n - 2: 3 * one, 4 * n - 1: 6 * one}, none),
+        ]
+    else:
+        declared = required(declared, "the curve is no declared piecewise polynomial")
+        rows = conditions(declared, problem.waypoints, h)
     first = first_columns(declared)
     need(len(rows) == first[-1], "the conditions do not determine the curve")
     solved = eliminated(rows, clock)
@@ -61,35 +68,23 @@ def first_columns(declared: Declaration) -> list[int]:
     return list(accumulate((d + 1 for d in declared.degrees), initial=0))
 
 
-def at_end(declared: Declaration, segment: int, t: Fraction, order: int) -> Sparse:
-    """A derivative of a piece by its coefficients, counted from 0 in the piece."""
-    powers = range(order, declared.degrees[segment] + 1)
-    terms = {p: perm(p, order) * t ** (p - order) for p in powers}
-    return {p: x for p, x in terms.items() if x}
+def at_end(declared: Declaration, segment: int, end: int, order: int) -> dict[int, int]:
+    """A derivative by s at an end of a piece, 0 or 1, by its coefficients, counted from 0."""
+    powers = range(order, declared.degrees[segment] + 1 if end else order + 1)
+    return {p: perm(p, order) for p in powers}
 
 
 def conditions(
     declared: Declaration, waypoints: Sequence[Sequence[Fraction]], h: Sequence[Fraction]
 ) -> list[Condition]:
-    """Equations of the coefficients of all pieces, for given durations.
-
-    Parameters
-    ----------
-    declared : Declaration
-    waypoints : sequence of sequence of Fraction
-    h : sequence of Fraction
-
-    Returns
-    -------
-    list of (dict, list)
-        Factors by coefficient, and a right-hand side for each joint.
-    """
+    """Equations of the coefficients of all pieces, for given durations."""
     n, first = len(declared.degrees), first_columns(declared)
     rows: list[Condition] = []
 
-    def side(segment: int, t: Fraction, order: int, sign: int = 1) -> Sparse:
-        own = at_end(declared, segment, t, order)
-        return {first[segment] + p: sign * x for p, x in own.items()}
+    def side(segment: int, end: int, order: int, sign: int = 1) -> Sparse:
+        unit = sign / h[segment] ** order
+        own = at_end(declared, segment, end, order)
+        return {first[segment] + p: x * unit for p, x in own.items()}
 
     angles, none = iter(waypoints), [Fraction(0)] * len(waypoints[0])
     for b in range(n + 1):
@@ -98,12 +93,12 @@ def conditions(
             held[0] = list(next(angles))
         for order, values in held.items():
             if b > 0:
-                rows.append((side(b - 1, h[b - 1], order), list(values)))
+                rows.append((side(b - 1, 1, order), list(values)))
             if b < n:
-                rows.append((side(b, Fraction(0), order), list(values)))
+                rows.append((side(b, 0, order), list(values)))
         if 0 < b < n:
             for order in set(range(declared.continuity[b - 1] + 1)) - set(held):
-                both = side(b - 1, h[b - 1], order) | side(b, Fraction(0), order, -1)
+                both = side(b - 1, 1, order) | side(b, 0, order, -1)
                 rows.append((both, list(none)))
     return rows
 
@@ -150,39 +145,6 @@ def eliminated(rows: Sequence[Condition], clock: Clock) -> dict[int, Condition]:
     return pivots
 
 
-def uniform_pieces(problem: StatedProblem, clock: Clock) -> Pieces:
-    """The uniform cubic B-spline through the way-points, each segment in a time from 0 to 1.
-
-    A C2 cubic spline on unit steps whose slopes m satisfy m₋ + 4m + m₊ = 3(q₊ − q₋), here with
-    both end slopes half the ends' second derivatives (equal control vertices V₀ = V₁): 2m = q″
-    at the start, 2m = −q″ at the end.
-
-    Parameters
-    ----------
-    problem : StatedProblem
-    clock : Clock
-
-    Returns
-    -------
-    Pieces
-    """
-    q, last = problem.waypoints, len(problem.waypoints) - 1
-    ways = [[b - a for a, b in zip(*rows, strict=True)] for rows in pairwise(q)]
-    rows: list[Condition] = [({0: Fraction(6), 1: Fraction(2)}, [6 * x for x in ways[0]])]
-    for i, (before, behind) in enumerate(pairwise(ways), 1):
-        both = [3 * (a + b) for a, b in zip(before, behind, strict=True)]
-        rows.append(({i - 1: Fraction(1), i: Fraction(4), i + 1: Fraction(1)}, both))
-    # q″ at the start of a piece is 6(q₁ − q₀) − 4m₀ − 2m₁, at its end 2m₀ + 4m₁ − 6(q₁ − q₀).
-    rows.append(({last - 1: Fraction(2), last: Fraction(6)}, [6 * x for x in ways[-1]]))
-    slopes = eliminated(rows, clock)
-    found: Pieces = [[] for _ in q[0]]
-    for k, way in enumerate(ways):
-        for j, d in clock.each(enumerate(way)):
-            u, w = slopes[k][1][j], slopes[k + 1][1][j]
-            found[j].append([q[k][j], u, 3 * d - 2 * u - w, u + w - 2 * d])
-    return found
-
-
 # --- polynomials ----------------------------------------------------------------------------------
 
 
@@ -196,15 +158,14 @@ def value_at(poly: Sequence[Fraction], t: Fraction) -> Fraction:
     return sum((c * t**p for p, c in enumerate(poly)), Fraction(0))
 
 
-def nonnegative(poly: Sequence[Fraction], high: Fraction, clock: Clock) -> bool:
-    """Whether a polynomial is ≥ 0 on [0, high]: Bernstein coefficients, by bisection.
+def nonnegative(poly: Sequence[Fraction], clock: Clock) -> bool:
+    """Whether a polynomial is ≥ 0 on [0, 1]: Bernstein coefficients, by bisection.
 
-    One that touches 0 between the dyadic places of [0, high] is not seen to be.
+    One that touches 0 between the dyadic places of [0, 1] is not seen to be.
     """
     n = len(poly) - 1
-    scaled = [c * high**p for p, c in enumerate(poly)]
-    unit = lcm(*(c.denominator for c in scaled)) * lcm(*(comb(n, k) for k in range(n + 1)))
-    whole = [int(c * unit) for c in scaled]
+    unit = lcm(*(c.denominator for c in poly)) * lcm(*(comb(n, k) for k in range(n + 1)))
+    whole = [int(c * unit) for c in poly]
     # Integers from here on: positive multiples of the coefficients.
     control = [sum(comb(i, k) * whole[k] // comb(n, k) for k in range(i + 1)) for i in range(n + 1)]
     left = [(control, _HALVINGS)]

@@ -12,24 +12,14 @@ from typing import Any
 
 import numpy as np
 
+from . import ranges
 from .boxes import SLACK, Array, Boxes, Sides
 from .declared_bound import Centre, Task
 from .declared_form import linear_form
 from .floors import least_durations
-from .problem import Bounds, Declaration, StatedProblem
-from .ranges import (
-    MOST_DECLARED_SEGMENTS,
-    MOST_DECLARED_UNKNOWNS,
-    PLACES,
-    SMALLEST_CAP,
-)
-from .reading import Clock, need, required, whole
+from .problem import Bounds, Declaration
+from .reading import need, required, whole
 from .tree import LEAF
-
-_NUMBERS = 2_000_000
-"""In the largest array of a batch: 16 MB, beyond which numpy is no faster."""
-_LEAVES = 512
-"""In a batch at most: from there on numpy's own work outweighs the calls."""
 
 _NO_FLOOR = "no limit of a joint that moves in it, and no bound, keeps its duration above 0"
 """Why a problem is not covered: logarithms of durations have to be bounded."""
@@ -43,23 +33,35 @@ class DeclaredCurve(Boxes):
     """
 
     keys = ("rows",)
+    centres = Centre
 
-    def __init__(
-        self, problem: StatedProblem, proof: dict[str, Any], total: Fraction, clock: Clock
-    ) -> None:
-        super().__init__(problem, proof, total, clock)
-        declared = covered(problem)
-        need(total > 0, "the total is not positive")
-        self.second = Fraction(2) ** _power(total)
+    def read(self, proof: dict[str, Any]) -> None:
+        """The curve and its limits in units of the proof, least durations, and the rows."""
+        super().read(proof)
+        problem, n, most = self.problem, self.problem.segments, ranges.MOST_DECLARED_SEGMENTS
+        declared = required(
+            problem.declaration, "declaration not covered: no declared piecewise polynomial"
+        )
+        need(n > 1 or not declared.at_rest, "one segment alone has no inner break")
+        need(n <= most, f"more than {most} segments")
+        need(self.total > 0, "the total is not positive")
+        self.second = Fraction(2) ** _power(self.total)
         self.stretches = declared.at_rest and not any(x is not None for x in problem.longest)
         self.task = self._task(declared)
-        exact = [x / self.second for x in least_durations(problem, total)]
+        exact = [x / self.second for x in least_durations(problem, self.total)]
         both = zip(exact, self._returning(declared), strict=True)
         self.shortest = [max(nextafter(float(x), 0.0), y) for x, y in both]
-        self.rows = self.read_rows(proof["rows"], 0, PLACES)
-        self.most, self.batch = self.task.total, self._batch()
-        nodes = proof["tree"]
-        self._hopeless = type(nodes) is list and len(nodes) == 1 and _single(nodes[0])
+        self.rows = self.read_rows(proof["rows"], 0, ranges.PLACES)
+        self.longest = [
+            self.task.total * (1.0 + SLACK) if x is None else nextafter(float(x / self.second), inf)
+            for x in problem.longest
+        ]
+        self.most, m, breaks = self.task.total, self.task.unknowns, self.task.breaks
+        self.together(m * breaks * max(m, breaks * problem.joints))
+        self._hopeless = False
+        match proof["tree"]:
+            case [[tag, _]] if tag == LEAF:
+                self._hopeless = True
 
     @property
     def infeasible(self) -> bool:
@@ -72,22 +74,18 @@ class DeclaredCurve(Boxes):
         start = problem.waypoints[0]
         moved = [[q - a for q, a in zip(row, start, strict=True)] for row in problem.waypoints]
         units = [Fraction(2) ** _power(max(map(abs, way))) for way in zip(*moved, strict=True)]
-        prescribed = [
-            {
-                r: [x * self.second**r / u for x, u in zip(row, units, strict=True)]
-                for r, row in at.items()
-            }
-            for at in declared.prescribed
-        ]
+
+        def own(row: list[Fraction], order: int = 0) -> list[Fraction]:
+            return [x * self.second**order / u for x, u in zip(row, units, strict=True)]
+
+        stated = declared.prescribed
+        prescribed = [{r: own(row, r) for r, row in at.items()} for at in stated]
         sizes = [abs(x) for at in prescribed for row in at.values() for x in row if x]
-        usual = all(SMALLEST_CAP < x < 1 / SMALLEST_CAP for x in sizes)
+        usual = all(ranges.within(x, ranges.SMALLEST_CAP) for x in sizes)
         need(usual, "a prescribed derivative is of unusual size")
-        form = linear_form(
-            replace(declared, prescribed=prescribed),
-            [[q / unit for q, unit in zip(row, units, strict=True)] for row in moved],
-            self.clock,
-        )
-        need(len(form.orders) <= MOST_DECLARED_UNKNOWNS, "the curve has too many unknowns")
+        scaled = replace(declared, prescribed=prescribed)
+        form = linear_form(scaled, list(map(own, moved)), self.clock)
+        need(len(form.orders) <= ranges.MOST_DECLARED_UNKNOWNS, "the curve has too many unknowns")
         caps = np.full((2, joints, 4), inf)
         for j, unit in enumerate(units):
             for s, sign in enumerate((-1, 1)):
@@ -113,10 +111,11 @@ class DeclaredCurve(Boxes):
         for p, (b, order) in enumerate(zip(form.breaks, form.orders, strict=True)):
             before, behind = form.sides[b].tolist()
             # Seen from the segment, time runs away from the neighbour.
-            for own, other, free, value, turn in (
-                (behind, before, form.ends[p], form.end[p], 1.0),
-                (before, behind, form.starts[p], form.start[p], (-1.0) ** order),
+            for own, other, stated, turn in (
+                (behind, before, form.ends[p], 1.0),
+                (before, behind, form.starts[p], (-1.0) ** order),
             ):
+                free, value = np.split(stated, [task.unknowns])
                 if own < n and not free.any():
                     longest = task.total * (1.0 + SLACK) if other < n else 1.0
                     known[own, int(b), int(order)] = value * turn / longest**order
@@ -134,22 +133,11 @@ class DeclaredCurve(Boxes):
                 least[own] = max(least[own], found * (1.0 - SLACK))
         return least
 
-    def _batch(self) -> int:
-        """Leaves that are judged together: long curves fewer."""
-        task = self.task
-        m, breaks = task.unknowns, task.breaks
-        most = max(1, m * breaks * max(m, breaks * task.joints))
-        return int(max(1, min(_LEAVES, _NUMBERS // most)))
-
     def root(self) -> Sides:
-        """From the least durations, which are proved, to the total or the upper bounds."""
+        """As any kind has it, where no duration may go to 0."""
         zero = [k for k, x in enumerate(self.shortest, 1) if x <= 0]
         need(self._hopeless or not zero, f"segment {min(zero, default=0)}: {_NO_FLOOR}")
-        high = [
-            self.task.total * (1.0 + SLACK) if x is None else nextafter(float(x / self.second), inf)
-            for x in self.problem.longest
-        ]
-        return self.shrunk(self.shortest, high)
+        return super().root()
 
     @staticmethod
     def middle(low: float, high: float) -> float:
@@ -168,31 +156,11 @@ class DeclaredCurve(Boxes):
         """Whether a way-point is there that is beyond a position limit."""
         declared, ends = self.problem.declaration, self.problem.position[(1 + sign) // 2][joint]
         virtual = [] if declared is None else declared.virtual
-        at = segment + place // PLACES
-        if order != 0 or place % PLACES != 0 or at in virtual or ends is None:
+        at = segment + place // ranges.PLACES
+        if order != 0 or place % ranges.PLACES != 0 or at in virtual or ends is None:
             return False
         angle = self.problem.waypoints[at - sum(b < at for b in virtual)][joint]
         return sign * angle > max(sign * x for x in ends)
-
-    def centre(self, sides: Array) -> Centre:
-        """Of the declared curve."""
-        return Centre(self.task, sides[:, 0], sides[:, 1])
-
-
-def _single(node: Any) -> bool:
-    """Whether a node is a leaf with one row alone."""
-    return type(node) is list and len(node) == 2 and node[0] == LEAF
-
-
-def covered(problem: StatedProblem) -> Declaration:
-    """The declaration of a problem, if this kind of proof speaks about it."""
-    declared = required(
-        problem.declaration, "declaration not covered: no declared piecewise polynomial"
-    )
-    n = problem.segments
-    need(n > 1 or not declared.at_rest, "one segment alone has no inner break")
-    need(n <= MOST_DECLARED_SEGMENTS, f"more than {MOST_DECLARED_SEGMENTS} segments")
-    return declared
 
 
 def _power(size: Fraction) -> int:
@@ -205,4 +173,4 @@ def _cap(size: Bounds, unit: Fraction) -> float:
     if size is None:
         return inf
     own = size[1] * unit
-    return float(own) if SMALLEST_CAP < own < 1 / SMALLEST_CAP else inf
+    return float(own) if ranges.within(own, ranges.SMALLEST_CAP) else inf

@@ -13,7 +13,6 @@ from contextlib import suppress
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .boxes import Array, Rows, least_of_quadratic, most_of_cubes, shapes
 from .declared_form import Form
@@ -46,9 +45,8 @@ class Task:
     def __init__(self, form: Form, caps: Array, total: float) -> None:
         self.form, self.caps, self.total = form, caps, total
         self.segments, self.powers, self.unknowns = form.basis.shape
-        self.joints = caps.shape[1]
-        n, half = self.segments, 0.5 * form.orders
-        self.half = half
+        self.joints, n = caps.shape[1], self.segments
+        self.half = 0.5 * form.orders
         """κ = r/2 of each derivative that is to agree."""
         self.breaks = len(form.sides)
         self.at = np.zeros((self.unknowns, self.breaks))
@@ -72,7 +70,6 @@ class Centre:
 
     Parameters
     ----------
-    task : Task
     low, high : ndarray, shape (box, segments)
     """
 
@@ -80,29 +77,24 @@ class Centre:
         self.task, form = task, task.form
         h = np.sqrt(low * high)
         self.h = h
-        # Logarithm and quotient are near to their last digits.
+        # Logarithm and quotient, and powers below, are near to their last digits.
         self.e = np.log(np.maximum(high / h, h / low)) * (1.0 + ROUND) + ROUND
         self.z = self.e @ np.abs(task.across).T
         self.u = task.half * self.z[:, form.breaks]
         self.t = np.tanh(self.u) * (1.0 + ROUND)
         before, behind = form.sides[form.breaks].T
         wide = np.concatenate([h, np.ones((len(h), 1))], axis=1)
-        ratio = np.sqrt(wide[:, behind] / wide[:, before])
-        gain = np.ones_like(ratio)
-        for order in range(1, int(form.orders.max(initial=0)) + 1):
-            gain = np.where(form.orders >= order, gain * ratio, gain)
-        gain = gain[:, :, None]
-        ends, starts = gain * form.ends, form.starts / gain
-        end, start = gain * form.end, form.start / gain
-        s_, self.d_ = ends - starts, ends + starts
-        s, self.d = start - end, -(end + start)
-        self.s_, self.s = s_, s
+        gain = (np.sqrt(wide[:, behind] / wide[:, before]) ** form.orders)[:, :, None]
+        ends, starts, p = gain * form.ends, form.starts / gain, [task.unknowns]
+        s_, s = np.split(ends - starts, p, axis=2)
+        self.d_, d = np.split(ends + starts, p, axis=2)
+        self.s_, self.s, self.d = s_, -s, -d
+        self.top, self.fixed = np.split(np.abs(ends) + np.abs(starts), p, axis=2)
         self.y = inverted(s_)
         self.hint = self.d_ @ self.y
-        self.x = self.y @ s
-        self.x += self.y @ (s - s_ @ self.x)
+        self.x = -self.y @ s
+        self.x += self.y @ (self.s - s_ @ self.x)
         self.g = self.d_ @ self.x - self.d
-        self.top, self.fixed = np.abs(ends) + np.abs(starts), np.abs(end) + np.abs(start)
         self.usual = (low > BRIEFEST).all(axis=1) & (low <= high).all(axis=1)
 
     def _reach(self) -> None:
@@ -132,13 +124,6 @@ class Centre:
         one = np.eye(self.task.unknowns)
         return np.asarray((1.0 + ROOM) * (inverted(one - self.pull) @ from_))
 
-    def pick(self, which: NDArray[np.bool_]) -> Centre:
-        """Some of the boxes."""
-        own = object.__new__(Centre)
-        for name, value in vars(self).items():
-            setattr(own, name, value if name == "task" else value[which])
-        return own
-
     def least(self, tau: Array, rows: Rows, weights: Array) -> Array:
         """Lower bound of each box's sum of weighted limits and τ (Σ h/total − 1); −inf for none.
 
@@ -156,10 +141,7 @@ class Centre:
         box = np.arange(len(tau))[:, None]
         cap = task.cap(rows)
         here = np.where(weights > 0.0, cap, 1.0)
-        power = np.ones_like(weights)
-        for r in range(1, 4):
-            power = np.where(order >= r, power * self.h[box, segment], power)
-        share = np.where(order > 0, weights / (here * power), weights)
+        share = np.where(order > 0, weights / (here * self.h[box, segment] ** order), weights)
         shape = shapes(rows, task.powers, PLACES) * share[..., None]
         against = np.where(order > 0, weights, weights * here)
         # φ by joint, its constant, and both over absolute values.
@@ -267,11 +249,10 @@ class Centre:
         spot = np.einsum("lpp->lp", size)
         rest = (spot * u**5).sum(axis=1) * (2.0 / 15.0)
         cube = u**3
-        rest += np.einsum("lpq,lp,lq->l", size * size_e, cube, u) / 3.0
-        rest += np.einsum("lpq,lp,lq->l", size * size_e, u, cube) / 3.0
         through = (size_e * u[:, None, :]) @ size_e
-        rest += np.einsum("lps,lp,ls->l", size * through, cube, u) / 3.0
-        rest += np.einsum("lps,lp,ls->l", size * through, u, cube) / 3.0
+        both = size * (size_e + through)
+        rest += np.einsum("lpq,lp,lq->l", both, cube, u) / 3.0
+        rest += np.einsum("lpq,lp,lq->l", both, u, cube) / 3.0
         third = (size_e * cube[:, None, :]) @ size_e
         rest += np.einsum("lps,lp,ls->l", size * third, u, u) / 3.0
         big = (np.einsum("lpp->lp", top) * (u + cube)).sum(axis=1)

@@ -27,34 +27,22 @@ Solved = NDArray[np.object_]
 
 @dataclass(frozen=True, eq=False)
 class Form:
-    """Floats nearest to what was solved exactly; p counts the derivatives that are to agree.
-
-    Attributes
-    ----------
-    basis : ndarray, shape (segments, degree + 1, unknowns)
-        N by segment and power; 0 above a segment's degree.
-    fixed : ndarray, shape (segments, degree + 1, joints)
-        c₀.
-    ends, starts : ndarray, shape (p, unknowns)
-        α N and β N: the scaled derivative at the end of the segment before, and at the start of the
-        one behind, by unknown; 0 where that is a neighbour beyond an end.
-    end, start : ndarray, shape (p, joints)
-        What c₀ adds to them, or the derivative that is prescribed.
-    breaks, orders : ndarray of int, shape (p,)
-    sides : ndarray of int, shape (breaks, 2)
-        Segments before and behind each break; as many as there are segments stands for a neighbour
-        that takes 1.
-    """
+    """Floats nearest to what was solved exactly; p counts the derivatives that are to agree."""
 
     basis: Array
+    """N by segment, power and unknown; 0 above a segment's degree."""
     fixed: Array
+    """c₀ by segment, power and joint."""
     ends: Array
-    end: Array
+    """The scaled derivative p at the end of the segment before: α N by unknown, then what c₀ adds
+    for each joint. Of a neighbour beyond an end: 0, then the derivative that is prescribed."""
     starts: Array
-    start: Array
+    """The same at the start of the segment behind, with β N."""
     breaks: NDArray[np.int64]
     orders: NDArray[np.int64]
     sides: NDArray[np.int64]
+    """Segments before and behind each break; as many as there are segments stands for a neighbour
+    that takes 1."""
 
 
 def linear_form(
@@ -64,14 +52,8 @@ def linear_form(
 
     Parameters
     ----------
-    declared : Declaration
     waypoints : sequence of sequence of Fraction
         In the unit of the prescribed derivatives.
-    clock : Clock
-
-    Returns
-    -------
-    Form
 
     Raises
     ------
@@ -96,41 +78,36 @@ def linear_form(
     pivots = eliminated(conditions(fixed_part, waypoints, [one] * n), clock)
     unknowns = [column for column in range(first[n]) if column not in pivots]
     need(len(unknowns) == len(agreeing), "the conditions do not determine the curve")
-    factors = np.full((first[n], len(unknowns)), Fraction(0))
-    constants = np.full((first[n], joints), Fraction(0))
-    factors[unknowns, np.arange(len(unknowns))] = one
+    p = len(agreeing)
+    solved = np.full((first[n], p + joints), Fraction(0))
+    solved[unknowns, np.arange(p)] = one
     place = {column: at for at, column in enumerate(unknowns)}
     for column, (terms, values) in clock.each(pivots.items()):
-        constants[column] = values
+        solved[column, p:] = values
         for other, x in terms.items():
             if other != column:
-                factors[column, place[other]] = -x
+                solved[column, place[other]] = -x
 
-    def scaled(segment: int, t: Fraction, order: int, values: list[Fraction]) -> list[Solved]:
+    def scaled(segment: int, end: int, order: int, values: list[Fraction]) -> Solved:
         """Factors by unknown, and a value for each joint."""
         if segment == n:
-            return [0 * factors[0], np.array(values)]
-        own = at_end(declared, segment, t, order).items()
-        return [
-            np.asarray(sum((x * table[first[segment] + p] for p, x in own), 0 * table[0]))
-            for table in (factors, constants)
-        ]
+            return np.array([Fraction(0)] * p + values)
+        own = at_end(declared, segment, end, order).items()
+        return np.asarray(sum(x * solved[first[segment] + power] for power, x in own))
 
-    ends = [scaled(k, one, order, x) for k, _, order, x in clock.each(agreeing)]
-    starts = [scaled(k, 0 * one, order, x) for _, k, order, x in clock.each(agreeing)]
+    ends = [scaled(k, 1, order, x) for k, _, order, x in clock.each(agreeing)]
+    starts = [scaled(k, 0, order, x) for _, k, order, x in clock.each(agreeing)]
     between = list(dict.fromkeys((left, right) for left, right, _, _ in agreeing))
-    most, p = max(declared.degrees) + 1, len(agreeing)
+    most = max(declared.degrees) + 1
     basis, fixed = np.zeros((n, most, p)), np.zeros((n, most, joints))
     for k, degree in enumerate(declared.degrees):
-        own = slice(first[k], first[k + 1])
-        basis[k, : degree + 1], fixed[k, : degree + 1] = factors[own], constants[own]
+        own = solved[first[k] : first[k + 1]]
+        basis[k, : degree + 1], fixed[k, : degree + 1] = own[:, :p], own[:, p:]
     return Form(
         basis,
         fixed,
-        np.array([row for row, _ in ends], np.float64).reshape(p, p),
-        np.array([value for _, value in ends], np.float64).reshape(p, joints),
-        np.array([row for row, _ in starts], np.float64).reshape(p, p),
-        np.array([value for _, value in starts], np.float64).reshape(p, joints),
+        np.array(ends, np.float64).reshape(p, p + joints),
+        np.array(starts, np.float64).reshape(p, p + joints),
         np.array([between.index((left, right)) for left, right, _, _ in agreeing], np.int64),
         np.array([order for _, _, order, _ in agreeing], np.int64),
         np.array(between, np.int64).reshape(-1, 2),

@@ -27,10 +27,6 @@ def least_durations(problem: StatedProblem, total: Fraction) -> list[Fraction]:
         With a declaration.
     total : Fraction
         s.
-
-    Returns
-    -------
-    list of Fraction
     """
     declared = problem.declaration
     assert declared is not None

@@ -8,7 +8,7 @@ from itertools import pairwise
 from typing import Any
 
 from .ranges import MOST_DEGREE, MOST_JOINTS, MOST_POWER, MOST_SEGMENTS
-from .reading import fields, listed, need, number, text, whole
+from .reading import exactly, fields, listed, need, number, optional, text, whole
 
 _DIGITS = 314159265358979323846264338327950288419716939937510
 """Of π, 51 of them: 35 more than a float has."""
@@ -38,24 +38,15 @@ _KEYS = (
 
 @dataclass(frozen=True)
 class Declaration:
-    """A piecewise polynomial.
-
-    Attributes
-    ----------
-    degrees : list of int
-        Of each piece.
-    continuity : list of int
-        The highest derivative that agrees at each inner break.
-    prescribed : list of dict
-        At each break, the values of some derivatives, by order: one for each joint.
-    virtual : list of int
-        Breaks without a way-point.
-    """
+    """A piecewise polynomial."""
 
     degrees: list[int]
     continuity: list[int]
+    """The highest derivative that agrees at each inner break."""
     prescribed: list[dict[int, list[Fraction]]]
+    """At each break, the values of some derivatives, by order: one for each joint."""
     virtual: list[int]
+    """Breaks without a way-point."""
 
     @property
     def at_rest(self) -> bool:
@@ -65,40 +56,29 @@ class Declaration:
 
 @dataclass(frozen=True)
 class StatedProblem:
-    """The problem in a certificate, every number rational.
-
-    Attributes
-    ----------
-    waypoints : list, [way-point][joint]
-    limits : list, [joint][order − 1]
-        The larger size of both sides: a bound from below that holds within it holds here.
-    sides : list, [0 lower, 1 upper][joint][order − 1]
-        Size of the limit on each side, which an answer keeps.
-    position : list, [0 lower, 1 upper][joint]
-    shortest, longest : list, one per segment
-    declaration : Declaration or None
-        None for a curve that is no piecewise polynomial with breaks at the way-points.
-    curve : str or None
-        Name of such a curve.
-    ends : list, [0 start, 1 end][joint]
-        Velocity prescribed there; None where it is free.
-    shares : list, one per segment, or None
-        Shares of the segments in the total, where ratios fix them.
-    chord : bool
-        Whether they are fixed by chord lengths, which are no rational numbers; without shares.
-    """
+    """The problem in a certificate, every number rational."""
 
     waypoints: list[list[Fraction]]
+    """[way-point][joint]."""
     limits: list[list[Bounds]]
+    """[joint][order − 1]: the larger size of both sides. A bound from below that holds within it
+    holds here."""
     sides: list[list[list[Bounds]]]
+    """[0 lower, 1 upper][joint][order − 1]: size on each side, which an answer keeps."""
     position: list[list[Bounds]]
+    """[0 lower, 1 upper][joint]."""
     shortest: list[Fraction]
     longest: list[Fraction | None]
     declaration: Declaration | None
+    """None for a curve that is no piecewise polynomial with breaks at the way-points."""
     curve: str | None
+    """Name of such a curve."""
     ends: list[list[Fraction | None]]
+    """[0 start, 1 end][joint]: velocity prescribed there; None where it is free."""
     shares: list[Fraction] | None = None
+    """Of the segments in the total, where ratios fix them."""
     chord: bool = False
+    """Whether they are fixed by chord lengths, which are no rational numbers; without shares."""
 
     @property
     def joints(self) -> int:
@@ -112,16 +92,7 @@ class StatedProblem:
 
 
 def read_problem(data: Any) -> StatedProblem:
-    """Read the problem of a certificate.
-
-    Parameters
-    ----------
-    data : Any
-        ``problem`` of the file.
-
-    Returns
-    -------
-    StatedProblem
+    """Read ``problem`` of a certificate.
 
     Raises
     ------
@@ -129,36 +100,28 @@ def read_problem(data: Any) -> StatedProblem:
         If it is malformed, too large, or a bound makes no sense.
     """
     polynomial = type(data) is dict and "degrees" in data
-    own, optional = (_POLYNOMIALS, ()) if polynomial else (("curve",), ("ends",))
-    data = fields(data, "problem", (*_KEYS, *own), (*optional, "ratios"))
+    own, more = (_POLYNOMIALS, ()) if polynomial else (("curve",), ("ends",))
+    data = fields(data, "problem", (*_KEYS, *own), (*more, "ratios"))
     text(data["unit"], "unit")
     labels = [text(x, "joints") for x in listed(data["joints"], "joints", MOST_JOINTS, 1)]
     need(len(set(labels)) == len(labels), "malformed: joints: a name occurs twice")
     joints = len(labels)
     points = listed(data["waypoints"], "waypoints", MOST_SEGMENTS + 1, 2)
-    q = [[number(x) for x in listed(row, "waypoints", joints, joints)] for row in points]
-    rows = listed(data["limits"], "limits", joints, joints)
-    pairs = [[_pair(x) for x in listed(row, "limits", 3, 3)] for row in rows]
+    q = [exactly(row, "waypoints", joints, number) for row in points]
+    pairs = exactly(data["limits"], "limits", joints, lambda row: exactly(row, "limits", 3, _pair))
     sides = [[[pair[side] for pair in row] for row in pairs] for side in (0, 1)]
     limits = [[_larger(*pair) for pair in row] for row in pairs]
-    position = [
-        [_bounds(x) for x in listed(data[key], key, joints, joints)]
-        for key in ("position_lower", "position_upper")
-    ]
+    both = ("position_lower", "position_upper")
+    position = [exactly(data[key], key, joints, _bounds) for key in both]
     declaration = _declaration(data, joints) if polynomial else None
     n = len(q) - 1 if declaration is None else len(declaration.degrees)
-    shortest = [number(x) for x in listed(data["duration_lower"], "duration_lower", n, n)]
-    longest = [
-        None if x is None else number(x)
-        for x in listed(data["duration_upper"], "duration_upper", n, n)
-    ]
+    shortest = exactly(data["duration_lower"], "duration_lower", n, number)
+    longest = exactly(data["duration_upper"], "duration_upper", n, optional)
     need(min(shortest) >= 0, "a lower bound of a duration is negative")
     need(all(x is None or x > 0 for x in longest), "an upper bound of a duration is not positive")
     if declaration is None:
-        stated = listed(data.get("ends", [None, None]), "ends", 2, 2)
-        ends: list[list[Fraction | None]] = [
-            [None if x is None else number(x)] * joints for x in stated
-        ]
+        stated = exactly(data.get("ends", [None, None]), "ends", 2, optional)
+        ends = [[speed] * joints for speed in stated]
         curve = text(data["curve"], "curve")
     else:
         need(len(q) == n + 1 - len(declaration.virtual), "malformed: waypoints: one for each break")
@@ -184,15 +147,18 @@ def in_own_units(
         None where there is none; one of 0 takes no part.
     """
     joints, q = problem.joints, problem.waypoints
-    stated = listed(proof["powers"], "powers", joints, joints)
-    units = [Fraction(2) ** whole(p, -MOST_POWER, MOST_POWER) for p in stated]
-    second = Fraction(2) ** whole(proof["second"], -MOST_POWER, MOST_POWER)
+    units = exactly(proof["powers"], "powers", joints, _power_of_two)
+    second = _power_of_two(proof["second"])
     steps = [[(b - a) / u for a, b, u in zip(*rows, units, strict=True)] for rows in pairwise(q)]
     limits = [
         [None if x is None else x * second**r / u for r, x in enumerate(map(loose, row), 1)]
         for row, u in zip(problem.limits, units, strict=True)
     ]
     return second, steps, limits
+
+
+def _power_of_two(power: Any) -> Fraction:
+    return Fraction(2) ** whole(power, -MOST_POWER, MOST_POWER)
 
 
 def loose(limit: Bounds) -> Fraction | None:
@@ -202,7 +168,7 @@ def loose(limit: Bounds) -> Fraction | None:
 
 def _shares(entry: Any, segments: int) -> list[Fraction]:
     """Shares of the segments in the total, from ratios of any scale."""
-    ratios = [number(x) for x in listed(entry, "ratios", segments, segments)]
+    ratios = exactly(entry, "ratios", segments, number)
     need(min(ratios) > 0, "a ratio of durations is not positive")
     total = sum(ratios, Fraction(0))
     return [x / total for x in ratios]
@@ -240,11 +206,10 @@ def _bounds(entry: Any) -> Bounds:
     return min(ends), max(ends)
 
 
-def _each(value: Any, joints: int) -> list[Fraction]:
+def _values(stated: Any, joints: int) -> list[Fraction]:
     """A number for all joints, or a list with one for each."""
-    if type(value) is not list:
-        return [number(value)] * joints
-    return [number(x) for x in listed(value, "prescribed", joints, joints)]
+    one = type(stated) is not list
+    return [number(stated)] * joints if one else exactly(stated, "prescribed", joints, number)
 
 
 def _declaration(data: dict[str, Any], joints: int) -> Declaration:
@@ -252,15 +217,15 @@ def _declaration(data: dict[str, Any], joints: int) -> Declaration:
         whole(x, 1, MOST_DEGREE) for x in listed(data["degrees"], "degrees", MOST_SEGMENTS, 1)
     ]
     n = len(degrees)
-    inner = listed(data["continuity"], "continuity", n - 1, n - 1)
+    inner = exactly(data["continuity"], "continuity", n - 1, lambda c: whole(c, 0, MOST_DEGREE))
     prescribed: list[dict[int, list[Fraction]]] = []
     for entries in listed(data["prescribed"], "prescribed", n + 1, n + 1):
         pairs = [
             listed(pair, "prescribed", 2, 2) for pair in listed(entries, "prescribed", MOST_DEGREE)
         ]
-        values = {whole(order, 1, MOST_DEGREE): _each(value, joints) for order, value in pairs}
+        values = {whole(order, 1, MOST_DEGREE): _values(value, joints) for order, value in pairs}
         need(len(values) == len(pairs), "malformed: prescribed: a derivative occurs twice")
         prescribed.append(values)
     virtual = [whole(b, 1, n - 1) for b in listed(data["virtual"], "virtual", n - 1)]
     need(len(set(virtual)) == len(virtual), "malformed: virtual: a break occurs twice")
-    return Declaration(degrees, [whole(c, 0, MOST_DEGREE) for c in inner], prescribed, virtual)
+    return Declaration(degrees, inner, prescribed, virtual)

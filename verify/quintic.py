@@ -11,73 +11,63 @@ from typing import Any
 
 import numpy as np
 
+from . import ranges
 from .boxes import Array, Boxes, Rows, Sides
 from .floors import least_durations
-from .problem import StatedProblem, in_own_units
+from .problem import Declaration, in_own_units
 from .quintic_bound import ROUND, Centre, Task
-from .ranges import (
-    LEAST_TAU,
-    MOST_QUINTIC_JOINTS,
-    MOST_QUINTIC_SEGMENTS,
-    MOST_WINDOW,
-    MOST_WINDOWS,
-    QUINTIC_PLACES,
-    SHORTEST_TOTAL,
-    SMALLEST,
-    WINDOW_UNIT,
-)
-from .reading import Clock, listed, need, number, whole
-
-_LEAVES = 256
-"""In a batch: from there on numpy's own work outweighs the calls."""
-_NUMBERS = 4_000_000
-"""In the largest array of a batch: 32 MB; long splines have smaller batches."""
+from .reading import listed, need, number, whole
 
 
 class QuinticSpline(Boxes):
     """Boxes in the simplex of durations whose sum is the total; windows beside weighted limits."""
 
     keys = ("powers", "second", "low", "windows", "rows")
+    centres = Centre
 
-    def __init__(
-        self, problem: StatedProblem, proof: dict[str, Any], total: Fraction, clock: Clock
-    ) -> None:
-        super().__init__(problem, proof, total, clock)
-        _covered(problem)
+    def read(self, proof: dict[str, Any]) -> None:
+        """Steps and limits in units of the proof, least durations, windows, and rows."""
+        super().read(proof)
+        problem, total, clock = self.problem, self.total, self.clock
         n, joints = problem.segments, problem.joints
+        rest = {order: [Fraction(0)] * joints for order in (1, 2)}
+        spline = Declaration([5] * n, [4] * (n - 1), [rest, *[{}] * (n - 1), rest], [])
+        need(
+            n > 1 and problem.declaration == spline,
+            "declaration not covered: no C4 quintic spline at rest at the ends",
+        )
+        longest, most = ranges.MOST_QUINTIC_SEGMENTS, ranges.MOST_QUINTIC_JOINTS
+        need(n <= longest, f"more than {longest} segments")
+        need(joints <= most, f"more than {most} joints")
         second, steps, limits = in_own_units(problem, proof)
         own = total / second
         need(
-            SHORTEST_TOTAL < own < 1 / SHORTEST_TOTAL and Fraction(float(own)) == own,
+            ranges.within(own, ranges.SHORTEST_TOTAL) and Fraction(float(own)) == own,
             "a total that is no float of usual size is not proved",
         )
         sizes = [abs(d) for row in steps for d in row if d]
         sizes += [x for row in limits for x in row if x is not None]
-        need(all(SMALLEST < x < 1 / SMALLEST for x in sizes), "a number is of unusual size")
-        stated_windows = listed(proof["windows"], "windows", MOST_WINDOWS)
-        read_windows = [_window(w, n, joints) for w in clock.each(stated_windows)]
+        usual = all(ranges.within(x, ranges.SMALLEST) for x in sizes)
+        need(usual, "a number is of unusual size")
         self.most = float(own)
         self.task = Task(
             np.array([[float(x) for x in row] for row in steps]),
             np.array([[np.inf if x is None else float(x) for x in row] for row in limits]),
             self.most,
         )
-        self.rows = self.read_rows(proof["rows"], 1, QUINTIC_PLACES)
-        self.windows = self._terms(read_windows)
-        self._low = []
+        windows = listed(proof["windows"], "windows", ranges.MOST_WINDOWS)
+        self.windows = self._terms([_window(w, n, joints) for w in clock.each(windows)])
+        self.rows = self.read_rows(proof["rows"], 1, ranges.QUINTIC_PLACES)
+        self.shortest, self.longest = [], [self.most] * n
         proved = least_durations(problem, total)
-        for k, stated_low in enumerate(listed(proof["low"], "low", n, n)):
-            x = number(stated_low)
+        for k, stated in enumerate(listed(proof["low"], "low", n, n)):
+            x = number(stated)
             need(
                 Fraction(float(x / second)) == x / second >= 0 and x <= proved[k],
                 f"segment {k + 1}: its least duration is not proved",
             )
-            self._low.append(float(x / second))
-        self.batch = max(1, min(_LEAVES, _NUMBERS // (16 * n**3)))
-
-    def root(self) -> Sides:
-        """From the least durations, which are proved, to the total."""
-        return self.shrunk(self._low, [self.most] * len(self._low))
+            self.shortest.append(float(x / second))
+        self.together(16 * n**3)
 
     @staticmethod
     def middle(low: float, high: float) -> float:
@@ -91,20 +81,16 @@ class QuinticSpline(Boxes):
             return
         which = whole(data[0], 0, len(self.windows[0]) - 1)
         exact = number(data[1])
-        usual = exact == 0 or LEAST_TAU < abs(exact) < 1 / LEAST_TAU
+        usual = exact == 0 or ranges.within(abs(exact), ranges.LEAST_TAU)
         need(usual, "a window's tau is of unusual size")
         least = self.over_windows(np.array(which), np.array(float(exact)), *map(np.array, box))
         need(bool(least > 0.0), "it is not proved by its window")
-
-    def centre(self, sides: Array) -> Centre:
-        """Of the splines."""
-        return Centre(self.task, sides[:, 0], sides[:, 1])
 
     def _terms(self, windows: list[list[int]]) -> tuple[Array, Array, Array]:
         """p, q and d of windows Σ (p_k/h_k − q_k h_k) − d ≤ 0: Σ cΔ/h − A Σ m h − V Σ|c + ψ' h|."""
         n = self.problem.segments
         each = np.array(windows, np.float64).reshape(-1, 2 * n + 2)
-        psi, c = each[:, 1 : n + 2] / WINDOW_UNIT, each[:, n + 2 :] / WINDOW_UNIT
+        psi, c = each[:, 1 : n + 2] / ranges.WINDOW_UNIT, each[:, n + 2 :] / ranges.WINDOW_UNIT
         joint = each[:, 0].astype(np.int64)
         a, b = np.abs(psi[:, :-1]), np.abs(psi[:, 1:])
         squares = (a * a + b * b) / np.maximum(2.0 * (a + b), 1e-300)
@@ -135,24 +121,8 @@ class QuinticSpline(Boxes):
             return np.asarray(least.sum(axis=-1) - fixed - tau * total - 10.0 * ROUND * size)
 
 
-def _covered(problem: StatedProblem) -> None:
-    declared = problem.declaration
-    rest = {order: [Fraction(0)] * problem.joints for order in (1, 2)}
-    n = problem.segments
-    need(
-        declared is not None
-        and n > 1
-        and declared.degrees == [5] * n
-        and declared.continuity == [4] * (n - 1)
-        and declared.prescribed == [rest, *[{}] * (n - 1), rest]
-        and not declared.virtual,
-        "declaration not covered: no C4 quintic spline at rest at the ends",
-    )
-    need(n <= MOST_QUINTIC_SEGMENTS, f"more than {MOST_QUINTIC_SEGMENTS} segments")
-    need(problem.joints <= MOST_QUINTIC_JOINTS, f"more than {MOST_QUINTIC_JOINTS} joints")
-
-
 def _window(entry: Any, n: int, joints: int) -> list[int]:
     """Joint, the n + 1 numbers ψ, and the n numbers c."""
     joint, *rest = listed(entry, "a window", 2 * n + 2, 2 * n + 2)
-    return [whole(joint, 0, joints - 1), *(whole(x, -MOST_WINDOW, MOST_WINDOW) for x in rest)]
+    most = ranges.MOST_WINDOW
+    return [whole(joint, 0, joints - 1), *(whole(x, -most, most) for x in rest)]

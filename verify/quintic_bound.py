@@ -10,8 +10,9 @@ on any path, 2.3e-13 of the same sum over absolute values: `ROUND` of that sum i
 from __future__ import annotations
 
 from copy import copy
+from dataclasses import dataclass
 from math import comb
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -47,24 +48,17 @@ POWERS = LOAD_POWERS[:, None] - np.array([1, 1, 2, 2])
 """Powers of r in M: a velocity comes with h, an acceleration with h²."""
 
 
+@dataclass(frozen=True, eq=False)
 class Task:
-    """What all leaves with limits have in common.
+    """What all leaves with limits have in common."""
 
-    Parameters
-    ----------
-    steps : ndarray, shape (segments, joints)
-    limits : ndarray, shape (joints, 3)
-        inf where there is none.
-    total : float
-
-    Attributes
-    ----------
-    basis : ndarray, shape (5, 6)
-        Powers of s in a piece with (step, v0, v1, a0, a1).
-    """
-
-    def __init__(self, steps: Array, limits: Array, total: float) -> None:
-        self.steps, self.limits, self.total, self.basis = steps, limits, total, HERMITE[1:]
+    steps: Array
+    """By segment and joint."""
+    limits: Array
+    """By joint and order, from 1 on; inf where there is none."""
+    total: float
+    basis: ClassVar[Array] = HERMITE[1:]
+    """Powers of s in a piece with (step, v0, v1, a0, a1)."""
 
     def cap(self, rows: Rows) -> Array:
         """Limit of each row."""
@@ -76,7 +70,6 @@ class Centre:
 
     Parameters
     ----------
-    task : Task
     low, high : ndarray, shape (leaf, segments)
     """
 
@@ -103,35 +96,34 @@ class Centre:
 
     def _parts(self) -> None:
         """Taylor coefficients of M and b, segment by segment, and R with RᵀR ≈ M0⁻¹."""
-        n, size, unknowns = self.n, self.size, 2 * (self.n - 1)
-        top = self.r + self.e
-        self.blocks = np.zeros((4, size, n, 4, 4))
-        self.m0 = np.zeros((size, unknowns, unknowns))
-        self.load = np.zeros((5, size, n, unknowns))
-        self.stiff_top = np.zeros((size, unknowns, unknowns))
-        self.load_top = np.zeros((size, n, unknowns))
-        self.places = [
-            [(a, 2 * (k + a % 2 - 1) + a // 2) for a in range(4) if 0 < k + a % 2 < n]
-            for k in range(n)
-        ]
-        for k in range(n):
-            for a, i in self.places[k]:
-                power = int(LOAD_POWERS[a])
-                for o in range(power + 1):
-                    term = comb(power, o) * LOAD[a] * self.r[:, k] ** (power - o)
-                    self.load[o, :, k, i] = term
-                self.load_top[:, k, i] = abs(LOAD[a]) * top[:, k] ** power
-                for b, j in self.places[k]:
-                    power = int(POWERS[a, b])
-                    for o in range(power + 1):
-                        term = comb(power, o) * STIFFNESS[a, b] * self.r[:, k] ** (power - o)
-                        self.blocks[o, :, k, a, b] = term
-                    self.m0[:, i, j] += self.blocks[0, :, k, a, b]
-                    self.stiff_top[:, i, j] += abs(STIFFNESS[a, b]) * top[:, k] ** power
+        self.places = []
+        for k in range(self.n):
+            a = np.array([a for a in range(4) if 0 < k + a % 2 < self.n])
+            self.places.append((a, 2 * (k + a % 2 - 1) + a // 2))
+        powers, top = (x[..., None] ** np.arange(5) for x in (self.r, self.r + self.e))
+        self.blocks = _taylor(STIFFNESS, POWERS, powers)[:4]
+        self.m0 = self._assembled(self.blocks[0])
+        self.load = self._placed(_taylor(LOAD, LOAD_POWERS, powers))
+        self.stiff_top = self._assembled(np.abs(STIFFNESS) * top[..., POWERS])
+        self.load_top = self._placed(np.abs(LOAD) * top[..., LOAD_POWERS])
         try:
             self.root = np.linalg.inv(np.linalg.cholesky(self.m0))
         except np.linalg.LinAlgError:
             raise Refused("the matrix of a leaf is not positive definite") from None
+
+    def _placed(self, own: Array) -> Array:
+        """What is said of v₀, v₁, a₀ and a₁ of each segment (..., segment, 4), by unknown."""
+        found = np.zeros((*own.shape[:-1], 2 * self.n - 2))
+        for k, (a, i) in enumerate(self.places):
+            found[..., k, i] = own[..., k, a]
+        return found
+
+    def _assembled(self, blocks: Array) -> Array:
+        """The matrix of all unknowns from those of the segments (leaf, segment, 4, 4)."""
+        found = np.zeros((len(blocks), 2 * self.n - 2, 2 * self.n - 2))
+        for k, (a, i) in enumerate(self.places):
+            found[:, i[:, None], i] += blocks[:, k, a[:, None], a]
+        return found
 
     def pick(self, leaf: NDArray[Any], joint: int | slice = slice(None)) -> Centre:
         """Some of the boxes, and of one joint."""
@@ -146,15 +138,10 @@ class Centre:
     def _acting(self, vectors: Array, first: int = 0) -> Array:
         """M_k,o v of vectors (leaf, vector, unknown) for o ≥ first: (o, leaf, segment, …)."""
         own = np.zeros((self.size, self.n, vectors.shape[1], 4))
-        for k, places in enumerate(self.places):
-            for a, i in places:
-                own[:, k, :, a] = vectors[:, :, i]
+        for k, (a, i) in enumerate(self.places):
+            own[:, k][..., a] = vectors[..., i]
         moved = own @ np.swapaxes(self.blocks[first:], 3, 4)
-        found = np.zeros((4 - first, self.size, self.n, *vectors.shape[1:]))
-        for k, places in enumerate(self.places):
-            for a, i in places:
-                found[:, :, k, :, i] = moved[:, :, k, :, a]
-        return found
+        return np.swapaxes(self._placed(np.swapaxes(moved, 2, 3)), 2, 3)
 
     def _framed(self, matrix: Array) -> tuple[Array, Array]:
         """R A Rᵀ, and the largest row sum of its rounding."""
@@ -173,13 +160,10 @@ class Centre:
         frame, rounding = self._framed(self.m0)
         off = np.abs(frame - np.eye(frame.shape[1])).sum(axis=2).max(axis=1) + rounding
         share = self.e / self.r
-        part = np.zeros_like(self.m0)
-        for k in range(self.n):
-            for a, i in self.places[k]:
-                for b, j in self.places[k]:
-                    if a < 2 and b < 2:
-                        part[:, i, j] += STIFFNESS[a, b] * self.r[:, k] ** 3 * share[:, k] ** 2
-        power, rounding = self._framed(part)
+        moving = self.blocks[0] * (share**2)[..., None, None]
+        moving[..., 2:, :] = 0.0
+        moving[..., 2:] = 0.0
+        power, rounding = self._framed(self._assembled(moving))
         power = 0.5 * (power + np.swapaxes(power, 1, 2))
         largest, exponent = np.ones(self.size), 1.0
         for _ in range(5):
@@ -231,8 +215,7 @@ class Centre:
         bent = np.zeros((self.size, n))
         np.add.at(bent, (every, k), shape[:, 0] * task.steps[k, j])
         against = np.zeros((3, self.size, n))  # limits: constant, times r, times 1/r
-        for o, where in ((2, 0), (1, 1), (3, 2)):
-            np.add.at(against[where], (every[order == o], k[order == o]), cap[order == o])
+        np.add.at(against, (np.array([0, 1, 0, 2])[order], every, k), cap)
         top, bottom = r + e, r - e
         moved = np.zeros((self.size, n))
         np.add.at(moved, (every, k), np.abs(shape[:, 0] * task.steps[k, j]))
@@ -240,79 +223,70 @@ class Centre:
         size += np.abs(tau) * (task.total + (1.0 / bottom).sum(axis=1))
         # Taylor coefficients of what depends on one duration; joints add to them below.
         # 1/(r + δ) = 1/r − δ/r² + δ²/r³ − δ³/r⁴ + δ⁴/(r⁴(r + δ)).
-        alone = np.zeros((5, self.size, n))
         change = tau[:, None] - against[2]
-        alone[0] = bent * r**2 - against[0] - against[1] * r + change / r
-        alone[1] = 2.0 * bent * r - against[1] - change / r**2
-        alone[2] = bent + change / r**3
-        alone[3] = -change / r**4
-        error = (np.abs(change) * e**4 / (r**4 * bottom)).sum(axis=1)
-        second = np.zeros((self.size, n, n))
-        first = np.zeros((self.size, n))
-        value = -tau * task.total
-        # πᵀM⁻¹ρ = ½(c + s)·(Rπ)ᵀ(Rρ) + what is at most ½(c − s)·‖Rπ‖‖Rρ‖.
+        alone = [
+            bent * r**2 - against[0] - against[1] * r + change / r,
+            2.0 * bent * r - against[1] - change / r**2,
+            bent + change / r**3,
+            -change / r**4,
+            np.zeros((self.size, n)),
+        ]
+        sums = {
+            "alone": np.stack(alone, axis=1),
+            "first": np.zeros((self.size, n)),
+            "second": np.zeros((self.size, n, n)),
+            "cubes": np.zeros((self.size, n, n, n)),
+            "error": (np.abs(change) * e**4 / (r**4 * bottom)).sum(axis=1),
+            "size": size,
+            "blame": np.zeros((self.size, n)),
+        }
         small, large = self._spectrum()
         middle, spread = 0.5 * (large + small), 0.5 * (large - small) + ROUND * large
-        same, (one, other) = np.arange(n), _pairs(n)
-        cubes = np.zeros((self.size, n, n, n))
-        self.blame, sides = np.zeros((self.size, n)), np.eye(n)[one] + np.eye(n)[other]
+        speeds = np.array([1.0, 1.0, 0.0, 0.0])
         for joint in range(self.joints):
             mine = j == joint
             if not mine.any():
                 continue
             leaf, at = np.unique(every[mine], return_inverse=True)
-            own = self.pick(leaf, joint)
-            # Of velocities times r and of accelerations, then both in absolute values.
-            phi = np.zeros((4, own.size, n, 2 * n - 2))
-            for a in range(4):
-                node = k[mine] + a % 2
-                on = (node > 0) & (node < n)
-                spots, each = (at[on], k[mine][on], 2 * node[on] - 2 + a // 2), shape[mine][on]
-                np.add.at(phi[a // 2], spots, each[:, a + 1])
-                np.add.at(phi[2 + a // 2], spots, np.abs(each[:, a + 1]))
-            part_of = own._joint(task.steps[:, joint], phi)
-            alone[:, leaf] += part_of["alone"]
-            first[leaf] += part_of["first"]
-            second[leaf] += part_of["second"]
-            size[leaf] += part_of["size"]
-            adjoint, residual = part_of["adjoint"], part_of["residual"]
-            both = adjoint.leading @ np.swapaxes(residual.leading, 1, 2) * middle[leaf, None, None]
-            part = np.zeros((own.size, n, n, n))
-            part[:, :, one, other] = both
-            wide = own.e[:, :, None] ** 2 * own.e[:, None]
-            part[:, same, same] += part_of["squared"] * wide
-            cubes[leaf] += part
-            rounding = ROUND * adjoint.lengths * residual.lengths
-            error[leaf] += middle[leaf] * (rounding + adjoint.beyond(residual))
-            error[leaf] += spread[leaf] * adjoint.most * residual.most + part_of["quartic"]
-            blame = adjoint.shares * residual.most[:, None]
-            blame += (residual.shares * adjoint.most[:, None]) @ sides
-            self.blame[leaf] += spread[leaf, None] * blame
-        value += alone[0].sum(axis=1)
-        first += alone[1]
+            own, each = self.pick(leaf, joint), shape[mine, 1:]
+            phi = np.zeros((2, own.size, n, 4))
+            np.add.at(phi[0], (at, k[mine]), each)
+            np.add.at(phi[1], (at, k[mine]), np.abs(each))
+            phi = own._placed(np.stack([phi * speeds, phi * (1.0 - speeds)]))
+            parts = own._joint(task.steps[:, joint], phi, middle[leaf], spread[leaf])
+            for name, part in parts.items():
+                sums[name][leaf] += part
+        self.blame, alone, cubes = sums["blame"], np.swapaxes(sums["alone"], 0, 1), sums["cubes"]
+        same = np.arange(n)
         cubes[:, same, same, same] += alone[3] * e**3
-        error += (np.abs(alone[4]) * e**4).sum(axis=1) + most_of_cubes(cubes)
-        second[:, same, same] += 2.0 * alone[2]
-        value += least_of_quadratic(first, second, e)
+        sums["second"][:, same, same] += 2.0 * alone[2]
+        value = alone[0].sum(axis=1) - tau * task.total
+        value += least_of_quadratic(sums["first"] + alone[1], sums["second"], e)
+        error = sums["error"] + (np.abs(alone[4]) * e**4).sum(axis=1) + most_of_cubes(cubes)
         found = value - error * (1.0 + 1e-9) - 10.0 * ROUND * size
         return np.where(np.isfinite(found), found, -np.inf)
 
-    def _joint(self, step: Array, phi: Array) -> dict[str, Any]:
-        """One joint's part: F = φᵀx̃ + μᵀ(b − M x̃) + (φ − M μ)ᵀ(x − x̃), x̃ = x0 + Σ X_m δ_m."""
-        n, r, e = self.n, self.r, self.e
+    def _joint(self, step: Array, phi: Array, middle: Array, spread: Array) -> dict[str, Array]:
+        """One joint's part: F = φᵀx̃ + μᵀ(b − M x̃) + πᵀM⁻¹ρ, x̃ = x0 + Σ X_m δ_m.
+
+        With π = φ − M μ and ρ = b − M x̃, πᵀM⁻¹ρ is ½(c + s)·(Rπ)ᵀ(Rρ) and what is at most
+        ½(c − s)·‖Rπ‖‖Rρ‖. ``phi`` are those of velocities times r and of accelerations; each, then
+        in absolute values. ``middle`` and ``spread`` are ½(c + s) and ½(c − s).
+        """
+        n, r, e, (speed, bend) = self.n, self.r, self.e, phi
         load = self.load * step[:, None]
         x0, on_x0, rise, slope = self.x0, self.on_x0, self.rise, self.slope
-        full = phi[1] + phi[0] * r[:, :, None]
+        full = bend[0] + speed[0] * r[:, :, None]
         mu = self._solve(full.sum(axis=1)[:, None])
         on_mu, mu = self._acting(mu, 1)[:, :, :, 0], mu[:, 0]
         wide = np.abs(x0) + np.einsum("lm,lmi->li", e, np.abs(slope))
         reach = (self.load_top * np.abs(step)[:, None]).sum(axis=1)
         reach += np.einsum("lij,lj->li", self.stiff_top, wide)
-        # π = φ − M μ: constant, then Taylor parts of each segment.
+        # π: constant, then Taylor parts of each segment.
         rest = full.sum(axis=1) - np.einsum("lij,lj->li", self.m0, mu)
         gain = -on_mu
-        gain[0] += phi[0]
-        high = phi[3] + phi[2] * (r + e)[:, :, None]
+        gain[0] += speed[0]
+        high = bend[1] + speed[1] * (r + e)[:, :, None]
         weak = high.sum(axis=1) + np.einsum("lij,lj->li", self.stiff_top, np.abs(mu))
         outer = np.abs(self.root)
         loose = np.abs(rest) + ROUND * weak
@@ -322,7 +296,7 @@ class Centre:
             self._rooted(gain[1]) * (e**2)[:, :, None],
             later + np.linalg.norm(np.einsum("lij,lj->li", outer, loose), axis=1),
         )
-        # ρ = b − M x̃: constant and linear parts, which are 0 but for rounding; then, o ≥ 2,
+        # ρ: constant and linear parts, which are 0 but for rounding; then, o ≥ 2,
         # (b_o − M_o x0 − M_(o−1) X_k) δ_kᵒ of each segment k, and −M_o X_m δ_kᵒ δ_m for m ≠ k.
         pulled = self._acting(slope, 1)
         zero = load[0].sum(axis=1) - np.einsum("lij,lj->li", self.m0, x0)
@@ -342,23 +316,38 @@ class Centre:
             third.reshape(self.size, n * n, -1),
             later + np.linalg.norm(np.einsum("lij,lj->li", outer, loose), axis=1),
         )
-        alone = np.zeros((5, self.size, n))
-        for o in range(5):
-            part = load[o] if o == 4 else load[o] - on_x0[o]
-            alone[o] = np.einsum("li,lki->lk", mu, part)
-        alone[0] += np.einsum("lki,li->lk", full, x0)
-        alone[1] += np.einsum("lki,li->lk", phi[0], x0)
+        moved = load - np.concatenate([on_x0, 0.0 * on_x0[:1]])
+        alone = np.einsum("li,olki->lok", mu, moved)
+        alone[:, 0] += np.einsum("lki,li->lk", full, x0)
+        alone[:, 1] += np.einsum("lki,li->lk", speed[0], x0)
         mixed = np.einsum("olki,lmi->olkm", gain, slope)
+        cubes = np.zeros((self.size, n, n, n))
+        both = adjoint.leading @ np.swapaxes(residual.leading, 1, 2)
+        cubes[:, :, k, m] = both * middle[:, None, None]
+        cubes[:, each, each] += mixed[1] * wide_3
+        error = middle * (ROUND * adjoint.lengths * residual.lengths + adjoint.beyond(residual))
+        error += spread * adjoint.most * residual.most
+        error += np.einsum("lkm,lk,lm->l", np.abs(mixed[2]), e**3, e)
+        blame = (residual.shares * adjoint.most[:, None]) @ (np.eye(n)[k] + np.eye(n)[m])
+        blame += adjoint.shares * residual.most[:, None]
         return {
             "alone": alone,
             "first": np.einsum("li,lmi->lm", rest, slope),
             "second": mixed[0] + np.swapaxes(mixed[0], 1, 2),
-            "squared": mixed[1],
-            "quartic": np.einsum("lkm,lk,lm->l", np.abs(mixed[2]), e**3, e),
+            "cubes": cubes,
+            "error": error,
             "size": (high.sum(axis=1) * wide).sum(axis=1) + (np.abs(mu) * reach).sum(axis=1),
-            "adjoint": adjoint,
-            "residual": residual,
+            "blame": spread[:, None] * blame,
         }
+
+
+def _taylor(factors: Array, exponents: Rows, powers: Array) -> Array:
+    """Coefficients of δᵒ in factors·(r + δ)^exponents, given powers of r: (o, leaf, segment, …)."""
+    found = [
+        np.vectorize(comb)(exponents, o) * factors * powers[..., np.maximum(exponents - o, 0)]
+        for o in range(powers.shape[-1])
+    ]
+    return np.stack(found)
 
 
 def _pairs(n: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:

@@ -100,3 +100,8 @@ MOST_DECLARED_UNKNOWNS = 64
 """What the number of roundings was counted for: derivatives that agree at the inner breaks."""
 SMALLEST_CAP = Fraction(1, 10**15)
 """Limits, with the total and the way of a joint about 1, are used between it and its inverse."""
+
+
+def within(size: Fraction, least: Fraction) -> bool:
+    """Whether a size lies between a least one and its inverse."""
+    return least < size < 1 / least

@@ -7,7 +7,7 @@ import os
 import re
 import stat
 import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from fractions import Fraction
 from pathlib import Path
 from typing import Any, NoReturn, TypeVar
@@ -37,12 +37,7 @@ class OutOfTime(Exception):
 
 
 class Clock:
-    """What is left of the time that was given.
-
-    Parameters
-    ----------
-    seconds : float
-    """
+    """What is left of the seconds that were given."""
 
     def __init__(self, seconds: float) -> None:
         self.seconds = seconds
@@ -112,6 +107,11 @@ def listed(value: Any, what: str, most: int, least: int = 0) -> list[Any]:
     return list(value)
 
 
+def exactly(value: Any, what: str, count: int, read: Callable[[Any], T]) -> list[T]:
+    """A list with so many entries, each read by a function."""
+    return [read(entry) for entry in listed(value, what, count, count)]
+
+
 def text(value: Any, what: str) -> str:
     """A text of bounded length."""
     need(type(value) is str and len(value) <= MOST_TEXT, f"malformed: {what}: no text, or too long")
@@ -127,11 +127,23 @@ def number(value: Any) -> Fraction:
     return Fraction(mantissa) * Fraction(10) ** int(exponent or 0)
 
 
+def optional(value: Any) -> Fraction | None:
+    """A rational, or nothing."""
+    return None if value is None else number(value)
+
+
 def whole(value: Any, low: int, high: int) -> int:
     """An integer within bounds; true and false are none."""
     if type(value) is not int or not low <= value <= high:
         raise Refused(f"malformed: no integer in {low}..{high}: {shown(repr(value))}")
     return value
+
+
+def weights(value: Any, known: int, most: int) -> list[tuple[int, Any]]:
+    """[row, weight, row, weight, …] as pairs: numbers of known rows, and weights as they stand."""
+    flat = listed(value, "weights", 2 * most)
+    need(len(flat) % 2 == 0, "malformed: weights come in pairs")
+    return [(whole(row, 0, known - 1), w) for row, w in zip(flat[::2], flat[1::2], strict=True)]
 
 
 def sign_of(value: Any) -> int:
@@ -161,10 +173,6 @@ def read_document(path: str | Path, clock: Clock | None = None) -> Any:
     clock : Clock, optional
         Without one there is no limit of time.
 
-    Returns
-    -------
-    Any
-
     Raises
     ------
     Refused
@@ -174,11 +182,11 @@ def read_document(path: str | Path, clock: Clock | None = None) -> Any:
     """
     try:
         content = _read(path, clock)
+    except Refused:
+        raise
     except OSError as error:
         raise Refused(f"cannot be read ({error.strerror}); check the path") from None
-    except ValueError as error:
-        if isinstance(error, Refused):
-            raise
+    except ValueError:
         raise Refused("cannot be read (no name of a file); check the path") from None
     try:
         return json.loads(

@@ -42,7 +42,6 @@ class ProofKind(ABC, Generic[B]):
 
     Parameters
     ----------
-    problem : StatedProblem
     proof : dict
         With the keys ``kind``, ``total``, ``tree`` and those in `keys`.
     total : Fraction
@@ -67,6 +66,11 @@ class ProofKind(ABC, Generic[B]):
         self, problem: StatedProblem, proof: dict[str, Any], total: Fraction, clock: Clock
     ) -> None:
         self.problem, self.total, self.clock = problem, total, clock
+        self.read(proof)
+
+    @abstractmethod
+    def read(self, proof: dict[str, Any]) -> None:
+        """Read what ``proof`` states beside its tree, and refuse a problem that is not covered."""
 
     @abstractmethod
     def root(self) -> B:
@@ -103,12 +107,10 @@ def walk(kind: ProofKind[B], tree: Any, clock: Clock, spread: Spread | None = No
 
     Parameters
     ----------
-    kind : ProofKind
     tree : Any
         List of nodes: an integer k or ``["/", k, place]`` cuts a box across coordinate k, and the
         lower part comes first; ``[".", ...]`` is a leaf; a list with another tag is a step, after
         which the smaller box comes.
-    clock : Clock
     spread : callable, optional
         Where parts of the tree are walked, if its kind has parts; see `verify_certificate`.
 

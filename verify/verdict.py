@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import hashlib
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from decimal import ROUND_CEILING, ROUND_FLOOR, Context, Decimal
 from fractions import Fraction
 from importlib import import_module
 from pathlib import Path
@@ -12,13 +13,13 @@ from typing import Any
 
 from . import any_curve
 from .answer import check_answer
-from .bounds import shown_bound
 from .problem import StatedProblem, read_problem
 from .ranges import MOST_SEGMENTS
 from .reading import (
     Clock,
     OutOfTime,
     Refused,
+    exactly,
     fields,
     listed,
     need,
@@ -38,18 +39,8 @@ SECONDS = 60.0
 """For one file, unless another time is given: the largest shipped proof takes two."""
 OLD_FORMATS = ("trajgap-certificate-1", "trajgap-state-1")
 """That were once written; what is in them is not read."""
-_NAME_ONE = "name a certificate"
-"""How to fix it: the words that end a message about another kind of file."""
 _KEYS = ("format", "made_by", "question", "problem", "problem_hash", "claim", "proof", "seal")
 """Of the file; all are there and no other, so that nothing in it goes unread."""
-_CLAIM = ("subject", "infeasible", "lower", "upper", "durations", "speeds")
-"""Keys of ``claim``."""
-_QUESTION = ("case", "problem", "reading", "joint", "case_sha256")
-"""Keys of ``question``: the fields of `CertifiedQuestion`."""
-_PROOF = ("kind", "total", "tree")
-"""Keys of ``proof`` that every kind has; a kind adds its own ``keys``."""
-
-
 KINDS = {
     "rest-to-rest": "closed_form.EachAlone",
     "stretched": "closed_form.EachAlone",
@@ -95,9 +86,8 @@ class CertifiedQuestion:
     case_sha256: str | None = None
 
     def __str__(self) -> str:
-        named = {"case": self.case, "problem": self.problem, "reading": self.reading}
-        named["joint"] = self.joint
-        parts = [f"{key} {shown(x)}" for key, x in named.items() if x is not None]
+        named = [(key, x) for key, x in vars(self).items() if key != "case_sha256"]
+        parts = [f"{key} {shown(x)}" for key, x in named if x is not None]
         return ", ".join(parts) or "a problem without a case"
 
 
@@ -109,9 +99,9 @@ class CertificateVerdict:
     ----------
     proves : bool
         Whether its claim about the problem that it states is proved.
+    reason : str
     altered : bool
         Whether it, or the problem in it, differs from what was written.
-    reason : str
     out_of_time : bool
         The time was over before anything was decided.
     lower, upper : Fraction or None
@@ -125,8 +115,8 @@ class CertificateVerdict:
     """
 
     proves: bool
-    altered: bool
     reason: str
+    altered: bool = False
     out_of_time: bool = False
     lower: Fraction | None = None
     upper: Fraction | None = None
@@ -149,16 +139,7 @@ class CertificateVerdict:
 
 
 def seal(part: Any) -> str:
-    """SHA-256 of the canonical JSON of a document or a part of it.
-
-    Parameters
-    ----------
-    part : Any
-
-    Returns
-    -------
-    str
-    """
+    """SHA-256 of the canonical JSON of a document or a part of it."""
     words = json.dumps(part, sort_keys=True, separators=(",", ":"), ensure_ascii=True)
     return hashlib.sha256(words.encode()).hexdigest()
 
@@ -191,8 +172,7 @@ def verify_certificate(
         Never raises: what cannot be read is refused, and what takes too long is out of time.
     """
     clock = Clock(seconds) if clock is None else clock
-    altered = False
-    question, problem_hash = CertifiedQuestion(), None
+    altered, question, problem_hash = False, CertifiedQuestion(), None
     try:
         data = source if isinstance(source, dict) else read_document(source, clock)
         document = _document(data)
@@ -201,28 +181,25 @@ def verify_certificate(
         clock.check()
         altered |= document["seal"] != seal({k: x for k, x in document.items() if k != "seal"})
         question = _question(document["question"])
-        claimed = _judged(document, clock, spread)
+        found = _judged(document, clock, spread)
     except Refused as error:
-        why, late = str(error), False
+        found = CertificateVerdict(False, str(error))
     except OutOfTime:
-        why, late = f"nothing was decided in {clock.seconds:g} s; give more time", True
+        why = f"nothing was decided in {clock.seconds:g} s; give more time"
+        found = CertificateVerdict(False, why, out_of_time=True)
     except (ValueError, TypeError, LookupError, ArithmeticError, RecursionError) as error:
-        why, late = f"malformed: {type(error).__name__}: {shown(str(error))}", False
-    else:
-        said = _said(*claimed)
-        return CertificateVerdict(True, altered, said, False, *claimed, question, problem_hash)
-    return CertificateVerdict(
-        False, altered, why, late, question=question, problem_hash=problem_hash
-    )
+        why = f"malformed: {type(error).__name__}: {shown(str(error))}"
+        found = CertificateVerdict(False, why)
+    return replace(found, altered=altered, question=question, problem_hash=problem_hash)
 
 
 def _document(data: Any) -> dict[str, Any]:
-    need(type(data) is dict, f"no JSON object; {_NAME_ONE}")
+    need(type(data) is dict, "no JSON object; name a certificate")
     found = data.get("format")
     if type(found) is str and found in OLD_FORMATS:
         raise Refused(f"{found}: an old format; `trajgap solve CASE --certify` makes it again")
     wanted = type(found) is str and found in (CERTIFICATE_FORMAT, STATE_FORMAT)
-    need(wanted, f"no {CERTIFICATE_FORMAT}; {_NAME_ONE}")
+    need(wanted, f"no {CERTIFICATE_FORMAT}; name a certificate")
     state = found == STATE_FORMAT
     document = fields(data, "the file", (*_KEYS, "proposals") if state else _KEYS)
     text(document["made_by"], "made_by")
@@ -230,18 +207,15 @@ def _document(data: Any) -> dict[str, Any]:
 
 
 def _question(data: Any) -> CertifiedQuestion:
-    data = fields(data, "question", _QUESTION)
+    data = fields(data, "question", vars(CertifiedQuestion()))
     return CertifiedQuestion(**{k: None if x is None else text(x, k) for k, x in data.items()})
 
 
-Claimed = tuple[Fraction, Fraction | None, bool, Subject]
-"""Lower, upper, infeasible, subject."""
-
-
-def _judged(document: dict[str, Any], clock: Clock, spread: Spread | None) -> Claimed:
+def _judged(document: dict[str, Any], clock: Clock, spread: Spread | None) -> CertificateVerdict:
     """Judge the claim once, whatever the kind of proof."""
     problem = read_problem(document["problem"])
-    claim = fields(document["claim"], "claim", _CLAIM)
+    keys = ("subject", "infeasible", "lower", "upper", "durations", "speeds")
+    claim = fields(document["claim"], "claim", keys)
     subject = next((s for s in Subject if s == claim["subject"]), None)
     infeasible, lower = claim["infeasible"], number(claim["lower"])
     need(type(infeasible) is bool, "malformed: infeasible: neither true nor false")
@@ -273,7 +247,20 @@ def _judged(document: dict[str, Any], clock: Clock, spread: Spread | None) -> Cl
             kind is not None and (above or kind.infeasible),
             "infeasible only above the sum of all upper bounds, or by a proof of its own",
         )
-    return lower, upper, infeasible, subject
+    said = f"the least total of {subject} is at least {_digits(lower, ROUND_FLOOR)} s"
+    if infeasible:
+        said = "no durations within their bounds keep the limits: infeasible"
+    elif upper is not None:
+        said += f" and at most {_digits(upper, ROUND_CEILING)} s"
+    return CertificateVerdict(
+        True, said, lower=lower, upper=upper, infeasible=infeasible, subject=subject
+    )
+
+
+def _digits(bound: Fraction, rounding: str) -> str:
+    """Twelve digits, rounded to the side on which they are a bound as well."""
+    quotient = Context(12, rounding).divide(Decimal(bound.numerator), Decimal(bound.denominator))
+    return f"{quotient.normalize():f}"
 
 
 def _read_answer(
@@ -289,10 +276,8 @@ def _read_answer(
         return h, None, number(claim["upper"])
     need(subject is Subject.ANY, "speeds belong to an answer of any curve")
     n, joints = len(problem.waypoints), problem.joints
-    rows = [
-        listed(row, "speeds", joints, joints) for row in listed(claim["speeds"], "speeds", n, n)
-    ]
-    return h, [[number(x) for x in row] for row in rows], number(claim["upper"])
+    rows = exactly(claim["speeds"], "speeds", n, lambda row: exactly(row, "speeds", joints, number))
+    return h, rows, number(claim["upper"])
 
 
 def _read_proof(
@@ -312,16 +297,7 @@ def _read_proof(
         own or make.subject is Subject.ANY,
         f"at fixed ratios of the durations the kind of proof is {_OF_RATIOS}, and only there",
     )
-    proof = fields(proof, "proof", (*_PROOF, *make.keys))
+    proof = fields(proof, "proof", ("kind", "total", "tree", *make.keys))
     total = number(proof["total"])
     need(total >= 0, "the total is negative")
     return make(problem, proof, total, clock), total
-
-
-def _said(lower: Fraction, upper: Fraction | None, infeasible: bool, subject: Subject) -> str:
-    if infeasible:
-        return "no durations within their bounds keep the limits: infeasible"
-    said = f"the least total of {subject} is at least {shown_bound(lower, 'lower', digits=12)} s"
-    if upper is not None:
-        said += f" and at most {shown_bound(upper, 'upper', digits=12)} s"
-    return said

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 
-from ...problem import Case
+from ...problem import Case, shown_bound
 from ...problem.cases import (
     AnyClaim,
     DurationsClaim,
@@ -13,7 +13,6 @@ from ...problem.cases import (
     StatementClaim,
     TotalTimeClaim,
 )
-from ...verify import shown_bound
 from ..documents import (
     Cause,
     ClaimVerdict,

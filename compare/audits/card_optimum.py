@@ -8,14 +8,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...nlp import Evidence, Solution, Status
-from ...problem import Coupling
+from ...problem import Coupling, shown_bound
 from ...problem.cases import (
     AnyClaim,
     MaximumClaim,
     TimeClaim,
     TotalTimeClaim,
 )
-from ...verify import shown_bound
 from ..documents import (
     CaveatKind,
     ClaimVerdict,

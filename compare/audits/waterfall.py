@@ -5,7 +5,7 @@ from __future__ import annotations
 from ...nlp import Evidence, Route, Solution, Status, printed_problem_or_none
 from ...nlp.proofs.any_curve import estimate_any_curve
 from ...nlp.retiming import jerk_limited_path, retime, retime_third_order
-from ...problem import down, fit, up
+from ...problem import down, fit, shown_bound, up
 from ...problem.cases import (
     AnyClaim,
     DurationsClaim,
@@ -13,7 +13,6 @@ from ...problem.cases import (
     TimeClaim,
     TotalTimeClaim,
 )
-from ...verify import shown_bound
 from ..documents import (
     EXACT,
     FREED_OPTIMUM,

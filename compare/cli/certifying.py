@@ -30,6 +30,7 @@ from ...problem import (
     TrajgapError,
     check_regular,
     file_name,
+    shown_bound,
 )
 from ...problem.cases import case_files
 from ...verify import (
@@ -44,7 +45,6 @@ from ...verify import (
     Subject,
     number,
     read_document,
-    shown_bound,
     verify_certificate,
 )
 from ..audits import in_words

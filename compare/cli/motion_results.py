@@ -7,9 +7,8 @@ from collections.abc import Mapping, Sequence
 
 from rich.console import RenderableType
 
-from ...problem import Verdict, from_si
+from ...problem import Verdict, from_si, shown_bound
 from ...problem.motions import Floor, Interpolation, MotionCheck, MotionPeak, unstated_words
-from ...verify import shown_bound
 from ..documents import (
     CheckedMotion,
     MotionCheckDocument,

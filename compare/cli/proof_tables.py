@@ -8,8 +8,7 @@ from fractions import Fraction
 from rich.console import RenderableType
 
 from ...nlp import Outcome
-from ...problem import Case
-from ...verify import shown_bound
+from ...problem import Case, shown_bound
 from ..audits import asked_as, in_words
 from ..documents import (
     UNNAMED,

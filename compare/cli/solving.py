@@ -17,8 +17,7 @@ from ...nlp import (
 )
 from ...nlp.optimum import OPTIMUM_SLACK, stopping_after
 from ...nlp.retiming import Retiming, retime
-from ...problem import Case, Coupling, Problem, fit
-from ...verify import shown_bound
+from ...problem import Case, Coupling, Problem, fit, shown_bound
 from ..audits import Study, in_words
 from ..documents import (
     Answer,

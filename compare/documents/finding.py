@@ -10,7 +10,7 @@ from typing import Annotated, Any
 from pydantic import AfterValidator, Field, PlainSerializer, WithJsonSchema
 
 from ...nlp import Evidence
-from ...verify import shown_bound
+from ...problem import shown_bound
 from .entry import Entry, OrLeftOut, OrWhy, Real, Why
 from .vocabulary import Basis, ClaimVerdict, Confidence, GapKind, Scope, Severity
 from .why_judged import capital, opened

@@ -6,8 +6,7 @@ import os
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
-from ...problem import Array, CaseError, file_name, recover_folder, replace_folder
-from ...verify import shown_bound
+from ...problem import Array, CaseError, file_name, recover_folder, replace_folder, shown_bound
 from ..audits import package_version
 from ..documents import (
     BENCH_COLUMNS,

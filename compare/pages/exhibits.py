@@ -8,10 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...heuristics.algorithms import ImprovedWOA, InitialRule, TentRule
-from ...problem import Array, TrajgapError, file_name, forward_kinematics, to_si
+from ...problem import Array, TrajgapError, file_name, forward_kinematics, shown_bound, to_si
 from ...problem.cases import ControlVerticesClaim, DurationsClaim, MaximumClaim
 from ...problem.robots import Chain, DhTable, proximity, sample_workspace
-from ...verify import shown_bound
 from ..audits import Study, place
 from ..audits.rules import has_vertices, vertices
 from ..pictures import (

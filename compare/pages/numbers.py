@@ -8,9 +8,8 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from ...nlp import Evidence, PerJointSolution, Solution
-from ...problem import Case, Coupling, file_name
+from ...problem import Case, Coupling, file_name, shown_bound
 from ...problem.cases import DurationsClaim
-from ...verify import shown_bound
 from ..audits import CaseAudit, Study, at_ratios, place, routes, searched_for
 from ..documents import (
     OPTIMA_STEPS,

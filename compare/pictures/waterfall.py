@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Patch
 
 from ...nlp import Evidence
-from ...verify import shown_bound
+from ...problem import shown_bound
 from ..documents import Step, Waterfall, Why, value_or_none
 from .drawing import (
     BLUE,

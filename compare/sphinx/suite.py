@@ -11,9 +11,8 @@ from docutils.parsers.rst import directives
 from sphinx.addnodes import pending_xref
 from sphinx.util.docutils import SphinxDirective
 
-from ...problem import TrajgapError
+from ...problem import TrajgapError, shown_bound
 from ...problem.suite import BenchmarkInstance, list_instances, load_instance, select_curve
-from ...verify import shown_bound
 from ..documents import worth
 from .parts import badge, paragraph, table
 from .proofs import proved_again

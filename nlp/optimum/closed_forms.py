@@ -23,8 +23,8 @@ from ...problem import (
     as_piecewise,
     check,
     extrema,
+    shown_bound,
 )
-from ...verify import shown_bound
 from .decided import decided, kept
 from .feasibility import SURE, apart, impossible
 from .solution import Route, Solution, Status

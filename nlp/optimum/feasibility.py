@@ -7,8 +7,7 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from ...problem import QUANTITIES, Array, Problem, Verdict, as_piecewise, check
-from ...verify import shown_bound
+from ...problem import QUANTITIES, Array, Problem, Verdict, as_piecewise, check, shown_bound
 
 SURE = 1.0 + 1e-6
 """What a need must exceed to be a proof: far above the checker's tolerance and rounding."""

@@ -8,9 +8,8 @@ from enum import StrEnum
 
 import numpy as np
 
-from ...problem import TOLERANCE, Array, Check, Problem, Trajectory, TrajgapError, fit
+from ...problem import TOLERANCE, Array, Check, Problem, Trajectory, TrajgapError, fit, shown_bound
 from ...problem.motions import Samples, sampled
-from ...verify import shown_bound
 from .optimality import Active
 
 _VANISHING = 1e-3

@@ -9,8 +9,8 @@ from enum import StrEnum
 from fractions import Fraction
 from typing import Any, Protocol
 
-from ...problem import Array
-from ...verify import CertificateVerdict, Subject, number, shown_bound
+from ...problem import Array, shown_bound
+from ...verify import CertificateVerdict, Subject, number
 from .clock import RunClock
 from .crew import ProofCrew
 from .exact import ExactProblem

@@ -145,7 +145,9 @@ def all_modules() -> set[str]:
 
 @cache
 def face_names(package: str) -> list[str]:
-    return list(getattr(importlib.import_module(package), "__all__", ()))
+    face = importlib.import_module(package)
+    public = [n for n, x in vars(face).items() if n[0] != "_" and not inspect.ismodule(x)]
+    return list(getattr(face, "__all__", public))
 
 
 def test_across_folders_only_faces_are_imported() -> None:

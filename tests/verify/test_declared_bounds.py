@@ -31,7 +31,7 @@ def exact_sum(problem: Problem, kind: Any, h: list[Fraction], leaf: Any, centre:
     own = pieces(stated, h, Clock(inf))
     value = Fraction(tau) * (sum(h) / kind.total - 1)
     for (k, j, order, sign, place), weight in zip(rows.tolist(), weights.tolist(), strict=True):
-        at = value_at(derivative(own[j][k], order), h[k] * Fraction(place, PLACES))
+        at = value_at(derivative(own[j][k], order), Fraction(place, PLACES)) / h[k] ** order
         if order == 0:
             ends = stated.position[(1 + sign) // 2][j]
             far = max(abs(row[j] - stated.waypoints[0][j]) for row in stated.waypoints)

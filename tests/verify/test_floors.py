@@ -6,7 +6,7 @@ from fractions import Fraction
 from itertools import pairwise
 
 import pytest
-from trajgap.verify import least_durations
+from trajgap.verify.floors import least_durations
 from trajgap.verify.problem import Declaration, StatedProblem
 
 REST = {1: [Fraction(0)]}

@@ -27,25 +27,17 @@ Range = tuple[int, int] | None
 
 @dataclass(eq=False)
 class Box:
-    """Part of the durations below the cap.
-
-    Attributes
-    ----------
-    low, high : list of int
-        Sides in ticks.
-    x : list, [joint][unknown]
-        Ranges.
-    floor : int
-        The total is at least this many ticks.
-    empty : bool
-        Nothing below the cap is feasible in it.
-    """
+    """Part of the durations below the cap."""
 
     low: list[int]
     high: list[int]
+    """Sides in ticks."""
     x: list[list[Range]]
+    """[joint][unknown]."""
     floor: int = 0
+    """The total is at least this many ticks."""
     empty: bool = False
+    """Nothing below the cap is feasible in it."""
 
     def again(self) -> Box:
         """A copy, of which nothing is shared."""
@@ -66,7 +58,7 @@ class Box:
         total = sum(self.low[:m])
         for t in range(m):
             self.high[t] = min(self.high[t], cap - total + self.low[t])
-        for h, t, _ in cubic.rho():
+        for h, t, _ in cubic.rho:
             self.high[h] = min(self.high[h], self.high[t])
         self.floor = max(self.floor, total)
         self.empty |= any(a > b for a, b in zip(self.low, self.high, strict=True))
@@ -78,7 +70,7 @@ class Box:
             (Fraction(a, TICKS), Fraction(b, TICKS))
             for a, b in zip(self.low, self.high, strict=True)
         ]
-        for h, t, _ in cubic.rho():
+        for h, t, _ in cubic.rho:
             most = out[h][1] ** 2 / out[t][0] if out[t][0] else out[h][1]
             least = out[h][0] ** 2 / out[t][1] if out[t][1] else Fraction(0)
             out.append((least, max(least, min(most, out[h][1]))))
@@ -122,10 +114,9 @@ class Box:
                 bounds = [a]
                 if v is not None and reach[b]:
                     bounds.append(8 * v / reach[b])
-                if jerk is not None and cubic.ends[0] != 1:
-                    bounds.append(jerk * sum(most[:b]))
-                if jerk is not None and cubic.ends[1] != 1:
-                    bounds.append(jerk * sum(most[b:]))
+                for order, since in zip(cubic.ends, (most[:b], most[b:]), strict=True):
+                    if jerk is not None and order != 1:
+                        bounds.append(jerk * sum(since))
                 self._cut(j, b, bounds)
             for w in range(n + 1, cubic.size):
                 self._cut(j, w, [v])

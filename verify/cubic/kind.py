@@ -6,12 +6,10 @@ that follows from them is computed here anew, in exact arithmetic.
 
 from __future__ import annotations
 
-from fractions import Fraction
 from typing import Any
 
-from ..problem import StatedProblem
 from ..ranges import MOST_INTEGER, MOST_ROWS, TICKS
-from ..reading import Clock, listed, need, sign_of, text, whole
+from ..reading import listed, need, sign_of, text, whole
 from ..tree import ProofKind
 from .box import Box, Range
 from .system import Cubic, Number
@@ -24,16 +22,14 @@ class CubicSpline(ProofKind[Box]):
     keys = ("powers", "second", "cap", "root", "rows")
     apart = 8  # each node is rational arithmetic
 
-    def __init__(
-        self, problem: StatedProblem, proof: dict[str, Any], total: Fraction, clock: Clock
-    ) -> None:
-        super().__init__(problem, proof, total, clock)
-        self.cubic = Cubic(problem, proof)
-        ticks = total / self.cubic.second * TICKS
-        need(ticks <= self.cubic.cap * TICKS, "the total exceeds the cap below which the boxes lie")
-        self._ticks = ticks
+    def read(self, proof: dict[str, Any]) -> None:
+        """The system, its cap, the table of rows, and the outermost box."""
+        self.cubic = Cubic(self.problem, proof)
+        total = self.total / self.cubic.second
+        need(total <= self.cubic.cap, "the total exceeds the cap below which the boxes lie")
+        self._ticks = total * TICKS
         rows = listed(proof["rows"], "rows", MOST_ROWS)
-        self._known = [self.cubic.condition(entry) for entry in clock.each(rows)]
+        self._known = [self.cubic.condition(entry) for entry in self.clock.each(rows)]
         self._root = self.cubic.root(proof["root"])
 
     def root(self) -> Box:

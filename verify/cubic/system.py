@@ -40,36 +40,20 @@ class Cubic:
         self.longest = [None if x is None else x / self.second for x in problem.longest]
         self.cap = Fraction(whole(proof["cap"], 1, MOST_INTEGER), TICKS)
         self.free, self.coordinates = (self.m + (x if self.virtual else 0) for x in (2, 4))
-        self.breaks = list(range(self.n + 1))
+        n, m = self.n, self.m
+        self.breaks, self.lengths = list(range(n + 1)), [{k: 1} for k in range(m)]
+        self.rough: dict[int, tuple[int, int, int]] = {}
+        """Of spans with a virtual way-point: breaks there and at its inner end, coordinate h."""
         if self.virtual:
-            self.breaks = [0, *range(2, self.n - 1), self.n]
+            self.rough = {0: (1, 2, m), m - 1: (n - 1, n - 2, m + 1)}
+            self.breaks = [0, *range(2, n - 1), n]
+            first, last = [{m: 1}, {0: 1, m: -1}], [{m - 1: 1, m + 1: -1}, {m + 1: 1}]
+            self.lengths = [*first, *self.lengths[1:-1], *last]
+        self.rho = [(h, t, h + 2) for t, (_, _, h) in self.rough.items()]
+        """Coordinates (h, T, h²/T) of the two ends with a virtual way-point."""
         self.size = self.n + 1 + self.m + 1
-        self.lengths = [self._length(k) for k in range(self.n)]
         self.equations, self.moved = self._equations()
         self.moving = {i: (t, sign) for i, (t, sign) in self.moved.items() if any(self.steps[t])}
-
-    def rho(self) -> list[tuple[int, int, int]]:
-        """Coordinates (h, T, h²/T) of the two ends with a virtual way-point."""
-        m = self.m
-        return [(m, 0, m + 2), (m + 1, m - 1, m + 3)] if self.virtual else []
-
-    def rough(self, span: int) -> tuple[int, int, int] | None:
-        """Of a span with a virtual way-point: breaks there and at its inner end, coordinate h."""
-        if self.virtual and span == 0:
-            return 1, 2, self.m
-        if self.virtual and span == self.m - 1:
-            return self.n - 1, self.n - 2, self.m + 1
-        return None
-
-    def _length(self, k: int) -> dict[int, int]:
-        m, n = self.m, self.n
-        if not self.virtual:
-            return {k: 1}
-        if k in (0, n - 1):
-            return {m if k == 0 else m + 1: 1}
-        if k in (1, n - 2):
-            return {0: 1, m: -1} if k == 1 else {m - 1: 1, m + 1: -1}
-        return {k - 1: 1}
 
     def _equations(self) -> tuple[list[dict[Any, int]], dict[int, tuple[int, int]]]:
         """Left-hand sides, keyed by unknown or (coordinate, unknown); right: ±6Δq/T of a span.
@@ -85,7 +69,7 @@ class Cubic:
             rows += [{speed: 1}] if order != 2 else []
             rows += [{node: 1}] if order != 1 else []
         for t, (i, k) in enumerate(pairwise(self.breaks)):
-            rough = self.rough(t)
+            rough = self.rough.get(t)
             if rough is not None:
                 a, b, h = rough
                 sign, speed = (1, v + 1) if t == 0 else (-1, v + m - 1)
@@ -125,7 +109,7 @@ class Cubic:
         s = Fraction(whole(place, 0, SPOTS), SPOTS)
         # v(s) = v(0) + length·(a(0)(s − s²/2) + a(1)s²/2)
         one, two = sign * (s - s * s / 2), sign * s * s / 2
-        rough = self.rough(k)
+        rough = self.rough.get(k)
         terms: Vector
         if rough is not None:
             a, b, h = rough

@@ -4,15 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from fractions import Fraction
+from math import sqrt
 from typing import Any
 
 from ..ranges import MIX, MIX_DIGITS, MOST_INTEGER, MOST_WEIGHTS
-from ..reading import listed, need, required, whole
+from ..reading import need, required, weights, whole
 from .box import Box
 from .system import FINE, Condition, Cubic, Number, Sides, root_below
-
-_THIRDS = 60
-"""Taken off the range of T in which the best tangent of ρ is looked for: 3e-11 of it is left."""
 
 Spot = tuple[int, int, int]
 """Joint, coordinate and unknown of a product."""
@@ -33,9 +31,6 @@ def least(
 
     Parameters
     ----------
-    cubic : Cubic
-    box : Box
-    known : sequence of Condition
     target : dict
         Weights of the coordinates.
     held, equations : list
@@ -44,34 +39,27 @@ def least(
         Given the products that occur, a character for each: its share of the bound that is exact
         where the unknown is lowest.
 
-    Returns
-    -------
-    Fraction or int
-
     Raises
     ------
     Refused
         If the weights are malformed, or an unknown has no bounds.
     """
     sides = box.sides(cubic)
-    held = listed(held, "weights of conditions", 2 * MOST_WEIGHTS)
-    equations = listed(equations, "weights of equations", 2 * MOST_WEIGHTS)
-    need(len(held) % 2 == 0 and len(equations) % 2 == 0, "malformed: weights come in pairs")
     terms: dict[tuple[int, Any], Number] = {}
     along: dict[int, Number] = {k: target.get(k, 0) for k in range(cubic.coordinates)}
     constant: Number = 0
     inverse = dict.fromkeys(range(cubic.m), Fraction(0))
-    for number_, weight in zip(held[::2], held[1::2], strict=True):
+    for row, weight in weights(held, len(known), MOST_WEIGHTS):
         w = whole(weight, 0, MOST_INTEGER)
-        joint, own, lengths, rest = known[whole(number_, 0, len(known) - 1)]
+        joint, own, lengths, rest = known[row]
         for key, x in own.items():
             terms[joint, key] = terms.get((joint, key), 0) + w * x
         for k, x in lengths.items():
             along[k] += w * x
         constant += w * rest
-    for number_, weight in zip(equations[::2], equations[1::2], strict=True):
+    for row, weight in weights(equations, cubic.joints * cubic.size, MOST_WEIGHTS):
         w = whole(weight, -MOST_INTEGER, MOST_INTEGER)
-        joint, i = divmod(whole(number_, 0, cubic.joints * cubic.size - 1), cubic.size)
+        joint, i = divmod(row, cubic.size)
         for key, x in cubic.equations[i].items():
             terms[joint, key] = terms.get((joint, key), 0) + w * x
         if i in cubic.moved:
@@ -96,7 +84,7 @@ def least(
         if x:
             ends = required(box.x[joint][v], "an unknown without bounds")
             constant += Fraction(min(x * ends[0], x * ends[1])) / FINE
-    return constant + _over(along, inverse, sides, cubic.rho())
+    return constant + _over(along, inverse, sides, cubic.rho)
 
 
 def _over(
@@ -165,7 +153,8 @@ def _slope(
     def value(span: float) -> float:
         return a * best(span) + b * span + (e + f * best(span) ** 2) / span
 
-    for _ in range(_THIRDS):
-        one, other = (2 * low + high) / 3, (low + 2 * high) / 3
-        low, high = (low, other) if value(one) <= value(other) else (one, high)
-    return Fraction(best(low) / low)
+    # Between the ends of T the sum is least where h is free, or at an end of h.
+    quotients = [(e, b - a * a / (4 * f)), (e + f * h0 * h0, b), (e + f * h1 * h1, b)]
+    turns = [sqrt(over / under) for over, under in quotients if under > 0]
+    span = min((min(max(x, low), high) for x in (low, high, *turns)), key=value)
+    return Fraction(best(span) / span)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ....problem import QUANTITIES, Verdict
+from ....problem import QUANTITIES, Verdict, shown_bound
 from ....problem.cases import (
     AnyClaim,
     DurationsClaim,
@@ -16,7 +16,6 @@ from ....problem.cases import (
     TimeClaim,
     TotalTimeClaim,
 )
-from ....verify import shown_bound
 from ...documents import Basis, ClaimVerdict, Finding, Rounding, Severity
 from ..roots import LIMITS
 from ..study import Study

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ....nlp import Evidence, Solution, Status, weakest
+from ....problem import shown_bound
 from ....problem.cases import (
     AnyClaim,
     DurationsClaim,
@@ -16,7 +17,6 @@ from ....problem.cases import (
     TimeClaim,
     TotalTimeClaim,
 )
-from ....verify import shown_bound
 from ...documents import (
     Basis,
     ClaimVerdict,

@@ -8,10 +8,9 @@ from itertools import combinations, product
 
 import numpy as np
 
-from ....problem import Array, Measured, is_linear, to_si
+from ....problem import Array, Measured, is_linear, shown_bound, to_si
 from ....problem.cases import Cartesian, Column, Statement, StatementClaim
 from ....problem.robots import Chain, Convention, DhTable, JointKind, Proximity, proximity
-from ....verify import shown_bound
 from ...documents import Basis, ClaimVerdict, Finding, enumerated
 from ..study import Study
 

@@ -6,10 +6,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
-from ....problem import Interval, Printed
+from ....problem import Interval, Printed, shown_bound
 from ....problem.cases import ControlVerticesClaim, Statement
 from ....problem.curves import vertex_matrix
-from ....verify import shown_bound
 from ...documents import Basis, ClaimVerdict, Finding, Severity, ranged
 from ..study import Study
 from .printed_digits import hull, meet

@@ -64,16 +64,16 @@ def question(problem: ExactProblem) -> FreeQuestion:
     position = [nowhere, nowhere]
     alone = replace(stated, limits=limits, sides=[limits, limits], position=position)
     spans, restless = spans_of(alone), _restless(stated)
-    joints = tuple(j for j in restless if spans.velocity[j] or spans.acceleration[j])
+    joints = tuple(j for j in restless if any(limits[j]))
     return FreeQuestion(
         alone,
         joints,
         [[row[j] for j in joints] for row in spans.steps],
-        [spans.velocity[j] for j in joints],
-        [spans.acceleration[j] for j in joints],
+        [limits[j][0] for j in joints],
+        [limits[j][1] for j in joints],
         spans.shortest,
         spans.longest,
-        [[side[j] for j in joints] for side in spans.ends],
+        [[side[j] for j in joints] for side in stated.ends],
     )
 
 

@@ -18,7 +18,7 @@ def errors(program: BoxProgram, proposal: Proposal) -> Array:
     for p, (k, i) in enumerate(program.relaxation.pairs):
         miss = np.abs(proposal.products[:, p] - proposal.point[k] * proposal.unknowns[:, i])
         out[k] += float((miss / scale).sum())
-    for h, _, rho in exact.rho():
+    for h, _, rho in exact.rho:
         out[h] += out[rho]
     return out[: exact.free]
 
@@ -40,7 +40,7 @@ def peaks(system: CubicSystem, point: Array) -> list[CubicRow]:
         Where a limit is exceeded; empty if the durations determine no spline.
     """
     exact = system.exact
-    y = np.append(point, [point[h] ** 2 / max(point[t], 1e-9) for h, t, _ in exact.rho()])
+    y = np.append(point, [point[h] ** 2 / max(point[t], 1e-9) for h, t, _ in exact.rho])
     right, spans = np.zeros((exact.size, exact.joints)), np.flatnonzero(system.moving)
     right[system.which[spans]] = system.steps[spans] / np.maximum(point[spans], 1e-9)[:, None]
     try:
@@ -50,7 +50,7 @@ def peaks(system: CubicSystem, point: Array) -> list[CubicRow]:
     found = []
     for j, (velocity, _, _) in enumerate(exact.limits):
         for t in range(exact.m if velocity is not None else 0):
-            rough = exact.rough(t)
+            rough = exact.rough.get(t)
             if rough is not None:
                 near, far, h = rough
                 a, b, length = x[near, j], x[far, j], y[t] - y[h]

@@ -138,7 +138,7 @@ class BoxProgram:
                 right.append(-2.0 / place)
             rows.append({z: 1.0, t: 1.0 / (low[t] * high[t])})
             right.append(1.0 / low[t] + 1.0 / high[t])
-        for h, t, rho in system.exact.rho():
+        for h, t, rho in system.exact.rho:
             top = min(1.0, high[h] / low[t]) if low[t] > 0 else 1.0
             for slope in np.linspace(low[h] / high[t], top, _TANGENTS - 1):
                 rows.append({h: 2 * slope, t: -(slope**2), rho: -1.0})

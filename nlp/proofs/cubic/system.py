@@ -143,7 +143,7 @@ class CubicSystem:
                 if jerk is not None:
                     rows += [CubicRow("jerk", j, k, sign) for k in range(exact.n)]
                 for t in range(exact.m if velocity is not None else 0):
-                    places = (0, 16, 32, 48) if exact.rough(t) else (16, 32, 48)
+                    places = (0, 16, 32, 48) if t in exact.rough else (16, 32, 48)
                     rows += [CubicRow("velocity", j, t, sign, place) for place in places]
         for k in range(exact.n):
             if len(exact.lengths[k]) > 1:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from copy import copy
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import lru_cache, partial
@@ -75,6 +76,13 @@ class DeclaredCurves(Curves):
         rate = centre.y[:, None] @ (self._gain.T[:, :, None] * centre.g[:, None])
         moved = -(flat @ rate).reshape(*rate.shape[:2], *form.fixed.shape)
         return Middle(centre, centre.h, centre.e, pieces, moved)
+
+    def pick(self, centre: Any, which: NDArray[np.int64]) -> Any:
+        """Whatever it has, by box."""
+        own = copy(centre)
+        for name, value in vars(centre).items():
+            setattr(own, name, value if name == "task" else value[which])
+        return own
 
     def proved(
         self, middle: Middle, rows: NDArray[np.int64], weights: Array, tau: Array

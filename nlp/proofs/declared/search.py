@@ -81,6 +81,10 @@ class Curves(ABC):
         The last array, shape (box, segment), is large where a side is to blame for what was lost.
         """
 
+    def pick(self, centre: Any, which: NDArray[np.int64]) -> Any:
+        """The verifier's curves at the centres of some of the boxes."""
+        return centre.pick(which)
+
     def without_limits(self, low: Array, high: Array) -> list[Leaf | None]:
         """What excludes boxes whatever the curve."""
         return [None] * len(low)
@@ -261,7 +265,7 @@ def _excluded(
     order = order[:, : 1 + int((weights[good] > 0.0).sum(axis=1).max())]
     rows = np.take_along_axis(own.rows[good], order[:, :, None], axis=1)
     share = np.take_along_axis(weights[good], order, axis=1)
-    picked = Middle(middle.centre.pick(good), *(x[good] for x in middle[1:]))
+    picked = Middle(curves.pick(middle.centre, good), *(x[good] for x in middle[1:]))
     excluded, taus, shares, blame[good] = curves.proved(picked, rows, share, tau[good])
     for at in np.flatnonzero(excluded):
         pairs = [

@@ -157,7 +157,7 @@ def test_ctrl_c_leaves_the_interval_and_a_state(run: Run) -> None:
         "import sys, time, trajgap.compare.cli.certifying as c\n"
         "from importlib import import_module\n"
         "from trajgap.compare.cli import main\n"
-        "import_module('trajgap.verify.declared')._LEAVES = 4\n"
+        "import_module('trajgap.verify.boxes')._LEAVES = 4\n"
         # However fast the search is, some report finds something proved.
         "import_module('trajgap.nlp.proofs.session').Session.often = 0.0\n"
         "reporting = c._Stop.reporting\n"

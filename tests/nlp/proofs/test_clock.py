@@ -33,7 +33,7 @@ from trajgap.problem import (
 from trajgap.verify import CertificateVerdict, Clock, OutOfTime, Subject, verify_certificate
 from trajgap.verify import verify_certificate as verify
 
-LATE = CertificateVerdict(False, False, "nothing was decided", out_of_time=True)
+LATE = CertificateVerdict(False, "nothing was decided", out_of_time=True)
 WAY = np.array([[0.2, -0.3], [1.3, 0.4], [0.6, 1.1]])
 QUICK = Problem(WAY, Limits([1.1, 0.9], [1.9, 2.3]), cubic_spline(2))
 LONG = Problem(WAY[:, :1], Limits([1.1], [1.9], [7.0]), cubic_spline_virtual(3))

@@ -54,7 +54,7 @@ from trajgap.problem import (
     uniform_cubic_b_spline,
 )
 from trajgap.verify import Subject, verify_certificate
-from trajgap.verify import declared as declared_verifier
+from trajgap.verify import boxes as verified_boxes
 from trajgap.verify.cubic import least
 
 Patches = tuple[tuple[Any, str, Any], ...]
@@ -257,7 +257,7 @@ def test_what_no_durations_keep_is_proved_infeasible(name: str) -> None:
 # --- stops ----------------------------------------------------------------------------------------
 
 
-FEW_BOXES: Patches = ((declared_verifier, "_LEAVES", 16), (search.Curves, "part", 16))
+FEW_BOXES: Patches = ((verified_boxes, "_LEAVES", 16), (search.Curves, "part", 16))
 """However fast boxes are, something is said after every few of them."""
 STOPPED: dict[str, tuple[Problem, Subject, float, Callable[[Progress, int], bool]]] = {
     "declared": (

@@ -16,7 +16,9 @@ MANY = "tree._walked: the tree has too many nodes"
 NOT_JUDGED = "tree.walk: a part of the tree was not judged"
 OUTSIDE = "any_curve.check_motion: answer: joint {j + 1} is outside its position limits"
 NOT_PROVED = "boxes.Boxes.end: a leaf with limits is not proved"
-NOT_QUINTIC = "quintic._covered: declaration not covered: no C4 quintic spline at rest at the ends"
+QUINTIC = "quintic.QuinticSpline.read: "
+NOT_QUINTIC = f"{QUINTIC}declaration not covered: no C4 quintic spline at rest at the ends"
+DECLARED = "declared.DeclaredCurve.read: "
 
 
 # --- the walk through a tree ----------------------------------------------------------------------
@@ -134,17 +136,17 @@ FORGERIES = [
         proof={"kind": "quintic-spline", "total": data["proof"]["total"], "tree": [["."]],
                "powers": [0, 0], "second": 0, "low": ["0"] * 3, "windows": [], "rows": []})),
     Forgery(NOT_QUINTIC, "quintic-spline", spline(1, 5)),
-    Forgery("quintic._covered: more than {MOST_QUINTIC_SEGMENTS} segments",
+    Forgery(QUINTIC + "more than {longest} segments",
             "quintic-spline", spline(27, 5)),
-    Forgery("quintic._covered: more than {MOST_QUINTIC_JOINTS} joints",
+    Forgery(QUINTIC + "more than {most} joints",
             "quintic-spline", spline(3, 5, 13)),
     *(Forgery(WHOLE, "quintic-spline",
               _leaf(lambda leaf, at=at, x=x: leaf.__setitem__(at, x)))
       for at, x in ((1, 2**52 + 1), (1, -(2**52) - 1), (2, 9999), (2, -1), (3, -1),
                     (3, 2**52 + 1))),
-    Forgery("boxes.Boxes.end: a leaf misses a weight", "quintic-spline",
+    Forgery("reading.weights: malformed: weights come in pairs", "quintic-spline",
             _leaf(lambda leaf: leaf.append(0))),
-    Forgery("boxes.Boxes.end: a leaf has too many rows", "quintic-spline",
+    Forgery("reading.listed: malformed: {what}: not {least} to {most} entries", "quintic-spline",
             _leaf(lambda leaf: leaf.extend([0, 1] * 64))),
     # Two way-points so near in time that the equations hang on one digit.
     Forgery(NOT_PROVED, "quintic-spline",
@@ -155,10 +157,10 @@ FORGERIES = [
             "quintic-spline", {}, {"quintic_bound.STIFFNESS": -quintic_bound.STIFFNESS}),
     Forgery("declared.DeclaredCurve._task: the curve has too many unknowns",
             "declared", spline(12, 9)),
-    Forgery("declared.covered: one segment alone has no inner break", "declared", spline(1)),
-    Forgery("declared.covered: more than {MOST_DECLARED_SEGMENTS} segments",
+    Forgery(DECLARED + "one segment alone has no inner break", "declared", spline(1)),
+    Forgery(DECLARED + "more than {most} segments",
             "declared", spline(13)),
-    Forgery("declared.covered: declaration not covered: no declared piecewise polynomial",
+    Forgery(DECLARED + "declaration not covered: no declared piecewise polynomial",
             "stretched", lambda data: data.update(
                 proof={"kind": "declared", "total": data["proof"]["total"],
                        "rows": [], "tree": [["."]]})),

@@ -70,8 +70,8 @@ FORGERIES = [
                       _with("false", "1" * 9999))),
     *(Forgery(NO_INTEGER, "file", _with("false", word))
       for word in ("NaN", "Infinity", "-Infinity", "1e999", "0.5")),
-    Forgery("verdict._document: no JSON object; {_NAME_ONE}", "file", b"[1]"),
-    *(Forgery("verdict._document: no {CERTIFICATE_FORMAT}; {_NAME_ONE}", "file", content)
+    Forgery("verdict._document: no JSON object; name a certificate", "file", b"[1]"),
+    *(Forgery("verdict._document: no {CERTIFICATE_FORMAT}; name a certificate", "file", content)
       for content in (b"{}", b'{"format": ["trajgap-certificate-2"]}',
                       b'{"format": "trajgap-certificate-3"}')),
     *(Forgery("verdict._document: {found}: an old format; `trajgap solve CASE --certify` makes "
@@ -85,6 +85,6 @@ FORGERIES = [
     Forgery("reading.text: malformed: {what}: no text, or too long",
             "by hand", {"problem.joints": ["1" * 10_001]}),
     Forgery(MISSING, "declared", {"proof.rows": GONE}),
-    Forgery("boxes.Boxes.end: a leaf has too many rows", "declared",
+    Forgery("reading.listed: malformed: {what}: not {least} to {most} entries", "declared",
             {"proof.tree": [[".", 0, *[0, 1] * 65]]}),
 ]  # fmt: skip

@@ -196,7 +196,7 @@ def stopped_at(name: str, monkeypatch: pytest.MonkeyPatch) -> Certified:
             raise KeyboardInterrupt
 
     # However fast boxes are, something is said after every few of them.
-    monkeypatch.setattr("trajgap.verify.declared._LEAVES", 8)
+    monkeypatch.setattr("trajgap.verify.boxes._LEAVES", 8)
     monkeypatch.setattr("trajgap.nlp.proofs.declared.search.Curves.part", 8)
     found = certify(COVERED_PROBLEMS[name], report=interrupt)
     assert found.outcome is Outcome.INTERVAL
