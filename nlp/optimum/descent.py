@@ -48,15 +48,16 @@ def least_point(
     chapter 23): of u ≥ 0 with least |[Gᵀ; wᵀ]u − e|, e the last unit vector, the residual ρ gives
     y = −ρ_{1..n}/ρ_{n+1}, and −u/ρ_{n+1} are the multipliers.
     """
-    from scipy.linalg.lapack import dpotrf, dtrtrs  # a quarter of a second, and few need it
+    from scipy.linalg.lapack import dpotrf, dtrtri  # a quarter of a second, and few need it
     from scipy.optimize import nnls
 
-    # Programs are so small that `cholesky` and `solve_triangular` cost more than what they call.
+    # Programs are so small that `cholesky` costs more than what it calls. A triangular solve with
+    # several right-hand sides starts threads, which take a hundred times as long.
     lower, failed = dpotrf(hessian, lower=1)
     if failed:
         return None
-    shift, _ = dtrtrs(lower, slope, lower=1)
-    turned = dtrtrs(lower, rows.T, lower=1)[0].T
+    inverse, _ = dtrtri(lower, lower=1)
+    shift, turned = inverse @ slope, rows @ inverse.T
     facing, needed = -turned, -room - turned @ shift
     stacked = np.vstack([facing.T, needed])
     target = np.zeros(len(stacked))
@@ -69,7 +70,7 @@ def least_point(
     if not residual[-1] < -1e-14:
         return None
     y = -residual[:-1] / residual[-1]
-    step, _ = dtrtrs(lower, y - shift, lower=1, trans=1)
+    step = inverse.T @ (y - shift)
     # Rows that all but contradict each other give a point far beyond them.
     if not (turned @ y - room - turned @ shift <= 1e-6 * (1.0 + np.abs(room))).all():
         return None
