@@ -136,14 +136,12 @@ def _onto_limits(problem: Problem, h: Array, box: LogBox) -> ExactRows:
                 break
             return exact_rows(problem, np.exp(z + stretch))
         if free and (z + stretch <= box.high).all():
-            step = np.full(z.size, stretch)
-        else:
-            matrix, room = _walled(rows, box, WIDEST_STEP)
-            found = least_point(np.eye(z.size), np.zeros(z.size), matrix, room)
-            if found is None:
-                break
-            step = found[0]
-        trial = exact_rows(problem, np.exp(box.inside(z + step)))
+            return rows.longer(stretch)
+        matrix, room = _walled(rows, box, WIDEST_STEP)
+        found = least_point(np.eye(z.size), np.zeros(z.size), matrix, room)
+        if found is None:
+            break
+        trial = exact_rows(problem, np.exp(box.inside(z + found[0])))
         if not trial.worst < rows.worst:
             break
         rows = trial

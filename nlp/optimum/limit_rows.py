@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -58,6 +58,15 @@ class ExactRows:
     def worst(self) -> float:
         """The largest excess."""
         return float(self.excess.max(initial=-np.inf))
+
+    def longer(self, z: float) -> ExactRows:
+        """The rows of the motion stretched by a factor eᶻ in time: the same gradients and places."""
+        c = float(np.exp(z))
+        points = tuple(
+            replace(e, time=e.time * c, value=e.value / c**e.order) for e in self.points
+        )
+        excess = np.where(self.stretched, self.excess - z, self.excess)
+        return replace(self, durations=self.durations * c, excess=excess, points=points)
 
     def twin(self, e: Extremum, sign: float) -> int | None:
         """The row whose extremum continues one of another motion: the nearest of its segment."""

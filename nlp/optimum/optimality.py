@@ -285,8 +285,9 @@ def _report(
     return KKT(max(residual, float(excess.max(initial=0.0))), tuple(active))
 
 
-SHARP = 1e-12
-"""Residual that `sharpened` leaves as it is: rounding of gradients."""
+SHARP = 1e-10
+"""Residual that is left as it is, and rounding of differences of gradients: a total is settled to
+the last digit long before."""
 DIFFERENCE = 1e-6
 """Step of its central differences in log durations: they err by 1e-12, their rounding by 1e-10."""
 
@@ -307,7 +308,7 @@ def sharpened(problem: Problem, durations: Array) -> Array | None:
     durations : ndarray, shape (segments,)
         s.
     """
-    first = exact_rows(problem, durations)
+    first = rows = exact_rows(problem, durations)
     found = _Weighed.of(problem, first, ACTIVE)
     if found is None or not found.weights.size:
         return None
@@ -317,7 +318,7 @@ def sharpened(problem: Problem, durations: Array) -> Array | None:
     free = ~np.isin(np.arange(durations.size), found.segments[bounds])
     h, n, z, one = durations, int(free.sum()), active.size, np.eye(durations.size)
     for _ in range(4):
-        now = _conditions(problem, h, first, active, weights)
+        now = _conditions(rows, first, active, weights)
         if now is None or time_up():
             return None
         slope, excess, columns = now
@@ -327,7 +328,8 @@ def sharpened(problem: Problem, durations: Array) -> Array | None:
         for k in np.flatnonzero(free):
             step = np.exp(DIFFERENCE * one[k])
             ahead, behind = (
-                _conditions(problem, x, first, active, weights) for x in (h * step, h / step)
+                _conditions(exact_rows(problem, x), first, active, weights)
+                for x in (h * step, h / step)
             )
             if ahead is None or behind is None:
                 return None
@@ -339,15 +341,15 @@ def sharpened(problem: Problem, durations: Array) -> Array | None:
         except np.linalg.LinAlgError:
             return None
         h = h * np.exp(one[free].T @ np.clip(change[:n], -NEAR_BY, NEAR_BY))
-        weights = weights + change[n:]
+        weights, rows = weights + change[n:], exact_rows(problem, h)
     return h
 
 
 def _conditions(
-    problem: Problem, h: Array, first: ExactRows, active: Indices, weights: Array
+    rows: ExactRows, first: ExactRows, active: Indices, weights: Array
 ) -> tuple[Array, Array, Array] | None:
     """Slope of the Lagrangian in log durations, excess of the active limits, and their slopes."""
-    rows = exact_rows(problem, h)
+    h = rows.durations
     twins = [rows.twin(first.points[i], first.signs[i]) for i in active]
     if None in twins:
         return None
