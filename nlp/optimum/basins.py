@@ -11,11 +11,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...problem import TOLERANCE, Array, Problem, TrajgapError, check, evaluate
+from ...problem import TOLERANCE, Array, Problem, TrajgapError, evaluate
 from .clock import seconds_left, time_up
-from .decided import kept
+from .decided import Local
 from .descent import SLOW, Descent, descend
-from .optimality import Local
 from .starts import LogBox, box_above, equal_start, stretching
 
 HOPELESS = 10.0
@@ -30,7 +29,8 @@ class Evolution:
     """Members of a population for each segment."""
     most_members: int = 128
     generations: int = 60
-    """Members of a basin then agree to a few per cent, which a descent ends."""
+    agreed: float = 0.03
+    """Spread of all members at which a search ends before that: a descent does the rest."""
     usual: float = 2.3
     """Spread of the first members: a factor of 10."""
     wide: float = 7.0
@@ -157,7 +157,7 @@ def basins(problem: Problem, count: int, seed: int, floor: Array) -> Array:
     size, scale = len(z), float(base.sum())
     worth = _worth(excess, total, scale)
     for _ in range(of.generations):
-        if time_up():
+        if time_up() or np.ptp(z, axis=0).max() < of.agreed:
             break
         a, b = generator.integers(size, size=(2, size))
         best = np.argsort(worth, kind="stable")[generator.integers(max(2, size // 4), size=size)]
@@ -209,15 +209,15 @@ def as_local(problem: Problem, found: Descent) -> Local | None:
 
     It has where a segment at a virtual break shrinks towards 0: the system is singular to rounding.
     """
-    h = np.clip(found.durations, problem.duration_lower, problem.duration_upper)
+    low, high = problem.duration_lower, problem.duration_upper
     try:
-        verdict = check(problem, h)
-        if found.feasible and 1.0 < verdict.stretch < 1.0 + TOLERANCE and problem.curve.homogeneous:
-            h = np.clip(h * verdict.stretch, problem.duration_lower, problem.duration_upper)
-            verdict = check(problem, h)
+        local = Local.of(problem, np.clip(found.durations, low, high))
+        stretch = local.verdict.stretch
+        if found.feasible and 1.0 < stretch < 1.0 + TOLERANCE and problem.curve.homogeneous:
+            local = Local.of(problem, np.clip(local.durations * stretch, low, high))
     except TrajgapError:
         return None
-    return Local(h, None, float(h.sum()), found.converged, kept(problem, verdict), found.steps)
+    return replace(local, converged=found.converged, iterations=found.steps)
 
 
 def exact_search(problem: Problem, points: Array, floor: Array) -> list[Local]:

@@ -60,11 +60,9 @@ class ExactRows:
         return float(self.excess.max(initial=-np.inf))
 
     def longer(self, z: float) -> ExactRows:
-        """The rows of the motion stretched by a factor eᶻ in time: the same gradients and places."""
+        """The rows of the motion stretched by eᶻ in time: places and gradients are the same."""
         c = float(np.exp(z))
-        points = tuple(
-            replace(e, time=e.time * c, value=e.value / c**e.order) for e in self.points
-        )
+        points = tuple(replace(e, time=e.time * c, value=e.value / c**e.order) for e in self.points)
         excess = np.where(self.stretched, self.excess - z, self.excess)
         return replace(self, durations=self.durations * c, excess=excess, points=points)
 

@@ -1,4 +1,4 @@
-"""Optimality conditions of min Σh, with every active peak found again, and ends of searches.
+"""Optimality conditions of min Σh, with every active peak found again.
 
 In log durations z = log h and free nodal derivatives x, in units of their limits, with T = Σh,
 
@@ -355,38 +355,3 @@ def _conditions(
         return None
     at = np.array(twins, dtype=np.int64)
     return h / h.sum() + weights @ rows.gradient[at], rows.excess[at], rows.gradient[at]
-
-
-@dataclass(frozen=True, eq=False)
-class Local:
-    """The end of a local search.
-
-    Attributes
-    ----------
-    durations : ndarray, shape (segments,)
-        s.
-    nodal : ndarray, shape (free, joints), or None
-        Free derivatives, where the declaration leaves some.
-    total : float
-        s.
-    converged : bool
-        Whether the search ended because no step gained any more.
-    feasible : bool
-        Whether `check` passes the motion.
-    iterations : int
-    tight : (durations, nodal) or None
-        What was moved inside its limits so that rounding errors do not decide, if anything was.
-    report : KKT or None
-        The optimality conditions, where the search knows them already.
-    build_seconds : float
-    """
-
-    durations: Array
-    nodal: Array | None
-    total: float
-    converged: bool
-    feasible: bool
-    iterations: int
-    tight: tuple[Array, Array | None] | None = None
-    report: KKT | None = None
-    build_seconds: float = 0.0

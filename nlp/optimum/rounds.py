@@ -11,17 +11,17 @@ from __future__ import annotations
 
 import math
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from ...problem import TOLERANCE, Array, CurveError, Problem, as_piecewise, check, fit
+from ...problem import TOLERANCE, Array, CurveError, Problem, as_piecewise, fit
 from ...problem.curves import Trajectory
 from .clock import seconds_left, time_up
-from .decided import kept
+from .decided import Local
 from .limit_rows import NEAR, near_limits
-from .optimality import KKT, KKT_TOLERANCE, Local, kkt, sparse_kkt
+from .optimality import KKT, KKT_TOLERANCE, kkt, sparse_kkt
 from .pieces import Indices, Rows, ca
 from .program import Program
 from .starts import DENSE, equal_start, slowed, worst_ratios
@@ -335,9 +335,9 @@ def program_search(
     if rough is None:
         return None
     (h, values), found = best or (rough, None)
-    passes = kept(problem, check(problem, h, values))
     settled = found is not None and found.residual <= KKT_TOLERANCE
-    return Local(h, values, float(h.sum()), settled, passes, iterations, None, found, build)
+    end = Local.of(problem, h, values, converged=settled)
+    return replace(end, iterations=iterations, report=found, build_seconds=build)
 
 
 def _fitted(problem: Problem, motion: Motion) -> tuple[Trajectory | None, float]:
