@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...problem import TOLERANCE, Array, Problem, TrajgapError, evaluate
-from .clock import seconds_left, time_up
+from .clock import time_up
 from .decided import Local
 from .descent import SLOW, Descent, descend
 from .starts import LogBox, box_above, equal_start, stretching
@@ -41,9 +41,6 @@ class Evolution:
     """Members that lie further apart than this are in other basins."""
     repairs: int = 3
     """Stretches, each put back into the box, that try to keep the limits."""
-    part: int = 16
-    """Members of a first population after which the clock is looked at: a quarter of a second where
-    25 segments of a curve are not evaluated by compiled code yet."""
     ratios: float = 4.5
     """Up to which the grid reaches: a factor of 90."""
 
@@ -106,37 +103,10 @@ def _worth(excess: Array, total: Array, scale: float) -> Array:
     return np.where(kept, total / scale, 1e6 * (1.0 + excess))
 
 
-def _first(problem: Problem, h: Array, box: LogBox) -> tuple[Array, Array, Array]:
-    """`excess_and_total` of a first population, or of as many of it as the time is there for."""
-    if seconds_left() == np.inf:
-        return excess_and_total(problem, h, box)
-    part = EVOLUTION.part
-    found = [excess_and_total(problem, h[:part], box)]
-    for k in range(part, len(h), part):
-        if time_up():
-            break
-        found.append(excess_and_total(problem, h[k : k + part], box))
-    z, excess, total = zip(*found, strict=True)
-    return np.concatenate(z), np.concatenate(excess), np.concatenate(total)
-
-
 def basins(problem: Problem, count: int, seed: int, floor: Array) -> Array:
-    """The best mutually distant members of a differential evolution, best first.
+    """The best mutually distant members of a differential evolution, best first, s.
 
-    Parameters
-    ----------
-    problem : Problem
-        With a determined curve of any kind.
-    count : int
-        Most members.
-    seed : int
-    floor : ndarray, shape (segments,)
-        Least durations, s.
-
-    Returns
-    -------
-    ndarray, shape (members, segments)
-        Durations, s.
+    At most ``count``, shape (members, segments), none below the least durations of ``floor``, s.
     """
     base, box, of = equal_start(problem), box_above(problem, floor), EVOLUTION
     generator = np.random.default_rng(seed)
@@ -153,8 +123,8 @@ def basins(problem: Problem, count: int, seed: int, floor: Array) -> Array:
     z[0] = np.log(base)
     minima = _grid_minima(problem, base, box)[: size // 2]
     z[1 : 1 + len(minima)] = minima
-    z, excess, total = _first(problem, np.exp(z), box)
-    size, scale = len(z), float(base.sum())
+    z, excess, total = excess_and_total(problem, np.exp(z), box)
+    scale = float(base.sum())
     worth = _worth(excess, total, scale)
     for _ in range(of.generations):
         if time_up() or np.ptp(z, axis=0).max() < of.agreed:
@@ -279,14 +249,7 @@ def _reaches(problem: Problem) -> Array:
 def short_ways(problem: Problem) -> list[int]:
     """Segments in which every joint moves by little of what it covers in all.
 
-    Parameters
-    ----------
-    problem : Problem
-
-    Returns
-    -------
-    list of int
-        Segments; of curves with virtual breaks, only those between two neighbouring way-points.
+    Of curves with virtual breaks, only those between two neighbouring way-points.
     """
     way = np.abs(np.diff(problem.waypoints, axis=0)) / _reaches(problem)
     breaks = problem.curve.waypoint_breaks
@@ -298,24 +261,10 @@ def short_ways(problem: Problem) -> list[int]:
 
 
 def shortened(problem: Problem, durations: Array, floor: Array) -> Array:
-    """Motions in which a segment of a short way is shorter by powers of ten.
+    """Motions in which a segment of a short way is shorter by powers of ten, s.
 
-    A descent that goes down in a basin reaches over a decade.
-    A wide search over the whole box seldom ends in such a basin: it is decades away in one
-    duration, and a few per cent deep.
-
-    Parameters
-    ----------
-    problem : Problem
-    durations : ndarray, shape (segments,)
-        The answer, s.
-    floor : ndarray, shape (segments,)
-        Least durations that are tried, s.
-
-    Returns
-    -------
-    ndarray, shape (starts, segments)
-        s.
+    A descent that goes down in a basin reaches over a decade. A wide search over the whole box
+    seldom ends in such a basin: it is decades away in one duration, and a few per cent deep.
     """
     found = []
     low = np.exp(box_above(problem, floor).low)

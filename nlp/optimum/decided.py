@@ -36,7 +36,7 @@ DEEPER_INSIDE = 2.0
 
 @dataclass(frozen=True, eq=False)
 class Local:
-    """The end of a local search.
+    """The end of a local search, as the checker judges it.
 
     Attributes
     ----------

@@ -150,17 +150,9 @@ def _onto_limits(problem: Problem, h: Array, box: LogBox) -> ExactRows:
 
 @dataclass(frozen=True, eq=False)
 class Descent:
-    """Where a descent ended.
+    """Where a descent ended: durations, s, and the excess, at most `KEPT` if limits are kept.
 
-    Attributes
-    ----------
-    durations : ndarray, shape (segments,)
-        s.
-    excess : float
-        Largest excess over a limit, at most `KEPT` if the limits are kept.
-    converged : bool
-        Whether no step gained any more.
-    steps : int
+    It is converged where no step gained any more.
     """
 
     durations: Array
@@ -177,18 +169,7 @@ class Descent:
 def descend(problem: Problem, start: Array, box: LogBox) -> Descent:
     """Shorten a motion within its limits until no step gains.
 
-    Parameters
-    ----------
-    problem : Problem
-        With a determined curve of any kind.
-    start : ndarray, shape (segments,)
-        s; need not keep the limits.
-    box : LogBox
-        Bounds on the logarithms of the durations.
-
-    Returns
-    -------
-    Descent
+    The curve is a determined one of any kind; the start, s, need not keep the limits.
     """
     rows = _onto_limits(problem, start, box)
     if rows.worst > KEPT:

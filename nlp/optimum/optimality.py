@@ -88,20 +88,10 @@ UNKNOWN = KKT(np.inf, ())
 
 @dataclass(frozen=True, eq=False)
 class _Weighed:
-    """Limits and bounds of durations that are reached, with least-squares multipliers.
+    """Limits and bounds of durations that are reached, with least-squares multipliers for log T.
 
-    Attributes
-    ----------
-    near : ndarray of int
-        Numbers of the limits among the exact rows.
-    segments, sides : ndarray, shape (bounds,)
-        Of the bounds.
-    slopes : ndarray, shape (limits + bounds, unknowns)
-        Gradients of what is to be at most 0, the limits' first.
-    weights : ndarray, shape (limits + bounds,)
-        Multipliers w for log T.
-    stationary : ndarray, shape (unknowns,)
-        What is left of the gradient of the Lagrangian.
+    The limits by their numbers among the exact rows, and after them the bounds by segment and side,
+    each with its slope and its weight; then what is left of the gradient of the Lagrangian.
     """
 
     near: Indices
@@ -184,6 +174,10 @@ def sparse_kkt(
 ) -> KKT:
     """Optimality conditions at given multipliers: nothing is solved but one banded system.
 
+    With multipliers w of the limits, Σ w_i ∂g_i/∂h is the gradient of one weighted sum of values,
+    which one adjoint solve gives for all durations. The limits need not be within a chosen
+    distance: w_i g_i = 0 is part of the residual.
+
     Parameters
     ----------
     problem : Problem
@@ -197,16 +191,6 @@ def sparse_kkt(
         Multipliers, signed by the side, of limits in shares of the larger side (positions in rad).
     bounds : ndarray, shape (segments,)
         Of the bounds on durations, s per s, signed by the side.
-
-    Returns
-    -------
-    KKT
-
-    Notes
-    -----
-    With multipliers w of the limits, Σ w_i ∂g_i/∂h is the gradient of one weighted sum of values,
-    which one adjoint solve gives for all durations. Their limits need not be within a chosen
-    distance: w_i g_i = 0 is part of the residual.
     """
     total, joint, order = float(durations.sum()), places.joint, places.order
     adjoint = problem.piecewise.adjoint(problem.waypoints, durations)
@@ -242,18 +226,8 @@ def _report(
 ) -> KKT:
     """The conditions of limits and bounds, and those that are active.
 
-    Parameters
-    ----------
-    problem : Problem
-    durations : ndarray, shape (segments,)
-    stationary : ndarray
-        Gradient of the Lagrangian of log T.
-    excess, weights : ndarray
-        Of limits.
-    limits : list of (Extremum, side, weight)
-        Those that are reached.
-    walls : ndarray, shape (2, segments)
-        Weights of lower and upper bounds of durations.
+    From the gradient of the Lagrangian of log T, excess and weights of the limits, those that are
+    reached with their sides and weights, and the weights of lower and upper bounds of durations.
     """
     total, least = float(durations.sum()), ACTIVE / problem.segments
     with np.errstate(divide="ignore"):
@@ -299,14 +273,7 @@ def sharpened(problem: Problem, durations: Array) -> Array | None:
     """Newton steps on stationarity and the active limits; None where they lead nowhere.
 
     A search ends where rounding hides what it gains, before the gradient vanishes as far as it can.
-    Four steps are plenty from near by, since the convergence is quadratic.
-
-    Parameters
-    ----------
-    problem : Problem
-        With a determined curve.
-    durations : ndarray, shape (segments,)
-        s.
+    Four steps are plenty from near by, since the convergence is quadratic. The curve is determined.
     """
     first = rows = exact_rows(problem, durations)
     found = _Weighed.of(problem, first, ACTIVE)
