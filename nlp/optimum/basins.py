@@ -191,7 +191,11 @@ def as_local(problem: Problem, found: Descent) -> Local | None:
 
 
 def exact_search(problem: Problem, points: Array, floor: Array) -> list[Local]:
-    """Local optima of all starts, above the floors; starts that end together are kept apart."""
+    """Local optima of all starts, above the floors; starts that end together are kept apart.
+
+    The best is descended from again for as long as that gains: a descent may stop short where its
+    Hessian, made along a bent valley, fits no longer. From its end one with a new Hessian goes on.
+    """
     box = box_above(problem, floor)
     found: list[Local] = []
     for start in points:
@@ -200,29 +204,16 @@ def exact_search(problem: Problem, points: Array, floor: Array) -> list[Local]:
         local = as_local(problem, descend(problem, start, box))
         if local is not None:
             found.append(local)
-    return _resumed(problem, found, box)
-
-
-def _resumed(problem: Problem, found: list[Local], box: LogBox) -> list[Local]:
-    """The ends of descents, the best one descended from again for as long as that gains.
-
-    A descent may stop short where its Hessian, made along a bent valley, fits no longer; from its
-    end a new one, with a new Hessian, goes on.
-    """
     for _ in range(RESUMPTIONS):
-        best = min(
-            (i for i, local in enumerate(found) if local.feasible),
-            key=lambda i: found[i].total,
-            default=None,
-        )
-        if best is None or found[best].converged or time_up():
+        feasible = [local for local in found if local.feasible]
+        best = min(feasible, key=lambda local: local.total, default=None)
+        if best is None or best.converged or time_up():
             break
-        before = found[best]
-        after = as_local(problem, descend(problem, before.durations, box))
-        if after is None or not (after.feasible and after.total <= before.total):
+        after = as_local(problem, descend(problem, best.durations, box))
+        if after is None or not (after.feasible and after.total <= best.total):
             break
-        found[best] = replace(after, iterations=before.iterations + after.iterations)
-        if after.total > before.total * (1.0 - SLOW):
+        found[found.index(best)] = replace(after, iterations=best.iterations + after.iterations)
+        if after.total > best.total * (1.0 - SLOW):
             break
     return found
 

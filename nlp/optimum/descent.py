@@ -240,10 +240,5 @@ def _curved(hessian: Array, before: ExactRows, after: ExactRows, weights: Array)
     share = 1.0 if along >= 0.2 * bend else 0.8 * bend / (bend - along)
     mixed = share * change + (1.0 - share) * image
     updated = hessian - np.outer(image, image) / bend + np.outer(mixed, mixed) / float(step @ mixed)
-    from scipy.linalg import LinAlgError, cholesky  # a quarter of a second, and few need it
-
-    try:
-        cholesky(updated, lower=True)
-    except LinAlgError:
-        return hessian
-    return np.asarray(updated) if np.linalg.cond(updated) < 1e10 else hessian
+    bends = np.linalg.eigvalsh(updated)
+    return np.asarray(updated) if bends[0] > 1e-10 * bends[-1] else hessian
