@@ -1,4 +1,4 @@
-from .clock import call_cap, seconds_left, stopping_after, time_up
+from .clock import seconds_left, stopping_after, time_up
 from .descent import KEPT
 from .feasibility import apart
 from .judgement import SAME
@@ -37,7 +37,6 @@ __all__ = [
     "apart",
     "build",
     "ca",
-    "call_cap",
     "close",
     "exact_rows",
     "free_values",

@@ -11,11 +11,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...problem import TOLERANCE, Array, Problem, TrajgapError, check, evaluate
-from .clock import seconds_left, time_up
-from .decided import kept
+from ...problem import TOLERANCE, Array, Problem, TrajgapError, evaluate
+from .clock import time_up
+from .decided import Local
 from .descent import SLOW, Descent, descend
-from .optimality import Local
 from .starts import LogBox, box_above, equal_start, stretching
 
 HOPELESS = 10.0
@@ -30,7 +29,8 @@ class Evolution:
     """Members of a population for each segment."""
     most_members: int = 128
     generations: int = 60
-    """Members of a basin then agree to a few per cent, which a descent ends."""
+    agreed: float = 0.03
+    """Spread of all members at which a search ends before that: a descent does the rest."""
     usual: float = 2.3
     """Spread of the first members: a factor of 10."""
     wide: float = 7.0
@@ -41,9 +41,6 @@ class Evolution:
     """Members that lie further apart than this are in other basins."""
     repairs: int = 3
     """Stretches, each put back into the box, that try to keep the limits."""
-    part: int = 16
-    """Members of a first population after which the clock is looked at: a quarter of a second where
-    25 segments of a curve are not evaluated by compiled code yet."""
     ratios: float = 4.5
     """Up to which the grid reaches: a factor of 90."""
 
@@ -106,37 +103,10 @@ def _worth(excess: Array, total: Array, scale: float) -> Array:
     return np.where(kept, total / scale, 1e6 * (1.0 + excess))
 
 
-def _first(problem: Problem, h: Array, box: LogBox) -> tuple[Array, Array, Array]:
-    """`excess_and_total` of a first population, or of as many of it as the time is there for."""
-    if seconds_left() == np.inf:
-        return excess_and_total(problem, h, box)
-    part = EVOLUTION.part
-    found = [excess_and_total(problem, h[:part], box)]
-    for k in range(part, len(h), part):
-        if time_up():
-            break
-        found.append(excess_and_total(problem, h[k : k + part], box))
-    z, excess, total = zip(*found, strict=True)
-    return np.concatenate(z), np.concatenate(excess), np.concatenate(total)
-
-
 def basins(problem: Problem, count: int, seed: int, floor: Array) -> Array:
-    """The best mutually distant members of a differential evolution, best first.
+    """The best mutually distant members of a differential evolution, best first, s.
 
-    Parameters
-    ----------
-    problem : Problem
-        With a determined curve of any kind.
-    count : int
-        Most members.
-    seed : int
-    floor : ndarray, shape (segments,)
-        Least durations, s.
-
-    Returns
-    -------
-    ndarray, shape (members, segments)
-        Durations, s.
+    At most ``count``, shape (members, segments), none below the least durations of ``floor``, s.
     """
     base, box, of = equal_start(problem), box_above(problem, floor), EVOLUTION
     generator = np.random.default_rng(seed)
@@ -153,11 +123,11 @@ def basins(problem: Problem, count: int, seed: int, floor: Array) -> Array:
     z[0] = np.log(base)
     minima = _grid_minima(problem, base, box)[: size // 2]
     z[1 : 1 + len(minima)] = minima
-    z, excess, total = _first(problem, np.exp(z), box)
-    size, scale = len(z), float(base.sum())
+    z, excess, total = excess_and_total(problem, np.exp(z), box)
+    scale = float(base.sum())
     worth = _worth(excess, total, scale)
     for _ in range(of.generations):
-        if time_up():
+        if time_up() or np.ptp(z, axis=0).max() < of.agreed:
             break
         a, b = generator.integers(size, size=(2, size))
         best = np.argsort(worth, kind="stable")[generator.integers(max(2, size // 4), size=size)]
@@ -209,19 +179,23 @@ def as_local(problem: Problem, found: Descent) -> Local | None:
 
     It has where a segment at a virtual break shrinks towards 0: the system is singular to rounding.
     """
-    h = np.clip(found.durations, problem.duration_lower, problem.duration_upper)
+    low, high = problem.duration_lower, problem.duration_upper
     try:
-        verdict = check(problem, h)
-        if found.feasible and 1.0 < verdict.stretch < 1.0 + TOLERANCE and problem.curve.homogeneous:
-            h = np.clip(h * verdict.stretch, problem.duration_lower, problem.duration_upper)
-            verdict = check(problem, h)
+        local = Local.of(problem, np.clip(found.durations, low, high))
+        stretch = local.verdict.stretch
+        if found.feasible and 1.0 < stretch < 1.0 + TOLERANCE and problem.curve.homogeneous:
+            local = Local.of(problem, np.clip(local.durations * stretch, low, high))
     except TrajgapError:
         return None
-    return Local(h, None, float(h.sum()), found.converged, kept(problem, verdict), found.steps)
+    return replace(local, converged=found.converged, iterations=found.steps)
 
 
 def exact_search(problem: Problem, points: Array, floor: Array) -> list[Local]:
-    """Local optima of all starts, above the floors; starts that end together are kept apart."""
+    """Local optima of all starts, above the floors; starts that end together are kept apart.
+
+    The best is descended from again for as long as that gains: a descent may stop short where its
+    Hessian, made along a bent valley, fits no longer. From its end one with a new Hessian goes on.
+    """
     box = box_above(problem, floor)
     found: list[Local] = []
     for start in points:
@@ -230,29 +204,16 @@ def exact_search(problem: Problem, points: Array, floor: Array) -> list[Local]:
         local = as_local(problem, descend(problem, start, box))
         if local is not None:
             found.append(local)
-    return _resumed(problem, found, box)
-
-
-def _resumed(problem: Problem, found: list[Local], box: LogBox) -> list[Local]:
-    """The ends of descents, the best one descended from again for as long as that gains.
-
-    A descent may stop short where its Hessian, made along a bent valley, fits no longer; from its
-    end a new one, with a new Hessian, goes on.
-    """
     for _ in range(RESUMPTIONS):
-        best = min(
-            (i for i, local in enumerate(found) if local.feasible),
-            key=lambda i: found[i].total,
-            default=None,
-        )
-        if best is None or found[best].converged or time_up():
+        feasible = [local for local in found if local.feasible]
+        best = min(feasible, key=lambda local: local.total, default=None)
+        if best is None or best.converged or time_up():
             break
-        before = found[best]
-        after = as_local(problem, descend(problem, before.durations, box))
-        if after is None or not (after.feasible and after.total <= before.total):
+        after = as_local(problem, descend(problem, best.durations, box))
+        if after is None or not (after.feasible and after.total <= best.total):
             break
-        found[best] = replace(after, iterations=before.iterations + after.iterations)
-        if after.total > before.total * (1.0 - SLOW):
+        found[found.index(best)] = replace(after, iterations=best.iterations + after.iterations)
+        if after.total > best.total * (1.0 - SLOW):
             break
     return found
 
@@ -279,14 +240,7 @@ def _reaches(problem: Problem) -> Array:
 def short_ways(problem: Problem) -> list[int]:
     """Segments in which every joint moves by little of what it covers in all.
 
-    Parameters
-    ----------
-    problem : Problem
-
-    Returns
-    -------
-    list of int
-        Segments; of curves with virtual breaks, only those between two neighbouring way-points.
+    Of curves with virtual breaks, only those between two neighbouring way-points.
     """
     way = np.abs(np.diff(problem.waypoints, axis=0)) / _reaches(problem)
     breaks = problem.curve.waypoint_breaks
@@ -298,24 +252,10 @@ def short_ways(problem: Problem) -> list[int]:
 
 
 def shortened(problem: Problem, durations: Array, floor: Array) -> Array:
-    """Motions in which a segment of a short way is shorter by powers of ten.
+    """Motions in which a segment of a short way is shorter by powers of ten, s.
 
-    A descent that goes down in a basin reaches over a decade.
-    A wide search over the whole box seldom ends in such a basin: it is decades away in one
-    duration, and a few per cent deep.
-
-    Parameters
-    ----------
-    problem : Problem
-    durations : ndarray, shape (segments,)
-        The answer, s.
-    floor : ndarray, shape (segments,)
-        Least durations that are tried, s.
-
-    Returns
-    -------
-    ndarray, shape (starts, segments)
-        s.
+    A descent that goes down in a basin reaches over a decade. A wide search over the whole box
+    seldom ends in such a basin: it is decades away in one duration, and a few per cent deep.
     """
     found = []
     low = np.exp(box_above(problem, floor).low)

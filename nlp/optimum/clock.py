@@ -14,9 +14,6 @@ from contextvars import ContextVar
 
 _END: ContextVar[float] = ContextVar("end", default=math.inf)
 """Reading of the clock at which the searches of this thread end: none without `stopping_after`."""
-CAPS = (0.25, 2.0, 16.0, 128.0)
-"""Seconds that one call of IPOPT may take: it cannot be told to stop, and its limit is compiled in.
-A factor of 8 apart, so that a long run compiles few; below the first, a call ends anyway."""
 
 
 @contextmanager
@@ -47,11 +44,3 @@ def seconds_left() -> float:
 def time_up() -> bool:
     """Whether the searches of this thread are to end."""
     return seconds_left() <= 0.0
-
-
-def call_cap() -> float | None:
-    """Longest time of a call of IPOPT that begins now, s; None without a limit."""
-    left = seconds_left()
-    if left == math.inf:
-        return None
-    return max((cap for cap in CAPS if cap <= left), default=CAPS[0])

@@ -22,13 +22,12 @@ from ...problem import (
     Verdict,
     as_piecewise,
     check,
-    extrema,
     shown_bound,
 )
 from .decided import decided, kept
 from .feasibility import SURE, apart, impossible
 from .solution import Route, Solution, Status
-from .starts import equal_start, first_nodal
+from .starts import equal_start, first_nodal, worst_ratios
 
 HALVINGS = 40
 """Times that a total whose infimum is 0 is halved, while the checker still passes it."""
@@ -39,15 +38,6 @@ def straight_shares(problem: Problem) -> Array | None:
 
     The decision is exact. Joints that nothing limits but their position are left out, and so is a
     problem with a positive lower bound on a duration.
-
-    Parameters
-    ----------
-    problem : Problem
-
-    Returns
-    -------
-    ndarray, shape (segments,), or None
-        Shares of the total.
     """
     curve = as_piecewise(problem.curve)
     if curve is None or curve.free or curve.virtual or problem.duration_lower.any():
@@ -101,16 +91,9 @@ class _Ratios:
 
 
 def joined(problem: Problem) -> Array | str | None:
-    """The shortest durations without a jump, why there are none, or None if no ratio is bounded.
+    """The shortest durations without a jump, s; why there are none, a proof; or None.
 
-    Parameters
-    ----------
-    problem : Problem
-
-    Returns
-    -------
-    ndarray, shape (segments,), or str, or None
-        s; the reason is a proof.
+    None where no ratio is bounded, or rounding alone would set one.
     """
     if as_piecewise(problem.curve) is None or not apart(problem):
         return None
@@ -197,16 +180,8 @@ def _ratio(left: float, right: float, room: float, other: float) -> tuple[float,
 
 def _box(problem: Problem) -> tuple[Array, Array]:
     """Bounds on log durations by limits and duration bounds, segment by segment."""
-    least = np.array(problem.duration_lower)
     trajectory = problem.curve.fitted(problem.waypoints, np.ones(problem.segments))
-    for j in range(len(problem.joints)):
-        for r in (1, 2, 3):
-            sizes = problem.limits.sides[:, j, r - 1]
-            for e in extrema(trajectory, j, r) if np.isfinite(sizes).any() else ():
-                limit = float(sizes[int(e.value > 0.0)])
-                if not np.isfinite(limit) or limit == 0.0:
-                    continue
-                least[e.segment] = max(least[e.segment], (abs(e.value) / limit) ** (1.0 / r))
+    least = np.maximum(problem.duration_lower, worst_ratios(problem, trajectory))
     with np.errstate(divide="ignore"):
         return np.log(least), np.log(problem.duration_upper)
 
@@ -231,21 +206,12 @@ FORMULA = "at fixed ratios the total is the one unknown, in closed form"
 
 
 def tight_at_ratios(problem: Problem) -> Array | Solution:
-    """The shortest durations with the ratios of the problem, or why no total keeps the limits.
+    """The shortest durations with the ratios of the problem, s, or why no total keeps the limits.
 
     A derivative of order r falls with the total T as T⁻ʳ where a curve may be stretched in time:
     with its peak p_r at T = 1 s, a limit asks for T ≥ (p_r/limit_r)^(1/r), and the largest of these
-    is the answer, unless bounds on durations ask for more. Positions do not depend on T.
-
-    Parameters
-    ----------
-    problem : Problem
-        With ratios.
-
-    Returns
-    -------
-    ndarray, shape (segments,), or Solution
-        s; any total where nothing that moves is limited.
+    is the answer, unless bounds on durations ask for more. Positions do not depend on T. Where
+    nothing that moves is limited, any total is returned.
 
     Raises
     ------
@@ -311,16 +277,7 @@ OUT_OF_TIME = "the time ran out, which says nothing about whether there are any"
 
 
 def unsearched(problem: Problem) -> Solution | None:
-    """The answer of a problem that elementary arguments decide, or None.
-
-    Parameters
-    ----------
-    problem : Problem
-
-    Returns
-    -------
-    Solution or None
-    """
+    """The answer of a problem that elementary arguments decide, or None."""
     reason = impossible(problem)
     smooth = joined(problem) if reason is None else reason
     if isinstance(smooth, str):
@@ -366,14 +323,7 @@ def unsearched(problem: Problem) -> Solution | None:
 def cut_short(answer: Solution) -> Solution:
     """The answer of a search whose time ran out, with a word that says so.
 
-    Parameters
-    ----------
-    answer : Solution
-
-    Returns
-    -------
-    Solution
-        Proofs need no search: *infeasible* stays as it is.
+    Proofs need no search: *infeasible* stays as it is.
     """
     if answer.status is Status.INFEASIBLE:
         return answer

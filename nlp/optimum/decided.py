@@ -1,8 +1,8 @@
-"""Motions at their limits, moved inside by as much as rounding blurs them, so that they pass."""
+"""Ends of searches as the checker judges them, and moved inside limits that rounding blurs."""
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -19,7 +19,7 @@ from ...problem import (
     half_range,
 )
 from .descent import descend
-from .optimality import Local
+from .optimality import KKT
 from .starts import DENSE, LogBox, slowed, stretching
 
 ROUNDS = 6
@@ -32,8 +32,53 @@ LENGTHENINGS = 30
 eighth each time, and over nine decades in all."""
 DEEPER_INSIDE = 2.0
 """By how many bounds on rounding errors limits are narrowed where no stretch is possible."""
-Motion = tuple[Array, Array | None]
-"""Durations, s, and free derivatives, where the declaration leaves some."""
+
+
+@dataclass(frozen=True, eq=False)
+class Local:
+    """The end of a local search, as the checker judges it.
+
+    Attributes
+    ----------
+    durations : ndarray, shape (segments,)
+        s.
+    nodal : ndarray, shape (free, joints), or None
+        Free derivatives, where the declaration leaves some.
+    verdict : Check
+    feasible : bool
+        Whether the checker passes the motion: curves that always jump by their limits alone.
+    converged : bool
+        Whether the search ended because no step gained any more.
+    iterations : int
+    tight : (durations, nodal) or None
+        What was moved inside its limits so that rounding errors do not decide, if anything was.
+    report : KKT or None
+        The optimality conditions, where the search knows them already.
+    build_seconds : float
+    """
+
+    durations: Array
+    nodal: Array | None
+    verdict: Check
+    feasible: bool
+    converged: bool = False
+    iterations: int = 0
+    tight: tuple[Array, Array | None] | None = None
+    report: KKT | None = None
+    build_seconds: float = 0.0
+
+    @classmethod
+    def of(
+        cls, problem: Problem, h: Array, nodal: Array | None = None, converged: bool = False
+    ) -> Local:
+        """A motion as the checker judges it, who raises where float64 has lost the curve."""
+        verdict = check(problem, h, nodal)
+        return cls(h, nodal, verdict, kept(problem, verdict), converged)
+
+    @property
+    def total(self) -> float:
+        """Sum of the durations, s."""
+        return float(self.durations.sum())
 
 
 def kept(problem: Problem, verdict: Check) -> bool:
@@ -46,14 +91,7 @@ def kept(problem: Problem, verdict: Check) -> bool:
 def tolerated(problem: Problem) -> Problem:
     """The problem with limits wider by half of what `check` tolerates beyond them.
 
-    Parameters
-    ----------
-    problem : Problem
-
-    Returns
-    -------
-    Problem
-        With the same duration bounds. A side of 0, and a range of no width, stay as they are.
+    Duration bounds, sides of 0 and ranges of no width stay as they are.
     """
     low, high = problem.limits.position_lower, problem.limits.position_upper
     half = np.array([[half_range(a, b, x) for x in (a, b)] for a, b in zip(low, high, strict=True)])
@@ -76,50 +114,24 @@ def decided(problem: Problem, h: Array, nodal: Array | None = None) -> Local | N
     Where way-points nearly coincide, the bound on rounding errors of a tight motion exceeds the
     checker's tolerance: it is *undecided*, though a motion longer by that bound passes. The same
     stretch repairs a motion that exceeds its limits.
-
-    Parameters
-    ----------
-    problem : Problem
-    h : ndarray, shape (segments,)
-        s.
-    nodal : ndarray, shape (free, joints), optional
-
-    Returns
-    -------
-    Local or None
-        With what was given as ``tight``.
     """
     found = stretched(problem, h, nodal)
     # A descent changes each duration by itself, which fixed ratios do not allow.
     descends = not problem.curve.free and problem.ratios is None and problem.segments <= DENSE
     if found is None and descends:
         found = _narrowed(problem, h) or _lengthened(problem, h)
-    if found is None:
-        return None
-    durations, values = found
-    return Local(durations, values, float(durations.sum()), True, True, 0, (h, nodal))
+    return found and replace(found, converged=True, tight=(h, nodal))
 
 
 def incumbent(problem: Problem, known: Array, nodal: Array | None) -> Local | None:
     """The shortest motion that passes of those that somebody has, as they are or just tight.
 
     A printed motion that exceeds a limit by its last digit is worth what its repair is worth.
-
-    Parameters
-    ----------
-    problem : Problem
-    known : ndarray, shape (motions, segments)
-        s.
-    nodal : ndarray, shape (motions, free, joints), or None
-        Without them motions of a curve that leaves derivatives free are not determined.
-
-    Returns
-    -------
-    Local or None
+    Without their free derivatives motions of a curve that leaves some are not determined.
     """
     if problem.curve.free and nodal is None:
         return None
-    motions: list[Motion] = []
+    motions: list[tuple[Array, Array | None]] = []
     for h, v in zip(known, [None] * len(known) if nodal is None else nodal, strict=True):
         motions.append((h, v))
         c = float(evaluate(stretching(problem), h[None], v).stretch[0])
@@ -132,8 +144,8 @@ def incumbent(problem: Problem, known: Array, nodal: Array | None) -> Local | No
         if best is not None and h.sum() >= best.total:
             break
         passing = stretched(problem, h, v)
-        if passing is not None and not (best and passing[0].sum() >= best.total):
-            best = Local(*passing, float(passing[0].sum()), False, True, 0)
+        if passing is not None and not (best and passing.total >= best.total):
+            best = passing
     return best
 
 
@@ -152,32 +164,19 @@ def _blur(problem: Problem, verdict: Check) -> Array:
     return blur
 
 
-def stretched(problem: Problem, h: Array, nodal: Array | None) -> Motion | None:
-    """The motion stretched until it passes, or None where the duration bounds leave no room.
-
-    Parameters
-    ----------
-    problem : Problem
-    h : ndarray, shape (segments,)
-        s.
-    nodal : ndarray, shape (free, joints), or None
-
-    Returns
-    -------
-    (durations, free derivatives) or None
-    """
+def stretched(problem: Problem, h: Array, nodal: Array | None) -> Local | None:
+    """The motion stretched until it passes, or None where the duration bounds leave no room."""
     for _ in range(ROUNDS):
-        verdict = check(problem, h, nodal)
-        if kept(problem, verdict):
-            return h, nodal
+        found = Local.of(problem, h, nodal)
+        if found.feasible:
+            return found
         if not problem.curve.homogeneous:
             return None
-        blur = _blur(problem, verdict)
         factor = 1.0
-        for peak in verdict.peaks:
+        for peak in found.verdict.peaks:
             if peak.quantity in QUANTITIES and peak.joint is not None and peak.limit > 0:
                 r = QUANTITIES.index(peak.quantity)
-                most = peak.ratio + blur[problem.joints.index(peak.joint), r]
+                most = peak.ratio + peak.error / peak.limit
                 factor = max(factor, (most / (1.0 + AIM)) ** (1.0 / (r + 1)))
         longer = h * factor
         if not (factor > 1.0 and np.isfinite(longer).all()):
@@ -189,24 +188,24 @@ def stretched(problem: Problem, h: Array, nodal: Array | None) -> Motion | None:
     return None
 
 
-def _narrowed(problem: Problem, h: Array) -> Motion | None:
+def _narrowed(problem: Problem, h: Array) -> Local | None:
     """The end of a descent within limits that are narrower by the motion's rounding errors."""
     bottom = np.maximum(problem.duration_lower, 0.5 * h)
     box = LogBox(
         np.log(bottom), np.log(np.maximum(np.minimum(problem.duration_upper, 2 * h), bottom))
     )
+    found = Local.of(problem, h)
     for _ in range(ROUNDS):
-        verdict = check(problem, h)
-        if verdict.limits is not Verdict.UNDECIDED:
+        if found.verdict.limits is not Verdict.UNDECIDED:
             return None
-        end = descend(_narrower(problem, verdict), h, box).durations
-        h = np.clip(end, problem.duration_lower, problem.duration_upper)
-        if kept(problem, check(problem, h)):
-            return h, None
+        end = descend(_narrower(problem, found.verdict), found.durations, box).durations
+        found = Local.of(problem, np.clip(end, problem.duration_lower, problem.duration_upper))
+        if found.feasible:
+            return found
     return None
 
 
-def _lengthened(problem: Problem, h: Array) -> Motion | None:
+def _lengthened(problem: Problem, h: Array) -> Local | None:
     """The end of a descent whose shortest durations are longer, by as much as it takes.
 
     A segment that is far shorter than the others blurs what is known of all derivatives in it. The

@@ -48,15 +48,16 @@ def least_point(
     chapter 23): of u ≥ 0 with least |[Gᵀ; wᵀ]u − e|, e the last unit vector, the residual ρ gives
     y = −ρ_{1..n}/ρ_{n+1}, and −u/ρ_{n+1} are the multipliers.
     """
-    from scipy.linalg.lapack import dpotrf, dtrtrs  # a quarter of a second, and few need it
+    from scipy.linalg.lapack import dpotrf, dtrtri  # a quarter of a second, and few need it
     from scipy.optimize import nnls
 
-    # Programs are so small that `cholesky` and `solve_triangular` cost more than what they call.
+    # Programs are so small that `cholesky` costs more than what it calls. A triangular solve with
+    # several right-hand sides starts threads, which take a hundred times as long.
     lower, failed = dpotrf(hessian, lower=1)
     if failed:
         return None
-    shift, _ = dtrtrs(lower, slope, lower=1)
-    turned = dtrtrs(lower, rows.T, lower=1)[0].T
+    inverse, _ = dtrtri(lower, lower=1)
+    shift, turned = inverse @ slope, rows @ inverse.T
     facing, needed = -turned, -room - turned @ shift
     stacked = np.vstack([facing.T, needed])
     target = np.zeros(len(stacked))
@@ -69,7 +70,7 @@ def least_point(
     if not residual[-1] < -1e-14:
         return None
     y = -residual[:-1] / residual[-1]
-    step, _ = dtrtrs(lower, y - shift, lower=1, trans=1)
+    step = inverse.T @ (y - shift)
     # Rows that all but contradict each other give a point far beyond them.
     if not (turned @ y - room - turned @ shift <= 1e-6 * (1.0 + np.abs(room))).all():
         return None
@@ -135,14 +136,12 @@ def _onto_limits(problem: Problem, h: Array, box: LogBox) -> ExactRows:
                 break
             return exact_rows(problem, np.exp(z + stretch))
         if free and (z + stretch <= box.high).all():
-            step = np.full(z.size, stretch)
-        else:
-            matrix, room = _walled(rows, box, WIDEST_STEP)
-            found = least_point(np.eye(z.size), np.zeros(z.size), matrix, room)
-            if found is None:
-                break
-            step = found[0]
-        trial = exact_rows(problem, np.exp(box.inside(z + step)))
+            return rows.longer(stretch)
+        matrix, room = _walled(rows, box, WIDEST_STEP)
+        found = least_point(np.eye(z.size), np.zeros(z.size), matrix, room)
+        if found is None:
+            break
+        trial = exact_rows(problem, np.exp(box.inside(z + found[0])))
         if not trial.worst < rows.worst:
             break
         rows = trial
@@ -151,17 +150,9 @@ def _onto_limits(problem: Problem, h: Array, box: LogBox) -> ExactRows:
 
 @dataclass(frozen=True, eq=False)
 class Descent:
-    """Where a descent ended.
+    """Where a descent ended: durations, s, and the excess, at most `KEPT` if limits are kept.
 
-    Attributes
-    ----------
-    durations : ndarray, shape (segments,)
-        s.
-    excess : float
-        Largest excess over a limit, at most `KEPT` if the limits are kept.
-    converged : bool
-        Whether no step gained any more.
-    steps : int
+    It is converged where no step gained any more.
     """
 
     durations: Array
@@ -178,18 +169,7 @@ class Descent:
 def descend(problem: Problem, start: Array, box: LogBox) -> Descent:
     """Shorten a motion within its limits until no step gains.
 
-    Parameters
-    ----------
-    problem : Problem
-        With a determined curve of any kind.
-    start : ndarray, shape (segments,)
-        s; need not keep the limits.
-    box : LogBox
-        Bounds on the logarithms of the durations.
-
-    Returns
-    -------
-    Descent
+    The curve is a determined one of any kind; the start, s, need not keep the limits.
     """
     rows = _onto_limits(problem, start, box)
     if rows.worst > KEPT:
@@ -260,10 +240,5 @@ def _curved(hessian: Array, before: ExactRows, after: ExactRows, weights: Array)
     share = 1.0 if along >= 0.2 * bend else 0.8 * bend / (bend - along)
     mixed = share * change + (1.0 - share) * image
     updated = hessian - np.outer(image, image) / bend + np.outer(mixed, mixed) / float(step @ mixed)
-    from scipy.linalg import LinAlgError, cholesky  # a quarter of a second, and few need it
-
-    try:
-        cholesky(updated, lower=True)
-    except LinAlgError:
-        return hessian
-    return np.asarray(updated) if np.linalg.cond(updated) < 1e10 else hessian
+    bends = np.linalg.eigvalsh(updated)
+    return np.asarray(updated) if bends[0] > 1e-10 * bends[-1] else hessian

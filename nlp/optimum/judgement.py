@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...problem import TOLERANCE, Array, Problem, Verdict, check
-from .decided import decided, kept, longer_than_tight, stretched
-from .optimality import KKT, KKT_TOLERANCE, SHARP, UNKNOWN, Local, kkt, sharpened, unmet
+from .decided import Local, decided, longer_than_tight, stretched
+from .optimality import KKT, KKT_TOLERANCE, SHARP, UNKNOWN, kkt, sharpened, unmet
 from .solution import Route, Solution, Status
 from .starts import DENSE
 
@@ -20,10 +20,7 @@ BETTER = 1e-7
 def better_of(one: Solution, other: Solution) -> Solution:
     """The first of two answers, unless the second is shorter, or as short and better founded.
 
-    Parameters
-    ----------
-    one, other : Solution
-        The time to build of the first, and iterations of both, go with the second.
+    The time to build of the first, and iterations of both, go with the second.
     """
     if not other.found:
         return one
@@ -54,22 +51,9 @@ def judged(
     starts: int,
     route: Route = Route.DESCENT,
 ) -> Solution:
-    """The best answer that the checker passes, with its optimality conditions.
+    """The best of the ends of all starts that the checker passes, with its optimality conditions.
 
-    Parameters
-    ----------
-    problem : Problem
-    found : list of Local
-        Ends of all starts.
-    floor : ndarray, shape (segments,)
-        Least durations, s, that the search made up; 0 where the problem itself sets one.
-    starts : int
-    route : Route
-        How the ends were found.
-
-    Returns
-    -------
-    Solution
+    The floor, s, is the least durations that the search made up; 0 where the problem sets one.
     """
     iterations = sum(local.iterations for local in found)
     found = [_past_rounding(problem, local) for local in found]
@@ -77,7 +61,7 @@ def judged(
     if not feasible:
         return Solution(
             problem,
-            *_nothing_found(problem, found),
+            *_nothing_found(found),
             starts=starts,
             iterations=iterations,
         )
@@ -91,13 +75,10 @@ def judged(
     dense, fixed = problem.segments <= DENSE, problem.ratios is not None
     if report is None:
         report = kkt(problem, tight, nodal) if dense or fixed else UNKNOWN
+    answer = best
     if report.residual > SHARP and dense and not (problem.curve.free or fixed):
-        tight, report = _sharper(problem, tight, report)
-    durations, beyond = tight, 0.0
-    if not kept(problem, check(problem, tight, nodal)):
-        inside = decided(problem, tight, nodal) or best
-        durations, nodal = inside.durations, inside.nodal
-        beyond = max(0.0, inside.total / float(tight.sum()) - 1.0)
+        answer, report = _sharper(problem, tight, report) or (best, report)
+    beyond = 0.0 if answer.tight is None else max(0.0, answer.total / float(tight.sum()) - 1.0)
     status = Status.CONVERGED if report.residual <= KKT_TOLERANCE else Status.FEASIBLE
     why = None if status is Status.CONVERGED else unmet(report.residual)
     if beyond > SAME:
@@ -105,21 +86,20 @@ def judged(
     if beyond > KKT_TOLERANCE:
         note = longer_than_tight(beyond)
         why = note if why is None else f"{why}; {note}"
-    verdict = check(problem, durations, nodal)
-    if verdict.verdict is Verdict.DISCONTINUOUS:
-        jumps = sum(jump.order < 2 for jump in verdict.jumps)
+    if answer.verdict.verdict is Verdict.DISCONTINUOUS:
+        jumps = sum(jump.order < 2 for jump in answer.verdict.jumps)
         note = f"limits kept inside the segments; {jumps} jumps of velocity between them"
         why = note if why is None else f"{why}; {note}"
-    falling = still_falling(durations, floor)
+    falling = still_falling(answer.durations, floor)
     if falling is not None:
         status, why = Status.NOT_ATTAINED, falling
     return Solution(
         problem,
         status,
         why,
-        vector=durations,
-        nodal=nodal,
-        check=verdict,
+        vector=answer.durations,
+        nodal=answer.nodal,
+        check=answer.verdict,
         route=route,
         kkt_residual=report.residual if np.isfinite(report.residual) else None,
         active=report.active,
@@ -131,18 +111,18 @@ def judged(
     )
 
 
-def _sharper(problem: Problem, durations: Array, report: KKT) -> tuple[Array, KKT]:
+def _sharper(problem: Problem, durations: Array, report: KKT) -> tuple[Local, KKT] | None:
     """An answer sharpened by Newton steps, where it stays as short, within limits, and smooth."""
     h = sharpened(problem, durations)
     stretch = np.inf if h is None else check(problem, h).stretch
     if h is None or not stretch <= 1 + ROUNDED:
-        return durations, report
+        return None
     h = np.clip(h * max(1.0, stretch), problem.duration_lower, problem.duration_upper)
     passing = stretched(problem, h, None)  # rounding may blur the very optimum
-    if passing is None or passing[0].sum() > durations.sum() * (1 + ROUNDED):
-        return durations, report
-    better = kkt(problem, passing[0])
-    return (passing[0], better) if better.residual < report.residual else (durations, report)
+    if passing is None or passing.total > durations.sum() * (1 + ROUNDED):
+        return None
+    better = kkt(problem, passing.durations)
+    return (passing, better) if better.residual < report.residual else None
 
 
 def on_floor(durations: Array, floor: Array) -> NDArray[np.bool_]:
@@ -153,17 +133,7 @@ def on_floor(durations: Array, floor: Array) -> NDArray[np.bool_]:
 def still_falling(durations: Array, floor: Array) -> str | None:
     """Why an answer is no shortest motion: a duration lies on a least one that the search made up.
 
-    Parameters
-    ----------
-    durations : ndarray, shape (segments,)
-        s.
-    floor : ndarray, shape (segments,)
-        Least durations, s, that the search made up; 0 where the problem itself sets one.
-
-    Returns
-    -------
-    str or None
-        None where every duration is longer than its made-up least one.
+    None where every duration is longer.
     """
     at = np.flatnonzero(on_floor(durations, floor)).tolist()
     if not at:
@@ -174,10 +144,9 @@ def still_falling(durations: Array, floor: Array) -> str | None:
 
 def _past_rounding(problem: Problem, local: Local) -> Local:
     """The end of a search, moved inside limits that rounding hid from it, if that makes it pass."""
-    if local.feasible or not np.isfinite(local.durations).all() or not (local.durations > 0).all():
-        return local
-    verdict = check(problem, local.durations, local.nodal)
-    if verdict.limits is not Verdict.UNDECIDED and not verdict.max_violation <= HIDDEN:
+    verdict = local.verdict
+    hidden = verdict.limits is Verdict.UNDECIDED or verdict.max_violation <= HIDDEN
+    if local.feasible or not hidden:
         return local
     found = decided(problem, local.durations, local.nodal)
     if found is None:
@@ -185,8 +154,8 @@ def _past_rounding(problem: Problem, local: Local) -> Local:
     return replace(found, converged=local.converged, iterations=local.iterations)
 
 
-def _nothing_found(problem: Problem, found: list[Local]) -> tuple[Status, str]:
-    judgements = [check(problem, local.durations, local.nodal) for local in found]
+def _nothing_found(found: list[Local]) -> tuple[Status, str]:
+    judgements = [local.verdict for local in found]
     least = min(judgements, key=lambda one: one.max_violation, default=None)
     if any(one.limits is Verdict.PASS for one in judgements):
         return (

@@ -21,14 +21,7 @@ from .solution import Solution, Status
 def smoother(problem: Problem) -> Problem | None:
     """The problem on the declaration with the continuity that the limits ask for of some joint.
 
-    Parameters
-    ----------
-    problem : Problem
-
-    Returns
-    -------
-    Problem or None
-        None where nothing is to be raised, or no curve is left or its freedom is not nodal.
+    None where nothing is to be raised, or no curve is left or its freedom is not nodal.
     """
     curve = as_piecewise(problem.curve)
     if curve is None or not curve.free:
@@ -65,19 +58,7 @@ def same_motions(problem: Problem) -> bool:
 def carried_over(problem: Problem, values: Array, durations: Array, to: Problem) -> Array | None:
     """Free derivatives of the same motions in another declaration, shape (motions, free, joints).
 
-    Parameters
-    ----------
-    problem : Problem
-        The motions are its.
-    values : ndarray, shape (motions, free, joints)
-    durations : ndarray, shape (motions, segments)
-        s.
-    to : Problem
-
-    Returns
-    -------
-    ndarray or None
-        None where the other declaration leaves nothing free.
+    None where the other declaration leaves nothing free. Durations are in s.
     """
     if not to.curve.free:
         return None
@@ -89,18 +70,7 @@ def carried_over(problem: Problem, values: Array, durations: Array, to: Problem)
 
 
 def as_answer(problem: Problem, found: Solution) -> Solution | None:
-    """The answer of the smoother problem as one of the problem; None where it is none.
-
-    Parameters
-    ----------
-    problem : Problem
-    found : Solution
-        Of `smoother`.
-
-    Returns
-    -------
-    Solution or None
-    """
+    """The answer of the smoother problem as one of the problem; None where it is none."""
     if not found.found:
         proved = found.status is Status.INFEASIBLE
         return replace(found, problem=problem) if proved and same_motions(problem) else None

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -59,6 +59,13 @@ class ExactRows:
         """The largest excess."""
         return float(self.excess.max(initial=-np.inf))
 
+    def longer(self, z: float) -> ExactRows:
+        """The rows of the motion stretched by eᶻ in time: places and gradients are the same."""
+        c = float(np.exp(z))
+        points = tuple(replace(e, time=e.time * c, value=e.value / c**e.order) for e in self.points)
+        excess = np.where(self.stretched, self.excess - z, self.excess)
+        return replace(self, durations=self.durations * c, excess=excess, points=points)
+
     def twin(self, e: Extremum, sign: float) -> int | None:
         """The row whose extremum continues one of another motion: the nearest of its segment."""
         found = [
@@ -75,27 +82,13 @@ class ExactRows:
 def excesses(
     problem: Problem, total: float, joint: Indices, order: Indices, side: Array, value: Array
 ) -> tuple[Array, Array, Array]:
-    """Excess of values over the limits to one side, as in `ExactRows`.
+    """Excess of values (rad/sᵒʳᵈᵉʳ) over the limits to one side, as in `ExactRows`.
 
-    Parameters
-    ----------
-    problem : Problem
-    total : float
-        Duration of the motion, s.
-    joint, order : ndarray of int
-    side : ndarray
-        1 for the upper side, −1 for the lower.
-    value : ndarray
-        rad/sᵒʳᵈᵉʳ.
+    Side 1 is the upper one, −1 the lower; the total of the motion is in s. Beside the excess:
 
-    Returns
-    -------
-    excess : ndarray
-    share : ndarray
-        Of the limit; of others than derivatives with a limit above 0, 1 and the excess, and −inf
-        where a joint stands still beside a side of 0.
-    size : ndarray
-        What a small change of a value is divided by to be one of the excess.
+    - the share of the limit; of others than derivatives with a limit above 0, 1 and the excess, and
+      −inf where a joint stands still beside a side of 0;
+    - what a small change of a value is divided by to be one of the excess.
     """
     limits, r, beyond = problem.limits, np.maximum(order, 1), side * value
     position, upper = order == 0, side > 0
@@ -120,21 +113,10 @@ def excesses(
 def near_limits(
     problem: Problem, trajectory: Trajectory, near: float
 ) -> tuple[Places, Array, Array, Array, Array]:
-    """Extrema above a share of their limit.
+    """Extrema above a share of their limit, as the shares of `excesses`: 0 for all on its side.
 
-    Parameters
-    ----------
-    problem : Problem
-    trajectory : Trajectory
-        A motion of its curve.
-    near : float
-        As the shares of `excesses`: 0 for all that a limit is on the side of.
-
-    Returns
-    -------
-    places : Places
-    value, side, excess, size : ndarray
-        Values, rad/sᵒʳᵈᵉʳ, and the rest as in `excesses`.
+    Their places, then values (rad/sᵒʳᵈᵉʳ), sides, excesses and sizes, the last two as in
+    `excesses`.
     """
     curve, limits = problem.curve, problem.limits
     inner = range(1, trajectory.durations.size)

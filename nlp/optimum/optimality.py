@@ -1,4 +1,4 @@
-"""Optimality conditions of min Σh, with every active peak found again, and ends of searches.
+"""Optimality conditions of min Σh, with every active peak found again.
 
 In log durations z = log h and free nodal derivatives x, in units of their limits, with T = Σh,
 
@@ -88,20 +88,10 @@ UNKNOWN = KKT(np.inf, ())
 
 @dataclass(frozen=True, eq=False)
 class _Weighed:
-    """Limits and bounds of durations that are reached, with least-squares multipliers.
+    """Limits and bounds of durations that are reached, with least-squares multipliers for log T.
 
-    Attributes
-    ----------
-    near : ndarray of int
-        Numbers of the limits among the exact rows.
-    segments, sides : ndarray, shape (bounds,)
-        Of the bounds.
-    slopes : ndarray, shape (limits + bounds, unknowns)
-        Gradients of what is to be at most 0, the limits' first.
-    weights : ndarray, shape (limits + bounds,)
-        Multipliers w for log T.
-    stationary : ndarray, shape (unknowns,)
-        What is left of the gradient of the Lagrangian.
+    The limits by their numbers among the exact rows, and after them the bounds by segment and side,
+    each with its slope and its weight; then what is left of the gradient of the Lagrangian.
     """
 
     near: Indices
@@ -184,6 +174,10 @@ def sparse_kkt(
 ) -> KKT:
     """Optimality conditions at given multipliers: nothing is solved but one banded system.
 
+    With multipliers w of the limits, Σ w_i ∂g_i/∂h is the gradient of one weighted sum of values,
+    which one adjoint solve gives for all durations. The limits need not be within a chosen
+    distance: w_i g_i = 0 is part of the residual.
+
     Parameters
     ----------
     problem : Problem
@@ -197,16 +191,6 @@ def sparse_kkt(
         Multipliers, signed by the side, of limits in shares of the larger side (positions in rad).
     bounds : ndarray, shape (segments,)
         Of the bounds on durations, s per s, signed by the side.
-
-    Returns
-    -------
-    KKT
-
-    Notes
-    -----
-    With multipliers w of the limits, Σ w_i ∂g_i/∂h is the gradient of one weighted sum of values,
-    which one adjoint solve gives for all durations. Their limits need not be within a chosen
-    distance: w_i g_i = 0 is part of the residual.
     """
     total, joint, order = float(durations.sum()), places.joint, places.order
     adjoint = problem.piecewise.adjoint(problem.waypoints, durations)
@@ -242,18 +226,8 @@ def _report(
 ) -> KKT:
     """The conditions of limits and bounds, and those that are active.
 
-    Parameters
-    ----------
-    problem : Problem
-    durations : ndarray, shape (segments,)
-    stationary : ndarray
-        Gradient of the Lagrangian of log T.
-    excess, weights : ndarray
-        Of limits.
-    limits : list of (Extremum, side, weight)
-        Those that are reached.
-    walls : ndarray, shape (2, segments)
-        Weights of lower and upper bounds of durations.
+    From the gradient of the Lagrangian of log T, excess and weights of the limits, those that are
+    reached with their sides and weights, and the weights of lower and upper bounds of durations.
     """
     total, least = float(durations.sum()), ACTIVE / problem.segments
     with np.errstate(divide="ignore"):
@@ -285,8 +259,9 @@ def _report(
     return KKT(max(residual, float(excess.max(initial=0.0))), tuple(active))
 
 
-SHARP = 1e-12
-"""Residual that `sharpened` leaves as it is: rounding of gradients."""
+SHARP = 1e-10
+"""Residual that is left as it is, and rounding of differences of gradients: a total is settled to
+the last digit long before."""
 DIFFERENCE = 1e-6
 """Step of its central differences in log durations: they err by 1e-12, their rounding by 1e-10."""
 
@@ -298,16 +273,9 @@ def sharpened(problem: Problem, durations: Array) -> Array | None:
     """Newton steps on stationarity and the active limits; None where they lead nowhere.
 
     A search ends where rounding hides what it gains, before the gradient vanishes as far as it can.
-    Four steps are plenty from near by, since the convergence is quadratic.
-
-    Parameters
-    ----------
-    problem : Problem
-        With a determined curve.
-    durations : ndarray, shape (segments,)
-        s.
+    Four steps are plenty from near by, since the convergence is quadratic. The curve is determined.
     """
-    first = exact_rows(problem, durations)
+    first = rows = exact_rows(problem, durations)
     found = _Weighed.of(problem, first, ACTIVE)
     if found is None or not found.weights.size:
         return None
@@ -317,7 +285,7 @@ def sharpened(problem: Problem, durations: Array) -> Array | None:
     free = ~np.isin(np.arange(durations.size), found.segments[bounds])
     h, n, z, one = durations, int(free.sum()), active.size, np.eye(durations.size)
     for _ in range(4):
-        now = _conditions(problem, h, first, active, weights)
+        now = _conditions(rows, first, active, weights)
         if now is None or time_up():
             return None
         slope, excess, columns = now
@@ -327,7 +295,8 @@ def sharpened(problem: Problem, durations: Array) -> Array | None:
         for k in np.flatnonzero(free):
             step = np.exp(DIFFERENCE * one[k])
             ahead, behind = (
-                _conditions(problem, x, first, active, weights) for x in (h * step, h / step)
+                _conditions(exact_rows(problem, x), first, active, weights)
+                for x in (h * step, h / step)
             )
             if ahead is None or behind is None:
                 return None
@@ -339,52 +308,17 @@ def sharpened(problem: Problem, durations: Array) -> Array | None:
         except np.linalg.LinAlgError:
             return None
         h = h * np.exp(one[free].T @ np.clip(change[:n], -NEAR_BY, NEAR_BY))
-        weights = weights + change[n:]
+        weights, rows = weights + change[n:], exact_rows(problem, h)
     return h
 
 
 def _conditions(
-    problem: Problem, h: Array, first: ExactRows, active: Indices, weights: Array
+    rows: ExactRows, first: ExactRows, active: Indices, weights: Array
 ) -> tuple[Array, Array, Array] | None:
     """Slope of the Lagrangian in log durations, excess of the active limits, and their slopes."""
-    rows = exact_rows(problem, h)
+    h = rows.durations
     twins = [rows.twin(first.points[i], first.signs[i]) for i in active]
     if None in twins:
         return None
     at = np.array(twins, dtype=np.int64)
     return h / h.sum() + weights @ rows.gradient[at], rows.excess[at], rows.gradient[at]
-
-
-@dataclass(frozen=True, eq=False)
-class Local:
-    """The end of a local search.
-
-    Attributes
-    ----------
-    durations : ndarray, shape (segments,)
-        s.
-    nodal : ndarray, shape (free, joints), or None
-        Free derivatives, where the declaration leaves some.
-    total : float
-        s.
-    converged : bool
-        Whether the search ended because no step gained any more.
-    feasible : bool
-        Whether `check` passes the motion.
-    iterations : int
-    tight : (durations, nodal) or None
-        What was moved inside its limits so that rounding errors do not decide, if anything was.
-    report : KKT or None
-        The optimality conditions, where the search knows them already.
-    build_seconds : float
-    """
-
-    durations: Array
-    nodal: Array | None
-    total: float
-    converged: bool
-    feasible: bool
-    iterations: int
-    tight: tuple[Array, Array | None] | None = None
-    report: KKT | None = None
-    build_seconds: float = 0.0

@@ -36,21 +36,9 @@ def nearby(
 ) -> list[Array]:
     """Durations of some joints, each within its limits and its cap, at which an objective is least.
 
-    Parameters
-    ----------
-    problems : list of Problem
-        One-joint problems with the same number of segments.
-    starts : list of ndarray, shape (segments,)
-        Durations, s, of each joint that keep its limits and its cap.
-    caps : list of float
-        Largest total of each joint, s.
-    weights : ndarray, shape (segments,), or None
-        The objective: the weighted durations of one joint, or without weights Σ_k max_j h_jk.
-
-    Returns
-    -------
-    list of ndarray, shape (segments,)
-        s; by rounds of the NLP near the starts, which are returned where nothing better was found.
+    By rounds of the NLP near the starts, which are returned where nothing better was found: they
+    keep the limits and the caps on each joint's total, s. The objective is the weighted durations
+    of one joint, or without weights Σ_k max_j h_jk.
     """
     unit = float(np.mean(starts))
     programs = [Program(problem, unit, np.zeros(problem.segments)) for problem in problems]
@@ -123,22 +111,10 @@ def _round(
 def longest_per_segment_range(
     problems: list[Problem], optima: list[Array], slack: float
 ) -> tuple[float, float]:
-    """Range of Σ_k max_j h_jk while each joint keeps its limits and its total within ``slack``.
+    """Lowest and highest Σ_k max_j h_jk, s, each joint within ``slack`` s of its optimum.
 
-    Parameters
-    ----------
-    problems : list of Problem
-        One-joint problems with the same number of segments.
-    optima : list of ndarray, shape (segments,)
-        Durations of each joint's own best known optimum, s.
-    slack : float
-        Allowed excess of each joint's total over its optimum, s.
-
-    Returns
-    -------
-    lowest, highest : float
-        Found by local optimisation from the optima, s: an inner estimate of the range. The
-        highest value goes through every assignment of segments to the joints that set them.
+    Found by local optimisation from the joints' own best known optima: an inner estimate of the
+    range. The highest value goes through every assignment of segments to the joints that set them.
     """
     caps = [float(h.sum()) + slack for h in optima]
     given = float(np.max(optima, axis=0).sum())

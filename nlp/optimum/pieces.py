@@ -151,14 +151,6 @@ class CurvePieces:
 def pieces_of(problem: Problem) -> CurvePieces:
     """The pieces of a problem's curve.
 
-    Parameters
-    ----------
-    problem : Problem
-
-    Returns
-    -------
-    CurvePieces
-
     Raises
     ------
     TrajgapError
@@ -205,14 +197,7 @@ def left_derivatives(
 ) -> Array:
     """Derivatives in time at the left ends of the pieces of a motion, (pieces, orders, joints).
 
-    Parameters
-    ----------
-    pieces : CurvePieces
-        With conditions.
-    problem : Problem
-    motion : Trajectory
-    durations : ndarray, shape (segments,)
-        s.
+    The pieces have conditions; durations are those of the segments, s.
     """
     factorials = np.cumprod([1.0, *range(1, int(pieces.degrees.max()) + 1)])[:, None]
     if pieces.widths is None:
@@ -231,13 +216,7 @@ def left_derivatives(
 class Clock:
     """Derivatives in time of a curve q(s) with a clock t(s), N_r over t′²ʳ⁻¹, as expressions.
 
-    Parameters
-    ----------
-    nodes : ndarray, shape (pieces, powers, segments)
-        As `CurvePieces.clock`.
-    scaled : ndarray, shape (pieces, powers, joints)
-        Coefficients of q.
-    durations : expression, shape (segments,)
+    The nodes are those of `CurvePieces.clock`, and the coefficients of q (pieces, powers, joints).
     """
 
     def __init__(self, nodes: Array, scaled: Array, durations: Any) -> None:

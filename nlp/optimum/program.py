@@ -286,13 +286,7 @@ class Program:
     def slope(self, trajectory: Trajectory, places: Places, times: int) -> Array:
         """Derivatives by the place of f, a derivative in time as a function of the place.
 
-        Parameters
-        ----------
-        trajectory : Trajectory
-        places : Places
-            With a clock, those where f turns.
-        times : int
-            1 for f′, 2 for f″; with a clock 2.
+        Times 1 for f′, 2 for f″; with a clock 2, and at places where f turns.
         """
         unit = self.unit**places.order / self.angle[places.joint]
         if self._clock is not None:
@@ -372,22 +366,9 @@ class Program:
     ) -> tuple[Places, Array, Array]:
         """What multipliers say of limits at places, and of bounds on durations, in seconds.
 
-        Parameters
-        ----------
-        bounds, stated : ndarray
-            Multipliers of the bounds on variables, and of what the program states.
-        rows : Rows
-        duals : ndarray
-            Their multipliers.
-
-        Returns
-        -------
-        places : Places
-        limits : ndarray
-            Of the limits there, in shares of the larger side (positions in rad), signed by the
-            side.
-        walls : ndarray, shape (segments,)
-            Of the bounds on durations, s per s, signed by the side.
+        From those of the bounds on variables, of what the program states, and of the rows: places;
+        the multipliers of the limits there, in shares of the larger side (positions in rad), signed
+        by the side; and those of the bounds on durations, s per s, signed by the side.
         """
         low, high = (bound[self.segments :] for bound in self.bounds())
         # What is given is no limit, nor is what has none.

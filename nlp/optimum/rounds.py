@@ -11,17 +11,17 @@ from __future__ import annotations
 
 import math
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from ...problem import TOLERANCE, Array, CurveError, Problem, as_piecewise, check, fit
+from ...problem import TOLERANCE, Array, CurveError, Problem, as_piecewise, fit
 from ...problem.curves import Trajectory
 from .clock import seconds_left, time_up
-from .decided import kept
+from .decided import Local
 from .limit_rows import NEAR, near_limits
-from .optimality import KKT, KKT_TOLERANCE, Local, kkt, sparse_kkt
+from .optimality import KKT, KKT_TOLERANCE, kkt, sparse_kkt
 from .pieces import Indices, Rows, ca
 from .program import Program
 from .starts import DENSE, equal_start, slowed, worst_ratios
@@ -104,14 +104,8 @@ def build(problem: Problem) -> Program:
 def near_rows(program: Program, trajectory: Trajectory, near: float, flat: float = FLAT[0]) -> Rows:
     """Rows at all extrema inside pieces that come near their limit, with their weights.
 
-    Parameters
-    ----------
-    program : Program
-    trajectory : Trajectory
-    near : float
-        Share of its limit from which an extremum has a row, as in `near_limits`.
-    flat : float
-        Second derivative, as in `FLAT`, below which a row stays at its place.
+    ``near`` is the share of its limit from which an extremum has a row, as in `near_limits`;
+    ``flat`` the second derivative, as in `FLAT`, below which a row stays at its place.
     """
     places, _, sign, *_ = near_limits(program.problem, trajectory, near)
     bend = program.slope(trajectory, places, 2)
@@ -177,16 +171,10 @@ def carried(before: Rows, duals: Array, rows: Rows) -> Array:
 
 @dataclass(eq=False)
 class RoundState:
-    """Where the rounds stand: variables, and multipliers.
+    """Where the rounds stand: variables in the program's units, and multipliers.
 
-    Attributes
-    ----------
-    x : ndarray
-        Variables, in the program's units.
-    bounds : ndarray or None
-        Multipliers of their bounds; None before the first round.
-    stated, rows : ndarray
-        Multipliers of what the program states in every round, and of its rows.
+    Those of the variables' bounds (None before the first round), of what the program states in
+    every round, and of its rows.
     """
 
     x: Array
@@ -269,21 +257,9 @@ def program_search(
 ) -> Local | None:
     """A local optimum from a start, or how far the rounds came; None where they came nowhere.
 
-    Parameters
-    ----------
-    problem : Problem
-        With any kind of curve that an NLP is known for.
-    start : ndarray, shape (segments,)
-        s.
-    floor : ndarray, shape (segments,)
-        Least durations, s.
-    nodal : ndarray, shape (free, joints), optional
-        Free derivatives at the start, where the declaration leaves some.
-
-    Returns
-    -------
-    Local or None
-        With its optimality conditions, where the last round kept the limits.
+    The curve is of any kind that an NLP is known for. Start and floor, the least durations, are in
+    s; free derivatives go with the start where the declaration leaves some. The end has its
+    optimality conditions where the last round kept the limits.
     """
     began = time.perf_counter()
     program = Program(problem, float(start.mean()), floor)
@@ -335,9 +311,9 @@ def program_search(
     if rough is None:
         return None
     (h, values), found = best or (rough, None)
-    passes = kept(problem, check(problem, h, values))
     settled = found is not None and found.residual <= KKT_TOLERANCE
-    return Local(h, values, float(h.sum()), settled, passes, iterations, None, found, build)
+    end = Local.of(problem, h, values, converged=settled)
+    return replace(end, iterations=iterations, report=found, build_seconds=build)
 
 
 def _fitted(problem: Problem, motion: Motion) -> tuple[Trajectory | None, float]:
@@ -367,19 +343,7 @@ def _report(
 
 
 def within(problem: Problem, motion: Motion, excess: float) -> Motion:
-    """A motion stretched by what it exceeds its limits, where a stretch repairs that.
-
-    Parameters
-    ----------
-    problem : Problem
-    motion : (durations, free derivatives)
-    excess : float
-        Relative, as a stretch.
-
-    Returns
-    -------
-    (durations, free derivatives)
-    """
+    """A motion stretched by its excess over the limits, where a stretch repairs that."""
     h, nodal = motion
     if not (problem.curve.homogeneous and excess > 0.0):
         return motion

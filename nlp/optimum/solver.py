@@ -22,11 +22,10 @@ from .closed_forms import (
     tight_at_ratios,
     unsearched,
 )
-from .decided import decided, incumbent, kept, tolerated
+from .decided import Local, decided, incumbent, tolerated
 from .feasibility import apart, forbidden_jumps
 from .judgement import BETTER, SAME, better_of, judged, on_floor
 from .jumps import as_answer, carried_over, smoother
-from .optimality import Local
 from .rounds import program_search
 from .solution import Route, Solution, Status
 from .starts import DENSE, equal_start, first_nodal, made_up, random_starts, vectors, way_start
@@ -137,7 +136,7 @@ def _at_ratios(problem: Problem) -> Solution:
     h = tight_at_ratios(problem)
     if isinstance(h, Solution):
         return h
-    tight = Local(h, None, float(h.sum()), True, kept(problem, check(problem, h)), 0)
+    tight = Local.of(problem, h, converged=True)
     answer = judged(problem, [tight], np.zeros(problem.segments), 0, Route.CLOSED_FORM)
     if not answer.found:
         return refused_at_ratios(problem, h)
@@ -195,7 +194,7 @@ def _solve_itself(problem: Problem, ask: _Ask) -> Solution:
         solution = again if again.best < solution.best else solution
     short = solution.status is Status.FEASIBLE and solution.route is Route.DESCENT
     if short and _moves_throughout(problem) and not time_up():
-        end = Local(solution.durations, None, solution.total_time, False, True, 0)
+        end = Local.of(problem, solution.durations)
         solution = better_of(solution, _continued(problem, end, Route.NLP))
     if not solution.found:
         solution = _stretched_start(problem, solution)
@@ -322,7 +321,7 @@ def _within_tolerance(problem: Problem, ask: _Ask) -> Solution:
     answer = judged(problem, within, floor, len(within))
     if answer.found:
         return answer
-    ends = [replace(end, feasible=kept(problem, check(problem, end.durations))) for end in ends]
+    ends = [Local.of(problem, end.durations, converged=end.converged) for end in ends]
     answer = judged(problem, within + ends, floor, len(within) + len(ends))
     if not answer.found:
         return answer

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...problem import TOLERANCE, Array, Problem, TrajgapError, evaluate, fit
-from ...problem.curves import Trajectory, near_extrema
+from ...problem.curves import Trajectory
 
 DENSE = 24
 """Segments up to which a wide search and dense descents come first: their gradients have
@@ -120,15 +120,16 @@ def worst_ratios(problem: Problem, trajectory: Trajectory) -> Array:
     """By how much each segment would have to be stretched, were it alone."""
     worst = np.zeros(len(trajectory.durations))
     below, above = problem.limits.sides
-    for j, i in np.ndindex(below.shape):
-        sides = below[j, i], above[j, i]
-        if not any(np.isfinite(side) and side > 0 for side in sides):
+    for r in (1, 2, 3):
+        wanted = np.isfinite(below[:, r - 1]) | np.isfinite(above[:, r - 1])
+        if not wanted.any():
             continue
-        k, _, value = near_extrema(trajectory, j, i + 1, 0.0, 0.0)
-        limit = np.where(value > 0.0, sides[1], sides[0])
+        places, values = trajectory.turns(r)
+        limit = np.where(values > 0.0, above[:, r - 1], below[:, r - 1])
         with np.errstate(divide="ignore", invalid="ignore"):
-            ratio = np.where(limit > 0.0, np.abs(value) / limit, 0.0)
-        np.maximum.at(worst, k, ratio ** (1.0 / (i + 1)))
+            ratio = np.where(wanted & (limit > 0.0), np.abs(values) / limit, 0.0)
+        ratio = np.where(np.isnan(places), 0.0, ratio)
+        worst = np.maximum(worst, ratio.max(axis=(0, 2)) ** (1.0 / r))
     return worst
 
 
@@ -171,17 +172,9 @@ def least_durations(problem: Problem) -> Array:
 def made_up(problem: Problem, share: float) -> Array:
     """A least duration of each segment, s, that a search makes up; 0 where a higher one is given.
 
-    Parameters
-    ----------
-    problem : Problem
-    share : float
-        Of the mean of the usual durations, or of an upper bound where that is shorter: a floor
-        above an upper bound would leave nothing to search.
-
-    Returns
-    -------
-    ndarray, shape (segments,)
-        0 where a bound or a velocity limit is higher.
+    A share of the mean of the usual durations, or of an upper bound where that is shorter: a floor
+    above an upper bound would leave nothing to search. Where a bound or a velocity limit is higher,
+    it is 0.
     """
     usual = np.minimum(equal_start(problem).mean(), problem.duration_upper)
     return np.where(least_durations(problem) < share * usual, share * usual, 0.0)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -10,8 +11,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....problem import TOLERANCE
-from ...optimum import ca, call_cap
+from ...optimum import ca, seconds_left
 from .reach import reachable
+
+CAPS = (0.25, 2.0, 16.0, 128.0)
+"""Seconds that one call of IPOPT may take: it cannot be told to stop, and its limit is compiled in.
+A factor of 8 apart, so that a long run compiles few; below the first, a call ends anyway."""
+
+
+def call_cap() -> float | None:
+    """Longest time of a call of IPOPT that begins now, s; None without a limit."""
+    left = seconds_left()
+    if left == math.inf:
+        return None
+    return max((cap for cap in CAPS if cap <= left), default=CAPS[0])
 
 
 @dataclass(frozen=True, eq=False)

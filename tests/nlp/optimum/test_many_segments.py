@@ -1,5 +1,6 @@
 """Many segments: the sparse search beside the tracked NLP, identities, every status."""
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -220,5 +221,13 @@ def test_the_excess_is_that_of_the_batch_evaluator() -> None:
         stretch = float(evaluate(problem, h[None]).stretch[0])
         worst = worst_ratios(problem, fit(curve, problem.waypoints, h)).max()
         assert worst == pytest.approx(stretch, rel=1e-9), name
+        # No stretch repairs what exceeds a side of 0: as if nothing limited it.
+        found = []
+        for side in (0.0, np.inf):
+            sides = np.array(problem.limits.sides)
+            sides[0, 0, 1] = side
+            one = replace(problem, limits=problem.limits.with_sides(sides))
+            found.append(worst_ratios(one, fit(curve, problem.waypoints, h)).tolist())
+        assert found[0] == found[1], name
     program = Program(problem, 1.0, np.zeros(SEGMENTS))
     assert near_rows(program, fit(problem.curve, problem.waypoints, h), 0.0).sign.size > 10
