@@ -1,10 +1,12 @@
 from .card_errors import plainly
 from .case_audit import AuditReport, CaseAudit, audit
+from .chosen_case import Pair
 from .fixed_ratios import at_ratios, planned_apart
 from .paper_runs import searched_for
 from .provenance import certificate_files, package_version
 from .reading_words import KEPT, answers, segments
 from .rounding import Point, RoundingBox, RoundingVerdict, judge_rounding
+from .row import Row, rows
 from .rules import EXPLAINED, RULES
 from .stated import asked_as, claim_text, digits_of, in_words, place
 from .study import Study
@@ -16,9 +18,11 @@ __all__ = [
     "RULES",
     "AuditReport",
     "CaseAudit",
+    "Pair",
     "Point",
     "RoundingBox",
     "RoundingVerdict",
+    "Row",
     "Study",
     "answers",
     "asked_as",
@@ -34,6 +38,7 @@ __all__ = [
     "plainly",
     "planned_apart",
     "routes",
+    "rows",
     "searched_for",
     "segments",
     "waterfalls",

@@ -34,7 +34,7 @@ from ..documents import (
 )
 from .card import verdict_card
 from .causes import find_causes, with_caveats
-from .chosen_case import SEEDS, Pair
+from .chosen_case import SEEDS
 from .draft import advise
 from .instances import examined_entry
 from .judging import judge, rested, weigh
@@ -43,6 +43,7 @@ from .plausibility import implausible
 from .provenance import provenance
 from .readings import readings_summary
 from .revision import revise
+from .row import Row, rows
 from .rules import GROUPS, NOT_COMPUTED
 from .stated import stated_claims, stated_source
 from .study import Study
@@ -318,32 +319,26 @@ def _alone(group: _Group, study: Study, claim: AnyClaim) -> list[Finding]:
     except _ENDING:
         raise
     except TrajgapError:
-        pairs = study.claim_pairs(claim)
-        found = [
-            f for pair in pairs for f in _under(group, study.only(claim, pair=pair), claim, pair)
-        ]
+        found = [f for row in rows(study, claim) for f in _under(group, row)]
         return [f for at, f in enumerate(found) if f not in found[:at]]
 
 
-def _under(group: _Group, study: Study, claim: AnyClaim, pair: Pair) -> Iterator[Finding]:
+def _under(group: _Group, row: Row[AnyClaim]) -> Iterator[Finding]:
     try:
-        yield from group(study)
+        yield from group(row.study.only(row.claim, pair=row.pair))
     except _ENDING:
         raise
     except TrajgapError as error:
-        yield _not_computed(error, claim, pair)
+        yield _not_computed(error, row)
 
 
-def _not_computed(
-    error: TrajgapError, claim: AnyClaim | None = None, pair: Pair | None = None
-) -> Finding:
-    problem, reading = pair or (None, None)
+def _not_computed(error: TrajgapError, row: Row[AnyClaim] | None = None) -> Finding:
     return Finding(
         rule=NOT_COMPUTED.id,
         basis=Basis.CHECK,
-        claim=None if claim is None else claim.id,
-        problem=problem,
-        reading=reading,
+        claim=None if row is None else row.claim.id,
+        problem=None if row is None else row.problem,
+        reading=None if row is None else row.reading,
         kind="not computed",
         sentences=(f"Not computed: {str(error).removesuffix('.')}.",),
     )

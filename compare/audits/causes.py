@@ -25,6 +25,7 @@ from ..documents import (
     said_beside,
 )
 from .explanations import explained
+from .row import rows_under
 from .stated import prints_durations
 from .study import Study
 
@@ -245,9 +246,9 @@ def _rests_on(claim: AnyClaim) -> tuple[str, ...]:
     return (claim.slower, claim.faster) if isinstance(claim, ImprovementClaim) else ()
 
 
-def _jumps(study: Study, claim: AnyClaim, rid: str) -> bool:
+def _jumps(study: Study, claim: AnyClaim, reading: str) -> bool:
     """Whether the velocity of a motion that a claim speaks about jumps under a reading."""
     about = [claim, *(study.case.claim(i) for i in _rests_on(claim))]
-    motions = study.pairs_under(filter(prints_durations, about), rid)
-    checked = [study.motion_check(one, pid, rid) for one, pid in motions]
+    motions = rows_under(study, filter(prints_durations, about), reading)
+    checked = [row.check_or_none for row in motions]
     return any(jump.order == 1 for found in checked if found is not None for jump in found.jumps)

@@ -5,18 +5,22 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from copy import copy
 from pathlib import Path
-from typing import Any, Self, TypeVar, cast
+from typing import Any, NamedTuple, Self, TypeVar, cast
 
 from ...problem import Case, Problem, TrajgapError
 from ...problem.cases import AnyClaim, Claim, DurationsClaim, MaximumClaim, TotalTimeClaim
 from .intervals import Intervals
 
 T = TypeVar("T")
-Pair = tuple[str, str]
-"""Problem id and reading id."""
-
 SEEDS = 100
 """Seeds of a replay by default: independent runs enough for a probability to a few per cent."""
+
+
+class Pair(NamedTuple):
+    """A problem of a case under a reading, by their ids."""
+
+    problem: str
+    reading: str
 
 
 class ChosenCase:
@@ -63,10 +67,9 @@ class ChosenCase:
         self.claims: tuple[AnyClaim, ...] = tuple(case.claims)
         self.seeds = seeds
         self.workers = workers
-        selected = case.selections(problem, reading)
-        self.selected: tuple[Pair, ...] = tuple(selected)
-        self.readings: tuple[str, ...] = tuple(dict.fromkeys(rid for _, rid in selected))
-        self.pairs: tuple[Pair, ...] = tuple(p for p in selected if case.statement(*p).complete)
+        self.selected = tuple(Pair(*one) for one in case.selections(problem, reading))
+        self.readings = tuple(dict.fromkeys(one.reading for one in self.selected))
+        self.pairs = tuple(one for one in self.selected if case.statement(*one).complete)
         default = case.default_reading.id
         self.main_reading = default if default in self.readings else self.readings[0]
         self.chosen = {
@@ -78,6 +81,10 @@ class ChosenCase:
         self._progress = progress or (lambda _: None)
         self._kept: dict[tuple[Any, ...], Any] = {}
         self.intervals = Intervals(certificates, certify_seconds, self._progress, cache)
+
+    def progress(self, doing: str) -> None:
+        """Say what is being done of the case, before anything that takes a while."""
+        self._progress(f"{self.case.id}: {doing}")
 
     def once(self, key: tuple[Any, ...], compute: Callable[[], T]) -> T:
         """What was kept under a key, computed where nothing is; errors are kept too."""
@@ -97,7 +104,7 @@ class ChosenCase:
         view.claims = claims
         if pair is not None:
             view.selected = view.pairs = (pair,)
-            view.readings = pair[1:]
+            view.readings = (pair.reading,)
         return view
 
     @property
@@ -108,11 +115,16 @@ class ChosenCase:
     @property
     def problems(self) -> tuple[str, ...]:
         """Ids of the problems that are complete, in order."""
-        return tuple(dict.fromkeys(pid for pid, _ in self.pairs))
+        return tuple(dict.fromkeys(one.problem for one in self.pairs))
 
-    def problem(self, pid: str, rid: str) -> Problem:
+    @property
+    def main_pairs(self) -> tuple[Pair, ...]:
+        """Each of them under the main reading."""
+        return tuple(Pair(one, self.main_reading) for one in self.problems)
+
+    def problem(self, pair: Pair) -> Problem:
         """Problem of the case, with its coupling."""
-        return self.once(("problem", pid, rid), lambda: self.case.problem(pid, rid))
+        return self.once(("problem", pair), lambda: self.case.problem(*pair))
 
     @property
     def time_unit(self) -> str:

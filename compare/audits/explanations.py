@@ -7,7 +7,9 @@ from collections.abc import Iterator
 from ...problem import counts_in_words
 from ...problem.cases import ConditionsClaim, DurationsClaim, MaximumClaim
 from ..documents import Explanation, Finding, HeldOtherwise, quoted
+from .chosen_case import Pair
 from .roots import LIMITS, TABLES
+from .row import Row
 from .rules import count_conditions, held_otherwise
 from .slips_tried import explained_by_slips
 from .stated import place
@@ -59,7 +61,8 @@ def _at_samples(
     study: Study, claim: DurationsClaim | MaximumClaim, finding: Finding, under: str
 ) -> Iterator[Explanation]:
     """Limits that were held at some times only."""
-    held = held_otherwise(study, claim, str(finding.problem), str(finding.reading))
+    pair = Pair(str(finding.problem), str(finding.reading))
+    held = held_otherwise(Row(study, claim, pair))
     effect = "Then they are broken between the samples, and the samples do not show it"
     if isinstance(held, HeldOtherwise) and held.sampled <= 1.0 < held.everywhere:
         yield Explanation(

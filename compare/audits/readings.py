@@ -26,9 +26,11 @@ from ..documents import (
     known,
 )
 from ..gaps import gap, reference_of
+from .chosen_case import Pair
 from .fixed_ratios import off_ratios
 from .plausibility import implausible
 from .reading_words import answers, holding
+from .row import Row
 from .rules import held_otherwise, reading_clues
 from .stated import other_objective
 from .study import Study
@@ -95,8 +97,8 @@ def readings_summary(
 
 
 def _outcome(study: Study, waterfall: Waterfall) -> ReadingOutcome:
-    pid, rid = waterfall.problem, waterfall.reading
-    solution = study.optimum(pid, rid)
+    pair = Pair(waterfall.problem, waterfall.reading)
+    solution = study.optimum(pair)
     reference = reference_of(solution)
     keeping: Keeping | Why = Why("no durations are printed for all joints of this problem")
     distance: Gap | Why = Why("no printed total stands beside an optimum")
@@ -106,26 +108,27 @@ def _outcome(study: Study, waterfall: Waterfall) -> ReadingOutcome:
     jumps = 0
     if waterfall.claim is not None:
         claim = study.case.claim(waterfall.claim)
-        unmoved = study.unmoved(claim, pid, rid)
+        row = Row(study, claim, pair)
+        unmoved = row.unmoved
         if unmoved is not None:
             keeping, held = Why(unmoved), Why(unmoved)
         elif not isinstance(claim, TotalTimeClaim):  # a total alone is no motion
-            found = study.claim_check(claim, pid, rid)
-            keeping = study.claim_keeping(claim, pid, rid)
+            found = row.check
+            keeping = row.keeping
             jumps = sum(jump.order == 1 for jump in found.jumps)
-            held = held_otherwise(study, claim, pid, rid)
+            held = held_otherwise(row)
             stretch = found.stretch if isfinite(found.stretch) and found.stretch > 0 else None
         if keeping is Keeping.BREAKS:
-            excesses = _excesses(study, claim, pid, rid)
-        total = study.claim_total(claim, rid)
-        if off_ratios(study, claim, pid, rid) is not None:
+            excesses = _excesses(row)
+        total = row.total
+        if off_ratios(row) is not None:
             distance = Why("the printed durations have other ratios than this reading fixes")
         elif total is not None and reference is not None:
             kept = keeping in (Keeping.KEEPS, Keeping.CONSISTENT)
             distance = gap(total[1], reference, feasible=kept)
     return ReadingOutcome(
-        reading=rid,
-        problem=pid,
+        reading=waterfall.reading,
+        problem=waterfall.problem,
         claim=waterfall.claim,
         keeping=keeping,
         jumps=jumps,
@@ -144,16 +147,16 @@ def _shortest(study: Study, outcome: ReadingOutcome) -> bool:
     return claim is None or other_objective(study.case, claim) is None
 
 
-def _excesses(study: Study, claim: AnyClaim, pid: str, rid: str) -> tuple[Excess, ...]:
+def _excesses(row: Row[AnyClaim]) -> tuple[Excess, ...]:
     """The largest excess of each segment at the printed point, by exact extrema."""
-    problem = study.claim_problem(claim, pid, rid)
-    checked = study.claim_check(claim, pid, rid)
+    problem = row.posed()
+    checked = row.check
     over = [
         Excess(segment=p.segment, joint=p.joint, quantity=Limited(p.quantity), ratio=float(p.ratio))
         for p in checked.peaks
     ]
     if not any(p.quantity == "curve" for p in checked.peaks):
-        durations = study.case.claim_durations(claim, rid).value
+        durations = row.durations.value
         trajectory = fit(problem.curve, problem.waypoints, durations)
         over += [
             Excess(

@@ -17,7 +17,7 @@ from ...heuristics import (
 )
 from ...problem import Coupling, TrajgapError
 from ..documents import capital
-from .chosen_case import ChosenCase
+from .chosen_case import ChosenCase, Pair
 from .replay_settings import LISTED, spread_settings
 from .stated import in_words
 
@@ -63,14 +63,14 @@ class ReplayedCase(ChosenCase):
         """An algorithm as a sentence calls it, by its name."""
         return f"the {next(a.name for a in self.case.algorithms if a.id == algorithm_id)}"
 
-    def unreplayed(self, algorithm_id: str, pid: str, rid: str) -> str | None:
+    def unreplayed(self, algorithm_id: str, pair: Pair) -> str | None:
         """Why an algorithm is not replayed on a problem, as a sentence; None if it is."""
         algorithm = self.algorithm(algorithm_id)
         if algorithm is None:
             return (
                 f"{capital(self.called(algorithm_id))} is of a kind that is not implemented here."
             )
-        problem = self.problem(pid, rid)
+        problem = self.problem(pair)
         try:
             # What judges the positions of every run says whether it can.
             DeathPenalty(problem, algorithm.penalty)
@@ -78,26 +78,24 @@ class ReplayedCase(ChosenCase):
             return f"{capital(self.called(algorithm_id))} is not replayed: {error}."
         return None
 
-    def runs(self, algorithm_id: str, pid: str, rid: str) -> Replays:
+    def runs(self, algorithm_id: str, pair: Pair) -> Replays:
         """Replays of an algorithm under the listed choices, one per seed; empty if there are none.
 
         `unreplayed` says why.
         """
         algorithm = self.algorithm(algorithm_id)
-        if algorithm is None or self.unreplayed(algorithm_id, pid, rid) is not None:
+        if algorithm is None or self.unreplayed(algorithm_id, pair) is not None:
             return ()
         return self.once(
-            ("runs", algorithm_id, pid, rid),
-            lambda: self._replay(algorithm, algorithm_id, pid, rid, self.seeds),
+            ("runs", algorithm_id, pair),
+            lambda: self._replay(algorithm, algorithm_id, pair, self.seeds),
         )
 
-    def _replay(
-        self, algorithm: Algorithm[Any], name: str, pid: str, rid: str, seeds: int
-    ) -> Replays:
-        problem = self.problem(pid, rid)
+    def _replay(self, algorithm: Algorithm[Any], name: str, pair: Pair, seeds: int) -> Replays:
+        problem = self.problem(pair)
         called = next((a.name for a in self.case.algorithms if a.id == name), name)
-        under = in_words(self.case, pid, rid)
-        self._progress(f"{self.case.id}: {seeds} replays of {called}; {under}")
+        under = in_words(self.case, *pair)
+        self.progress(f"{seeds} replays of {called}; {under}")
         workers = self.workers
         if workers is None:
             long = seeds * algorithm.iterations >= WORTH_PROCESSES
@@ -117,18 +115,18 @@ class ReplayedCase(ChosenCase):
         block = next(a for a in self.case.algorithms if a.id == algorithm_id)
         return spread_settings(algorithm, block.settings)
 
-    def spread_runs(self, algorithm_id: str, pid: str, rid: str) -> dict[str, Replays]:
+    def spread_runs(self, algorithm_id: str, pair: Pair) -> dict[str, Replays]:
         """Replays under each of `settings`, fewer where it is not the listed one; as `runs`."""
-        if self.unreplayed(algorithm_id, pid, rid) is not None:
+        if self.unreplayed(algorithm_id, pair) is not None:
             return {}
 
         def compute() -> dict[str, Replays]:
             few = min(SPREAD_SEEDS, self.seeds)
             return {
-                name: self.runs(algorithm_id, pid, rid)
+                name: self.runs(algorithm_id, pair)
                 if name == LISTED
-                else self._replay(algorithm, f"{algorithm_id}, {name}", pid, rid, few)
+                else self._replay(algorithm, f"{algorithm_id}, {name}", pair, few)
                 for name, algorithm in self.settings(algorithm_id).items()
             }
 
-        return self.once(("spread", algorithm_id, pid, rid), compute)
+        return self.once(("spread", algorithm_id, pair), compute)

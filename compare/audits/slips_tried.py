@@ -21,6 +21,7 @@ from ...problem.cases import (
 from ..documents import ClaimVerdict, Explanation, Finding, Rounding, Severity
 from .changed_motions import changes_of_motion
 from .chosen_case import Pair
+from .row import Row
 from .rules import GROUPS
 from .slips import Slip, durations, misprints, of_rows, totals, values
 from .stated import place, prints_durations
@@ -117,7 +118,7 @@ def explained_by_slips(
     """
     if finding.rule not in _OF_MOTIONS | _OF_DIGITS:
         return []
-    pair = (
+    pair = Pair(
         finding.problem or claim.problem or study.case.problems[0].id,
         finding.reading or study.main_reading,
     )
@@ -126,7 +127,7 @@ def explained_by_slips(
     if (finding.rule, finding.claim) not in before:
         return []  # it warns, and contradicts nothing
     if row is not None and pair in study.pairs:
-        tried, nearer = changes_of_motion(study, finding, claim, row, pair)
+        tried, nearer = changes_of_motion(Row(study, row, pair), finding, claim)
     elif finding.rule in _OF_DIGITS:
         tried, nearer = [(slip, False) for slip in _of_digits(study, finding, claim, pair)], None
     else:
@@ -243,7 +244,11 @@ def _against(study: Study, finding: Finding, pair: Pair) -> _Against:
 def _changed(study: Study, slip: Slip, pair: Pair) -> Study:
     """A study of the case with a change made, of one problem under one reading."""
     return Study(
-        slip.case(study.case), seeds=2, problem=pair[0], reading=pair[1], certify_seconds=0
+        slip.case(study.case),
+        seeds=2,
+        problem=pair.problem,
+        reading=pair.reading,
+        certify_seconds=0,
     )
 
 
@@ -271,7 +276,7 @@ def _judge(
             return None
         settled = {rule for rule, _ in before - after}
         timed = "TG201" in settled and prints_durations(row)
-        rounding = changed.claim_rounding(row, *pair).verdict if timed else None
+        rounding = Row(changed, row, pair).rounding.verdict if timed else None
     except TrajgapError:
         return None
     cut = finding.rule in _OF_DIGITS and any(f.severity is not Severity.INFO for f in alone)

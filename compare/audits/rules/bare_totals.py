@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from ....problem.cases import TotalTimeClaim
 from ...documents import Basis, ClaimVerdict, Finding
 from ..roots import LIMITS
+from ..row import rows
 from ..study import Study
 from .continuous_time import broken
 from .distances import below_certified
@@ -18,19 +19,17 @@ def judge_bare_totals(study: Study) -> Iterator[Finding]:
     for claim in study.claims:
         if not (isinstance(claim, TotalTimeClaim) and said_to_keep(study, claim)):
             continue
-        for pid, rid in study.claim_pairs(claim):
-            solution = study.claim_optimum(claim, pid, rid)
-            proof = broken(study, claim, pid, rid) or below_certified(
-                study, claim, pid, rid, solution
-            )
+        for row in rows(study, claim):
+            solution = row.optimum
+            proof = broken(row) or below_certified(row, solution)
             if proof is not None:
                 yield Finding(
                     rule="TG201",
                     verdict=ClaimVerdict.REFUTED,
                     basis=Basis.ENCLOSURE,
                     claim=claim.id,
-                    problem=pid,
-                    reading=rid,
+                    problem=row.problem,
+                    reading=row.reading,
                     printed=f"{claim.value} {study.time_unit}",
                     sentences=proof,
                     kind="total excluded",

@@ -19,10 +19,11 @@ from ....problem.cases import (
 from ....verify import shown_bound
 from ...documents import Basis, ClaimVerdict, Finding, Rounding, Severity
 from ..roots import LIMITS
+from ..row import Row, rows, rows_under
 from ..study import Study
 from .kept_limits import UNSAID, meant_to_keep, said_of, said_to_keep
 from .linear_blends import BLENDS, blended, judge_row
-from .peaks import box_reach, has_curve, largest
+from .peaks import box_reach, largest
 from .wording import (
     JUMPING,
     all_called,
@@ -75,25 +76,25 @@ def judge_motions(study: Study) -> Iterator[Finding]:
             yield from _said_to_jump(study, claim)
 
 
-def _ratio(study: Study, claim: AnyClaim, pid: str, rid: str) -> str:
-    worst = study.claim_check(claim, pid, rid).worst
+def _ratio(row: Row[AnyClaim]) -> str:
+    worst = row.check.worst
     if worst is None:
         return "no limit applies"
     if worst.quantity == "curve":
         return "the printed durations define no curve"
     whose = f"joint {worst.joint}" if worst.joint is not None else f"segment {worst.segment + 1}"
-    unit = unit_shown(study, pid, rid, worst.quantity, worst.joint)
-    value = in_units(study, pid, rid, worst.quantity, abs(worst.value), worst.joint)
-    limit = in_units(study, pid, rid, worst.quantity, worst.limit, worst.joint)
+    unit = unit_shown(row, worst.quantity, worst.joint)
+    value = in_units(row, worst.quantity, abs(worst.value), worst.joint)
+    limit = in_units(row, worst.quantity, worst.limit, worst.joint)
     return f"the {worst.quantity} of {whose} reaches {value:.6g} {unit}, limit {limit:.6g} {unit}"
 
 
-def _judged(study: Study, claim: AnyClaim, pid: str, rid: str) -> _Judged:
-    if isinstance(claim, TotalTimeClaim):
-        return _judged_total(study, claim, pid, rid)
-    rounding = study.claim_rounding(claim, pid, rid)
+def _judged(row: Row[AnyClaim]) -> _Judged:
+    if isinstance(row.claim, TotalTimeClaim):
+        return _judged_total(row)
+    rounding = row.rounding
     verdict, severity = _VERDICTS[rounding.verdict]
-    at_print = _ratio(study, claim, pid, rid)
+    at_print = _ratio(row)
     explained = {
         Rounding.KEEPS: "The printed numbers keep every limit for all t",
         Rounding.CONSISTENT: "Some values that round to the printed digits keep every limit for "
@@ -102,7 +103,7 @@ def _judged(study: Study, claim: AnyClaim, pid: str, rid: str) -> _Judged:
         Rounding.UNDECIDED: "The printed digits do not decide whether the limits are kept",
     }[rounding.verdict]
     kind = str(rounding.verdict)
-    found = study.claim_check(claim, pid, rid)
+    found = row.check
     if found.verdict is Verdict.DISCONTINUOUS and rounding.verdict is Rounding.UNDECIDED:
         kind = str(found.verdict)
         jumps = sum(jump.order == 1 for jump in found.jumps)
@@ -112,7 +113,7 @@ def _judged(study: Study, claim: AnyClaim, pid: str, rid: str) -> _Judged:
             "acceleration"
         )
     said = [f"{explained}.", f"At the printed numbers {at_print}."]
-    loose = study.case.statement(pid, rid).declaration.loose
+    loose = row.statement.declaration.loose
     if rounding.verdict is Rounding.UNDECIDED and loose:
         said.append(f"{loose} are printed numbers, and no proof covers their rounding.")
     bound = rounding.lower_bound_of_worst
@@ -122,7 +123,7 @@ def _judged(study: Study, claim: AnyClaim, pid: str, rid: str) -> _Judged:
             f"{shown_bound(bound, 'lower')}."
         )
     if rounding.verdict is Rounding.BREAKS:
-        cut = study.claim_cut(claim, pid, rid).verdict
+        cut = row.cut.verdict
         if cut is not Rounding.BREAKS:
             kept = cut is not Rounding.UNDECIDED
             verdict = ClaimVerdict.SUPPORTED if kept else ClaimVerdict.NOT_CHECKABLE
@@ -132,10 +133,10 @@ def _judged(study: Study, claim: AnyClaim, pid: str, rid: str) -> _Judged:
     return _Judged(verdict, severity, tuple(said), kind)
 
 
-def _judged_total(study: Study, claim: TotalTimeClaim, pid: str, rid: str) -> _Judged:
+def _judged_total(row: Row[AnyClaim]) -> _Judged:
     """A total without its durations: refuted where no motion that short keeps the limits."""
-    printed = f"{claim.value} {study.time_unit}"
-    if study.excluded_total(claim, pid, rid):
+    printed = row.study.total_digits(row.claim)
+    if row.total_excluded:
         excluded = (
             f"No motion within the limits takes {printed} or less, however the digits were rounded "
             "or cut off."
@@ -149,23 +150,23 @@ def _judged_total(study: Study, claim: TotalTimeClaim, pid: str, rid: str) -> _J
     return _Judged(ClaimVerdict.NOT_CHECKABLE, Severity.INFO, said, "total open")
 
 
-def broken(study: Study, claim: AnyClaim, pid: str, rid: str) -> tuple[str, ...] | None:
+def broken(row: Row[AnyClaim]) -> tuple[str, ...] | None:
     """What shows that a limit is broken, for all values rounded or cut off to the digits; or None.
 
     For a total without its durations: that no motion so short keeps the limits.
     """
-    if not isinstance(claim, TimeClaim):
+    if not isinstance(row.claim, TimeClaim):
         return None
-    if study.unmoved(claim, pid, rid) is not None:
+    if row.unmoved is not None:
         return None
-    judged = _judged(study, claim, pid, rid)
+    judged = _judged(row)
     return judged.sentences if judged.verdict is ClaimVerdict.REFUTED else None
 
 
 def _limits(study: Study, claim: AnyClaim) -> Iterator[Finding]:
     unsaid = "" if said_to_keep(study, claim) else UNSAID
-    for pid, rid in study.claim_pairs(claim):
-        judged = _judged(study, claim, pid, rid)
+    for row in rows(study, claim):
+        judged = _judged(row)
         verdict, severity = said_of(study, claim, judged.verdict, judged.severity)
         yield Finding(
             rule="TG201",
@@ -173,10 +174,10 @@ def _limits(study: Study, claim: AnyClaim) -> Iterator[Finding]:
             verdict=verdict,
             basis=Basis.ENCLOSURE,
             claim=claim.id,
-            problem=pid,
-            reading=rid,
+            problem=row.problem,
+            reading=row.reading,
             printed=durations_text(study, claim),
-            computed=_ratio(study, claim, pid, rid),
+            computed=_ratio(row),
             kind=judged.kind,
             sentences=(
                 *judged.sentences,
@@ -189,16 +190,13 @@ def _limits(study: Study, claim: AnyClaim) -> Iterator[Finding]:
 
 def _jumps(study: Study, claim: AnyClaim) -> Iterator[Finding]:
     """Name a motion that jumps under a reading; no word of the paper is judged by that."""
-    for pid, rid in study.claim_pairs(claim):
-        found = study.claim_check(claim, pid, rid).jumps
+    for row in rows(study, claim):
+        found = row.check.jumps
         velocity = [jump for jump in found if jump.order == 1]
         if not velocity:
             continue
-        tops = largest_of_each_kind(study, rid, [(pid, jump) for jump in velocity])
-        sizes = [
-            f"{abs(jump_size(study, pid, rid, top)):.6g} {jump_unit(study, pid, rid, top)}"
-            for _, top in tops
-        ]
+        tops = largest_of_each_kind([(row, jump) for jump in velocity])
+        sizes = [f"{abs(jump_size(row, top)):.6g} {jump_unit(row, top)}" for _, top in tops]
         most = " and ".join(
             f"in joint {top.joint} at t = {top.time:.6g} s by {size}"
             for (_, top), size in zip(tops, sizes, strict=True)
@@ -207,8 +205,8 @@ def _jumps(study: Study, claim: AnyClaim) -> Iterator[Finding]:
             rule="TG202",
             basis=Basis.CHECK,
             claim=claim.id,
-            problem=pid,
-            reading=rid,
+            problem=row.problem,
+            reading=row.reading,
             printed=durations_text(study, claim),
             computed=f"{len(velocity)} jumps of velocity, up to {' and '.join(sizes)}",
             kind="velocity jumps",
@@ -223,11 +221,13 @@ def _jumps(study: Study, claim: AnyClaim) -> Iterator[Finding]:
 
 def _limits_statement(study: Study, claim: StatementClaim) -> Iterator[Finding]:
     about = [study.case.claim(i) for i in claim.of]
-    for rid in study.readings:
+    for reading in study.readings:
         judged: list[tuple[AnyClaim, str | None, _Judged]] = [
-            (c, pid, _judged(study, c, pid, rid)) for c, pid in study.pairs_under(about, rid)
+            (row.claim, row.problem, _judged(row)) for row in rows_under(study, about, reading)
         ]
-        judged += [one for c in left_out(study, about, rid) for one in _elsewhere(study, c, rid)]
+        judged += [
+            one for c in left_out(study, about, reading) for one in _elsewhere(study, c, reading)
+        ]
         if not judged:
             continue
         breaking = [one for one in judged if one[2].verdict is ClaimVerdict.REFUTED]
@@ -261,7 +261,7 @@ def _limits_statement(study: Study, claim: StatementClaim) -> Iterator[Finding]:
             verdict=verdict,
             basis=Basis.ENCLOSURE,
             claim=claim.id,
-            reading=rid,
+            reading=reading,
             kind=str(verdict),
             sentences=tuple(sentences),
             follows=tuple(f"{BLENDS if blended(c) else LIMITS} {c.id}" for c, _, _ in breaking),
@@ -269,19 +269,19 @@ def _limits_statement(study: Study, claim: StatementClaim) -> Iterator[Finding]:
 
 
 def _placed(
-    study: Study, statement: StatementClaim, claim: AnyClaim, pid: str | None, judged: _Judged
+    study: Study, statement: StatementClaim, claim: AnyClaim, problem: str | None, judged: _Judged
 ) -> tuple[str, ...]:
     """What is said of durations, behind their place where the statement stands at another."""
     first, *others = judged.sentences
-    where = called_under(study, claim, pid)
+    where = called_under(study, claim, problem)
     return first if where == statement.where else f"{where}: {first}", *others
 
 
 def _elsewhere(
-    study: Study, claim: AnyClaim, rid: str
+    study: Study, claim: AnyClaim, reading: str
 ) -> Iterator[tuple[AnyClaim, str | None, _Judged]]:
     """What is known of the limits where no motion is built: rows with blends have a rule."""
-    rows = [row for row in judge_row(study, claim) if row.reading == rid]
+    rows = [row for row in judge_row(study, claim) if row.reading == reading]
     for row in rows:
         if row.verdict is not None:
             judged = _Judged(row.verdict, row.severity, row.sentences, _ELSEWHERE)
@@ -293,13 +293,13 @@ def _elsewhere(
 
 
 def _continuity(study: Study, claim: StatementClaim) -> Iterator[Finding]:
-    for rid in study.readings:
+    for reading in study.readings:
         jumps, built = [], True
-        motions = study.pairs_under(map(study.case.claim, claim.of), rid)
-        for other, pid in motions:
-            curve = study.claim_problem(other, pid, rid).curve
+        motions = rows_under(study, map(study.case.claim, claim.of), reading)
+        for row in motions:
+            curve = row.posed().curve
             built &= all(curve.smooth_order(k) >= 2 for k in range(1, curve.segments))
-            jumps += [(pid, jump) for jump in study.claim_check(other, pid, rid).jumps]
+            jumps += [(row, jump) for jump in row.check.jumps]
         if not motions:
             continue
         count = len(motions)
@@ -309,10 +309,10 @@ def _continuity(study: Study, claim: StatementClaim) -> Iterator[Finding]:
             f"In {which} rebuilt from the printed durations, position, velocity and acceleration "
             "agree on both sides of every via-point."
         )
-        if others := left_out(study, map(study.case.claim, claim.of), rid):
+        if others := left_out(study, map(study.case.claim, claim.of), reading):
             verdict, kind = ClaimVerdict.NOT_CHECKABLE, "in part"
             more = f"No motion is built from {all_called(others)}, which it names too."
-        if jumps and all(_may_be_smooth(study, other, pid, rid) for other, pid in motions):
+        if jumps and all(map(_may_be_smooth, motions)):
             verdict, kind, more = ClaimVerdict.NOT_CHECKABLE, "may be smooth", ""
             message = (
                 "The motion jumps at the printed durations; what rounds to them or is cut off to "
@@ -321,8 +321,8 @@ def _continuity(study: Study, claim: StatementClaim) -> Iterator[Finding]:
         elif jumps:
             largest_ones = " and ".join(
                 f"in {JUMPING[top.order]} of joint {top.joint} at t = {top.time:.6g} s by "
-                f"{jump_size(study, where, rid, top):.6g} {jump_unit(study, where, rid, top)}"
-                for where, top in largest_of_each_kind(study, rid, jumps)
+                f"{jump_size(row, top):.6g} {jump_unit(row, top)}"
+                for row, top in largest_of_each_kind(jumps)
             )
             verdict, kind, more = ClaimVerdict.INCONSISTENT, "jumps", ""
             message = (
@@ -333,33 +333,33 @@ def _continuity(study: Study, claim: StatementClaim) -> Iterator[Finding]:
             verdict=verdict,
             basis=Basis.CHECK,
             claim=claim.id,
-            reading=rid,
+            reading=reading,
             kind=kind,
             sentences=(message, more),
             built=built and verdict is ClaimVerdict.SUPPORTED,
         )
 
 
-def _may_be_smooth(study: Study, claim: AnyClaim, pid: str, rid: str) -> bool:
+def _may_be_smooth(row: Row[AnyClaim]) -> bool:
     """Whether durations that round to the digits have the proportions with which nothing jumps."""
-    problem = study.claim_problem(claim, pid, rid)
+    problem = row.posed()
     shares = problem.curve.smooth_shares(problem.waypoints)
     if shares is None:
-        return not study.claim_check(claim, pid, rid).jumps
-    if study.case.statement(pid, rid).loose_ends:
+        return not row.check.jumps
+    if row.statement.loose_ends:
         return True
-    box = study.claim_boxes(claim, pid, rid)[0].or_cut_off()
+    box = row.boxes[0].or_cut_off()
     return bool((box.lower / shares).max() <= (box.upper / shares).min())
 
 
 def _said_to_jump(study: Study, claim: StatementClaim) -> Iterator[Finding]:
     """A reading under which acceleration does not jump speaks against itself, not the paper."""
-    for rid in study.readings:
-        motions = study.pairs_under(map(study.case.claim, claim.of), rid)
+    for reading in study.readings:
+        motions = rows_under(study, map(study.case.claim, claim.of), reading)
         jumps = [
-            (pid, jump)
-            for other, pid in motions
-            for jump in study.claim_check(other, pid, rid).jumps
+            (row, jump)
+            for row in motions
+            for jump in row.check.jumps
             if jump.order == 2 and claim.joint in (None, jump.joint)
         ]
         if not motions:
@@ -367,9 +367,8 @@ def _said_to_jump(study: Study, claim: StatementClaim) -> Iterator[Finding]:
         whose = "" if claim.joint is None else f" of joint {claim.joint}"
         if jumps:
             most = " and ".join(
-                f"at t = {top.time:.6g} s by {jump_size(study, where, rid, top):.6g} "
-                f"{jump_unit(study, where, rid, top)}"
-                for where, top in largest_of_each_kind(study, rid, jumps)
+                f"at t = {top.time:.6g} s by {jump_size(row, top):.6g} {jump_unit(row, top)}"
+                for row, top in largest_of_each_kind(jumps)
             )
             verdict, kind = ClaimVerdict.SUPPORTED, "jumps"
             message = (
@@ -387,34 +386,33 @@ def _said_to_jump(study: Study, claim: StatementClaim) -> Iterator[Finding]:
             verdict=verdict,
             basis=Basis.CHECK,
             claim=claim.id,
-            reading=rid,
+            reading=reading,
             kind=kind,
             sentences=(message,),
         )
 
 
 def _used_up(study: Study, claim: AnyClaim) -> Iterator[Finding]:
-    for pid, rid in study.claim_pairs(claim):
-        if not has_curve(study, claim, pid, rid):
+    for row in rows(study, claim):
+        if not row.has_curve:
             continue
-        problem = study.claim_problem(claim, pid, rid)
+        problem = row.posed()
         tight = []
         for r, quantity in enumerate(QUANTITIES, start=1):
             limits = problem.limits.sides[:, :, r - 1]
-            for top in largest(study, claim, pid, rid, r):
+            for top in largest(row, r):
                 limit = float(limits[int(top.value > 0.0), top.joint])
                 if not np.isfinite(limit):
                     continue
-                reach = box_reach(study, claim, pid, rid, top)
+                reach = box_reach(row, top)
                 if abs(abs(top.value) - limit) <= reach <= _NARROW * limit:
                     label = problem.joints[top.joint]
                     value, around, bound = (
-                        in_units(study, pid, rid, quantity, x, label)
-                        for x in (abs(top.value), reach, limit)
+                        in_units(row, quantity, x, label) for x in (abs(top.value), reach, limit)
                     )
                     tight.append(
                         f"joint {label} {quantity} {value:.6g} ± {around:.1g} "
-                        f"at its limit {bound:.6g} {unit_shown(study, pid, rid, quantity, label)}"
+                        f"at its limit {bound:.6g} {unit_shown(row, quantity, label)}"
                     )
         if tight:
             yield Finding(
@@ -422,8 +420,8 @@ def _used_up(study: Study, claim: AnyClaim) -> Iterator[Finding]:
                 verdict=ClaimVerdict.SUPPORTED,
                 basis=Basis.CHECK,
                 claim=claim.id,
-                problem=pid,
-                reading=rid,
+                problem=row.problem,
+                reading=row.reading,
                 printed=durations_text(study, claim),
                 computed="; ".join(tight),
                 kind="reached",

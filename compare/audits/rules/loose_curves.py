@@ -2,23 +2,22 @@
 
 from __future__ import annotations
 
+from ....problem.cases import Claim
 from ...documents import ClaimVerdict
-from ..study import Study
+from ..row import Row
 
 FITTING = ClaimVerdict.SUPPORTED, ""
 """What it says that a printed number fits: verdict and no note."""
 
 
-def misfit(study: Study, pid: str, rid: str) -> tuple[ClaimVerdict, str]:
+def misfit(row: Row[Claim]) -> tuple[ClaimVerdict, str]:
     """What it says that a printed number does not fit the motion.
 
     What rounds to derivatives at the ends, knots and parameters is not looked at, and may be why.
 
     Parameters
     ----------
-    study : Study
-    pid, rid : str
-        Problem and reading.
+    row : Row
 
     Returns
     -------
@@ -26,7 +25,7 @@ def misfit(study: Study, pid: str, rid: str) -> tuple[ClaimVerdict, str]:
     note : str
         A further sentence; may be empty.
     """
-    loose = study.case.statement(pid, rid).declaration.loose
+    loose = row.statement.declaration.loose
     if not loose:
         return ClaimVerdict.INCONSISTENT, ""
     return ClaimVerdict.NOT_CHECKABLE, f"{loose} are rounded numbers, which may explain it."

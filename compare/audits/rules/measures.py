@@ -8,11 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from ....problem import QUANTITIES, Array, Printed, Trajectory, fit
-from ....problem.cases import AnyClaim, MeasureClaim
+from ....problem.cases import AnyClaim, Claim, MeasureClaim
 from ...documents import Finding
+from ..row import Row, rows
 from ..study import Study
 from .motion_numbers import SAMPLES, NumberBeside, finding_of_numbers, nearest_number
-from .peaks import each_motion, has_curve, peak_numbers
+from .peaks import each_motion, peak_numbers
 from .wording import in_units, unit_shown
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(10)
@@ -135,52 +136,43 @@ def judge_measures(study: Study) -> Iterator[Finding]:
 
 
 def _measures(study: Study, claim: MeasureClaim, motion: AnyClaim) -> Iterator[Finding]:
-    for pid, rid in study.claim_pairs(motion):
-        if claim.problem not in (None, pid) or not has_curve(study, motion, pid, rid):
+    for row in rows(study, motion):
+        if claim.problem not in (None, row.problem) or not row.has_curve:
             continue
-        joints = study.claim_problem(motion, pid, rid).joints
+        joints = row.posed().joints
         pairs = [(j, n) for j, n in peak_numbers(study, claim) if j is None or j in joints]
         if not pairs:
             continue
-        found = [
-            (joint, measure_beside(study, claim, number, motion, joint, pid, rid))
-            for joint, number in pairs
-        ]
+        found = [(joint, measure_beside(row, claim, number, joint)) for joint, number in pairs]
 
-        def unit(joint: str | None, pair: tuple[str, str] = (pid, rid)) -> str:
-            return _unit(study, claim, joint, *pair)
+        def unit(joint: str | None, row: Row[AnyClaim] = row) -> str:
+            return _unit(row, claim, joint)
 
         def name(joint: str | None, one: NumberBeside) -> str:
             whose = one.meaning if joint is None else f" of joint {joint}"
             return f"the {NAMES[claim.measure]} of {claim.derivative}{whose}"
 
-        yield finding_of_numbers(study, "TG208", claim, motion, (pid, rid), found, unit, name)
+        yield finding_of_numbers(row, "TG208", claim, found, unit, name)
 
 
-def _unit(study: Study, claim: MeasureClaim, joint: str | None, pid: str, rid: str) -> str:
+def _unit(row: Row[Claim], claim: MeasureClaim, joint: str | None) -> str:
     own, by_time = _POWERS[claim.measure]
-    unit = unit_shown(study, pid, rid, claim.derivative, joint)
+    unit = unit_shown(row, claim.derivative, joint)
     shown = unit if own == 1 else f"({unit})²"
-    return f"{shown}·{study.time_unit}" if by_time else shown
+    return f"{shown}·{row.study.time_unit}" if by_time else shown
 
 
 def measure_beside(
-    study: Study,
-    claim: MeasureClaim,
-    printed: Printed,
-    motion: AnyClaim,
-    joint: str | None,
-    pid: str,
-    rid: str,
+    row: Row[AnyClaim], claim: MeasureClaim, printed: Printed, joint: str | None
 ) -> NumberBeside:
     """A printed number beside the measure that it is nearest to, of those that it may be."""
-    problem = study.claim_problem(motion, pid, rid)
-    box, points = study.claim_boxes(motion, pid, rid)
+    problem = row.posed()
+    box, points = row.boxes
     order = QUANTITIES.index(claim.derivative) + 1
     index = None if joint is None else problem.joints.index(joint)
     own, by_time = _POWERS[claim.measure]
-    unit = in_units(study, pid, rid, claim.derivative, 1.0, joint) ** own
-    unit *= in_units(study, pid, rid, "time", 1.0) ** by_time
+    unit = in_units(row, claim.derivative, 1.0, joint) ** own
+    unit *= in_units(row, "time", 1.0) ** by_time
 
     def meant(waypoints: Array, durations: Array) -> dict[str, float]:
         trajectory = fit(problem.curve, waypoints, durations)

@@ -11,7 +11,7 @@ from ....problem import Array, Printed, TrajgapError
 from ....problem.cases import AnyClaim, MeasureClaim, ValueClaim
 from ...documents import Basis, ClaimVerdict, Finding
 from ..rounding import RoundingBox
-from ..study import Study
+from ..row import Row
 from .corners import Look, largest_change
 from .loose_curves import FITTING, misfit
 from .printed_digits import hull
@@ -151,11 +151,9 @@ def _with(values: Array, k: tuple[int, ...], others: Array) -> Array:
 
 
 def finding_of_numbers(
-    study: Study,
+    row: Row[AnyClaim],
     rule: str,
     claim: MeasureClaim | ValueClaim,
-    motion: AnyClaim,
-    pair: tuple[str, str],
     found: Sequence[tuple[str | None, NumberBeside]],
     unit: Callable[[str | None], str],
     name: Callable[[str | None, NumberBeside], str],
@@ -164,13 +162,10 @@ def finding_of_numbers(
 
     Parameters
     ----------
-    study : Study
+    row : Row
+        The durations whose motion it is.
     rule : str
     claim : MeasureClaim or ValueClaim
-    motion : AnyClaim
-        The durations whose motion it is.
-    pair : tuple of str
-        Problem and reading.
     found : sequence of (str or None, NumberBeside)
         With the joint of each; not empty.
     unit : callable
@@ -189,21 +184,21 @@ def finding_of_numbers(
         f"{one.fits or UNEXPLAINED}"
         for joint, one in (wrong or found)
     ]
-    verdict, note = misfit(study, *pair) if wrong else FITTING
+    verdict, note = misfit(row) if wrong else FITTING
     clash = verdict is ClaimVerdict.INCONSISTENT
     return Finding(
         rule=rule,
         verdict=verdict,
         basis=Basis.CHECK if all(one.met for _, one in found) else Basis.COMPUTED,
         claim=claim.id,
-        problem=pair[0],
-        reading=pair[1],
+        problem=row.problem,
+        reading=row.reading,
         printed=", ".join(map(str, claim.printed)),
         computed="; ".join(
             f"{one.exact:.6g} ± {one.reach:.1g} {unit(joint)}" for joint, one in found
         ),
         kind=", ".join("fits" if one.fits else "off" for _, one in (wrong or found)),
-        sentences=(f"Of the printed durations ({called(motion)}): {'; '.join(said)}.", note),
-        root=f"{claim.quantity}s of {motion.id}" if clash else "",
-        between=(claim.id, motion.id) if clash else (),
+        sentences=(f"Of the printed durations ({called(row.claim)}): {'; '.join(said)}.", note),
+        root=f"{claim.quantity}s of {row.claim.id}" if clash else "",
+        between=(claim.id, row.claim.id) if clash else (),
     )

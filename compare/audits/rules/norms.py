@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ....problem import Array, Extremum, Trajectory, fit, peak_gradients
-from ....problem.cases import AnyClaim
-from ..study import Study
+from ....problem.cases import Claim
+from ..row import Row
 
 _PLACES = 65
 """Places of a piece at which the norm is computed before the largest is refined, where it is no
@@ -32,16 +32,12 @@ class Norm:
     reach: float
 
 
-def largest_norm(study: Study, claim: AnyClaim, pid: str, rid: str, order: int) -> Norm:
+def largest_norm(row: Row[Claim], order: int) -> Norm:
     """Largest norm of a derivative on a printed motion.
 
     Parameters
     ----------
-    study : Study
-    claim : AnyClaim
-        A claim of durations.
-    pid, rid : str
-        Problem and reading.
+    row : Row
     order : int
         1 for velocity, 2 for acceleration, 3 for jerk.
 
@@ -49,8 +45,8 @@ def largest_norm(study: Study, claim: AnyClaim, pid: str, rid: str, order: int) 
     -------
     Norm
     """
-    problem = study.claim_problem(claim, pid, rid)
-    durations, waypoints = study.claim_boxes(claim, pid, rid)
+    problem = row.posed()
+    durations, waypoints = row.boxes
     trajectory = fit(problem.curve, problem.waypoints, durations.value)
     top, piece, s = max(_top(trajectory, k, order) for k in range(len(trajectory.durations)))
     values = _values(trajectory, piece, order, np.array([s]))[:, 0]

@@ -19,9 +19,10 @@ from ....problem import (
     fit,
     peak_gradients,
 )
-from ....problem.cases import AnyClaim, MotionValueClaim, PeakClaim, motions_of
+from ....problem.cases import AnyClaim, Claim, MotionValueClaim, PeakClaim, motions_of
 from ...documents import Basis, ClaimVerdict, Finding
 from ..rounding import RoundingBox
+from ..row import Row, rows
 from ..study import Study
 from .corners import Look, largest_change
 from .loose_curves import FITTING, misfit
@@ -142,28 +143,22 @@ class Beside:
         return meant_by_ratio(self.value / self.exact, self.linear)
 
 
-def box_reach(study: Study, claim: AnyClaim, pid: str, rid: str, point: Extremum) -> float:
+def box_reach(row: Row[Claim], point: Extremum) -> float:
     """First-order change of an extremum over the rounding box."""
-    problem = study.claim_problem(claim, pid, rid)
-    durations, waypoints = study.claim_boxes(claim, pid, rid)
+    problem = row.posed()
+    durations, waypoints = row.boxes
     g = peak_gradients(problem, durations.value, [point])
     by_time = np.abs(g.durations[0]) @ (durations.upper - durations.lower) / 2
     half = (waypoints.upper - waypoints.lower)[:, point.joint] / 2
     return float(by_time + np.abs(g.waypoints[0]) @ half)
 
 
-def farthest(
-    study: Study, claim: AnyClaim, pid: str, rid: str, top: Extremum, alone: bool, share: float
-) -> float:
+def farthest(row: Row[AnyClaim], top: Extremum, alone: bool, share: float) -> float:
     """Largest change of a peak that is found in the rounding box.
 
     Parameters
     ----------
-    study : Study
-    claim : AnyClaim
-        A claim of durations.
-    pid, rid : str
-        Problem and reading.
+    row : Row
     top : Extremum
         The peak at the printed numbers.
     alone : bool
@@ -176,7 +171,7 @@ def farthest(
     float
         In the SI unit of the peak.
     """
-    problem = study.claim_problem(claim, pid, rid)
+    problem = row.posed()
     joints = [top.joint] if alone else range(len(problem.joints))
 
     def look(h: RoundingBox, q: RoundingBox) -> Look:
@@ -193,74 +188,58 @@ def farthest(
         )
         return Look(abs(here.value), down, up)
 
-    return largest_change(*study.claim_boxes(claim, pid, rid), share, look)
+    return largest_change(*row.boxes, share, look)
 
 
-def largest(study: Study, claim: AnyClaim, pid: str, rid: str, order: int) -> list[Extremum]:
+def largest(row: Row[Claim], order: int) -> list[Extremum]:
     """Largest extremum of each joint of the claim's problem, at the printed point."""
 
     def compute() -> list[Extremum]:
-        problem = study.claim_problem(claim, pid, rid)
-        durations = study.case.claim_durations(claim, rid).value
+        problem = row.posed()
+        durations = row.durations.value
         trajectory = fit(problem.curve, problem.waypoints, durations)
         return [
             max(extrema(trajectory, j, order), key=lambda e: abs(e.value))
             for j in range(len(problem.joints))
         ]
 
-    return study.once(("largest", claim.id, pid, rid, order), compute)
-
-
-def has_curve(study: Study, claim: AnyClaim, pid: str, rid: str) -> bool:
-    """Whether the printed durations define a curve under a reading."""
-    worst = study.claim_check(claim, pid, rid).worst
-    return worst is None or worst.quantity != "curve"
+    return row.once("largest", compute, order)
 
 
 def beside(
-    study: Study,
-    claim: PeakClaim,
-    printed: Printed,
-    motion: AnyClaim,
-    joint: str | None,
-    pid: str,
-    rid: str,
+    row: Row[AnyClaim], claim: PeakClaim, printed: Printed, joint: str | None
 ) -> Beside | None:
     """A printed peak set beside the exact one of a motion.
 
     Parameters
     ----------
-    study : Study
+    row : Row
     claim : PeakClaim
         Says which derivative.
     printed : Printed
         One of its numbers.
-    motion : AnyClaim
-        A claim of durations.
     joint : str or None
         Label of the joint; the largest over all joints if None.
-    pid, rid : str
-        Problem and reading.
 
     Returns
     -------
     Beside or None
         None where the joint is not in that motion, or it has no curve.
     """
-    if not has_curve(study, motion, pid, rid):
+    if not row.has_curve:
         return None
-    problem = study.claim_problem(motion, pid, rid)
+    problem = row.posed()
     if joint is not None and joint not in problem.joints:
         return None
     order = QUANTITIES.index(claim.derivative) + 1
-    tops = largest(study, motion, pid, rid, order)
+    tops = largest(row, order)
     if joint is not None:
         tops = [tops[problem.joints.index(joint)]]
     top = max(tops, key=lambda e: abs(e.value))
-    measured = study.case.measured(printed, claim.derivative, pid, rid, joint)
+    measured = row.measured(printed, claim.derivative, joint)
     cut = measured.cut_off()
-    samples = _samples(study, motion, pid, rid, order)
-    reach = box_reach(study, motion, pid, rid, top)
+    samples = _samples(row, order)
+    reach = box_reach(row, top)
     found = Beside(
         printed,
         measured.value,
@@ -275,13 +254,11 @@ def beside(
         linear=problem.linear[top.joint],
     )
     if found.kind not in FITS:
-        near, far = (
-            farthest(study, motion, pid, rid, top, joint is not None, share) for share in (1.0, 2.0)
-        )
+        near, far = (farthest(row, top, joint is not None, share) for share in (1.0, 2.0))
         found = replace(found, reach=max(reach, near), far=max(2 * reach, far))
     if joint is not None or len(tops) == 1 or found.kind in FITS:
         return found
-    whole = largest_norm(study, motion, pid, rid, order)
+    whole = largest_norm(row, order)
     sampled = min(float(np.linalg.norm(v, axis=1).max()) for v in samples)
     norm = replace(
         found, exact=whole.largest, reach=whole.reach, far=2 * whole.reach, sampled=sampled
@@ -289,12 +266,12 @@ def beside(
     return replace(found, norm=norm)
 
 
-def _samples(study: Study, motion: AnyClaim, pid: str, rid: str, order: int) -> list[Array]:
+def _samples(row: Row[AnyClaim], order: int) -> list[Array]:
     """Absolute values at evenly spaced times, for each offset that these may have."""
 
     def compute() -> list[Array]:
-        problem = study.claim_problem(motion, pid, rid)
-        durations = study.case.claim_durations(motion, rid).value
+        problem = row.posed()
+        durations = row.durations.value
         trajectory = fit(problem.curve, problem.waypoints, durations)
         step = float(durations.sum()) / _SAMPLES
         offsets = np.arange(_PHASES)[:, None] / _PHASES
@@ -302,7 +279,7 @@ def _samples(study: Study, motion: AnyClaim, pid: str, rid: str, order: int) -> 
         found = np.abs(trajectory(times.ravel(), order))
         return list(found.reshape(_PHASES, _SAMPLES, -1))
 
-    return study.once(("samples", motion.id, pid, rid, order), compute)
+    return row.once("samples", compute, order)
 
 
 def peak_numbers(study: Study, claim: MotionValueClaim) -> list[tuple[str | None, Printed]]:
@@ -344,31 +321,31 @@ def judge_peaks(study: Study) -> Iterator[Finding]:
 
 
 def _peaks(study: Study, claim: PeakClaim, motion: AnyClaim) -> Iterator[Finding]:
-    for pid, rid in study.claim_pairs(motion):
-        if claim.problem not in (None, pid):
+    for row in rows(study, motion):
+        if claim.problem not in (None, row.problem):
             continue
-        taking_part = study.claim_problem(motion, pid, rid).joints
+        taking_part = row.posed().joints
         found = [
             (joint, one)
             for joint, number in peak_numbers(study, claim)
             if joint is None or joint in taking_part
-            for one in (beside(study, claim, number, motion, joint, pid, rid),)
+            for one in (beside(row, claim, number, joint),)
             if one is not None
         ]
         if not found:
             continue
         wrong = [(joint, one) for joint, one in found if one.kind not in FITS]
-        said = [described(study, claim, joint, one, pid, rid) for joint, one in (wrong or found)]
-        verdict, note = misfit(study, pid, rid) if wrong else FITTING
+        said = [described(row, claim, joint, one) for joint, one in (wrong or found)]
+        verdict, note = misfit(row) if wrong else FITTING
         yield Finding(
             rule="TG203",
             verdict=verdict,
             basis=Basis.CHECK if all(one.met for _, one in found) else Basis.COMPUTED,
             claim=claim.id,
-            problem=pid,
-            reading=rid,
+            problem=row.problem,
+            reading=row.reading,
             printed=", ".join(map(str, claim.printed)),
-            computed="; ".join(_exact(study, claim, joint, one, pid, rid) for joint, one in found),
+            computed="; ".join(_exact(row, claim, joint, one) for joint, one in found),
             kind=", ".join(one.kind for _, one in (wrong or found)),
             sentences=(f"Of the printed durations ({called(motion)}): {'; '.join(said)}.", note),
             root=f"peaks of {motion.id}" if verdict is ClaimVerdict.INCONSISTENT else "",
@@ -376,25 +353,21 @@ def _peaks(study: Study, claim: PeakClaim, motion: AnyClaim) -> Iterator[Finding
         )
 
 
-def _exact(
-    study: Study, claim: PeakClaim, joint: str | None, one: Beside, pid: str, rid: str
-) -> str:
+def _exact(row: Row[Claim], claim: PeakClaim, joint: str | None, one: Beside) -> str:
     quantity = claim.derivative
-    value, reach = (in_units(study, pid, rid, quantity, x, joint) for x in (one.exact, one.reach))
-    return f"{value:.6g} ± {reach:.1g} {unit_shown(study, pid, rid, quantity, joint)}"
+    value, reach = (in_units(row, quantity, x, joint) for x in (one.exact, one.reach))
+    return f"{value:.6g} ± {reach:.1g} {unit_shown(row, quantity, joint)}"
 
 
-def described(
-    study: Study, claim: PeakClaim, joint: str | None, one: Beside, pid: str, rid: str
-) -> str:
+def described(row: Row[Claim], claim: PeakClaim, joint: str | None, one: Beside) -> str:
     """One printed peak beside the exact one, with the class of their distance."""
     whose = "" if joint is None else f"joint {joint}: "
-    exact = _exact(study, claim, joint, one, pid, rid)
+    exact = _exact(row, claim, joint, one)
     said = f"{whose}the exact peak of {claim.derivative} is {exact}, printed is {one.printed}"
     room = ""
     if one.exact and one.reach > _WIDE * one.exact:
         room = f", which leaves {100 * one.reach / one.exact:.2g} % either way"
-    norm = "" if one.norm is None else _of_norm(study, claim, one.norm, pid, rid)
+    norm = "" if one.norm is None else _of_norm(row, claim, one.norm)
     away = f"{100 * one.distance:+.2g} %"
     return (
         said
@@ -410,9 +383,9 @@ def described(
     )
 
 
-def _of_norm(study: Study, claim: PeakClaim, one: Beside, pid: str, rid: str) -> str:
+def _of_norm(row: Row[Claim], claim: PeakClaim, one: Beside) -> str:
     """How a printed peak that is not that of a joint is the norm over the joints."""
-    norm = f"the largest norm over the joints, {_exact(study, claim, None, one, pid, rid)}"
+    norm = f"the largest norm over the joints, {_exact(row, claim, None, one)}"
     return {
         Class.CUT_OFF: f"as {norm}, cut off instead of rounded gives it",
         Class.SAMPLING: f"slightly below {norm}, as sampling the motion gives it",

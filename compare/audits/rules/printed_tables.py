@@ -17,6 +17,7 @@ from ....problem.cases import (
 )
 from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..roots import TABLES
+from ..row import Row, rows_under
 from ..study import Study
 from .printed_digits import end_blends, hull, meet
 
@@ -120,21 +121,19 @@ def _at_optimum(study: Study, claims: Iterable[AnyClaim]) -> str | None:
     printed = list(claims)
     rows: list[AnyClaim] = [c for c in printed if isinstance(c, DurationsClaim)]
     rows = rows or [c for c in printed if isinstance(c, MaximumClaim)]
-    for rid in study.readings:
-        pairs = [(c, pid) for c in rows for pid, r in study.claim_pairs(c) if r == rid]
-        if {c.id for c, _ in pairs} == {c.id for c in rows} and all(
-            _is_optimum(study, c, pid, rid) for c, pid in pairs
-        ):
-            return rid
+    for reading in study.readings:
+        posed = rows_under(study, rows, reading)
+        if {row.claim.id for row in posed} == {c.id for c in rows} and all(map(_is_optimum, posed)):
+            return reading
     return None
 
 
-def _is_optimum(study: Study, claim: AnyClaim, pid: str, rid: str) -> bool:
-    total = study.claim_total(claim, rid)
-    solution = study.claim_optimum(claim, pid, rid)
+def _is_optimum(row: Row[AnyClaim]) -> bool:
+    total = row.total
+    solution = row.optimum
     if total is None or not solution.found or solution.infimum is not None:
         return False
-    reached = study.reachable(claim, solution.durations, pid, rid)
+    reached = row.reachable(solution.durations)
     spread = 0.0 if reached is None else max(reached - solution.best, 0.0)
     low, high = total[1]
     return low - spread <= solution.best <= high + spread

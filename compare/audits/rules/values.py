@@ -9,10 +9,11 @@ import numpy as np
 from ....problem import QUANTITIES, Array, Curve, Printed, Trajectory, extrema, fit
 from ....problem.cases import AnyClaim, ValueClaim, named_places
 from ...documents import Finding
+from ..row import Row, rows
 from ..sentences import place_of_value
 from ..study import Study
 from .motion_numbers import SAMPLES, NumberBeside, finding_of_numbers, nearest_number
-from .peaks import each_motion, has_curve, peak_numbers
+from .peaks import each_motion, peak_numbers
 from .wording import in_units, unit_shown
 
 _NO_MOTION = "Without durations, this cannot be computed."
@@ -29,14 +30,14 @@ def judge_values(study: Study) -> Iterator[Finding]:
 
 
 def _values(study: Study, claim: ValueClaim, motion: AnyClaim) -> Iterator[Finding]:
-    for pid, rid in study.claim_pairs(motion):
-        if claim.problem not in (None, pid) or not has_curve(study, motion, pid, rid):
+    for row in rows(study, motion):
+        if claim.problem not in (None, row.problem) or not row.has_curve:
             continue
-        joints = study.claim_problem(motion, pid, rid).joints
+        joints = row.posed().joints
         sole = joints[0] if len(joints) == 1 else None
         pairs = [(sole if j is None else j, n) for j, n in peak_numbers(study, claim)]
         found = [
-            (joint, value_beside(study, claim, number, motion, joint, pid, rid))
+            (joint, value_beside(row, claim, number, joint))
             for joint, number in pairs
             if joint in joints
         ]
@@ -45,35 +46,29 @@ def _values(study: Study, claim: ValueClaim, motion: AnyClaim) -> Iterator[Findi
         where = place_of_value(study.case, claim)
         size = f"{claim.place} " if claim.place in ("largest", "smallest") else ""
 
-        def unit(joint: str | None, pair: tuple[str, str] = (pid, rid)) -> str:
-            return unit_shown(study, *pair, claim.derivative, joint)
+        def unit(joint: str | None, row: Row[AnyClaim] = row) -> str:
+            return unit_shown(row, claim.derivative, joint)
 
         def name(joint: str | None, one: NumberBeside, size: str = size, at: str = where) -> str:
             return f"the {size}{claim.derivative} of joint {joint}{at}{one.meaning}"
 
-        yield finding_of_numbers(study, "TG211", claim, motion, (pid, rid), found, unit, name)
+        yield finding_of_numbers(row, "TG211", claim, found, unit, name)
 
 
 def value_beside(
-    study: Study,
-    claim: ValueClaim,
-    printed: Printed,
-    motion: AnyClaim,
-    joint: str | None,
-    pid: str,
-    rid: str,
+    row: Row[AnyClaim], claim: ValueClaim, printed: Printed, joint: str | None
 ) -> NumberBeside:
     """A printed number beside the value of one joint; where it jumps, on its nearer side."""
-    problem = study.claim_problem(motion, pid, rid)
-    box, points = study.claim_boxes(motion, pid, rid)
+    problem = row.posed()
+    box, points = row.boxes
     j, order = problem.joints.index(str(joint)), _ORDERS[claim.derivative]
-    unit = in_units(study, pid, rid, claim.derivative, 1.0, joint)
-    statement = study.case.statement(pid, rid)
+    unit = in_units(row, claim.derivative, 1.0, joint)
+    statement = row.statement
     at = None if claim.place is None else named_places(statement)[claim.place]
     spread, instant = 0.0, None
     drawn = fit(problem.curve, points.value, box.value)
     if claim.time is not None:
-        measured = study.case.measured(claim.time, "time", claim.problem, rid)
+        measured = row.time(claim.time)
         instant = measured.value
         ends = [_near(drawn, t, j, order) for t in (measured.lower, measured.upper, instant)]
         spread = unit * max(abs(x - y) for x in ends[2] for end in ends[:2] for y in end)

@@ -5,60 +5,55 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from ....problem import Jump, from_si, shown_unit
-from ....problem.cases import AnyClaim
+from ....problem.cases import AnyClaim, Claim
 from ...documents import UNITS, noted, si_unit
+from ..row import Row, rows_under
 from ..study import Study
 
+_Jump = tuple[Row[Claim], Jump]
+"""A jump with the row whose motion it is of."""
 JUMPING = ("position", "velocity", "acceleration")
 """What jumps, by its order."""
 UNEXPLAINED = "off by more than rounding, cut-off or sampling was found to explain"
 """Said of a printed value of a motion that is not that of the printed durations."""
 
 
-def unit_shown(study: Study, pid: str, rid: str, quantity: str, joint: str | None = None) -> str:
+def unit_shown(row: Row[Claim], quantity: str, joint: str | None = None) -> str:
     """The unit that a quantity is printed in, as a sentence writes it; SI where none is stated.
 
     Parameters
     ----------
-    study : Study
-    pid, rid : str
-        Problem and reading.
+    row : Row
     quantity : str
         "position", "velocity", "acceleration", "jerk" or "time".
     joint : str, optional
         Label of the joint whose unit it is; needed where units differ.
     """
-    unit, linear = _unit(study, pid, rid, quantity, joint)
+    unit, linear = _unit(row, quantity, joint)
     if unit is not None:
         return shown_unit(unit)
     return si_unit(quantity, linear) if quantity in UNITS else "s"
 
 
-def in_units(
-    study: Study, pid: str, rid: str, quantity: str, value: float, joint: str | None = None
-) -> float:
+def in_units(row: Row[Claim], quantity: str, value: float, joint: str | None = None) -> float:
     """A number in rad or m and s, in the unit that its quantity is printed in.
 
     Parameters
     ----------
-    study : Study
-    pid, rid : str
-        Problem and reading.
+    row : Row
     quantity : str
         "position", "velocity", "acceleration", "jerk" or "time".
     value : float
     joint : str, optional
         As for `unit_shown`.
     """
-    unit, _ = _unit(study, pid, rid, quantity, joint)
+    unit, _ = _unit(row, quantity, joint)
     return value if unit is None else from_si(value, unit)
 
 
-def _unit(
-    study: Study, pid: str, rid: str, quantity: str, joint: str | None
-) -> tuple[str | None, bool]:
+def _unit(row: Row[Claim], quantity: str, joint: str | None) -> tuple[str | None, bool]:
     """The unit that a quantity is printed in, if one is stated, and whether the joint slides."""
-    statement = study.case.statement(pid, rid)
+    statement = row.statement
     if quantity not in UNITS:
         return (statement.units.time if quantity in ("duration", "time") else None), False
     place = None if joint is None else statement.labels.index(joint)
@@ -66,36 +61,28 @@ def _unit(
     return statement.unit(quantity, place), linear  # type: ignore[arg-type]
 
 
-def largest_of_each_kind(
-    study: Study, rid: str, jumps: Sequence[tuple[str, Jump]]
-) -> list[tuple[str, Jump]]:
+def largest_of_each_kind(jumps: Sequence[_Jump]) -> list[_Jump]:
     """The largest jump of joints that turn and that of joints that slide, where there are any.
 
-    Parameters
-    ----------
-    study : Study
-    rid : str
-        Reading.
-    jumps : sequence of (str, Jump)
-        With the problem of each; the kind of the first one stands first.
+    The kind of the first one stands first.
     """
-    found: dict[bool, tuple[str, Jump]] = {}
-    for pid, jump in jumps:
-        statement = study.case.statement(pid, rid)
+    found: dict[bool, _Jump] = {}
+    for row, jump in jumps:
+        statement = row.statement
         linear = statement.linear[statement.labels.index(jump.joint)]
         if linear not in found or abs(jump.size) > abs(found[linear][1].size):
-            found[linear] = pid, jump
+            found[linear] = row, jump
     return list(found.values())
 
 
-def jump_size(study: Study, pid: str, rid: str, jump: Jump) -> float:
+def jump_size(row: Row[Claim], jump: Jump) -> float:
     """Size of a jump in the unit of its joint."""
-    return in_units(study, pid, rid, JUMPING[jump.order], jump.size, jump.joint)
+    return in_units(row, JUMPING[jump.order], jump.size, jump.joint)
 
 
-def jump_unit(study: Study, pid: str, rid: str, jump: Jump) -> str:
+def jump_unit(row: Row[Claim], jump: Jump) -> str:
     """The unit of a jump, as a sentence writes it."""
-    return unit_shown(study, pid, rid, JUMPING[jump.order], jump.joint)
+    return unit_shown(row, JUMPING[jump.order], jump.joint)
 
 
 def called(claim: AnyClaim) -> str:
@@ -103,11 +90,11 @@ def called(claim: AnyClaim) -> str:
     return claim.where.split(";")[0].strip()
 
 
-def called_under(study: Study, claim: AnyClaim, pid: str | None) -> str:
+def called_under(study: Study, claim: AnyClaim, problem: str | None) -> str:
     """A claim by its place, and the problem in brackets where the claim is about several."""
     problems = {one.id: one.title or one.id for one in study.case.problems}
-    several = len(problems) > 1 and pid != claim.problem
-    return noted(called(claim), problems[str(pid)] if several else "")
+    several = len(problems) > 1 and problem != claim.problem
+    return noted(called(claim), problems[str(problem)] if several else "")
 
 
 def all_called(claims: Iterable[AnyClaim]) -> str:
@@ -121,10 +108,10 @@ def durations_text(study: Study, claim: AnyClaim) -> str:
     return f"{durations} {study.time_unit}"
 
 
-def left_out(study: Study, named: Iterable[AnyClaim], rid: str) -> list[AnyClaim]:
+def left_out(study: Study, named: Iterable[AnyClaim], reading: str) -> list[AnyClaim]:
     """Claims that a statement names and from which no motion is built under a reading.
 
     They are of another curve, or have another number of durations than the curve has segments.
     """
-    chosen = (None, *(pid for pid, _ in study.pairs))
-    return [c for c in named if c.problem in chosen and not study.pairs_under([c], rid)]
+    chosen = (None, *study.problems)
+    return [c for c in named if c.problem in chosen and not rows_under(study, [c], reading)]

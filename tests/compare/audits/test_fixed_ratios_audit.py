@@ -160,8 +160,8 @@ def test_digits_of_durations_and_ratios_decide_whether_they_agree(
     durations: Numbers, ratios: object, rows: Sequence[Numbers], off: bool
 ) -> None:
     study = study_of(text(durations, ratios, rows=rows))
-    found = off_ratios(study, study.case.claim("d"), "main", "as-printed")
-    assert (found is not None) is off
+    (row,) = rows(study, study.case.claim("d"))
+    assert (off_ratios(row) is not None) is off
 
 
 def test_two_readings_stand_side_by_side() -> None:
