@@ -78,6 +78,11 @@ class KeptRuns(_Strict):
     its own."""
     runs: tuple[KeptRun, ...]
 
+    @property
+    def pair(self) -> Pair:
+        """Problem and reading."""
+        return Pair(self.problem, self.reading)
+
 
 class _File(_Strict):
     format: Literal["trajgap-paper-runs-1"]
@@ -113,9 +118,9 @@ def _about(study: Study, group: KeptRuns) -> bool:
         return False
     if not group.seal:
         return not study.has_problems
-    if Pair(group.problem, group.reading) not in study.pairs:
+    if group.pair not in study.pairs:
         return False
-    return problem_seal(study.problem(Pair(group.problem, group.reading))) == group.seal
+    return problem_seal(study.problem(group.pair)) == group.seal
 
 
 def _reached(study: Study, group: KeptRuns, within: tuple[float, ...]) -> Reached:
@@ -177,8 +182,8 @@ def _reference(study: Study, group: KeptRuns) -> Reference | None:
         one = group.optimum
         return None if one is None else Reference(upper=one.upper, lower=known(one.lower))
     if group.apart:
-        return searched_for(study, Pair(group.problem, group.reading))
-    return reference_of(study.optimum(Pair(group.problem, group.reading)))
+        return searched_for(study, group.pair)
+    return reference_of(study.optimum(group.pair))
 
 
 def searched_for(study: Study, pair: Pair) -> Reference | None:
@@ -201,5 +206,5 @@ def _searched(study: Study, group: KeptRuns) -> str:
     head = f"{titles[group.problem]}: " if len(titles) > 1 else ""
     if group.apart:
         return f"{head}each joint by itself, longest duration per segment"
-    several = len(study.problem(Pair(group.problem, group.reading)).joints) > 1
+    several = len(study.problem(group.pair).joints) > 1
     return f"{head}{'all joints together' if several else 'the one joint'}"

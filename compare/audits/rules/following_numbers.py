@@ -26,11 +26,11 @@ from ..row import Row, rows
 from ..study import Study
 from .improvements import allowed_bases
 from .measures import measure_beside
-from .peaks import beside, peak_numbers
+from .motion_numbers import printed_numbers
+from .peaks import beside
 from .printed_tables import printed_alike, printed_total
 from .printed_vertices import has_vertices
 from .values import value_beside
-from .wording import in_units
 
 
 def in_digits(value: Fraction | Decimal | float, like: Printed, rounding: str = "") -> str:
@@ -132,7 +132,8 @@ def _of_motion(study: Study, claim: MotionValueClaim) -> dict[str, tuple[str, ..
             if claim.problem not in (None, row.problem) or row.reading != study.main_reading:
                 continue
             found = [
-                _number(row, claim, number, joint) for joint, number in peak_numbers(study, claim)
+                _number(row, claim, number, joint)
+                for joint, number in printed_numbers(study, claim)
             ]
             if None not in found:
                 key = "value" if claim.values is None else "values"
@@ -144,23 +145,18 @@ def _number(
     row: Row[AnyClaim], claim: MotionValueClaim, printed: Printed, joint: str | None
 ) -> str | None:
     """One number of a motion; None where it has none."""
-    problem = row.posed()
     if isinstance(claim, PeakClaim):
         one = beside(row, claim, printed, joint)
-        if one is None:
-            return None
-        # One number for several joints may be the norm over them, where that is nearer.
-        exact = [one.exact, *([] if one.norm is None else [one.norm.exact])]
-        nearest = min(exact, key=lambda value: abs(value - one.value))
-        return in_digits(in_units(row, claim.derivative, nearest, joint), printed)
-    if joint is None and isinstance(claim, ValueClaim):
-        joint = problem.joints[0]
-    if joint is not None and joint not in problem.joints:
+    elif isinstance(claim, ValueClaim):
+        one = value_beside(row, claim, printed, joint or row.posed().joints[0])
+    else:
+        assert isinstance(claim, MeasureClaim)
+        one = measure_beside(row, claim, printed, joint)
+    if one is None:
         return None
-    if isinstance(claim, ValueClaim):
-        return in_digits(value_beside(row, claim, printed, joint).exact, printed)
-    assert isinstance(claim, MeasureClaim)
-    return in_digits(measure_beside(row, claim, printed, joint).exact, printed)
+    # One number for several joints may be the norm over them, where that is nearer.
+    exact = [one.exact, *([] if one.norm is None else [one.norm.exact])]
+    return in_digits(min(exact, key=lambda value: abs(value - float(printed.fraction))), printed)
 
 
 def _vertices(study: Study, claim: ControlVerticesClaim) -> dict[str, tuple[str, ...]]:

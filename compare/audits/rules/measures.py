@@ -2,27 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
 from ....problem import QUANTITIES, Array, Printed, Trajectory, fit
-from ....problem.cases import AnyClaim, Claim, MeasureClaim
-from ...documents import Finding
-from ..row import Row, rows
-from ..study import Study
-from .motion_numbers import SAMPLES, NumberBeside, finding_of_numbers, nearest_number
-from .peaks import each_motion, peak_numbers
-from .wording import in_units, unit_shown
+from ....problem.cases import AnyClaim, MeasureClaim
+from ..row import Row
+from .motion_numbers import POWERS, SAMPLES, Beside, MotionNumbers, nearest_number, told
+from .wording import in_units
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(10)
 """Gauss-Legendre on -1..1: exact up to degree 19, and squares of declared polynomials have 18."""
 _PARTS = 8
 """Parts of each piece beside its zeros: norms, and curves that are no polynomial in time, are
 smooth enough there."""
-_POWERS = {"mean": (1, 0), "rms": (1, 0), "integral": (1, 1), "integral-square": (2, 1)}
-"""Powers of the derivative's unit and of time in each measure."""
 NAMES = {
     "mean": "mean absolute value",
     "rms": "root mean square",
@@ -30,8 +24,6 @@ NAMES = {
     "integral-square": "integral of the square",
 }
 """Each measure in words."""
-_NO_MOTION = "Without durations, this cannot be computed."
-"""Said of a measure where nothing defines a motion."""
 
 
 @dataclass(frozen=True)
@@ -130,47 +122,17 @@ def sampled(trajectory: Trajectory, order: int, measure: str) -> list[MotionMeas
     return found
 
 
-def judge_measures(study: Study) -> Iterator[Finding]:
-    """Findings of TG208."""
-    return each_motion(study, MeasureClaim, _measures, "TG208", _NO_MOTION)
-
-
-def _measures(study: Study, claim: MeasureClaim, motion: AnyClaim) -> Iterator[Finding]:
-    for row in rows(study, motion):
-        if claim.problem not in (None, row.problem) or not row.has_curve:
-            continue
-        joints = row.posed().joints
-        pairs = [(j, n) for j, n in peak_numbers(study, claim) if j is None or j in joints]
-        if not pairs:
-            continue
-        found = [(joint, measure_beside(row, claim, number, joint)) for joint, number in pairs]
-
-        def unit(joint: str | None, row: Row[AnyClaim] = row) -> str:
-            return _unit(row, claim, joint)
-
-        def name(joint: str | None, one: NumberBeside) -> str:
-            whose = one.meaning if joint is None else f" of joint {joint}"
-            return f"the {NAMES[claim.measure]} of {claim.derivative}{whose}"
-
-        yield finding_of_numbers(row, "TG208", claim, found, unit, name)
-
-
-def _unit(row: Row[Claim], claim: MeasureClaim, joint: str | None) -> str:
-    own, by_time = _POWERS[claim.measure]
-    unit = unit_shown(row, claim.derivative, joint)
-    shown = unit if own == 1 else f"({unit})²"
-    return f"{shown}·{row.study.time_unit}" if by_time else shown
-
-
 def measure_beside(
     row: Row[AnyClaim], claim: MeasureClaim, printed: Printed, joint: str | None
-) -> NumberBeside:
+) -> Beside | None:
     """A printed number beside the measure that it is nearest to, of those that it may be."""
     problem = row.posed()
+    if joint is not None and joint not in problem.joints:
+        return None
     box, points = row.boxes
     order = QUANTITIES.index(claim.derivative) + 1
     index = None if joint is None else problem.joints.index(joint)
-    own, by_time = _POWERS[claim.measure]
+    own, by_time = POWERS[claim.measure]
     unit = in_units(row, claim.derivative, 1.0, joint) ** own
     unit *= in_units(row, "time", 1.0) ** by_time
 
@@ -181,4 +143,19 @@ def measure_beside(
 
     coarse = sampled(fit(problem.curve, points.value, box.value), order, claim.measure)
     samples = [{words: unit * x for words, x in one.meant(index).items()} for one in coarse]
-    return nearest_number(printed, meant, samples, box, points)
+    return nearest_number(printed, meant, samples, box, points, joint)
+
+
+def _described(row: Row[AnyClaim], claim: MeasureClaim, one: Beside) -> str:
+    whose = one.meaning if one.joint is None else f" of joint {one.joint}"
+    return told(row, claim, f"the {NAMES[claim.measure]} of {claim.derivative}{whose}", one)
+
+
+judge_measures = MotionNumbers(
+    "TG208",
+    MeasureClaim,
+    measure_beside,
+    _described,
+    "Without durations, this cannot be computed.",
+).judge
+"""Findings of TG208."""

@@ -14,7 +14,8 @@ from ..row import Row, rows
 from ..stated import prints_durations
 from ..study import Study
 from .continuous_time import broken
-from .peaks import FITS, beside, peak_numbers
+from .motion_numbers import printed_numbers
+from .peaks import beside
 from .printed_tables import doubted
 from .wording import called
 
@@ -43,9 +44,9 @@ def _peaks_elsewhere(study: Study, claim: PeakClaim, own: AnyClaim) -> Iterator[
     for row in rows(study, own):
         joints = study.problem(row.pair).joints
         said = []
-        for joint, number in peak_numbers(study, claim):
+        for joint, number in printed_numbers(study, claim):
             mine = beside(row, claim, number, joint)
-            if mine is None or mine.kind in FITS:
+            if mine is None or mine.fits:
                 continue
             found = []
             for motion in motions:
@@ -56,7 +57,7 @@ def _peaks_elsewhere(study: Study, claim: PeakClaim, own: AnyClaim) -> Iterator[
                     if (motion.id, other) == (own.id, joint):
                         continue
                     there = beside(elsewhere, claim, number, other)
-                    if there is not None and there.kind in FITS:
+                    if there is not None and there.fits:
                         found.append((abs(there.distance), motion, other))
             if found:
                 distance, motion, other = min(found, key=lambda one: one[0])

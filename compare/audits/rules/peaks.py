@@ -2,11 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
-from enum import StrEnum
-from functools import cached_property
-from typing import TypeVar
+from dataclasses import replace
 
 import numpy as np
 
@@ -19,128 +15,20 @@ from ....problem import (
     fit,
     peak_gradients,
 )
-from ....problem.cases import AnyClaim, Claim, MotionValueClaim, PeakClaim, motions_of
-from ...documents import Basis, ClaimVerdict, Finding
+from ....problem.cases import AnyClaim, Claim, PeakClaim
 from ..rounding import RoundingBox
-from ..row import Row, rows
-from ..study import Study
+from ..row import Row
 from .corners import Look, largest_change
-from .loose_curves import FITTING, misfit
+from .motion_numbers import Beside, Class, MotionNumbers, around
 from .norms import largest_norm
-from .unit_factors import meant_by_ratio
-from .wording import UNEXPLAINED, called, in_units, unit_shown
+from .wording import UNEXPLAINED, in_units
 
-_Value = TypeVar("_Value", bound=MotionValueClaim)
 _SAMPLES = 50
 """Samples of a motion at the coarsest: fewer would show corners in a printed figure."""
 _PHASES = 8
 """Offsets at which those samples are tried: the worst of so many comes near the worst of all."""
-_ROOTS = (2, 3, 5)
-"""Numbers whose square roots closed forms of peaks hold, such as 10/√3 of degree 5 and 84√5/25 of
-degree 7: one that is lost in print is named as an explanation."""
 _WIDE = 0.05
 """Share of a peak above which the room that digits leave is said: what then fits tells little."""
-_NO_MOTION = "No durations are printed whose motion could have this peak."
-"""Said of a peak where nothing defines a motion."""
-
-
-class Class(StrEnum):
-    """How a printed peak lies beside the exact one."""
-
-    ROUNDING = "rounding"
-    CUT_OFF = "cut off"
-    SAMPLING = "sampling"
-    NORM = "norm over the joints"
-    UNIT = "other unit"
-    ROOT = "root left out"
-    OFF = "off"
-
-
-FITS = (Class.ROUNDING, Class.CUT_OFF, Class.SAMPLING, Class.NORM)
-"""The classes that accuse of nothing."""
-
-
-@dataclass(frozen=True, eq=False)
-class Beside:
-    """A printed peak beside the exact one of a motion.
-
-    Attributes
-    ----------
-    printed : Printed
-    lower, upper, cut_lower, cut_upper : float
-        What the digits stand for, rounded or cut off, in the SI unit.
-    exact : float
-        The exact peak, at the printed durations and way-points.
-    reach : float
-        Its change over all values that round to the printed digits: of first order, and where that
-        does not reach the printed peak the largest that is found, if it is larger.
-    far : float
-        The same over values that are cut off to the printed digits, which lie up to a whole last
-        place away.
-    sampled : float
-        The least peak that coarse sampling of that motion finds.
-    norm : Beside, optional
-        The same beside the largest norm over the joints, where one number speaks of several.
-    linear : bool
-        Whether it is that of a joint that slides.
-    """
-
-    printed: Printed
-    value: float
-    lower: float
-    upper: float
-    cut_lower: float
-    cut_upper: float
-    exact: float
-    reach: float
-    far: float
-    sampled: float
-    norm: Beside | None = None
-    linear: bool = False
-
-    @property
-    def met(self) -> bool:
-        """Whether the exact peak rounds to the printed digits, the other numbers as printed."""
-        return self.lower <= self.exact <= self.upper
-
-    @property
-    def distance(self) -> float:
-        """Relative distance of the printed peak from the exact one."""
-        if self.exact == 0.0:
-            return 0.0 if self.value == 0.0 else np.inf
-        return (self.value - self.exact) / self.exact
-
-    @cached_property
-    def kind(self) -> Class:
-        """How the two lie beside each other, the most charitable first."""
-        low, high = self.exact - self.reach, self.exact + self.reach
-        if self.lower <= high and low <= self.upper:
-            return Class.ROUNDING
-        low, high = self.exact - self.far, self.exact + self.far
-        widest = max(self.upper, self.cut_upper)
-        if min(self.lower, self.cut_lower) <= high and low <= widest:
-            return Class.CUT_OFF
-        if self.sampled - self.far <= widest and self.value < self.exact:
-            return Class.SAMPLING
-        if self.norm is not None and self.norm.kind in FITS:
-            return Class.NORM
-        if self.root is not None:
-            return Class.ROOT
-        return Class.OFF if self.factor is None else Class.UNIT
-
-    @property
-    def root(self) -> int | None:
-        """Whose square root a printed peak lacks, if with it the two agree within rounding."""
-        low, high = self.exact - self.reach, self.exact + self.reach
-        fitting = (n for n in _ROOTS if n**0.5 * self.lower <= high and low <= n**0.5 * self.upper)
-        return next(fitting, None)
-
-    @property
-    def factor(self) -> str | None:
-        """What a ratio near that of two units would mean, if it is near one."""
-        if not (self.exact > 0 and self.value > 0):
-            return None
-        return meant_by_ratio(self.value / self.exact, self.linear)
 
 
 def box_reach(row: Row[Claim], point: Extremum) -> float:
@@ -226,10 +114,8 @@ def beside(
     Beside or None
         None where the joint is not in that motion, or it has no curve.
     """
-    if not row.has_curve:
-        return None
     problem = row.posed()
-    if joint is not None and joint not in problem.joints:
+    if not row.has_curve or (joint is not None and joint not in problem.joints):
         return None
     order = QUANTITIES.index(claim.derivative) + 1
     tops = largest(row, order)
@@ -237,33 +123,38 @@ def beside(
         tops = [tops[problem.joints.index(joint)]]
     top = max(tops, key=lambda e: abs(e.value))
     measured = row.measured(printed, claim.derivative, joint)
-    cut = measured.cut_off()
-    samples = _samples(row, order)
-    reach = box_reach(row, top)
-    found = Beside(
-        printed,
-        measured.value,
-        measured.lower,
-        measured.upper,
-        cut.lower,
-        cut.upper,
-        abs(top.value),
-        reach,
-        2 * reach,
-        min(float((v if joint is None else v[:, top.joint]).max()) for v in samples),
-        linear=problem.linear[top.joint],
-    )
-    if found.kind not in FITS:
+    cut, samples = measured.cut_off(), _samples(row, order)
+
+    def of(exact: float, reach: float, far: float, least: float) -> Beside:
+        low, high, lowest, highest, exact, reach, far, least = (
+            in_units(row, claim.derivative, value, joint)
+            for value in (
+                measured.lower,
+                measured.upper,
+                cut.lower,
+                cut.upper,
+                exact,
+                reach,
+                far,
+                least,
+            )
+        )
+        ends, linear = (least, exact), problem.linear[top.joint]
+        return Beside(
+            printed, (low, high), (lowest, highest), exact, reach, far, ends, joint, linear=linear
+        )
+
+    exact, reach = abs(top.value), box_reach(row, top)
+    least = min(float((v if joint is None else v[:, top.joint]).max()) for v in samples)
+    found = of(exact, reach, 2 * reach, least)
+    if not found.fits:
         near, far = (farthest(row, top, joint is not None, share) for share in (1.0, 2.0))
-        found = replace(found, reach=max(reach, near), far=max(2 * reach, far))
-    if joint is not None or len(tops) == 1 or found.kind in FITS:
+        found = of(exact, max(reach, near), max(2 * reach, far), least)
+    if joint is not None or len(tops) == 1 or found.fits:
         return found
     whole = largest_norm(row, order)
-    sampled = min(float(np.linalg.norm(v, axis=1).max()) for v in samples)
-    norm = replace(
-        found, exact=whole.largest, reach=whole.reach, far=2 * whole.reach, sampled=sampled
-    )
-    return replace(found, norm=norm)
+    least = min(float(np.linalg.norm(v, axis=1).max()) for v in samples)
+    return replace(found, norm=of(whole.largest, whole.reach, 2 * whole.reach, least))
 
 
 def _samples(row: Row[AnyClaim], order: int) -> list[Array]:
@@ -282,87 +173,10 @@ def _samples(row: Row[AnyClaim], order: int) -> list[Array]:
     return row.once("samples", compute, order)
 
 
-def peak_numbers(study: Study, claim: MotionValueClaim) -> list[tuple[str | None, Printed]]:
-    """Each printed number of a claim of a derivative with the joint that it belongs to."""
-    if claim.values is None:
-        return [(claim.joint, number) for number in claim.printed]
-    return list(zip(study.case.robot.joints, claim.values, strict=True))
-
-
-def each_motion(
-    study: Study,
-    kind: type[_Value],
-    judge: Callable[[Study, _Value, AnyClaim], Iterator[Finding]],
-    rule: str,
-    without: str,
-) -> Iterator[Finding]:
-    """Findings on each claim of a kind beside each motion that it may describe.
-
-    ``without`` is said of a claim where nothing printed defines such a motion.
-    """
-    for claim in study.claims:
-        if isinstance(claim, kind):
-            meant = motions_of(study.case.claims, claim)
-            for motion in meant:
-                yield from judge(study, claim, motion)
-            if not meant:
-                yield Finding(
-                    rule=rule,
-                    basis=Basis.TEXT,
-                    claim=claim.id,
-                    kind="no motion",
-                    sentences=(without,),
-                )
-
-
-def judge_peaks(study: Study) -> Iterator[Finding]:
-    """Findings of TG203."""
-    return each_motion(study, PeakClaim, _peaks, "TG203", _NO_MOTION)
-
-
-def _peaks(study: Study, claim: PeakClaim, motion: AnyClaim) -> Iterator[Finding]:
-    for row in rows(study, motion):
-        if claim.problem not in (None, row.problem):
-            continue
-        taking_part = row.posed().joints
-        found = [
-            (joint, one)
-            for joint, number in peak_numbers(study, claim)
-            if joint is None or joint in taking_part
-            for one in (beside(row, claim, number, joint),)
-            if one is not None
-        ]
-        if not found:
-            continue
-        wrong = [(joint, one) for joint, one in found if one.kind not in FITS]
-        said = [described(row, claim, joint, one) for joint, one in (wrong or found)]
-        verdict, note = misfit(row) if wrong else FITTING
-        yield Finding(
-            rule="TG203",
-            verdict=verdict,
-            basis=Basis.CHECK if all(one.met for _, one in found) else Basis.COMPUTED,
-            claim=claim.id,
-            problem=row.problem,
-            reading=row.reading,
-            printed=", ".join(map(str, claim.printed)),
-            computed="; ".join(_exact(row, claim, joint, one) for joint, one in found),
-            kind=", ".join(one.kind for _, one in (wrong or found)),
-            sentences=(f"Of the printed durations ({called(motion)}): {'; '.join(said)}.", note),
-            root=f"peaks of {motion.id}" if verdict is ClaimVerdict.INCONSISTENT else "",
-            between=(claim.id, motion.id) if verdict is ClaimVerdict.INCONSISTENT else (),
-        )
-
-
-def _exact(row: Row[Claim], claim: PeakClaim, joint: str | None, one: Beside) -> str:
-    quantity = claim.derivative
-    value, reach = (in_units(row, quantity, x, joint) for x in (one.exact, one.reach))
-    return f"{value:.6g} ± {reach:.1g} {unit_shown(row, quantity, joint)}"
-
-
-def described(row: Row[Claim], claim: PeakClaim, joint: str | None, one: Beside) -> str:
+def _described(row: Row[AnyClaim], claim: PeakClaim, one: Beside) -> str:
     """One printed peak beside the exact one, with the class of their distance."""
-    whose = "" if joint is None else f"joint {joint}: "
-    exact = _exact(row, claim, joint, one)
+    whose = "" if one.joint is None else f"joint {one.joint}: "
+    exact = around(row, claim, one)
     said = f"{whose}the exact peak of {claim.derivative} is {exact}, printed is {one.printed}"
     room = ""
     if one.exact and one.reach > _WIDE * one.exact:
@@ -383,10 +197,20 @@ def described(row: Row[Claim], claim: PeakClaim, joint: str | None, one: Beside)
     )
 
 
-def _of_norm(row: Row[Claim], claim: PeakClaim, one: Beside) -> str:
+def _of_norm(row: Row[AnyClaim], claim: PeakClaim, one: Beside) -> str:
     """How a printed peak that is not that of a joint is the norm over the joints."""
-    norm = f"the largest norm over the joints, {_exact(row, claim, None, one)}"
+    norm = f"the largest norm over the joints, {around(row, claim, one)}"
     return {
         Class.CUT_OFF: f"as {norm}, cut off instead of rounded gives it",
         Class.SAMPLING: f"slightly below {norm}, as sampling the motion gives it",
     }.get(one.kind, f"equal to {norm}, within rounding")
+
+
+judge_peaks = MotionNumbers(
+    "TG203",
+    PeakClaim,
+    beside,
+    _described,
+    "No durations are printed whose motion could have this peak.",
+).judge
+"""Findings of TG203."""

@@ -12,7 +12,7 @@ from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..row import Row, rows
 from ..stated import place
 from ..study import Study
-from .peaks import peak_numbers
+from .motion_numbers import printed_numbers
 from .wording import in_units, unit_shown
 
 _ROUNDING = 1.0 + 1e-9
@@ -59,7 +59,7 @@ def _above(row: Row[AnyClaim], peak: PeakClaim) -> list[str]:
     loosest = row.posed(Digits.LOOSEST_CUT)
     order = QUANTITIES.index(peak.derivative)
     found = []
-    for joint, number in peak_numbers(row.study, peak):
+    for joint, number in printed_numbers(row.study, peak):
         if joint is None and len(loosest.joints) > 1:
             continue
         j = 0 if joint is None else loosest.joints.index(joint) if joint in loosest.joints else None

@@ -2,66 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import numpy as np
 
 from ....problem import QUANTITIES, Array, Curve, Printed, Trajectory, extrema, fit
 from ....problem.cases import AnyClaim, ValueClaim, named_places
-from ...documents import Finding
-from ..row import Row, rows
+from ..row import Row
 from ..sentences import place_of_value
-from ..study import Study
-from .motion_numbers import SAMPLES, NumberBeside, finding_of_numbers, nearest_number
-from .peaks import each_motion, peak_numbers
-from .wording import in_units, unit_shown
+from .motion_numbers import SAMPLES, Beside, MotionNumbers, nearest_number, told
+from .wording import in_units
 
-_NO_MOTION = "Without durations, this cannot be computed."
-"""Said of a value where nothing defines a motion."""
 _ORDERS = {"position": 0, **{name: order for order, name in enumerate(QUANTITIES, 1)}}
 """Order of each derivative."""
 _SAME = 1e-9
 """Share of a value by which its two sides differ where it jumps: far above rounding."""
 
 
-def judge_values(study: Study) -> Iterator[Finding]:
-    """Findings of TG211."""
-    return each_motion(study, ValueClaim, _values, "TG211", _NO_MOTION)
-
-
-def _values(study: Study, claim: ValueClaim, motion: AnyClaim) -> Iterator[Finding]:
-    for row in rows(study, motion):
-        if claim.problem not in (None, row.problem) or not row.has_curve:
-            continue
-        joints = row.posed().joints
-        sole = joints[0] if len(joints) == 1 else None
-        pairs = [(sole if j is None else j, n) for j, n in peak_numbers(study, claim)]
-        found = [
-            (joint, value_beside(row, claim, number, joint))
-            for joint, number in pairs
-            if joint in joints
-        ]
-        if not found:
-            continue
-        where = place_of_value(study.case, claim)
-        size = f"{claim.place} " if claim.place in ("largest", "smallest") else ""
-
-        def unit(joint: str | None, row: Row[AnyClaim] = row) -> str:
-            return unit_shown(row, claim.derivative, joint)
-
-        def name(joint: str | None, one: NumberBeside, size: str = size, at: str = where) -> str:
-            return f"the {size}{claim.derivative} of joint {joint}{at}{one.meaning}"
-
-        yield finding_of_numbers(row, "TG211", claim, found, unit, name)
-
-
 def value_beside(
     row: Row[AnyClaim], claim: ValueClaim, printed: Printed, joint: str | None
-) -> NumberBeside:
+) -> Beside | None:
     """A printed number beside the value of one joint; where it jumps, on its nearer side."""
     problem = row.posed()
+    if joint is None and len(problem.joints) == 1:
+        joint = problem.joints[0]
+    if joint not in problem.joints:
+        return None
     box, points = row.boxes
-    j, order = problem.joints.index(str(joint)), _ORDERS[claim.derivative]
+    j, order = problem.joints.index(joint), _ORDERS[claim.derivative]
     unit = in_units(row, claim.derivative, 1.0, joint)
     statement = row.statement
     at = None if claim.place is None else named_places(statement)[claim.place]
@@ -98,7 +64,7 @@ def value_beside(
             values = drawn(np.linspace(drawn.breaks[0], drawn.breaks[-1], count), order)[:, j]
             top = values.max() if claim.place == "largest" else values.min()
             samples.append({"": unit * float(top)})
-    return nearest_number(printed, meant, samples, box, points, spread)
+    return nearest_number(printed, meant, samples, box, points, joint, spread)
 
 
 def _time_of(curve: Curve, durations: Array, waypoint: int) -> float:
@@ -121,3 +87,20 @@ def _near(motion: Trajectory, time: float, joint: int, order: int) -> tuple[floa
         min(at, pieces - 1), joint, order, np.array([0.0 if at < pieces else 1.0])
     )[0]
     return float(before), float(after)
+
+
+def _described(row: Row[AnyClaim], claim: ValueClaim, one: Beside) -> str:
+    size = f"{claim.place} " if claim.place in ("largest", "smallest") else ""
+    where = place_of_value(row.study.case, claim)
+    name = f"the {size}{claim.derivative} of joint {one.joint}{where}{one.meaning}"
+    return told(row, claim, name, one)
+
+
+judge_values = MotionNumbers(
+    "TG211",
+    ValueClaim,
+    value_beside,
+    _described,
+    "Without durations, this cannot be computed.",
+).judge
+"""Findings of TG211."""

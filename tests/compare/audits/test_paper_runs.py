@@ -35,7 +35,7 @@ def test_each_algorithm_has_its_gap_under_each_handling(case):
 def test_evaluations_were_counted_against_the_optimum_of_today(case):
     for group in kept_runs().groups:
         if group.case == case and group.optimum is not None:
-            own = shipped(case).optimum(group.problem, group.reading)
+            own = shipped(case).optimum(group.pair)
             assert group.optimum.upper == pytest.approx(own.total_time, rel=1e-6)
 
 
