@@ -36,7 +36,7 @@ from .card import verdict_card
 from .causes import find_causes, with_caveats
 from .chosen_case import SEEDS
 from .draft import advise
-from .instances import examined_entry
+from .instances import examinable, examined, examined_entry
 from .judging import judge, rested, weigh
 from .paper_runs import reached
 from .plausibility import implausible
@@ -135,7 +135,7 @@ class CaseAudit:
     @cached_property
     def document(self) -> AuditedCase:
         """What the audit says of the case, as terminal, page, Markdown and JSON print it."""
-        blocks = self.study.instance_blocks
+        blocks = examinable(self.study)
         return AuditedCase(
             case=self.case.id,
             title=self.case.title,
@@ -152,7 +152,7 @@ class CaseAudit:
             readings=known(self.readings, "the case has one reading"),
             left_out=tuple(self.study.intervals.left_out),
             not_replayed=self.study.not_replayed,
-            families=tuple(examined_entry(self.study.instances(b)) for b in blocks),
+            families=tuple(examined_entry(examined(self.study, b)) for b in blocks),
             provenance=provenance(self.study, self.day),
         )
 

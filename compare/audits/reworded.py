@@ -7,10 +7,7 @@ from typing import Any
 
 from ...nlp import PerJointSolution, Solution, printed_problem_or_none
 from ...problem import Case
-from ...problem.cases import InstancesBlock
-from .chosen_case import Pair
-from .instances import InstancesResult
-from .replayed_case import Replays
+from .chosen_case import ChosenCase, Pair, Replays
 from .study import Study
 
 
@@ -69,10 +66,11 @@ class Reworded(Study):
             else super().spread_runs(algorithm_id, pair)
         )
 
-    def instances(self, block: InstancesBlock) -> InstancesResult:
-        """The original's, where all problems and algorithms are the same."""
+    @property
+    def drawing(self) -> ChosenCase:
+        """The original, where all problems and algorithms are the same."""
         same = self.pairs == self.original.pairs and self._replays_alike(*self.pairs)
-        return self.original.instances(block) if same else super().instances(block)
+        return self.original if same else self
 
     def _alike(self, pair: Pair) -> bool:
         """Whether the changed case poses the very same problem, digit by digit."""

@@ -20,9 +20,12 @@ from ...problem import (
     TrajgapError,
     Verdict,
     check,
+    from_si,
     reachable_total,
+    shown_unit,
 )
 from ...problem.cases import (
+    AnyClaim,
     Claim,
     Digits,
     DurationBox,
@@ -31,7 +34,7 @@ from ...problem.cases import (
     Statement,
     TotalTimeClaim,
 )
-from ..documents import Keeping, Rounding, noted
+from ..documents import UNITS, Keeping, Rounding, noted, si_unit
 from .chosen_case import Pair
 from .rounding import RoundingBox, RoundingVerdict, judge_rounding
 from .stated import in_words, in_words_among, place
@@ -86,6 +89,35 @@ class Row(Generic[C]):
     def measured(self, number: Printed, quantity: Quantity, joint: str | None = None) -> Measured:
         """A printed number in the SI unit, with what rounds to its digits."""
         return self.study.case.measured(number, quantity, *self.pair, joint)
+
+    def _unit(self, quantity: str, joint: str | None) -> tuple[str | None, bool]:
+        """The unit that a quantity is printed in, if one is stated; whether the joint slides."""
+        statement = self.statement
+        if quantity not in UNITS:
+            return (statement.units.time if quantity in ("duration", "time") else None), False
+        place = None if joint is None else statement.labels.index(joint)
+        linear = statement.linear[statement.joints[0] if place is None else place]
+        return statement.unit(quantity, place), linear  # type: ignore[arg-type]
+
+    def unit(self, quantity: str, joint: str | None = None) -> str:
+        """The unit that a quantity is printed in, as a sentence writes it; SI where none is stated.
+
+        Parameters
+        ----------
+        quantity : str
+            "position", "velocity", "acceleration", "jerk" or "time".
+        joint : str, optional
+            Label of the joint whose unit it is; needed where units differ.
+        """
+        unit, linear = self._unit(quantity, joint)
+        if unit is not None:
+            return shown_unit(unit)
+        return si_unit(quantity, linear) if quantity in UNITS else "s"
+
+    def in_units(self, quantity: str, value: float, joint: str | None = None) -> float:
+        """A number in rad or m and s, in the unit that its quantity is printed in; as `unit`."""
+        unit, _ = self._unit(quantity, joint)
+        return value if unit is None else from_si(value, unit)
 
     def time(self, number: Printed) -> Measured:
         """A printed time of the claim, s, with what rounds to its digits."""
@@ -295,3 +327,12 @@ def rows(study: Study, claim: C) -> Iterator[Row[C]]:  # type: ignore[misc]
 def rows_under(study: Study, claims: Iterable[C], reading: str) -> list[Row[C]]:
     """Claims with each problem that they speak about under a reading."""
     return [row for one in claims for row in rows(study, one) if row.reading == reading]
+
+
+def left_out(study: Study, named: Iterable[AnyClaim], reading: str) -> list[AnyClaim]:
+    """Claims that a statement names and from which no motion is built under a reading.
+
+    They are of another curve, or have another number of durations than the curve has segments.
+    """
+    chosen = (None, *study.problems)
+    return [c for c in named if c.problem in chosen and not rows_under(study, [c], reading)]

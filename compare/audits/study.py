@@ -28,10 +28,8 @@ from ...nlp.optimum import (
 )
 from ...problem import (
     Array,
-    CaseError,
     Coupling,
     Interpolant,
-    ProcessError,
     TrajgapError,
     as_piecewise,
     fit,
@@ -39,17 +37,14 @@ from ...problem import (
 from ...problem.cases import (
     Claim,
     DurationsClaim,
-    InstancesBlock,
     TimeClaim,
 )
 from ..documents import noted
-from .chosen_case import Pair
-from .instances import InstancesResult, examined, readings_of
-from .replayed_case import ReplayedCase, Replays
+from .chosen_case import ChosenCase, Pair, Replays
 from .stated import in_words, in_words_among
 
 
-class Study(ReplayedCase):
+class Study(ChosenCase):
     """Lazily computed, cached results of one case; the parameters are those of `ChosenCase`."""
 
     def optimum(self, pair: Pair, joint: str | None = None) -> Solution:
@@ -202,32 +197,3 @@ class Study(ReplayedCase):
             return False
         printed = self.case.printed_durations(claim)
         return not printed or len(printed) == self.problem(pair).segments
-
-    @property
-    def instance_blocks(self) -> tuple[InstancesBlock, ...]:
-        """Designs of instances of which both problems and some reading are selected.
-
-        All of it is implemented, and can be replayed.
-        """
-        declared = (block for block in self.case.instances if readings_of(self, block))
-        return tuple(block for block in declared if self.unexamined(block) is None)
-
-    def unexamined(self, block: InstancesBlock) -> str | None:
-        """Why the two procedures of a design cannot be run on its instances; None if they can."""
-        try:
-            self.instances(block)
-        except (CaseError, ProcessError):
-            raise
-        except TrajgapError as error:
-            return str(error)
-        return None
-
-    def instances(self, block: InstancesBlock) -> InstancesResult:
-        """What the two procedures of an improvement do on instances that are drawn for it."""
-
-        def compute() -> InstancesResult:
-            what = f"instances {block.id}"
-            self.progress(what)
-            return examined(self, block, lambda done: self.progress(f"{what}, {done}"))
-
-        return self.once(("instances", block.id), compute)

@@ -1,4 +1,4 @@
-from .drawn import examined, readings_of
+from .drawn import examinable, examined, readings_of, unexamined
 from .entries import examined_entry
 from .result import (
     MIDDLE,
@@ -18,9 +18,11 @@ __all__ = [
     "Optimum",
     "Sample",
     "distribution",
+    "examinable",
     "examined",
     "examined_entry",
     "percent_range",
     "readings_of",
     "reproduced",
+    "unexamined",
 ]

@@ -35,8 +35,7 @@ from ....problem.cases import (
 from ...documents import HeldOtherwise, ReadingClue, Speaks, Why
 from ..row import Row, rows_under
 from ..study import Study
-from .peaks import largest
-from .wording import jump_size, jump_unit, largest_of_each_kind
+from .peaks import jump_size, jump_unit, largest, largest_of_each_kind
 
 _FILLED = 0.1
 """Share of an axis that a curve fills at least, and of a data sheet's limits that printed ones use:

@@ -11,11 +11,10 @@ import numpy as np
 from ....problem import QUANTITIES, Curve, as_piecewise, counts_in_words, fit
 from ....problem.cases import AnyClaim, ConditionsClaim, StatementClaim
 from ...documents import Basis, ClaimVerdict, Finding, Severity
-from ..row import Row, rows_under
-from ..stated import prints_durations
+from ..row import Row, left_out, rows_under
+from ..stated import all_called, called_under, prints_durations
 from ..study import Study
 from .peaks import largest
-from .wording import all_called, called_under, in_units, left_out, unit_shown
 
 _REST = 0.01
 """Share of a derivative's peak up to which its value at an end counts as 0: rounding of the printed
@@ -175,7 +174,7 @@ def _at_rest(
             judged += 1
             built &= _prescribed(row.posed().curve, orders)
             moving += [
-                f"{said} ({called_under(study, row.claim, row.problem)})"
+                f"{said} ({called_under(study.case, row.claim, row.problem)})"
                 for said in _moving(row, orders)
             ]
         if not judged:
@@ -229,9 +228,9 @@ def _moving(row: Row[AnyClaim], orders: Sequence[int]) -> Iterator[str]:
                 continue
             end, joint = np.unravel_index(int(np.argmax(own)), own.shape)
             label = problem.joints[int(joint)]
-            value = in_units(row, quantity, float(own[end, joint]), label)
+            value = row.in_units(quantity, float(own[end, joint]), label)
             where = "starts" if end == 0 else "ends"
             yield (
                 f"joint {label} {where} with a {quantity} of {value:.4g} "
-                f"{unit_shown(row, quantity, label)}"
+                f"{row.unit(quantity, label)}"
             )

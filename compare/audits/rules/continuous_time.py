@@ -19,23 +19,12 @@ from ....problem.cases import (
 from ....verify import shown_bound
 from ...documents import Basis, ClaimVerdict, Finding, Rounding, Severity
 from ..roots import LIMITS
-from ..row import Row, rows, rows_under
+from ..row import Row, left_out, rows, rows_under
+from ..stated import all_called, called_under
 from ..study import Study
 from .kept_limits import UNSAID, meant_to_keep, said_of, said_to_keep
 from .linear_blends import BLENDS, blended, judge_row
-from .peaks import box_reach, largest
-from .wording import (
-    JUMPING,
-    all_called,
-    called_under,
-    durations_text,
-    in_units,
-    jump_size,
-    jump_unit,
-    largest_of_each_kind,
-    left_out,
-    unit_shown,
-)
+from .peaks import JUMPING, box_reach, jump_size, jump_unit, largest, largest_of_each_kind
 
 
 @dataclass(frozen=True)
@@ -83,9 +72,9 @@ def _ratio(row: Row[AnyClaim]) -> str:
     if worst.quantity == "curve":
         return "the printed durations define no curve"
     whose = f"joint {worst.joint}" if worst.joint is not None else f"segment {worst.segment + 1}"
-    unit = unit_shown(row, worst.quantity, worst.joint)
-    value = in_units(row, worst.quantity, abs(worst.value), worst.joint)
-    limit = in_units(row, worst.quantity, worst.limit, worst.joint)
+    unit = row.unit(worst.quantity, worst.joint)
+    value = row.in_units(worst.quantity, abs(worst.value), worst.joint)
+    limit = row.in_units(worst.quantity, worst.limit, worst.joint)
     return f"the {worst.quantity} of {whose} reaches {value:.6g} {unit}, limit {limit:.6g} {unit}"
 
 
@@ -176,7 +165,7 @@ def _limits(study: Study, claim: AnyClaim) -> Iterator[Finding]:
             claim=claim.id,
             problem=row.problem,
             reading=row.reading,
-            printed=durations_text(study, claim),
+            printed=study.durations_digits(claim),
             computed=_ratio(row),
             kind=judged.kind,
             sentences=(
@@ -207,7 +196,7 @@ def _jumps(study: Study, claim: AnyClaim) -> Iterator[Finding]:
             claim=claim.id,
             problem=row.problem,
             reading=row.reading,
-            printed=durations_text(study, claim),
+            printed=study.durations_digits(claim),
             computed=f"{len(velocity)} jumps of velocity, up to {' and '.join(sizes)}",
             kind="velocity jumps",
             sentences=(
@@ -273,7 +262,7 @@ def _placed(
 ) -> tuple[str, ...]:
     """What is said of durations, behind their place where the statement stands at another."""
     first, *others = judged.sentences
-    where = called_under(study, claim, problem)
+    where = called_under(study.case, claim, problem)
     return first if where == statement.where else f"{where}: {first}", *others
 
 
@@ -408,11 +397,11 @@ def _used_up(study: Study, claim: AnyClaim) -> Iterator[Finding]:
                 if abs(abs(top.value) - limit) <= reach <= _NARROW * limit:
                     label = problem.joints[top.joint]
                     value, around, bound = (
-                        in_units(row, quantity, x, label) for x in (abs(top.value), reach, limit)
+                        row.in_units(quantity, x, label) for x in (abs(top.value), reach, limit)
                     )
                     tight.append(
                         f"joint {label} {quantity} {value:.6g} ± {around:.1g} "
-                        f"at its limit {bound:.6g} {unit_shown(row, quantity, label)}"
+                        f"at its limit {bound:.6g} {row.unit(quantity, label)}"
                     )
         if tight:
             yield Finding(
@@ -422,7 +411,7 @@ def _used_up(study: Study, claim: AnyClaim) -> Iterator[Finding]:
                 claim=claim.id,
                 problem=row.problem,
                 reading=row.reading,
-                printed=durations_text(study, claim),
+                printed=study.durations_digits(claim),
                 computed="; ".join(tight),
                 kind="reached",
                 sentences=(

@@ -41,12 +41,11 @@ from ..fixed_ratios import (
     planned_apart,
 )
 from ..roots import LIMITS, OPTIMAL
-from ..row import Row, rows, rows_under
-from ..stated import other_objective
+from ..row import Row, left_out, rows, rows_under
+from ..stated import called, called_under, other_objective
 from ..stated_totals import contradicting_lows, is_sum, rounded_up_low, total_excludes, what_agrees
 from ..study import Study
 from .continuous_time import broken
-from .wording import called, called_under, left_out
 
 _BELOW = "All of it is below the best known total: a misprint or a better optimum may explain it."
 """What is said of a printed total below a best known one."""
@@ -267,7 +266,7 @@ def _weigh(row: Row[AnyClaim], sides: _Sides) -> None:
     if total is None:
         return
     shown, interval = total
-    name = called_under(row.study, claim, row.problem)
+    name = called_under(row.study.case, claim, row.problem)
     other = off_ratios(row)
     if other is not None:
         sides.open.append(f"{name}: printed are {other}, so that it is not of this question")
@@ -364,7 +363,7 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
             if minimised is None:
                 _weigh(row, sides)
             else:
-                name = called_under(study, row.claim, row.problem)
+                name = called_under(study.case, row.claim, row.problem)
                 sides.open.append(
                     f"{name}: minimised for {minimised}, not for time alone, so that a shorter "
                     "motion contradicts nothing"

@@ -26,7 +26,6 @@ from ..row import Row, rows
 from ..study import Study
 from .improvements import allowed_bases
 from .measures import measure_beside
-from .motion_numbers import printed_numbers
 from .peaks import beside
 from .printed_tables import printed_alike, printed_total
 from .printed_vertices import has_vertices
@@ -132,8 +131,7 @@ def _of_motion(study: Study, claim: MotionValueClaim) -> dict[str, tuple[str, ..
             if claim.problem not in (None, row.problem) or row.reading != study.main_reading:
                 continue
             found = [
-                _number(row, claim, number, joint)
-                for joint, number in printed_numbers(study, claim)
+                _number(row, claim, number, joint) for joint, number in study.printed_numbers(claim)
             ]
             if None not in found:
                 key = "value" if claim.values is None else "values"

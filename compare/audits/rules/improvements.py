@@ -12,8 +12,9 @@ from ....problem.cases import (
     MaximumClaim,
 )
 from ...documents import Basis, ClaimVerdict, Finding, Severity
+from ..rounding import hull
 from ..study import Study
-from .printed_digits import compared, hull, meet, shown, span
+from .printed_digits import compared, meet, shown, span
 from .printed_tables import contradicted, doubted, printed_total, total_allowed
 
 _SHARE_OF = {"slower": "the longer total", "faster": "the shorter total"}

@@ -16,7 +16,6 @@ from ..rounding import RoundingBox
 from ..row import Row
 from ..study import Study
 from .kept_limits import UNSAID, meant_to_keep, said_of
-from .wording import durations_text, in_units, unit_shown
 
 BLENDS = "blends"
 """Root of what follows from a row that breaks a limit."""
@@ -114,7 +113,7 @@ def _beside(row: Row[DurationsClaim]) -> Finding:
         claim=claim.id,
         problem=row.problem,
         reading=row.reading,
-        printed=durations_text(study, claim),
+        printed=study.durations_digits(claim),
         computed=computed,
         kind=str(found_verdict),
         sentences=(message, at_print, passes, UNSAID if verdict is not found_verdict else ""),
@@ -201,9 +200,9 @@ def _worst(row: Row[Claim], problem: Problem, plain: Blended) -> str:
             joint = problem.joints[at[1]]
             if np.isinf(size[at]):
                 return f"the speed of joint {joint} jumps, for a blend printed as 0"
-            unit = unit_shown(row, quantity, joint)
-            value = in_units(row, quantity, float(size[at]), joint)
-            limit = in_units(row, quantity, float(limits[at[1], order]), joint)
+            unit = row.unit(quantity, joint)
+            value = row.in_units(quantity, float(size[at]), joint)
+            limit = row.in_units(quantity, float(limits[at[1], order]), joint)
             best = (
                 float(ratio[at]),
                 f"the {quantity} of joint {joint} reaches {value:.6g} {unit}, "

@@ -9,14 +9,17 @@ import numpy as np
 from ....problem import QUANTITIES, Array, Printed, Trajectory, fit
 from ....problem.cases import AnyClaim, MeasureClaim
 from ..row import Row
-from .motion_numbers import POWERS, SAMPLES, Beside, MotionNumbers, nearest_number, told
-from .wording import in_units
+from .beside import SAMPLES, Beside, nearest_number
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(10)
 """Gauss-Legendre on -1..1: exact up to degree 19, and squares of declared polynomials have 18."""
 _PARTS = 8
 """Parts of each piece beside its zeros: norms, and curves that are no polynomial in time, are
 smooth enough there."""
+_POWERS = {"mean": (1, 0), "rms": (1, 0), "integral": (1, 1), "integral-square": (2, 1)}
+"""Powers of the derivative's unit and of time in each measure."""
+
+
 NAMES = {
     "mean": "mean absolute value",
     "rms": "root mean square",
@@ -132,9 +135,12 @@ def measure_beside(
     box, points = row.boxes
     order = QUANTITIES.index(claim.derivative) + 1
     index = None if joint is None else problem.joints.index(joint)
-    own, by_time = POWERS[claim.measure]
-    unit = in_units(row, claim.derivative, 1.0, joint) ** own
-    unit *= in_units(row, "time", 1.0) ** by_time
+    own, by_time = _POWERS[claim.measure]
+    unit = row.in_units(claim.derivative, 1.0, joint) ** own
+    unit *= row.in_units("time", 1.0) ** by_time
+    shown = row.unit(claim.derivative, joint)
+    shown = shown if own == 1 else f"({shown})²"
+    shown += f"·{row.study.time_unit}" if by_time else ""
 
     def meant(waypoints: Array, durations: Array) -> dict[str, float]:
         trajectory = fit(problem.curve, waypoints, durations)
@@ -143,19 +149,10 @@ def measure_beside(
 
     coarse = sampled(fit(problem.curve, points.value, box.value), order, claim.measure)
     samples = [{words: unit * x for words, x in one.meant(index).items()} for one in coarse]
-    return nearest_number(printed, meant, samples, box, points, joint)
+    return nearest_number(printed, shown, joint, meant, samples, row.boxes)
 
 
-def _described(row: Row[AnyClaim], claim: MeasureClaim, one: Beside) -> str:
+def measure_described(row: Row[AnyClaim], claim: MeasureClaim, one: Beside) -> str:
+    """One printed measure beside that of the motion."""
     whose = one.meaning if one.joint is None else f" of joint {one.joint}"
-    return told(row, claim, f"the {NAMES[claim.measure]} of {claim.derivative}{whose}", one)
-
-
-judge_measures = MotionNumbers(
-    "TG208",
-    MeasureClaim,
-    measure_beside,
-    _described,
-    "Without durations, this cannot be computed.",
-).judge
-"""Findings of TG208."""
+    return one.told(f"the {NAMES[claim.measure]} of {claim.derivative}{whose}")

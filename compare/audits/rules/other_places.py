@@ -11,13 +11,11 @@ from ....problem import check
 from ....problem.cases import AnyClaim, DurationsClaim, PeakClaim, TimeClaim, motions_of
 from ...documents import Basis, Finding
 from ..row import Row, rows
-from ..stated import prints_durations
+from ..stated import called, prints_durations
 from ..study import Study
 from .continuous_time import broken
-from .motion_numbers import printed_numbers
 from .peaks import beside
 from .printed_tables import doubted
-from .wording import called
 
 _FEWEST = 3
 """Durations that two rows need in common before equal digits are worth a word."""
@@ -44,7 +42,7 @@ def _peaks_elsewhere(study: Study, claim: PeakClaim, own: AnyClaim) -> Iterator[
     for row in rows(study, own):
         joints = study.problem(row.pair).joints
         said = []
-        for joint, number in printed_numbers(study, claim):
+        for joint, number in study.printed_numbers(claim):
             mine = beside(row, claim, number, joint)
             if mine is None or mine.fits:
                 continue

@@ -1,8 +1,9 @@
-"""TG203: printed peaks beside the exact peaks of the motion that they describe."""
+"""Peaks and jumps of a printed motion, and printed peaks beside them."""
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -10,7 +11,9 @@ from ....problem import (
     QUANTITIES,
     Array,
     Extremum,
+    Jump,
     Printed,
+    Trajectory,
     extrema,
     fit,
     peak_gradients,
@@ -18,10 +21,7 @@ from ....problem import (
 from ....problem.cases import AnyClaim, Claim, PeakClaim
 from ..rounding import RoundingBox
 from ..row import Row
-from .corners import Look, largest_change
-from .motion_numbers import Beside, Class, MotionNumbers, around
-from .norms import largest_norm
-from .wording import UNEXPLAINED, in_units
+from .beside import UNEXPLAINED, Beside, Class, Look, largest_change
 
 _SAMPLES = 50
 """Samples of a motion at the coarsest: fewer would show corners in a printed figure."""
@@ -29,6 +29,13 @@ _PHASES = 8
 """Offsets at which those samples are tried: the worst of so many comes near the worst of all."""
 _WIDE = 0.05
 """Share of a peak above which the room that digits leave is said: what then fits tells little."""
+_NORM_PLACES = 65
+"""Places of a piece at which the norm is computed before the largest is refined, where it is no
+polynomial in time: many for a curve that turns a few times."""
+_Jump = tuple[Row[Claim], Jump]
+"""A jump with the row whose motion it is of."""
+JUMPING = ("position", "velocity", "acceleration")
+"""What jumps, by its order."""
 
 
 def box_reach(row: Row[Claim], point: Extremum) -> float:
@@ -124,10 +131,11 @@ def beside(
     top = max(tops, key=lambda e: abs(e.value))
     measured = row.measured(printed, claim.derivative, joint)
     cut, samples = measured.cut_off(), _samples(row, order)
+    unit = row.unit(claim.derivative, joint)
 
     def of(exact: float, reach: float, far: float, least: float) -> Beside:
         low, high, lowest, highest, exact, reach, far, least = (
-            in_units(row, claim.derivative, value, joint)
+            row.in_units(claim.derivative, value, joint)
             for value in (
                 measured.lower,
                 measured.upper,
@@ -141,7 +149,16 @@ def beside(
         )
         ends, linear = (least, exact), problem.linear[top.joint]
         return Beside(
-            printed, (low, high), (lowest, highest), exact, reach, far, ends, joint, linear=linear
+            printed,
+            (low, high),
+            (lowest, highest),
+            exact,
+            reach,
+            far,
+            ends,
+            unit,
+            joint,
+            linear=linear,
         )
 
     exact, reach = abs(top.value), box_reach(row, top)
@@ -173,15 +190,101 @@ def _samples(row: Row[AnyClaim], order: int) -> list[Array]:
     return row.once("samples", compute, order)
 
 
-def _described(row: Row[AnyClaim], claim: PeakClaim, one: Beside) -> str:
+@dataclass(frozen=True)
+class Norm:
+    """Largest norm of a derivative over the joints.
+
+    Attributes
+    ----------
+    largest : float
+        At the printed durations and way-points: the true maximum where pieces are polynomials in
+        time, else the largest of `_NORM_PLACES` values a piece, refined.
+    reach : float
+        Its first-order change over all values that round to the printed digits.
+    """
+
+    largest: float
+    reach: float
+
+
+def largest_norm(row: Row[Claim], order: int) -> Norm:
+    """Largest norm of a derivative on a printed motion.
+
+    Parameters
+    ----------
+    row : Row
+    order : int
+        1 for velocity, 2 for acceleration, 3 for jerk.
+
+    Returns
+    -------
+    Norm
+    """
+    problem = row.posed()
+    durations, waypoints = row.boxes
+    trajectory = fit(problem.curve, problem.waypoints, durations.value)
+    top, piece, s = max(_norm_top(trajectory, k, order) for k in range(len(trajectory.durations)))
+    values = _norm_values(trajectory, piece, order, np.array([s]))[:, 0]
+    points = [Extremum(j, piece, order, s, 0.0, float(v)) for j, v in enumerate(values)]
+    g = peak_gradients(problem, durations.value, points)
+    # The norm's gradient weighs each joint's by its share; at the top its place does not count.
+    share = values / top if top else np.zeros_like(values)
+    by_time = np.abs(share @ g.durations) @ (durations.upper - durations.lower) / 2
+    half = (waypoints.upper - waypoints.lower).T / 2
+    by_angle = np.sum(np.abs(share[:, None] * g.waypoints) * half)
+    return Norm(top, float(by_time + by_angle))
+
+
+def _norm_values(trajectory: Trajectory, piece: int, order: int, places: Array) -> Array:
+    """A derivative at places of a piece, one row per joint."""
+    each = [trajectory.values(piece, j, order, places) for j in range(trajectory.joints)]
+    return np.asarray(each, dtype=np.float64)
+
+
+def _norm_top(trajectory: Trajectory, piece: int, order: int) -> tuple[float, int, float]:
+    """Largest norm on a piece, and where it is."""
+
+    def norm(places: Array) -> Array:
+        found = np.linalg.norm(_norm_values(trajectory, piece, order, places), axis=0)
+        return np.asarray(found, dtype=np.float64)
+
+    if trajectory.polynomial_in_time:
+        places = _turning(trajectory, piece, order)
+    else:
+        places = np.linspace(0.0, 1.0, _NORM_PLACES)
+        k = int(norm(places).argmax())
+        around = (places[max(k - 1, 0)], places[min(k + 1, _NORM_PLACES - 1)])
+        from scipy.optimize import minimize_scalar  # a quarter of a second, and few need it
+
+        best = minimize_scalar(lambda s: -float(norm(np.array([s]))[0]), bounds=around)
+        places = np.append(places, best.x)
+    values = norm(places)
+    k = int(values.argmax())
+    return float(values[k]), piece, float(places[k])
+
+
+def _turning(trajectory: Trajectory, piece: int, order: int) -> Array:
+    """Both ends, and every place where the norm can turn: roots of the derivative of its square.
+
+    The square Σ_j q_j² is a polynomial. Real parts of all roots, since rounding moves double ones
+    off the axis; a place too many changes no largest value.
+    """
+    square = np.polynomial.Polynomial([0.0])
+    for joint in range(trajectory.joints):
+        square += np.polynomial.Polynomial(trajectory.derivative(piece, joint, order)) ** 2
+    turns = np.clip(square.deriv().roots().real, 0.0, 1.0)
+    return np.concatenate([[0.0, 1.0], turns])
+
+
+def peak_described(row: Row[AnyClaim], claim: PeakClaim, one: Beside) -> str:
     """One printed peak beside the exact one, with the class of their distance."""
     whose = "" if one.joint is None else f"joint {one.joint}: "
-    exact = around(row, claim, one)
+    exact = one.around
     said = f"{whose}the exact peak of {claim.derivative} is {exact}, printed is {one.printed}"
     room = ""
     if one.exact and one.reach > _WIDE * one.exact:
         room = f", which leaves {100 * one.reach / one.exact:.2g} % either way"
-    norm = "" if one.norm is None else _of_norm(row, claim, one.norm)
+    norm = "" if one.norm is None else _of_norm(one.norm)
     away = f"{100 * one.distance:+.2g} %"
     return (
         said
@@ -197,20 +300,34 @@ def _described(row: Row[AnyClaim], claim: PeakClaim, one: Beside) -> str:
     )
 
 
-def _of_norm(row: Row[AnyClaim], claim: PeakClaim, one: Beside) -> str:
+def _of_norm(one: Beside) -> str:
     """How a printed peak that is not that of a joint is the norm over the joints."""
-    norm = f"the largest norm over the joints, {around(row, claim, one)}"
+    norm = f"the largest norm over the joints, {one.around}"
     return {
         Class.CUT_OFF: f"as {norm}, cut off instead of rounded gives it",
         Class.SAMPLING: f"slightly below {norm}, as sampling the motion gives it",
     }.get(one.kind, f"equal to {norm}, within rounding")
 
 
-judge_peaks = MotionNumbers(
-    "TG203",
-    PeakClaim,
-    beside,
-    _described,
-    "No durations are printed whose motion could have this peak.",
-).judge
-"""Findings of TG203."""
+def largest_of_each_kind(jumps: Sequence[_Jump]) -> list[_Jump]:
+    """The largest jump of joints that turn and that of joints that slide, where there are any.
+
+    The kind of the first one stands first.
+    """
+    found: dict[bool, _Jump] = {}
+    for row, jump in jumps:
+        statement = row.statement
+        linear = statement.linear[statement.labels.index(jump.joint)]
+        if linear not in found or abs(jump.size) > abs(found[linear][1].size):
+            found[linear] = row, jump
+    return list(found.values())
+
+
+def jump_size(row: Row[Claim], jump: Jump) -> float:
+    """Size of a jump in the unit of its joint."""
+    return row.in_units(JUMPING[jump.order], jump.size, jump.joint)
+
+
+def jump_unit(row: Row[Claim], jump: Jump) -> str:
+    """The unit of a jump, as a sentence writes it."""
+    return row.unit(JUMPING[jump.order], jump.joint)

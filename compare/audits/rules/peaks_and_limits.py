@@ -12,8 +12,6 @@ from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..row import Row, rows
 from ..stated import place
 from ..study import Study
-from .motion_numbers import printed_numbers
-from .wording import in_units, unit_shown
 
 _ROUNDING = 1.0 + 1e-9
 """Factor by which a peak exceeds its limit at least: far above the rounding of units to floats."""
@@ -59,7 +57,7 @@ def _above(row: Row[AnyClaim], peak: PeakClaim) -> list[str]:
     loosest = row.posed(Digits.LOOSEST_CUT)
     order = QUANTITIES.index(peak.derivative)
     found = []
-    for joint, number in printed_numbers(row.study, peak):
+    for joint, number in row.study.printed_numbers(peak):
         if joint is None and len(loosest.joints) > 1:
             continue
         j = 0 if joint is None else loosest.joints.index(joint) if joint in loosest.joints else None
@@ -70,8 +68,8 @@ def _above(row: Row[AnyClaim], peak: PeakClaim) -> list[str]:
         measured = row.measured(number, peak.derivative, label)
         least = measured.value - (measured.upper - measured.lower)
         if np.isfinite(limit) and least > limit * _ROUNDING:
-            shown = in_units(row, peak.derivative, limit, label)
-            unit = unit_shown(row, peak.derivative, label)
+            shown = row.in_units(peak.derivative, limit, label)
+            unit = row.unit(peak.derivative, label)
             found.append(
                 f"{number} {unit} for the {peak.derivative} of joint {label}, whose "
                 f"limit is at most {shown:.6g} {unit}, however its digits are read"

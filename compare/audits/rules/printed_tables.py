@@ -17,9 +17,10 @@ from ....problem.cases import (
 )
 from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..roots import TABLES
+from ..rounding import hull
 from ..row import Row, rows_under
 from ..study import Study
-from .printed_digits import end_blends, hull, meet
+from .printed_digits import end_blends, meet
 
 _Timed = DurationsClaim | MaximumClaim | TotalTimeClaim
 """Claims that state a total, or durations of which it is the sum."""

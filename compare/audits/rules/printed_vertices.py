@@ -11,8 +11,9 @@ from ....problem.cases import ControlVerticesClaim, Statement
 from ....problem.curves import vertex_matrix
 from ....verify import shown_bound
 from ...documents import Basis, ClaimVerdict, Finding, Severity, ranged
+from ..rounding import hull
 from ..study import Study
-from .printed_digits import hull, meet
+from .printed_digits import meet
 
 
 @dataclass(frozen=True)

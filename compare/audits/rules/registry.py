@@ -14,11 +14,10 @@ from .continuous_time import judge_motions
 from .distances import judge_distances
 from .improvements import judge_improvements
 from .linear_blends import judge_blends
-from .measures import judge_measures
+from .motion_numbers import judge_measures, judge_peaks, judge_values
 from .on_instances import judge_instances
 from .open_points import list_open_points
 from .other_places import judge_places
-from .peaks import judge_peaks
 from .peaks_and_limits import judge_peak_limits
 from .printed_chain import judge_kinematics
 from .printed_digits import judge_digits
@@ -29,7 +28,6 @@ from .printed_vertices import judge_vertices
 from .profiles import judge_profiles
 from .replays import judge_replays
 from .scaling_law import judge_scaling
-from .values import judge_values
 
 
 @dataclass(frozen=True)

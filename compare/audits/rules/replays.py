@@ -30,9 +30,8 @@ from ...gaps import (
     share_of_pairs,
     spread,
 )
-from ..chosen_case import Pair
+from ..chosen_case import Pair, Replays
 from ..replay_settings import LISTED
-from ..replayed_case import Replays
 from ..row import rows_under
 from ..stated import other_objective
 from ..study import Study

@@ -13,9 +13,8 @@ from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..fixed_ratios import off_ratios
 from ..roots import OPTIMAL
 from ..row import rows_under
-from ..stated import other_objective
+from ..stated import called_under, other_objective
 from ..study import Study
-from .wording import called_under
 
 
 def judge_scaling(study: Study) -> Iterator[Finding]:
@@ -110,7 +109,7 @@ def _stretched(
     allowed = f"{reachable:.6g} s"
     if allowed != exact:
         exact += f", or {allowed} with the rounding of way-points, limits and durations allowed for"
-    places = [called_under(study, row.claim, row.problem) for row in (slow, fast)]
+    places = [called_under(study.case, row.claim, row.problem) for row in (slow, fast)]
     beside = Finding(
         rule="TG301",
         verdict=ClaimVerdict.INCONSISTENT,

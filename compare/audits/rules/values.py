@@ -7,9 +7,8 @@ import numpy as np
 from ....problem import QUANTITIES, Array, Curve, Printed, Trajectory, extrema, fit
 from ....problem.cases import AnyClaim, ValueClaim, named_places
 from ..row import Row
-from ..sentences import place_of_value
-from .motion_numbers import SAMPLES, Beside, MotionNumbers, nearest_number, told
-from .wording import in_units
+from ..stated import place_of_value
+from .beside import SAMPLES, Beside, nearest_number
 
 _ORDERS = {"position": 0, **{name: order for order, name in enumerate(QUANTITIES, 1)}}
 """Order of each derivative."""
@@ -28,7 +27,7 @@ def value_beside(
         return None
     box, points = row.boxes
     j, order = problem.joints.index(joint), _ORDERS[claim.derivative]
-    unit = in_units(row, claim.derivative, 1.0, joint)
+    unit = row.in_units(claim.derivative, 1.0, joint)
     statement = row.statement
     at = None if claim.place is None else named_places(statement)[claim.place]
     spread, instant = 0.0, None
@@ -64,7 +63,8 @@ def value_beside(
             values = drawn(np.linspace(drawn.breaks[0], drawn.breaks[-1], count), order)[:, j]
             top = values.max() if claim.place == "largest" else values.min()
             samples.append({"": unit * float(top)})
-    return nearest_number(printed, meant, samples, box, points, joint, spread)
+    shown = row.unit(claim.derivative, joint)
+    return nearest_number(printed, shown, joint, meant, samples, row.boxes, spread)
 
 
 def _time_of(curve: Curve, durations: Array, waypoint: int) -> float:
@@ -89,18 +89,8 @@ def _near(motion: Trajectory, time: float, joint: int, order: int) -> tuple[floa
     return float(before), float(after)
 
 
-def _described(row: Row[AnyClaim], claim: ValueClaim, one: Beside) -> str:
+def value_described(row: Row[AnyClaim], claim: ValueClaim, one: Beside) -> str:
+    """One printed value beside that of the motion."""
     size = f"{claim.place} " if claim.place in ("largest", "smallest") else ""
     where = place_of_value(row.study.case, claim)
-    name = f"the {size}{claim.derivative} of joint {one.joint}{where}{one.meaning}"
-    return told(row, claim, name, one)
-
-
-judge_values = MotionNumbers(
-    "TG211",
-    ValueClaim,
-    value_beside,
-    _described,
-    "Without durations, this cannot be computed.",
-).judge
-"""Findings of TG211."""
+    return one.told(f"the {size}{claim.derivative} of joint {one.joint}{where}{one.meaning}")

@@ -13,9 +13,9 @@ from scipy.interpolate import CubicSpline
 from support.findings import finding, study_of
 from support.made_up import Numbers, claim, paper, peak, row
 from trajgap.compare.audits import rows
+from trajgap.compare.audits.rules.beside import Beside
 from trajgap.compare.audits.rules.measures import NAMES, measured
-from trajgap.compare.audits.rules.motion_numbers import Beside
-from trajgap.compare.audits.rules.norms import _top, largest_norm
+from trajgap.compare.audits.rules.peaks import _norm_top, largest_norm
 from trajgap.compare.documents import ClaimVerdict, Confidence
 from trajgap.problem import (
     Curve,
@@ -195,7 +195,9 @@ def test_one_number_of_several_joints_may_be_their_norm_largest_or_mean() -> Non
 def test_a_number_agrees_as_far_as_its_digits_and_those_of_the_motion_reach(
     exact: float, reach: float, far: float, sampled: float, said: str
 ) -> None:
-    one = Beside(Printed("2.0"), (1.95, 2.05), (1.95, 2.1), exact, reach, far, (sampled, sampled))
+    one = Beside(
+        Printed("2.0"), (1.95, 2.05), (1.95, 2.1), exact, reach, far, (sampled, sampled), "rad"
+    )
     assert one.kind == said
     assert one.fits is (said != "off")
 
@@ -256,7 +258,7 @@ def test_the_largest_norm_is_that_of_a_dense_grid_and_never_below_it() -> None:
     waypoints = np.array([[0.0, 0.0], [1.0, -0.3], [0.2, 0.9]])
     trajectory = fit(rest_to_rest(2, 5), waypoints, np.array([0.8, 1.1]))
     for order in (1, 2, 3):
-        top = max(_top(trajectory, k, order)[0] for k in range(2))
+        top = max(_norm_top(trajectory, k, order)[0] for k in range(2))
         times = np.linspace(0.0, 1.9, 200_001)
         dense = np.linalg.norm(trajectory(times, order), axis=1).max()
         assert dense <= top * (1 + 1e-12)
