@@ -3,10 +3,10 @@ from .case_audit import AuditReport, CaseAudit, audit
 from .chosen_case import Pair
 from .fixed_ratios import at_ratios, planned_apart
 from .paper_runs import searched_for
+from .printed_row import PrintedRow, printed_rows
 from .provenance import certificate_files, package_version
-from .reading_words import KEPT, answers, segments
+from .readings import KEPT, answers, segments
 from .rounding import Point, RoundingBox, RoundingVerdict, judge_rounding
-from .row import Row, rows
 from .rules import EXPLAINED, RULES
 from .stated import asked_as, claim_text, digits_of, in_words, place
 from .study import Study
@@ -20,9 +20,9 @@ __all__ = [
     "CaseAudit",
     "Pair",
     "Point",
+    "PrintedRow",
     "RoundingBox",
     "RoundingVerdict",
-    "Row",
     "Study",
     "answers",
     "asked_as",
@@ -37,8 +37,8 @@ __all__ = [
     "place",
     "plainly",
     "planned_apart",
+    "printed_rows",
     "routes",
-    "rows",
     "searched_for",
     "segments",
     "waterfalls",

@@ -24,10 +24,9 @@ from ..documents import (
     noted,
     quoted,
 )
-from .card_optimum import limited
 from .own_result import own_results
 from .plausibility import implausible
-from .row import rows
+from .printed_row import printed_rows
 from .rules import blended, judge_row, meant_to_keep, said_to_keep
 from .stated import place, prints_durations
 from .study import Study
@@ -88,7 +87,7 @@ def limits_line(study: Study, words: Mapping[str, Judgement]) -> tuple[str, set[
     }
     broken = sum(ClaimVerdict.REFUTED in each for each in under.values())
     kept = sum(each == {ClaimVerdict.SUPPORTED} for each in under.values())
-    if kept == len(under) and not any(limited(study, pair) for pair in study.pairs):
+    if kept == len(under) and not any(map(study.limited, study.pairs)):
         return f"No limits are stated, so that none can be broken{_jumping(words, asked)}.", set()
     # A statement that names other rows too has its own sentence where one of those breaks a limit.
     mine = {c.id for c in own}
@@ -129,7 +128,7 @@ def _within(study: Study, own: Sequence[_Row]) -> str:
     """Whether it takes the rounding of the digits to keep the limits, and of which row how much."""
     found = []
     for row in own:
-        for posed in rows(study, row):
+        for posed in printed_rows(study, row):
             checked = posed.check_or_none
             if checked is None or checked.limits is Verdict.PASS:
                 continue
@@ -184,7 +183,7 @@ def _of_limits(study: Study, claim: AnyClaim) -> dict[str, ClaimVerdict]:
     for found in judge_row(study, claim):
         if found.reading is not None:
             each.setdefault(found.reading, set()).add(ClaimVerdict(found.kind))
-    for row in rows(study, claim):
+    for row in printed_rows(study, claim):
         unknown = row.unmoved is not None
         keeping = Keeping.UNDECIDED if unknown else row.keeping
         each.setdefault(row.reading, set()).add(_MEANS.get(keeping, ClaimVerdict.NOT_CHECKABLE))

@@ -29,12 +29,11 @@ from ..documents import (
 from .chosen_case import Pair
 from .digit_ranges import all_exact, optimum_range
 from .fixed_ratios import at_ratios, off_ratios, planned_apart
-from .own_result import own_result
-from .row import Row
-from .stated import other_objective, prints_durations
+from .own_result import bare_totals, own_result
+from .printed_row import PrintedRow
+from .stated import other_objective, printed_total, prints_durations
 from .stated_totals import contradicts_its_parts, other_totals
 from .study import Study
-from .waterfall import bare_totals
 
 _FEW = 2
 """Totals that are each set beside their optimum; more are counted."""
@@ -240,30 +239,24 @@ def _together(parts: Sequence[_Above]) -> str:
     return f"{shown} are {least}{shares} above the {name} {bests}"
 
 
-def limited(study: Study, pair: Pair) -> bool:
-    """Whether a problem limits anything that moves."""
-    limits = study.problem(pair).limits
-    return limits.limits_position or bool(np.isfinite(limits.sides).any())
-
-
 def _beside(study: Study, waterfall: Waterfall) -> list[_Part]:
     """A printed total beside its optimum, and others that are printed of it; none where none is."""
     pair = Pair(waterfall.problem, waterfall.reading)
     solution = study.optimum(pair)
     why = _unknown(solution)
-    if why and not limited(study, pair):
+    if why and not study.limited(pair):
         why = "without limits no motion is the shortest: there is no optimum to compare with"
     if why:
         return [_Unknown(why)]
     claim = _totalled(study, waterfall)
     if not isinstance(claim, TimeClaim):
         return []
-    others = other_totals(Row(study, claim, pair))
-    found = [_one_beside(Row(study, one, pair), solution) for one in (claim, *others)]
+    others = other_totals(PrintedRow(study, claim, pair))
+    found = [_one_beside(PrintedRow(study, one, pair), solution) for one in (claim, *others)]
     return [part for part in found if part is not None]
 
 
-def _one_beside(row: Row[TimeClaim], solution: Solution) -> _Part | None:
+def _one_beside(row: PrintedRow[TimeClaim], solution: Solution) -> _Part | None:
     study = row.study
     certified = solution.evidence is Evidence.CERTIFIED
     name = "proven optimum" if certified else "best known total"
@@ -345,10 +338,9 @@ def _bounded(least: float, share: float, most: float | None) -> tuple[str, str]:
     return "at least ", at_least_percent(least)
 
 
-def _printed_range(row: Row[TimeClaim]) -> tuple[tuple[float, float], tuple[float, float]]:
+def _printed_range(row: PrintedRow[TimeClaim]) -> tuple[tuple[float, float], tuple[float, float]]:
     """Times that are rounded to the digits of a printed total, and those cut off to them, s."""
-    claim = row.claim
-    printed = claim.value if isinstance(claim, TotalTimeClaim) else getattr(claim, "total", None)
+    printed = printed_total(row.claim)
     if printed is None:
         return _EMPTY, _EMPTY
     own = row.time(printed)
@@ -365,7 +357,7 @@ def _span(solution: Solution) -> str:
     return f"{' to '.join(ends)} s"
 
 
-def _kept_there(row: Row[TimeClaim]) -> str:
+def _kept_there(row: PrintedRow[TimeClaim]) -> str:
     """What the durations behind a total do to the limits, unless they are shown to keep them.
 
     A distance from the optimum is one of a motion only where that motion keeps its limits.
@@ -382,7 +374,7 @@ def _together_where_apart(study: Study, pair: Pair) -> str:
     return " of all joints together" if planned_apart(study.problem(pair)) else ""
 
 
-def _joint_by_joint(row: Row[TimeClaim], seconds: float) -> str | None:
+def _joint_by_joint(row: PrintedRow[TimeClaim], seconds: float) -> str | None:
     """A total beside what the joints' own optima give, where each is planned by itself."""
     claim = row.claim
     if not planned_apart(row.study.problem(row.pair)) or claim.joint is not None:
@@ -407,10 +399,9 @@ def _joint_by_joint(row: Row[TimeClaim], seconds: float) -> str | None:
     return f"is {shown} % {'above' if longer else 'below'} {span}, {own}"
 
 
-def _seconds(row: Row[TimeClaim]) -> float:
+def _seconds(row: PrintedRow[TimeClaim]) -> float:
     """A printed total; the sum of the printed durations where none is printed."""
-    claim = row.claim
-    number = claim.value if isinstance(claim, TotalTimeClaim) else getattr(claim, "total", None)
+    number = printed_total(row.claim)
     if number is None:
         return float(row.durations.value.sum())
     return row.time(number).value
@@ -445,4 +436,4 @@ def _totalled(study: Study, waterfall: Waterfall) -> AnyClaim | None:
     """The printed total beside an optimum: that of the waterfall, else a bare one."""
     if waterfall.claim is not None:
         return study.case.claim(waterfall.claim)
-    return own_result(study.case, bare_totals(study, waterfall.problem))
+    return own_result(study.case, bare_totals(study.case, waterfall.problem))

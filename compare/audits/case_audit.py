@@ -6,7 +6,7 @@ from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from datetime import date
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from typing import Any
 
@@ -36,14 +36,15 @@ from .card import verdict_card
 from .causes import find_causes, with_caveats
 from .chosen_case import SEEDS
 from .draft import advise
+from .explanations import explained
 from .instances import examinable, examined, examined_entry
 from .judging import judge, rested, weigh
 from .paper_runs import reached
 from .plausibility import implausible
+from .printed_row import PrintedRow, printed_rows
 from .provenance import provenance
 from .readings import readings_summary
 from .revision import revise
-from .row import Row, rows
 from .rules import GROUPS, NOT_COMPUTED
 from .stated import stated_claims, stated_source
 from .study import Study
@@ -294,7 +295,7 @@ def audit_case(study: Study) -> CaseAudit:
     ordered = sorted(weigh(by_rule, judgements, admissible), key=_weight)
     judgements = rested(study.case, judgements)
     judgements = with_caveats(study, judgements, ordered)
-    behind = find_causes(study, ordered)
+    behind = find_causes(study, ordered, partial(explained, study, GROUPS))
     return CaseAudit(study.case, study, tuple(ordered), judgements, behind)
 
 
@@ -319,11 +320,11 @@ def _alone(group: _Group, study: Study, claim: AnyClaim) -> list[Finding]:
     except _ENDING:
         raise
     except TrajgapError:
-        found = [f for row in rows(study, claim) for f in _under(group, row)]
+        found = [f for row in printed_rows(study, claim) for f in _under(group, row)]
         return [f for at, f in enumerate(found) if f not in found[:at]]
 
 
-def _under(group: _Group, row: Row[AnyClaim]) -> Iterator[Finding]:
+def _under(group: _Group, row: PrintedRow[AnyClaim]) -> Iterator[Finding]:
     try:
         yield from group(row.study.only(row.claim, pair=row.pair))
     except _ENDING:
@@ -332,7 +333,7 @@ def _under(group: _Group, row: Row[AnyClaim]) -> Iterator[Finding]:
         yield _not_computed(error, row)
 
 
-def _not_computed(error: TrajgapError, row: Row[AnyClaim] | None = None) -> Finding:
+def _not_computed(error: TrajgapError, row: PrintedRow[AnyClaim] | None = None) -> Finding:
     return Finding(
         rule=NOT_COMPUTED.id,
         basis=Basis.CHECK,

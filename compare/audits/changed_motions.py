@@ -18,7 +18,7 @@ from ...problem.cases import (
     motions_of,
 )
 from ..documents import Explanation, Finding
-from .row import Row
+from .printed_row import PrintedRow
 from .rules import box_reach, largest
 from .slips import (
     Slip,
@@ -64,7 +64,7 @@ class _Tried:
 
 
 def changes_of_motion(
-    row: Row[DurationsClaim | MaximumClaim], finding: Finding, claim: AnyClaim
+    row: PrintedRow[DurationsClaim | MaximumClaim], finding: Finding, claim: AnyClaim
 ) -> tuple[list[tuple[Slip, bool]], Explanation | None]:
     """Changes that may settle what is said of a motion, and whether they reach a limit.
 
@@ -103,7 +103,7 @@ def changes_of_motion(
     return [(slip, not key[1]) for key, slip in ranked], _nearer(finding, before, best)
 
 
-def _room(row: Row[Claim]) -> float:
+def _room(row: PrintedRow[Claim]) -> float:
     """How far digits that are rounded or cut off move peaks, to first order, as a share of them."""
     tops = [top for order in (1, 2, 3) for top in largest(row, order)]
     reaches = [box_reach(row, top) / abs(top.value) for top in tops if top.value != 0.0]
@@ -111,7 +111,7 @@ def _room(row: Row[Claim]) -> float:
 
 
 def _other_values(
-    row: Row[Claim], claim: AnyClaim, problem: Problem, peaks: Array, room: float
+    row: PrintedRow[Claim], claim: AnyClaim, problem: Problem, peaks: Array, room: float
 ) -> Iterator[tuple[tuple[int, bool, int, float], Slip]]:
     """Other printed peaks, where they are those of the motion as printed."""
     if not isinstance(claim, PeakClaim):
@@ -132,7 +132,12 @@ def _other_values(
 
 
 def _meets(
-    row: Row[Claim], claim: PeakClaim, number: Printed, label: str | None, peak: float, room: float
+    row: PrintedRow[Claim],
+    claim: PeakClaim,
+    number: Printed,
+    label: str | None,
+    peak: float,
+    room: float,
 ) -> bool:
     """Whether a printed peak is near that of a motion, as digits go."""
     meant = row.measured(number, claim.derivative, label)
@@ -172,7 +177,7 @@ def _nearer(finding: Finding, before: float, best: tuple[float, Slip] | None) ->
 
 
 def _changes(
-    row: Row[DurationsClaim | MaximumClaim], finding: Finding, printed: Array
+    row: PrintedRow[DurationsClaim | MaximumClaim], finding: Finding, printed: Array
 ) -> Iterator[_Tried]:
     """Other durations, way-points and limits, with the peaks that follow."""
     case, problem = row.study.case, row.posed()
@@ -222,7 +227,7 @@ def _step(
 
 
 def _other_limits(
-    row: Row[Claim], problem: Problem, printed: Array, joint: int, order: int
+    row: PrintedRow[Claim], problem: Problem, printed: Array, joint: int, order: int
 ) -> Iterator[_Tried]:
     """Other limits of a quantity of a joint, or of all joints where one number holds for all."""
     quantity, label = _DERIVATIVES[order], problem.joints[joint]
@@ -253,7 +258,7 @@ def _peaks_through(problem: Problem, columns: Array, h: Array) -> Array:
     return np.array([_peaks(one, h[None])[0, 0] for one in each])
 
 
-def _offs(row: Row[Claim], problem: Problem, peaks: Array, room: float) -> Array:
+def _offs(row: PrintedRow[Claim], problem: Problem, peaks: Array, room: float) -> Array:
     """How many printed peaks of a row are far from those of each changed motion."""
     off, case = np.zeros(len(peaks)), row.study.case
     for claim in case.claims:

@@ -8,6 +8,8 @@ from copy import copy
 from pathlib import Path
 from typing import Any, NamedTuple, Self, TypeVar, cast
 
+import numpy as np
+
 from ...heuristics import (
     KINDS,
     Algorithm,
@@ -30,7 +32,7 @@ from ...problem.cases import (
 from ..documents import capital
 from .intervals import Intervals
 from .replay_settings import LISTED, spread_settings
-from .stated import in_words
+from .stated import in_words, printed_total
 
 T = TypeVar("T")
 SEEDS = 100
@@ -160,6 +162,11 @@ class ChosenCase:
         """Problem of the case, with its coupling."""
         return self.once(("problem", pair), lambda: self.case.problem(*pair))
 
+    def limited(self, pair: Pair) -> bool:
+        """Whether a problem limits anything that moves."""
+        limits = self.problem(pair).limits
+        return limits.limits_position or bool(np.isfinite(limits.sides).any())
+
     @property
     def time_unit(self) -> str:
         """The unit that times are printed in."""
@@ -167,9 +174,7 @@ class ChosenCase:
 
     def total_digits(self, claim: Claim) -> str:
         """A total as printed, or else the sum of the printed durations, with its unit."""
-        printed = (
-            claim.value if isinstance(claim, TotalTimeClaim) else getattr(claim, "total", None)
-        )
+        printed = printed_total(claim)
         summed = (number.decimal for number in self.case.printed_durations(claim))
         return f"{sum(summed) if printed is None else printed} {self.time_unit}"
 

@@ -6,12 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...nlp import Evidence, Status
+from ...nlp import Evidence, Solution, Status
 from ...nlp.optimum import apart
 from ...problem import Array, Problem, as_piecewise
 from ...problem.cases import Claim, Digits
+from ...verify import shown_bound
+from .printed_row import PrintedRow
 from .rounding import same_limits
-from .row import Row
 
 _ROUNDING = 1e-9
 """Relative room for the rounding of float64, and for the tolerance that `check` grants: a bound may
@@ -32,12 +33,12 @@ class OptimumRange:
     upper: float | None
 
 
-def optimum_range(row: Row[Claim]) -> OptimumRange:
+def optimum_range(row: PrintedRow[Claim]) -> OptimumRange:
     """Bounds on the optimum of a claim's problem, whatever its digits stand for.
 
     Parameters
     ----------
-    row : Row
+    row : PrintedRow
 
     Returns
     -------
@@ -65,7 +66,7 @@ def optimum_range(row: Row[Claim]) -> OptimumRange:
     return OptimumRange(proved / slower * (1.0 - _ROUNDING), upper)
 
 
-def all_exact(row: Row[Claim]) -> bool:
+def all_exact(row: PrintedRow[Claim]) -> bool:
     """Whether nothing that defines the problem is a rounded number."""
     statement = row.statement
     if statement.loose_ends or statement.loose_ratios or statement.declaration.loose:
@@ -76,7 +77,18 @@ def all_exact(row: Row[Claim]) -> bool:
     return same_limits(problem, loosest) and np.array_equal(box.lower, box.upper)
 
 
-def _slow_down(row: Row[Claim]) -> float | None:
+def below_certified(row: PrintedRow[Claim], solution: Solution) -> tuple[str, ...] | None:
+    """That a total lies below a certified bound, which speaks only where the problem is exact."""
+    bound = solution.lower_bound
+    if bound is None or row.longest_total >= bound:
+        return None
+    if not all_exact(row):
+        return None
+    shown = shown_bound(bound, "lower", places=6)
+    return (f"The printed total lies below the certified lower bound {shown} s.",)
+
+
+def _slow_down(row: PrintedRow[Claim]) -> float | None:
     """By what motions of every problem in the box are slowed down to keep the printed limits."""
     statement = row.statement
     if statement.loose_ends or statement.loose_ratios or statement.declaration.loose:
@@ -108,7 +120,7 @@ def _slow_down(row: Row[Claim]) -> float | None:
     return float(slower) if np.isfinite(slower) else None
 
 
-def _farther(row: Row[Claim], problem: Problem) -> Array | None:
+def _farther(row: PrintedRow[Claim], problem: Problem) -> Array | None:
     """By what factor each joint's steps are larger as printed than the least in the box."""
     box = row.waypoint_box(problem).or_cut_off()
     joints = problem.waypoints.shape[1]

@@ -10,8 +10,8 @@ from ...nlp import Evidence
 from ...problem import Array, Coupling, Problem
 from ...problem.cases import Claim
 from ..documents import Basis, Finding
+from .printed_row import PrintedRow
 from .rounding import RoundingBox
-from .row import Row
 
 if TYPE_CHECKING:
     pass
@@ -45,7 +45,7 @@ def planned_apart(problem: Problem) -> bool:
     return apart and problem.ratios is None
 
 
-def off_ratios(row: Row[Claim]) -> str | None:
+def off_ratios(row: PrintedRow[Claim]) -> str | None:
     """In which ratios printed durations are, where a reading fixes others; None if it does not.
 
     They are in the ratios that it fixes if some durations and ratios agree, of all whose digits
@@ -53,7 +53,7 @@ def off_ratios(row: Row[Claim]) -> str | None:
 
     Parameters
     ----------
-    row : Row
+    row : PrintedRow
 
     Returns
     -------
@@ -79,12 +79,12 @@ def off_ratios(row: Row[Claim]) -> str | None:
     )
 
 
-def of_other_ratios(row: Row[Claim], shown: str, other: str) -> Finding:
+def of_other_ratios(row: PrintedRow[Claim], shown: str, other: str) -> Finding:
     """That printed durations are not those of a question that fixes other ratios.
 
     Parameters
     ----------
-    row : Row
+    row : PrintedRow
     shown : str
         The printed total.
     other : str
@@ -111,7 +111,7 @@ def of_other_ratios(row: Row[Claim], shown: str, other: str) -> Finding:
     )
 
 
-def _ratio_box(row: Row[Claim]) -> tuple[Array, Array]:
+def _ratio_box(row: PrintedRow[Claim]) -> tuple[Array, Array]:
     """Ratios of any scale: the least and the largest that the digits may stand for."""
     problem, given = row.study.problem(row.pair), row.statement.durations.ratios
     if isinstance(given, tuple):

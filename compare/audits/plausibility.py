@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import exp, isfinite, log
 
 from ...problem.cases import DurationsClaim, MaximumClaim
-from .row import rows_under
+from .printed_row import rows_under
 from .stated import other_objective
 from .study import Study
 

@@ -24,8 +24,8 @@ from ...problem.cases import (
 )
 from ..documents import ClaimVerdict, Edit, Finding, Judgement, Severity
 from .edits import CLAIM, READINGS, edited, printed_under
+from .printed_row import PrintedRow, rows_under
 from .reworded import Reworded
-from .row import Row, rows_under
 from .rules import in_digits, recomputed, repeated_total, summed
 from .study import Study
 
@@ -240,7 +240,7 @@ def _rests_on(case: Case, claim: AnyClaim) -> set[str]:
 # --- times ----------------------------------------------------------------------------------------
 
 
-def _posed(study: Study, claim: AnyClaim) -> list[Row[AnyClaim]]:
+def _posed(study: Study, claim: AnyClaim) -> list[PrintedRow[AnyClaim]]:
     """A claim under the main reading, wherever its durations define a motion."""
     under = rows_under(study, [claim], study.main_reading)
     return [row for row in under if row.unmoved is None]

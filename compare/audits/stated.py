@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from ...problem import Case
+from ...problem import Case, Printed
 from ...problem.cases import (
     AnyClaim,
     Claim,
@@ -137,6 +137,26 @@ def asked_as(case: Case, problem: str, reading: str) -> str:
     if len(case.problems) == len(case.readings) == 1:
         return words
     return noted(words, f"problem {problem}, reading {reading}")
+
+
+def printed_total(claim: Claim) -> Printed | None:
+    """The total that a claim prints, if it does."""
+    if isinstance(claim, DurationsClaim | MaximumClaim):
+        return claim.total
+    return claim.value if isinstance(claim, TotalTimeClaim) else None
+
+
+def own_total(claim: Claim) -> Printed | None:
+    """The same; None if it is the sum of the printed digits, which says no more than they do."""
+    total = printed_total(claim)
+    if total is None or not isinstance(claim, DurationsClaim | MaximumClaim):
+        return total
+    return None if total.decimal == sum(one.decimal for one in claim.durations) else total
+
+
+def allowed_bases(claim: ImprovementClaim) -> tuple[str, ...]:
+    """What the percentage may be a share of: as stated, or both where the text leaves it open."""
+    return ("slower", "faster") if claim.base is None else (claim.base,)
 
 
 def called(claim: Claim) -> str:

@@ -7,21 +7,19 @@ from math import inf
 from ...problem.cases import (
     AnyClaim,
     Claim,
-    DurationsClaim,
-    MaximumClaim,
     TimeClaim,
     TotalTimeClaim,
 )
-from .row import Row
-from .stated import place, prints_durations
+from .printed_row import PrintedRow
+from .stated import own_total, place, printed_total, prints_durations
 
 
-def other_totals(row: Row[Claim]) -> list[TotalTimeClaim]:
+def other_totals(row: PrintedRow[Claim]) -> list[TotalTimeClaim]:
     """Totals that other claims state of a row and that no value of its own digits rounds to.
 
     Parameters
     ----------
-    row : Row
+    row : PrintedRow
 
     Returns
     -------
@@ -40,60 +38,59 @@ def other_totals(row: Row[Claim]) -> list[TotalTimeClaim]:
         if not row.study.fits(one, row.pair):
             continue
         printed = row.measured(one.value, "time")
-        if printed.lower > high or max(printed.upper, printed.cut_off().upper) < low:
+        if printed.lower > high or printed.cut_off().upper < low:
             found.append(one)
     return found
 
 
-def contradicts_its_parts(row: Row[Claim]) -> bool:
+def contradicts_its_parts(row: PrintedRow[Claim]) -> bool:
     """Whether a total printed beside durations is not their sum, rounded or cut off."""
-    claim = row.claim
-    if not isinstance(claim, DurationsClaim | MaximumClaim) or claim.total is None:
+    number = printed_total(row.claim)
+    if number is None or not prints_durations(row.claim):
         return False
+    box, total = row.durations, row.time(number)
+    longest = float((box.upper + (box.upper - box.lower) / 2).sum())
+    return bool(total.lower > longest or total.cut_off().upper < _raised_low(row))
+
+
+def _raised_low(row: PrintedRow[Claim]) -> float:
+    """Low end of the sum of durations whose digits were rounded up, s."""
     box = row.durations
-    total = row.time(claim.total)
-    wide = float((box.upper + (box.upper - box.lower) / 2).sum())
-    least = float((box.lower - (box.upper - box.lower) / 2).sum())
-    highest = max(total.upper, total.cut_off().upper)
-    return bool(total.lower > wide or highest < least)
+    return float((box.lower - (box.upper - box.lower) / 2).sum())
 
 
-def contradicting_lows(row: Row[AnyClaim]) -> dict[str, float]:
+def contradicting_lows(row: PrintedRow[AnyClaim]) -> dict[str, float]:
     """Other totals that are printed of a row and contradict its own, each with its low end, s."""
     study = row.study
     if not isinstance(row.claim, TimeClaim):
         return {}
     found = {}
     for other in other_totals(row):
-        own = Row(study, other, row.pair)
+        own = PrintedRow(study, other, row.pair)
         shown, interval = own.total or ("", (inf, inf))
         found[f"{shown} ({place(other)})"] = rounded_up_low(own, interval)
     if contradicts_its_parts(row):
-        box = row.durations
         plain = sum(number.decimal for number in study.case.printed_durations(row.claim))
-        low = float((box.lower - (box.upper - box.lower) / 2).sum())
-        found[f"durations that add up to {plain} {study.time_unit}"] = low
+        found[f"durations that add up to {plain} {study.time_unit}"] = _raised_low(row)
     return found
 
 
-def total_excludes(row: Row[AnyClaim], time: float) -> bool:
+def total_excludes(row: PrintedRow[AnyClaim], time: float) -> bool:
     """Whether a total that is printed beside durations stands for no such time, s.
 
     A total that is the sum of the printed digits says no more than they do.
     """
-    claim = row.claim
-    if not isinstance(claim, DurationsClaim | MaximumClaim) or claim.total is None:
+    number = own_total(row.claim)
+    if number is None or not prints_durations(row.claim):
         return False
-    if claim.total.decimal == sum(one.decimal for one in row.study.case.printed_durations(claim)):
-        return False
-    total = row.time(claim.total)
+    total = row.time(number)
     low = total.lower - (total.upper - total.lower) / 2
-    return not low <= time <= max(total.upper, total.cut_off().upper)
+    return not low <= time <= total.cut_off().upper
 
 
 def is_sum(claim: AnyClaim) -> bool:
     """Whether the total of a row is not printed beside its durations but their sum."""
-    return isinstance(claim, DurationsClaim | MaximumClaim) and claim.total is None
+    return prints_durations(claim) and printed_total(claim) is None
 
 
 def what_agrees(count: int, sums: int) -> str:
@@ -107,7 +104,7 @@ def what_agrees(count: int, sums: int) -> str:
     return "The sum of the durations of each row agrees with"
 
 
-def rounded_up_low(row: Row[AnyClaim], interval: tuple[float, float]) -> float:
+def rounded_up_low(row: PrintedRow[AnyClaim], interval: tuple[float, float]) -> float:
     """Low end of a printed total whose digits were rounded up, as durations are to keep a limit.
 
     Rounding up moves the low end of each number down by another half of its last place; a total
@@ -116,5 +113,4 @@ def rounded_up_low(row: Row[AnyClaim], interval: tuple[float, float]) -> float:
     low, high = interval
     if isinstance(row.claim, TotalTimeClaim) or not prints_durations(row.claim):
         return low - (high - low) / 2
-    box = row.durations
-    return min(low, float((box.lower - (box.upper - box.lower) / 2).sum()))
+    return min(low, _raised_low(row))

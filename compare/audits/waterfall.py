@@ -34,8 +34,8 @@ from ..documents import (
 from .chosen_case import Pair
 from .digit_ranges import optimum_range
 from .fixed_ratios import off_ratios, planned_apart
-from .own_result import own_result
-from .row import Row
+from .own_result import bare_totals, own_result
+from .printed_row import PrintedRow
 from .stated import other_objective
 from .study import Study
 
@@ -64,19 +64,8 @@ def _starting_claim(study: Study, problem: str) -> AnyClaim | None:
     found = own_result(study.case, whole)
     if found is not None and found.state != "before":
         return found
-    bare = [c for c in bare_totals(study, problem) if c.state is None and c.of is None]
+    bare = [c for c in bare_totals(study.case, problem) if c.state is None and c.of is None]
     return own_result(study.case, bare) or found
-
-
-def bare_totals(study: Study, problem: str) -> list[TotalTimeClaim]:
-    """Totals of all joints on the problem's own curve, printed apart from durations."""
-    return [
-        c
-        for c in study.case.claims
-        if isinstance(c, TotalTimeClaim)
-        and (c.joint, c.other_curve) == (None, None)
-        and c.problem in (None, problem)
-    ]
 
 
 def _known(name: str, solution: Solution, note: str = "") -> Step:
@@ -128,7 +117,7 @@ def _waterfall(study: Study, pair: Pair) -> Waterfall:
     claim = _starting_claim(study, pair.problem)
     steps: list[Step] = []
     if claim is not None:
-        steps += _published(Row(study, claim, pair))
+        steps += _published(PrintedRow(study, claim, pair))
     if planned_apart(problem):
         steps.append(_procedure(study, pair))
     shared = study.optimum(pair)
@@ -143,7 +132,7 @@ def _waterfall(study: Study, pair: Pair) -> Waterfall:
     )
     steps.append(_retimed(RELAXED_RETIMED, relaxed))
     steps.append(_free(study, pair))
-    longest = None if claim is None else optimum_range(Row(study, claim, pair)).upper
+    longest = None if claim is None else optimum_range(PrintedRow(study, claim, pair)).upper
     return Waterfall(
         problem=pair.problem,
         reading=pair.reading,
@@ -169,7 +158,7 @@ def _converged(solution: Solution) -> Solution:
     return Solution(solution.problem, Status.FAILED, why)
 
 
-def _published(row: Row[AnyClaim]) -> list[Step]:
+def _published(row: PrintedRow[AnyClaim]) -> list[Step]:
     claim = row.claim
     total = row.total
     assert total is not None
@@ -213,7 +202,7 @@ def _published(row: Row[AnyClaim]) -> list[Step]:
     return [printed, summed]
 
 
-def _beside(row: Row[AnyClaim]) -> str:
+def _beside(row: PrintedRow[AnyClaim]) -> str:
     """Why a printed total is not one of the steps below it, where it is not."""
     objective = other_objective(row.study.case, row.claim)
     said = "" if objective is None else f", not minimised for time alone: {objective}"

@@ -12,7 +12,7 @@ from ...problem import Array, TrajgapError, file_name, forward_kinematics, to_si
 from ...problem.cases import ControlVerticesClaim, DurationsClaim, MaximumClaim
 from ...problem.robots import Chain, DhTable, proximity, sample_workspace
 from ...verify import shown_bound
-from ..audits import Row, Study, place
+from ..audits import PrintedRow, Study, place
 from ..audits.rules import has_vertices, vertices
 from ..pictures import (
     Picture,
@@ -83,7 +83,7 @@ def _jumps_of(
     study: Study, problem: str, claims: list[DurationsClaim | MaximumClaim]
 ) -> Iterator[Block]:
     first = claims[0]
-    rows = [Row(study, first, pair) for pair in study.pairs if pair.problem == problem]
+    rows = [PrintedRow(study, first, pair) for pair in study.pairs if pair.problem == problem]
     moved = [row for row in rows if row.unmoved is None]
     jumping = [row for row in moved if any(j.order == 1 for j in row.check.jumps)]
     if not jumping:

@@ -10,7 +10,7 @@ from ...heuristics import JointRuns
 from ...nlp import Solution, weakest
 from ...problem import Array, Problem, TrajgapError, file_name
 from ...problem.cases import AnyClaim, DurationsClaim, MaximumClaim, TotalTimeClaim
-from ..audits import CaseAudit, Pair, Row, Study, at_ratios, place, planned_apart
+from ..audits import CaseAudit, Pair, PrintedRow, Study, at_ratios, place, planned_apart
 from ..documents import OWN_OPTIMA
 from ..pictures import Picture, Runs, convergence, endings, landscape, motion_picture, svg
 from .blocks import Block, Drawn, Folded, Grid, Prose, Section
@@ -74,7 +74,7 @@ def _printed_motions(study: Study, pair: Pair) -> Iterator[Block]:
         first = claims[0]
         problem = study.problem(pair)
         title = f"Printed durations: {'; '.join(dict.fromkeys(place(c) for c in claims))}"
-        row = Row(study, first, pair)
+        row = PrintedRow(study, first, pair)
         unmoved = row.unmoved
         if unmoved is not None:
             yield Prose(f"{title} are not drawn: {unmoved}.{noted(study, pair.reading)}", "note")
@@ -97,7 +97,7 @@ def _printed_motions(study: Study, pair: Pair) -> Iterator[Block]:
             f"{where}.{noted(study, pair.reading)}",
         )
     for tables, singles in _tables_by_joint(study, pair).items():
-        if Row(study, singles[0], pair).unmoved is None:
+        if PrintedRow(study, singles[0], pair).unmoved is None:
             yield _joint_by_joint(study, pair, tables, singles)
 
 
@@ -128,7 +128,7 @@ def _tables_called(study: Study, tables: str) -> str:
 
 def _joint_by_joint(study: Study, pair: Pair, tables: str, claims: list[DurationsClaim]) -> Drawn:
     problem = study.problem(pair)
-    rows = [Row(study, claim, pair) for claim in claims]
+    rows = [PrintedRow(study, claim, pair) for claim in claims]
     durations = np.array([row.durations.value for row in rows])
     verdicts = [str(row.rounding.verdict) for row in rows]
     words = ", ".join(dict.fromkeys(verdicts))

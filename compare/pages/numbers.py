@@ -11,7 +11,7 @@ from ...nlp import Evidence, PerJointSolution, Solution
 from ...problem import Case, Coupling, file_name
 from ...problem.cases import DurationsClaim
 from ...verify import shown_bound
-from ..audits import CaseAudit, Pair, Row, Study, at_ratios, place, routes, searched_for
+from ..audits import CaseAudit, Pair, PrintedRow, Study, at_ratios, place, routes, searched_for
 from ..documents import (
     OPTIMA_STEPS,
     OPTIMUM_RETIMED,
@@ -322,7 +322,7 @@ def _joints(study: Study, pair: Pair) -> Iterator[Block]:
             reference = reference_of(solution)
             if total is not None and reference is not None:
                 shown.setdefault(total[0], []).append(claim.where)
-                row = Row(study, claim, pair)
+                row = PrintedRow(study, claim, pair)
                 kept = row.unmoved is None and row.rounding.verdict in _KEPT
                 gaps.append(_gap_text(gap(total[1], reference, feasible=kept)))
         rows.append(

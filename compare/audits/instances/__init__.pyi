@@ -1,11 +1,11 @@
 from .drawn import examinable, examined, readings_of, unexamined
-from .entries import examined_entry
 from .result import (
     MIDDLE,
     InstancesResult,
     Optimum,
     Sample,
     distribution,
+    examined_entry,
     percent_range,
     reproduced,
 )

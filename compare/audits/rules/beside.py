@@ -6,13 +6,13 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from functools import cached_property
+from math import pi
 from typing import NamedTuple
 
 import numpy as np
 
 from ....problem import Array, Printed, TrajgapError
 from ..rounding import RoundingBox, hull
-from .unit_factors import meant_by_ratio
 
 Meant = Callable[[Array, Array], dict[str, float]]
 """From way-points and durations to what a number may be, each in words."""
@@ -26,6 +26,24 @@ UNEXPLAINED = "off by more than rounding, cut-off or sampling was found to expla
 _CORNERS = 6
 """Corners of the rounding box that are looked at in turn at most, each way; a search of all of its
 2ⁿ corners would not end where there are many durations and way-points."""
+_FACTORS = {
+    180 / pi: "as between degrees and radians",
+    1000.0: "as a thousandth of the unit",
+    100.0: "as a hundredth of the unit",
+    60.0: "as per minute instead of per second",
+    2 * pi: "as turns instead of radians",
+    30 / pi: "as turns per minute instead of radians per second",
+}
+"""Ratios between units that are mixed up, and what that would mean; their inverses count too."""
+_LENGTH_FACTORS = {
+    1000.0: "as a thousandth of the unit",
+    100.0: "as a hundredth of the unit",
+    10.0: "as between millimetres and centimetres",
+    60.0: "as per minute instead of per second",
+}
+"""The same of joints that slide, whose numbers are no angles."""
+_NEAR_FACTOR = 0.01
+"""Relative distance from such a ratio below which the unit is named as an explanation."""
 
 
 class Class(StrEnum):
@@ -153,7 +171,29 @@ class Beside:
         value = float(self.printed.fraction)
         if self.linear is None or not (self.exact > 0 and value > 0):
             return None
-        return meant_by_ratio(value / self.exact, self.linear)
+        return _meant_by_ratio(value / self.exact, self.linear)
+
+
+def _meant_by_ratio(ratio: float, linear: bool) -> str | None:
+    """The factor between two units that a ratio is near, and what it would mean.
+
+    Parameters
+    ----------
+    ratio : float
+        Positive.
+    linear : bool
+        Whether the numbers are those of a joint that slides.
+
+    Returns
+    -------
+    str or None
+        None where it is near none.
+    """
+    for factor, meaning in (_LENGTH_FACTORS if linear else _FACTORS).items():
+        for one in (factor, 1 / factor):
+            if abs(ratio / one - 1) <= _NEAR_FACTOR:
+                return f"{one:.6g}, {meaning}"
+    return None
 
 
 def nearest_number(

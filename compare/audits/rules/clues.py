@@ -16,7 +16,6 @@ from ....problem import (
     Problem,
     Trajectory,
     control_vertices,
-    fit,
     from_si,
     half_range,
     is_linear,
@@ -33,7 +32,7 @@ from ....problem.cases import (
     Statement,
 )
 from ...documents import HeldOtherwise, ReadingClue, Speaks, Why
-from ..row import Row, rows_under
+from ..printed_row import PrintedRow, rows_under
 from ..study import Study
 from .peaks import jump_size, jump_unit, largest, largest_of_each_kind
 
@@ -98,7 +97,7 @@ _Said = tuple[Speaks, str] | None
 """On which side a clue speaks and what was computed; None where a reading has no problem."""
 
 
-def _motions(study: Study, names: Sequence[str], reading: str) -> list[Row[AnyClaim]]:
+def _motions(study: Study, names: Sequence[str], reading: str) -> list[PrintedRow[AnyClaim]]:
     """Claims with durations that define a curve under a reading."""
     named = rows_under(study, map(study.case.claim, names), reading)
     return [row for row in named if row.unmoved is None and row.has_curve]
@@ -203,12 +202,12 @@ def _statement(study: Study, reading: str) -> Statement:
     return study.case.statement(study.case.problems[0].id, reading)
 
 
-def held_otherwise(row: Row[AnyClaim]) -> HeldOtherwise | Why:
+def held_otherwise(row: PrintedRow[AnyClaim]) -> HeldOtherwise | Why:
     """The largest ratio to a limit if the limits were held otherwise than for all t.
 
     Parameters
     ----------
-    row : Row
+    row : PrintedRow
 
     Returns
     -------
@@ -219,8 +218,7 @@ def held_otherwise(row: Row[AnyClaim]) -> HeldOtherwise | Why:
         return Why("the printed durations define no motion whose limits are held")
     problem = row.posed()
     durations = row.durations.value
-    trajectory = fit(problem.curve, problem.waypoints, durations)
-    sampled = _at_samples(problem, durations, trajectory)
+    sampled = _at_samples(problem, durations, row.motion)
     vertices: float | Why = Why("the curve has no control vertices in time")
     declared = row.statement.declaration
     if problem.limits.uneven:

@@ -8,10 +8,10 @@ from math import perm
 
 import numpy as np
 
-from ....problem import QUANTITIES, Curve, as_piecewise, counts_in_words, fit
+from ....problem import QUANTITIES, Curve, as_piecewise, counts_in_words
 from ....problem.cases import AnyClaim, ConditionsClaim, StatementClaim
 from ...documents import Basis, ClaimVerdict, Finding, Severity
-from ..row import Row, left_out, rows_under
+from ..printed_row import PrintedRow, left_out, rows_under
 from ..stated import all_called, called_under, prints_durations
 from ..study import Study
 from .peaks import largest
@@ -207,11 +207,10 @@ def _prescribed(curve: Curve, orders: Sequence[int]) -> bool:
     return all((order, 0.0) in end for end in ends for order in orders)
 
 
-def _moving(row: Row[AnyClaim], orders: Sequence[int]) -> Iterator[str]:
+def _moving(row: PrintedRow[AnyClaim], orders: Sequence[int]) -> Iterator[str]:
     """The largest derivative of each order that does not vanish at an end."""
     problem = row.posed()
-    durations = row.durations.value
-    trajectory = fit(problem.curve, problem.waypoints, durations)
+    trajectory = row.motion
     for order in orders:
         if order > len(QUANTITIES):
             continue

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -13,37 +12,19 @@ from ....problem.cases import (
     DurationsClaim,
     MaximumClaim,
     StatementClaim,
-    TimeClaim,
     TotalTimeClaim,
 )
-from ....verify import shown_bound
-from ...documents import Basis, ClaimVerdict, Finding, Rounding, Severity
+from ...documents import Basis, ClaimVerdict, Finding, Severity
+from ..digit_ranges import below_certified
+from ..printed_row import PrintedRow, left_out, printed_rows, rows_under
 from ..roots import LIMITS
-from ..row import Row, left_out, rows, rows_under
 from ..stated import all_called, called_under
 from ..study import Study
+from .judged_rows import JudgedRow, broken, judged_row, ratio_at_print
 from .kept_limits import UNSAID, meant_to_keep, said_of, said_to_keep
 from .linear_blends import BLENDS, blended, judge_row
 from .peaks import JUMPING, box_reach, jump_size, jump_unit, largest, largest_of_each_kind
 
-
-@dataclass(frozen=True)
-class _Judged:
-    """What the rounding box says of printed durations."""
-
-    verdict: ClaimVerdict
-    severity: Severity
-    sentences: tuple[str, ...]
-    kind: str
-
-
-_VERDICTS = {
-    Rounding.KEEPS: (ClaimVerdict.SUPPORTED, Severity.INFO),
-    Rounding.CONSISTENT: (ClaimVerdict.SUPPORTED, Severity.INFO),
-    Rounding.BREAKS: (ClaimVerdict.REFUTED, Severity.ERROR),
-    Rounding.UNDECIDED: (ClaimVerdict.NOT_CHECKABLE, Severity.INFO),
-}
-"""What a rounding verdict says of the claim, and how much that weighs."""
 _ELSEWHERE = "elsewhere"
 """Kind of what is said of durations that are not of the problem's curve."""
 _NARROW = 0.01
@@ -65,97 +46,33 @@ def judge_motions(study: Study) -> Iterator[Finding]:
             yield from _said_to_jump(study, claim)
 
 
-def _ratio(row: Row[AnyClaim]) -> str:
-    worst = row.check.worst
-    if worst is None:
-        return "no limit applies"
-    if worst.quantity == "curve":
-        return "the printed durations define no curve"
-    whose = f"joint {worst.joint}" if worst.joint is not None else f"segment {worst.segment + 1}"
-    unit = row.unit(worst.quantity, worst.joint)
-    value = row.in_units(worst.quantity, abs(worst.value), worst.joint)
-    limit = row.in_units(worst.quantity, worst.limit, worst.joint)
-    return f"the {worst.quantity} of {whose} reaches {value:.6g} {unit}, limit {limit:.6g} {unit}"
-
-
-def _judged(row: Row[AnyClaim]) -> _Judged:
-    if isinstance(row.claim, TotalTimeClaim):
-        return _judged_total(row)
-    rounding = row.rounding
-    verdict, severity = _VERDICTS[rounding.verdict]
-    at_print = _ratio(row)
-    explained = {
-        Rounding.KEEPS: "The printed numbers keep every limit for all t",
-        Rounding.CONSISTENT: "Some values that round to the printed digits keep every limit for "
-        "all t",
-        Rounding.BREAKS: "A limit is broken however the digits were rounded",
-        Rounding.UNDECIDED: "The printed digits do not decide whether the limits are kept",
-    }[rounding.verdict]
-    kind = str(rounding.verdict)
-    found = row.check
-    if found.verdict is Verdict.DISCONTINUOUS and rounding.verdict is Rounding.UNDECIDED:
-        kind = str(found.verdict)
-        jumps = sum(jump.order == 1 for jump in found.jumps)
-        explained = (
-            "The motion is discontinuous: the printed numbers keep every limit inside the "
-            f"segments, and the velocity jumps {jumps} times between them, which takes an infinite "
-            "acceleration"
-        )
-    said = [f"{explained}.", f"At the printed numbers {at_print}."]
-    loose = row.statement.declaration.loose
-    if rounding.verdict is Rounding.UNDECIDED and loose:
-        said.append(f"{loose} are printed numbers, and no proof covers their rounding.")
-    bound = rounding.lower_bound_of_worst
-    if rounding.verdict is Rounding.BREAKS and bound is not None:
-        said.append(
-            f"Whatever the rounding, a limit is exceeded by a factor of at least "
-            f"{shown_bound(bound, 'lower')}."
-        )
-    if rounding.verdict is Rounding.BREAKS:
-        cut = row.cut.verdict
-        if cut is not Rounding.BREAKS:
-            kept = cut is not Rounding.UNDECIDED
-            verdict = ClaimVerdict.SUPPORTED if kept else ClaimVerdict.NOT_CHECKABLE
-            said.append(f"With digits cut off instead of rounded: {cut}.")
-            return _Judged(verdict, Severity.WARNING, tuple(said), kind)
-        said.append("The same holds with digits cut off instead of rounded.")
-    return _Judged(verdict, severity, tuple(said), kind)
-
-
-def _judged_total(row: Row[AnyClaim]) -> _Judged:
-    """A total without its durations: refuted where no motion that short keeps the limits."""
-    printed = row.study.total_digits(row.claim)
-    if row.total_excluded:
-        excluded = (
-            f"No motion within the limits takes {printed} or less, however the digits were rounded "
-            "or cut off."
-        )
-        return _Judged(ClaimVerdict.REFUTED, Severity.ERROR, (excluded,), "total excluded")
-    said = (
-        f"Only the total is printed, {printed}, and no durations: whether its motion keeps the "
-        "limits cannot be computed.",
-        "That none of that length does was not shown.",
-    )
-    return _Judged(ClaimVerdict.NOT_CHECKABLE, Severity.INFO, said, "total open")
-
-
-def broken(row: Row[AnyClaim]) -> tuple[str, ...] | None:
-    """What shows that a limit is broken, for all values rounded or cut off to the digits; or None.
-
-    For a total without its durations: that no motion so short keeps the limits.
-    """
-    if not isinstance(row.claim, TimeClaim):
-        return None
-    if row.unmoved is not None:
-        return None
-    judged = _judged(row)
-    return judged.sentences if judged.verdict is ClaimVerdict.REFUTED else None
+def judge_bare_totals(study: Study) -> Iterator[Finding]:
+    """Refute totals that no motion within the limits takes, and that a statement says one does."""
+    for claim in study.claims:
+        if not (isinstance(claim, TotalTimeClaim) and said_to_keep(study, claim)):
+            continue
+        for row in printed_rows(study, claim):
+            solution = row.optimum
+            proof = broken(row) or below_certified(row, solution)
+            if proof is not None:
+                yield Finding(
+                    rule="TG201",
+                    verdict=ClaimVerdict.REFUTED,
+                    basis=Basis.ENCLOSURE,
+                    claim=claim.id,
+                    problem=row.problem,
+                    reading=row.reading,
+                    printed=f"{claim.value} {study.time_unit}",
+                    sentences=proof,
+                    kind="total excluded",
+                    root=f"{LIMITS} {claim.id}",
+                )
 
 
 def _limits(study: Study, claim: AnyClaim) -> Iterator[Finding]:
     unsaid = "" if said_to_keep(study, claim) else UNSAID
-    for row in rows(study, claim):
-        judged = _judged(row)
+    for row in printed_rows(study, claim):
+        judged = judged_row(row)
         verdict, severity = said_of(study, claim, judged.verdict, judged.severity)
         yield Finding(
             rule="TG201",
@@ -166,7 +83,7 @@ def _limits(study: Study, claim: AnyClaim) -> Iterator[Finding]:
             problem=row.problem,
             reading=row.reading,
             printed=study.durations_digits(claim),
-            computed=_ratio(row),
+            computed=ratio_at_print(row),
             kind=judged.kind,
             sentences=(
                 *judged.sentences,
@@ -179,7 +96,7 @@ def _limits(study: Study, claim: AnyClaim) -> Iterator[Finding]:
 
 def _jumps(study: Study, claim: AnyClaim) -> Iterator[Finding]:
     """Name a motion that jumps under a reading; no word of the paper is judged by that."""
-    for row in rows(study, claim):
+    for row in printed_rows(study, claim):
         found = row.check.jumps
         velocity = [jump for jump in found if jump.order == 1]
         if not velocity:
@@ -211,8 +128,8 @@ def _jumps(study: Study, claim: AnyClaim) -> Iterator[Finding]:
 def _limits_statement(study: Study, claim: StatementClaim) -> Iterator[Finding]:
     about = [study.case.claim(i) for i in claim.of]
     for reading in study.readings:
-        judged: list[tuple[AnyClaim, str | None, _Judged]] = [
-            (row.claim, row.problem, _judged(row)) for row in rows_under(study, about, reading)
+        judged: list[tuple[AnyClaim, str | None, JudgedRow]] = [
+            (row.claim, row.problem, judged_row(row)) for row in rows_under(study, about, reading)
         ]
         judged += [
             one for c in left_out(study, about, reading) for one in _elsewhere(study, c, reading)
@@ -258,7 +175,7 @@ def _limits_statement(study: Study, claim: StatementClaim) -> Iterator[Finding]:
 
 
 def _placed(
-    study: Study, statement: StatementClaim, claim: AnyClaim, problem: str | None, judged: _Judged
+    study: Study, statement: StatementClaim, claim: AnyClaim, problem: str | None, judged: JudgedRow
 ) -> tuple[str, ...]:
     """What is said of durations, behind their place where the statement stands at another."""
     first, *others = judged.sentences
@@ -268,16 +185,16 @@ def _placed(
 
 def _elsewhere(
     study: Study, claim: AnyClaim, reading: str
-) -> Iterator[tuple[AnyClaim, str | None, _Judged]]:
+) -> Iterator[tuple[AnyClaim, str | None, JudgedRow]]:
     """What is known of the limits where no motion is built: rows with blends have a rule."""
     rows = [row for row in judge_row(study, claim) if row.reading == reading]
     for row in rows:
         if row.verdict is not None:
-            judged = _Judged(row.verdict, row.severity, row.sentences, _ELSEWHERE)
+            judged = JudgedRow(row.verdict, row.severity, row.sentences, _ELSEWHERE)
             yield claim, str(row.problem), judged
     if not rows:
         said = "No motion is built from these durations here, so that they are not judged."
-        judged = _Judged(ClaimVerdict.NOT_CHECKABLE, Severity.INFO, (said,), _ELSEWHERE)
+        judged = JudgedRow(ClaimVerdict.NOT_CHECKABLE, Severity.INFO, (said,), _ELSEWHERE)
         yield claim, claim.problem, judged
 
 
@@ -329,7 +246,7 @@ def _continuity(study: Study, claim: StatementClaim) -> Iterator[Finding]:
         )
 
 
-def _may_be_smooth(row: Row[AnyClaim]) -> bool:
+def _may_be_smooth(row: PrintedRow[AnyClaim]) -> bool:
     """Whether durations that round to the digits have the proportions with which nothing jumps."""
     problem = row.posed()
     shares = problem.curve.smooth_shares(problem.waypoints)
@@ -382,7 +299,7 @@ def _said_to_jump(study: Study, claim: StatementClaim) -> Iterator[Finding]:
 
 
 def _used_up(study: Study, claim: AnyClaim) -> Iterator[Finding]:
-    for row in rows(study, claim):
+    for row in printed_rows(study, claim):
         if not row.has_curve:
             continue
         problem = row.posed()

@@ -31,7 +31,7 @@ from ...documents import (
     ranged,
 )
 from ...gaps import gap, reference_of
-from ..digit_ranges import all_exact
+from ..digit_ranges import below_certified
 from ..fixed_ratios import (
     BELOW_AT_RATIOS,
     at_ratios,
@@ -40,12 +40,12 @@ from ..fixed_ratios import (
     optimum_called,
     planned_apart,
 )
+from ..printed_row import PrintedRow, left_out, printed_rows, rows_under
 from ..roots import LIMITS, OPTIMAL
-from ..row import Row, left_out, rows, rows_under
 from ..stated import called, called_under, other_objective
 from ..stated_totals import contradicting_lows, is_sum, rounded_up_low, total_excludes, what_agrees
 from ..study import Study
-from .continuous_time import broken
+from .judged_rows import broken
 
 _BELOW = "All of it is below the best known total: a misprint or a better optimum may explain it."
 """What is said of a printed total below a best known one."""
@@ -60,19 +60,19 @@ def judge_distances(study: Study) -> Iterator[Finding]:
     """Findings of TG302 and TG303."""
     for claim in study.claims:
         if isinstance(claim, DurationsClaim | MaximumClaim | TotalTimeClaim):
-            for row in rows(study, claim):
+            for row in printed_rows(study, claim):
                 yield from _beside_optimum(row)
         elif isinstance(claim, StatementClaim) and claim.checks == "optimal":
             yield from _optimal_statement(study, claim)
 
 
-def _kept(row: Row[AnyClaim]) -> bool:
+def _kept(row: PrintedRow[AnyClaim]) -> bool:
     if isinstance(row.claim, TotalTimeClaim) or row.unmoved is not None:
         return False
     return row.rounding.verdict in (Rounding.KEEPS, Rounding.CONSISTENT)
 
 
-def _beside_optimum(row: Row[AnyClaim]) -> Iterator[Finding]:
+def _beside_optimum(row: PrintedRow[AnyClaim]) -> Iterator[Finding]:
     total = row.total
     if total is None:
         return
@@ -91,7 +91,7 @@ def _beside_optimum(row: Row[AnyClaim]) -> Iterator[Finding]:
 
 
 def _distance(
-    row: Row[AnyClaim],
+    row: PrintedRow[AnyClaim],
     total: tuple[str, tuple[float, float]],
     solution: Solution,
     reference: Reference,
@@ -153,7 +153,9 @@ def _distance(
     )
 
 
-def _below(row: Row[AnyClaim], solution: Solution, interval: tuple[float, float]) -> str | None:
+def _below(
+    row: PrintedRow[AnyClaim], solution: Solution, interval: tuple[float, float]
+) -> str | None:
     """Why a total may lie below the optimum of the problem as printed, if something explains it."""
     timed = not isinstance(row.claim, TotalTimeClaim)
     if timed and row.rounding.verdict is Rounding.CONSISTENT:
@@ -178,7 +180,7 @@ def _below(row: Row[AnyClaim], solution: Solution, interval: tuple[float, float]
     return None
 
 
-def _spread(row: Row[AnyClaim], solution: Solution) -> float | None:
+def _spread(row: PrintedRow[AnyClaim], solution: Solution) -> float | None:
     """Share by which the rounding of way-points and limits moves the optimum, to first order.
 
     That it is at most so much longer for any of them is proved; so much shorter is its mirror.
@@ -211,7 +213,7 @@ def set_beside(distance: Gap) -> str:
 
 
 def _beside_procedure(
-    row: Row[AnyClaim], total: tuple[str, tuple[float, float]]
+    row: PrintedRow[AnyClaim], total: tuple[str, tuple[float, float]]
 ) -> Iterator[Finding]:
     answer = row.study.per_joint(row.pair)
     if not answer.ranges or answer.check is None:
@@ -259,7 +261,7 @@ class _Sides:
     solutions: list[Solution] = field(default_factory=list)
 
 
-def _weigh(row: Row[AnyClaim], sides: _Sides) -> None:
+def _weigh(row: PrintedRow[AnyClaim], sides: _Sides) -> None:
     """Set one printed total beside the optimum of its problem."""
     claim = row.claim
     total = row.total
@@ -337,17 +339,6 @@ def _no_optimum(solution: Solution) -> str:
     return f"no optimum was found ({solution.status}{why})"
 
 
-def below_certified(row: Row[AnyClaim], solution: Solution) -> tuple[str, ...] | None:
-    """That a total lies below a certified bound, which speaks only where the problem is exact."""
-    bound = solution.lower_bound
-    if bound is None or row.longest_total >= bound:
-        return None
-    if not all_exact(row):
-        return None
-    shown = shown_bound(bound, "lower", places=6)
-    return (f"The printed total lies below the certified lower bound {shown} s.",)
-
-
 def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Finding]:
     """Refuted by a feasible shorter answer, or by durations that no rounding lets keep the limits.
 
@@ -409,7 +400,7 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
 
 
 def _shorter(
-    row: Row[AnyClaim], solution: Solution, total: tuple[str, tuple[float, float]]
+    row: PrintedRow[AnyClaim], solution: Solution, total: tuple[str, tuple[float, float]]
 ) -> tuple[str, Gap] | None:
     """A checked motion that is shorter whatever the digits stand for, if there is one.
 

@@ -22,12 +22,12 @@ from ....problem.cases import (
 )
 from ....problem.curves import vertex_matrix
 from ...documents import Severity
-from ..row import Row, rows
+from ..printed_row import PrintedRow, printed_rows
+from ..stated import allowed_bases, printed_total
 from ..study import Study
-from .improvements import allowed_bases
 from .measures import measure_beside
 from .peaks import beside
-from .printed_tables import printed_alike, printed_total
+from .printed_tables import printed_alike
 from .printed_vertices import has_vertices
 from .values import value_beside
 
@@ -127,7 +127,7 @@ def _improved(study: Study, claim: ImprovementClaim) -> dict[str, tuple[str, ...
 
 def _of_motion(study: Study, claim: MotionValueClaim) -> dict[str, tuple[str, ...]]:
     for motion in motions_of(study.case.claims, claim):
-        for row in rows(study, motion):
+        for row in printed_rows(study, motion):
             if claim.problem not in (None, row.problem) or row.reading != study.main_reading:
                 continue
             found = [
@@ -140,7 +140,7 @@ def _of_motion(study: Study, claim: MotionValueClaim) -> dict[str, tuple[str, ..
 
 
 def _number(
-    row: Row[AnyClaim], claim: MotionValueClaim, printed: Printed, joint: str | None
+    row: PrintedRow[AnyClaim], claim: MotionValueClaim, printed: Printed, joint: str | None
 ) -> str | None:
     """One number of a motion; None where it has none."""
     if isinstance(claim, PeakClaim):

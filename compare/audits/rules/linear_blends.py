@@ -12,8 +12,8 @@ from ....problem import Array, CaseError, Measured, Printed, Problem
 from ....problem.cases import AnyClaim, Claim, Digits, DurationsClaim
 from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..parabolic_blends import Blended, EndBlends, by_blend_accelerations, by_blend_times
+from ..printed_row import PrintedRow
 from ..rounding import RoundingBox
-from ..row import Row
 from ..study import Study
 from .kept_limits import UNSAID, meant_to_keep, said_of
 
@@ -44,7 +44,7 @@ def judge_row(study: Study, claim: AnyClaim) -> Iterator[Finding]:
     if blended(claim):
         for pair in study.pairs:
             if claim.problem in (None, pair.problem):
-                yield _beside(Row(study, claim, pair))
+                yield _beside(PrintedRow(study, claim, pair))
 
 
 def blended(claim: AnyClaim) -> TypeGuard[DurationsClaim]:
@@ -54,7 +54,7 @@ def blended(claim: AnyClaim) -> TypeGuard[DurationsClaim]:
     return claim.blends is not None or claim.blend_acceleration is not None
 
 
-def _beside(row: Row[DurationsClaim]) -> Finding:
+def _beside(row: PrintedRow[DurationsClaim]) -> Finding:
     study, claim = row.study, row.claim
     problem = row.posed()
     segments = len(problem.waypoints) - 1
@@ -122,7 +122,7 @@ def _beside(row: Row[DurationsClaim]) -> Finding:
     )
 
 
-def _judged(row: Row[DurationsClaim], problem: Problem, ends: EndBlends) -> _Found:
+def _judged(row: PrintedRow[DurationsClaim], problem: Problem, ends: EndBlends) -> _Found:
     box = row.waypoint_box(problem)
     claimed = row.durations
     durations = RoundingBox(claimed.value, claimed.lower, claimed.upper)
@@ -148,7 +148,7 @@ def _judged(row: Row[DurationsClaim], problem: Problem, ends: EndBlends) -> _Fou
 
 
 def _blended(
-    row: Row[DurationsClaim],
+    row: PrintedRow[DurationsClaim],
     problem: Problem,
     waypoints: RoundingBox,
     durations: RoundingBox,
@@ -184,7 +184,7 @@ def _taken(box: RoundingBox, as_printed: bool) -> RoundingBox:
     return RoundingBox.exact(box.value) if as_printed else box.or_cut_off()
 
 
-def _worst(row: Row[Claim], problem: Problem, plain: Blended) -> str:
+def _worst(row: PrintedRow[Claim], problem: Problem, plain: Blended) -> str:
     """The largest ratio to a limit at the printed numbers, in words; or that blends overlap."""
     k, j = np.unravel_index(int(np.argmin(plain.room.low)), plain.room.low.shape)
     if plain.room.low[k, j] < 0:

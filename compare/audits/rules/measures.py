@@ -8,7 +8,7 @@ import numpy as np
 
 from ....problem import QUANTITIES, Array, Printed, Trajectory, fit
 from ....problem.cases import AnyClaim, MeasureClaim
-from ..row import Row
+from ..printed_row import PrintedRow
 from .beside import SAMPLES, Beside, nearest_number
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(10)
@@ -126,13 +126,12 @@ def sampled(trajectory: Trajectory, order: int, measure: str) -> list[MotionMeas
 
 
 def measure_beside(
-    row: Row[AnyClaim], claim: MeasureClaim, printed: Printed, joint: str | None
+    row: PrintedRow[AnyClaim], claim: MeasureClaim, printed: Printed, joint: str | None
 ) -> Beside | None:
     """A printed number beside the measure that it is nearest to, of those that it may be."""
     problem = row.posed()
     if joint is not None and joint not in problem.joints:
         return None
-    box, points = row.boxes
     order = QUANTITIES.index(claim.derivative) + 1
     index = None if joint is None else problem.joints.index(joint)
     own, by_time = _POWERS[claim.measure]
@@ -147,12 +146,12 @@ def measure_beside(
         found = measured(trajectory, order, claim.measure).meant(index)
         return {words: unit * value for words, value in found.items()}
 
-    coarse = sampled(fit(problem.curve, points.value, box.value), order, claim.measure)
+    coarse = sampled(row.motion, order, claim.measure)
     samples = [{words: unit * x for words, x in one.meant(index).items()} for one in coarse]
     return nearest_number(printed, shown, joint, meant, samples, row.boxes)
 
 
-def measure_described(row: Row[AnyClaim], claim: MeasureClaim, one: Beside) -> str:
+def measure_described(row: PrintedRow[AnyClaim], claim: MeasureClaim, one: Beside) -> str:
     """One printed measure beside that of the motion."""
     whose = one.meaning if one.joint is None else f" of joint {one.joint}"
     return one.told(f"the {NAMES[claim.measure]} of {claim.derivative}{whose}")

@@ -16,7 +16,7 @@ from ....problem.cases import (
     motions_of,
 )
 from ...documents import Basis, ClaimVerdict, Finding
-from ..row import Row, rows
+from ..printed_row import PrintedRow, printed_rows
 from ..stated import called
 from ..study import Study
 from .beside import Beside
@@ -29,7 +29,7 @@ _FITTING = ClaimVerdict.SUPPORTED, ""
 """What it says that a printed number fits: verdict and no note."""
 
 
-def _misfit(row: Row[Claim]) -> tuple[ClaimVerdict, str]:
+def _misfit(row: PrintedRow[Claim]) -> tuple[ClaimVerdict, str]:
     """What it says that a printed number does not fit the motion: a verdict, and a note or "".
 
     What rounds to derivatives at the ends, knots and parameters is not looked at, and may be why.
@@ -60,8 +60,8 @@ class MotionNumbers(Generic[_Value]):
 
     rule: str
     kind: type[_Value]
-    beside: Callable[[Row[AnyClaim], _Value, Printed, str | None], Beside | None]
-    described: Callable[[Row[AnyClaim], _Value, Beside], str]
+    beside: Callable[[PrintedRow[AnyClaim], _Value, Printed, str | None], Beside | None]
+    described: Callable[[PrintedRow[AnyClaim], _Value, Beside], str]
     without: str
 
     def judge(self, study: Study) -> Iterator[Finding]:
@@ -70,7 +70,7 @@ class MotionNumbers(Generic[_Value]):
             if not isinstance(claim, self.kind):
                 continue
             meant = motions_of(study.case.claims, claim)
-            for row in (row for motion in meant for row in rows(study, motion)):
+            for row in (row for motion in meant for row in printed_rows(study, motion)):
                 if claim.problem in (None, row.problem) and row.has_curve:
                     each = study.printed_numbers(claim)
                     found = [self.beside(row, claim, number, joint) for joint, number in each]
@@ -85,7 +85,9 @@ class MotionNumbers(Generic[_Value]):
                     sentences=(self.without,),
                 )
 
-    def _finding(self, row: Row[AnyClaim], claim: _Value, found: Sequence[Beside]) -> Finding:
+    def _finding(
+        self, row: PrintedRow[AnyClaim], claim: _Value, found: Sequence[Beside]
+    ) -> Finding:
         """It tells what does not fit, or everything where all of it does."""
         wrong = [one for one in found if not one.fits]
         said = [self.described(row, claim, one) for one in wrong or found]

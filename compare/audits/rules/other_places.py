@@ -10,10 +10,10 @@ from math import inf, isfinite, log
 from ....problem import check
 from ....problem.cases import AnyClaim, DurationsClaim, PeakClaim, TimeClaim, motions_of
 from ...documents import Basis, Finding
-from ..row import Row, rows
+from ..printed_row import PrintedRow, printed_rows
 from ..stated import called, prints_durations
 from ..study import Study
-from .continuous_time import broken
+from .judged_rows import broken
 from .peaks import beside
 from .printed_tables import doubted
 
@@ -39,7 +39,7 @@ def judge_places(study: Study) -> Iterator[Finding]:
 
 def _peaks_elsewhere(study: Study, claim: PeakClaim, own: AnyClaim) -> Iterator[Finding]:
     motions = [c for c in study.case.claims if prints_durations(c)]
-    for row in rows(study, own):
+    for row in printed_rows(study, own):
         joints = study.problem(row.pair).joints
         said = []
         for joint, number in study.printed_numbers(claim):
@@ -50,7 +50,7 @@ def _peaks_elsewhere(study: Study, claim: PeakClaim, own: AnyClaim) -> Iterator[
             for motion in motions:
                 if not study.fits(motion, row.pair):
                     continue
-                elsewhere = Row(study, motion, row.pair)
+                elsewhere = PrintedRow(study, motion, row.pair)
                 for other in joints if joint is not None else (None,):
                     if (motion.id, other) == (own.id, joint):
                         continue
@@ -81,7 +81,7 @@ def _peaks_elsewhere(study: Study, claim: PeakClaim, own: AnyClaim) -> Iterator[
 
 def _row_elsewhere(study: Study, claim: DurationsClaim) -> Iterator[Finding]:
     """A joint's durations that break its limits and just use up those of another joint."""
-    for row in rows(study, claim):
+    for row in printed_rows(study, claim):
         problem = study.problem(row.pair)
         if claim.joint not in problem.joints or len(problem.joints) == 1:
             continue

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -19,8 +19,8 @@ from ....problem import (
     peak_gradients,
 )
 from ....problem.cases import AnyClaim, Claim, PeakClaim
+from ..printed_row import PrintedRow
 from ..rounding import RoundingBox
-from ..row import Row
 from .beside import UNEXPLAINED, Beside, Class, Look, largest_change
 
 _SAMPLES = 50
@@ -32,28 +32,32 @@ _WIDE = 0.05
 _NORM_PLACES = 65
 """Places of a piece at which the norm is computed before the largest is refined, where it is no
 polynomial in time: many for a curve that turns a few times."""
-_Jump = tuple[Row[Claim], Jump]
+_Jump = tuple[PrintedRow[Claim], Jump]
 """A jump with the row whose motion it is of."""
 JUMPING = ("position", "velocity", "acceleration")
 """What jumps, by its order."""
 
 
-def box_reach(row: Row[Claim], point: Extremum) -> float:
+def box_reach(row: PrintedRow[Claim], point: Extremum) -> float:
     """First-order change of an extremum over the rounding box."""
-    problem = row.posed()
+    return _reach(row, [point], np.ones(1))
+
+
+def _reach(row: PrintedRow[Claim], points: list[Extremum], share: Array) -> float:
+    """First-order change of a sum of extrema, each times its share, over the rounding box."""
     durations, waypoints = row.boxes
-    g = peak_gradients(problem, durations.value, [point])
-    by_time = np.abs(g.durations[0]) @ (durations.upper - durations.lower) / 2
-    half = (waypoints.upper - waypoints.lower)[:, point.joint] / 2
-    return float(by_time + np.abs(g.waypoints[0]) @ half)
+    g = peak_gradients(row.posed(), durations.value, points)
+    half = (waypoints.upper - waypoints.lower).T[[point.joint for point in points]] / 2
+    by_time = np.abs(share @ g.durations) @ (durations.upper - durations.lower) / 2
+    return float(by_time + np.sum(np.abs(share[:, None] * g.waypoints) * half))
 
 
-def farthest(row: Row[AnyClaim], top: Extremum, alone: bool, share: float) -> float:
+def farthest(row: PrintedRow[AnyClaim], top: Extremum, alone: bool, share: float) -> float:
     """Largest change of a peak that is found in the rounding box.
 
     Parameters
     ----------
-    row : Row
+    row : PrintedRow
     top : Extremum
         The peak at the printed numbers.
     alone : bool
@@ -86,29 +90,26 @@ def farthest(row: Row[AnyClaim], top: Extremum, alone: bool, share: float) -> fl
     return largest_change(*row.boxes, share, look)
 
 
-def largest(row: Row[Claim], order: int) -> list[Extremum]:
+def largest(row: PrintedRow[Claim], order: int) -> list[Extremum]:
     """Largest extremum of each joint of the claim's problem, at the printed point."""
 
     def compute() -> list[Extremum]:
-        problem = row.posed()
-        durations = row.durations.value
-        trajectory = fit(problem.curve, problem.waypoints, durations)
+        motion = row.motion
         return [
-            max(extrema(trajectory, j, order), key=lambda e: abs(e.value))
-            for j in range(len(problem.joints))
+            max(extrema(motion, j, order), key=lambda e: abs(e.value)) for j in range(motion.joints)
         ]
 
     return row.once("largest", compute, order)
 
 
 def beside(
-    row: Row[AnyClaim], claim: PeakClaim, printed: Printed, joint: str | None
+    row: PrintedRow[AnyClaim], claim: PeakClaim, printed: Printed, joint: str | None
 ) -> Beside | None:
     """A printed peak set beside the exact one of a motion.
 
     Parameters
     ----------
-    row : Row
+    row : PrintedRow
     claim : PeakClaim
         Says which derivative.
     printed : Printed
@@ -130,35 +131,26 @@ def beside(
         tops = [tops[problem.joints.index(joint)]]
     top = max(tops, key=lambda e: abs(e.value))
     measured = row.measured(printed, claim.derivative, joint)
-    cut, samples = measured.cut_off(), _samples(row, order)
-    unit = row.unit(claim.derivative, joint)
+    samples, cut = _samples(row, order), measured.cut_off()
 
-    def of(exact: float, reach: float, far: float, least: float) -> Beside:
-        low, high, lowest, highest, exact, reach, far, least = (
-            row.in_units(claim.derivative, value, joint)
-            for value in (
-                measured.lower,
-                measured.upper,
-                cut.lower,
-                cut.upper,
-                exact,
-                reach,
-                far,
-                least,
-            )
-        )
-        ends, linear = (least, exact), problem.linear[top.joint]
+    def shown(*values: float) -> Iterator[float]:
+        return (row.in_units(claim.derivative, value, joint) for value in values)
+
+    low, high, lowest, highest = shown(measured.lower, measured.upper, cut.lower, cut.upper)
+
+    def of(*numbers: float) -> Beside:
+        exact, reach, far, least = shown(*numbers)
         return Beside(
-            printed,
-            (low, high),
-            (lowest, highest),
-            exact,
-            reach,
-            far,
-            ends,
-            unit,
-            joint,
-            linear=linear,
+            printed=printed,
+            rounded=(low, high),
+            wide=(lowest, highest),
+            exact=exact,
+            reach=reach,
+            far=far,
+            sampled=(least, exact),
+            unit=row.unit(claim.derivative, joint),
+            joint=joint,
+            linear=problem.linear[top.joint],
         )
 
     exact, reach = abs(top.value), box_reach(row, top)
@@ -174,17 +166,14 @@ def beside(
     return replace(found, norm=of(whole.largest, whole.reach, 2 * whole.reach, least))
 
 
-def _samples(row: Row[AnyClaim], order: int) -> list[Array]:
+def _samples(row: PrintedRow[AnyClaim], order: int) -> list[Array]:
     """Absolute values at evenly spaced times, for each offset that these may have."""
 
     def compute() -> list[Array]:
-        problem = row.posed()
-        durations = row.durations.value
-        trajectory = fit(problem.curve, problem.waypoints, durations)
-        step = float(durations.sum()) / _SAMPLES
+        step = float(row.durations.value.sum()) / _SAMPLES
         offsets = np.arange(_PHASES)[:, None] / _PHASES
         times = (np.arange(_SAMPLES) + offsets) * step
-        found = np.abs(trajectory(times.ravel(), order))
+        found = np.abs(row.motion(times.ravel(), order))
         return list(found.reshape(_PHASES, _SAMPLES, -1))
 
     return row.once("samples", compute, order)
@@ -207,12 +196,12 @@ class Norm:
     reach: float
 
 
-def largest_norm(row: Row[Claim], order: int) -> Norm:
+def largest_norm(row: PrintedRow[Claim], order: int) -> Norm:
     """Largest norm of a derivative on a printed motion.
 
     Parameters
     ----------
-    row : Row
+    row : PrintedRow
     order : int
         1 for velocity, 2 for acceleration, 3 for jerk.
 
@@ -220,19 +209,13 @@ def largest_norm(row: Row[Claim], order: int) -> Norm:
     -------
     Norm
     """
-    problem = row.posed()
-    durations, waypoints = row.boxes
-    trajectory = fit(problem.curve, problem.waypoints, durations.value)
-    top, piece, s = max(_norm_top(trajectory, k, order) for k in range(len(trajectory.durations)))
-    values = _norm_values(trajectory, piece, order, np.array([s]))[:, 0]
+    motion = row.motion
+    top, piece, s = max(_norm_top(motion, k, order) for k in range(len(motion.durations)))
+    values = _norm_values(motion, piece, order, np.array([s]))[:, 0]
     points = [Extremum(j, piece, order, s, 0.0, float(v)) for j, v in enumerate(values)]
-    g = peak_gradients(problem, durations.value, points)
     # The norm's gradient weighs each joint's by its share; at the top its place does not count.
     share = values / top if top else np.zeros_like(values)
-    by_time = np.abs(share @ g.durations) @ (durations.upper - durations.lower) / 2
-    half = (waypoints.upper - waypoints.lower).T / 2
-    by_angle = np.sum(np.abs(share[:, None] * g.waypoints) * half)
-    return Norm(top, float(by_time + by_angle))
+    return Norm(top, _reach(row, points, share))
 
 
 def _norm_values(trajectory: Trajectory, piece: int, order: int, places: Array) -> Array:
@@ -276,7 +259,7 @@ def _turning(trajectory: Trajectory, piece: int, order: int) -> Array:
     return np.concatenate([[0.0, 1.0], turns])
 
 
-def peak_described(row: Row[AnyClaim], claim: PeakClaim, one: Beside) -> str:
+def peak_described(row: PrintedRow[AnyClaim], claim: PeakClaim, one: Beside) -> str:
     """One printed peak beside the exact one, with the class of their distance."""
     whose = "" if one.joint is None else f"joint {one.joint}: "
     exact = one.around
@@ -323,11 +306,11 @@ def largest_of_each_kind(jumps: Sequence[_Jump]) -> list[_Jump]:
     return list(found.values())
 
 
-def jump_size(row: Row[Claim], jump: Jump) -> float:
+def jump_size(row: PrintedRow[Claim], jump: Jump) -> float:
     """Size of a jump in the unit of its joint."""
     return row.in_units(JUMPING[jump.order], jump.size, jump.joint)
 
 
-def jump_unit(row: Row[Claim], jump: Jump) -> str:
+def jump_unit(row: PrintedRow[Claim], jump: Jump) -> str:
     """The unit of a jump, as a sentence writes it."""
     return row.unit(JUMPING[jump.order], jump.joint)

@@ -9,7 +9,7 @@ import numpy as np
 from ....problem import QUANTITIES
 from ....problem.cases import AnyClaim, Digits, PeakClaim, StatementClaim, motions_of
 from ...documents import Basis, ClaimVerdict, Finding, Severity
-from ..row import Row, rows
+from ..printed_row import PrintedRow, printed_rows
 from ..stated import place
 from ..study import Study
 
@@ -30,7 +30,7 @@ def _beyond(study: Study, claim: StatementClaim, peak: PeakClaim) -> Iterator[Fi
     for motion in motions_of(study.case.claims, peak):
         if claim.of and motion.id not in claim.of:
             continue
-        for row in rows(study, motion):
+        for row in printed_rows(study, motion):
             said = _above(row, peak)
             if said:
                 yield Finding(
@@ -49,7 +49,7 @@ def _beyond(study: Study, claim: StatementClaim, peak: PeakClaim) -> Iterator[Fi
                 )
 
 
-def _above(row: Row[AnyClaim], peak: PeakClaim) -> list[str]:
+def _above(row: PrintedRow[AnyClaim], peak: PeakClaim) -> list[str]:
     """Printed peaks beyond their limits, whatever was rounded, raised or cut off in either.
 
     A number for several joints at once may be the norm over them, which no limit bounds.

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
 from itertools import combinations
 
-from ....problem import Case, Interval, Printed
+from ....problem import Case, Interval
 from ....problem.cases import (
     AnyClaim,
     DurationsClaim,
@@ -16,9 +16,10 @@ from ....problem.cases import (
     TotalTimeClaim,
 )
 from ...documents import Basis, ClaimVerdict, Finding, Severity
+from ..printed_row import PrintedRow, rows_under
 from ..roots import TABLES
 from ..rounding import hull
-from ..row import Row, rows_under
+from ..stated import printed_total
 from ..study import Study
 from .printed_digits import end_blends, meet
 
@@ -32,22 +33,6 @@ def judge_tables(study: Study) -> Iterator[Finding]:
     """Findings of TG104 and TG105."""
     yield from _tables_alike(study)
     yield from _same_total(study)
-
-
-def printed_total(claim: AnyClaim) -> Printed | None:
-    """The total that a claim prints, if it does.
-
-    Parameters
-    ----------
-    claim : AnyClaim
-
-    Returns
-    -------
-    Printed or None
-    """
-    if isinstance(claim, DurationsClaim | MaximumClaim):
-        return claim.total
-    return claim.value if isinstance(claim, TotalTimeClaim) else None
 
 
 def _alike(case: Case) -> Iterator[tuple[Table, Table]]:
@@ -129,7 +114,7 @@ def _at_optimum(study: Study, claims: Iterable[AnyClaim]) -> str | None:
     return None
 
 
-def _is_optimum(row: Row[AnyClaim]) -> bool:
+def _is_optimum(row: PrintedRow[AnyClaim]) -> bool:
     total = row.total
     solution = row.optimum
     if total is None or not solution.found or solution.infimum is not None:

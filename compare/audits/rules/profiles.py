@@ -10,7 +10,7 @@ import numpy as np
 from ....problem import Array, CaseError, Problem
 from ....problem.cases import Claim, Digits, TotalTimeClaim
 from ...documents import Basis, ClaimVerdict, Finding
-from ..row import Row
+from ..printed_row import PrintedRow
 from ..study import Study
 
 _SLACK = 1e-12
@@ -172,10 +172,10 @@ def judge_profiles(study: Study) -> Iterator[Finding]:
         if isinstance(claim, TotalTimeClaim) and claim.profile is not None:
             for pair in study.pairs:
                 if claim.problem in (None, pair.problem):
-                    yield _beside(Row(study, claim, pair), claim.profile)
+                    yield _beside(PrintedRow(study, claim, pair), claim.profile)
 
 
-def _ways(row: Row[Claim], problem: Problem) -> tuple[Array, Array]:
+def _ways(row: PrintedRow[Claim], problem: Problem) -> tuple[Array, Array]:
     """Least and most that each joint moves in each segment, digits rounded or cut off."""
     box = row.waypoint_box(problem).or_cut_off()
     low, high = box.lower[1:] - box.upper[:-1], box.upper[1:] - box.lower[:-1]
@@ -184,7 +184,7 @@ def _ways(row: Row[Claim], problem: Problem) -> tuple[Array, Array]:
     return least, most
 
 
-def _beside(row: Row[TotalTimeClaim], profile: str) -> Finding:
+def _beside(row: PrintedRow[TotalTimeClaim], profile: str) -> Finding:
     study, claim = row.study, row.claim
     why = _not_computed(row, profile)
     if why:
@@ -230,7 +230,7 @@ def _beside(row: Row[TotalTimeClaim], profile: str) -> Finding:
     )
 
 
-def _not_computed(row: Row[TotalTimeClaim], profile: str) -> str | None:
+def _not_computed(row: PrintedRow[TotalTimeClaim], profile: str) -> str | None:
     """Why the profile of a problem is none of those computed here, as a sentence; None if it is."""
     problem = row.posed()
     if problem.limits.uneven:
@@ -253,7 +253,7 @@ _PATHS = {
 """How the joints go together, by whether they stay on a straight line."""
 
 
-def _fitted(row: Row[TotalTimeClaim], profile: str, straight: bool) -> tuple[float, bool]:
+def _fitted(row: PrintedRow[TotalTimeClaim], profile: str, straight: bool) -> tuple[float, bool]:
     """The shortest total at the printed numbers, and whether the printed one fits its interval."""
     total = shortest_straight if straight else shortest
     problem = row.posed()
@@ -269,4 +269,4 @@ def _fitted(row: Row[TotalTimeClaim], profile: str, straight: bool) -> tuple[flo
         high = inf
     number = row.time(row.claim.value)
     cut = number.cut_off()
-    return plain, min(number.lower, cut.lower) <= high and low <= max(number.upper, cut.upper)
+    return plain, cut.lower <= high and low <= cut.upper

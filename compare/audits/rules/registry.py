@@ -2,15 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
-
-from ...documents import Finding, Rule
-from ..study import Study
-from .bare_totals import judge_bare_totals
+from ...documents import Rule
 from .compared_before import cite_comparisons
 from .condition_count import judge_counts
-from .continuous_time import judge_motions
+from .continuous_time import judge_bare_totals, judge_motions
 from .distances import judge_distances
 from .improvements import judge_improvements
 from .linear_blends import judge_blends
@@ -27,27 +22,8 @@ from .printed_tables import judge_tables
 from .printed_vertices import judge_vertices
 from .profiles import judge_profiles
 from .replays import judge_replays
+from .rule_group import RuleGroup
 from .scaling_law import judge_scaling
-
-
-@dataclass(frozen=True)
-class RuleGroup:
-    """Rules that one function judges.
-
-    Attributes
-    ----------
-    judge : callable
-        From a study to the findings.
-    rules : dict
-        What each rule looks at, by its permanent id; an id is never reused.
-    without_waypoints : bool
-        Whether it says something while the way-points are missing.
-    """
-
-    judge: Callable[[Study], Iterator[Finding]]
-    rules: dict[str, str]
-    without_waypoints: bool = False
-
 
 GROUPS = (
     RuleGroup(

@@ -31,8 +31,8 @@ from ...gaps import (
     spread,
 )
 from ..chosen_case import Pair, Replays
+from ..printed_row import rows_under
 from ..replay_settings import LISTED
-from ..row import rows_under
 from ..stated import other_objective
 from ..study import Study
 

@@ -11,8 +11,8 @@ from ....problem import CaseError, Problem
 from ....problem.cases import AnyClaim, Digits, DurationsClaim, MaximumClaim, StatementClaim
 from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..fixed_ratios import off_ratios
+from ..printed_row import rows_under
 from ..roots import OPTIMAL
-from ..row import rows_under
 from ..stated import called_under, other_objective
 from ..study import Study
 

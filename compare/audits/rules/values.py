@@ -6,7 +6,7 @@ import numpy as np
 
 from ....problem import QUANTITIES, Array, Curve, Printed, Trajectory, extrema, fit
 from ....problem.cases import AnyClaim, ValueClaim, named_places
-from ..row import Row
+from ..printed_row import PrintedRow
 from ..stated import place_of_value
 from .beside import SAMPLES, Beside, nearest_number
 
@@ -17,7 +17,7 @@ _SAME = 1e-9
 
 
 def value_beside(
-    row: Row[AnyClaim], claim: ValueClaim, printed: Printed, joint: str | None
+    row: PrintedRow[AnyClaim], claim: ValueClaim, printed: Printed, joint: str | None
 ) -> Beside | None:
     """A printed number beside the value of one joint; where it jumps, on its nearer side."""
     problem = row.posed()
@@ -25,15 +25,14 @@ def value_beside(
         joint = problem.joints[0]
     if joint not in problem.joints:
         return None
-    box, points = row.boxes
     j, order = problem.joints.index(joint), _ORDERS[claim.derivative]
     unit = row.in_units(claim.derivative, 1.0, joint)
     statement = row.statement
     at = None if claim.place is None else named_places(statement)[claim.place]
     spread, instant = 0.0, None
-    drawn = fit(problem.curve, points.value, box.value)
+    drawn, printed_durations = row.motion, row.durations.value
     if claim.time is not None:
-        measured = row.time(claim.time)
+        measured = row.measured(claim.time, "time")
         instant = measured.value
         ends = [_near(drawn, t, j, order) for t in (measured.lower, measured.upper, instant)]
         spread = unit * max(abs(x - y) for x in ends[2] for end in ends[:2] for y in end)
@@ -44,7 +43,7 @@ def value_beside(
         time = _time_of(problem.curve, durations, at) if instant is None else instant  # type: ignore[arg-type]
         return _near(trajectory, time, j, order)
 
-    pair = sides(drawn, box.value)
+    pair = sides(drawn, printed_durations)
     jumps = pair is not None and abs(pair[0] - pair[1]) > _SAME * max(map(abs, pair))
 
     def meant(waypoints: Array, durations: Array) -> dict[str, float]:
@@ -89,7 +88,7 @@ def _near(motion: Trajectory, time: float, joint: int, order: int) -> tuple[floa
     return float(before), float(after)
 
 
-def value_described(row: Row[AnyClaim], claim: ValueClaim, one: Beside) -> str:
+def value_described(row: PrintedRow[AnyClaim], claim: ValueClaim, one: Beside) -> str:
     """One printed value beside that of the motion."""
     size = f"{claim.place} " if claim.place in ("largest", "smallest") else ""
     where = place_of_value(row.study.case, claim)

@@ -13,7 +13,7 @@ from scipy.interpolate import CubicSpline
 from support.findings import audited_text, study_of, verdicts
 from support.made_up import Numbers, paper, readings, row, sentence, total
 from trajgap.compare import ClaimVerdict
-from trajgap.compare.audits import CaseAudit, Row, waterfalls
+from trajgap.compare.audits import CaseAudit, PrintedRow, waterfalls
 from trajgap.compare.audits.card_optimum import optimum_line
 from trajgap.compare.audits.fixed_ratios import off_ratios
 from trajgap.compare.audits.rules.scaling_law import velocity_factor
@@ -160,7 +160,7 @@ def test_digits_of_durations_and_ratios_decide_whether_they_agree(
     durations: Numbers, ratios: object, rows: Sequence[Numbers], off: bool
 ) -> None:
     study = study_of(text(durations, ratios, rows=rows))
-    row = Row(study, study.case.claim("d"), study.pairs[0])
+    row = PrintedRow(study, study.case.claim("d"), study.pairs[0])
     assert (off_ratios(row) is not None) is off
 
 

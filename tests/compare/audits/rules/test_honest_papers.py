@@ -18,7 +18,7 @@ from support.made_up import (
 )
 from support.papers.apart import apart
 from support.papers.claims import draw
-from trajgap.compare.audits import rows
+from trajgap.compare.audits import printed_rows
 from trajgap.compare.audits.rules.kept_limits import said_to_keep
 from trajgap.compare.documents import Basis, ClaimVerdict, Finding, Scope, Severity
 from trajgap.nlp import Evidence, Status
@@ -137,7 +137,7 @@ def test_a_total_that_is_the_sum_of_the_printed_durations_bounds_no_more_than_th
 ) -> None:
     """1.336 + 1.580 + 0.997 = 3.913; each may be cut off, and then so may their sum by 0.003."""
     study = study_of(paper([[0, 1, 2, 3]], row("m", "1.336 1.580 0.997", total=value), velocity=1))
-    (found,) = rows(study, study.case.claim("m"))
+    (found,) = printed_rows(study, study.case.claim("m"))
     assert found.longest_total == pytest.approx(longest, abs=1e-9)
 
 

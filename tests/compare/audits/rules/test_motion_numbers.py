@@ -12,7 +12,7 @@ from scipy.integrate import quad
 from scipy.interpolate import CubicSpline
 from support.findings import finding, study_of
 from support.made_up import Numbers, claim, paper, peak, row
-from trajgap.compare.audits import rows
+from trajgap.compare.audits import printed_rows
 from trajgap.compare.audits.rules.beside import Beside
 from trajgap.compare.audits.rules.measures import NAMES, measured
 from trajgap.compare.audits.rules.peaks import _norm_top, largest_norm
@@ -239,7 +239,7 @@ def test_a_printed_norm_accuses_nobody(curve: dict[str, Any], printed: str, verd
 
 def test_the_norm_moves_with_the_durations_as_first_order_says() -> None:
     study = study_of(arm(QUINTIC, speed("2.9"), "1.000 " * 7))
-    (row,) = rows(study, study.case.claim("d"))
+    (row,) = printed_rows(study, study.case.claim("d"))
     found = largest_norm(row, 1)
     problem = row.posed()
 

@@ -17,9 +17,11 @@ from ...problem import (
     Printed,
     Problem,
     Quantity,
+    Trajectory,
     TrajgapError,
     Verdict,
     check,
+    fit,
     from_si,
     reachable_total,
     shown_unit,
@@ -29,15 +31,12 @@ from ...problem.cases import (
     Claim,
     Digits,
     DurationBox,
-    DurationsClaim,
-    MaximumClaim,
     Statement,
-    TotalTimeClaim,
 )
 from ..documents import UNITS, Keeping, Rounding, noted, si_unit
 from .chosen_case import Pair
 from .rounding import RoundingBox, RoundingVerdict, judge_rounding
-from .stated import in_words, in_words_among, place
+from .stated import in_words, in_words_among, own_total, place, prints_durations
 from .study import Study
 from .total_bound import BOXES, excludes_total
 
@@ -46,7 +45,7 @@ T = TypeVar("T")
 
 
 @dataclass(frozen=True)
-class Row(Generic[C]):
+class PrintedRow(Generic[C]):
     """A claim under a problem and a reading; what is computed of it is kept in its study.
 
     Attributes
@@ -141,6 +140,12 @@ class Row(Generic[C]):
         return self.study.case.claim_durations(self.claim, self.reading)
 
     @property
+    def motion(self) -> Trajectory:
+        """The motion of the printed durations, at the printed way-points."""
+        problem = self.posed()
+        return fit(problem.curve, problem.waypoints, self.durations.value)
+
+    @property
     def total(self) -> tuple[str, tuple[float, float]] | None:
         """The total as printed, or as summed, and its interval in seconds."""
         return self.study.claim_total(self.claim, self.reading)
@@ -151,17 +156,11 @@ class Row(Generic[C]):
 
         Each number by itself: durations may be cut off beside a total that is rounded.
         """
-        claim, found = self.claim, []
-        number = claim.value if isinstance(claim, TotalTimeClaim) else None
-        if isinstance(claim, DurationsClaim | MaximumClaim):
+        found, number = [], own_total(self.claim)
+        if prints_durations(self.claim):
             found.append(float(self._duration_box.or_cut_off().upper.sum()))
-            # A total that is the sum of the printed digits says no more than they do.
-            plain = sum(one.decimal for one in claim.durations)
-            summed = claim.total is not None and claim.total.decimal == plain
-            number = None if summed else claim.total
         if number is not None:
-            total = self.time(number)
-            found.append(max(total.upper, total.cut_off().upper))
+            found.append(self.time(number).cut_off().upper)
         return min(found, default=float("inf"))
 
     @property
@@ -319,14 +318,14 @@ class Row(Generic[C]):
         return excluded is True
 
 
-def rows(study: Study, claim: C) -> Iterator[Row[C]]:  # type: ignore[misc]
+def printed_rows(study: Study, claim: C) -> Iterator[PrintedRow[C]]:  # type: ignore[misc]
     """A claim under each problem and reading that it speaks about; none where it fits none."""
-    return (Row(study, claim, pair) for pair in study.pairs if study.fits(claim, pair))
+    return (PrintedRow(study, claim, pair) for pair in study.pairs if study.fits(claim, pair))
 
 
-def rows_under(study: Study, claims: Iterable[C], reading: str) -> list[Row[C]]:
+def rows_under(study: Study, claims: Iterable[C], reading: str) -> list[PrintedRow[C]]:
     """Claims with each problem that they speak about under a reading."""
-    return [row for one in claims for row in rows(study, one) if row.reading == reading]
+    return [row for one in claims for row in printed_rows(study, one) if row.reading == reading]
 
 
 def left_out(study: Study, named: Iterable[AnyClaim], reading: str) -> list[AnyClaim]:
