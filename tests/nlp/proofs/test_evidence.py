@@ -101,7 +101,7 @@ def test_a_proof_of_a_wide_interval_certifies_nothing(
     problem = replace(COVERED_PROBLEMS[f"{IRB}.{PAIR[0]}.{PAIR[1]}"], name=f"width {width}")
     document = certificate(certify(problem, gap=width))
     monkeypatch.setattr(evidence_module, "shipped", lambda *_: document)
-    answer = solve(known_study().problem(*PAIR))
+    answer = solve(known_study().problem(PAIR))
     evidence_module.proved.cache_clear()
     assert with_interval(answer, proved(problem)).evidence == word
     evidence_module.proved.cache_clear()
