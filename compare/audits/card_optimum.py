@@ -267,7 +267,7 @@ def _one_beside(row: PrintedRow[TimeClaim], solution: Solution) -> _Part | None:
     total = row.total
     if total is None:
         return None
-    shown, (low, high) = study.total_digits(row.claim), total[1]
+    shown, (low, high) = study.total_digits(row.claim), total.interval
     if off_ratios(row) is not None:
         return f"{shown} is of durations in other ratios than the reading fixes"
     seconds = _seconds(row)
@@ -390,7 +390,7 @@ def _joint_by_joint(row: PrintedRow[TimeClaim], seconds: float) -> str | None:
     # The joints' optima may be proven; the range that they leave is the widest that is found.
     own = "obtained by optimising each joint separately" + ("" if proven else " (best known)")
     span = f"{ranged(wide.lowest, wide.highest, '.4f')} s"
-    low, high = total[1]
+    low, high = total.interval
     if low <= wide.highest and high >= wide.lowest:
         return f"agrees with {span}, {own}"
     longer = seconds > wide.highest

@@ -24,15 +24,12 @@ from ...problem import Case, Coupling, Printed, Problem, TrajgapError
 from ...problem.cases import (
     AnyClaim,
     Claim,
-    DurationsClaim,
-    MaximumClaim,
     MotionValueClaim,
-    TotalTimeClaim,
 )
 from ..documents import capital
 from .intervals import Intervals
 from .replay_settings import LISTED, spread_settings
-from .stated import in_words, printed_total
+from .stated import in_words, printed_total, prints_durations
 
 T = TypeVar("T")
 SEEDS = 100
@@ -52,6 +49,13 @@ class Pair(NamedTuple):
 
     problem: str
     reading: str
+
+
+class Total(NamedTuple):
+    """A total as printed, or else as summed from durations, and what its digits stand for, s."""
+
+    shown: str
+    interval: tuple[float, float]
 
 
 class ChosenCase:
@@ -188,21 +192,21 @@ class ChosenCase:
         """The printed durations with their unit."""
         return f"{', '.join(map(str, self.case.printed_durations(claim)))} {self.time_unit}"
 
-    def claim_total(self, claim: Claim, rid: str) -> tuple[str, tuple[float, float]] | None:
-        """A claim's total as printed (or as summed), and its interval in seconds."""
-        if isinstance(claim, TotalTimeClaim):
-            total = self.case.measured(claim.value, "time", claim.problem, rid)
-            return self.total_digits(claim), (total.lower, total.upper)
-        if not isinstance(claim, DurationsClaim | MaximumClaim):
-            return None
-        box = self.case.claim_durations(claim, rid)
-        summed = (float(box.lower.sum()), float(box.upper.sum()))
+    def claim_total(self, claim: Claim, reading: str) -> Total | None:
+        """A claim's total; None where it has none."""
         shown = self.total_digits(claim)
-        if claim.total is None:
-            return f"{shown} (sum of the printed durations)", summed
-        total = self.case.measured(claim.total, "time", claim.problem, rid)
-        both = (max(summed[0], total.lower), min(summed[1], total.upper))
-        return shown, both if both[0] <= both[1] else (total.lower, total.upper)
+        printed = printed_total(claim)
+        total = None
+        if printed is not None:
+            total = self.case.measured(printed, "time", claim.problem, reading)
+        if not prints_durations(claim):
+            return None if total is None else Total(shown, (total.lower, total.upper))
+        box = self.case.claim_durations(claim, reading)
+        low, high = float(box.lower.sum()), float(box.upper.sum())
+        if total is None:
+            return Total(f"{shown} (sum of the printed durations)", (low, high))
+        both = max(low, total.lower), min(high, total.upper)
+        return Total(shown, both if both[0] <= both[1] else (total.lower, total.upper))
 
     def algorithm(self, algorithm_id: str) -> Algorithm[Any] | None:
         """The case's algorithm, or None if its kind is not implemented."""

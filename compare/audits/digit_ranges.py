@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...nlp import Evidence, Solution, Status
+from ...nlp import Evidence, Status
 from ...nlp.optimum import apart
 from ...problem import Array, Problem, as_piecewise
 from ...problem.cases import Claim, Digits
@@ -77,9 +77,9 @@ def all_exact(row: PrintedRow[Claim]) -> bool:
     return same_limits(problem, loosest) and np.array_equal(box.lower, box.upper)
 
 
-def below_certified(row: PrintedRow[Claim], solution: Solution) -> tuple[str, ...] | None:
+def below_certified(row: PrintedRow[Claim]) -> tuple[str, ...] | None:
     """That a total lies below a certified bound, which speaks only where the problem is exact."""
-    bound = solution.lower_bound
+    bound = row.optimum.lower_bound
     if bound is None or row.longest_total >= bound:
         return None
     if not all_exact(row):

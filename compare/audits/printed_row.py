@@ -34,7 +34,7 @@ from ...problem.cases import (
     Statement,
 )
 from ..documents import UNITS, Keeping, Rounding, noted, si_unit
-from .chosen_case import Pair
+from .chosen_case import Pair, Total
 from .rounding import RoundingBox, RoundingVerdict, judge_rounding
 from .stated import in_words, in_words_among, own_total, place, prints_durations
 from .study import Study
@@ -146,7 +146,7 @@ class PrintedRow(Generic[C]):
         return fit(problem.curve, problem.waypoints, self.durations.value)
 
     @property
-    def total(self) -> tuple[str, tuple[float, float]] | None:
+    def total(self) -> Total | None:
         """The total as printed, or as summed, and its interval in seconds."""
         return self.study.claim_total(self.claim, self.reading)
 
@@ -216,6 +216,13 @@ class PrintedRow(Generic[C]):
     def rounding(self) -> RoundingVerdict:
         """The printed durations judged over the box of all inputs that round to the digits."""
         return self.once("rounding", lambda: self._judged_box(cut=False))
+
+    @property
+    def kept(self) -> bool:
+        """Whether durations are printed that keep the limits, as printed or within rounding."""
+        if not prints_durations(self.claim) or self.unmoved is not None:
+            return False
+        return self.rounding.verdict in (Rounding.KEEPS, Rounding.CONSISTENT)
 
     @property
     def cut(self) -> RoundingVerdict:
@@ -301,7 +308,7 @@ class PrintedRow(Generic[C]):
         total = self.total
         if total is None or self.statement.loose_ends:
             return False
-        low, high = total[1]
+        low, high = total.interval
         longest = high + (high - low)
         best = self.optimum
         if best.found and best.best <= longest:
@@ -312,7 +319,7 @@ class PrintedRow(Generic[C]):
         if excluded is None:
             asked = in_words_among(self.study.case, *self.pair)
             self.study.intervals.left_out.append(
-                noted(f"whether any motion takes {total[0]} or less", asked)
+                noted(f"whether any motion takes {total.shown} or less", asked)
                 + f", tried with {BOXES} boxes"
             )
         return excluded is True

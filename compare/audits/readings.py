@@ -128,7 +128,7 @@ def _outcome(study: Study, waterfall: Waterfall) -> ReadingOutcome:
             distance = Why("the printed durations have other ratios than this reading fixes")
         elif total is not None and reference is not None:
             kept = keeping in (Keeping.KEEPS, Keeping.CONSISTENT)
-            distance = gap(total[1], reference, feasible=kept)
+            distance = gap(total.interval, reference, feasible=kept)
     return ReadingOutcome(
         reading=waterfall.reading,
         problem=waterfall.problem,

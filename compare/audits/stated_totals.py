@@ -29,7 +29,7 @@ def other_totals(row: PrintedRow[Claim]) -> list[TotalTimeClaim]:
     own = row.total
     if own is None or not prints_durations(row.claim):
         return []
-    low, high = own[1][0], max(own[1][1], row.longest_total)
+    low, high = own.interval[0], max(own.interval[1], row.longest_total)
     stated = (
         c for c in row.study.case.claims if isinstance(c, TotalTimeClaim) and c.of == row.claim.id
     )

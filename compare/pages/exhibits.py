@@ -25,7 +25,7 @@ from ..pictures import (
     workspace_picture,
 )
 from .blocks import Block, Drawn, Folded, Grid, Section, number, text
-from .motions_shown import whole_claims
+from .motions_shown import alike, whole_rows
 from .numbers import noted, only_under
 from .units import both_units, paper_units
 
@@ -72,11 +72,8 @@ def _drawn(name: str, picture: Picture, caption: str) -> Drawn:
 
 def _jumps(study: Study) -> Iterator[Block]:
     for pair in study.main_pairs:
-        alike: dict[tuple[str, ...], list[DurationsClaim | MaximumClaim]] = {}
-        for claim in whole_claims(study, pair):
-            alike.setdefault(tuple(map(str, claim.durations)), []).append(claim)
-        for claims in alike.values():
-            yield from _jumps_of(study, pair.problem, claims)
+        for rows in alike(whole_rows(study, pair)):
+            yield from _jumps_of(study, pair.problem, [row.claim for row in rows])
 
 
 def _jumps_of(

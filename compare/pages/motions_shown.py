@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 
 from ...heuristics import JointRuns
 from ...nlp import Solution, weakest
 from ...problem import Array, Problem, TrajgapError, file_name
-from ...problem.cases import AnyClaim, DurationsClaim, MaximumClaim, TotalTimeClaim
+from ...problem.cases import DurationsClaim, MaximumClaim, TotalTimeClaim
 from ..audits import CaseAudit, Pair, PrintedRow, Study, at_ratios, place, planned_apart
 from ..documents import OWN_OPTIMA
 from ..pictures import Picture, Runs, convergence, endings, landscape, motion_picture, svg
 from .blocks import Block, Drawn, Folded, Grid, Prose, Section
 from .numbers import REPLAY_COLUMNS, noted, problem_name, replay_rows
 from .units import paper_units
+
+_Row = PrintedRow[DurationsClaim | MaximumClaim]
+"""A row that prints durations."""
 
 
 def motions(one: CaseAudit) -> Section:
@@ -54,11 +57,11 @@ def _drawn(name: str, picture: Picture, caption: str) -> Drawn:
     return Drawn(name, svg(picture), picture.title, caption)
 
 
-def whole_claims(study: Study, pair: Pair) -> list[DurationsClaim | MaximumClaim]:
+def whole_rows(study: Study, pair: Pair) -> list[_Row]:
     """Claims that print durations for all joints of a problem."""
     joints = study.problem(pair).joints
     return [
-        c
+        PrintedRow(study, c, pair)
         for c in study.case.claims
         if isinstance(c, DurationsClaim | MaximumClaim)
         and study.fits(c, pair)
@@ -66,87 +69,77 @@ def whole_claims(study: Study, pair: Pair) -> list[DurationsClaim | MaximumClaim
     ]
 
 
+def alike(rows: Iterable[_Row]) -> list[list[_Row]]:
+    """Rows that print the same digits together."""
+    found: dict[tuple[str, ...], list[_Row]] = {}
+    for row in rows:
+        found.setdefault(tuple(map(str, row.claim.durations)), []).append(row)
+    return list(found.values())
+
+
 def _printed_motions(study: Study, pair: Pair) -> Iterator[Block]:
-    alike: dict[tuple[str, ...], list[AnyClaim]] = {}
-    for claim in whole_claims(study, pair):
-        alike.setdefault(tuple(map(str, claim.durations)), []).append(claim)
-    for claims in alike.values():
-        first = claims[0]
-        problem = study.problem(pair)
-        title = f"Printed durations: {'; '.join(dict.fromkeys(place(c) for c in claims))}"
-        row = PrintedRow(study, first, pair)
+    under = noted(study, pair.reading)
+    for rows in alike(whole_rows(study, pair)):
+        row = rows[0]
+        title = f"Printed durations: {'; '.join(dict.fromkeys(place(r.claim) for r in rows))}"
         unmoved = row.unmoved
         if unmoved is not None:
-            yield Prose(f"{title} are not drawn: {unmoved}.{noted(study, pair.reading)}", "note")
+            yield Prose(f"{title} are not drawn: {unmoved}.{under}", "note")
             continue
         if not row.has_curve:
-            yield Prose(f"{title} define no curve.{noted(study, pair.reading)}", "note")
+            yield Prose(f"{title} define no curve.{under}", "note")
             continue
         picture = motion_picture(
-            problem,
+            study.problem(pair),
             row.durations.value,
             title=title,
             check=row.check,
             note=f"however the digits were rounded: {row.rounding.verdict}",
             units=paper_units(row.statement),
         )
-        where = "; ".join(c.where for c in claims)
-        yield _drawn(
-            file_name("motion", pair.problem, first.id),
-            picture,
-            f"{where}.{noted(study, pair.reading)}",
-        )
-    for tables, singles in _tables_by_joint(study, pair).items():
-        if PrintedRow(study, singles[0], pair).unmoved is None:
-            yield _joint_by_joint(study, pair, tables, singles)
+        where = "; ".join(r.claim.where for r in rows)
+        yield _drawn(file_name("motion", row.problem, row.claim.id), picture, f"{where}.{under}")
+    for tables, singles in _tables_by_joint(study, pair):
+        if singles[0].unmoved is None:
+            yield _joint_by_joint(tables, singles)
 
 
-def _tables_by_joint(study: Study, pair: Pair) -> dict[str, list[DurationsClaim]]:
-    """Claims of tables that print every joint by itself; tables alike share an entry."""
+def _tables_by_joint(study: Study, pair: Pair) -> list[tuple[str, list[_Row]]]:
+    """Rows of tables that print every joint by itself, by the tables' places; alike together."""
     joints = study.problem(pair).joints
     if len(joints) == 1:
-        return {}
-    found: dict[tuple[tuple[str, ...], ...], tuple[list[str], list[DurationsClaim]]] = {}
+        return []
+    found: dict[tuple[tuple[str, ...], ...], tuple[list[str], list[_Row]]] = {}
     for table in study.case.tables:
         rows = {
-            c.joint: c
+            c.joint: PrintedRow(study, c, pair)
             for c in study.case.table_claims(table.id)
             if isinstance(c, DurationsClaim) and study.fits(c, pair)
         }
         if all(label in rows for label in joints):
-            claims = [rows[label] for label in joints]
-            digits = tuple(tuple(map(str, c.durations)) for c in claims)
-            found.setdefault(digits, ([], claims))[0].append(table.id)
-    return {", ".join(tables): claims for tables, claims in found.values()}
+            own: list[_Row] = [rows[label] for label in joints]
+            digits = tuple(tuple(map(str, row.claim.durations)) for row in own)
+            found.setdefault(digits, ([], own))[0].append(table.where)
+    return [(", ".join(tables), own) for tables, own in found.values()]
 
 
-def _tables_called(study: Study, tables: str) -> str:
-    """Tables by their places instead of their ids."""
-    places = {table.id: table.where for table in study.case.tables}
-    return ", ".join(places.get(one, one) for one in tables.split(", "))
-
-
-def _joint_by_joint(study: Study, pair: Pair, tables: str, claims: list[DurationsClaim]) -> Drawn:
-    problem = study.problem(pair)
-    rows = [PrintedRow(study, claim, pair) for claim in claims]
-    durations = np.array([row.durations.value for row in rows])
+def _joint_by_joint(tables: str, rows: list[_Row]) -> Drawn:
+    study, pair, first = rows[0].study, rows[0].pair, rows[0].claim
     verdicts = [str(row.rounding.verdict) for row in rows]
     words = ", ".join(dict.fromkeys(verdicts))
     picture = motion_picture(
-        problem,
-        durations,
-        title=f"Printed durations of each joint by itself: {_tables_called(study, tables)}",
+        study.problem(pair),
+        np.array([row.durations.value for row in rows]),
+        title=f"Printed durations of each joint by itself: {tables}",
         note=f"however the digits were rounded: {words}",
         units=paper_units(study.case.statement(*pair)),
     )
-    each = "; ".join(f"joint {c.joint}: {v}" for c, v in zip(claims, verdicts, strict=True))
+    each = "; ".join(f"joint {r.claim.joint}: {v}" for r, v in zip(rows, verdicts, strict=True))
     caption = (
         "Each joint with its own durations, at the printed digits. However the digits were "
         f"rounded: {each}.{noted(study, pair.reading)}"
     )
-    return _drawn(
-        file_name("motion", pair.problem, "joints", str(claims[0].table)), picture, caption
-    )
+    return _drawn(file_name("motion", pair.problem, "joints", str(first.table)), picture, caption)
 
 
 # --- searches -------------------------------------------------------------------------------------
@@ -200,27 +193,22 @@ def _convergence(study: Study, pair: Pair, runs: dict[str, Runs], name: str) -> 
     solutions = [study.optimum(pair, label) for label in problem.joints] if by_joint else [
         study.optimum(pair)
     ]  # fmt: skip
-    if any(not s.found or not _time(s) > 0 for s in solutions):
+    if any(not s.found or not s.best > 0 for s in solutions):
         return  # there is nothing, or nothing positive, that a gap could be a share of
     printed: dict[str, list[float]] = {}
     widths = [0.0]
-    groups: dict[str, list[DurationsClaim | MaximumClaim]] = (
-        {
-            _tables_called(study, tables): list(claims)
-            for tables, claims in _tables_by_joint(study, pair).items()
-        }
+    groups = (
+        dict(_tables_by_joint(study, pair))
         if by_joint
-        else {place(c): [c] for c in whole_claims(study, pair)}
+        else {place(row.claim): [row] for row in whole_rows(study, pair)}
     )
-    for label, claims in groups.items():
-        boxes = [
-            total[1] for c in claims if (total := study.claim_total(c, pair.reading)) is not None
-        ]
+    for label, rows in groups.items():
+        boxes = [total.interval for row in rows if (total := row.total) is not None]
         printed[label] = [(low + high) / 2 for low, high in boxes]
         widths += [(high - low) / 2 for low, high in boxes]
     picture = convergence(
         runs,
-        [_time(s) for s in solutions],
+        [s.best for s in solutions],
         printed,
         rounding=max(widths),
         evidence=str(weakest(s.evidence for s in solutions)),
@@ -235,16 +223,12 @@ def _convergence(study: Study, pair: Pair, runs: dict[str, Runs], name: str) -> 
     )
 
 
-def _time(solution: Solution) -> float:
-    return solution.best
-
-
 def _totals(study: Study, pair: Pair) -> tuple[dict[str, float], dict[str, float]]:
     shared = study.optimum(pair)
     references = {}
     if shared.found and shared.boundless is None:
         at = at_ratios(shared.problem)
-        references[f"{shared.evidence} optimum, shared durations{at}"] = _time(shared)
+        references[f"{shared.evidence} optimum, shared durations{at}"] = shared.best
     problem = study.problem(pair)
     if planned_apart(problem):
         answer = study.per_joint(pair)
@@ -252,13 +236,14 @@ def _totals(study: Study, pair: Pair) -> tuple[dict[str, float], dict[str, float
             references[OWN_OPTIMA] = answer.total_time
     printed: dict[str, list[str]] = {}
     values: dict[str, float] = {}
+    own = [row.claim for row in whole_rows(study, pair)]
     for claim in study.case.claims:
         whole = isinstance(claim, TotalTimeClaim) and claim.joint is None
-        if claim in whole_claims(study, pair) or (whole and claim.problem in (None, pair.problem)):
+        if claim in own or (whole and claim.problem in (None, pair.problem)):
             total = study.claim_total(claim, pair.reading)
             if total is not None:
-                printed.setdefault(total[0], []).append(place(claim))
-                values[total[0]] = (total[1][0] + total[1][1]) / 2
+                printed.setdefault(total.shown, []).append(place(claim))
+                values[total.shown] = sum(total.interval) / 2
     return references, {
         ", ".join(dict.fromkeys(where)): values[shown] for shown, where in printed.items()
     }
@@ -272,58 +257,47 @@ def landscapes(one: CaseAudit) -> Section:
     study = one.study
     blocks: list[Block] = []
     for pair in study.main_pairs:
-        problem = study.problem(pair)
+        problem, name = study.problem(pair), problem_name(one, pair.problem)
         if problem.ratios is not None:
             continue  # its ratios are one point of the map
         if problem.segments != 3:
             blocks.append(
                 Prose(
-                    f"{problem_name(one, pair.problem)}: {problem.segments} segments; a landscape "
-                    "needs three.",
+                    f"{name}: {problem.segments} segments; a landscape needs three.",
                     "note",
                 )
             )
             continue
         runs = _runs(study, pair)
-        printed = [
-            (place(c), study.case.claim_durations(c, pair.reading).value)
-            for c in whole_claims(study, pair)
-        ]
-        ends = {name: np.array([r.durations for r in many]) for name, many in runs.items()}
+        printed = [(place(row.claim), row.durations.value) for row in whole_rows(study, pair)]
+        ends = {each: np.array([r.durations for r in many]) for each, many in runs.items()}
         blocks += _landscape(
             file_name("landscape", pair.problem),
             problem,
             study.optimum(pair),
             printed,
             ends,
-            problem_name(one, pair.problem),
+            name,
         )
         single: list[Drawn] = []
-        for tables, claims in _tables_by_joint(study, pair).items():
-            for j, claim in enumerate(claims):
+        for tables, rows in _tables_by_joint(study, pair):
+            for j, row in enumerate(rows):
                 own = {
-                    name: np.array([r.runs[j].durations for r in many if isinstance(r, JointRuns)])
-                    for name, many in runs.items()
+                    each: np.array([r.runs[j].durations for r in many if isinstance(r, JointRuns)])
+                    for each, many in runs.items()
                     if isinstance(many[0], JointRuns)
                 }
                 single += _landscape(
                     file_name("landscape", pair.problem, "joint", str(j + 1)),
                     problem.joint(j),
                     study.optimum(pair, problem.joints[j]),
-                    [
-                        (
-                            _tables_called(study, tables),
-                            study.case.claim_durations(claim, pair.reading).value,
-                        )
-                    ],
+                    [(tables, row.durations.value)],
                     own,
                     f"joint {problem.joints[j]}",
                 )
             break
         if single:
-            blocks.append(
-                Folded(f"Each joint by itself: {problem_name(one, pair.problem)}", tuple(single))
-            )
+            blocks.append(Folded(f"Each joint by itself: {name}", tuple(single)))
     shown = tuple(blocks) if any(not isinstance(b, Prose) for b in blocks) else ()
     return Section("landscapes", "Landscapes of the total time", shown, folded=True)
 

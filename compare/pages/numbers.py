@@ -222,8 +222,6 @@ _OPTIMA = "Optimum of each formulation"
 """Title of the section."""
 NINE = 9
 """Nine decimals of a proved bound, as the certificates' tables have them."""
-_KEPT = ("keeps", "consistent")
-"""Verdicts over the rounding box under which durations may keep the limits."""
 _ANSWER = ("status", "total", "by", "evidence", "durations, s", "check", "KKT residual")
 """Columns that say how a solve ended."""
 
@@ -321,10 +319,9 @@ def _joints(study: Study, pair: Pair) -> Iterator[Block]:
             total = study.claim_total(claim, pair.reading)
             reference = reference_of(solution)
             if total is not None and reference is not None:
-                shown.setdefault(total[0], []).append(claim.where)
+                shown.setdefault(total.shown, []).append(claim.where)
                 row = PrintedRow(study, claim, pair)
-                kept = row.unmoved is None and row.rounding.verdict in _KEPT
-                gaps.append(_gap_text(gap(total[1], reference, feasible=kept)))
+                gaps.append(_gap_text(gap(total.interval, reference, feasible=row.kept)))
         rows.append(
             (
                 text(label),

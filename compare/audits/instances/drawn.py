@@ -59,7 +59,7 @@ def printed_reduction(study: ChosenCase, block: InstancesBlock) -> tuple[float, 
     slow, fast = (study.claim_total(side, rid) for side in _sides(study, block))
     if slow is None or fast is None:
         return None
-    (slow_low, slow_high), (fast_low, fast_high) = slow[1], fast[1]
+    (slow_low, slow_high), (fast_low, fast_high) = slow.interval, fast.interval
     return 1 - fast_high / slow_low, 1 - fast_low / slow_high
 
 

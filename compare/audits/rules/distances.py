@@ -31,6 +31,7 @@ from ...documents import (
     ranged,
 )
 from ...gaps import gap, reference_of
+from ..chosen_case import Total
 from ..digit_ranges import below_certified
 from ..fixed_ratios import (
     BELOW_AT_RATIOS,
@@ -66,12 +67,6 @@ def judge_distances(study: Study) -> Iterator[Finding]:
             yield from _optimal_statement(study, claim)
 
 
-def _kept(row: PrintedRow[AnyClaim]) -> bool:
-    if isinstance(row.claim, TotalTimeClaim) or row.unmoved is not None:
-        return False
-    return row.rounding.verdict in (Rounding.KEEPS, Rounding.CONSISTENT)
-
-
 def _beside_optimum(row: PrintedRow[AnyClaim]) -> Iterator[Finding]:
     total = row.total
     if total is None:
@@ -82,24 +77,23 @@ def _beside_optimum(row: PrintedRow[AnyClaim]) -> Iterator[Finding]:
     reference = reference_of(solution)
     other = off_ratios(row)
     if other is not None:
-        yield of_other_ratios(row, total[0], other)
+        yield of_other_ratios(row, total.shown, other)
         return
     if reference is not None:
-        yield _distance(row, total, solution, reference, procedure)
+        yield _distance(row, total, reference, procedure)
     if procedure:
         yield from _beside_procedure(row, total)
 
 
 def _distance(
     row: PrintedRow[AnyClaim],
-    total: tuple[str, tuple[float, float]],
-    solution: Solution,
+    total: Total,
     reference: Reference,
     shared: bool,
 ) -> Finding:
-    claim = row.claim
+    claim, solution = row.claim, row.optimum
     shown, interval = total
-    kept = _kept(row)
+    kept = row.kept
     distance = gap(interval, reference, feasible=kept)
     whole = " with shared durations" if solution.problem.ratios is None else ""
     which = whole if shared or claim.joint is None else f" of joint {claim.joint}"
@@ -127,7 +121,7 @@ def _distance(
             )
     severity = Severity.INFO
     if distance.highest < 0:
-        explained = _below(row, solution, interval)
+        explained = _below(row, interval)
         if explained is not None:
             said.append(explained)
         else:
@@ -153,11 +147,9 @@ def _distance(
     )
 
 
-def _below(
-    row: PrintedRow[AnyClaim], solution: Solution, interval: tuple[float, float]
-) -> str | None:
+def _below(row: PrintedRow[AnyClaim], interval: tuple[float, float]) -> str | None:
     """Why a total may lie below the optimum of the problem as printed, if something explains it."""
-    timed = not isinstance(row.claim, TotalTimeClaim)
+    timed, solution = not isinstance(row.claim, TotalTimeClaim), row.optimum
     if timed and row.rounding.verdict is Rounding.CONSISTENT:
         return (
             "The rounding of the printed digits explains it: some values that round to them keep "
@@ -171,7 +163,7 @@ def _below(
         return f"{loose} are rounded numbers, which may explain it."
     if solution.problem.ratios is not None:
         return BELOW_AT_RATIOS
-    share = _spread(row, solution)
+    share = _spread(row)
     if share is not None and interval[1] >= solution.best * (1.0 - share):
         return (
             "To first order the rounding of way-points and limits explains it: they move the "
@@ -180,11 +172,12 @@ def _below(
     return None
 
 
-def _spread(row: PrintedRow[AnyClaim], solution: Solution) -> float | None:
+def _spread(row: PrintedRow[AnyClaim]) -> float | None:
     """Share by which the rounding of way-points and limits moves the optimum, to first order.
 
     That it is at most so much longer for any of them is proved; so much shorter is its mirror.
     """
+    solution = row.optimum
     if not solution.found or not solution.best > 0:
         return None
     reached = row.reachable(solution.durations)
@@ -212,9 +205,7 @@ def set_beside(distance: Gap) -> str:
     return f"is {share} % {'longer' if low > 0 else 'shorter'} than"
 
 
-def _beside_procedure(
-    row: PrintedRow[AnyClaim], total: tuple[str, tuple[float, float]]
-) -> Iterator[Finding]:
+def _beside_procedure(row: PrintedRow[AnyClaim], total: Total) -> Iterator[Finding]:
     answer = row.study.per_joint(row.pair)
     if not answer.ranges or answer.check is None:
         return
@@ -274,7 +265,7 @@ def _weigh(row: PrintedRow[AnyClaim], sides: _Sides) -> None:
         sides.open.append(f"{name}: printed are {other}, so that it is not of this question")
         return
     solution = row.optimum
-    shorter = _shorter(row, solution, total)
+    shorter = _shorter(row, total)
     apart = contradicting_lows(row)
     reached = 0.0 if shorter is None else shorter[1].reference.upper
     contradicted = bool(apart) and min(apart.values()) <= reached
@@ -288,7 +279,7 @@ def _weigh(row: PrintedRow[AnyClaim], sides: _Sides) -> None:
     # Whether a bare total is too short takes a proof, which is tried only where it may succeed.
     bare = isinstance(claim, TotalTimeClaim) and found and interval[1] >= solution.best
     proof = None if bare else broken(row)
-    below = None if apart else below_certified(row, solution)
+    below = None if apart else below_certified(row)
     if (shown_so := proof or below) is not None:
         first, *others = shown_so
         sides.breaking += [f"{name}: {first}", *others]
@@ -399,21 +390,20 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
         )
 
 
-def _shorter(
-    row: PrintedRow[AnyClaim], solution: Solution, total: tuple[str, tuple[float, float]]
-) -> tuple[str, Gap] | None:
+def _shorter(row: PrintedRow[AnyClaim], total: Total) -> tuple[str, Gap] | None:
     """A checked motion that is shorter whatever the digits stand for, if there is one.
 
     Where the solver proves that no motion is the shortest, none is set beside a printed total: that
     every motion can be shortened refutes no number.
     """
+    solution = row.optimum
     if not solution.found or solution.status is Status.NOT_ATTAINED:
         return None
     shown, interval = total
     reached = row.reachable(solution.durations)
     if reached is None or rounded_up_low(row, interval) <= reached:
         return None
-    distance = gap(interval, Reference(upper=reached), feasible=_kept(row))
+    distance = gap(interval, Reference(upper=reached), feasible=row.kept)
     jumps = solution.check is not None and any(j.order == 1 for j in solution.check.jumps)
     kind = " whose velocity may jump at the via-points under this reading" if jumps else ""
     said = (

@@ -121,7 +121,7 @@ def _is_optimum(row: PrintedRow[AnyClaim]) -> bool:
         return False
     reached = row.reachable(solution.durations)
     spread = 0.0 if reached is None else max(reached - solution.best, 0.0)
-    low, high = total[1]
+    low, high = total.interval
     return low - spread <= solution.best <= high + spread
 
 

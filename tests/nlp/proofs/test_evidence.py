@@ -14,6 +14,7 @@ from support.checkout import ROOT
 from support.documents import assert_valid, plain
 from support.shipped_problems import COVERED_PROBLEMS
 from trajgap.compare.audits import Pair
+from trajgap.compare.audits.chosen_case import Total
 from trajgap.compare.audits.rules.distances import judge_distances
 from trajgap.compare.audits.study import Study
 from trajgap.compare.audits.waterfall import waterfalls
@@ -248,7 +249,7 @@ def test_the_weakest_word_stands_for_all() -> None:
 
 def test_a_total_below_the_proved_bound_is_called_that(monkeypatch: pytest.MonkeyPatch) -> None:
     study = known_study()
-    monkeypatch.setattr(Study, "claim_total", lambda *_: ("1.5 s", (1.4995, 1.5005)))
+    monkeypatch.setattr(Study, "claim_total", lambda *_: Total("1.5 s", (1.4995, 1.5005)))
     (message,) = (
         f.message
         for f in judge_distances(study)
