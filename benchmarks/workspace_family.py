@@ -12,6 +12,7 @@ import argparse
 import csv
 import sys
 from collections import defaultdict
+from functools import partial
 
 import numpy as np
 from trajgap.compare.audits.instances import examined
@@ -29,9 +30,10 @@ COLUMNS = ("reading", "step", "instance", "objective", "run", *TIMES)
 
 def rows(instances, workers):
     """One row per reading, instance, objective and run; totals in s, empty without an answer."""
-    study = Study(load_case(CASE), workers=workers, certify_seconds=0)
+    said = partial(print, file=sys.stderr, flush=True)
+    study = Study(load_case(CASE), workers=workers, certify_seconds=0, progress=said)
     block = study.case.instances[0].model_copy(update={"instances": instances})
-    result = examined(study, block, lambda done: print(done, file=sys.stderr, flush=True))
+    result = examined(study, block)
     for sample in result.samples:
         for at, objective in enumerate(block.objectives):
             for r in range(block.runs):

@@ -2,11 +2,14 @@ from .audits import (
     RULES,
     AuditReport,
     CaseAudit,
+    Pair,
+    PrintedRow,
     RoundingBox,
     RoundingVerdict,
     Study,
     audit,
     judge_rounding,
+    printed_rows,
     waterfalls,
 )
 from .documents import (
@@ -37,6 +40,8 @@ __all__ = [
     "Gap",
     "GapKind",
     "Judgement",
+    "Pair",
+    "PrintedRow",
     "Reference",
     "Rounding",
     "RoundingBox",
@@ -52,6 +57,7 @@ __all__ = [
     "gap",
     "judge_rounding",
     "measure_gaps",
+    "printed_rows",
     "waterfalls",
     "write_report",
 ]

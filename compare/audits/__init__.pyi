@@ -1,9 +1,11 @@
 from .card_errors import plainly
 from .case_audit import AuditReport, CaseAudit, audit
+from .chosen_case import Pair
 from .fixed_ratios import at_ratios, planned_apart
 from .paper_runs import searched_for
+from .printed_row import PrintedRow, printed_rows
 from .provenance import certificate_files, package_version
-from .reading_words import KEPT, answers, segments
+from .readings import KEPT, answers, segments
 from .rounding import Point, RoundingBox, RoundingVerdict, judge_rounding
 from .rules import EXPLAINED, RULES
 from .stated import asked_as, claim_text, digits_of, in_words, place
@@ -16,7 +18,9 @@ __all__ = [
     "RULES",
     "AuditReport",
     "CaseAudit",
+    "Pair",
     "Point",
+    "PrintedRow",
     "RoundingBox",
     "RoundingVerdict",
     "Study",
@@ -33,6 +37,7 @@ __all__ = [
     "place",
     "plainly",
     "planned_apart",
+    "printed_rows",
     "routes",
     "searched_for",
     "segments",

@@ -24,9 +24,9 @@ from ..documents import (
     noted,
     quoted,
 )
-from .card_optimum import limited
 from .own_result import own_results
 from .plausibility import implausible
+from .printed_row import printed_rows
 from .rules import blended, judge_row, meant_to_keep, said_to_keep
 from .stated import place, prints_durations
 from .study import Study
@@ -87,7 +87,7 @@ def limits_line(study: Study, words: Mapping[str, Judgement]) -> tuple[str, set[
     }
     broken = sum(ClaimVerdict.REFUTED in each for each in under.values())
     kept = sum(each == {ClaimVerdict.SUPPORTED} for each in under.values())
-    if kept == len(under) and not any(limited(study, *pair) for pair in study.pairs):
+    if kept == len(under) and not any(map(study.limited, study.pairs)):
         return f"No limits are stated, so that none can be broken{_jumping(words, asked)}.", set()
     # A statement that names other rows too has its own sentence where one of those breaks a limit.
     mine = {c.id for c in own}
@@ -128,11 +128,11 @@ def _within(study: Study, own: Sequence[_Row]) -> str:
     """Whether it takes the rounding of the digits to keep the limits, and of which row how much."""
     found = []
     for row in own:
-        for pair in study.claim_pairs(row):
-            checked = study.motion_check(row, *pair)
+        for posed in printed_rows(study, row):
+            checked = posed.check_or_none
             if checked is None or checked.limits is Verdict.PASS:
                 continue
-            cut = study.claim_rounding(row, *pair).verdict is Rounding.BREAKS
+            cut = posed.rounding.verdict is Rounding.BREAKS
             ratio = 0.0 if checked.worst is None else checked.worst.ratio
             found.append((cut, ratio, row, checked.worst))
     if not found:
@@ -180,15 +180,15 @@ def _of_limits(study: Study, claim: AnyClaim) -> dict[str, ClaimVerdict]:
     A sum that is wrong refutes the claim too, and breaks no limit.
     """
     each: dict[str, set[ClaimVerdict]] = {}
-    for row in judge_row(study, claim):
-        if row.reading is not None:
-            each.setdefault(row.reading, set()).add(ClaimVerdict(row.kind))
-    for pid, rid in study.claim_pairs(claim):
-        unknown = study.unmoved(claim, pid, rid) is not None
-        keeping = Keeping.UNDECIDED if unknown else study.claim_keeping(claim, pid, rid)
-        each.setdefault(rid, set()).add(_MEANS.get(keeping, ClaimVerdict.NOT_CHECKABLE))
+    for found in judge_row(study, claim):
+        if found.reading is not None:
+            each.setdefault(found.reading, set()).add(ClaimVerdict(found.kind))
+    for row in printed_rows(study, claim):
+        unknown = row.unmoved is not None
+        keeping = Keeping.UNDECIDED if unknown else row.keeping
+        each.setdefault(row.reading, set()).add(_MEANS.get(keeping, ClaimVerdict.NOT_CHECKABLE))
     worst = (ClaimVerdict.REFUTED, ClaimVerdict.NOT_CHECKABLE, ClaimVerdict.SUPPORTED)
-    return {rid: next(word for word in worst if word in found) for rid, found in each.items()}
+    return {reading: next(word for word in worst if word in said) for reading, said in each.items()}
 
 
 _MEANS = {

@@ -25,13 +25,14 @@ from ..documents import (
     count_words,
     ranged,
 )
+from .chosen_case import Pair
 from .digit_ranges import all_exact, optimum_range
 from .fixed_ratios import at_ratios, off_ratios, planned_apart
-from .own_result import own_result
-from .stated import other_objective, prints_durations
+from .own_result import bare_totals, own_result
+from .printed_row import PrintedRow
+from .stated import other_objective, printed_total, prints_durations
 from .stated_totals import contradicts_its_parts, other_totals
 from .study import Study
-from .waterfall import bare_totals
 
 _FEW = 2
 """Totals that are each set beside their optimum; more are counted."""
@@ -237,47 +238,40 @@ def _together(parts: Sequence[_Above]) -> str:
     return f"{shown} are {least}{shares} above the {name} {bests}"
 
 
-def limited(study: Study, pid: str, rid: str) -> bool:
-    """Whether a problem limits anything that moves."""
-    limits = study.problem(pid, rid).limits
-    return limits.limits_position or bool(np.isfinite(limits.sides).any())
-
-
 def _beside(study: Study, waterfall: Waterfall) -> list[_Part]:
     """A printed total beside its optimum, and others that are printed of it; none where none is."""
-    rid, pid = waterfall.reading, waterfall.problem
-    solution = study.optimum(pid, rid)
+    pair = Pair(waterfall.problem, waterfall.reading)
+    solution = study.optimum(pair)
     why = _unknown(solution)
-    if why and not limited(study, pid, rid):
+    if why and not study.limited(pair):
         why = "without limits no motion is the shortest: there is no optimum to compare with"
     if why:
         return [_Unknown(why)]
     claim = _totalled(study, waterfall)
     if not isinstance(claim, TimeClaim):
         return []
-    others = other_totals(study, claim, pid, rid)
-    found = [_one_beside(study, one, pid, rid, solution) for one in (claim, *others)]
+    others = other_totals(PrintedRow(study, claim, pair))
+    found = [_one_beside(PrintedRow(study, one, pair), solution) for one in (claim, *others)]
     return [part for part in found if part is not None]
 
 
-def _one_beside(
-    study: Study, claim: TimeClaim, pid: str, rid: str, solution: Solution
-) -> _Part | None:
+def _one_beside(row: PrintedRow[TimeClaim], solution: Solution) -> _Part | None:
+    study = row.study
     certified = solution.evidence is Evidence.CERTIFIED
     name = "proven optimum" if certified else "best known total"
     span = _span(solution)
-    shown_best = f"{span}{_together_where_apart(study, pid, rid)}"
+    shown_best = f"{span}{_together_where_apart(study, row.pair)}"
     shown_best += at_ratios(solution.problem)
     best = f"{name} {shown_best}"
-    total = study.claim_total(claim, rid)
+    total = row.total
     if total is None:
         return None
-    shown, (low, high) = study.total_digits(claim), total[1]
-    if off_ratios(study, claim, pid, rid) is not None:
+    shown, (low, high) = study.total_digits(row.claim), total.interval
+    if off_ratios(row) is not None:
         return f"{shown} is of durations in other ratios than the reading fixes"
-    seconds = _seconds(study, claim, rid)
+    seconds = _seconds(row)
     share = seconds / solution.best - 1
-    minimised = other_objective(study.case, claim)
+    minimised = other_objective(study.case, row.claim)
     if minimised is not None and share > 0:
         motion = f"shortest {'' if certified else 'known '}motion on the same curve"
         motion += at_ratios(solution.problem)
@@ -286,22 +280,22 @@ def _one_beside(
             f"{shown} was not minimised for time alone{called}; the {motion} takes "
             f"{span}{', proven' if certified else ''}"
         )
-    remark = _kept_there(study, claim, pid, rid)
+    remark = _kept_there(row)
     said = _remarked(shown, remark)
-    joints = _joint_by_joint(study, claim, pid, rid, seconds)
+    joints = _joint_by_joint(row, seconds)
     if joints is not None:
-        return f"{said} {joints}{'' if all_exact(study, claim, pid, rid) else ', as printed'}"
+        return f"{said} {joints}{'' if all_exact(row) else ', as printed'}"
     floor = solution.lower_bound
     if floor is not None and " to " in span and low <= solution.best and floor <= high:
         return f"{said} lies in the interval that is proven to hold the optimum, {shown_best}"
-    own, cut = _printed_range(study, claim, rid)
+    own, cut = _printed_range(row)
     if low <= solution.best <= high or own[0] <= solution.best <= own[1]:
         return _Agrees(said, name, best)
     if cut[0] <= solution.best <= cut[1]:
         return f"{said} agrees with the {best} if digits were cut off"
-    if loose := study.case.statement(pid, rid).declaration.loose:
+    if loose := row.statement.declaration.loose:
         return f"{said} is not compared: {loose[0].lower()}{loose[1:]} are rounded numbers"
-    ends = optimum_range(study, claim, pid, rid)
+    ends = optimum_range(row)
     if share > 0:
         if ends.upper is None or not low > ends.upper:
             far = f"{said} is {_far(share, 'above')} the {best}"
@@ -343,14 +337,12 @@ def _bounded(least: float, share: float, most: float | None) -> tuple[str, str]:
     return "at least ", at_least_percent(least)
 
 
-def _printed_range(
-    study: Study, claim: TimeClaim, rid: str
-) -> tuple[tuple[float, float], tuple[float, float]]:
+def _printed_range(row: PrintedRow[TimeClaim]) -> tuple[tuple[float, float], tuple[float, float]]:
     """Times that are rounded to the digits of a printed total, and those cut off to them, s."""
-    printed = claim.value if isinstance(claim, TotalTimeClaim) else getattr(claim, "total", None)
+    printed = printed_total(row.claim)
     if printed is None:
         return _EMPTY, _EMPTY
-    own = study.case.measured(printed, "time", claim.problem, rid)
+    own = row.time(printed)
     cut = own.cut_off()
     return (own.lower, own.upper), (cut.lower, cut.upper)
 
@@ -364,33 +356,32 @@ def _span(solution: Solution) -> str:
     return f"{' to '.join(ends)} s"
 
 
-def _kept_there(study: Study, claim: TimeClaim, pid: str, rid: str) -> str:
+def _kept_there(row: PrintedRow[TimeClaim]) -> str:
     """What the durations behind a total do to the limits, unless they are shown to keep them.
 
     A distance from the optimum is one of a motion only where that motion keeps its limits.
     """
-    if not prints_durations(claim) or study.unmoved(claim, pid, rid) is not None:
+    if not prints_durations(row.claim) or row.unmoved is not None:
         return ""
-    if contradicts_its_parts(study, claim, rid):
+    if contradicts_its_parts(row):
         return ""  # the total is of other durations than those beside it
-    return _REMARKS.get(study.claim_keeping(claim, pid, rid), "")
+    return _REMARKS.get(row.keeping, "")
 
 
-def _together_where_apart(study: Study, pid: str, rid: str) -> str:
+def _together_where_apart(study: Study, pair: Pair) -> str:
     """What the optimum is of, where the paper plans each joint by itself: that has another one."""
-    return " of all joints together" if planned_apart(study.problem(pid, rid)) else ""
+    return " of all joints together" if planned_apart(study.problem(pair)) else ""
 
 
-def _joint_by_joint(
-    study: Study, claim: TimeClaim, pid: str, rid: str, seconds: float
-) -> str | None:
+def _joint_by_joint(row: PrintedRow[TimeClaim], seconds: float) -> str | None:
     """A total beside what the joints' own optima give, where each is planned by itself."""
-    if not planned_apart(study.problem(pid, rid)) or claim.joint is not None:
+    claim = row.claim
+    if not planned_apart(row.study.problem(row.pair)) or claim.joint is not None:
         return None
     if claim.coupling is Coupling.SHARED and not isinstance(claim, MaximumClaim):
         return None  # the longest durations of joints that are each planned alone are shared too
-    answer = study.per_joint(pid, rid)
-    total = study.claim_total(claim, rid)
+    answer = row.study.per_joint(row.pair)
+    total = row.total
     if not answer.ranges or answer.check is None or total is None:
         return None
     wide = answer.ranges[0]
@@ -398,7 +389,7 @@ def _joint_by_joint(
     # The joints' optima may be proven; the range that they leave is the widest that is found.
     own = "obtained by optimising each joint separately" + ("" if proven else " (best known)")
     span = f"{ranged(wide.lowest, wide.highest, '.4f')} s"
-    low, high = total[1]
+    low, high = total.interval
     if low <= wide.highest and high >= wide.lowest:
         return f"agrees with {span}, {own}"
     longer = seconds > wide.highest
@@ -407,12 +398,12 @@ def _joint_by_joint(
     return f"is {shown} % {'above' if longer else 'below'} {span}, {own}"
 
 
-def _seconds(study: Study, claim: TimeClaim, rid: str) -> float:
+def _seconds(row: PrintedRow[TimeClaim]) -> float:
     """A printed total; the sum of the printed durations where none is printed."""
-    number = claim.value if isinstance(claim, TotalTimeClaim) else getattr(claim, "total", None)
+    number = printed_total(row.claim)
     if number is None:
-        return float(study.case.claim_durations(claim, rid).value.sum())
-    return study.case.measured(number, "time", claim.problem, rid).value
+        return float(row.durations.value.sum())
+    return row.time(number).value
 
 
 def _percent(share: float) -> str:
@@ -444,4 +435,4 @@ def _totalled(study: Study, waterfall: Waterfall) -> AnyClaim | None:
     """The printed total beside an optimum: that of the waterfall, else a bare one."""
     if waterfall.claim is not None:
         return study.case.claim(waterfall.claim)
-    return own_result(study.case, bare_totals(study, waterfall.problem))
+    return own_result(study.case, bare_totals(study.case, waterfall.problem))

@@ -6,7 +6,7 @@ from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from datetime import date
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from typing import Any
 
@@ -34,12 +34,14 @@ from ..documents import (
 )
 from .card import verdict_card
 from .causes import find_causes, with_caveats
-from .chosen_case import SEEDS, Pair
+from .chosen_case import SEEDS
 from .draft import advise
-from .instances import examined_entry
+from .explanations import explained
+from .instances import examinable, examined, examined_entry
 from .judging import judge, rested, weigh
 from .paper_runs import reached
 from .plausibility import implausible
+from .printed_row import PrintedRow, printed_rows
 from .provenance import provenance
 from .readings import readings_summary
 from .revision import revise
@@ -134,7 +136,7 @@ class CaseAudit:
     @cached_property
     def document(self) -> AuditedCase:
         """What the audit says of the case, as terminal, page, Markdown and JSON print it."""
-        blocks = self.study.instance_blocks
+        blocks = examinable(self.study)
         return AuditedCase(
             case=self.case.id,
             title=self.case.title,
@@ -151,7 +153,7 @@ class CaseAudit:
             readings=known(self.readings, "the case has one reading"),
             left_out=tuple(self.study.intervals.left_out),
             not_replayed=self.study.not_replayed,
-            families=tuple(examined_entry(self.study.instances(b)) for b in blocks),
+            families=tuple(examined_entry(examined(self.study, b)) for b in blocks),
             provenance=provenance(self.study, self.day),
         )
 
@@ -293,7 +295,7 @@ def audit_case(study: Study) -> CaseAudit:
     ordered = sorted(weigh(by_rule, judgements, admissible), key=_weight)
     judgements = rested(study.case, judgements)
     judgements = with_caveats(study, judgements, ordered)
-    behind = find_causes(study, ordered)
+    behind = find_causes(study, ordered, partial(explained, study, GROUPS))
     return CaseAudit(study.case, study, tuple(ordered), judgements, behind)
 
 
@@ -318,32 +320,26 @@ def _alone(group: _Group, study: Study, claim: AnyClaim) -> list[Finding]:
     except _ENDING:
         raise
     except TrajgapError:
-        pairs = study.claim_pairs(claim)
-        found = [
-            f for pair in pairs for f in _under(group, study.only(claim, pair=pair), claim, pair)
-        ]
+        found = [f for row in printed_rows(study, claim) for f in _under(group, row)]
         return [f for at, f in enumerate(found) if f not in found[:at]]
 
 
-def _under(group: _Group, study: Study, claim: AnyClaim, pair: Pair) -> Iterator[Finding]:
+def _under(group: _Group, row: PrintedRow[AnyClaim]) -> Iterator[Finding]:
     try:
-        yield from group(study)
+        yield from group(row.study.only(row.claim, pair=row.pair))
     except _ENDING:
         raise
     except TrajgapError as error:
-        yield _not_computed(error, claim, pair)
+        yield _not_computed(error, row)
 
 
-def _not_computed(
-    error: TrajgapError, claim: AnyClaim | None = None, pair: Pair | None = None
-) -> Finding:
-    problem, reading = pair or (None, None)
+def _not_computed(error: TrajgapError, row: PrintedRow[AnyClaim] | None = None) -> Finding:
     return Finding(
         rule=NOT_COMPUTED.id,
         basis=Basis.CHECK,
-        claim=None if claim is None else claim.id,
-        problem=problem,
-        reading=reading,
+        claim=None if row is None else row.claim.id,
+        problem=None if row is None else row.problem,
+        reading=None if row is None else row.reading,
         kind="not computed",
         sentences=(f"Not computed: {str(error).removesuffix('.')}.",),
     )

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
+from functools import partial
 
 from ...problem.cases import AnyClaim, ImprovementClaim, MaximumClaim, StatementClaim
 from ..documents import (
@@ -15,6 +16,7 @@ from ..documents import (
     CaveatKind,
     ClaimVerdict,
     Consequence,
+    Explanation,
     Finding,
     Gap,
     Judgement,
@@ -24,17 +26,21 @@ from ..documents import (
     nature_caveat,
     said_beside,
 )
-from .explanations import explained
+from .printed_row import rows_under
 from .stated import prints_durations
 from .study import Study
 
+Explained = Callable[[str, Finding], tuple[Explanation, ...]]
+"""From the root of a cause and its first finding to explanations that accuse nobody."""
 _AGAINST = (Severity.ERROR, Severity.WARNING)
 """What a cause may weigh; what only informs has none."""
 _ON_WAYPOINTS = (Basis.ENCLOSURE, Basis.CHECK, Basis.COMPUTED, Basis.OPTIMUM)
 """What is computed with a motion through the printed way-points."""
 
 
-def find_causes(study: Study, findings: Iterable[Finding]) -> tuple[Cause, ...]:
+def find_causes(
+    study: Study, findings: Iterable[Finding], explained: Explained
+) -> tuple[Cause, ...]:
     """Group findings that speak against something printed by what they follow from.
 
     Findings of one root are one cause, under however many readings; so are those that say the same
@@ -45,6 +51,8 @@ def find_causes(study: Study, findings: Iterable[Finding]) -> tuple[Cause, ...]:
     study : Study
     findings : iterable of Finding
         With their final severities.
+    explained : callable
+        From the root of a cause and its first finding to innocent explanations.
 
     Returns
     -------
@@ -63,7 +71,9 @@ def find_causes(study: Study, findings: Iterable[Finding]) -> tuple[Cause, ...]:
             own.append(root)
         for up in above:
             below[up] += group
-    found = [_cause(study, root, groups[root], below[root], against) for root in own]
+    found = [
+        _cause(study, groups[root], below[root], against, partial(explained, root)) for root in own
+    ]
     return tuple(sorted(found, key=lambda cause: list(Severity).index(cause.severity)))
 
 
@@ -73,7 +83,11 @@ def _root(finding: Finding) -> str:
 
 
 def _cause(
-    study: Study, root: str, group: list[Finding], below: list[Finding], against: list[Finding]
+    study: Study,
+    group: list[Finding],
+    below: list[Finding],
+    against: list[Finding],
+    explained: Callable[[Finding], tuple[Explanation, ...]],
 ) -> Cause:
     first = next((f for f in group if f.reading in (None, study.main_reading)), group[0])
     readings = dict.fromkeys(f.reading for f in group if f.reading is not None)
@@ -96,7 +110,7 @@ def _cause(
         head=_mildest(study, first, group),
         readings=tuple(r for r in readings if r is not None),
         elsewhere=_elsewhere(study, first, set(readings), against),
-        explanations=explained(study, root, first),
+        explanations=explained(first),
         consequences=tuple(consequences.values()),
     )
 
@@ -245,9 +259,9 @@ def _rests_on(claim: AnyClaim) -> tuple[str, ...]:
     return (claim.slower, claim.faster) if isinstance(claim, ImprovementClaim) else ()
 
 
-def _jumps(study: Study, claim: AnyClaim, rid: str) -> bool:
+def _jumps(study: Study, claim: AnyClaim, reading: str) -> bool:
     """Whether the velocity of a motion that a claim speaks about jumps under a reading."""
     about = [claim, *(study.case.claim(i) for i in _rests_on(claim))]
-    motions = study.pairs_under(filter(prints_durations, about), rid)
-    checked = [study.motion_check(one, pid, rid) for one, pid in motions]
+    motions = rows_under(study, filter(prints_durations, about), reading)
+    checked = [row.check_or_none for row in motions]
     return any(jump.order == 1 for found in checked if found is not None for jump in found.jumps)

@@ -10,13 +10,15 @@ import numpy as np
 from ...problem import Array, Limits, Printed, Problem, Quantity, evaluate
 from ...problem.cases import (
     AnyClaim,
+    Claim,
     DurationsClaim,
     MaximumClaim,
     PeakClaim,
+    Statement,
     motions_of,
 )
 from ..documents import Explanation, Finding
-from .chosen_case import Pair
+from .printed_row import PrintedRow
 from .rules import box_reach, largest
 from .slips import (
     Slip,
@@ -30,7 +32,6 @@ from .slips import (
     values,
     waypoints,
 )
-from .study import Study
 
 LIKELY = 1.5
 """Factor by which a number may change where no other printed number speaks for the change: a
@@ -63,89 +64,83 @@ class _Tried:
 
 
 def changes_of_motion(
-    study: Study,
-    finding: Finding,
-    claim: AnyClaim,
-    row: DurationsClaim | MaximumClaim,
-    pair: Pair,
+    row: PrintedRow[DurationsClaim | MaximumClaim], finding: Finding, claim: AnyClaim
 ) -> tuple[list[tuple[Slip, bool]], Explanation | None]:
     """Changes that may settle what is said of a motion, and whether they reach a limit.
 
     The likeliest first; and what only brings the motion nearer to its limits.
     """
-    problem = study.claim_problem(row, *pair)
-    found = study.claim_check(row, *pair)
+    problem = row.posed()
+    found = row.check
     if found.worst is None or found.worst.quantity in ("curve", "duration"):
         return [], None
     if problem.limits.uneven or problem.curve.free:
         return [], None
-    h = study.case.claim_durations(row, pair[1]).value
+    h = row.durations.value
     printed = _peaks(problem, h[None])
     sizes = problem.limits.derivatives
     own = _Tried((), printed, sizes[None])
-    every = list(_changes(study, finding, row, pair, printed[0]))
+    every = list(_changes(row, finding, printed[0]))
     before = float(own.ratios()[0])
     ranked: list[tuple[tuple[int, bool, int, float], Slip]] = []
     best: tuple[float, Slip] | None = None
-    room = _room(study, row, pair)
+    room = _room(row)
     least = max(1 + room, before if finding.rule != "TG201" else 0.0)
-    off = int(_offs(study, row, pair, problem, printed, room)[0])
+    off = int(_offs(row, problem, printed, room)[0])
     # Of a peak that does not fit, only what makes it fit is an explanation.
     most = off - 1 if isinstance(claim, PeakClaim) else off
     for tried in every:
-        offs = _offs(study, row, pair, problem, tried.peaks, room)
+        offs = _offs(row, problem, tried.peaks, room)
         for slip, ratio, far in zip(tried.slips, tried.ratios(), offs, strict=True):
             away = bool(ratio < 1 - room)
             telling = far < off or not away or slip.share <= LIKELY
-            if ratio <= least and far <= most and telling and not _breaks_sum(row, slip):
+            if ratio <= least and far <= most and telling and not _breaks_sum(row.claim, slip):
                 ranked.append(((int(far), away, slip.slips, slip.share), slip))
             elif slip.share == 1.0 and (best is None or ratio < best[0]):
                 best = float(ratio), slip
-    ranked += _other_values(study, claim, problem, printed[0], pair, room)
+    ranked += _other_values(row, claim, problem, printed[0], room)
     ranked.sort(key=lambda one: one[0])
     return [(slip, not key[1]) for key, slip in ranked], _nearer(finding, before, best)
 
 
-def _room(study: Study, row: DurationsClaim | MaximumClaim, pair: Pair) -> float:
+def _room(row: PrintedRow[Claim]) -> float:
     """How far digits that are rounded or cut off move peaks, to first order, as a share of them."""
-    tops = [top for order in (1, 2, 3) for top in largest(study, row, *pair, order)]
-    reaches = [
-        box_reach(study, row, *pair, top) / abs(top.value) for top in tops if top.value != 0.0
-    ]
+    tops = [top for order in (1, 2, 3) for top in largest(row, order)]
+    reaches = [box_reach(row, top) / abs(top.value) for top in tops if top.value != 0.0]
     return 2.0 * max(reaches, default=0.0)
 
 
 def _other_values(
-    study: Study, claim: AnyClaim, problem: Problem, peaks: Array, pair: Pair, room: float
+    row: PrintedRow[Claim], claim: AnyClaim, problem: Problem, peaks: Array, room: float
 ) -> Iterator[tuple[tuple[int, bool, int, float], Slip]]:
     """Other printed peaks, where they are those of the motion as printed."""
     if not isinstance(claim, PeakClaim):
         return
     order = _DERIVATIVES.index(claim.derivative)
-    labels = study.case.robot.joints if claim.values else (claim.joint,)
-    for label, spot in zip(labels, values(study.case, claim), strict=True):
+    case = row.study.case
+    labels = case.robot.joints if claim.values else (claim.joint,)
+    for label, spot in zip(labels, values(case, claim), strict=True):
         if label is not None and label not in problem.joints:
             continue
         joints = slice(None) if label is None else problem.joints.index(label)
         here = float(np.max(peaks[joints, order]))
-        if _meets(study, claim, spot.number, label, pair, here, room):
+        if _meets(row, claim, spot.number, label, here, room):
             continue
         for slip in misprints(spot):
-            if _meets(study, claim, slip.edits[0][1], label, pair, here, room):
+            if _meets(row, claim, slip.edits[0][1], label, here, room):
                 yield (0, False, slip.slips, slip.share), slip
 
 
 def _meets(
-    study: Study,
+    row: PrintedRow[Claim],
     claim: PeakClaim,
     number: Printed,
     label: str | None,
-    pair: Pair,
     peak: float,
     room: float,
 ) -> bool:
     """Whether a printed peak is near that of a motion, as digits go."""
-    meant = study.case.measured(number, claim.derivative, *pair, label)
+    meant = row.measured(number, claim.derivative, label)
     return abs(meant.value - peak) <= room * peak + meant.upper - meant.lower
 
 
@@ -182,22 +177,18 @@ def _nearer(finding: Finding, before: float, best: tuple[float, Slip] | None) ->
 
 
 def _changes(
-    study: Study,
-    finding: Finding,
-    row: DurationsClaim | MaximumClaim,
-    pair: Pair,
-    printed: Array,
+    row: PrintedRow[DurationsClaim | MaximumClaim], finding: Finding, printed: Array
 ) -> Iterator[_Tried]:
     """Other durations, way-points and limits, with the peaks that follow."""
-    case, problem = study.case, study.claim_problem(row, *pair)
-    statement = case.statement(*pair)
-    h = case.claim_durations(row, pair[1]).value
+    case, problem = row.study.case, row.posed()
+    statement = row.statement
+    h = row.durations.value
     sizes = problem.limits.derivatives
-    spots = durations(case, row)
-    slips = [*exchanges(spots), *of_rows(case, row)]
+    spots = durations(case, row.claim)
+    slips = [*exchanges(spots), *of_rows(case, row.claim)]
     slips += [s for spot in spots for s in misprints(spot)]
     times = np.array(
-        [[statement.si(n, "time").value for n in _edited(row, slip)] for slip in slips]
+        [[statement.si(n, "time").value for n in _edited(row.claim, slip)] for slip in slips]
     )
     if slips:
         yield _Tried(slips, _peaks(problem, times.reshape(-1, h.size)), sizes[None])
@@ -208,7 +199,7 @@ def _changes(
     for j in np.flatnonzero(beyond if finding.rule == "TG201" else np.ones_like(beyond)):
         label = problem.joints[j]
         at = case.robot.joints.index(label)
-        spots = waypoints(case, *pair, label)
+        spots = waypoints(case, *row.pair, label)
         slips = [s for spot in spots for s in misprints(spot, signed=True)]
         unit = statement.unit("position", at)
         if spots and unit and not problem.linear[j]:
@@ -218,33 +209,32 @@ def _changes(
         columns = np.tile(problem.waypoints[:, j], (len(slips), 1))
         for k, slip in enumerate(slips):
             path, number = slip.edits[0]
-            columns[k, paths.index(path)] += _step(study, pair, spots, path, number, at)
+            columns[k, paths.index(path)] += _step(statement, spots, path, number, at)
         if slips:
             peaks[:, j] = _peaks_through(problem.joint(int(j)), columns, h)
             yield _Tried(slips, peaks, sizes[None])
         for r in np.flatnonzero(ratios[j] > 1.0):
-            yield from _other_limits(study, pair, problem, printed, int(j), int(r))
+            yield from _other_limits(row, problem, printed, int(j), int(r))
 
 
 def _step(
-    study: Study, pair: Pair, spots: Sequence[Spot], path: object, number: Printed, joint: int
+    statement: Statement, spots: Sequence[Spot], path: object, number: Printed, joint: int
 ) -> float:
     """How far a changed way-point lies from the printed one, rad or m; whole turns stay."""
     was = next(spot.number for spot in spots if spot.path == path)
-    statement = study.case.statement(*pair)
     one, other = (statement.si(n, "position", joint=joint).value for n in (was, number))
     return other - one
 
 
 def _other_limits(
-    study: Study, pair: Pair, problem: Problem, printed: Array, joint: int, order: int
+    row: PrintedRow[Claim], problem: Problem, printed: Array, joint: int, order: int
 ) -> Iterator[_Tried]:
     """Other limits of a quantity of a joint, or of all joints where one number holds for all."""
     quantity, label = _DERIVATIVES[order], problem.joints[joint]
-    at = study.case.robot.joints.index(label)
-    statement = study.case.statement(*pair)
+    case, statement = row.study.case, row.statement
+    at = case.robot.joints.index(label)
     slips, sizes = [], []
-    for spot in limits(study.case, *pair, quantity, label):
+    for spot in limits(case, *row.pair, quantity, label):
         for slip in misprints(spot):
             number = slip.edits[0][1]
             size = problem.limits.derivatives.copy()
@@ -268,25 +258,18 @@ def _peaks_through(problem: Problem, columns: Array, h: Array) -> Array:
     return np.array([_peaks(one, h[None])[0, 0] for one in each])
 
 
-def _offs(
-    study: Study,
-    row: DurationsClaim | MaximumClaim,
-    pair: Pair,
-    problem: Problem,
-    peaks: Array,
-    room: float,
-) -> Array:
+def _offs(row: PrintedRow[Claim], problem: Problem, peaks: Array, room: float) -> Array:
     """How many printed peaks of a row are far from those of each changed motion."""
-    off = np.zeros(len(peaks))
-    for claim in study.case.claims:
-        if not isinstance(claim, PeakClaim) or row not in motions_of(study.case.claims, claim):
+    off, case = np.zeros(len(peaks)), row.study.case
+    for claim in case.claims:
+        if not isinstance(claim, PeakClaim) or row.claim not in motions_of(case.claims, claim):
             continue
         order = _DERIVATIVES.index(claim.derivative)
-        labels = study.case.robot.joints if claim.values else (claim.joint,) * len(claim.printed)
+        labels = case.robot.joints if claim.values else (claim.joint,) * len(claim.printed)
         for label, number in zip(labels, claim.printed, strict=True):
             if label is not None and label not in problem.joints:
                 continue
             own = peaks[:, :, order]
             here = own.max(axis=1) if label is None else own[:, problem.joints.index(label)]
-            off += [not _meets(study, claim, number, label, pair, x, room) for x in here]
+            off += [not _meets(row, claim, number, label, x, room) for x in here]
     return off

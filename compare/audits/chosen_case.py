@@ -1,22 +1,61 @@
-"""What a study is made of: a case, what is chosen of it, and a place where results are kept."""
+"""What a study is made of: a case, what is chosen of it, its replays, and what was computed."""
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Sequence
 from copy import copy
 from pathlib import Path
-from typing import Any, Self, TypeVar, cast
+from typing import Any, NamedTuple, Self, TypeVar, cast
 
-from ...problem import Case, Problem, TrajgapError
-from ...problem.cases import AnyClaim, Claim, DurationsClaim, MaximumClaim, TotalTimeClaim
+import numpy as np
+
+from ...heuristics import (
+    KINDS,
+    Algorithm,
+    DeathPenalty,
+    JointRuns,
+    Run,
+    from_settings,
+    run_many,
+    run_many_per_joint,
+)
+from ...problem import Case, Coupling, Printed, Problem, TrajgapError
+from ...problem.cases import (
+    AnyClaim,
+    Claim,
+    MotionValueClaim,
+)
+from ..documents import capital
 from .intervals import Intervals
+from .replay_settings import LISTED, spread_settings
+from .stated import in_words, printed_total, prints_durations
 
 T = TypeVar("T")
-Pair = tuple[str, str]
-"""Problem id and reading id."""
-
 SEEDS = 100
 """Seeds of a replay by default: independent runs enough for a probability to a few per cent."""
+Replays = tuple[Run, ...] | tuple[JointRuns, ...]
+"""Runs of one algorithm, one for each seed: of all joints, or of each joint by itself."""
+SPREAD_SEEDS = 3
+"""Seeds under each of the spread settings, of which there are sixteen: enough to see a median
+move across them."""
+WORTH_PROCESSES = 50_000
+"""Iterations of all seeds of a replay from which further processes pay: fewer take some seconds
+side by side, and each process takes two to import what it needs."""
+
+
+class Pair(NamedTuple):
+    """A problem of a case under a reading, by their ids."""
+
+    problem: str
+    reading: str
+
+
+class Total(NamedTuple):
+    """A total as printed, or else as summed from durations, and what its digits stand for, s."""
+
+    shown: str
+    interval: tuple[float, float]
 
 
 class ChosenCase:
@@ -63,10 +102,9 @@ class ChosenCase:
         self.claims: tuple[AnyClaim, ...] = tuple(case.claims)
         self.seeds = seeds
         self.workers = workers
-        selected = case.selections(problem, reading)
-        self.selected: tuple[Pair, ...] = tuple(selected)
-        self.readings: tuple[str, ...] = tuple(dict.fromkeys(rid for _, rid in selected))
-        self.pairs: tuple[Pair, ...] = tuple(p for p in selected if case.statement(*p).complete)
+        self.selected = tuple(Pair(*one) for one in case.selections(problem, reading))
+        self.readings = tuple(dict.fromkeys(one.reading for one in self.selected))
+        self.pairs = tuple(one for one in self.selected if case.statement(*one).complete)
         default = case.default_reading.id
         self.main_reading = default if default in self.readings else self.readings[0]
         self.chosen = {
@@ -78,6 +116,10 @@ class ChosenCase:
         self._progress = progress or (lambda _: None)
         self._kept: dict[tuple[Any, ...], Any] = {}
         self.intervals = Intervals(certificates, certify_seconds, self._progress, cache)
+
+    def progress(self, doing: str) -> None:
+        """Say what is being done of the case, before anything that takes a while."""
+        self._progress(f"{self.case.id}: {doing}")
 
     def once(self, key: tuple[Any, ...], compute: Callable[[], T]) -> T:
         """What was kept under a key, computed where nothing is; errors are kept too."""
@@ -97,8 +139,13 @@ class ChosenCase:
         view.claims = claims
         if pair is not None:
             view.selected = view.pairs = (pair,)
-            view.readings = pair[1:]
+            view.readings = (pair.reading,)
         return view
+
+    @property
+    def drawing(self) -> ChosenCase:
+        """The study for whose problems and algorithms instances are drawn."""
+        return self
 
     @property
     def has_problems(self) -> bool:
@@ -108,11 +155,21 @@ class ChosenCase:
     @property
     def problems(self) -> tuple[str, ...]:
         """Ids of the problems that are complete, in order."""
-        return tuple(dict.fromkeys(pid for pid, _ in self.pairs))
+        return tuple(dict.fromkeys(one.problem for one in self.pairs))
 
-    def problem(self, pid: str, rid: str) -> Problem:
+    @property
+    def main_pairs(self) -> tuple[Pair, ...]:
+        """Each of them under the main reading."""
+        return tuple(Pair(one, self.main_reading) for one in self.problems)
+
+    def problem(self, pair: Pair) -> Problem:
         """Problem of the case, with its coupling."""
-        return self.once(("problem", pid, rid), lambda: self.case.problem(pid, rid))
+        return self.once(("problem", pair), lambda: self.case.problem(*pair))
+
+    def limited(self, pair: Pair) -> bool:
+        """Whether a problem limits anything that moves."""
+        limits = self.problem(pair).limits
+        return limits.limits_position or bool(np.isfinite(limits.sides).any())
 
     @property
     def time_unit(self) -> str:
@@ -121,24 +178,129 @@ class ChosenCase:
 
     def total_digits(self, claim: Claim) -> str:
         """A total as printed, or else the sum of the printed durations, with its unit."""
-        printed = (
-            claim.value if isinstance(claim, TotalTimeClaim) else getattr(claim, "total", None)
-        )
+        printed = printed_total(claim)
         summed = (number.decimal for number in self.case.printed_durations(claim))
         return f"{sum(summed) if printed is None else printed} {self.time_unit}"
 
-    def claim_total(self, claim: Claim, rid: str) -> tuple[str, tuple[float, float]] | None:
-        """A claim's total as printed (or as summed), and its interval in seconds."""
-        if isinstance(claim, TotalTimeClaim):
-            total = self.case.measured(claim.value, "time", claim.problem, rid)
-            return self.total_digits(claim), (total.lower, total.upper)
-        if not isinstance(claim, DurationsClaim | MaximumClaim):
-            return None
-        box = self.case.claim_durations(claim, rid)
-        summed = (float(box.lower.sum()), float(box.upper.sum()))
+    def printed_numbers(self, claim: MotionValueClaim) -> list[tuple[str | None, Printed]]:
+        """Each printed number of a claim of a derivative with the joint that it belongs to."""
+        if claim.values is None:
+            return [(claim.joint, number) for number in claim.printed]
+        return list(zip(self.case.robot.joints, claim.values, strict=True))
+
+    def durations_digits(self, claim: Claim) -> str:
+        """The printed durations with their unit."""
+        return f"{', '.join(map(str, self.case.printed_durations(claim)))} {self.time_unit}"
+
+    def claim_total(self, claim: Claim, reading: str) -> Total | None:
+        """A claim's total; None where it has none."""
         shown = self.total_digits(claim)
-        if claim.total is None:
-            return f"{shown} (sum of the printed durations)", summed
-        total = self.case.measured(claim.total, "time", claim.problem, rid)
-        both = (max(summed[0], total.lower), min(summed[1], total.upper))
-        return shown, both if both[0] <= both[1] else (total.lower, total.upper)
+        printed = printed_total(claim)
+        total = None
+        if printed is not None:
+            total = self.case.measured(printed, "time", claim.problem, reading)
+        if not prints_durations(claim):
+            return None if total is None else Total(shown, (total.lower, total.upper))
+        box = self.case.claim_durations(claim, reading)
+        low, high = float(box.lower.sum()), float(box.upper.sum())
+        if total is None:
+            return Total(f"{shown} (sum of the printed durations)", (low, high))
+        both = max(low, total.lower), min(high, total.upper)
+        return Total(shown, both if both[0] <= both[1] else (total.lower, total.upper))
+
+    def algorithm(self, algorithm_id: str) -> Algorithm[Any] | None:
+        """The case's algorithm, or None if its kind is not implemented."""
+        block = next(a for a in self.case.algorithms if a.id == algorithm_id)
+        if block.kind is None or block.kind not in KINDS:
+            return None
+        try:
+            return from_settings(block.kind, block.parameters)
+        except TrajgapError as error:
+            why = str(error).removeprefix(f"{block.kind}: ")
+            raise TrajgapError(f"{self.case.file}: algorithms.{algorithm_id}: {why}") from None
+
+    @property
+    def not_replayed(self) -> tuple[str, ...]:
+        """Algorithms without an implementation here, each as one sentence with the nearest kind."""
+        found = []
+        for block in self.case.algorithms:
+            if block.kind is None:
+                found.append(f"{block.name}: the case file names no algorithm that trajgap has.")
+            elif block.kind not in KINDS:
+                try:
+                    from_settings(block.kind, {})
+                except TrajgapError as error:
+                    found.append(f"{block.name}: {error}")
+        return tuple(found)
+
+    def called(self, algorithm_id: str) -> str:
+        """An algorithm as a sentence calls it, by its name."""
+        return f"the {next(a.name for a in self.case.algorithms if a.id == algorithm_id)}"
+
+    def unreplayed(self, algorithm_id: str, pair: Pair) -> str | None:
+        """Why an algorithm is not replayed on a problem, as a sentence; None if it is."""
+        algorithm = self.algorithm(algorithm_id)
+        if algorithm is None:
+            return (
+                f"{capital(self.called(algorithm_id))} is of a kind that is not implemented here."
+            )
+        problem = self.problem(pair)
+        try:
+            # What judges the positions of every run says whether it can.
+            DeathPenalty(problem, algorithm.penalty)
+        except TrajgapError as error:
+            return f"{capital(self.called(algorithm_id))} is not replayed: {error}."
+        return None
+
+    def runs(self, algorithm_id: str, pair: Pair) -> Replays:
+        """Replays of an algorithm under the listed choices, one per seed; empty if there are none.
+
+        `unreplayed` says why.
+        """
+        algorithm = self.algorithm(algorithm_id)
+        if algorithm is None or self.unreplayed(algorithm_id, pair) is not None:
+            return ()
+        return self.once(
+            ("runs", algorithm_id, pair),
+            lambda: self._replay(algorithm, algorithm_id, pair, self.seeds),
+        )
+
+    def _replay(self, algorithm: Algorithm[Any], name: str, pair: Pair, seeds: int) -> Replays:
+        problem = self.problem(pair)
+        called = next((a.name for a in self.case.algorithms if a.id == name), name)
+        under = in_words(self.case, *pair)
+        self.progress(f"{seeds} replays of {called}; {under}")
+        workers = self.workers
+        if workers is None:
+            long = seeds * algorithm.iterations >= WORTH_PROCESSES
+            workers = (os.cpu_count() or 1) if long else 1
+        if problem.coupling is Coupling.PER_JOINT and len(problem.joints) > 1:
+            return run_many_per_joint(algorithm, problem, range(seeds), workers)
+        return run_many(algorithm, problem, range(seeds), workers)
+
+    def settings(self, algorithm_id: str) -> dict[str, Algorithm[Any]]:
+        """The algorithm as listed, and under settings spread over all that the paper leaves open.
+
+        `spread_settings` says how; empty where the algorithm's kind is not implemented.
+        """
+        algorithm = self.algorithm(algorithm_id)
+        if algorithm is None:
+            return {}
+        block = next(a for a in self.case.algorithms if a.id == algorithm_id)
+        return spread_settings(algorithm, block.settings)
+
+    def spread_runs(self, algorithm_id: str, pair: Pair) -> dict[str, Replays]:
+        """Replays under each of `settings`, fewer where it is not the listed one; as `runs`."""
+        if self.unreplayed(algorithm_id, pair) is not None:
+            return {}
+
+        def compute() -> dict[str, Replays]:
+            few = min(SPREAD_SEEDS, self.seeds)
+            return {
+                name: self.runs(algorithm_id, pair)
+                if name == LISTED
+                else self._replay(algorithm, f"{algorithm_id}, {name}", pair, few)
+                for name, algorithm in self.settings(algorithm_id).items()
+            }
+
+        return self.once(("spread", algorithm_id, pair), compute)

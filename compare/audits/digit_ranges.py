@@ -8,10 +8,10 @@ import numpy as np
 
 from ...nlp import Evidence, Status
 from ...nlp.optimum import apart
-from ...problem import Array, Problem, as_piecewise
+from ...problem import Array, Problem, as_piecewise, shown_bound
 from ...problem.cases import Claim, Digits
+from .printed_row import PrintedRow
 from .rounding import same_limits
-from .study import Study
 
 _ROUNDING = 1e-9
 """Relative room for the rounding of float64, and for the tolerance that `check` grants: a bound may
@@ -32,15 +32,12 @@ class OptimumRange:
     upper: float | None
 
 
-def optimum_range(study: Study, claim: Claim, pid: str, rid: str) -> OptimumRange:
+def optimum_range(row: PrintedRow[Claim]) -> OptimumRange:
     """Bounds on the optimum of a claim's problem, whatever its digits stand for.
 
     Parameters
     ----------
-    study : Study
-    claim : Claim
-    pid, rid : str
-        Of the problem and the reading.
+    row : PrintedRow
 
     Returns
     -------
@@ -54,44 +51,55 @@ def optimum_range(study: Study, claim: Claim, pid: str, rid: str) -> OptimumRang
     r that are larger by a factor f ask for a c of f^(1/r); way-points as well where each segment
     depends on its own two alone, for there every derivative scales with their distance.
     """
-    solution = study.claim_optimum(claim, pid, rid)
+    solution = row.optimum
     if not solution.found or solution.status is Status.NOT_ATTAINED:
         return OptimumRange(None, None)
     proved = solution.lower_bound
-    if all_exact(study, claim, pid, rid):
+    if all_exact(row):
         known = solution.best if solution.evidence is not Evidence.CERTIFIED else proved
         return OptimumRange(known, solution.best)
-    upper = study.reachable(claim, solution.durations, pid, rid)
-    slower = None if proved is None else _slow_down(study, claim, pid, rid)
+    upper = row.reachable(solution.durations)
+    slower = None if proved is None else _slow_down(row)
     if proved is None or slower is None:
         return OptimumRange(None, upper)
     return OptimumRange(proved / slower * (1.0 - _ROUNDING), upper)
 
 
-def all_exact(study: Study, claim: Claim, pid: str, rid: str) -> bool:
+def all_exact(row: PrintedRow[Claim]) -> bool:
     """Whether nothing that defines the problem is a rounded number."""
-    statement = study.case.statement(pid, rid)
+    statement = row.statement
     if statement.loose_ends or statement.loose_ratios or statement.declaration.loose:
         return False
-    problem = study.claim_problem(claim, pid, rid)
-    box = study.waypoint_box(problem, pid, rid)
-    loosest = study.claim_problem(claim, pid, rid, Digits.LOOSEST_CUT)
+    problem = row.posed()
+    box = row.waypoint_box(problem)
+    loosest = row.posed(Digits.LOOSEST_CUT)
     return same_limits(problem, loosest) and np.array_equal(box.lower, box.upper)
 
 
-def _slow_down(study: Study, claim: Claim, pid: str, rid: str) -> float | None:
+def below_certified(row: PrintedRow[Claim]) -> tuple[str, ...] | None:
+    """That a total lies below a certified bound, which speaks only where the problem is exact."""
+    bound = row.optimum.lower_bound
+    if bound is None or row.longest_total >= bound:
+        return None
+    if not all_exact(row):
+        return None
+    shown = shown_bound(bound, "lower", places=6)
+    return (f"The printed total lies below the certified lower bound {shown} s.",)
+
+
+def _slow_down(row: PrintedRow[Claim]) -> float | None:
     """By what motions of every problem in the box are slowed down to keep the printed limits."""
-    statement = study.case.statement(pid, rid)
+    statement = row.statement
     if statement.loose_ends or statement.loose_ratios or statement.declaration.loose:
         return None
-    problem = study.claim_problem(claim, pid, rid)
-    loosest = study.claim_problem(claim, pid, rid, Digits.LOOSEST_CUT)
+    problem = row.posed()
+    loosest = row.posed(Digits.LOOSEST_CUT)
     # Slowing down leaves the path, and may take a duration beyond its upper bound.
     if not problem.curve.homogeneous or np.isfinite(problem.duration_upper).any():
         return None
     if (loosest.duration_lower < problem.duration_lower).any():
         return None
-    wider = _farther(study, problem, pid, rid)
+    wider = _farther(row, problem)
     if wider is None:
         return None
     if problem.limits.limits_position and not (
@@ -111,9 +119,9 @@ def _slow_down(study: Study, claim: Claim, pid: str, rid: str) -> float | None:
     return float(slower) if np.isfinite(slower) else None
 
 
-def _farther(study: Study, problem: Problem, pid: str, rid: str) -> Array | None:
+def _farther(row: PrintedRow[Claim], problem: Problem) -> Array | None:
     """By what factor each joint's steps are larger as printed than the least in the box."""
-    box = study.waypoint_box(problem, pid, rid).or_cut_off()
+    box = row.waypoint_box(problem).or_cut_off()
     joints = problem.waypoints.shape[1]
     if np.array_equal(box.lower, box.upper):
         return np.ones(joints)

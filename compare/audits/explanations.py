@@ -1,25 +1,213 @@
-"""Innocent explanations of what does not fit in print, each tried by computing."""
+"""Innocent explanations of what does not fit in print, each tried by computing.
+
+Misprints are put into the case, and the rules judge the case again.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections import Counter
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from dataclasses import dataclass
 
-from ...problem import counts_in_words
-from ...problem.cases import ConditionsClaim, DurationsClaim, MaximumClaim
-from ..documents import Explanation, Finding, HeldOtherwise, quoted
+from ...problem import Case, TrajgapError, counts_in_words
+from ...problem.cases import (
+    AnyClaim,
+    ConditionsClaim,
+    DurationsClaim,
+    ImprovementClaim,
+    MaximumClaim,
+    MeasureClaim,
+    PeakClaim,
+    TotalTimeClaim,
+    ValueClaim,
+    motions_of,
+)
+from ..documents import (
+    ClaimVerdict,
+    Explanation,
+    Finding,
+    HeldOtherwise,
+    Rounding,
+    Severity,
+    quoted,
+)
+from .changed_motions import changes_of_motion
+from .chosen_case import Pair
+from .printed_row import PrintedRow
 from .roots import LIMITS, TABLES
-from .rules import count_conditions, held_otherwise
-from .slips_tried import explained_by_slips
-from .stated import place
+from .rules import RuleGroup, count_conditions, held_otherwise
+from .slips import Slip, durations, misprints, of_rows, totals, values
+from .stated import place, prints_durations
 from .study import Study
 
+_OF_MOTIONS = {"TG201", "TG203", "TG208", "TG211"}
+"""Rules that rebuild motions from printed durations."""
+_OF_DIGITS = {"TG101", "TG102", "TG103", "TG105"}
+"""Rules that set printed numbers beside each other."""
+_JUDGED = 6
+"""Changes of each kind that the rules judge, the likeliest first: judging one takes as long as
+judging the paper's own row."""
+_NAMED = 3
+"""Changes that are named where they explain as much as each other; of more only the number is."""
+_TRIED = 400
+"""Changes of digits alone that are put to the rule which found the contradiction."""
 
-def explained(study: Study, root: str, finding: Finding) -> tuple[Explanation, ...]:
+_ALL_KEPT = "every limit is kept"
+"""What holds where a change brings all durations within their limits."""
+_BY_DEFAULT = "the default reading keeps every limit"
+"""The same on a card, where the reading has been named."""
+
+_DECIDED_AT_ONCE: tuple[type[AnyClaim], ...] = (
+    DurationsClaim,
+    MaximumClaim,
+    ImprovementClaim,
+    PeakClaim,
+    MeasureClaim,
+    ValueClaim,
+)
+"""Claims that the rules judge without a search for an optimum."""
+_VALUES = PeakClaim | MeasureClaim | ValueClaim
+"""Claims of a derivative of a motion."""
+
+_Against = frozenset[tuple[str, str | None]]
+"""What speaks against a case: rules, each with the claim that it contradicts."""
+_CONTRADICTED = (ClaimVerdict.REFUTED, ClaimVerdict.INCONSISTENT)
+"""Verdicts that speak against a claim."""
+_SETTLED = {
+    "TG101": "the printed total is the sum of its parts",
+    "TG102": "the longest durations are those of the rows",
+    "TG103": "the improvement follows from the totals",
+    "TG105": "both places print the same total",
+    "TG203": "the printed peaks are those of the printed durations",
+    "TG208": "the printed means are those of the printed durations",
+    "TG211": "the printed values are those of the printed durations",
+}
+"""What holds where a change settles what a rule found."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Judged:
+    """A change, and what the rules say of the case with it."""
+
+    slip: Slip
+    settled: tuple[str, ...]
+    """Rules that no longer speak against the case, in the order of their ids."""
+    left: _Against
+    rounding: Rounding | None
+    """Of the durations that the explained finding is about."""
+    reached: bool
+    """Whether these durations use a limit up, as their digits go."""
+    cut: bool
+    """Whether the numbers fit only if digits were cut off or rounded up."""
+
+    @property
+    def rank(self) -> tuple[int, bool, bool, int]:
+        """The better explanation first: less left, digits rounded, a limit reached, fewer slips."""
+        return len(self.left), self.cut, not self.reached, self.slip.slips
+
+
+@dataclass(frozen=True)
+class _Trial:
+    """A finding that speaks against a claim, and what changes of the print are judged by."""
+
+    study: Study
+    groups: Sequence[RuleGroup]
+    finding: Finding
+    claim: AnyClaim
+
+    @property
+    def pair(self) -> Pair:
+        """The problem and the reading under which changes are judged."""
+        return Pair(
+            self.finding.problem or self.claim.problem or self.study.case.problems[0].id,
+            self.finding.reading or self.study.main_reading,
+        )
+
+    def findings(
+        self, study: Study, claims: Iterable[AnyClaim], rules: Collection[str]
+    ) -> list[Finding]:
+        """What some rules say of some claims, in the case as printed or with a change made."""
+        groups = [g for g in self.groups if not g.rules.keys().isdisjoint(rules)]
+        groups = [g for g in groups if self.pair in study.pairs or g.without_waypoints]
+        view = study.only(*claims, pair=self.pair)
+        return [one for group in groups for one in group.judge(view)]
+
+    def against(self) -> _Against:
+        """What speaks against the case as printed."""
+        key = ("against", self.finding.rule == "TG105", *self.pair)
+        claims, rules = _claims(self.study.case, self.finding), _rules(self.finding)
+        return self.study.once(key, lambda: _of(self.findings(self.study, claims, rules)))
+
+    def changed(self, slip: Slip) -> Study:
+        """A study of the case with a change made, of one problem under one reading."""
+        return Study(
+            slip.case(self.study.case),
+            seeds=2,
+            problem=self.pair.problem,
+            reading=self.pair.reading,
+            certify_seconds=0,
+        )
+
+    def judge(self, row: AnyClaim, slip: Slip, reached: bool, before: _Against) -> _Judged | None:
+        """A change that settles the finding and contradicts nothing else; None if it does not."""
+        finding = self.finding
+        try:
+            changed = self.changed(slip)
+            touched = _touched(changed.case, finding, slip)
+            # Most changes leave the finding as it is, which its own rule says without all others.
+            own = [c for c in touched if c.id == finding.claim]
+            alone = self.findings(changed, own, {finding.rule})
+            if (finding.rule, finding.claim) in _of(alone):
+                return None
+            after = _of(self.findings(changed, touched, _rules(finding)))
+            after |= {one for one in before if one[1] not in {c.id for c in touched}}
+            if after - before:
+                return None
+            settled = {rule for rule, _ in before - after}
+            timed = "TG201" in settled and prints_durations(row)
+            rounding = PrintedRow(changed, row, self.pair).rounding.verdict if timed else None
+        except TrajgapError:
+            return None
+        cut = finding.rule in _OF_DIGITS and any(f.severity is not Severity.INFO for f in alone)
+        return _Judged(slip, tuple(sorted(settled)), after, rounding, reached, cut)
+
+    def of_digits(self) -> list[Slip]:
+        """Changes with which the rule no longer speaks against the claim, the smallest first."""
+        case, claim, finding = self.study.case, self.claim, self.finding
+        others = [case.claim(c) for c in finding.between if c != claim.id]
+        if isinstance(claim, ImprovementClaim):
+            others = [case.claim(claim.slower), case.claim(claim.faster)]
+        if isinstance(claim, MaximumClaim) and finding.rule == "TG102":
+            others = [case.claim(c) for c in claim.of]
+        spots = [*totals(case, claim), *durations(case, claim), *values(case, claim)]
+        spots += [
+            s for one in others for s in (*totals(case, one, True), *durations(case, one, True))
+        ]
+        slips = [*of_rows(case, claim), *(s for spot in spots for s in misprints(spot))]
+        slips.sort(key=lambda slip: (slip.slips, slip.share))
+        group = next(g for g in self.groups if finding.rule in g.rules)
+        found = []
+        for slip in slips[:_TRIED]:
+            try:
+                changed = self.changed(slip)
+                own = changed.only(changed.case.claim(claim.id), pair=self.pair)
+                if (finding.rule, finding.claim) not in _of(group.judge(own)):
+                    found.append(slip)
+            except TrajgapError:
+                continue
+        return found
+
+
+def explained(
+    study: Study, groups: Sequence[RuleGroup], root: str, finding: Finding
+) -> tuple[Explanation, ...]:
     """Changes in print that the numbers allow and that would settle a finding.
 
     Parameters
     ----------
     study : Study
+    groups : sequence of RuleGroup
+        What judges a case with a change made.
     root : str
         Of the cause.
     finding : Finding
@@ -52,14 +240,16 @@ def explained(study: Study, root: str, finding: Finding) -> tuple[Explanation, .
     found: list[Explanation] = []
     if kind == LIMITS and isinstance(claim, DurationsClaim | MaximumClaim):
         found += _at_samples(study, claim, finding, under)
-    return (*found, *explained_by_slips(study, finding, claim, under, default))
+    trial = _Trial(study, groups, finding, claim)
+    return (*found, *_by_slips(trial, under, default))
 
 
 def _at_samples(
     study: Study, claim: DurationsClaim | MaximumClaim, finding: Finding, under: str
 ) -> Iterator[Explanation]:
     """Limits that were held at some times only."""
-    held = held_otherwise(study, claim, str(finding.problem), str(finding.reading))
+    pair = Pair(str(finding.problem), str(finding.reading))
+    held = held_otherwise(PrintedRow(study, claim, pair))
     effect = "Then they are broken between the samples, and the samples do not show it"
     if isinstance(held, HeldOtherwise) and held.sampled <= 1.0 < held.everywhere:
         yield Explanation(
@@ -87,3 +277,147 @@ def _at_the_ends(study: Study, claim: ConditionsClaim) -> Iterator[Explanation]:
         change=f"{where[:1].upper()}{where[1:]} may mean rest at the two ends only.",
         effect=f"Then there are {counts_in_words(meant, available)}{counted}.",
     )
+
+
+def _by_slips(trial: _Trial, under: str, default: bool) -> list[Explanation]:
+    """Misprints with which a finding would not stand, those that explain most first.
+
+    Parameters
+    ----------
+    trial : _Trial
+    under : str
+        The reading, as the end of a sentence; empty where there is one alone.
+    default : bool
+        Whether that is the default reading of several, which a card names so.
+
+    Returns
+    -------
+    list of Explanation
+        Those that explain as much as the best with as few slips, while they are few, then
+        the best of each other kind that settles as much. Where nothing settles the finding, what
+        would bring a motion nearer to its limits.
+    """
+    study, finding, claim, pair = trial.study, trial.finding, trial.claim, trial.pair
+    if finding.rule not in _OF_MOTIONS | _OF_DIGITS:
+        return []
+    row = _row(study, finding, claim)
+    before = trial.against()
+    if (finding.rule, finding.claim) not in before:
+        return []  # it warns, and contradicts nothing
+    if row is not None and pair in study.pairs:
+        tried, nearer = changes_of_motion(PrintedRow(study, row, pair), finding, claim)
+    elif finding.rule in _OF_DIGITS:
+        tried, nearer = [(slip, False) for slip in trial.of_digits()], None
+    else:
+        return []
+    judged = [
+        one
+        for slip, reached in _likeliest(tried)
+        for one in (trial.judge(row or claim, slip, reached, before),)
+        if one is not None
+    ]
+    if not judged:
+        return [] if nearer is None else [nearer]
+    judged.sort(key=lambda one: one.rank)
+    first = judged[0]
+    alike = [one for one in judged if one.rank == first.rank]
+    others = len(alike) - _NAMED
+    more = f" At least {others} other change{'s' * (others > 1)} would do so." if others > 0 else ""
+    named = [(one, more) for one in alike[:_NAMED]]
+    kinds = {one.slip.kind for one, _ in named}
+    # What explains as much at the cost of more slips, or without reaching a limit, comes after.
+    for one in judged:
+        if len(one.left) == len(first.left) and one.slip.kind not in kinds:
+            named.append((one, ""))
+            kinds.add(one.slip.kind)
+    return [
+        Explanation(
+            change=one.slip.change,
+            effect=f"{effect}{under}.{note}",
+            in_any=f"{effect}.{note}",
+            brief=f"{on_card}." if default and on_card != effect else f"{effect}{under}.",
+        )
+        for one, note in named
+        for effect, on_card in (
+            [_effect(study, one, row or claim, kept) for kept in (_ALL_KEPT, _BY_DEFAULT)],
+        )
+    ]
+
+
+def _likeliest(tried: Iterable[tuple[Slip, bool]]) -> Iterator[tuple[Slip, bool]]:
+    """The first changes of each kind."""
+    seen: Counter[str] = Counter()
+    for slip, reached in tried:
+        seen[slip.kind] += 1
+        if seen[slip.kind] <= _JUDGED:
+            yield slip, reached
+
+
+def _row(study: Study, finding: Finding, claim: AnyClaim) -> DurationsClaim | MaximumClaim | None:
+    """The durations whose motion a finding is about; None where it is about digits alone."""
+    if finding.rule not in _OF_MOTIONS:
+        return None
+    if isinstance(claim, DurationsClaim | MaximumClaim):
+        return claim
+    if not isinstance(claim, _VALUES):
+        return None
+    found = [c for c in motions_of(study.case.claims, claim) if c.id in finding.between]
+    return found[0] if found and isinstance(found[0], DurationsClaim | MaximumClaim) else None
+
+
+# --- what the rules say ---------------------------------------------------------------------------
+
+
+def _claims(case: Case, finding: Finding) -> list[AnyClaim]:
+    """Durations and numbers beside them, which the rules judge without a search for an optimum."""
+    # Tables alike are set beside an optimum, so that totals are asked about where they must be.
+    kinds = (*_DECIDED_AT_ONCE, TotalTimeClaim) if finding.rule == "TG105" else _DECIDED_AT_ONCE
+    return [c for c in case.claims if isinstance(c, kinds)]
+
+
+def _touched(case: Case, finding: Finding, slip: Slip) -> list[AnyClaim]:
+    """Those of them that a change may concern: all, unless it is of one claim's numbers."""
+    own = {case.claims[int(path[1])].id for path, _ in slip.edits if path[0] == "claims"}
+    every = _claims(case, finding)
+    if not own:
+        return every
+    return [
+        c
+        for c in every
+        if c.id in own | {finding.claim}
+        or isinstance(c, ImprovementClaim | TotalTimeClaim)
+        or (isinstance(c, MaximumClaim) and own.intersection(c.of))
+        or (isinstance(c, _VALUES) and own & {m.id for m in motions_of(case.claims, c)})
+    ]
+
+
+def _rules(finding: Finding) -> set[str]:
+    return _OF_MOTIONS | (_OF_DIGITS - ({"TG105"} - {finding.rule}))
+
+
+def _of(findings: Iterable[Finding]) -> _Against:
+    return frozenset(
+        (f.rule, f.claim)
+        for f in findings
+        if f.severity is not Severity.INFO and f.verdict in _CONTRADICTED
+    )
+
+
+def _effect(study: Study, one: _Judged, row: AnyClaim, all_kept: str) -> str:
+    """What a change settles, and which durations still break a limit with it, without a stop."""
+    parts = []
+    broken = [study.case.claim(c) for rule, c in sorted(one.left) if rule == "TG201" and c]
+    if "TG201" in one.settled:
+        timed = broken and prints_durations(row)
+        kept = f"the durations in {place(row)} keep every limit" if timed else all_kept
+        parts.append(kept + (" within rounding" if one.rounding is Rounding.CONSISTENT else ""))
+        if one.reached:
+            parts.append("one is reached")
+    parts += [_SETTLED[rule] for rule in one.settled if rule in _SETTLED]
+    *most, last = parts
+    said = f"Then {', '.join(most)} and {last}" if most else f"Then {last}"
+    said += " if digits were cut off or rounded up" if one.cut else ""
+    if broken and row not in broken:
+        places = " and ".join(dict.fromkeys(place(c) for c in broken))
+        said += f"; those in {places} still break one"
+    return said

@@ -10,10 +10,11 @@ from ...nlp import Evidence
 from ...problem import Array, Coupling, Problem
 from ...problem.cases import Claim
 from ..documents import Basis, Finding
+from .printed_row import PrintedRow
 from .rounding import RoundingBox
 
 if TYPE_CHECKING:
-    from .study import Study
+    pass
 
 BELOW_AT_RATIOS = (
     "The whole printed interval lies below it: other ratios of the durations, other limits, "
@@ -44,7 +45,7 @@ def planned_apart(problem: Problem) -> bool:
     return apart and problem.ratios is None
 
 
-def off_ratios(study: Study, claim: Claim, pid: str, rid: str) -> str | None:
+def off_ratios(row: PrintedRow[Claim]) -> str | None:
     """In which ratios printed durations are, where a reading fixes others; None if it does not.
 
     They are in the ratios that it fixes if some durations and ratios agree, of all whose digits
@@ -52,24 +53,20 @@ def off_ratios(study: Study, claim: Claim, pid: str, rid: str) -> str | None:
 
     Parameters
     ----------
-    study : Study
-    claim : Claim
-        Without durations it has no ratios of its own.
-    pid, rid : str
-        Of the problem and the reading.
+    row : PrintedRow
 
     Returns
     -------
     str or None
     """
-    problem = study.problem(pid, rid)
-    if problem.shares is None or not study.case.printed_durations(claim):
+    problem = row.study.problem(row.pair)
+    if problem.shares is None or not row.study.case.printed_durations(row.claim):
         return None
-    printed = study.case.claim_durations(claim, rid)
+    printed = row.durations
     # Half a digit more to each side: durations are cut off, or rounded up to keep a limit.
     down, up = printed.lower - printed.value, printed.upper - printed.value
     least_h, most_h = printed.lower + down, printed.upper + up
-    low, high = _ratio_box(study, pid, rid)
+    low, high = _ratio_box(row)
     # A total c serves a segment if c·[low, high] meets its box; one c has to serve all.
     with np.errstate(divide="ignore"):
         least, most = float((least_h / high).max()), float((most_h / low).min())
@@ -82,14 +79,12 @@ def off_ratios(study: Study, claim: Claim, pid: str, rid: str) -> str | None:
     )
 
 
-def of_other_ratios(claim: Claim, pid: str, rid: str, shown: str, other: str) -> Finding:
+def of_other_ratios(row: PrintedRow[Claim], shown: str, other: str) -> Finding:
     """That printed durations are not those of a question that fixes other ratios.
 
     Parameters
     ----------
-    claim : Claim
-    pid, rid : str
-        Of the problem and the reading.
+    row : PrintedRow
     shown : str
         The printed total.
     other : str
@@ -102,9 +97,9 @@ def of_other_ratios(claim: Claim, pid: str, rid: str, shown: str, other: str) ->
     return Finding(
         rule="TG302",
         basis=Basis.DIGITS,
-        claim=claim.id,
-        problem=pid,
-        reading=rid,
+        claim=row.claim.id,
+        problem=row.problem,
+        reading=row.reading,
         printed=shown,
         kind="other ratios",
         sentences=(
@@ -116,9 +111,9 @@ def of_other_ratios(claim: Claim, pid: str, rid: str, shown: str, other: str) ->
     )
 
 
-def _ratio_box(study: Study, pid: str, rid: str) -> tuple[Array, Array]:
+def _ratio_box(row: PrintedRow[Claim]) -> tuple[Array, Array]:
     """Ratios of any scale: the least and the largest that the digits may stand for."""
-    problem, given = study.problem(pid, rid), study.case.statement(pid, rid).durations.ratios
+    problem, given = row.study.problem(row.pair), row.statement.durations.ratios
     if isinstance(given, tuple):
         ends = (np.array([getattr(n, end) for n in given]) for end in ("value", "lower", "upper"))
         box = RoundingBox(*ends).or_cut_off()
@@ -126,7 +121,7 @@ def _ratio_box(study: Study, pid: str, rid: str) -> tuple[Array, Array]:
     if given == "equal":
         assert problem.shares is not None
         return problem.shares, problem.shares
-    points = study.waypoint_box(problem, pid, rid).or_cut_off()
+    points = row.waypoint_box(problem).or_cut_off()
     step_low = points.lower[1:] - points.upper[:-1]
     step_high = points.upper[1:] - points.lower[:-1]
     near = np.maximum(np.maximum(step_low, -step_high), 0.0)

@@ -54,6 +54,17 @@ def own_results(case: Case, times: Sequence[_Time]) -> list[_Time]:
     return next((meant for meant in choices if meant), [])
 
 
+def bare_totals(case: Case, problem: str) -> list[TotalTimeClaim]:
+    """Totals of all joints on the problem's own curve, printed apart from durations."""
+    return [
+        c
+        for c in case.claims
+        if isinstance(c, TotalTimeClaim)
+        and (c.joint, c.other_curve) == (None, None)
+        and c.problem in (None, problem)
+    ]
+
+
 def _meant(case: Case, ids: Iterable[str], answers: Sequence[_Time]) -> list[_Time]:
     """The times behind some claims of a time: their own, or those of the same algorithm."""
     found = [case.claim(one) for one in ids]

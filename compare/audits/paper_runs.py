@@ -13,6 +13,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from ...nlp import problem_seal
 from ..documents import Gap, Reached, Reference, TargetReached, Why, known
 from ..gaps import canonical, gap, quantiles, reference_of, target_reached
+from .chosen_case import Pair
 from .fixed_ratios import planned_apart
 from .study import Study
 
@@ -77,6 +78,11 @@ class KeptRuns(_Strict):
     its own."""
     runs: tuple[KeptRun, ...]
 
+    @property
+    def pair(self) -> Pair:
+        """Problem and reading."""
+        return Pair(self.problem, self.reading)
+
 
 class _File(_Strict):
     format: Literal["trajgap-paper-runs-1"]
@@ -112,9 +118,9 @@ def _about(study: Study, group: KeptRuns) -> bool:
         return False
     if not group.seal:
         return not study.has_problems
-    if (group.problem, group.reading) not in study.pairs:
+    if group.pair not in study.pairs:
         return False
-    return problem_seal(study.problem(group.problem, group.reading)) == group.seal
+    return problem_seal(study.problem(group.pair)) == group.seal
 
 
 def _reached(study: Study, group: KeptRuns, within: tuple[float, ...]) -> Reached:
@@ -176,19 +182,19 @@ def _reference(study: Study, group: KeptRuns) -> Reference | None:
         one = group.optimum
         return None if one is None else Reference(upper=one.upper, lower=known(one.lower))
     if group.apart:
-        return searched_for(study, group.problem, group.reading)
-    return reference_of(study.optimum(group.problem, group.reading))
+        return searched_for(study, group.pair)
+    return reference_of(study.optimum(group.pair))
 
 
-def searched_for(study: Study, pid: str, rid: str) -> Reference | None:
+def searched_for(study: Study, pair: Pair) -> Reference | None:
     """What a paper's procedure would find if each of its searches were exact.
 
     That is the optimum, or, where each joint is planned by itself, what the joints' own optima
     give: the longest duration of each segment. The latter is no optimum, and runs may end below it.
     """
-    if not planned_apart(study.problem(pid, rid)):
-        return reference_of(study.optimum(pid, rid))
-    answer = study.per_joint(pid, rid)
+    if not planned_apart(study.problem(pair)):
+        return reference_of(study.optimum(pair))
+    answer = study.per_joint(pair)
     return None if not answer.found else Reference(upper=answer.total_time)
 
 
@@ -200,5 +206,5 @@ def _searched(study: Study, group: KeptRuns) -> str:
     head = f"{titles[group.problem]}: " if len(titles) > 1 else ""
     if group.apart:
         return f"{head}each joint by itself, longest duration per segment"
-    several = len(study.problem(group.problem, group.reading).joints) > 1
+    several = len(study.problem(group.pair).joints) > 1
     return f"{head}{'all joints together' if several else 'the one joint'}"

@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import exp, isfinite, log
 
 from ...problem.cases import DurationsClaim, MaximumClaim
+from .printed_row import rows_under
 from .stated import other_objective
 from .study import Study
 
@@ -39,7 +40,7 @@ def implausible(study: Study) -> dict[str, str]:
     }
 
 
-def _stretch(study: Study, rid: str) -> float | None:
+def _stretch(study: Study, reading: str) -> float | None:
     """By what all printed durations times this keep the limits, and those of one claim just so."""
     timed = [
         claim
@@ -47,7 +48,7 @@ def _stretch(study: Study, rid: str) -> float | None:
         if isinstance(claim, DurationsClaim | MaximumClaim)
         if claim.state != "before" and other_objective(study.case, claim) is None
     ]
-    checked = [study.motion_check(one, pid, rid) for one, pid in study.pairs_under(timed, rid)]
+    checked = [row.check_or_none for row in rows_under(study, timed, reading)]
     stretches = [found.stretch for found in checked if found is not None]
     real = [one for one in stretches if isfinite(one) and one > 0]
     return max(real, default=None)

@@ -141,8 +141,8 @@ def certificate_files(study: Study) -> Iterator[tuple[Path, Subject]]:
 
 def _questions(study: Study) -> Iterator[tuple[ExactProblem, Subject]]:
     """Exact problems whose certificates an audit looks for."""
-    for pid, rid in study.pairs:
-        statement, problem = study.case.statement(pid, rid), study.problem(pid, rid)
+    for pair in study.pairs:
+        statement, problem = study.case.statement(*pair), study.problem(pair)
         joints: list[int | None] = [None]
         if problem.coupling is Coupling.PER_JOINT and len(problem.joints) > 1:
             joints += range(len(problem.joints))

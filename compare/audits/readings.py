@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections import Counter, defaultdict
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Sequence
 from math import exp, isfinite, log
 
 import numpy as np
 
-from ...problem import QUANTITIES, extrema, fit
+from ...nlp import Evidence, weakest
+from ...problem import QUANTITIES, extrema
 from ...problem.cases import AnyClaim, TotalTimeClaim
 from ..documents import (
     Excess,
@@ -18,17 +19,21 @@ from ..documents import (
     Judgement,
     Keeping,
     Limited,
+    Named,
     ReadingOutcome,
     ReadingsSummary,
+    Scope,
     Tally,
     Waterfall,
     Why,
     known,
+    under,
 )
 from ..gaps import gap, reference_of
+from .chosen_case import Pair
 from .fixed_ratios import off_ratios
 from .plausibility import implausible
-from .reading_words import answers, holding
+from .printed_row import PrintedRow
 from .rules import held_otherwise, reading_clues
 from .stated import other_objective
 from .study import Study
@@ -95,8 +100,8 @@ def readings_summary(
 
 
 def _outcome(study: Study, waterfall: Waterfall) -> ReadingOutcome:
-    pid, rid = waterfall.problem, waterfall.reading
-    solution = study.optimum(pid, rid)
+    pair = Pair(waterfall.problem, waterfall.reading)
+    solution = study.optimum(pair)
     reference = reference_of(solution)
     keeping: Keeping | Why = Why("no durations are printed for all joints of this problem")
     distance: Gap | Why = Why("no printed total stands beside an optimum")
@@ -106,26 +111,27 @@ def _outcome(study: Study, waterfall: Waterfall) -> ReadingOutcome:
     jumps = 0
     if waterfall.claim is not None:
         claim = study.case.claim(waterfall.claim)
-        unmoved = study.unmoved(claim, pid, rid)
+        row = PrintedRow(study, claim, pair)
+        unmoved = row.unmoved
         if unmoved is not None:
             keeping, held = Why(unmoved), Why(unmoved)
         elif not isinstance(claim, TotalTimeClaim):  # a total alone is no motion
-            found = study.claim_check(claim, pid, rid)
-            keeping = study.claim_keeping(claim, pid, rid)
+            found = row.check
+            keeping = row.keeping
             jumps = sum(jump.order == 1 for jump in found.jumps)
-            held = held_otherwise(study, claim, pid, rid)
+            held = held_otherwise(row)
             stretch = found.stretch if isfinite(found.stretch) and found.stretch > 0 else None
         if keeping is Keeping.BREAKS:
-            excesses = _excesses(study, claim, pid, rid)
-        total = study.claim_total(claim, rid)
-        if off_ratios(study, claim, pid, rid) is not None:
+            excesses = _excesses(row)
+        total = row.total
+        if off_ratios(row) is not None:
             distance = Why("the printed durations have other ratios than this reading fixes")
         elif total is not None and reference is not None:
             kept = keeping in (Keeping.KEEPS, Keeping.CONSISTENT)
-            distance = gap(total[1], reference, feasible=kept)
+            distance = gap(total.interval, reference, feasible=kept)
     return ReadingOutcome(
-        reading=rid,
-        problem=pid,
+        reading=waterfall.reading,
+        problem=waterfall.problem,
         claim=waterfall.claim,
         keeping=keeping,
         jumps=jumps,
@@ -144,17 +150,16 @@ def _shortest(study: Study, outcome: ReadingOutcome) -> bool:
     return claim is None or other_objective(study.case, claim) is None
 
 
-def _excesses(study: Study, claim: AnyClaim, pid: str, rid: str) -> tuple[Excess, ...]:
+def _excesses(row: PrintedRow[AnyClaim]) -> tuple[Excess, ...]:
     """The largest excess of each segment at the printed point, by exact extrema."""
-    problem = study.claim_problem(claim, pid, rid)
-    checked = study.claim_check(claim, pid, rid)
+    problem = row.posed()
+    checked = row.check
     over = [
         Excess(segment=p.segment, joint=p.joint, quantity=Limited(p.quantity), ratio=float(p.ratio))
         for p in checked.peaks
     ]
     if not any(p.quantity == "curve" for p in checked.peaks):
-        durations = study.case.claim_durations(claim, rid).value
-        trajectory = fit(problem.curve, problem.waypoints, durations)
+        durations = row.durations.value
         over += [
             Excess(
                 segment=problem.curve.segment_of(durations, e),
@@ -165,7 +170,7 @@ def _excesses(study: Study, claim: AnyClaim, pid: str, rid: str) -> tuple[Excess
             for order, name in enumerate(QUANTITIES, start=1)
             for j, sizes in enumerate(problem.limits.sides[:, :, order - 1].T)
             if np.isfinite(sizes).any()
-            for e in extrema(trajectory, j, order)
+            for e in extrema(row.motion, j, order)
             for limit in (sizes[int(e.value > 0.0)],)
             if np.isfinite(limit) and limit > 0
         ]
@@ -191,3 +196,156 @@ def _fits(outcomes: Iterable[ReadingOutcome]) -> tuple[Fit, ...]:
         Fit(reading=reading, factor=factor)
         for reading, factor in sorted(factors.items(), key=lambda item: item[1])
     )
+
+
+KEPT = {
+    Keeping.KEEPS: "kept",
+    Keeping.CONSISTENT: "kept by some values that round to the digits",
+    Keeping.DISCONTINUOUS: "not checkable (velocity jumps)",
+    Keeping.BREAKS: "broken",
+    Keeping.UNDECIDED: "not checkable",
+}
+"""What the words say of limits, within a sentence; what is open has the word that the claim has."""
+
+
+def answers(
+    summary: ReadingsSummary, called: Callable[[str, str], str] = "{} ({})".format
+) -> tuple[str, ...]:
+    """What the readings make of the printed answers, called by their ids, and which fit best."""
+    return (*_of_answers(summary, called), *_of_fit(summary, called))
+
+
+def holding(summary: ReadingsSummary) -> tuple[str, ...]:
+    """What holds of the claims under all, some and no readings."""
+    return tuple(_of_claims(summary))
+
+
+def segments(excesses: Sequence[Excess]) -> str:
+    """Numbers of segments, from 1, with runs drawn together."""
+    numbers = [e.segment + 1 for e in excesses]
+    runs: list[list[int]] = []
+    for n in numbers:
+        if runs and n == runs[-1][-1] + 1:
+            runs[-1].append(n)
+        else:
+            runs.append([n])
+    return ", ".join(f"{r[0]}–{r[-1]}" if len(r) > 2 else ", ".join(map(str, r)) for r in runs)
+
+
+def _of_answers(summary: ReadingsSummary, called: Callable[[str, str], str]) -> Iterable[str]:
+    if not summary.outcomes:
+        yield (
+            f"Under none of {len(summary.admissible)} readings can limits, optimum or gap be "
+            f"computed, since {summary.outcomes_why}."
+        )
+        return
+    by_answer: defaultdict[tuple[str, str], list[ReadingOutcome]] = defaultdict(list)
+    for outcome in summary.outcomes:
+        if outcome.claim is not None:
+            by_answer[outcome.claim, outcome.problem].append(outcome)
+    for (claim, problem), own in by_answer.items():
+        found = {k: [o.reading for o in own if o.keeping is k] for k in Keeping}
+        # What is named as implausible does not lead the sentence.
+        words = sorted(
+            (k for k in Keeping if found[k]),
+            key=lambda k: all(r in summary.implausible for r in found[k]),
+        )
+        named = _names(summary)
+        said = ", ".join(
+            f"{KEPT[k]} {under(found[k], summary.admissible, named, why=True)}" for k in words
+        )
+        yield f"{called(claim, problem)}: the limits are {said}.{_of_gaps(own, summary)}"
+
+
+def _names(summary: ReadingsSummary) -> Named:
+    return Named(summary.labels, summary.implausible, summary.default)
+
+
+def _of_gaps(own: Sequence[ReadingOutcome], summary: ReadingsSummary) -> str:
+    """How far the printed total is from the optimum, where the limits are kept and where not."""
+    plain = [o for o in own if o.reading not in summary.implausible]
+    kept = [o for o in plain if o.keeping in (Keeping.KEEPS, Keeping.CONSISTENT)]
+    parts = []
+    for group, where in (
+        (kept, " where the limits are kept"),
+        ([o for o in plain if o not in kept], " elsewhere" if kept else ""),
+    ):
+        gaps = [o.gap for o in group if isinstance(o.gap, Gap)]
+        if gaps:
+            low, high = min(g.lowest for g in gaps), max(g.highest for g in gaps)
+            parts.append(f"{_away(low, high)}{where}")
+    evidence = weakest(o.evidence for o in plain if o.evidence is not Evidence.NONE)
+    beside = {
+        Evidence.CERTIFIED: "certified optimum",
+        Evidence.UNCONVERGED: "total at which the search stopped",
+    }.get(evidence, "best known total")
+    left = len(own) - len(plain)
+    without = f" ({left} implausible reading{'s' * (left > 1)} left out)" if left else ""
+    return f" Printed total beside the {beside}: {', and '.join(parts)}{without}." if parts else ""
+
+
+def _away(low: float, high: float) -> str:
+    """How far totals are from an optimum, as a share of it or as a multiple."""
+    ends = [_end(low), _end(high)]
+    numbers, words = zip(*ends, strict=True)
+    if ends[0] == ends[1]:
+        return " ".join(ends[0])
+    if words[0] == words[1]:
+        return f"{' to '.join(numbers)} {words[0]}"
+    return " to ".join(" ".join(end) for end in ends)
+
+
+def _end(gap: float) -> tuple[str, str]:
+    """A distance as a number, and what it is."""
+    if gap >= 1:
+        return f"{1 + gap:.3g}", "times as long"
+    return f"{100 * abs(gap):.1f}", f"% {'below' if gap < 0 else 'above'} it"
+
+
+def _of_fit(summary: ReadingsSummary, called: Callable[[str, str], str]) -> Iterable[str]:
+    nearest = summary.nearest
+    if len(summary.fits) < 2:
+        return
+    own = [o for o in summary.outcomes if o.reading == nearest[0]]
+    stretches = [
+        (o.stretch, called(str(o.claim), o.problem)) for o in own if not isinstance(o.stretch, Why)
+    ]
+    worst, claim = max(stretches, key=lambda one: abs(log(one[0])))
+    there = [
+        *(
+            ["as printed, they break the limits"]
+            if any(o.keeping is Keeping.BREAKS for o in own)
+            else []
+        ),
+        *(["the velocity jumps"] if any(o.jumps for o in own) else []),
+    ]
+    if len(nearest) == len(summary.fits):
+        which = "The printed durations lie alike under every reading"
+    else:
+        best = under(nearest, summary.admissible, _names(summary), most=3)
+        which = f"The printed durations fit best {best}"
+    yield (
+        f"{which}: multiplied by {worst:.4g}, those of {claim} would just reach the limits, as the "
+        f"shortest motion does{''.join(f'; {x}' for x in there)}. This does not say which reading "
+        "was meant."
+    )
+
+
+def _of_claims(summary: ReadingsSummary) -> Iterable[str]:
+    every = defaultdict(list)
+    for tally in summary.claims:
+        if tally.scope is Scope.ALL:
+            every[tally.verdict].append(tally.claim)
+    if every:
+        said = "; ".join(f"{verdict} {', '.join(claims)}" for verdict, claims in every.items())
+        yield f"Under every reading: {said}."
+    some = [
+        f"{t.claim} ({', '.join(f'{verdict} {n}' for verdict, n in t.readings.items())})"
+        for t in summary.claims
+        if t.scope is Scope.SOME
+    ]
+    if some:
+        yield f"Under some: {', '.join(some)}."
+    no = [t.claim for t in summary.claims if t.scope is Scope.NO]
+    if no:
+        yield f"Decided under none: {', '.join(no)}."

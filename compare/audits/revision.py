@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from decimal import ROUND_CEILING, Decimal
 
@@ -24,6 +24,7 @@ from ...problem.cases import (
 )
 from ..documents import ClaimVerdict, Edit, Finding, Judgement, Severity
 from .edits import CLAIM, READINGS, edited, printed_under
+from .printed_row import PrintedRow, rows_under
 from .reworded import Reworded
 from .rules import in_digits, recomputed, repeated_total, summed
 from .study import Study
@@ -239,35 +240,32 @@ def _rests_on(case: Case, claim: AnyClaim) -> set[str]:
 # --- times ----------------------------------------------------------------------------------------
 
 
-def _problems(study: Study, claim: AnyClaim) -> Iterator[tuple[str, Problem]]:
-    """Problems of a claim under the main reading, on which its durations define a motion."""
-    for pid, rid in study.claim_pairs(claim):
-        if rid == study.main_reading and study.unmoved(claim, pid, rid) is None:
-            yield pid, study.claim_problem(claim, pid, rid)
+def _posed(study: Study, claim: AnyClaim) -> list[PrintedRow[AnyClaim]]:
+    """A claim under the main reading, wherever its durations define a motion."""
+    under = rows_under(study, [claim], study.main_reading)
+    return [row for row in under if row.unmoved is None]
 
 
 def _shorten(draft: _Draft, claim: AnyClaim, trigger: str) -> bool:
     """Print the shortest motion in place of a time that is none; whether there is one."""
-    study, rid = draft.study, draft.study.main_reading
-    for pid, problem in _problems(study, claim):
-        found = study.claim_optimum(claim, pid, rid)
+    for row in _posed(draft.study, claim):
+        found = row.optimum
         if not found.found or found.status is Status.NOT_ATTAINED:
             return False
         if isinstance(claim, TotalTimeClaim):
-            best = from_si(found.best, study.case.statement(pid, rid).units.time or "s")
+            best = from_si(found.best, row.statement.units.time or "s")
             draft.put(claim.id, "value", (in_digits(best, claim.value, ROUND_CEILING),), trigger)
             return True
         if isinstance(claim, DurationsClaim):
-            return _print(draft, claim, [problem], found.durations, trigger)
+            return _print(draft, claim, [row.posed()], found.durations, trigger)
     return False
 
 
 def _lengthen(draft: _Draft, claim: AnyClaim, trigger: str) -> bool:
     """Stretch printed durations until they keep the limits as printed; whether that is reached."""
-    study, rid = draft.study, draft.study.main_reading
-    found = dict(_problems(study, claim))
-    checks = [study.claim_check(claim, pid, rid) for pid in found]
-    if not found or isinstance(claim, TotalTimeClaim):
+    posed = _posed(draft.study, claim)
+    checks = [row.check for row in posed]
+    if not posed or isinstance(claim, TotalTimeClaim):
         return isinstance(claim, TotalTimeClaim) and _shorten(draft, claim, trigger)
     # Where the velocity jumps no stretch mends it: limits are judged apart from jumps.
     if all(one.limits is Verdict.PASS for one in checks):
@@ -275,10 +273,10 @@ def _lengthen(draft: _Draft, claim: AnyClaim, trigger: str) -> bool:
     if not all(np.isfinite(one.stretch) for one in checks):
         return False
     factor = max(max(one.stretch for one in checks), 1.0)
-    problems = list(found.values())
+    problems = [row.posed() for row in posed]
     if isinstance(claim, MaximumClaim):
         return _lengthen_rows(draft, claim, problems, factor, trigger)
-    durations = study.case.claim_durations(claim, rid).value * factor
+    durations = posed[0].durations.value * factor
     return _print(draft, claim, problems, durations, trigger)
 
 
@@ -289,7 +287,7 @@ def _lengthen_rows(
     for one in claim.of:
         row = draft.case.claim(one)
         durations = draft.case.claim_durations(row, draft.study.main_reading).value
-        own = [problem for _, problem in _problems(draft.study, row)]
+        own = [one.posed() for one in _posed(draft.study, row)]
         _print(draft, row, own, durations * factor, trigger)
     _renew(draft, claim, trigger)
     longest = draft.case.claim(claim.id)

@@ -7,10 +7,7 @@ from typing import Any
 
 from ...nlp import PerJointSolution, Solution, printed_problem_or_none
 from ...problem import Case
-from ...problem.cases import InstancesBlock
-from .chosen_case import Pair
-from .instances import InstancesResult
-from .replayed_case import Replays
+from .chosen_case import ChosenCase, Pair, Replays
 from .study import Study
 
 
@@ -39,61 +36,56 @@ class Reworded(Study):
         )
         self.original = original
 
-    def optimum(self, pid: str, rid: str, joint: str | None = None) -> Solution:
+    def optimum(self, pair: Pair, joint: str | None = None) -> Solution:
         """The original's, where it is the same question."""
-        if self._alike(pid, rid):
-            return self.original.optimum(pid, rid, joint)
-        return super().optimum(pid, rid, joint)
+        if self._alike(pair):
+            return self.original.optimum(pair, joint)
+        return super().optimum(pair, joint)
 
-    def per_joint(self, pid: str, rid: str) -> PerJointSolution:
+    def per_joint(self, pair: Pair) -> PerJointSolution:
         """The original's, where it is the same question to the same digits."""
-        same = self._alike(pid, rid) and self.half_digits(pid, rid) == self.original.half_digits(
-            pid, rid
-        )
-        return self.original.per_joint(pid, rid) if same else super().per_joint(pid, rid)
+        same = self._alike(pair) and self.half_digits(pair) == self.original.half_digits(pair)
+        return self.original.per_joint(pair) if same else super().per_joint(pair)
 
-    def relaxed(self, pid: str, rid: str) -> Solution:
+    def relaxed(self, pair: Pair) -> Solution:
         """The original's, where it is the same question."""
-        same = self._alike(pid, rid)
-        return self.original.relaxed(pid, rid) if same else super().relaxed(pid, rid)
+        same = self._alike(pair)
+        return self.original.relaxed(pair) if same else super().relaxed(pair)
 
-    def runs(self, algorithm_id: str, pid: str, rid: str) -> Replays:
+    def runs(self, algorithm_id: str, pair: Pair) -> Replays:
         """The original's, where the same algorithms search for the same."""
-        same = self._replays_alike((pid, rid))
+        same = self._replays_alike(pair)
+        return self.original.runs(algorithm_id, pair) if same else super().runs(algorithm_id, pair)
+
+    def spread_runs(self, algorithm_id: str, pair: Pair) -> dict[str, Replays]:
+        """The original's, where the same algorithms search for the same."""
+        same = self._replays_alike(pair)
         return (
-            self.original.runs(algorithm_id, pid, rid)
+            self.original.spread_runs(algorithm_id, pair)
             if same
-            else super().runs(algorithm_id, pid, rid)
+            else super().spread_runs(algorithm_id, pair)
         )
 
-    def spread_runs(self, algorithm_id: str, pid: str, rid: str) -> dict[str, Replays]:
-        """The original's, where the same algorithms search for the same."""
-        same = self._replays_alike((pid, rid))
-        return (
-            self.original.spread_runs(algorithm_id, pid, rid)
-            if same
-            else super().spread_runs(algorithm_id, pid, rid)
-        )
-
-    def instances(self, block: InstancesBlock) -> InstancesResult:
-        """The original's, where all problems and algorithms are the same."""
+    @property
+    def drawing(self) -> ChosenCase:
+        """The original, where all problems and algorithms are the same."""
         same = self.pairs == self.original.pairs and self._replays_alike(*self.pairs)
-        return self.original.instances(block) if same else super().instances(block)
+        return self.original if same else self
 
-    def _alike(self, pid: str, rid: str) -> bool:
+    def _alike(self, pair: Pair) -> bool:
         """Whether the changed case poses the very same problem, digit by digit."""
-        if (pid, rid) not in self.original.pairs:
+        if pair not in self.original.pairs:
             return False
-        return self.once(("alike", pid, rid), lambda: self._compared(pid, rid))
+        return self.once(("alike", pair), lambda: self._compared(pair))
 
-    def _compared(self, pid: str, rid: str) -> bool:
-        one, other = (s.case.statement(pid, rid) for s in (self, self.original))
+    def _compared(self, pair: Pair) -> bool:
+        one, other = (s.case.statement(*pair) for s in (self, self.original))
         exact = printed_problem_or_none(one, None) == printed_problem_or_none(other, None)
         return exact and pickle.dumps(one.problem()) == pickle.dumps(other.problem())
 
     def _replays_alike(self, *pairs: Pair) -> bool:
         mine, theirs = (_replayed(s.case) for s in (self, self.original))
-        return mine == theirs and all(self._alike(*pair) for pair in pairs)
+        return mine == theirs and all(self._alike(pair) for pair in pairs)
 
 
 def _replayed(case: Case) -> tuple[Any, ...]:

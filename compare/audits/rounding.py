@@ -20,6 +20,8 @@ from ...problem import (
     Array,
     Check,
     CurveError,
+    Interval,
+    Printed,
     Problem,
     TrajgapError,
     Verdict,
@@ -34,6 +36,12 @@ _MOST_ROWS = 300
 """Peaks that one linear program holds: more of them change its answer no further."""
 _CUT_SLACK = 1.0 + 1e-9
 """Factor by which a whole unit of the last digit is widened, far above its rounding to floats."""
+
+
+def hull(number: Printed) -> Interval:
+    """Every value whose digits, rounded or cut off, are the printed ones."""
+    a, b = number.interval, number.truncated
+    return Interval(min(a.lower, b.lower), max(a.upper, b.upper))
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,86 +4,93 @@ from __future__ import annotations
 
 from math import inf
 
-from ...problem.cases import AnyClaim, DurationsClaim, MaximumClaim, TimeClaim, TotalTimeClaim
-from .stated import place, prints_durations
-from .study import Study
+from ...problem.cases import (
+    AnyClaim,
+    Claim,
+    TimeClaim,
+    TotalTimeClaim,
+)
+from .printed_row import PrintedRow
+from .stated import own_total, place, printed_total, prints_durations
 
 
-def other_totals(study: Study, claim: TimeClaim, pid: str, rid: str) -> list[TotalTimeClaim]:
+def other_totals(row: PrintedRow[Claim]) -> list[TotalTimeClaim]:
     """Totals that other claims state of a row and that no value of its own digits rounds to.
 
     Parameters
     ----------
-    study : Study
-    claim : TimeClaim
-    pid, rid : str
-        Of the problem and the reading.
+    row : PrintedRow
 
     Returns
     -------
     list of TotalTimeClaim
         Of a row with durations alone. Digits may be rounded or cut off.
     """
-    own = study.claim_total(claim, rid)
-    if own is None or not prints_durations(claim):
+    own = row.total
+    if own is None or not prints_durations(row.claim):
         return []
-    low, high = own[1][0], max(own[1][1], study.longest_total(claim, rid))
-    stated = (c for c in study.case.claims if isinstance(c, TotalTimeClaim) and c.of == claim.id)
+    low, high = own.interval[0], max(own.interval[1], row.longest_total)
+    stated = (
+        c for c in row.study.case.claims if isinstance(c, TotalTimeClaim) and c.of == row.claim.id
+    )
     found = []
     for one in stated:
-        if not study.fits(one, pid, rid):
+        if not row.study.fits(one, row.pair):
             continue
-        printed = study.case.measured(one.value, "time", pid, rid)
-        if printed.lower > high or max(printed.upper, printed.cut_off().upper) < low:
+        printed = row.measured(one.value, "time")
+        if printed.lower > high or printed.cut_off().upper < low:
             found.append(one)
     return found
 
 
-def contradicts_its_parts(study: Study, claim: TimeClaim, rid: str) -> bool:
+def contradicts_its_parts(row: PrintedRow[Claim]) -> bool:
     """Whether a total printed beside durations is not their sum, rounded or cut off."""
-    if not isinstance(claim, DurationsClaim | MaximumClaim) or claim.total is None:
+    number = printed_total(row.claim)
+    if number is None or not prints_durations(row.claim):
         return False
-    box = study.case.claim_durations(claim, rid)
-    total = study.case.measured(claim.total, "time", claim.problem, rid)
-    wide = float((box.upper + (box.upper - box.lower) / 2).sum())
-    least = float((box.lower - (box.upper - box.lower) / 2).sum())
-    highest = max(total.upper, total.cut_off().upper)
-    return bool(total.lower > wide or highest < least)
+    box, total = row.durations, row.time(number)
+    longest = float((box.upper + (box.upper - box.lower) / 2).sum())
+    return bool(total.lower > longest or total.cut_off().upper < _raised_low(row))
 
 
-def contradicting_lows(study: Study, claim: AnyClaim, pid: str, rid: str) -> dict[str, float]:
+def _raised_low(row: PrintedRow[Claim]) -> float:
+    """Low end of the sum of durations whose digits were rounded up, s."""
+    box = row.durations
+    return float((box.lower - (box.upper - box.lower) / 2).sum())
+
+
+def contradicting_lows(row: PrintedRow[AnyClaim]) -> dict[str, float]:
     """Other totals that are printed of a row and contradict its own, each with its low end, s."""
-    if not isinstance(claim, TimeClaim):
+    study = row.study
+    if not isinstance(row.claim, TimeClaim):
         return {}
     found = {}
-    for other in other_totals(study, claim, pid, rid):
-        shown, interval = study.claim_total(other, rid) or ("", (inf, inf))
-        found[f"{shown} ({place(other)})"] = rounded_up_low(study, other, rid, interval)
-    if contradicts_its_parts(study, claim, rid):
-        box = study.case.claim_durations(claim, rid)
-        plain = sum(number.decimal for number in study.case.printed_durations(claim))
-        low = float((box.lower - (box.upper - box.lower) / 2).sum())
-        found[f"durations that add up to {plain} {study.time_unit}"] = low
+    for other in other_totals(row):
+        own = PrintedRow(study, other, row.pair)
+        shown, interval = own.total or ("", (inf, inf))
+        found[f"{shown} ({place(other)})"] = rounded_up_low(own, interval)
+    if contradicts_its_parts(row):
+        plain = sum(number.decimal for number in study.case.printed_durations(row.claim))
+        found[f"durations that add up to {plain} {study.time_unit}"] = _raised_low(row)
     return found
 
 
-def total_excludes(study: Study, claim: AnyClaim, rid: str, time: float) -> bool:
+def total_excludes(row: PrintedRow[AnyClaim], time: float) -> bool:
     """Whether a total that is printed beside durations stands for no such time, s.
 
     A total that is the sum of the printed digits says no more than they do.
     """
-    if not isinstance(claim, DurationsClaim | MaximumClaim) or claim.total is None:
+    number = own_total(row.claim)
+    if number is None or not prints_durations(row.claim):
         return False
-    if claim.total.decimal == sum(one.decimal for one in study.case.printed_durations(claim)):
-        return False
-    total = study.case.measured(claim.total, "time", claim.problem, rid)
+    total = row.time(number)
     low = total.lower - (total.upper - total.lower) / 2
-    return not low <= time <= max(total.upper, total.cut_off().upper)
+    return not low <= time <= total.cut_off().upper
 
 
 def is_sum(claim: AnyClaim) -> bool:
     """Whether the total of a row is not printed beside its durations but their sum."""
-    return isinstance(claim, DurationsClaim | MaximumClaim) and claim.total is None
+    return prints_durations(claim) and printed_total(claim) is None
 
 
 def what_agrees(count: int, sums: int) -> str:
@@ -97,14 +104,13 @@ def what_agrees(count: int, sums: int) -> str:
     return "The sum of the durations of each row agrees with"
 
 
-def rounded_up_low(study: Study, claim: AnyClaim, rid: str, interval: tuple[float, float]) -> float:
+def rounded_up_low(row: PrintedRow[AnyClaim], interval: tuple[float, float]) -> float:
     """Low end of a printed total whose digits were rounded up, as durations are to keep a limit.
 
     Rounding up moves the low end of each number down by another half of its last place; a total
     beside durations is then the sum of what was rounded up.
     """
     low, high = interval
-    if isinstance(claim, TotalTimeClaim) or not prints_durations(claim):
+    if isinstance(row.claim, TotalTimeClaim) or not prints_durations(row.claim):
         return low - (high - low) / 2
-    box = study.case.claim_durations(claim, rid)
-    return min(low, float((box.lower - (box.upper - box.lower) / 2).sum()))
+    return min(low, _raised_low(row))

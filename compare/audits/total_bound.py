@@ -21,7 +21,6 @@ def excludes_total(
     problem: Problem,
     total: float,
     waypoints: RoundingBox | None = None,
-    tolerance: float = TOLERANCE,
     boxes: int = BOXES,
 ) -> bool | None:
     """Prove that no durations of a total or less keep the limits, for all way-points of a box.
@@ -34,8 +33,6 @@ def excludes_total(
         s.
     waypoints : RoundingBox, shape (way-points, joints), optional
         rad; those of the problem, exactly, by default.
-    tolerance : float
-        Relative excess over a limit that still counts as keeping it, as in `check`.
     boxes : int
         Most boxes of durations that are looked at.
 
@@ -52,7 +49,7 @@ def excludes_total(
     """
     q = RoundingBox.exact(problem.waypoints) if waypoints is None else waypoints
     ball = Ball.between(q.lower, q.upper)
-    target = 1.0 + tolerance
+    target = 1.0 + TOLERANCE
     low = _least_durations(problem, q) / target * (1.0 - _FLOAT_SLACK)
     low = np.maximum(low, problem.duration_lower / target * (1.0 - _FLOAT_SLACK))
     total *= 1.0 + _FLOAT_SLACK

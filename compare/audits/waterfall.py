@@ -30,9 +30,11 @@ from ..documents import (
     enumerated,
     known,
 )
+from .chosen_case import Pair
 from .digit_ranges import optimum_range
 from .fixed_ratios import off_ratios, planned_apart
-from .own_result import own_result
+from .own_result import bare_totals, own_result
+from .printed_row import PrintedRow
 from .stated import other_objective
 from .study import Study
 
@@ -42,37 +44,27 @@ _ROUNDING = 1e-12
 
 def waterfalls(study: Study) -> tuple[Waterfall, ...]:
     """One waterfall per problem and reading of the study."""
-    return tuple(_waterfall(study, pid, rid) for pid, rid in study.pairs)
+    return tuple(_waterfall(study, pair) for pair in study.pairs)
 
 
-def _starting_claim(study: Study, pid: str) -> AnyClaim | None:
+def _starting_claim(study: Study, problem: str) -> AnyClaim | None:
     """The printed time of all joints that the paper calls its result.
 
     Durations where they are printed of a result; else a bare total, which says nothing of limits.
     """
+    pair = Pair(problem, study.main_reading)
     whole = [
         c
         for c in study.case.claims
         if isinstance(c, DurationsClaim | MaximumClaim)
-        and study.fits(c, pid, study.main_reading)
-        and (c.joint is None or len(study.problem(pid, study.main_reading).joints) == 1)
+        and study.fits(c, pair)
+        and (c.joint is None or len(study.problem(pair).joints) == 1)
     ]
     found = own_result(study.case, whole)
     if found is not None and found.state != "before":
         return found
-    bare = [c for c in bare_totals(study, pid) if c.state is None and c.of is None]
+    bare = [c for c in bare_totals(study.case, problem) if c.state is None and c.of is None]
     return own_result(study.case, bare) or found
-
-
-def bare_totals(study: Study, pid: str) -> list[TotalTimeClaim]:
-    """Totals of all joints on the problem's own curve, printed apart from durations."""
-    return [
-        c
-        for c in study.case.claims
-        if isinstance(c, TotalTimeClaim)
-        and (c.joint, c.other_curve) == (None, None)
-        and c.problem in (None, pid)
-    ]
 
 
 def _known(name: str, solution: Solution, note: str = "") -> Step:
@@ -119,37 +111,34 @@ def routes(solution: Solution) -> tuple[str, ...]:
     return found, f"{_FOUND[other]}: {longer:+.0e} of it"
 
 
-def _waterfall(study: Study, pid: str, rid: str) -> Waterfall:
-    problem = study.problem(pid, rid)
-    claim = _starting_claim(study, pid)
+def _waterfall(study: Study, pair: Pair) -> Waterfall:
+    problem = study.problem(pair)
+    claim = _starting_claim(study, pair.problem)
     steps: list[Step] = []
     if claim is not None:
-        steps += _published(study, claim, pid, rid)
+        steps += _published(PrintedRow(study, claim, pair))
     if planned_apart(problem):
-        steps.append(_procedure(study, pid, rid))
-    shared = study.optimum(pid, rid)
+        steps.append(_procedure(study, pair))
+    shared = study.optimum(pair)
     own = SHARED_OPTIMUM if problem.ratios is None else RATIOS_OPTIMUM
     steps.append(_known(STAND_IN_OPTIMUM if _stands_in(study) else own, shared))
     steps.append(_retimed(OPTIMUM_RETIMED, shared))
     if problem.ratios is not None:
-        steps.append(_known(FREED_OPTIMUM, _converged(study.freed(pid, rid))))
-    relaxed = _converged(study.relaxed(pid, rid))
+        steps.append(_known(FREED_OPTIMUM, _converged(study.freed(pair))))
+    relaxed = _converged(study.relaxed(pair))
     steps.append(
         _known("relaxed family", relaxed, "degree 5 or more in every segment, C2, freedom used")
     )
     steps.append(_retimed(RELAXED_RETIMED, relaxed))
-    steps.append(_free(study, pid, rid))
+    steps.append(_free(study, pair))
+    longest = None if claim is None else optimum_range(PrintedRow(study, claim, pair)).upper
     return Waterfall(
-        problem=pid,
-        reading=rid,
+        problem=pair.problem,
+        reading=pair.reading,
         claim=claim.id if claim is not None else None,
         steps=tuple(steps),
-        longest_optimum=known(_longest_optimum(study, claim, pid, rid), "not bounded"),
+        longest_optimum=known(longest, "not bounded"),
     )
-
-
-def _longest_optimum(study: Study, claim: AnyClaim | None, pid: str, rid: str) -> float | None:
-    return None if claim is None else optimum_range(study, claim, pid, rid).upper
 
 
 def _stands_in(study: Study) -> bool:
@@ -168,32 +157,33 @@ def _converged(solution: Solution) -> Solution:
     return Solution(solution.problem, Status.FAILED, why)
 
 
-def _published(study: Study, claim: AnyClaim, pid: str, rid: str) -> list[Step]:
-    total = study.claim_total(claim, rid)
+def _published(row: PrintedRow[AnyClaim]) -> list[Step]:
+    claim = row.claim
+    total = row.total
     assert total is not None
     shown, (low, high) = total
     if isinstance(claim, TotalTimeClaim):
-        time = study.case.measured(claim.value, "time", pid, rid).value
-        note = f"printed {shown} without durations{_beside(study, claim, pid, rid)}"
+        time = row.measured(claim.value, "time").value
+        note = f"printed {shown} without durations{_beside(row)}"
         return [Step(name=PUBLISHED, time=time, low=low, high=high, note=note)]
     number = claim.total if isinstance(claim, DurationsClaim | MaximumClaim) else None
-    value = None if number is None else study.case.measured(number, "time", pid, rid).value
-    why = study.unmoved(claim, pid, rid)
+    value = None if number is None else row.measured(number, "time").value
+    why = row.unmoved
     if why is not None:
-        time = study.case.claim_durations(claim, rid).value.sum() if value is None else value
-        note = f"printed {shown}{_beside(study, claim, pid, rid)}"
+        time = row.durations.value.sum() if value is None else value
+        note = f"printed {shown}{_beside(row)}"
         alone = Step(name=PUBLISHED, time=time, low=low, high=high, note=note)
         return [alone, Step.missing("feasible after repair", why)]
-    verdict = study.claim_check(claim, pid, rid)
-    rounding = study.claim_rounding(claim, pid, rid)
+    verdict = row.check
+    rounding = row.rounding
     printed = Step(
         name=PUBLISHED,
         time=verdict.total_time if value is None else value,
         low=low,
         high=high,
-        note=f"printed {shown}{_beside(study, claim, pid, rid)}; limits, however "
+        note=f"printed {shown}{_beside(row)}; limits, however "
         f"the digits were rounded: {rounding.verdict}",
-        keeping=study.claim_keeping(claim, pid, rid),
+        keeping=row.keeping,
     )
     if verdict.feasible_time is None:
         note = verdict.feasible_why or ""
@@ -211,16 +201,16 @@ def _published(study: Study, claim: AnyClaim, pid: str, rid: str) -> list[Step]:
     return [printed, summed]
 
 
-def _beside(study: Study, claim: AnyClaim, pid: str, rid: str) -> str:
+def _beside(row: PrintedRow[AnyClaim]) -> str:
     """Why a printed total is not one of the steps below it, where it is not."""
-    objective = other_objective(study.case, claim)
+    objective = other_objective(row.study.case, row.claim)
     said = "" if objective is None else f", not minimised for time alone: {objective}"
-    other = off_ratios(study, claim, pid, rid)
+    other = off_ratios(row)
     return said if other is None else f"{said}; {other}"
 
 
-def _procedure(study: Study, pid: str, rid: str) -> Step:
-    answer = study.per_joint(pid, rid)
+def _procedure(study: Study, pair: Pair) -> Step:
+    answer = study.per_joint(pair)
     name = OWN_OPTIMA
     if answer.check is None:
         return Step.missing(name, answer.why or "")
@@ -283,13 +273,13 @@ def _retimed(name: str, solution: Solution) -> Step:
     )
 
 
-def _free(study: Study, pid: str, rid: str) -> Step:
+def _free(study: Study, pair: Pair) -> Step:
     name = "any curve through the way-points"
-    answer = estimate_any_curve(study.problem(pid, rid))
+    answer = estimate_any_curve(study.problem(pair))
     if answer.total_time is None:
         return Step.missing(name, answer.why or "")
     note = "upper estimate" + (f"; {answer.why}" if answer.why else "")
-    exact = printed_problem_or_none(study.case.statement(pid, rid))
+    exact = printed_problem_or_none(study.case.statement(*pair))
     bound = None if exact is None else study.intervals.any_curve(exact)
     # An infimum that is met to the last digit may round to either side of its bound.
     if bound is None or not 0 < bound.lower <= answer.total_time * (1 + _ROUNDING):

@@ -18,7 +18,7 @@ from ...nlp import (
 from ...nlp.optimum import OPTIMUM_SLACK, stopping_after
 from ...nlp.retiming import Retiming, retime
 from ...problem import Case, Coupling, Problem, fit, shown_bound
-from ..audits import Study, in_words
+from ..audits import Pair, Study, in_words
 from ..documents import (
     Answer,
     SolveDocument,
@@ -90,7 +90,7 @@ def _solved(
         return with_other_route(answer)
 
     if one.problem.coupling is Coupling.PER_JOINT:
-        halves = Study(case).half_digits(one.problem_id, one.reading_id)
+        halves = Study(case).half_digits(Pair(one.problem_id, one.reading_id))
         slacks = tuple(dict.fromkeys((*halves, OPTIMUM_SLACK)))
         apart = solve_per_joint(one.problem, slacks=slacks, solver=solver)
         together = solver(one.problem)

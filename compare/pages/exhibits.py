@@ -11,7 +11,7 @@ from ...heuristics.algorithms import ImprovedWOA, InitialRule, TentRule
 from ...problem import Array, TrajgapError, file_name, forward_kinematics, shown_bound, to_si
 from ...problem.cases import ControlVerticesClaim, DurationsClaim, MaximumClaim
 from ...problem.robots import Chain, DhTable, proximity, sample_workspace
-from ..audits import Study, place
+from ..audits import PrintedRow, Study, place
 from ..audits.rules import has_vertices, vertices
 from ..pictures import (
     Picture,
@@ -24,7 +24,7 @@ from ..pictures import (
     workspace_picture,
 )
 from .blocks import Block, Drawn, Folded, Grid, Section, number, text
-from .motions_shown import whole_claims
+from .motions_shown import alike, whole_rows
 from .numbers import noted, only_under
 from .units import both_units, paper_units
 
@@ -70,45 +70,36 @@ def _drawn(name: str, picture: Picture, caption: str) -> Drawn:
 
 
 def _jumps(study: Study) -> Iterator[Block]:
-    for pid in study.problems:
-        alike: dict[tuple[str, ...], list[DurationsClaim | MaximumClaim]] = {}
-        for claim in whole_claims(study, pid):
-            alike.setdefault(tuple(map(str, claim.durations)), []).append(claim)
-        for claims in alike.values():
-            yield from _jumps_of(study, pid, claims)
+    for pair in study.main_pairs:
+        for rows in alike(whole_rows(study, pair)):
+            yield from _jumps_of(study, pair.problem, [row.claim for row in rows])
 
 
 def _jumps_of(
-    study: Study, pid: str, claims: list[DurationsClaim | MaximumClaim]
+    study: Study, problem: str, claims: list[DurationsClaim | MaximumClaim]
 ) -> Iterator[Block]:
     first = claims[0]
-    readings = [
-        rid for p, rid in study.pairs if p == pid and study.unmoved(first, pid, rid) is None
-    ]
-    jumping = [
-        rid
-        for rid in readings
-        if any(j.order == 1 for j in study.claim_check(first, pid, rid).jumps)
-    ]
+    rows = [PrintedRow(study, first, pair) for pair in study.pairs if pair.problem == problem]
+    moved = [row for row in rows if row.unmoved is None]
+    jumping = [row for row in moved if any(j.order == 1 for j in row.check.jumps)]
     if not jumping:
         return
-    rid = jumping[0]
-    problem, durations = study.problem(pid, rid), study.case.claim_durations(first, rid).value
+    row = jumping[0]
+    statement, posed, durations = row.statement, study.problem(row.pair), row.durations.value
     names = "; ".join(dict.fromkeys(place(c) for c in claims))
     picture = jump_picture(
-        problem,
+        posed,
         durations,
         title=f"Jumps of the velocity with the printed durations of {names}",
-        units=paper_units(study.case.statement(pid, rid)),
+        units=paper_units(statement),
     )
     where = "; ".join(dict.fromkeys(c.where for c in claims))
     caption = (
-        f"{where}.{noted(study, rid)} The velocity jumps under {len(jumping)} of {len(readings)} "
-        "readings. Limits are judged apart from jumps, inside the segments."
+        f"{where}.{noted(study, row.reading)} The velocity jumps under {len(jumping)} of "
+        f"{len(moved)} readings. Limits are judged apart from jumps, inside the segments."
     )
-    yield _drawn(file_name("jumps", pid, first.id), picture, caption)
-    statement = study.case.statement(pid, rid)
-    rows = tuple(
+    yield _drawn(file_name("jumps", problem, first.id), picture, caption)
+    grid = tuple(
         (
             text(jump.joint),
             number(jump.break_index),
@@ -123,10 +114,12 @@ def _jumps_of(
                 )
             ),
         )
-        for jump in velocity_jumps(problem, durations)
+        for jump in velocity_jumps(posed, durations)
     )
     columns = ("joint", "break", "time", "velocity after less before")
-    yield Folded(f"All {len(rows)} jumps: {names}{only_under(study, rid)}", (Grid(columns, rows),))
+    yield Folded(
+        f"All {len(grid)} jumps: {names}{only_under(study, row.reading)}", (Grid(columns, grid),)
+    )
 
 
 # --- control polygon ------------------------------------------------------------------------------
@@ -239,12 +232,13 @@ def _joint_path(study: Study, chain: Chain) -> _Path | None:
     """Positions of the printed joint way-points, if the table gives every joint and its range."""
     if not study.has_problems:
         return None
-    problem = study.problem(study.problems[0], study.main_reading)
+    pair = study.main_pairs[0]
+    problem = study.problem(pair)
     if set(chain.labels) != set(problem.joints) or not chain.revolute.all():
         return None
     order = [problem.joints.index(label) for label in chain.labels]
     q = problem.waypoints[:, order]
-    labels = study.case.statement(study.problems[0], study.main_reading).waypoints.labels
+    labels = study.case.statement(*pair).waypoints.labels
     # Whole turns do not move the end.
     base = np.where(np.isfinite(chain.lower), chain.lower, q)
     outside = np.argwhere(base + np.mod(q - base, 2 * np.pi) > chain.upper)

@@ -8,7 +8,7 @@ import numpy as np
 
 from ...problem import Case, file_name
 from ..audits import CaseAudit, Study, place
-from ..audits.instances import STARTS, InstancesResult, percent_range
+from ..audits.instances import STARTS, InstancesResult, examinable, examined, percent_range
 from ..audits.rules import HANDLED, attributed, placed
 from ..documents import Effect, ExaminedInstances, Procedure, Reduction, Why
 from ..pictures import instances_picture, svg
@@ -29,15 +29,15 @@ from .blocks import (
 def other_instances(one: CaseAudit) -> tuple[Section, ...]:
     """One section if the case says which instances to draw, none otherwise."""
     blocks: list[Block] = []
-    for declared, examined in zip(one.study.instance_blocks, one.document.families, strict=True):
-        blocks += _examined(one.study, one.study.instances(declared), examined)
+    for declared, entry in zip(examinable(one.study), one.document.families, strict=True):
+        blocks += _examined(one.study, examined(one.study, declared), entry)
     if not blocks:
         return ()
     title = "The comparison on other instances"
     return (Section("families", title, tuple(blocks), folded=True),)
 
 
-def _examined(study: Study, result: InstancesResult, examined: ExaminedInstances) -> list[Block]:
+def _examined(study: Study, result: InstancesResult, entry: ExaminedInstances) -> list[Block]:
     block = result.block
     stands = place(study.case.claim(block.claim))
     title = f"Reduction of the total, {stands}, on {result.instances} instances"
@@ -55,15 +55,15 @@ def _examined(study: Study, result: InstancesResult, examined: ExaminedInstances
         ),
         Terms(_design(study, result)),
         Drawn(file_name("family", block.id), svg(picture), title, caption),
-        Grid(_COLUMNS, _rows(examined, result, None), "Reductions of the total, in %"),
+        Grid(_COLUMNS, _rows(entry, result, None), "Reductions of the total, in %"),
         Folded(
             "Reductions by step length",
             tuple(
-                Grid(_COLUMNS, _rows(examined, result, step), f"Steps of {step:g} {block.unit}")
+                Grid(_COLUMNS, _rows(entry, result, step), f"Steps of {step:g} {block.unit}")
                 for step in block.lengths
             ),
         ),
-        Folded(f"Totals of every instance, {stands}", (_instances(examined, result.labels),)),
+        Folded(f"Totals of every instance, {stands}", (_instances(entry, result.labels),)),
     ]
 
 
@@ -115,9 +115,9 @@ _COLUMNS = (
 
 
 def _rows(
-    examined: ExaminedInstances, result: InstancesResult, step: float | None
+    entry: ExaminedInstances, result: InstancesResult, step: float | None
 ) -> tuple[tuple[Cell, ...], ...]:
-    return tuple(_row(one, result) for one in examined.reductions if one.step == step)
+    return tuple(_row(one, result) for one in entry.reductions if one.step == step)
 
 
 def _row(found: Reduction, result: InstancesResult) -> tuple[Cell, ...]:
@@ -146,10 +146,10 @@ def _row(found: Reduction, result: InstancesResult) -> tuple[Cell, ...]:
     )
 
 
-def _instances(examined: ExaminedInstances, labels: Mapping[str, str]) -> Grid:
+def _instances(entry: ExaminedInstances, labels: Mapping[str, str]) -> Grid:
     routes = ("slower", "slower algorithm on the faster curve", "faster")
     rows = []
-    for one in examined.instances:
+    for one in entry.instances:
         for own in one.readings:
             cells = [
                 text(labels.get(own.reading, own.reading)),
@@ -168,10 +168,10 @@ def _instances(examined: ExaminedInstances, labels: Mapping[str, str]) -> Grid:
             rows.append(tuple(cells))
     names = (
         "reading",
-        f"step, {examined.unit}",
+        f"step, {entry.unit}",
         "instance",
         "optimum of the slower curve",
         "optimum of the faster curve",
-        *(f"{route}, {objective}" for objective in examined.objectives for route in routes),
+        *(f"{route}, {objective}" for objective in entry.objectives for route in routes),
     )
     return Grid(names, tuple(rows), "Totals in s, one line for each run")

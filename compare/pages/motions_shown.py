@@ -2,40 +2,48 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 
 from ...heuristics import JointRuns
 from ...nlp import Solution, weakest
 from ...problem import Array, Problem, TrajgapError, file_name
-from ...problem.cases import AnyClaim, DurationsClaim, MaximumClaim, TotalTimeClaim
-from ..audits import CaseAudit, Study, at_ratios, place, planned_apart
+from ...problem.cases import DurationsClaim, MaximumClaim, TotalTimeClaim
+from ..audits import CaseAudit, Pair, PrintedRow, Study, at_ratios, place, planned_apart
 from ..documents import OWN_OPTIMA
 from ..pictures import Picture, Runs, convergence, endings, landscape, motion_picture, svg
 from .blocks import Block, Drawn, Folded, Grid, Prose, Section
 from .numbers import REPLAY_COLUMNS, noted, problem_name, replay_rows
 from .units import paper_units
 
+_Row = PrintedRow[DurationsClaim | MaximumClaim]
+"""A row that prints durations."""
+
 
 def motions(one: CaseAudit) -> Section:
     """Angle, velocity and acceleration of every printed set of durations, and of the optimum."""
     blocks: list[Block] = []
-    rid = one.study.main_reading
-    for pid in one.study.problems:
-        blocks += _printed_motions(one.study, pid, rid)
-        solution = one.study.optimum(pid, rid)
+    for pair in one.study.main_pairs:
+        blocks += _printed_motions(one.study, pair)
+        solution = one.study.optimum(pair)
         if solution.found and solution.boundless is None:
-            title = f"{_optimum_of(one, pid, solution)}: {solution.total_time:.6f} s"
+            title = f"{_optimum_of(one, pair.problem, solution)}: {solution.total_time:.6f} s"
             picture = motion_picture(
                 solution.problem,
                 solution.durations,
                 title=title,
                 check=solution.check,
                 nodal=solution.nodal,
-                units=paper_units(one.study.case.statement(pid, rid)),
+                units=paper_units(one.study.case.statement(*pair)),
             )
-            blocks.append(_drawn(file_name("optimum", pid), picture, noted(one.study, rid).strip()))
+            blocks.append(
+                _drawn(
+                    file_name("optimum", pair.problem),
+                    picture,
+                    noted(one.study, pair.reading).strip(),
+                )
+            )
     return Section("motions", "Motions, with limits and peaks", tuple(blocks), folded=True)
 
 
@@ -49,95 +57,89 @@ def _drawn(name: str, picture: Picture, caption: str) -> Drawn:
     return Drawn(name, svg(picture), picture.title, caption)
 
 
-def whole_claims(study: Study, pid: str) -> list[DurationsClaim | MaximumClaim]:
+def whole_rows(study: Study, pair: Pair) -> list[_Row]:
     """Claims that print durations for all joints of a problem."""
-    joints = study.problem(pid, study.main_reading).joints
+    joints = study.problem(pair).joints
     return [
-        c
+        PrintedRow(study, c, pair)
         for c in study.case.claims
         if isinstance(c, DurationsClaim | MaximumClaim)
-        and study.fits(c, pid, study.main_reading)
+        and study.fits(c, pair)
         and (c.joint is None or len(joints) == 1)
     ]
 
 
-def _printed_motions(study: Study, pid: str, rid: str) -> Iterator[Block]:
-    alike: dict[tuple[str, ...], list[AnyClaim]] = {}
-    for claim in whole_claims(study, pid):
-        alike.setdefault(tuple(map(str, claim.durations)), []).append(claim)
-    for claims in alike.values():
-        first = claims[0]
-        problem = study.problem(pid, rid)
-        title = f"Printed durations: {'; '.join(dict.fromkeys(place(c) for c in claims))}"
-        unmoved = study.unmoved(first, pid, rid)
+def alike(rows: Iterable[_Row]) -> list[list[_Row]]:
+    """Rows that print the same digits together."""
+    found: dict[tuple[str, ...], list[_Row]] = {}
+    for row in rows:
+        found.setdefault(tuple(map(str, row.claim.durations)), []).append(row)
+    return list(found.values())
+
+
+def _printed_motions(study: Study, pair: Pair) -> Iterator[Block]:
+    under = noted(study, pair.reading)
+    for rows in alike(whole_rows(study, pair)):
+        row = rows[0]
+        title = f"Printed durations: {'; '.join(dict.fromkeys(place(r.claim) for r in rows))}"
+        unmoved = row.unmoved
         if unmoved is not None:
-            yield Prose(f"{title} are not drawn: {unmoved}.{noted(study, rid)}", "note")
+            yield Prose(f"{title} are not drawn: {unmoved}.{under}", "note")
             continue
-        rounding = study.claim_rounding(first, pid, rid).verdict
-        worst = study.claim_check(first, pid, rid).worst
-        if worst is not None and worst.quantity == "curve":
-            yield Prose(f"{title} define no curve.{noted(study, rid)}", "note")
+        if not row.has_curve:
+            yield Prose(f"{title} define no curve.{under}", "note")
             continue
         picture = motion_picture(
-            problem,
-            study.case.claim_durations(first, rid).value,
+            study.problem(pair),
+            row.durations.value,
             title=title,
-            check=study.claim_check(first, pid, rid),
-            note=f"however the digits were rounded: {rounding}",
-            units=paper_units(study.case.statement(pid, rid)),
+            check=row.check,
+            note=f"however the digits were rounded: {row.rounding.verdict}",
+            units=paper_units(row.statement),
         )
-        where = "; ".join(c.where for c in claims)
-        yield _drawn(file_name("motion", pid, first.id), picture, f"{where}.{noted(study, rid)}")
-    for tables, singles in _tables_by_joint(study, pid).items():
-        if study.unmoved(singles[0], pid, rid) is None:
-            yield _joint_by_joint(study, pid, rid, tables, singles)
+        where = "; ".join(r.claim.where for r in rows)
+        yield _drawn(file_name("motion", row.problem, row.claim.id), picture, f"{where}.{under}")
+    for tables, singles in _tables_by_joint(study, pair):
+        if singles[0].unmoved is None:
+            yield _joint_by_joint(tables, singles)
 
 
-def _tables_by_joint(study: Study, pid: str) -> dict[str, list[DurationsClaim]]:
-    """Claims of tables that print every joint by itself; tables alike share an entry."""
-    joints = study.problem(pid, study.main_reading).joints
+def _tables_by_joint(study: Study, pair: Pair) -> list[tuple[str, list[_Row]]]:
+    """Rows of tables that print every joint by itself, by the tables' places; alike together."""
+    joints = study.problem(pair).joints
     if len(joints) == 1:
-        return {}
-    found: dict[tuple[tuple[str, ...], ...], tuple[list[str], list[DurationsClaim]]] = {}
+        return []
+    found: dict[tuple[tuple[str, ...], ...], tuple[list[str], list[_Row]]] = {}
     for table in study.case.tables:
         rows = {
-            c.joint: c
+            c.joint: PrintedRow(study, c, pair)
             for c in study.case.table_claims(table.id)
-            if isinstance(c, DurationsClaim) and study.fits(c, pid, study.main_reading)
+            if isinstance(c, DurationsClaim) and study.fits(c, pair)
         }
         if all(label in rows for label in joints):
-            claims = [rows[label] for label in joints]
-            digits = tuple(tuple(map(str, c.durations)) for c in claims)
-            found.setdefault(digits, ([], claims))[0].append(table.id)
-    return {", ".join(tables): claims for tables, claims in found.values()}
+            own: list[_Row] = [rows[label] for label in joints]
+            digits = tuple(tuple(map(str, row.claim.durations)) for row in own)
+            found.setdefault(digits, ([], own))[0].append(table.where)
+    return [(", ".join(tables), own) for tables, own in found.values()]
 
 
-def _tables_called(study: Study, tables: str) -> str:
-    """Tables by their places instead of their ids."""
-    places = {table.id: table.where for table in study.case.tables}
-    return ", ".join(places.get(one, one) for one in tables.split(", "))
-
-
-def _joint_by_joint(
-    study: Study, pid: str, rid: str, tables: str, claims: list[DurationsClaim]
-) -> Drawn:
-    problem = study.problem(pid, rid)
-    durations = np.array([study.case.claim_durations(c, rid).value for c in claims])
-    verdicts = [str(study.claim_rounding(c, pid, rid).verdict) for c in claims]
+def _joint_by_joint(tables: str, rows: list[_Row]) -> Drawn:
+    study, pair, first = rows[0].study, rows[0].pair, rows[0].claim
+    verdicts = [str(row.rounding.verdict) for row in rows]
     words = ", ".join(dict.fromkeys(verdicts))
     picture = motion_picture(
-        problem,
-        durations,
-        title=f"Printed durations of each joint by itself: {_tables_called(study, tables)}",
+        study.problem(pair),
+        np.array([row.durations.value for row in rows]),
+        title=f"Printed durations of each joint by itself: {tables}",
         note=f"however the digits were rounded: {words}",
-        units=paper_units(study.case.statement(pid, rid)),
+        units=paper_units(study.case.statement(*pair)),
     )
-    each = "; ".join(f"joint {c.joint}: {v}" for c, v in zip(claims, verdicts, strict=True))
+    each = "; ".join(f"joint {r.claim.joint}: {v}" for r, v in zip(rows, verdicts, strict=True))
     caption = (
         "Each joint with its own durations, at the printed digits. However the digits were "
-        f"rounded: {each}.{noted(study, rid)}"
+        f"rounded: {each}.{noted(study, pair.reading)}"
     )
-    return _drawn(file_name("motion", pid, "joints", str(claims[0].table)), picture, caption)
+    return _drawn(file_name("motion", pair.problem, "joints", str(first.table)), picture, caption)
 
 
 # --- searches -------------------------------------------------------------------------------------
@@ -145,73 +147,68 @@ def _joint_by_joint(
 
 def searches(one: CaseAudit) -> Section:
     """Replays of the algorithms: convergence, where they end, and the spread over choices."""
-    study, rid = one.study, one.study.main_reading
+    study = one.study
     blocks: list[Block] = []
-    for pid in study.problems:
-        runs = _runs(study, pid)
+    for pair in study.main_pairs:
+        runs = _runs(study, pair)
         if not runs:
             continue
-        name = problem_name(one, pid)
-        blocks += _convergence(study, pid, rid, runs, name)
-        references, printed = _totals(study, pid, rid)
+        name = problem_name(one, pair.problem)
+        blocks += _convergence(study, pair, runs, name)
+        references, printed = _totals(study, pair)
         title = f"Totals of all runs: {name}"
         ends = {each: np.array([r.reported_time for r in one]) for each, one in runs.items()}
         caption = "Vertical strokes are medians. A reported total is not clipped at the optimum."
         blocks.append(
             _drawn(
-                file_name("totals", pid), endings(ends, references, printed, title=title), caption
+                file_name("totals", pair.problem),
+                endings(ends, references, printed, title=title),
+                caption,
             )
         )
-        grid = Grid(REPLAY_COLUMNS, tuple(replay_rows(study, pid)))
+        grid = Grid(REPLAY_COLUMNS, tuple(replay_rows(study, pair)))
         blocks.append(Folded(f"Spread over seeds and open choices: {name}", (grid,)))
     lead = Prose(
         f"Each algorithm was run with seeds 0 to {study.seeds - 1} under the choices listed below, "
-        f"and under settings spread over all that the text leaves open.{noted(study, rid)} "
-        "Replays inform and decide nothing.",
+        f"and under settings spread over all that the text leaves open."
+        f"{noted(study, study.main_reading)} Replays inform and decide nothing.",
         "note",
     )
     shown = (lead, *blocks) if blocks else ()
     return Section("searches", "Replays of the algorithms", shown, folded=True)
 
 
-def _runs(study: Study, pid: str) -> dict[str, Runs]:
+def _runs(study: Study, pair: Pair) -> dict[str, Runs]:
     names = [a.name for a in study.case.algorithms]
     replays = {
-        a.name if names.count(a.name) == 1 else f"{a.name} ({a.id})": study.runs(
-            a.id, pid, study.main_reading
-        )
+        a.name if names.count(a.name) == 1 else f"{a.name} ({a.id})": study.runs(a.id, pair)
         for a in study.case.algorithms
     }
     return {name: one for name, one in replays.items() if one}
 
 
-def _convergence(
-    study: Study, pid: str, rid: str, runs: dict[str, Runs], name: str
-) -> Iterator[Block]:
+def _convergence(study: Study, pair: Pair, runs: dict[str, Runs], name: str) -> Iterator[Block]:
     by_joint = isinstance(next(iter(runs.values()))[0], JointRuns)
-    problem = study.problem(pid, rid)
-    solutions = [study.optimum(pid, rid, label) for label in problem.joints] if by_joint else [
-        study.optimum(pid, rid)
+    problem = study.problem(pair)
+    solutions = [study.optimum(pair, label) for label in problem.joints] if by_joint else [
+        study.optimum(pair)
     ]  # fmt: skip
-    if any(not s.found or not _time(s) > 0 for s in solutions):
+    if any(not s.found or not s.best > 0 for s in solutions):
         return  # there is nothing, or nothing positive, that a gap could be a share of
     printed: dict[str, list[float]] = {}
     widths = [0.0]
-    groups: dict[str, list[DurationsClaim | MaximumClaim]] = (
-        {
-            _tables_called(study, tables): list(claims)
-            for tables, claims in _tables_by_joint(study, pid).items()
-        }
+    groups = (
+        dict(_tables_by_joint(study, pair))
         if by_joint
-        else {place(c): [c] for c in whole_claims(study, pid)}
+        else {place(row.claim): [row] for row in whole_rows(study, pair)}
     )
-    for label, claims in groups.items():
-        boxes = [total[1] for c in claims if (total := study.claim_total(c, rid)) is not None]
+    for label, rows in groups.items():
+        boxes = [total.interval for row in rows if (total := row.total) is not None]
         printed[label] = [(low + high) / 2 for low, high in boxes]
         widths += [(high - low) / 2 for low, high in boxes]
     picture = convergence(
         runs,
-        [_time(s) for s in solutions],
+        [s.best for s in solutions],
         printed,
         rounding=max(widths),
         evidence=str(weakest(s.evidence for s in solutions)),
@@ -219,37 +216,34 @@ def _convergence(
         title=f"Best total so far: {name}" + (", each joint by itself" if by_joint else ""),
     )
     yield _drawn(
-        file_name("convergence", pid),
+        file_name("convergence", pair.problem),
         picture,
         "Gap to the optimum, linear up to 0.01 % and logarithmic beyond. The band around a printed "
         "total is its rounding.",
     )
 
 
-def _time(solution: Solution) -> float:
-    return solution.best
-
-
-def _totals(study: Study, pid: str, rid: str) -> tuple[dict[str, float], dict[str, float]]:
-    shared = study.optimum(pid, rid)
+def _totals(study: Study, pair: Pair) -> tuple[dict[str, float], dict[str, float]]:
+    shared = study.optimum(pair)
     references = {}
     if shared.found and shared.boundless is None:
         at = at_ratios(shared.problem)
-        references[f"{shared.evidence} optimum, shared durations{at}"] = _time(shared)
-    problem = study.problem(pid, rid)
+        references[f"{shared.evidence} optimum, shared durations{at}"] = shared.best
+    problem = study.problem(pair)
     if planned_apart(problem):
-        answer = study.per_joint(pid, rid)
+        answer = study.per_joint(pair)
         if answer.found:
             references[OWN_OPTIMA] = answer.total_time
     printed: dict[str, list[str]] = {}
     values: dict[str, float] = {}
+    own = [row.claim for row in whole_rows(study, pair)]
     for claim in study.case.claims:
         whole = isinstance(claim, TotalTimeClaim) and claim.joint is None
-        if claim in whole_claims(study, pid) or (whole and claim.problem in (None, pid)):
-            total = study.claim_total(claim, rid)
+        if claim in own or (whole and claim.problem in (None, pair.problem)):
+            total = study.claim_total(claim, pair.reading)
             if total is not None:
-                printed.setdefault(total[0], []).append(place(claim))
-                values[total[0]] = (total[1][0] + total[1][1]) / 2
+                printed.setdefault(total.shown, []).append(place(claim))
+                values[total.shown] = sum(total.interval) / 2
     return references, {
         ", ".join(dict.fromkeys(where)): values[shown] for shown, where in printed.items()
     }
@@ -260,53 +254,50 @@ def _totals(study: Study, pid: str, rid: str) -> tuple[dict[str, float], dict[st
 
 def landscapes(one: CaseAudit) -> Section:
     """Total time over the shares of three durations, for all joints and for each by itself."""
-    study, rid = one.study, one.study.main_reading
+    study = one.study
     blocks: list[Block] = []
-    for pid in study.problems:
-        problem = study.problem(pid, rid)
+    for pair in study.main_pairs:
+        problem, name = study.problem(pair), problem_name(one, pair.problem)
         if problem.ratios is not None:
             continue  # its ratios are one point of the map
         if problem.segments != 3:
             blocks.append(
                 Prose(
-                    f"{problem_name(one, pid)}: {problem.segments} segments; a landscape "
-                    "needs three.",
+                    f"{name}: {problem.segments} segments; a landscape needs three.",
                     "note",
                 )
             )
             continue
-        runs = _runs(study, pid)
-        printed = [
-            (place(c), study.case.claim_durations(c, rid).value) for c in whole_claims(study, pid)
-        ]
-        ends = {name: np.array([r.durations for r in many]) for name, many in runs.items()}
+        runs = _runs(study, pair)
+        printed = [(place(row.claim), row.durations.value) for row in whole_rows(study, pair)]
+        ends = {each: np.array([r.durations for r in many]) for each, many in runs.items()}
         blocks += _landscape(
-            file_name("landscape", pid),
+            file_name("landscape", pair.problem),
             problem,
-            study.optimum(pid, rid),
+            study.optimum(pair),
             printed,
             ends,
-            problem_name(one, pid),
+            name,
         )
         single: list[Drawn] = []
-        for tables, claims in _tables_by_joint(study, pid).items():
-            for j, claim in enumerate(claims):
+        for tables, rows in _tables_by_joint(study, pair):
+            for j, row in enumerate(rows):
                 own = {
-                    name: np.array([r.runs[j].durations for r in many if isinstance(r, JointRuns)])
-                    for name, many in runs.items()
+                    each: np.array([r.runs[j].durations for r in many if isinstance(r, JointRuns)])
+                    for each, many in runs.items()
                     if isinstance(many[0], JointRuns)
                 }
                 single += _landscape(
-                    file_name("landscape", pid, "joint", str(j + 1)),
+                    file_name("landscape", pair.problem, "joint", str(j + 1)),
                     problem.joint(j),
-                    study.optimum(pid, rid, problem.joints[j]),
-                    [(_tables_called(study, tables), study.case.claim_durations(claim, rid).value)],
+                    study.optimum(pair, problem.joints[j]),
+                    [(tables, row.durations.value)],
                     own,
                     f"joint {problem.joints[j]}",
                 )
             break
         if single:
-            blocks.append(Folded(f"Each joint by itself: {problem_name(one, pid)}", tuple(single)))
+            blocks.append(Folded(f"Each joint by itself: {name}", tuple(single)))
     shown = tuple(blocks) if any(not isinstance(b, Prose) for b in blocks) else ()
     return Section("landscapes", "Landscapes of the total time", shown, folded=True)
 

@@ -10,7 +10,7 @@ import numpy as np
 from ...nlp import Evidence, PerJointSolution, Solution
 from ...problem import Case, Coupling, file_name, shown_bound
 from ...problem.cases import DurationsClaim
-from ..audits import CaseAudit, Study, at_ratios, place, routes, searched_for
+from ..audits import CaseAudit, Pair, PrintedRow, Study, at_ratios, place, routes, searched_for
 from ..documents import (
     OPTIMA_STEPS,
     OPTIMUM_RETIMED,
@@ -221,8 +221,6 @@ _OPTIMA = "Optimum of each formulation"
 """Title of the section."""
 NINE = 9
 """Nine decimals of a proved bound, as the certificates' tables have them."""
-_KEPT = ("keeps", "consistent")
-"""Verdicts over the rounding box under which durations may keep the limits."""
 _ANSWER = ("status", "total", "by", "evidence", "durations, s", "check", "KKT residual")
 """Columns that say how a solve ended."""
 
@@ -262,30 +260,30 @@ def optima(one: CaseAudit) -> Section:
     rows: list[tuple[Cell, ...]] = []
     blocks: list[Block] = []
     without: defaultdict[str, list[str]] = defaultdict(list)
-    for pid, rid in study.pairs:
-        own = study.optimum(pid, rid)
+    for pair in study.pairs:
+        own = study.optimum(pair)
         rows.append(
             (
-                text(problem_cell(study.case, pid)),
-                text(study.case.labels[rid]),
+                text(problem_cell(study.case, pair.problem)),
+                text(study.case.labels[pair.reading]),
                 text(f"printed curve, shared durations{at_ratios(own.problem)}"),
                 *_answer(own),
             )
         )
-        relaxed = study.relaxed(pid, rid)
+        relaxed = study.relaxed(pair)
         if not relaxed.found:
-            without[relaxed.why or str(relaxed.status)].append(rid)
+            without[relaxed.why or str(relaxed.status)].append(pair.reading)
         else:
             rows.append(
                 (
-                    text(problem_cell(study.case, pid)),
-                    text(study.case.labels[rid]),
+                    text(problem_cell(study.case, pair.problem)),
+                    text(study.case.labels[pair.reading]),
                     text("relaxed family"),
                     *_answer(relaxed),
                 )
             )
-        if _by_joint(study, pid, rid):
-            blocks += _joints(study, pid, rid)
+        if _by_joint(study, pair):
+            blocks += _joints(study, pair)
     if not rows:
         return Section("optima", _OPTIMA, ())
     notes = [
@@ -300,30 +298,29 @@ def optima(one: CaseAudit) -> Section:
     )
 
 
-def _by_joint(study: Study, pid: str, rid: str) -> bool:
-    problem = study.problem(pid, rid)
+def _by_joint(study: Study, pair: Pair) -> bool:
+    problem = study.problem(pair)
     return problem.coupling is Coupling.PER_JOINT and len(problem.joints) > 1
 
 
-def _joints(study: Study, pid: str, rid: str) -> Iterator[Block]:
-    answer = study.per_joint(pid, rid)
+def _joints(study: Study, pair: Pair) -> Iterator[Block]:
+    answer = study.per_joint(pair)
     rows = []
     for label, solution in zip(answer.problem.joints, answer.joints, strict=True):
         claims = [
             c
             for c in study.case.claims
-            if isinstance(c, DurationsClaim) and c.joint == label and study.fits(c, pid, rid)
+            if isinstance(c, DurationsClaim) and c.joint == label and study.fits(c, pair)
         ]
         shown: dict[str, list[str]] = {}
         gaps = []
         for claim in claims:
-            total = study.claim_total(claim, rid)
+            total = study.claim_total(claim, pair.reading)
             reference = reference_of(solution)
             if total is not None and reference is not None:
-                shown.setdefault(total[0], []).append(claim.where)
-                moved = study.unmoved(claim, pid, rid) is None
-                kept = moved and study.claim_rounding(claim, pid, rid).verdict in _KEPT
-                gaps.append(_gap_text(gap(total[1], reference, feasible=kept)))
+                shown.setdefault(total.shown, []).append(claim.where)
+                row = PrintedRow(study, claim, pair)
+                gaps.append(_gap_text(gap(total.interval, reference, feasible=row.kept)))
         rows.append(
             (
                 text(label),
@@ -333,8 +330,8 @@ def _joints(study: Study, pid: str, rid: str) -> Iterator[Block]:
             )
         )
     names = ("joint", *_ANSWER, "printed", "gap")
-    named = problem_cell(study.case, pid) or "each segment takes the longest duration"
-    yield Prose(f"Each joint by itself: {named}{only_under(study, rid)}", "heading")
+    named = problem_cell(study.case, pair.problem) or "each segment takes the longest duration"
+    yield Prose(f"Each joint by itself: {named}{only_under(study, pair.reading)}", "heading")
     yield Grid(names, tuple(rows))
     yield Prose(_procedure(answer), "note")
 
@@ -367,8 +364,8 @@ def sensitivities(one: CaseAudit) -> Section:
     if not one.study.has_problems:
         return Section("sensitivities", title, ())
     rows = []
-    for pid, rid in one.study.pairs:
-        solution = one.study.optimum(pid, rid)
+    for pair in one.study.pairs:
+        solution = one.study.optimum(pair)
         bought: defaultdict[tuple[str, str], list[float]] = defaultdict(list)
         for a in solution.active:
             where = f"joint {a.joint}" if a.joint is not None else f"segment {a.segment + 1}"
@@ -377,8 +374,8 @@ def sensitivities(one: CaseAudit) -> Section:
             change = sum(changes)
             rows.append(
                 (
-                    text(problem_cell(one.case, pid)),
-                    text(one.case.labels[rid]),
+                    text(problem_cell(one.case, pair.problem)),
+                    text(one.case.labels[pair.reading]),
                     text(where),
                     text(quantity),
                     number(len(changes)),
@@ -399,13 +396,12 @@ def sensitivities(one: CaseAudit) -> Section:
 # --- replays --------------------------------------------------------------------------------------
 
 
-def replay_rows(study: Study, pid: str) -> list[tuple[Cell, ...]]:
+def replay_rows(study: Study, pair: Pair) -> list[tuple[Cell, ...]]:
     """Totals of every algorithm over its seeds, under the listed choices and spread settings."""
-    rid = study.main_reading
-    reference = searched_for(study, pid, rid)
+    reference = searched_for(study, pair)
     rows = []
     for algorithm in study.case.algorithms:
-        for name, runs in study.spread_runs(algorithm.id, pid, rid).items():
+        for name, runs in study.spread_runs(algorithm.id, pair).items():
             s = spread(np.array([r.reported_time for r in runs]))
             known = np.isfinite(s.median) and reference is not None
             away = gap(s.median, reference).percent if known and reference is not None else None

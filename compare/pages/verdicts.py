@@ -36,17 +36,17 @@ def problems_audited(one: CaseAudit) -> Section:
 
 def _problems(study: Study) -> Grid:
     rows, slides = [], False
-    for pid, rid in study.pairs:
-        p = study.problem(pid, rid)
+    for pair in study.pairs:
+        p = study.problem(pair)
         slides |= any(p.linear)
         how = "shared durations" if p.coupling is Coupling.SHARED else "each joint by itself"
         rows.append(
             (
-                text(problem_cell(study.case, pid)),
-                text(study.case.labels[rid]),
+                text(problem_cell(study.case, pair.problem)),
+                text(study.case.labels[pair.reading]),
                 text(f"{len(p.joints)} × {p.waypoints.shape[0]}"),
                 text(p.curve.name),
-                text(_limits(p, study.case.statement(pid, rid))),
+                text(_limits(p, study.case.statement(*pair))),
                 text(_bounds(p)),
                 text(how),
             )

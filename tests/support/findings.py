@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from trajgap.compare.audits import Pair
 from trajgap.compare.audits.case_audit import AuditReport, CaseAudit, audit_case
 from trajgap.compare.audits.rules import GROUPS
 from trajgap.compare.audits.study import Study
@@ -13,8 +14,8 @@ from trajgap.problem import Case, parse_case
 class OwnCurve(Study):
     """Leaves out what other curves would take, on which no verdict stands: half of the time."""
 
-    def relaxed(self, pid: str, rid: str) -> Solution:
-        return Solution(self.problem(pid, rid), Status.FAILED, "not asked for")
+    def relaxed(self, pair: Pair) -> Solution:
+        return Solution(self.problem(pair), Status.FAILED, "not asked for")
 
 
 def report_of(*cases: Case, **chosen: str) -> AuditReport:

@@ -1,11 +1,11 @@
-from .drawn import examined, readings_of
-from .entries import examined_entry
+from .drawn import examinable, examined, readings_of, unexamined
 from .result import (
     MIDDLE,
     InstancesResult,
     Optimum,
     Sample,
     distribution,
+    examined_entry,
     percent_range,
     reproduced,
 )
@@ -18,9 +18,11 @@ __all__ = [
     "Optimum",
     "Sample",
     "distribution",
+    "examinable",
     "examined",
     "examined_entry",
     "percent_range",
     "readings_of",
     "reproduced",
+    "unexamined",
 ]

@@ -8,6 +8,7 @@ from .peaks import box_reach, largest
 from .plain_words import EXPLAINED, Explained
 from .printed_vertices import Vertex, has_vertices, vertices
 from .registry import GROUPS, NOT_COMPUTED, RULES
+from .rule_group import RuleGroup
 
 __all__ = [
     "EXPLAINED",
@@ -16,6 +17,7 @@ __all__ = [
     "NOT_COMPUTED",
     "RULES",
     "Explained",
+    "RuleGroup",
     "Vertex",
     "attributed",
     "blended",

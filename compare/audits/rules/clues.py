@@ -16,7 +16,6 @@ from ....problem import (
     Problem,
     Trajectory,
     control_vertices,
-    fit,
     from_si,
     half_range,
     is_linear,
@@ -33,9 +32,9 @@ from ....problem.cases import (
     Statement,
 )
 from ...documents import HeldOtherwise, ReadingClue, Speaks, Why
+from ..printed_row import PrintedRow, rows_under
 from ..study import Study
-from .peaks import has_curve, largest
-from .wording import jump_size, jump_unit, largest_of_each_kind
+from .peaks import jump_size, jump_unit, largest, largest_of_each_kind
 
 _FILLED = 0.1
 """Share of an axis that a curve fills at least, and of a data sheet's limits that printed ones use:
@@ -73,22 +72,22 @@ def reading_clues(study: Study) -> tuple[ReadingClue, ...]:
     )
 
 
-def _under(study: Study, clue: AnyClue, rid: str) -> Iterator[ReadingClue]:
+def _under(study: Study, clue: AnyClue, reading: str) -> Iterator[ReadingClue]:
     if isinstance(clue, AxisClue):
-        said = _on_axis(study, clue, rid)
+        said = _on_axis(study, clue, reading)
     elif isinstance(clue, DataSheetClue):
-        said = _data_sheet(study, clue, rid)
+        said = _data_sheet(study, clue, reading)
     elif isinstance(clue, SmoothClue):
-        said = _smooth(study, clue, rid)
+        said = _smooth(study, clue, reading)
     else:
-        said = _half_turns(study, clue, rid)
+        said = _half_turns(study, clue, reading)
     if said is not None:
         speaks, computed = said
         yield ReadingClue(
             clue=clue.id,
             where=clue.where,
             text=clue.text,
-            reading=rid,
+            reading=reading,
             speaks=speaks,
             computed=computed,
         )
@@ -98,23 +97,20 @@ _Said = tuple[Speaks, str] | None
 """On which side a clue speaks and what was computed; None where a reading has no problem."""
 
 
-def _motions(study: Study, names: Sequence[str], rid: str) -> list[tuple[AnyClaim, str]]:
-    """Claims with durations that define a curve under a reading, with their problems."""
-    return [
-        (claim, pid)
-        for claim, pid in study.pairs_under(map(study.case.claim, names), rid)
-        if study.unmoved(claim, pid, rid) is None and has_curve(study, claim, pid, rid)
-    ]
+def _motions(study: Study, names: Sequence[str], reading: str) -> list[PrintedRow[AnyClaim]]:
+    """Claims with durations that define a curve under a reading."""
+    named = rows_under(study, map(study.case.claim, names), reading)
+    return [row for row in named if row.unmoved is None and row.has_curve]
 
 
-def _on_axis(study: Study, clue: AxisClue, rid: str) -> _Said:
+def _on_axis(study: Study, clue: AxisClue, reading: str) -> _Said:
     """The largest value of the curves that a figure shows beside the last label of its axis."""
     tops = []
-    for claim, pid in _motions(study, clue.of, rid):
-        problem = study.claim_problem(claim, pid, rid)
+    for row in _motions(study, clue.of, reading):
+        problem = row.posed()
         tops += [
             abs(top.value)
-            for top in largest(study, claim, pid, rid, _ORDERS[clue.quantity])
+            for top in largest(row, _ORDERS[clue.quantity])
             if clue.joint in (None, problem.joints[top.joint])
             and problem.linear[top.joint] == is_linear(clue.unit)
         ]
@@ -133,9 +129,9 @@ def _on_axis(study: Study, clue: AxisClue, rid: str) -> _Said:
     return Speaks.FOR, beside + (" of an axis that may go on for one step" if reach > last else "")
 
 
-def _data_sheet(study: Study, clue: DataSheetClue, rid: str) -> _Said:
+def _data_sheet(study: Study, clue: DataSheetClue, reading: str) -> _Said:
     """The printed limits of a reading over those of a data sheet, joint by joint."""
-    statement = _statement(study, rid)
+    statement = _statement(study, reading)
     units = clue.units(len(clue.values))
     known = [to_si(value, unit) for value, unit in zip(clue.values, units, strict=True)]
     given = getattr(statement.limits, clue.quantity)
@@ -165,23 +161,18 @@ def _alike(one: Measured, other: Measured) -> bool:
     return one.lower <= other.upper + slack and other.lower <= one.upper + slack
 
 
-def _smooth(study: Study, clue: SmoothClue, rid: str) -> _Said:
+def _smooth(study: Study, clue: SmoothClue, reading: str) -> _Said:
     """How often a derivative that is said not to jump does so."""
-    motions = _motions(study, clue.of, rid)
+    motions = _motions(study, clue.of, reading)
     if not motions:
         return None
     order = _ORDERS[clue.quantity]
-    jumps = [
-        (pid, jump)
-        for claim, pid in motions
-        for jump in study.claim_check(claim, pid, rid).jumps
-        if jump.order == order
-    ]
+    jumps = [(row, jump) for row in motions for jump in row.check.jumps if jump.order == order]
     if not jumps:
         return Speaks.FOR, f"{clue.quantity} does not jump"
     shown = " and ".join(
-        f"{abs(jump_size(study, pid, rid, jump)):.3g} {jump_unit(study, pid, rid, jump)}"
-        for pid, jump in largest_of_each_kind(study, rid, jumps)
+        f"{abs(jump_size(row, jump)):.3g} {jump_unit(row, jump)}"
+        for row, jump in largest_of_each_kind(jumps)
     )
     plural = "s" if len(jumps) > 1 else ""
     return (
@@ -190,9 +181,9 @@ def _smooth(study: Study, clue: SmoothClue, rid: str) -> _Said:
     )
 
 
-def _half_turns(study: Study, clue: HalfTurnsClue, rid: str) -> _Said:
+def _half_turns(study: Study, clue: HalfTurnsClue, reading: str) -> _Said:
     """How many printed angles of a joint are multiples of π within their rounding."""
-    statement = _statement(study, rid)
+    statement = _statement(study, reading)
     column = statement.labels.index(clue.joint)
     printed = [row[column] for row in statement.waypoints.points]
     angles = [statement.si(one, "position", joint=column) for one in printed if one.fraction != 0]
@@ -207,33 +198,29 @@ def _half_turns(study: Study, clue: HalfTurnsClue, rid: str) -> _Said:
     return (Speaks.FOR if 2 * found > len(angles) else Speaks.AGAINST), said
 
 
-def _statement(study: Study, rid: str) -> Statement:
-    return study.case.statement(study.case.problems[0].id, rid)
+def _statement(study: Study, reading: str) -> Statement:
+    return study.case.statement(study.case.problems[0].id, reading)
 
 
-def held_otherwise(study: Study, claim: AnyClaim, pid: str, rid: str) -> HeldOtherwise | Why:
+def held_otherwise(row: PrintedRow[AnyClaim]) -> HeldOtherwise | Why:
     """The largest ratio to a limit if the limits were held otherwise than for all t.
 
     Parameters
     ----------
-    study : Study
-    claim : AnyClaim
-        With durations that define a motion.
-    pid, rid : str
+    row : PrintedRow
 
     Returns
     -------
     HeldOtherwise or Why
     """
-    worst = study.claim_check(claim, pid, rid).worst
+    worst = row.check.worst
     if worst is None or worst.quantity in ("curve", "duration"):
         return Why("the printed durations define no motion whose limits are held")
-    problem = study.claim_problem(claim, pid, rid)
-    durations = study.case.claim_durations(claim, rid).value
-    trajectory = fit(problem.curve, problem.waypoints, durations)
-    sampled = _at_samples(problem, durations, trajectory)
+    problem = row.posed()
+    durations = row.durations.value
+    sampled = _at_samples(problem, durations, row.motion)
     vertices: float | Why = Why("the curve has no control vertices in time")
-    declared = study.case.statement(pid, rid).declaration
+    declared = row.statement.declaration
     if problem.limits.uneven:
         vertices = Why("lower and upper limits differ, and vertices are set beside equal ones")
     elif (declared.family, declared.time) == ("uniform-cubic-b-spline", "stretched"):

@@ -8,13 +8,13 @@ from math import perm
 
 import numpy as np
 
-from ....problem import QUANTITIES, Curve, as_piecewise, counts_in_words, fit
+from ....problem import QUANTITIES, Curve, as_piecewise, counts_in_words
 from ....problem.cases import AnyClaim, ConditionsClaim, StatementClaim
 from ...documents import Basis, ClaimVerdict, Finding, Severity
-from ..stated import prints_durations
+from ..printed_row import PrintedRow, left_out, rows_under
+from ..stated import all_called, called_under, prints_durations
 from ..study import Study
-from .peaks import has_curve, largest
-from .wording import all_called, called_under, in_units, left_out, unit_shown
+from .peaks import largest
 
 _REST = 0.01
 """Share of a derivative's peak up to which its value at an end counts as 0: rounding of the printed
@@ -52,9 +52,9 @@ def count_conditions(study: Study, claim: ConditionsClaim) -> int:
 
 def _virtual(study: Study, claim: ConditionsClaim) -> int:
     """Virtual way-points of the curve that a statement is about, if it has as many segments."""
-    for pid, rid in study.pairs:
-        if claim.problem in (None, pid) and rid == study.main_reading:
-            curve = as_piecewise(study.problem(pid, rid).curve)
+    for pair in study.pairs:
+        if claim.problem in (None, pair.problem) and pair.reading == study.main_reading:
+            curve = as_piecewise(study.problem(pair).curve)
             if curve is not None and curve.segments == len(claim.degrees):
                 return len(curve.virtual)
     return 0
@@ -103,10 +103,10 @@ def _impossible_segments(study: Study, claim: ConditionsClaim) -> list[int]:
     scales these equations, so that they are decided in rational numbers, once for all durations.
     """
     found = set()
-    for pid, rid in study.pairs:
-        if claim.problem not in (None, pid) or rid != study.main_reading:
+    for pair in study.pairs:
+        if claim.problem not in (None, pair.problem) or pair.reading != study.main_reading:
             continue
-        lower, upper = study.case.waypoint_box(pid, rid)
+        lower, upper = study.case.waypoint_box(*pair)
         if len(lower) != len(claim.degrees) + 1:
             continue
         apart = (lower[1:] > upper[:-1]) | (upper[1:] < lower[:-1])
@@ -166,22 +166,22 @@ def _at_rest(
     """Evaluate the derivatives that are said to vanish, at both ends of printed motions."""
     named = [study.case.claim(i) for i in of]
     motions = named or [c for c in study.case.claims if prints_durations(c)]
-    for rid in study.readings:
+    for reading in study.readings:
         moving, judged, built = [], 0, True
-        for motion, pid in study.pairs_under(motions, rid):
-            if claim.problem not in (None, pid) or not has_curve(study, motion, pid, rid):
+        for row in rows_under(study, motions, reading):
+            if claim.problem not in (None, row.problem) or not row.has_curve:
                 continue
             judged += 1
-            built &= _prescribed(study.claim_problem(motion, pid, rid).curve, orders)
+            built &= _prescribed(row.posed().curve, orders)
             moving += [
-                f"{said} ({called_under(study, motion, pid)})"
-                for said in _moving(study, motion, pid, rid, orders)
+                f"{said} ({called_under(study.case, row.claim, row.problem)})"
+                for said in _moving(row, orders)
             ]
         if not judged:
             continue
         derivatives = [QUANTITIES[r - 1] for r in orders if r <= len(QUANTITIES)]
         names = f"{' and '.join(derivatives)} {'is' if len(derivatives) == 1 else 'are'}"
-        others = left_out(study, named, rid)
+        others = left_out(study, named, reading)
         unknown = f"No motion is built from {all_called(others)}." if others else ""
         verdict = ClaimVerdict.NOT_CHECKABLE if others else ClaimVerdict.SUPPORTED
         yield Finding(
@@ -189,7 +189,7 @@ def _at_rest(
             verdict=ClaimVerdict.INCONSISTENT if moving else verdict,
             basis=Basis.CHECK,
             claim=claim.id,
-            reading=rid,
+            reading=reading,
             kind="moving" if moving else "in part" if others else "at rest",
             sentences=(
                 "The motion is said to be at rest at both ends, but on the stated curve "
@@ -207,18 +207,15 @@ def _prescribed(curve: Curve, orders: Sequence[int]) -> bool:
     return all((order, 0.0) in end for end in ends for order in orders)
 
 
-def _moving(
-    study: Study, motion: AnyClaim, pid: str, rid: str, orders: Sequence[int]
-) -> Iterator[str]:
+def _moving(row: PrintedRow[AnyClaim], orders: Sequence[int]) -> Iterator[str]:
     """The largest derivative of each order that does not vanish at an end."""
-    problem = study.claim_problem(motion, pid, rid)
-    durations = study.case.claim_durations(motion, rid).value
-    trajectory = fit(problem.curve, problem.waypoints, durations)
+    problem = row.posed()
+    trajectory = row.motion
     for order in orders:
         if order > len(QUANTITIES):
             continue
         quantity = QUANTITIES[order - 1]
-        tops = [abs(top.value) for top in largest(study, motion, pid, rid, order)]
+        tops = [abs(top.value) for top in largest(row, order)]
         ends = np.abs(trajectory(np.array([0.0, trajectory.total_time]), order))
         over = np.where(ends > _REST * np.array(tops), ends, 0.0)
         if not over.any():
@@ -230,9 +227,9 @@ def _moving(
                 continue
             end, joint = np.unravel_index(int(np.argmax(own)), own.shape)
             label = problem.joints[int(joint)]
-            value = in_units(study, pid, rid, quantity, float(own[end, joint]), label)
+            value = row.in_units(quantity, float(own[end, joint]), label)
             where = "starts" if end == 0 else "ends"
             yield (
                 f"joint {label} {where} with a {quantity} of {value:.4g} "
-                f"{unit_shown(study, pid, rid, quantity, label)}"
+                f"{row.unit(quantity, label)}"
             )

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -13,46 +12,19 @@ from ....problem.cases import (
     DurationsClaim,
     MaximumClaim,
     StatementClaim,
-    TimeClaim,
     TotalTimeClaim,
 )
-from ...documents import Basis, ClaimVerdict, Finding, Rounding, Severity
+from ...documents import Basis, ClaimVerdict, Finding, Severity
+from ..digit_ranges import below_certified
+from ..printed_row import PrintedRow, left_out, printed_rows, rows_under
 from ..roots import LIMITS
+from ..stated import all_called, called_under
 from ..study import Study
+from .judged_rows import JudgedRow, broken, judged_row, ratio_at_print
 from .kept_limits import UNSAID, meant_to_keep, said_of, said_to_keep
 from .linear_blends import BLENDS, blended, judge_row
-from .peaks import box_reach, has_curve, largest
-from .wording import (
-    JUMPING,
-    all_called,
-    called_under,
-    durations_text,
-    in_units,
-    jump_size,
-    jump_unit,
-    largest_of_each_kind,
-    left_out,
-    unit_shown,
-)
+from .peaks import JUMPING, box_reach, jump_size, jump_unit, largest, largest_of_each_kind
 
-
-@dataclass(frozen=True)
-class _Judged:
-    """What the rounding box says of printed durations."""
-
-    verdict: ClaimVerdict
-    severity: Severity
-    sentences: tuple[str, ...]
-    kind: str
-
-
-_VERDICTS = {
-    Rounding.KEEPS: (ClaimVerdict.SUPPORTED, Severity.INFO),
-    Rounding.CONSISTENT: (ClaimVerdict.SUPPORTED, Severity.INFO),
-    Rounding.BREAKS: (ClaimVerdict.REFUTED, Severity.ERROR),
-    Rounding.UNDECIDED: (ClaimVerdict.NOT_CHECKABLE, Severity.INFO),
-}
-"""What a rounding verdict says of the claim, and how much that weighs."""
 _ELSEWHERE = "elsewhere"
 """Kind of what is said of durations that are not of the problem's curve."""
 _NARROW = 0.01
@@ -74,97 +46,32 @@ def judge_motions(study: Study) -> Iterator[Finding]:
             yield from _said_to_jump(study, claim)
 
 
-def _ratio(study: Study, claim: AnyClaim, pid: str, rid: str) -> str:
-    worst = study.claim_check(claim, pid, rid).worst
-    if worst is None:
-        return "no limit applies"
-    if worst.quantity == "curve":
-        return "the printed durations define no curve"
-    whose = f"joint {worst.joint}" if worst.joint is not None else f"segment {worst.segment + 1}"
-    unit = unit_shown(study, pid, rid, worst.quantity, worst.joint)
-    value = in_units(study, pid, rid, worst.quantity, abs(worst.value), worst.joint)
-    limit = in_units(study, pid, rid, worst.quantity, worst.limit, worst.joint)
-    return f"the {worst.quantity} of {whose} reaches {value:.6g} {unit}, limit {limit:.6g} {unit}"
-
-
-def _judged(study: Study, claim: AnyClaim, pid: str, rid: str) -> _Judged:
-    if isinstance(claim, TotalTimeClaim):
-        return _judged_total(study, claim, pid, rid)
-    rounding = study.claim_rounding(claim, pid, rid)
-    verdict, severity = _VERDICTS[rounding.verdict]
-    at_print = _ratio(study, claim, pid, rid)
-    explained = {
-        Rounding.KEEPS: "The printed numbers keep every limit for all t",
-        Rounding.CONSISTENT: "Some values that round to the printed digits keep every limit for "
-        "all t",
-        Rounding.BREAKS: "A limit is broken however the digits were rounded",
-        Rounding.UNDECIDED: "The printed digits do not decide whether the limits are kept",
-    }[rounding.verdict]
-    kind = str(rounding.verdict)
-    found = study.claim_check(claim, pid, rid)
-    if found.verdict is Verdict.DISCONTINUOUS and rounding.verdict is Rounding.UNDECIDED:
-        kind = str(found.verdict)
-        jumps = sum(jump.order == 1 for jump in found.jumps)
-        explained = (
-            "The motion is discontinuous: the printed numbers keep every limit inside the "
-            f"segments, and the velocity jumps {jumps} times between them, which takes an infinite "
-            "acceleration"
-        )
-    said = [f"{explained}.", f"At the printed numbers {at_print}."]
-    loose = study.case.statement(pid, rid).declaration.loose
-    if rounding.verdict is Rounding.UNDECIDED and loose:
-        said.append(f"{loose} are printed numbers, and no proof covers their rounding.")
-    bound = rounding.lower_bound_of_worst
-    if rounding.verdict is Rounding.BREAKS and bound is not None:
-        said.append(
-            f"Whatever the rounding, a limit is exceeded by a factor of at least "
-            f"{shown_bound(bound, 'lower')}."
-        )
-    if rounding.verdict is Rounding.BREAKS:
-        cut = study.claim_cut(claim, pid, rid).verdict
-        if cut is not Rounding.BREAKS:
-            kept = cut is not Rounding.UNDECIDED
-            verdict = ClaimVerdict.SUPPORTED if kept else ClaimVerdict.NOT_CHECKABLE
-            said.append(f"With digits cut off instead of rounded: {cut}.")
-            return _Judged(verdict, Severity.WARNING, tuple(said), kind)
-        said.append("The same holds with digits cut off instead of rounded.")
-    return _Judged(verdict, severity, tuple(said), kind)
-
-
-def _judged_total(study: Study, claim: TotalTimeClaim, pid: str, rid: str) -> _Judged:
-    """A total without its durations: refuted where no motion that short keeps the limits."""
-    printed = f"{claim.value} {study.time_unit}"
-    if study.excluded_total(claim, pid, rid):
-        excluded = (
-            f"No motion within the limits takes {printed} or less, however the digits were rounded "
-            "or cut off."
-        )
-        return _Judged(ClaimVerdict.REFUTED, Severity.ERROR, (excluded,), "total excluded")
-    said = (
-        f"Only the total is printed, {printed}, and no durations: whether its motion keeps the "
-        "limits cannot be computed.",
-        "That none of that length does was not shown.",
-    )
-    return _Judged(ClaimVerdict.NOT_CHECKABLE, Severity.INFO, said, "total open")
-
-
-def broken(study: Study, claim: AnyClaim, pid: str, rid: str) -> tuple[str, ...] | None:
-    """What shows that a limit is broken, for all values rounded or cut off to the digits; or None.
-
-    For a total without its durations: that no motion so short keeps the limits.
-    """
-    if not isinstance(claim, TimeClaim):
-        return None
-    if study.unmoved(claim, pid, rid) is not None:
-        return None
-    judged = _judged(study, claim, pid, rid)
-    return judged.sentences if judged.verdict is ClaimVerdict.REFUTED else None
+def judge_bare_totals(study: Study) -> Iterator[Finding]:
+    """Refute totals that no motion within the limits takes, and that a statement says one does."""
+    for claim in study.claims:
+        if not (isinstance(claim, TotalTimeClaim) and said_to_keep(study, claim)):
+            continue
+        for row in printed_rows(study, claim):
+            proof = broken(row) or below_certified(row)
+            if proof is not None:
+                yield Finding(
+                    rule="TG201",
+                    verdict=ClaimVerdict.REFUTED,
+                    basis=Basis.ENCLOSURE,
+                    claim=claim.id,
+                    problem=row.problem,
+                    reading=row.reading,
+                    printed=f"{claim.value} {study.time_unit}",
+                    sentences=proof,
+                    kind="total excluded",
+                    root=f"{LIMITS} {claim.id}",
+                )
 
 
 def _limits(study: Study, claim: AnyClaim) -> Iterator[Finding]:
     unsaid = "" if said_to_keep(study, claim) else UNSAID
-    for pid, rid in study.claim_pairs(claim):
-        judged = _judged(study, claim, pid, rid)
+    for row in printed_rows(study, claim):
+        judged = judged_row(row)
         verdict, severity = said_of(study, claim, judged.verdict, judged.severity)
         yield Finding(
             rule="TG201",
@@ -172,10 +79,10 @@ def _limits(study: Study, claim: AnyClaim) -> Iterator[Finding]:
             verdict=verdict,
             basis=Basis.ENCLOSURE,
             claim=claim.id,
-            problem=pid,
-            reading=rid,
-            printed=durations_text(study, claim),
-            computed=_ratio(study, claim, pid, rid),
+            problem=row.problem,
+            reading=row.reading,
+            printed=study.durations_digits(claim),
+            computed=ratio_at_print(row),
             kind=judged.kind,
             sentences=(
                 *judged.sentences,
@@ -188,16 +95,13 @@ def _limits(study: Study, claim: AnyClaim) -> Iterator[Finding]:
 
 def _jumps(study: Study, claim: AnyClaim) -> Iterator[Finding]:
     """Name a motion that jumps under a reading; no word of the paper is judged by that."""
-    for pid, rid in study.claim_pairs(claim):
-        found = study.claim_check(claim, pid, rid).jumps
+    for row in printed_rows(study, claim):
+        found = row.check.jumps
         velocity = [jump for jump in found if jump.order == 1]
         if not velocity:
             continue
-        tops = largest_of_each_kind(study, rid, [(pid, jump) for jump in velocity])
-        sizes = [
-            f"{abs(jump_size(study, pid, rid, top)):.6g} {jump_unit(study, pid, rid, top)}"
-            for _, top in tops
-        ]
+        tops = largest_of_each_kind([(row, jump) for jump in velocity])
+        sizes = [f"{abs(jump_size(row, top)):.6g} {jump_unit(row, top)}" for _, top in tops]
         most = " and ".join(
             f"in joint {top.joint} at t = {top.time:.6g} s by {size}"
             for (_, top), size in zip(tops, sizes, strict=True)
@@ -206,9 +110,9 @@ def _jumps(study: Study, claim: AnyClaim) -> Iterator[Finding]:
             rule="TG202",
             basis=Basis.CHECK,
             claim=claim.id,
-            problem=pid,
-            reading=rid,
-            printed=durations_text(study, claim),
+            problem=row.problem,
+            reading=row.reading,
+            printed=study.durations_digits(claim),
             computed=f"{len(velocity)} jumps of velocity, up to {' and '.join(sizes)}",
             kind="velocity jumps",
             sentences=(
@@ -222,11 +126,13 @@ def _jumps(study: Study, claim: AnyClaim) -> Iterator[Finding]:
 
 def _limits_statement(study: Study, claim: StatementClaim) -> Iterator[Finding]:
     about = [study.case.claim(i) for i in claim.of]
-    for rid in study.readings:
-        judged: list[tuple[AnyClaim, str | None, _Judged]] = [
-            (c, pid, _judged(study, c, pid, rid)) for c, pid in study.pairs_under(about, rid)
+    for reading in study.readings:
+        judged: list[tuple[AnyClaim, str | None, JudgedRow]] = [
+            (row.claim, row.problem, judged_row(row)) for row in rows_under(study, about, reading)
         ]
-        judged += [one for c in left_out(study, about, rid) for one in _elsewhere(study, c, rid)]
+        judged += [
+            one for c in left_out(study, about, reading) for one in _elsewhere(study, c, reading)
+        ]
         if not judged:
             continue
         breaking = [one for one in judged if one[2].verdict is ClaimVerdict.REFUTED]
@@ -260,7 +166,7 @@ def _limits_statement(study: Study, claim: StatementClaim) -> Iterator[Finding]:
             verdict=verdict,
             basis=Basis.ENCLOSURE,
             claim=claim.id,
-            reading=rid,
+            reading=reading,
             kind=str(verdict),
             sentences=tuple(sentences),
             follows=tuple(f"{BLENDS if blended(c) else LIMITS} {c.id}" for c, _, _ in breaking),
@@ -268,37 +174,37 @@ def _limits_statement(study: Study, claim: StatementClaim) -> Iterator[Finding]:
 
 
 def _placed(
-    study: Study, statement: StatementClaim, claim: AnyClaim, pid: str | None, judged: _Judged
+    study: Study, statement: StatementClaim, claim: AnyClaim, problem: str | None, judged: JudgedRow
 ) -> tuple[str, ...]:
     """What is said of durations, behind their place where the statement stands at another."""
     first, *others = judged.sentences
-    where = called_under(study, claim, pid)
+    where = called_under(study.case, claim, problem)
     return first if where == statement.where else f"{where}: {first}", *others
 
 
 def _elsewhere(
-    study: Study, claim: AnyClaim, rid: str
-) -> Iterator[tuple[AnyClaim, str | None, _Judged]]:
+    study: Study, claim: AnyClaim, reading: str
+) -> Iterator[tuple[AnyClaim, str | None, JudgedRow]]:
     """What is known of the limits where no motion is built: rows with blends have a rule."""
-    rows = [row for row in judge_row(study, claim) if row.reading == rid]
+    rows = [row for row in judge_row(study, claim) if row.reading == reading]
     for row in rows:
         if row.verdict is not None:
-            judged = _Judged(row.verdict, row.severity, row.sentences, _ELSEWHERE)
+            judged = JudgedRow(row.verdict, row.severity, row.sentences, _ELSEWHERE)
             yield claim, str(row.problem), judged
     if not rows:
         said = "No motion is built from these durations here, so that they are not judged."
-        judged = _Judged(ClaimVerdict.NOT_CHECKABLE, Severity.INFO, (said,), _ELSEWHERE)
+        judged = JudgedRow(ClaimVerdict.NOT_CHECKABLE, Severity.INFO, (said,), _ELSEWHERE)
         yield claim, claim.problem, judged
 
 
 def _continuity(study: Study, claim: StatementClaim) -> Iterator[Finding]:
-    for rid in study.readings:
+    for reading in study.readings:
         jumps, built = [], True
-        motions = study.pairs_under(map(study.case.claim, claim.of), rid)
-        for other, pid in motions:
-            curve = study.claim_problem(other, pid, rid).curve
+        motions = rows_under(study, map(study.case.claim, claim.of), reading)
+        for row in motions:
+            curve = row.posed().curve
             built &= all(curve.smooth_order(k) >= 2 for k in range(1, curve.segments))
-            jumps += [(pid, jump) for jump in study.claim_check(other, pid, rid).jumps]
+            jumps += [(row, jump) for jump in row.check.jumps]
         if not motions:
             continue
         count = len(motions)
@@ -308,10 +214,10 @@ def _continuity(study: Study, claim: StatementClaim) -> Iterator[Finding]:
             f"In {which} rebuilt from the printed durations, position, velocity and acceleration "
             "agree on both sides of every via-point."
         )
-        if others := left_out(study, map(study.case.claim, claim.of), rid):
+        if others := left_out(study, map(study.case.claim, claim.of), reading):
             verdict, kind = ClaimVerdict.NOT_CHECKABLE, "in part"
             more = f"No motion is built from {all_called(others)}, which it names too."
-        if jumps and all(_may_be_smooth(study, other, pid, rid) for other, pid in motions):
+        if jumps and all(map(_may_be_smooth, motions)):
             verdict, kind, more = ClaimVerdict.NOT_CHECKABLE, "may be smooth", ""
             message = (
                 "The motion jumps at the printed durations; what rounds to them or is cut off to "
@@ -320,8 +226,8 @@ def _continuity(study: Study, claim: StatementClaim) -> Iterator[Finding]:
         elif jumps:
             largest_ones = " and ".join(
                 f"in {JUMPING[top.order]} of joint {top.joint} at t = {top.time:.6g} s by "
-                f"{jump_size(study, where, rid, top):.6g} {jump_unit(study, where, rid, top)}"
-                for where, top in largest_of_each_kind(study, rid, jumps)
+                f"{jump_size(row, top):.6g} {jump_unit(row, top)}"
+                for row, top in largest_of_each_kind(jumps)
             )
             verdict, kind, more = ClaimVerdict.INCONSISTENT, "jumps", ""
             message = (
@@ -332,33 +238,33 @@ def _continuity(study: Study, claim: StatementClaim) -> Iterator[Finding]:
             verdict=verdict,
             basis=Basis.CHECK,
             claim=claim.id,
-            reading=rid,
+            reading=reading,
             kind=kind,
             sentences=(message, more),
             built=built and verdict is ClaimVerdict.SUPPORTED,
         )
 
 
-def _may_be_smooth(study: Study, claim: AnyClaim, pid: str, rid: str) -> bool:
+def _may_be_smooth(row: PrintedRow[AnyClaim]) -> bool:
     """Whether durations that round to the digits have the proportions with which nothing jumps."""
-    problem = study.claim_problem(claim, pid, rid)
+    problem = row.posed()
     shares = problem.curve.smooth_shares(problem.waypoints)
     if shares is None:
-        return not study.claim_check(claim, pid, rid).jumps
-    if study.case.statement(pid, rid).loose_ends:
+        return not row.check.jumps
+    if row.statement.loose_ends:
         return True
-    box = study.claim_boxes(claim, pid, rid)[0].or_cut_off()
+    box = row.boxes[0].or_cut_off()
     return bool((box.lower / shares).max() <= (box.upper / shares).min())
 
 
 def _said_to_jump(study: Study, claim: StatementClaim) -> Iterator[Finding]:
     """A reading under which acceleration does not jump speaks against itself, not the paper."""
-    for rid in study.readings:
-        motions = study.pairs_under(map(study.case.claim, claim.of), rid)
+    for reading in study.readings:
+        motions = rows_under(study, map(study.case.claim, claim.of), reading)
         jumps = [
-            (pid, jump)
-            for other, pid in motions
-            for jump in study.claim_check(other, pid, rid).jumps
+            (row, jump)
+            for row in motions
+            for jump in row.check.jumps
             if jump.order == 2 and claim.joint in (None, jump.joint)
         ]
         if not motions:
@@ -366,9 +272,8 @@ def _said_to_jump(study: Study, claim: StatementClaim) -> Iterator[Finding]:
         whose = "" if claim.joint is None else f" of joint {claim.joint}"
         if jumps:
             most = " and ".join(
-                f"at t = {top.time:.6g} s by {jump_size(study, where, rid, top):.6g} "
-                f"{jump_unit(study, where, rid, top)}"
-                for where, top in largest_of_each_kind(study, rid, jumps)
+                f"at t = {top.time:.6g} s by {jump_size(row, top):.6g} {jump_unit(row, top)}"
+                for row, top in largest_of_each_kind(jumps)
             )
             verdict, kind = ClaimVerdict.SUPPORTED, "jumps"
             message = (
@@ -386,34 +291,33 @@ def _said_to_jump(study: Study, claim: StatementClaim) -> Iterator[Finding]:
             verdict=verdict,
             basis=Basis.CHECK,
             claim=claim.id,
-            reading=rid,
+            reading=reading,
             kind=kind,
             sentences=(message,),
         )
 
 
 def _used_up(study: Study, claim: AnyClaim) -> Iterator[Finding]:
-    for pid, rid in study.claim_pairs(claim):
-        if not has_curve(study, claim, pid, rid):
+    for row in printed_rows(study, claim):
+        if not row.has_curve:
             continue
-        problem = study.claim_problem(claim, pid, rid)
+        problem = row.posed()
         tight = []
         for r, quantity in enumerate(QUANTITIES, start=1):
             limits = problem.limits.sides[:, :, r - 1]
-            for top in largest(study, claim, pid, rid, r):
+            for top in largest(row, r):
                 limit = float(limits[int(top.value > 0.0), top.joint])
                 if not np.isfinite(limit):
                     continue
-                reach = box_reach(study, claim, pid, rid, top)
+                reach = box_reach(row, top)
                 if abs(abs(top.value) - limit) <= reach <= _NARROW * limit:
                     label = problem.joints[top.joint]
                     value, around, bound = (
-                        in_units(study, pid, rid, quantity, x, label)
-                        for x in (abs(top.value), reach, limit)
+                        row.in_units(quantity, x, label) for x in (abs(top.value), reach, limit)
                     )
                     tight.append(
                         f"joint {label} {quantity} {value:.6g} ± {around:.1g} "
-                        f"at its limit {bound:.6g} {unit_shown(study, pid, rid, quantity, label)}"
+                        f"at its limit {bound:.6g} {row.unit(quantity, label)}"
                     )
         if tight:
             yield Finding(
@@ -421,9 +325,9 @@ def _used_up(study: Study, claim: AnyClaim) -> Iterator[Finding]:
                 verdict=ClaimVerdict.SUPPORTED,
                 basis=Basis.CHECK,
                 claim=claim.id,
-                problem=pid,
-                reading=rid,
-                printed=durations_text(study, claim),
+                problem=row.problem,
+                reading=row.reading,
+                printed=study.durations_digits(claim),
                 computed="; ".join(tight),
                 kind="reached",
                 sentences=(

@@ -31,7 +31,8 @@ from ...documents import (
     ranged,
 )
 from ...gaps import gap, reference_of
-from ..digit_ranges import all_exact
+from ..chosen_case import Total
+from ..digit_ranges import below_certified
 from ..fixed_ratios import (
     BELOW_AT_RATIOS,
     at_ratios,
@@ -40,12 +41,12 @@ from ..fixed_ratios import (
     optimum_called,
     planned_apart,
 )
+from ..printed_row import PrintedRow, left_out, printed_rows, rows_under
 from ..roots import LIMITS, OPTIMAL
-from ..stated import other_objective
+from ..stated import called, called_under, other_objective
 from ..stated_totals import contradicting_lows, is_sum, rounded_up_low, total_excludes, what_agrees
 from ..study import Study
-from .continuous_time import broken
-from .wording import called, called_under, left_out
+from .judged_rows import broken
 
 _BELOW = "All of it is below the best known total: a misprint or a better optimum may explain it."
 """What is said of a printed total below a best known one."""
@@ -60,48 +61,39 @@ def judge_distances(study: Study) -> Iterator[Finding]:
     """Findings of TG302 and TG303."""
     for claim in study.claims:
         if isinstance(claim, DurationsClaim | MaximumClaim | TotalTimeClaim):
-            for pid, rid in study.claim_pairs(claim):
-                yield from _beside_optimum(study, claim, pid, rid)
+            for row in printed_rows(study, claim):
+                yield from _beside_optimum(row)
         elif isinstance(claim, StatementClaim) and claim.checks == "optimal":
             yield from _optimal_statement(study, claim)
 
 
-def _kept(study: Study, claim: AnyClaim, pid: str, rid: str) -> bool:
-    if isinstance(claim, TotalTimeClaim) or study.unmoved(claim, pid, rid) is not None:
-        return False
-    return study.claim_rounding(claim, pid, rid).verdict in (Rounding.KEEPS, Rounding.CONSISTENT)
-
-
-def _beside_optimum(study: Study, claim: AnyClaim, pid: str, rid: str) -> Iterator[Finding]:
-    total = study.claim_total(claim, rid)
+def _beside_optimum(row: PrintedRow[AnyClaim]) -> Iterator[Finding]:
+    total = row.total
     if total is None:
         return
-    problem = study.claim_problem(claim, pid, rid)
-    procedure = len(problem.joints) > 1 and planned_apart(study.problem(pid, rid))
-    solution = study.claim_optimum(claim, pid, rid)
+    problem = row.posed()
+    procedure = len(problem.joints) > 1 and planned_apart(row.study.problem(row.pair))
+    solution = row.optimum
     reference = reference_of(solution)
-    other = off_ratios(study, claim, pid, rid)
+    other = off_ratios(row)
     if other is not None:
-        yield of_other_ratios(claim, pid, rid, total[0], other)
+        yield of_other_ratios(row, total.shown, other)
         return
     if reference is not None:
-        yield _distance(study, claim, pid, rid, total, solution, reference, procedure)
+        yield _distance(row, total, reference, procedure)
     if procedure:
-        yield from _beside_procedure(study, claim, pid, rid, total)
+        yield from _beside_procedure(row, total)
 
 
 def _distance(
-    study: Study,
-    claim: AnyClaim,
-    pid: str,
-    rid: str,
-    total: tuple[str, tuple[float, float]],
-    solution: Solution,
+    row: PrintedRow[AnyClaim],
+    total: Total,
     reference: Reference,
     shared: bool,
 ) -> Finding:
+    claim, solution = row.claim, row.optimum
     shown, interval = total
-    kept = _kept(study, claim, pid, rid)
+    kept = row.kept
     distance = gap(interval, reference, feasible=kept)
     whole = " with shared durations" if solution.problem.ratios is None else ""
     which = whole if shared or claim.joint is None else f" of joint {claim.joint}"
@@ -110,7 +102,7 @@ def _distance(
         f"{optimum_called(solution.problem, reference.evidence)}{which}, "
         f"{reference.upper:.6f} s{_bounded(reference)}."
     ]
-    minimised = other_objective(study.case, claim)
+    minimised = other_objective(row.study.case, claim)
     informs = minimised is not None and distance.lowest > 0
     if informs:
         said = [
@@ -118,9 +110,9 @@ def _distance(
             f"shortest motion{which}{at_ratios(solution.problem)} takes {reference.upper:.6f} s, "
             f"{reference.evidence}{_bounded(reference)}."
         ]
-    timed = not isinstance(claim, TotalTimeClaim) and study.unmoved(claim, pid, rid) is None
+    timed = not isinstance(claim, TotalTimeClaim) and row.unmoved is None
     if timed and not informs:
-        verdict = study.claim_check(claim, pid, rid)
+        verdict = row.check
         if verdict.feasible_time is not None:
             repaired = gap(verdict.feasible_time, reference)
             said.append(
@@ -129,7 +121,7 @@ def _distance(
             )
     severity = Severity.INFO
     if distance.highest < 0:
-        explained = _below(study, claim, pid, rid, solution, interval)
+        explained = _below(row, interval)
         if explained is not None:
             said.append(explained)
         else:
@@ -144,8 +136,8 @@ def _distance(
         evidence=solution.evidence,
         basis=Basis.OPTIMUM,
         claim=claim.id,
-        problem=pid,
-        reading=rid,
+        problem=row.problem,
+        reading=row.reading,
         printed=shown,
         computed=f"{reference.upper:.6f} s",
         gap=distance,
@@ -155,30 +147,23 @@ def _distance(
     )
 
 
-def _below(
-    study: Study,
-    claim: AnyClaim,
-    pid: str,
-    rid: str,
-    solution: Solution,
-    interval: tuple[float, float],
-) -> str | None:
+def _below(row: PrintedRow[AnyClaim], interval: tuple[float, float]) -> str | None:
     """Why a total may lie below the optimum of the problem as printed, if something explains it."""
-    timed = not isinstance(claim, TotalTimeClaim)
-    if timed and study.claim_rounding(claim, pid, rid).verdict is Rounding.CONSISTENT:
+    timed, solution = not isinstance(row.claim, TotalTimeClaim), row.optimum
+    if timed and row.rounding.verdict is Rounding.CONSISTENT:
         return (
             "The rounding of the printed digits explains it: some values that round to them keep "
             "every limit with these durations."
         )
-    if timed and broken(study, claim, pid, rid) is not None:
+    if timed and broken(row) is not None:
         return (
             f"Below the {solution.evidence} total, which keeps the limits; these durations do not."
         )
-    if loose := study.case.statement(pid, rid).declaration.loose:
+    if loose := row.statement.declaration.loose:
         return f"{loose} are rounded numbers, which may explain it."
     if solution.problem.ratios is not None:
         return BELOW_AT_RATIOS
-    share = _spread(study, claim, pid, rid, solution)
+    share = _spread(row)
     if share is not None and interval[1] >= solution.best * (1.0 - share):
         return (
             "To first order the rounding of way-points and limits explains it: they move the "
@@ -187,14 +172,15 @@ def _below(
     return None
 
 
-def _spread(study: Study, claim: AnyClaim, pid: str, rid: str, solution: Solution) -> float | None:
+def _spread(row: PrintedRow[AnyClaim]) -> float | None:
     """Share by which the rounding of way-points and limits moves the optimum, to first order.
 
     That it is at most so much longer for any of them is proved; so much shorter is its mirror.
     """
+    solution = row.optimum
     if not solution.found or not solution.best > 0:
         return None
-    reached = study.reachable(claim, solution.durations, pid, rid)
+    reached = row.reachable(solution.durations)
     return None if reached is None else max(reached / solution.best - 1.0, 0.0)
 
 
@@ -219,10 +205,8 @@ def set_beside(distance: Gap) -> str:
     return f"is {share} % {'longer' if low > 0 else 'shorter'} than"
 
 
-def _beside_procedure(
-    study: Study, claim: AnyClaim, pid: str, rid: str, total: tuple[str, tuple[float, float]]
-) -> Iterator[Finding]:
-    answer = study.per_joint(pid, rid)
+def _beside_procedure(row: PrintedRow[AnyClaim], total: Total) -> Iterator[Finding]:
+    answer = row.study.per_joint(row.pair)
     if not answer.ranges or answer.check is None:
         return
     wide = answer.ranges[0]
@@ -241,9 +225,9 @@ def _beside_procedure(
         verdict=ClaimVerdict.SUPPORTED if inside else ClaimVerdict.NOT_CHECKABLE,
         evidence=answer.evidence,
         basis=Basis.OPTIMUM,
-        claim=claim.id,
-        problem=pid,
-        reading=rid,
+        claim=row.claim.id,
+        problem=row.problem,
+        reading=row.reading,
         printed=shown,
         computed=f"{ranged(wide.lowest, wide.highest, '.6f')} s",
         kind="joint by joint",
@@ -268,20 +252,21 @@ class _Sides:
     solutions: list[Solution] = field(default_factory=list)
 
 
-def _weigh(study: Study, claim: AnyClaim, pid: str, rid: str, sides: _Sides) -> None:
+def _weigh(row: PrintedRow[AnyClaim], sides: _Sides) -> None:
     """Set one printed total beside the optimum of its problem."""
-    total = study.claim_total(claim, rid)
+    claim = row.claim
+    total = row.total
     if total is None:
         return
     shown, interval = total
-    name = called_under(study, claim, pid)
-    other = off_ratios(study, claim, pid, rid)
+    name = called_under(row.study.case, claim, row.problem)
+    other = off_ratios(row)
     if other is not None:
         sides.open.append(f"{name}: printed are {other}, so that it is not of this question")
         return
-    solution = study.claim_optimum(claim, pid, rid)
-    shorter = _shorter(study, claim, pid, rid, solution, total)
-    apart = contradicting_lows(study, claim, pid, rid)
+    solution = row.optimum
+    shorter = _shorter(row, total)
+    apart = contradicting_lows(row)
     reached = 0.0 if shorter is None else shorter[1].reference.upper
     contradicted = bool(apart) and min(apart.values()) <= reached
     if shorter is not None and not contradicted:
@@ -293,8 +278,8 @@ def _weigh(study: Study, claim: AnyClaim, pid: str, rid: str, sides: _Sides) -> 
     found = solution.found and solution.status is not Status.NOT_ATTAINED
     # Whether a bare total is too short takes a proof, which is tried only where it may succeed.
     bare = isinstance(claim, TotalTimeClaim) and found and interval[1] >= solution.best
-    proof = None if bare else broken(study, claim, pid, rid)
-    below = None if apart else below_certified(study, claim, pid, rid, solution)
+    proof = None if bare else broken(row)
+    below = None if apart else below_certified(row)
     if (shown_so := proof or below) is not None:
         first, *others = shown_so
         sides.breaking += [f"{name}: {first}", *others]
@@ -310,8 +295,8 @@ def _weigh(study: Study, claim: AnyClaim, pid: str, rid: str, sides: _Sides) -> 
         sides.open.append(f"{name}: {_no_optimum(solution)}")
         return
     sides.solutions.append(solution)
-    inside = rounded_up_low(study, claim, rid, interval) <= solution.best <= interval[1]
-    if inside and not total_excludes(study, claim, rid, solution.best):
+    inside = rounded_up_low(row, interval) <= solution.best <= interval[1]
+    if inside and not total_excludes(row, solution.best):
         sides.agreeing.append(name)
         sides.summed += is_sum(claim)
         sides.rounded_up |= not interval[0] <= solution.best
@@ -345,23 +330,6 @@ def _no_optimum(solution: Solution) -> str:
     return f"no optimum was found ({solution.status}{why})"
 
 
-def below_certified(
-    study: Study,
-    claim: AnyClaim,
-    pid: str,
-    rid: str,
-    solution: Solution,
-) -> tuple[str, ...] | None:
-    """That a total lies below a certified bound, which speaks only where the problem is exact."""
-    bound = solution.lower_bound
-    if bound is None or study.longest_total(claim, rid) >= bound:
-        return None
-    if not all_exact(study, claim, pid, rid):
-        return None
-    shown = shown_bound(bound, "lower", places=6)
-    return (f"The printed total lies below the certified lower bound {shown} s.",)
-
-
 def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Finding]:
     """Refuted by a feasible shorter answer, or by durations that no rounding lets keep the limits.
 
@@ -369,21 +337,22 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
     durations, stretched as far as those may need, take less than the low end of the printed total.
     Durations that break the limits are no answer within them.
     """
-    for rid in study.readings:
+    for reading in study.readings:
         sides = _Sides()
         named = [study.case.claim(i) for i in statement.of]
-        for claim, pid in study.pairs_under(named, rid):
-            minimised = other_objective(study.case, claim)
+        for row in rows_under(study, named, reading):
+            minimised = other_objective(study.case, row.claim)
             if minimised is None:
-                _weigh(study, claim, pid, rid, sides)
+                _weigh(row, sides)
             else:
+                name = called_under(study.case, row.claim, row.problem)
                 sides.open.append(
-                    f"{called_under(study, claim, pid)}: minimised for {minimised}, not for time "
-                    "alone, so that a shorter motion contradicts nothing"
+                    f"{name}: minimised for {minimised}, not for time alone, so that a shorter "
+                    "motion contradicts nothing"
                 )
         if not (sides.longer or sides.breaking or sides.agreeing or sides.open):
             continue
-        for one in left_out(study, named, rid):
+        for one in left_out(study, named, reading):
             sides.open.append(f"{called(one)}: of another curve, beside which no optimum stands")
         evidence = weakest(one.evidence for one in sides.solutions)
         longer, breaking = sides.longer, sides.breaking
@@ -411,7 +380,7 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
             evidence=evidence,
             basis=Basis.ENCLOSURE if breaking and not longer else Basis.OPTIMUM,
             claim=statement.id,
-            reading=rid,
+            reading=reading,
             sentences=tuple(said),
             gap=known(sides.most, "no time is set beside a motion"),
             farthest=sides.farthest,
@@ -421,30 +390,24 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
         )
 
 
-def _shorter(
-    study: Study,
-    claim: AnyClaim,
-    pid: str,
-    rid: str,
-    solution: Solution,
-    total: tuple[str, tuple[float, float]],
-) -> tuple[str, Gap] | None:
+def _shorter(row: PrintedRow[AnyClaim], total: Total) -> tuple[str, Gap] | None:
     """A checked motion that is shorter whatever the digits stand for, if there is one.
 
     Where the solver proves that no motion is the shortest, none is set beside a printed total: that
     every motion can be shortened refutes no number.
     """
+    solution = row.optimum
     if not solution.found or solution.status is Status.NOT_ATTAINED:
         return None
     shown, interval = total
-    reached = study.reachable(claim, solution.durations, pid, rid)
-    if reached is None or rounded_up_low(study, claim, rid, interval) <= reached:
+    reached = row.reachable(solution.durations)
+    if reached is None or rounded_up_low(row, interval) <= reached:
         return None
-    distance = gap(interval, Reference(upper=reached), feasible=_kept(study, claim, pid, rid))
+    distance = gap(interval, Reference(upper=reached), feasible=row.kept)
     jumps = solution.check is not None and any(j.order == 1 for j in solution.check.jumps)
     kind = " whose velocity may jump at the via-points under this reading" if jumps else ""
     said = (
-        f"{called(claim)} prints {shown}, and a checked motion{kind}{at_ratios(solution.problem)} "
-        f"takes at most {shown_bound(reached, 'upper', places=6)} s"
+        f"{called(row.claim)} prints {shown}, and a checked motion{kind}"
+        f"{at_ratios(solution.problem)} takes at most {shown_bound(reached, 'upper', places=6)} s"
     )
     return said, distance

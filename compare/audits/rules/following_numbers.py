@@ -22,14 +22,14 @@ from ....problem.cases import (
 )
 from ....problem.curves import vertex_matrix
 from ...documents import Severity
+from ..printed_row import PrintedRow, printed_rows
+from ..stated import allowed_bases, printed_total
 from ..study import Study
-from .improvements import allowed_bases
 from .measures import measure_beside
-from .peaks import beside, peak_numbers
-from .printed_tables import printed_alike, printed_total
+from .peaks import beside
+from .printed_tables import printed_alike
 from .printed_vertices import has_vertices
 from .values import value_beside
-from .wording import in_units
 
 
 def in_digits(value: Fraction | Decimal | float, like: Printed, rounding: str = "") -> str:
@@ -127,12 +127,11 @@ def _improved(study: Study, claim: ImprovementClaim) -> dict[str, tuple[str, ...
 
 def _of_motion(study: Study, claim: MotionValueClaim) -> dict[str, tuple[str, ...]]:
     for motion in motions_of(study.case.claims, claim):
-        for pid, rid in study.claim_pairs(motion):
-            if claim.problem not in (None, pid) or rid != study.main_reading:
+        for row in printed_rows(study, motion):
+            if claim.problem not in (None, row.problem) or row.reading != study.main_reading:
                 continue
             found = [
-                _number(study, claim, number, motion, joint, pid, rid)
-                for joint, number in peak_numbers(study, claim)
+                _number(row, claim, number, joint) for joint, number in study.printed_numbers(claim)
             ]
             if None not in found:
                 key = "value" if claim.values is None else "values"
@@ -141,39 +140,25 @@ def _of_motion(study: Study, claim: MotionValueClaim) -> dict[str, tuple[str, ..
 
 
 def _number(
-    study: Study,
-    claim: MotionValueClaim,
-    printed: Printed,
-    motion: AnyClaim,
-    joint: str | None,
-    pid: str,
-    rid: str,
+    row: PrintedRow[AnyClaim], claim: MotionValueClaim, printed: Printed, joint: str | None
 ) -> str | None:
     """One number of a motion; None where it has none."""
-    problem = study.claim_problem(motion, pid, rid)
     if isinstance(claim, PeakClaim):
-        one = beside(study, claim, printed, motion, joint, pid, rid)
-        if one is None:
-            return None
-        # One number for several joints may be the norm over them, where that is nearer.
-        exact = [one.exact, *([] if one.norm is None else [one.norm.exact])]
-        nearest = min(exact, key=lambda value: abs(value - one.value))
-        return in_digits(in_units(study, pid, rid, claim.derivative, nearest, joint), printed)
-    if joint is None and isinstance(claim, ValueClaim):
-        joint = problem.joints[0]
-    if joint is not None and joint not in problem.joints:
+        one = beside(row, claim, printed, joint)
+    elif isinstance(claim, ValueClaim):
+        one = value_beside(row, claim, printed, joint or row.posed().joints[0])
+    else:
+        assert isinstance(claim, MeasureClaim)
+        one = measure_beside(row, claim, printed, joint)
+    if one is None:
         return None
-    if isinstance(claim, ValueClaim):
-        return in_digits(
-            value_beside(study, claim, printed, motion, joint, pid, rid).exact, printed
-        )
-    assert isinstance(claim, MeasureClaim)
-    return in_digits(measure_beside(study, claim, printed, motion, joint, pid, rid).exact, printed)
+    # One number for several joints may be the norm over them, where that is nearer.
+    exact = [one.exact, *([] if one.norm is None else [one.norm.exact])]
+    return in_digits(min(exact, key=lambda value: abs(value - float(printed.fraction))), printed)
 
 
 def _vertices(study: Study, claim: ControlVerticesClaim) -> dict[str, tuple[str, ...]]:
-    pid = claim.problem or study.case.problems[0].id
-    statement = study.case.statement(pid, study.main_reading)
+    statement = study.case.statement(claim.problem, study.main_reading)
     if not statement.complete or not has_vertices(statement):
         return {}
     points = statement.waypoints.points

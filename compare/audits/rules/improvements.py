@@ -12,9 +12,11 @@ from ....problem.cases import (
     MaximumClaim,
 )
 from ...documents import Basis, ClaimVerdict, Finding, Severity
+from ..rounding import hull
+from ..stated import allowed_bases, printed_total
 from ..study import Study
-from .printed_digits import compared, hull, meet, shown, span
-from .printed_tables import contradicted, doubted, printed_total, total_allowed
+from .printed_digits import compared, meet, shown, span
+from .printed_tables import contradicted, doubted, total_allowed
 
 _SHARE_OF = {"slower": "the longer total", "faster": "the shorter total"}
 """What a percentage may be a share of; of the longer total, if either fits."""
@@ -76,11 +78,6 @@ def _share(slower: Interval, faster: Interval, base: str) -> Interval:
         return Interval(low, 100 * (1 - faster.lower / slower.upper))
     low = 100 * (slower.lower / faster.upper - 1)
     return Interval(low, 100 * (slower.upper / faster.lower - 1))
-
-
-def allowed_bases(claim: ImprovementClaim) -> tuple[str, ...]:
-    """What the percentage may be a share of: as stated, or both where the text leaves it open."""
-    return tuple(_SHARE_OF) if claim.base is None else (claim.base,)
 
 
 def _divides(base: str, faster: Interval) -> bool:

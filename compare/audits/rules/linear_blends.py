@@ -9,13 +9,13 @@ from typing import TypeGuard
 import numpy as np
 
 from ....problem import Array, CaseError, Measured, Printed, Problem
-from ....problem.cases import AnyClaim, Digits, DurationsClaim
+from ....problem.cases import AnyClaim, Claim, Digits, DurationsClaim
 from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..parabolic_blends import Blended, EndBlends, by_blend_accelerations, by_blend_times
+from ..printed_row import PrintedRow
 from ..rounding import RoundingBox
 from ..study import Study
 from .kept_limits import UNSAID, meant_to_keep, said_of
-from .wording import durations_text, in_units, unit_shown
 
 BLENDS = "blends"
 """Root of what follows from a row that breaks a limit."""
@@ -42,9 +42,9 @@ def judge_blends(study: Study) -> Iterator[Finding]:
 def judge_row(study: Study, claim: AnyClaim) -> Iterator[Finding]:
     """Findings of TG210 on one claim: none unless it prints blends."""
     if blended(claim):
-        for pid, rid in study.pairs:
-            if claim.problem in (None, pid):
-                yield _beside(study, claim, pid, rid)
+        for pair in study.pairs:
+            if claim.problem in (None, pair.problem):
+                yield _beside(PrintedRow(study, claim, pair))
 
 
 def blended(claim: AnyClaim) -> TypeGuard[DurationsClaim]:
@@ -54,8 +54,9 @@ def blended(claim: AnyClaim) -> TypeGuard[DurationsClaim]:
     return claim.blends is not None or claim.blend_acceleration is not None
 
 
-def _beside(study: Study, claim: DurationsClaim, pid: str, rid: str) -> Finding:
-    problem = study.claim_problem(claim, pid, rid)
+def _beside(row: PrintedRow[DurationsClaim]) -> Finding:
+    study, claim = row.study, row.claim
+    problem = row.posed()
     segments = len(problem.waypoints) - 1
     verdict, severity = ClaimVerdict.NOT_CHECKABLE, Severity.INFO
     computed, at_print, passes = "", "", ""
@@ -66,7 +67,7 @@ def _beside(study: Study, claim: DurationsClaim, pid: str, rid: str) -> Finding:
         )
     else:
         asked = [EndBlends(claim.end_blends)] if claim.end_blends else [*EndBlends]
-        found = [_judged(study, claim, problem, pid, rid, ends) for ends in asked]
+        found = [_judged(row, problem, ends) for ends in asked]
         worst = list(dict.fromkeys(one.worst for one in found))
         computed = "; ".join(worst)
         at_print = f"At the printed numbers {worst[0]}."
@@ -110,9 +111,9 @@ def _beside(study: Study, claim: DurationsClaim, pid: str, rid: str) -> Finding:
         verdict=verdict,
         basis=Basis.ENCLOSURE,
         claim=claim.id,
-        problem=pid,
-        reading=rid,
-        printed=durations_text(study, claim),
+        problem=row.problem,
+        reading=row.reading,
+        printed=study.durations_digits(claim),
         computed=computed,
         kind=str(found_verdict),
         sentences=(message, at_print, passes, UNSAID if verdict is not found_verdict else ""),
@@ -121,15 +122,13 @@ def _beside(study: Study, claim: DurationsClaim, pid: str, rid: str) -> Finding:
     )
 
 
-def _judged(
-    study: Study, claim: DurationsClaim, problem: Problem, pid: str, rid: str, ends: EndBlends
-) -> _Found:
-    box = study.waypoint_box(problem, pid, rid)
-    claimed = study.case.claim_durations(claim, rid)
+def _judged(row: PrintedRow[DurationsClaim], problem: Problem, ends: EndBlends) -> _Found:
+    box = row.waypoint_box(problem)
+    claimed = row.durations
     durations = RoundingBox(claimed.value, claimed.lower, claimed.upper)
-    wide = _blended(study, claim, problem, pid, rid, box, durations, ends, as_printed=False)
-    plain = _blended(study, claim, problem, pid, rid, box, durations, ends, as_printed=True)
-    loose = study.claim_problem(claim, pid, rid, Digits.LOOSEST_CUT).limits.sides.max(axis=0)
+    wide = _blended(row, problem, box, durations, ends, as_printed=False)
+    plain = _blended(row, problem, box, durations, ends, as_printed=True)
+    loose = row.posed(Digits.LOOSEST_CUT).limits.sides.max(axis=0)
     most = loose[:, :2] * (1.0 + _SLACK)
     breaks = (
         bool((wide.velocity.size.low > most[:, 0]).any())
@@ -137,7 +136,7 @@ def _judged(
         or bool((wide.room.high < -_SLACK * durations.value[:, None]).any())
     )
     try:
-        tight = study.claim_problem(claim, pid, rid, Digits.TIGHTEST).limits.sides.min(axis=0)
+        tight = row.posed(Digits.TIGHTEST).limits.sides.min(axis=0)
         keeps = (
             bool((wide.velocity.size.high <= tight[:, 0]).all())
             and bool((wide.acceleration.high <= tight[:, 1]).all())
@@ -145,33 +144,28 @@ def _judged(
         )
     except CaseError:  # the tightest ranges are empty
         keeps = False
-    return _Found(breaks, keeps, _worst(study, problem, plain, pid, rid))
+    return _Found(breaks, keeps, _worst(row, problem, plain))
 
 
 def _blended(
-    study: Study,
-    claim: DurationsClaim,
+    row: PrintedRow[DurationsClaim],
     problem: Problem,
-    pid: str,
-    rid: str,
     waypoints: RoundingBox,
     durations: RoundingBox,
     ends: EndBlends,
     as_printed: bool,
 ) -> Blended:
     """What the motion asks for at the printed numbers, or for all rounded or cut off to them."""
+    claim = row.claim
     waypoints, durations = (_taken(box, as_printed) for box in (waypoints, durations))
     if claim.blends is not None:
         numbers = _each(claim.blends, len(durations.value) + 1)
-        times = [study.case.measured(n, "time", claim.problem, rid) for n in numbers]
+        times = [row.time(n) for n in numbers]
         return by_blend_times(waypoints, durations, _taken(_box(times), as_printed), ends)
     assert claim.blend_acceleration is not None
-    labels = study.case.robot.joints
+    labels = row.study.case.robot.joints
     given = dict(zip(labels, _each(claim.blend_acceleration, len(labels)), strict=True))
-    sizes = [
-        study.case.measured(given[label], "acceleration", pid, rid, label)
-        for label in problem.joints
-    ]
+    sizes = [row.measured(given[label], "acceleration", label) for label in problem.joints]
     return by_blend_accelerations(waypoints, durations, _taken(_box(sizes), as_printed), ends)
 
 
@@ -190,7 +184,7 @@ def _taken(box: RoundingBox, as_printed: bool) -> RoundingBox:
     return RoundingBox.exact(box.value) if as_printed else box.or_cut_off()
 
 
-def _worst(study: Study, problem: Problem, plain: Blended, pid: str, rid: str) -> str:
+def _worst(row: PrintedRow[Claim], problem: Problem, plain: Blended) -> str:
     """The largest ratio to a limit at the printed numbers, in words; or that blends overlap."""
     k, j = np.unravel_index(int(np.argmin(plain.room.low)), plain.room.low.shape)
     if plain.room.low[k, j] < 0:
@@ -206,9 +200,9 @@ def _worst(study: Study, problem: Problem, plain: Blended, pid: str, rid: str) -
             joint = problem.joints[at[1]]
             if np.isinf(size[at]):
                 return f"the speed of joint {joint} jumps, for a blend printed as 0"
-            unit = unit_shown(study, pid, rid, quantity, joint)
-            value = in_units(study, pid, rid, quantity, float(size[at]), joint)
-            limit = in_units(study, pid, rid, quantity, float(limits[at[1], order]), joint)
+            unit = row.unit(quantity, joint)
+            value = row.in_units(quantity, float(size[at]), joint)
+            limit = row.in_units(quantity, float(limits[at[1], order]), joint)
             best = (
                 float(ratio[at]),
                 f"the {quantity} of joint {joint} reaches {value:.6g} {unit}, "

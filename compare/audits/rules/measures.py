@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
 from ....problem import QUANTITIES, Array, Printed, Trajectory, fit
 from ....problem.cases import AnyClaim, MeasureClaim
-from ...documents import Finding
-from ..study import Study
-from .motion_numbers import SAMPLES, NumberBeside, finding_of_numbers, nearest_number
-from .peaks import each_motion, has_curve, peak_numbers
-from .wording import in_units, unit_shown
+from ..printed_row import PrintedRow
+from .beside import SAMPLES, Beside, nearest_number
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(10)
 """Gauss-Legendre on -1..1: exact up to degree 19, and squares of declared polynomials have 18."""
@@ -22,6 +18,8 @@ _PARTS = 8
 smooth enough there."""
 _POWERS = {"mean": (1, 0), "rms": (1, 0), "integral": (1, 1), "integral-square": (2, 1)}
 """Powers of the derivative's unit and of time in each measure."""
+
+
 NAMES = {
     "mean": "mean absolute value",
     "rms": "root mean square",
@@ -29,8 +27,6 @@ NAMES = {
     "integral-square": "integral of the square",
 }
 """Each measure in words."""
-_NO_MOTION = "Without durations, this cannot be computed."
-"""Said of a measure where nothing defines a motion."""
 
 
 @dataclass(frozen=True)
@@ -129,64 +125,33 @@ def sampled(trajectory: Trajectory, order: int, measure: str) -> list[MotionMeas
     return found
 
 
-def judge_measures(study: Study) -> Iterator[Finding]:
-    """Findings of TG208."""
-    return each_motion(study, MeasureClaim, _measures, "TG208", _NO_MOTION)
-
-
-def _measures(study: Study, claim: MeasureClaim, motion: AnyClaim) -> Iterator[Finding]:
-    for pid, rid in study.claim_pairs(motion):
-        if claim.problem not in (None, pid) or not has_curve(study, motion, pid, rid):
-            continue
-        joints = study.claim_problem(motion, pid, rid).joints
-        pairs = [(j, n) for j, n in peak_numbers(study, claim) if j is None or j in joints]
-        if not pairs:
-            continue
-        found = [
-            (joint, measure_beside(study, claim, number, motion, joint, pid, rid))
-            for joint, number in pairs
-        ]
-
-        def unit(joint: str | None, pair: tuple[str, str] = (pid, rid)) -> str:
-            return _unit(study, claim, joint, *pair)
-
-        def name(joint: str | None, one: NumberBeside) -> str:
-            whose = one.meaning if joint is None else f" of joint {joint}"
-            return f"the {NAMES[claim.measure]} of {claim.derivative}{whose}"
-
-        yield finding_of_numbers(study, "TG208", claim, motion, (pid, rid), found, unit, name)
-
-
-def _unit(study: Study, claim: MeasureClaim, joint: str | None, pid: str, rid: str) -> str:
-    own, by_time = _POWERS[claim.measure]
-    unit = unit_shown(study, pid, rid, claim.derivative, joint)
-    shown = unit if own == 1 else f"({unit})²"
-    return f"{shown}·{study.time_unit}" if by_time else shown
-
-
 def measure_beside(
-    study: Study,
-    claim: MeasureClaim,
-    printed: Printed,
-    motion: AnyClaim,
-    joint: str | None,
-    pid: str,
-    rid: str,
-) -> NumberBeside:
+    row: PrintedRow[AnyClaim], claim: MeasureClaim, printed: Printed, joint: str | None
+) -> Beside | None:
     """A printed number beside the measure that it is nearest to, of those that it may be."""
-    problem = study.claim_problem(motion, pid, rid)
-    box, points = study.claim_boxes(motion, pid, rid)
+    problem = row.posed()
+    if joint is not None and joint not in problem.joints:
+        return None
     order = QUANTITIES.index(claim.derivative) + 1
     index = None if joint is None else problem.joints.index(joint)
     own, by_time = _POWERS[claim.measure]
-    unit = in_units(study, pid, rid, claim.derivative, 1.0, joint) ** own
-    unit *= in_units(study, pid, rid, "time", 1.0) ** by_time
+    unit = row.in_units(claim.derivative, 1.0, joint) ** own
+    unit *= row.in_units("time", 1.0) ** by_time
+    shown = row.unit(claim.derivative, joint)
+    shown = shown if own == 1 else f"({shown})²"
+    shown += f"·{row.study.time_unit}" if by_time else ""
 
     def meant(waypoints: Array, durations: Array) -> dict[str, float]:
         trajectory = fit(problem.curve, waypoints, durations)
         found = measured(trajectory, order, claim.measure).meant(index)
         return {words: unit * value for words, value in found.items()}
 
-    coarse = sampled(fit(problem.curve, points.value, box.value), order, claim.measure)
+    coarse = sampled(row.motion, order, claim.measure)
     samples = [{words: unit * x for words, x in one.meant(index).items()} for one in coarse]
-    return nearest_number(printed, meant, samples, box, points)
+    return nearest_number(printed, shown, joint, meant, samples, row.boxes)
+
+
+def measure_described(row: PrintedRow[AnyClaim], claim: MeasureClaim, one: Beside) -> str:
+    """One printed measure beside that of the motion."""
+    whose = one.meaning if one.joint is None else f" of joint {one.joint}"
+    return one.told(f"the {NAMES[claim.measure]} of {claim.derivative}{whose}")

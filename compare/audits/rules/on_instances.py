@@ -14,9 +14,12 @@ from ..instances import (
     MIDDLE,
     InstancesResult,
     distribution,
+    examinable,
+    examined,
     percent_range,
     readings_of,
     reproduced,
+    unexamined,
 )
 from ..study import Study
 
@@ -34,12 +37,12 @@ _informing = partial(Finding, rule="TG404", basis=Basis.REPLAY, decides=False)
 def judge_instances(study: Study) -> Iterator[Finding]:
     """Findings of TG404. None of them decides: the instances are not the paper's."""
     for block in study.case.instances:
-        why = study.unexamined(block) if readings_of(study, block) else None
+        why = unexamined(study, block) if readings_of(study, block) else None
         if why is not None:
             said = f"Family {block.id} is not examined: {why}."
             yield _informing(kind="not examined", sentences=(said,))
-    for block in study.instance_blocks:
-        result = study.instances(block)
+    for block in examinable(study):
+        result = examined(study, block)
         yield _summary(result)
         for reading in result.readings:
             yield _under(result, reading)

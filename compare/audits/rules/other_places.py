@@ -10,12 +10,12 @@ from math import inf, isfinite, log
 from ....problem import check
 from ....problem.cases import AnyClaim, DurationsClaim, PeakClaim, TimeClaim, motions_of
 from ...documents import Basis, Finding
-from ..stated import prints_durations
+from ..printed_row import PrintedRow, printed_rows
+from ..stated import called, prints_durations
 from ..study import Study
-from .continuous_time import broken
-from .peaks import FITS, beside, peak_numbers
+from .judged_rows import broken
+from .peaks import beside
 from .printed_tables import doubted
-from .wording import called
 
 _FEWEST = 3
 """Durations that two rows need in common before equal digits are worth a word."""
@@ -39,36 +39,37 @@ def judge_places(study: Study) -> Iterator[Finding]:
 
 def _peaks_elsewhere(study: Study, claim: PeakClaim, own: AnyClaim) -> Iterator[Finding]:
     motions = [c for c in study.case.claims if prints_durations(c)]
-    for pid, rid in study.claim_pairs(own):
-        joints = study.problem(pid, rid).joints
+    for row in printed_rows(study, own):
+        joints = study.problem(row.pair).joints
         said = []
-        for joint, number in peak_numbers(study, claim):
-            mine = beside(study, claim, number, own, joint, pid, rid)
-            if mine is None or mine.kind in FITS:
+        for joint, number in study.printed_numbers(claim):
+            mine = beside(row, claim, number, joint)
+            if mine is None or mine.fits:
                 continue
             found = []
             for motion in motions:
-                if not study.fits(motion, pid, rid):
+                if not study.fits(motion, row.pair):
                     continue
+                elsewhere = PrintedRow(study, motion, row.pair)
                 for other in joints if joint is not None else (None,):
                     if (motion.id, other) == (own.id, joint):
                         continue
-                    there = beside(study, claim, number, motion, other, pid, rid)
-                    if there is not None and there.kind in FITS:
+                    there = beside(elsewhere, claim, number, other)
+                    if there is not None and there.fits:
                         found.append((abs(there.distance), motion, other))
             if found:
                 distance, motion, other = min(found, key=lambda one: one[0])
-                row = "" if other is None else f", joint {other}"
+                whose = "" if other is None else f", joint {other}"
                 said.append(
                     f"{number} lies {100 * mine.distance:+.2g} % from the peak of its own motion "
-                    f"and {100 * distance:.2g} % from that of {called(motion)}{row}"
+                    f"and {100 * distance:.2g} % from that of {called(motion)}{whose}"
                 )
         if said:
             yield _informing(
                 basis=Basis.CHECK,
                 claim=claim.id,
-                problem=pid,
-                reading=rid,
+                problem=row.problem,
+                reading=row.reading,
                 printed=", ".join(map(str, claim.printed)),
                 kind="peaks",
                 sentences=(
@@ -80,14 +81,14 @@ def _peaks_elsewhere(study: Study, claim: PeakClaim, own: AnyClaim) -> Iterator[
 
 def _row_elsewhere(study: Study, claim: DurationsClaim) -> Iterator[Finding]:
     """A joint's durations that break its limits and just use up those of another joint."""
-    for pid, rid in study.claim_pairs(claim):
-        problem = study.problem(pid, rid)
+    for row in printed_rows(study, claim):
+        problem = study.problem(row.pair)
         if claim.joint not in problem.joints or len(problem.joints) == 1:
             continue
-        if broken(study, claim, pid, rid) is None:
+        if broken(row) is None:
             continue
-        durations = study.case.claim_durations(claim, rid).value
-        own = _misses(study.claim_check(claim, pid, rid).stretch)
+        durations = row.durations.value
+        own = _misses(row.check.stretch)
         best, joint = min(
             (_misses(check(problem.joint(j), durations).stretch), label)
             for j, label in enumerate(problem.joints)
@@ -97,8 +98,8 @@ def _row_elsewhere(study: Study, claim: DurationsClaim) -> Iterator[Finding]:
             yield _informing(
                 basis=Basis.CHECK,
                 claim=claim.id,
-                problem=pid,
-                reading=rid,
+                problem=row.problem,
+                reading=row.reading,
                 kind="rows",
                 sentences=(
                     f"The durations printed for joint {claim.joint} ({called(claim)}) would have "

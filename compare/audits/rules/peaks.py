@@ -1,12 +1,9 @@
-"""TG203: printed peaks beside the exact peaks of the motion that they describe."""
+"""Peaks and jumps of a printed motion, and printed peaks beside them."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from enum import StrEnum
-from functools import cached_property
-from typing import TypeVar
 
 import numpy as np
 
@@ -14,156 +11,53 @@ from ....problem import (
     QUANTITIES,
     Array,
     Extremum,
+    Jump,
     Printed,
+    Trajectory,
     extrema,
     fit,
     peak_gradients,
 )
-from ....problem.cases import AnyClaim, MotionValueClaim, PeakClaim, motions_of
-from ...documents import Basis, ClaimVerdict, Finding
+from ....problem.cases import AnyClaim, Claim, PeakClaim
+from ..printed_row import PrintedRow
 from ..rounding import RoundingBox
-from ..study import Study
-from .corners import Look, largest_change
-from .loose_curves import FITTING, misfit
-from .norms import largest_norm
-from .unit_factors import meant_by_ratio
-from .wording import UNEXPLAINED, called, in_units, unit_shown
+from .beside import UNEXPLAINED, Beside, Class, Look, largest_change
 
-_Value = TypeVar("_Value", bound=MotionValueClaim)
 _SAMPLES = 50
 """Samples of a motion at the coarsest: fewer would show corners in a printed figure."""
 _PHASES = 8
 """Offsets at which those samples are tried: the worst of so many comes near the worst of all."""
-_ROOTS = (2, 3, 5)
-"""Numbers whose square roots closed forms of peaks hold, such as 10/√3 of degree 5 and 84√5/25 of
-degree 7: one that is lost in print is named as an explanation."""
 _WIDE = 0.05
 """Share of a peak above which the room that digits leave is said: what then fits tells little."""
-_NO_MOTION = "No durations are printed whose motion could have this peak."
-"""Said of a peak where nothing defines a motion."""
+_NORM_PLACES = 65
+"""Places of a piece at which the norm is computed before the largest is refined, where it is no
+polynomial in time: many for a curve that turns a few times."""
+_Jump = tuple[PrintedRow[Claim], Jump]
+"""A jump with the row whose motion it is of."""
+JUMPING = ("position", "velocity", "acceleration")
+"""What jumps, by its order."""
 
 
-class Class(StrEnum):
-    """How a printed peak lies beside the exact one."""
-
-    ROUNDING = "rounding"
-    CUT_OFF = "cut off"
-    SAMPLING = "sampling"
-    NORM = "norm over the joints"
-    UNIT = "other unit"
-    ROOT = "root left out"
-    OFF = "off"
-
-
-FITS = (Class.ROUNDING, Class.CUT_OFF, Class.SAMPLING, Class.NORM)
-"""The classes that accuse of nothing."""
-
-
-@dataclass(frozen=True, eq=False)
-class Beside:
-    """A printed peak beside the exact one of a motion.
-
-    Attributes
-    ----------
-    printed : Printed
-    lower, upper, cut_lower, cut_upper : float
-        What the digits stand for, rounded or cut off, in the SI unit.
-    exact : float
-        The exact peak, at the printed durations and way-points.
-    reach : float
-        Its change over all values that round to the printed digits: of first order, and where that
-        does not reach the printed peak the largest that is found, if it is larger.
-    far : float
-        The same over values that are cut off to the printed digits, which lie up to a whole last
-        place away.
-    sampled : float
-        The least peak that coarse sampling of that motion finds.
-    norm : Beside, optional
-        The same beside the largest norm over the joints, where one number speaks of several.
-    linear : bool
-        Whether it is that of a joint that slides.
-    """
-
-    printed: Printed
-    value: float
-    lower: float
-    upper: float
-    cut_lower: float
-    cut_upper: float
-    exact: float
-    reach: float
-    far: float
-    sampled: float
-    norm: Beside | None = None
-    linear: bool = False
-
-    @property
-    def met(self) -> bool:
-        """Whether the exact peak rounds to the printed digits, the other numbers as printed."""
-        return self.lower <= self.exact <= self.upper
-
-    @property
-    def distance(self) -> float:
-        """Relative distance of the printed peak from the exact one."""
-        if self.exact == 0.0:
-            return 0.0 if self.value == 0.0 else np.inf
-        return (self.value - self.exact) / self.exact
-
-    @cached_property
-    def kind(self) -> Class:
-        """How the two lie beside each other, the most charitable first."""
-        low, high = self.exact - self.reach, self.exact + self.reach
-        if self.lower <= high and low <= self.upper:
-            return Class.ROUNDING
-        low, high = self.exact - self.far, self.exact + self.far
-        widest = max(self.upper, self.cut_upper)
-        if min(self.lower, self.cut_lower) <= high and low <= widest:
-            return Class.CUT_OFF
-        if self.sampled - self.far <= widest and self.value < self.exact:
-            return Class.SAMPLING
-        if self.norm is not None and self.norm.kind in FITS:
-            return Class.NORM
-        if self.root is not None:
-            return Class.ROOT
-        return Class.OFF if self.factor is None else Class.UNIT
-
-    @property
-    def root(self) -> int | None:
-        """Whose square root a printed peak lacks, if with it the two agree within rounding."""
-        low, high = self.exact - self.reach, self.exact + self.reach
-        fitting = (n for n in _ROOTS if n**0.5 * self.lower <= high and low <= n**0.5 * self.upper)
-        return next(fitting, None)
-
-    @property
-    def factor(self) -> str | None:
-        """What a ratio near that of two units would mean, if it is near one."""
-        if not (self.exact > 0 and self.value > 0):
-            return None
-        return meant_by_ratio(self.value / self.exact, self.linear)
-
-
-def box_reach(study: Study, claim: AnyClaim, pid: str, rid: str, point: Extremum) -> float:
+def box_reach(row: PrintedRow[Claim], point: Extremum) -> float:
     """First-order change of an extremum over the rounding box."""
-    problem = study.claim_problem(claim, pid, rid)
-    durations, waypoints = study.claim_boxes(claim, pid, rid)
-    g = peak_gradients(problem, durations.value, [point])
-    by_time = np.abs(g.durations[0]) @ (durations.upper - durations.lower) / 2
-    half = (waypoints.upper - waypoints.lower)[:, point.joint] / 2
-    return float(by_time + np.abs(g.waypoints[0]) @ half)
+    return _reach(row, [point], np.ones(1))
 
 
-def farthest(
-    study: Study, claim: AnyClaim, pid: str, rid: str, top: Extremum, alone: bool, share: float
-) -> float:
+def _reach(row: PrintedRow[Claim], points: list[Extremum], share: Array) -> float:
+    """First-order change of a sum of extrema, each times its share, over the rounding box."""
+    durations, waypoints = row.boxes
+    g = peak_gradients(row.posed(), durations.value, points)
+    half = (waypoints.upper - waypoints.lower).T[[point.joint for point in points]] / 2
+    by_time = np.abs(share @ g.durations) @ (durations.upper - durations.lower) / 2
+    return float(by_time + np.sum(np.abs(share[:, None] * g.waypoints) * half))
+
+
+def farthest(row: PrintedRow[AnyClaim], top: Extremum, alone: bool, share: float) -> float:
     """Largest change of a peak that is found in the rounding box.
 
     Parameters
     ----------
-    study : Study
-    claim : AnyClaim
-        A claim of durations.
-    pid, rid : str
-        Problem and reading.
+    row : PrintedRow
     top : Extremum
         The peak at the printed numbers.
     alone : bool
@@ -176,7 +70,7 @@ def farthest(
     float
         In the SI unit of the peak.
     """
-    problem = study.claim_problem(claim, pid, rid)
+    problem = row.posed()
     joints = [top.joint] if alone else range(len(problem.joints))
 
     def look(h: RoundingBox, q: RoundingBox) -> Look:
@@ -193,208 +87,187 @@ def farthest(
         )
         return Look(abs(here.value), down, up)
 
-    return largest_change(*study.claim_boxes(claim, pid, rid), share, look)
+    return largest_change(*row.boxes, share, look)
 
 
-def largest(study: Study, claim: AnyClaim, pid: str, rid: str, order: int) -> list[Extremum]:
+def largest(row: PrintedRow[Claim], order: int) -> list[Extremum]:
     """Largest extremum of each joint of the claim's problem, at the printed point."""
 
     def compute() -> list[Extremum]:
-        problem = study.claim_problem(claim, pid, rid)
-        durations = study.case.claim_durations(claim, rid).value
-        trajectory = fit(problem.curve, problem.waypoints, durations)
+        motion = row.motion
         return [
-            max(extrema(trajectory, j, order), key=lambda e: abs(e.value))
-            for j in range(len(problem.joints))
+            max(extrema(motion, j, order), key=lambda e: abs(e.value)) for j in range(motion.joints)
         ]
 
-    return study.once(("largest", claim.id, pid, rid, order), compute)
-
-
-def has_curve(study: Study, claim: AnyClaim, pid: str, rid: str) -> bool:
-    """Whether the printed durations define a curve under a reading."""
-    worst = study.claim_check(claim, pid, rid).worst
-    return worst is None or worst.quantity != "curve"
+    return row.once("largest", compute, order)
 
 
 def beside(
-    study: Study,
-    claim: PeakClaim,
-    printed: Printed,
-    motion: AnyClaim,
-    joint: str | None,
-    pid: str,
-    rid: str,
+    row: PrintedRow[AnyClaim], claim: PeakClaim, printed: Printed, joint: str | None
 ) -> Beside | None:
     """A printed peak set beside the exact one of a motion.
 
     Parameters
     ----------
-    study : Study
+    row : PrintedRow
     claim : PeakClaim
         Says which derivative.
     printed : Printed
         One of its numbers.
-    motion : AnyClaim
-        A claim of durations.
     joint : str or None
         Label of the joint; the largest over all joints if None.
-    pid, rid : str
-        Problem and reading.
 
     Returns
     -------
     Beside or None
         None where the joint is not in that motion, or it has no curve.
     """
-    if not has_curve(study, motion, pid, rid):
-        return None
-    problem = study.claim_problem(motion, pid, rid)
-    if joint is not None and joint not in problem.joints:
+    problem = row.posed()
+    if not row.has_curve or (joint is not None and joint not in problem.joints):
         return None
     order = QUANTITIES.index(claim.derivative) + 1
-    tops = largest(study, motion, pid, rid, order)
+    tops = largest(row, order)
     if joint is not None:
         tops = [tops[problem.joints.index(joint)]]
     top = max(tops, key=lambda e: abs(e.value))
-    measured = study.case.measured(printed, claim.derivative, pid, rid, joint)
-    cut = measured.cut_off()
-    samples = _samples(study, motion, pid, rid, order)
-    reach = box_reach(study, motion, pid, rid, top)
-    found = Beside(
-        printed,
-        measured.value,
-        measured.lower,
-        measured.upper,
-        cut.lower,
-        cut.upper,
-        abs(top.value),
-        reach,
-        2 * reach,
-        min(float((v if joint is None else v[:, top.joint]).max()) for v in samples),
-        linear=problem.linear[top.joint],
-    )
-    if found.kind not in FITS:
-        near, far = (
-            farthest(study, motion, pid, rid, top, joint is not None, share) for share in (1.0, 2.0)
+    measured = row.measured(printed, claim.derivative, joint)
+    samples, cut = _samples(row, order), measured.cut_off()
+
+    def shown(*values: float) -> Iterator[float]:
+        return (row.in_units(claim.derivative, value, joint) for value in values)
+
+    low, high, lowest, highest = shown(measured.lower, measured.upper, cut.lower, cut.upper)
+
+    def of(*numbers: float) -> Beside:
+        exact, reach, far, least = shown(*numbers)
+        return Beside(
+            printed=printed,
+            rounded=(low, high),
+            wide=(lowest, highest),
+            exact=exact,
+            reach=reach,
+            far=far,
+            sampled=(least, exact),
+            unit=row.unit(claim.derivative, joint),
+            joint=joint,
+            linear=problem.linear[top.joint],
         )
-        found = replace(found, reach=max(reach, near), far=max(2 * reach, far))
-    if joint is not None or len(tops) == 1 or found.kind in FITS:
+
+    exact, reach = abs(top.value), box_reach(row, top)
+    least = min(float((v if joint is None else v[:, top.joint]).max()) for v in samples)
+    found = of(exact, reach, 2 * reach, least)
+    if not found.fits:
+        near, far = (farthest(row, top, joint is not None, share) for share in (1.0, 2.0))
+        found = of(exact, max(reach, near), max(2 * reach, far), least)
+    if joint is not None or len(tops) == 1 or found.fits:
         return found
-    whole = largest_norm(study, motion, pid, rid, order)
-    sampled = min(float(np.linalg.norm(v, axis=1).max()) for v in samples)
-    norm = replace(
-        found, exact=whole.largest, reach=whole.reach, far=2 * whole.reach, sampled=sampled
-    )
-    return replace(found, norm=norm)
+    whole = largest_norm(row, order)
+    least = min(float(np.linalg.norm(v, axis=1).max()) for v in samples)
+    return replace(found, norm=of(whole.largest, whole.reach, 2 * whole.reach, least))
 
 
-def _samples(study: Study, motion: AnyClaim, pid: str, rid: str, order: int) -> list[Array]:
+def _samples(row: PrintedRow[AnyClaim], order: int) -> list[Array]:
     """Absolute values at evenly spaced times, for each offset that these may have."""
 
     def compute() -> list[Array]:
-        problem = study.claim_problem(motion, pid, rid)
-        durations = study.case.claim_durations(motion, rid).value
-        trajectory = fit(problem.curve, problem.waypoints, durations)
-        step = float(durations.sum()) / _SAMPLES
+        step = float(row.durations.value.sum()) / _SAMPLES
         offsets = np.arange(_PHASES)[:, None] / _PHASES
         times = (np.arange(_SAMPLES) + offsets) * step
-        found = np.abs(trajectory(times.ravel(), order))
+        found = np.abs(row.motion(times.ravel(), order))
         return list(found.reshape(_PHASES, _SAMPLES, -1))
 
-    return study.once(("samples", motion.id, pid, rid, order), compute)
+    return row.once("samples", compute, order)
 
 
-def peak_numbers(study: Study, claim: MotionValueClaim) -> list[tuple[str | None, Printed]]:
-    """Each printed number of a claim of a derivative with the joint that it belongs to."""
-    if claim.values is None:
-        return [(claim.joint, number) for number in claim.printed]
-    return list(zip(study.case.robot.joints, claim.values, strict=True))
+@dataclass(frozen=True)
+class Norm:
+    """Largest norm of a derivative over the joints.
 
-
-def each_motion(
-    study: Study,
-    kind: type[_Value],
-    judge: Callable[[Study, _Value, AnyClaim], Iterator[Finding]],
-    rule: str,
-    without: str,
-) -> Iterator[Finding]:
-    """Findings on each claim of a kind beside each motion that it may describe.
-
-    ``without`` is said of a claim where nothing printed defines such a motion.
+    Attributes
+    ----------
+    largest : float
+        At the printed durations and way-points: the true maximum where pieces are polynomials in
+        time, else the largest of `_NORM_PLACES` values a piece, refined.
+    reach : float
+        Its first-order change over all values that round to the printed digits.
     """
-    for claim in study.claims:
-        if isinstance(claim, kind):
-            meant = motions_of(study.case.claims, claim)
-            for motion in meant:
-                yield from judge(study, claim, motion)
-            if not meant:
-                yield Finding(
-                    rule=rule,
-                    basis=Basis.TEXT,
-                    claim=claim.id,
-                    kind="no motion",
-                    sentences=(without,),
-                )
+
+    largest: float
+    reach: float
 
 
-def judge_peaks(study: Study) -> Iterator[Finding]:
-    """Findings of TG203."""
-    return each_motion(study, PeakClaim, _peaks, "TG203", _NO_MOTION)
+def largest_norm(row: PrintedRow[Claim], order: int) -> Norm:
+    """Largest norm of a derivative on a printed motion.
+
+    Parameters
+    ----------
+    row : PrintedRow
+    order : int
+        1 for velocity, 2 for acceleration, 3 for jerk.
+
+    Returns
+    -------
+    Norm
+    """
+    motion = row.motion
+    top, piece, s = max(_norm_top(motion, k, order) for k in range(len(motion.durations)))
+    values = _norm_values(motion, piece, order, np.array([s]))[:, 0]
+    points = [Extremum(j, piece, order, s, 0.0, float(v)) for j, v in enumerate(values)]
+    # The norm's gradient weighs each joint's by its share; at the top its place does not count.
+    share = values / top if top else np.zeros_like(values)
+    return Norm(top, _reach(row, points, share))
 
 
-def _peaks(study: Study, claim: PeakClaim, motion: AnyClaim) -> Iterator[Finding]:
-    for pid, rid in study.claim_pairs(motion):
-        if claim.problem not in (None, pid):
-            continue
-        taking_part = study.claim_problem(motion, pid, rid).joints
-        found = [
-            (joint, one)
-            for joint, number in peak_numbers(study, claim)
-            if joint is None or joint in taking_part
-            for one in (beside(study, claim, number, motion, joint, pid, rid),)
-            if one is not None
-        ]
-        if not found:
-            continue
-        wrong = [(joint, one) for joint, one in found if one.kind not in FITS]
-        said = [described(study, claim, joint, one, pid, rid) for joint, one in (wrong or found)]
-        verdict, note = misfit(study, pid, rid) if wrong else FITTING
-        yield Finding(
-            rule="TG203",
-            verdict=verdict,
-            basis=Basis.CHECK if all(one.met for _, one in found) else Basis.COMPUTED,
-            claim=claim.id,
-            problem=pid,
-            reading=rid,
-            printed=", ".join(map(str, claim.printed)),
-            computed="; ".join(_exact(study, claim, joint, one, pid, rid) for joint, one in found),
-            kind=", ".join(one.kind for _, one in (wrong or found)),
-            sentences=(f"Of the printed durations ({called(motion)}): {'; '.join(said)}.", note),
-            root=f"peaks of {motion.id}" if verdict is ClaimVerdict.INCONSISTENT else "",
-            between=(claim.id, motion.id) if verdict is ClaimVerdict.INCONSISTENT else (),
-        )
+def _norm_values(trajectory: Trajectory, piece: int, order: int, places: Array) -> Array:
+    """A derivative at places of a piece, one row per joint."""
+    each = [trajectory.values(piece, j, order, places) for j in range(trajectory.joints)]
+    return np.asarray(each, dtype=np.float64)
 
 
-def _exact(
-    study: Study, claim: PeakClaim, joint: str | None, one: Beside, pid: str, rid: str
-) -> str:
-    quantity = claim.derivative
-    value, reach = (in_units(study, pid, rid, quantity, x, joint) for x in (one.exact, one.reach))
-    return f"{value:.6g} ± {reach:.1g} {unit_shown(study, pid, rid, quantity, joint)}"
+def _norm_top(trajectory: Trajectory, piece: int, order: int) -> tuple[float, int, float]:
+    """Largest norm on a piece, and where it is."""
+
+    def norm(places: Array) -> Array:
+        found = np.linalg.norm(_norm_values(trajectory, piece, order, places), axis=0)
+        return np.asarray(found, dtype=np.float64)
+
+    if trajectory.polynomial_in_time:
+        places = _turning(trajectory, piece, order)
+    else:
+        places = np.linspace(0.0, 1.0, _NORM_PLACES)
+        k = int(norm(places).argmax())
+        around = (places[max(k - 1, 0)], places[min(k + 1, _NORM_PLACES - 1)])
+        from scipy.optimize import minimize_scalar  # a quarter of a second, and few need it
+
+        best = minimize_scalar(lambda s: -float(norm(np.array([s]))[0]), bounds=around)
+        places = np.append(places, best.x)
+    values = norm(places)
+    k = int(values.argmax())
+    return float(values[k]), piece, float(places[k])
 
 
-def described(
-    study: Study, claim: PeakClaim, joint: str | None, one: Beside, pid: str, rid: str
-) -> str:
+def _turning(trajectory: Trajectory, piece: int, order: int) -> Array:
+    """Both ends, and every place where the norm can turn: roots of the derivative of its square.
+
+    The square Σ_j q_j² is a polynomial. Real parts of all roots, since rounding moves double ones
+    off the axis; a place too many changes no largest value.
+    """
+    square = np.polynomial.Polynomial([0.0])
+    for joint in range(trajectory.joints):
+        square += np.polynomial.Polynomial(trajectory.derivative(piece, joint, order)) ** 2
+    turns = np.clip(square.deriv().roots().real, 0.0, 1.0)
+    return np.concatenate([[0.0, 1.0], turns])
+
+
+def peak_described(row: PrintedRow[AnyClaim], claim: PeakClaim, one: Beside) -> str:
     """One printed peak beside the exact one, with the class of their distance."""
-    whose = "" if joint is None else f"joint {joint}: "
-    exact = _exact(study, claim, joint, one, pid, rid)
+    whose = "" if one.joint is None else f"joint {one.joint}: "
+    exact = one.around
     said = f"{whose}the exact peak of {claim.derivative} is {exact}, printed is {one.printed}"
     room = ""
     if one.exact and one.reach > _WIDE * one.exact:
         room = f", which leaves {100 * one.reach / one.exact:.2g} % either way"
-    norm = "" if one.norm is None else _of_norm(study, claim, one.norm, pid, rid)
+    norm = "" if one.norm is None else _of_norm(one.norm)
     away = f"{100 * one.distance:+.2g} %"
     return (
         said
@@ -410,10 +283,34 @@ def described(
     )
 
 
-def _of_norm(study: Study, claim: PeakClaim, one: Beside, pid: str, rid: str) -> str:
+def _of_norm(one: Beside) -> str:
     """How a printed peak that is not that of a joint is the norm over the joints."""
-    norm = f"the largest norm over the joints, {_exact(study, claim, None, one, pid, rid)}"
+    norm = f"the largest norm over the joints, {one.around}"
     return {
         Class.CUT_OFF: f"as {norm}, cut off instead of rounded gives it",
         Class.SAMPLING: f"slightly below {norm}, as sampling the motion gives it",
     }.get(one.kind, f"equal to {norm}, within rounding")
+
+
+def largest_of_each_kind(jumps: Sequence[_Jump]) -> list[_Jump]:
+    """The largest jump of joints that turn and that of joints that slide, where there are any.
+
+    The kind of the first one stands first.
+    """
+    found: dict[bool, _Jump] = {}
+    for row, jump in jumps:
+        statement = row.statement
+        linear = statement.linear[statement.labels.index(jump.joint)]
+        if linear not in found or abs(jump.size) > abs(found[linear][1].size):
+            found[linear] = row, jump
+    return list(found.values())
+
+
+def jump_size(row: PrintedRow[Claim], jump: Jump) -> float:
+    """Size of a jump in the unit of its joint."""
+    return row.in_units(JUMPING[jump.order], jump.size, jump.joint)
+
+
+def jump_unit(row: PrintedRow[Claim], jump: Jump) -> str:
+    """The unit of a jump, as a sentence writes it."""
+    return row.unit(JUMPING[jump.order], jump.joint)

@@ -9,10 +9,9 @@ import numpy as np
 from ....problem import QUANTITIES
 from ....problem.cases import AnyClaim, Digits, PeakClaim, StatementClaim, motions_of
 from ...documents import Basis, ClaimVerdict, Finding, Severity
+from ..printed_row import PrintedRow, printed_rows
 from ..stated import place
 from ..study import Study
-from .peaks import peak_numbers
-from .wording import in_units, unit_shown
 
 _ROUNDING = 1.0 + 1e-9
 """Factor by which a peak exceeds its limit at least: far above the rounding of units to floats."""
@@ -31,8 +30,8 @@ def _beyond(study: Study, claim: StatementClaim, peak: PeakClaim) -> Iterator[Fi
     for motion in motions_of(study.case.claims, peak):
         if claim.of and motion.id not in claim.of:
             continue
-        for pid, rid in study.claim_pairs(motion):
-            said = _above(study, motion, peak, pid, rid)
+        for row in printed_rows(study, motion):
+            said = _above(row, peak)
             if said:
                 yield Finding(
                     rule="TG209",
@@ -40,8 +39,8 @@ def _beyond(study: Study, claim: StatementClaim, peak: PeakClaim) -> Iterator[Fi
                     verdict=ClaimVerdict.INCONSISTENT,
                     basis=Basis.DIGITS,
                     claim=claim.id,
-                    problem=pid,
-                    reading=rid,
+                    problem=row.problem,
+                    reading=row.reading,
                     printed=", ".join(map(str, peak.printed)),
                     kind="beyond",
                     sentences=(f"{place(peak)} prints {'; '.join(said)}.",),
@@ -50,15 +49,15 @@ def _beyond(study: Study, claim: StatementClaim, peak: PeakClaim) -> Iterator[Fi
                 )
 
 
-def _above(study: Study, motion: AnyClaim, peak: PeakClaim, pid: str, rid: str) -> list[str]:
+def _above(row: PrintedRow[AnyClaim], peak: PeakClaim) -> list[str]:
     """Printed peaks beyond their limits, whatever was rounded, raised or cut off in either.
 
     A number for several joints at once may be the norm over them, which no limit bounds.
     """
-    loosest = study.claim_problem(motion, pid, rid, Digits.LOOSEST_CUT)
+    loosest = row.posed(Digits.LOOSEST_CUT)
     order = QUANTITIES.index(peak.derivative)
     found = []
-    for joint, number in peak_numbers(study, peak):
+    for joint, number in row.study.printed_numbers(peak):
         if joint is None and len(loosest.joints) > 1:
             continue
         j = 0 if joint is None else loosest.joints.index(joint) if joint in loosest.joints else None
@@ -66,11 +65,11 @@ def _above(study: Study, motion: AnyClaim, peak: PeakClaim, pid: str, rid: str) 
             continue
         limit = float(loosest.limits.sides[:, j, order].max())
         label = loosest.joints[j]
-        measured = study.case.measured(number, peak.derivative, pid, rid, label)
+        measured = row.measured(number, peak.derivative, label)
         least = measured.value - (measured.upper - measured.lower)
         if np.isfinite(limit) and least > limit * _ROUNDING:
-            shown = in_units(study, pid, rid, peak.derivative, limit, label)
-            unit = unit_shown(study, pid, rid, peak.derivative, label)
+            shown = row.in_units(peak.derivative, limit, label)
+            unit = row.unit(peak.derivative, label)
             found.append(
                 f"{number} {unit} for the {peak.derivative} of joint {label}, whose "
                 f"limit is at most {shown:.6g} {unit}, however its digits are read"

@@ -13,6 +13,7 @@ from ....problem.cases import (
 )
 from ...documents import Basis, ClaimVerdict, Finding, Severity, ranged
 from ..roots import SUM
+from ..rounding import hull
 from ..study import Study
 
 _FEWEST = 4
@@ -32,12 +33,6 @@ def judge_digits(study: Study) -> Iterator[Finding]:
 def meet(a: Interval, b: Interval) -> bool:
     """Whether two intervals have a number in common."""
     return a.lower <= b.upper and b.lower <= a.upper
-
-
-def hull(number: Printed) -> Interval:
-    """Every value whose digits, rounded or cut off, are the printed ones."""
-    a, b = number.interval, number.truncated
-    return Interval(min(a.lower, b.lower), max(a.upper, b.upper))
 
 
 def _raised(number: Printed) -> Interval:

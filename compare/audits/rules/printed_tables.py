@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
 from itertools import combinations
 
-from ....problem import Case, Interval, Printed
+from ....problem import Case, Interval
 from ....problem.cases import (
     AnyClaim,
     DurationsClaim,
@@ -16,9 +16,12 @@ from ....problem.cases import (
     TotalTimeClaim,
 )
 from ...documents import Basis, ClaimVerdict, Finding, Severity
+from ..printed_row import PrintedRow, rows_under
 from ..roots import TABLES
+from ..rounding import hull
+from ..stated import printed_total
 from ..study import Study
-from .printed_digits import end_blends, hull, meet
+from .printed_digits import end_blends, meet
 
 _Timed = DurationsClaim | MaximumClaim | TotalTimeClaim
 """Claims that state a total, or durations of which it is the sum."""
@@ -30,22 +33,6 @@ def judge_tables(study: Study) -> Iterator[Finding]:
     """Findings of TG104 and TG105."""
     yield from _tables_alike(study)
     yield from _same_total(study)
-
-
-def printed_total(claim: AnyClaim) -> Printed | None:
-    """The total that a claim prints, if it does.
-
-    Parameters
-    ----------
-    claim : AnyClaim
-
-    Returns
-    -------
-    Printed or None
-    """
-    if isinstance(claim, DurationsClaim | MaximumClaim):
-        return claim.total
-    return claim.value if isinstance(claim, TotalTimeClaim) else None
 
 
 def _alike(case: Case) -> Iterator[tuple[Table, Table]]:
@@ -120,23 +107,21 @@ def _at_optimum(study: Study, claims: Iterable[AnyClaim]) -> str | None:
     printed = list(claims)
     rows: list[AnyClaim] = [c for c in printed if isinstance(c, DurationsClaim)]
     rows = rows or [c for c in printed if isinstance(c, MaximumClaim)]
-    for rid in study.readings:
-        pairs = [(c, pid) for c in rows for pid, r in study.claim_pairs(c) if r == rid]
-        if {c.id for c, _ in pairs} == {c.id for c in rows} and all(
-            _is_optimum(study, c, pid, rid) for c, pid in pairs
-        ):
-            return rid
+    for reading in study.readings:
+        posed = rows_under(study, rows, reading)
+        if {row.claim.id for row in posed} == {c.id for c in rows} and all(map(_is_optimum, posed)):
+            return reading
     return None
 
 
-def _is_optimum(study: Study, claim: AnyClaim, pid: str, rid: str) -> bool:
-    total = study.claim_total(claim, rid)
-    solution = study.claim_optimum(claim, pid, rid)
+def _is_optimum(row: PrintedRow[AnyClaim]) -> bool:
+    total = row.total
+    solution = row.optimum
     if total is None or not solution.found or solution.infimum is not None:
         return False
-    reached = study.reachable(claim, solution.durations, pid, rid)
+    reached = row.reachable(solution.durations)
     spread = 0.0 if reached is None else max(reached - solution.best, 0.0)
-    low, high = total[1]
+    low, high = total.interval
     return low - spread <= solution.best <= high + spread
 
 

@@ -10,8 +10,9 @@ from ....problem import Interval, Printed, shown_bound
 from ....problem.cases import ControlVerticesClaim, Statement
 from ....problem.curves import vertex_matrix
 from ...documents import Basis, ClaimVerdict, Finding, Severity, ranged
+from ..rounding import hull
 from ..study import Study
-from .printed_digits import hull, meet
+from .printed_digits import meet
 
 
 @dataclass(frozen=True)
@@ -62,15 +63,15 @@ def judge_vertices(study: Study) -> Iterator[Finding]:
         if isinstance(claim, ControlVerticesClaim):
             problem = claim.problem or study.case.problems[0].id
             under = {
-                rid: _found(claim, statement)
-                for pid, rid in study.pairs
-                if pid == problem and (statement := study.case.statement(pid, rid)).complete
+                pair.reading: _found(claim, statement)
+                for pair in study.pairs
+                if pair.problem == problem and (statement := study.case.statement(*pair)).complete
             }
             first = next(iter(under.values()), None)
             if first is not None and all(found == first for found in under.values()):
                 yield first
             else:
-                yield from (f.model_copy(update={"reading": rid}) for rid, f in under.items())
+                yield from (f.model_copy(update={"reading": r}) for r, f in under.items())
 
 
 def has_vertices(statement: Statement) -> bool:

@@ -8,8 +8,9 @@ from math import cbrt, inf, pi, sqrt
 import numpy as np
 
 from ....problem import Array, CaseError, Problem
-from ....problem.cases import Digits, TotalTimeClaim
+from ....problem.cases import Claim, Digits, TotalTimeClaim
 from ...documents import Basis, ClaimVerdict, Finding
+from ..printed_row import PrintedRow
 from ..study import Study
 
 _SLACK = 1e-12
@@ -169,42 +170,43 @@ def judge_profiles(study: Study) -> Iterator[Finding]:
     """Findings of TG304."""
     for claim in study.claims:
         if isinstance(claim, TotalTimeClaim) and claim.profile is not None:
-            for pid, rid in study.pairs:
-                if claim.problem in (None, pid):
-                    yield _beside(study, claim, claim.profile, pid, rid)
+            for pair in study.pairs:
+                if claim.problem in (None, pair.problem):
+                    yield _beside(PrintedRow(study, claim, pair), claim.profile)
 
 
-def _ways(problem: Problem, study: Study, pid: str, rid: str) -> tuple[Array, Array]:
+def _ways(row: PrintedRow[Claim], problem: Problem) -> tuple[Array, Array]:
     """Least and most that each joint moves in each segment, digits rounded or cut off."""
-    box = study.waypoint_box(problem, pid, rid).or_cut_off()
+    box = row.waypoint_box(problem).or_cut_off()
     low, high = box.lower[1:] - box.upper[:-1], box.upper[1:] - box.lower[:-1]
     most = np.maximum(np.abs(low), np.abs(high))
     least = np.where((low <= 0) & (high >= 0), 0.0, np.minimum(np.abs(low), np.abs(high)))
     return least, most
 
 
-def _beside(study: Study, claim: TotalTimeClaim, profile: str, pid: str, rid: str) -> Finding:
-    why = _not_computed(study, claim, profile, pid, rid)
+def _beside(row: PrintedRow[TotalTimeClaim], profile: str) -> Finding:
+    study, claim = row.study, row.claim
+    why = _not_computed(row, profile)
     if why:
         return Finding(
             rule="TG304",
             basis=Basis.CHECK,
             claim=claim.id,
-            problem=pid,
-            reading=rid,
+            problem=row.problem,
+            reading=row.reading,
             kind="other profile",
             sentences=(why,),
         )
     straight = claim.path == "straight"
-    plain, fits = _fitted(study, claim, profile, pid, rid, straight)
-    number = study.case.measured(claim.value, "time", claim.problem, rid)
+    plain, fits = _fitted(row, profile, straight)
+    number = row.time(claim.value)
     verdict, kind, said = ClaimVerdict.SUPPORTED, "fits", "which fits"
     if plain == 0.0:
         verdict, kind, said = ClaimVerdict.NOT_CHECKABLE, "at rest", "and no joint moves"
     elif plain == inf:
         verdict, kind = ClaimVerdict.NOT_CHECKABLE, "limit 0"
         said = "and a joint moves whose limit is 0"
-    elif not fits and not straight and _fitted(study, claim, profile, pid, rid, True)[1]:
+    elif not fits and not straight and _fitted(row, profile, True)[1]:
         verdict, kind = ClaimVerdict.NOT_CHECKABLE, "straight"
         said = 'which fits where the joints stay on a straight line: path = "straight" if they do'
     elif not fits:
@@ -216,8 +218,8 @@ def _beside(study: Study, claim: TotalTimeClaim, profile: str, pid: str, rid: st
         verdict=verdict,
         basis=Basis.CHECK,
         claim=claim.id,
-        problem=pid,
-        reading=rid,
+        problem=row.problem,
+        reading=row.reading,
         printed=f"{claim.value} {study.time_unit}",
         computed=f"{plain:.6g} s",
         kind=kind,
@@ -228,17 +230,15 @@ def _beside(study: Study, claim: TotalTimeClaim, profile: str, pid: str, rid: st
     )
 
 
-def _not_computed(
-    study: Study, claim: TotalTimeClaim, profile: str, pid: str, rid: str
-) -> str | None:
+def _not_computed(row: PrintedRow[TotalTimeClaim], profile: str) -> str | None:
     """Why the profile of a problem is none of those computed here, as a sentence; None if it is."""
-    problem = study.claim_problem(claim, pid, rid)
+    problem = row.posed()
     if problem.limits.uneven:
         return (
             f"The lower and upper limits differ; the {profile} profile is computed within limits "
             "of equal size only."
         )
-    if not study.case.statement(pid, rid).declaration.at_rest:
+    if not row.statement.declaration.at_rest:
         return (
             "The case file gives derivatives other than 0 at the ends of the motion; the "
             f"{profile} profile is computed from rest to rest only."
@@ -253,22 +253,20 @@ _PATHS = {
 """How the joints go together, by whether they stay on a straight line."""
 
 
-def _fitted(
-    study: Study, claim: TotalTimeClaim, profile: str, pid: str, rid: str, straight: bool
-) -> tuple[float, bool]:
+def _fitted(row: PrintedRow[TotalTimeClaim], profile: str, straight: bool) -> tuple[float, bool]:
     """The shortest total at the printed numbers, and whether the printed one fits its interval."""
     total = shortest_straight if straight else shortest
-    problem = study.claim_problem(claim, pid, rid)
+    problem = row.posed()
     ways = np.abs(np.diff(problem.waypoints, axis=0))
     plain = total(profile, ways, problem.limits.derivatives)
-    least, most = _ways(problem, study, pid, rid)
-    loose = study.claim_problem(claim, pid, rid, Digits.LOOSEST_CUT).limits.derivatives
+    least, most = _ways(row, problem)
+    loose = row.posed(Digits.LOOSEST_CUT).limits.derivatives
     low = total(profile, least, loose) * (1.0 - _SLACK)
     try:
-        tight = study.claim_problem(claim, pid, rid, Digits.TIGHTEST).limits.derivatives
+        tight = row.posed(Digits.TIGHTEST).limits.derivatives
         high = total(profile, most, tight) * (1.0 + _SLACK)
     except CaseError:
         high = inf
-    number = study.case.measured(claim.value, "time", claim.problem, rid)
+    number = row.time(row.claim.value)
     cut = number.cut_off()
-    return plain, min(number.lower, cut.lower) <= high and low <= max(number.upper, cut.upper)
+    return plain, cut.lower <= high and low <= cut.upper

@@ -2,23 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
-
-from ...documents import Finding, Rule
-from ..study import Study
-from .bare_totals import judge_bare_totals
+from ...documents import Rule
 from .compared_before import cite_comparisons
 from .condition_count import judge_counts
-from .continuous_time import judge_motions
+from .continuous_time import judge_bare_totals, judge_motions
 from .distances import judge_distances
 from .improvements import judge_improvements
 from .linear_blends import judge_blends
-from .measures import judge_measures
+from .motion_numbers import judge_measures, judge_peaks, judge_values
 from .on_instances import judge_instances
 from .open_points import list_open_points
 from .other_places import judge_places
-from .peaks import judge_peaks
 from .peaks_and_limits import judge_peak_limits
 from .printed_chain import judge_kinematics
 from .printed_digits import judge_digits
@@ -28,28 +22,8 @@ from .printed_tables import judge_tables
 from .printed_vertices import judge_vertices
 from .profiles import judge_profiles
 from .replays import judge_replays
+from .rule_group import RuleGroup
 from .scaling_law import judge_scaling
-from .values import judge_values
-
-
-@dataclass(frozen=True)
-class RuleGroup:
-    """Rules that one function judges.
-
-    Attributes
-    ----------
-    judge : callable
-        From a study to the findings.
-    rules : dict
-        What each rule looks at, by its permanent id; an id is never reused.
-    without_waypoints : bool
-        Whether it says something while the way-points are missing.
-    """
-
-    judge: Callable[[Study], Iterator[Finding]]
-    rules: dict[str, str]
-    without_waypoints: bool = False
-
 
 GROUPS = (
     RuleGroup(

@@ -30,8 +30,9 @@ from ...gaps import (
     share_of_pairs,
     spread,
 )
+from ..chosen_case import Pair, Replays
+from ..printed_row import rows_under
 from ..replay_settings import LISTED
-from ..replayed_case import Replays
 from ..stated import other_objective
 from ..study import Study
 
@@ -53,7 +54,7 @@ def judge_replays(study: Study) -> Iterator[Finding]:
 
 
 def _found(
-    study: Study, rule: str, claim: AnyClaim, pid: str, printed: str | None = None
+    study: Study, rule: str, claim: AnyClaim, pair: Pair, printed: str | None = None
 ) -> Callable[..., Finding]:
     """A finding of a rule about replays of a claim's algorithms, in want of what it says."""
     return partial(
@@ -62,8 +63,8 @@ def _found(
         basis=Basis.REPLAY,
         decides=False,
         claim=claim.id,
-        problem=pid,
-        reading=study.main_reading,
+        problem=pair.problem,
+        reading=pair.reading,
         printed=printed,
     )
 
@@ -82,11 +83,10 @@ def _improvement(study: Study, claim: ImprovementClaim) -> Iterator[Finding]:
     if None in names or claim.percent is None:
         return
     least = claim.percent.lower / 100
-    rid = study.main_reading
-    for pid in study.problems:
-        if claim.problem not in (None, pid):
+    for pair in study.main_pairs:
+        if claim.problem not in (None, pair.problem):
             continue
-        spreads = [study.spread_runs(str(name), pid, rid) for name in names]
+        spreads = [study.spread_runs(str(name), pair) for name in names]
         if not spreads[0] or not spreads[1]:
             continue
         one, other = (study.called(str(name)) for name in names)
@@ -118,7 +118,7 @@ def _improvement(study: Study, claim: ImprovementClaim) -> Iterator[Finding]:
                 f"at {_at(one, most[0])}; {_at(other, most[1])}."
             )
         median = 1 - spread(faster).median / spread(slower).median
-        found = _found(study, "TG401", claim, pid, f"{claim.percent} %")
+        found = _found(study, "TG401", claim, pair, f"{claim.percent} %")
         computed = f"median {100 * median:.3g} %"
         yield found(kind="runs", sentences=tuple(said), computed=computed)
 
@@ -136,12 +136,12 @@ def _at(name: str, setting: str) -> str:
 
 def _compared(study: Study, claim: StatementClaim, against: str) -> Iterator[Finding]:
     """Two algorithms that a sentence compares: totals, and how soon a run has settled."""
-    rid, own, other = study.main_reading, study.called(str(claim.algorithm)), study.called(against)
-    for pid in study.problems:
-        if claim.problem not in (None, pid):
+    own, other = study.called(str(claim.algorithm)), study.called(against)
+    for pair in study.main_pairs:
+        if claim.problem not in (None, pair.problem):
             continue
         each = (str(claim.algorithm), against)
-        runs = {study.called(one): study.runs(one, pid, rid) for one in each}
+        runs = {study.called(one): study.runs(one, pair) for one in each}
         if not all(runs.values()):
             continue
         totals = {name: _totals(found) for name, found in runs.items()}
@@ -153,7 +153,7 @@ def _compared(study: Study, claim: StatementClaim, against: str) -> Iterator[Fin
             for tolerance in _TOLERANCES
             for name, found in runs.items()
         )
-        yield _found(study, "TG401", claim, pid)(
+        yield _found(study, "TG401", claim, pair)(
             computed=f"shorter in {_percent(shorter)} of the pairs",
             kind="runs",
             sentences=(
@@ -167,21 +167,19 @@ def _compared(study: Study, claim: StatementClaim, against: str) -> Iterator[Fin
 
 def _total(study: Study, claim: AnyClaim) -> Iterator[Finding]:
     """The printed total beside the runs under the listed choices and under spread settings."""
-    rid = study.main_reading
-    total = study.claim_total(claim, rid)
+    total = study.claim_total(claim, study.main_reading)
     assert total is not None
     if claim.algorithm is None:
         return
     shown, (low, high) = total
-    for pid, reading in study.claim_pairs(claim):
-        problem = study.problem(pid, rid)
-        alone = claim.joint is not None and len(problem.joints) > 1
-        if reading != rid or alone:
+    for row in rows_under(study, [claim], study.main_reading):
+        pair = row.pair
+        if claim.joint is not None and len(study.problem(pair).joints) > 1:
             continue
-        found = _found(study, "TG402", claim, pid, shown)
-        runs = study.spread_runs(claim.algorithm, pid, rid)
+        found = _found(study, "TG402", claim, pair, shown)
+        runs = study.spread_runs(claim.algorithm, pair)
         if not runs:
-            why = study.unreplayed(claim.algorithm, pid, rid) or ""
+            why = study.unreplayed(claim.algorithm, pair) or ""
             yield found(kind="not replayed", sentences=(why,))
             continue
         minimised = other_objective(study.case, claim)
@@ -240,16 +238,15 @@ def _settled(runs: Replays, tolerance: float) -> NDArray[np.intp]:
 
 def _convergence(study: Study, claim: ConvergenceClaim) -> Iterator[Finding]:
     """How many runs settle in time, under every setting, and how much the tolerance changes it."""
-    rid = study.main_reading
     if claim.algorithm is None:
         return
-    for pid in study.problems:
-        if claim.problem not in (None, pid):
+    for pair in study.main_pairs:
+        if claim.problem not in (None, pair.problem):
             continue
-        found = _found(study, "TG403", claim, pid, f"{claim.iterations} iterations")
-        runs = study.spread_runs(claim.algorithm, pid, rid)
+        found = _found(study, "TG403", claim, pair, f"{claim.iterations} iterations")
+        runs = study.spread_runs(claim.algorithm, pair)
         if not runs:
-            why = study.unreplayed(claim.algorithm, pid, rid) or ""
+            why = study.unreplayed(claim.algorithm, pair) or ""
             yield found(kind="not replayed", sentences=(why,))
             continue
         parts: list[str] = []

@@ -11,10 +11,10 @@ from ....problem import CaseError, Problem
 from ....problem.cases import AnyClaim, Digits, DurationsClaim, MaximumClaim, StatementClaim
 from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..fixed_ratios import off_ratios
+from ..printed_row import rows_under
 from ..roots import OPTIMAL
-from ..stated import other_objective
+from ..stated import called_under, other_objective
 from ..study import Study
-from .wording import called_under
 
 
 def judge_scaling(study: Study) -> Iterator[Finding]:
@@ -28,8 +28,8 @@ def judge_scaling(study: Study) -> Iterator[Finding]:
             continue
         if other_objective(study.case, fast) is not None:
             continue  # its total is no shortest one, and need not scale
-        for rid in study.readings:
-            yield from _stretched(study, slow, fast, rid, statements)
+        for reading in study.readings:
+            yield from _stretched(study, slow, fast, reading, statements)
 
 
 def velocity_factor(one: Problem, other: Problem) -> float | None:
@@ -79,26 +79,25 @@ def _stretched(
     study: Study,
     source: AnyClaim,
     target: AnyClaim,
-    rid: str,
+    reading: str,
     statements: list[StatementClaim],
 ) -> Iterator[Finding]:
-    pairs = [[pid for _, pid in study.pairs_under([c], rid)] for c in (source, target)]
-    if not pairs[0] or not pairs[1]:
+    posed = [rows_under(study, [c], reading)[:1] for c in (source, target)]
+    if not posed[0] or not posed[1]:
         return
-    if any(
-        off_ratios(study, c, own[0], rid) for c, own in zip((source, target), pairs, strict=True)
-    ):
+    (slow,), (fast,) = posed
+    if off_ratios(slow) or off_ratios(fast):
         return  # they are not durations of these questions
     try:
         # Where the digits of the limits allow least, so that it holds for all that round to them.
-        one = study.claim_problem(source, pairs[0][0], rid, Digits.TIGHTEST)
-        other = study.claim_problem(target, pairs[1][0], rid, Digits.TIGHTEST)
+        one = slow.posed(Digits.TIGHTEST)
+        other = fast.posed(Digits.TIGHTEST)
     except CaseError:
         return
     factor = velocity_factor(one, other)
-    total = study.claim_total(target, rid)
-    durations = study.case.claim_durations(source, rid).value
-    feasible = study.reachable(source, durations, pairs[0][0], rid)
+    total = fast.total
+    durations = slow.durations.value
+    feasible = slow.reachable(durations)
     if factor is None or total is None or feasible is None:
         return
     reachable = feasible * factor
@@ -110,17 +109,15 @@ def _stretched(
     allowed = f"{reachable:.6g} s"
     if allowed != exact:
         exact += f", or {allowed} with the rounding of way-points, limits and durations allowed for"
-    places = [
-        called_under(study, c, own[0]) for c, own in zip((source, target), pairs, strict=True)
-    ]
+    places = [called_under(study.case, row.claim, row.problem) for row in (slow, fast)]
     beside = Finding(
         rule="TG301",
         verdict=ClaimVerdict.INCONSISTENT,
         basis=Basis.IDENTITY,
         decides=False,
         claim=target.id,
-        problem=pairs[1][0],
-        reading=rid,
+        problem=fast.problem,
+        reading=reading,
         printed=shown,
         computed=f"{reachable:.6g} s",
         kind="not both shortest",

@@ -2,78 +2,37 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import numpy as np
 
 from ....problem import QUANTITIES, Array, Curve, Printed, Trajectory, extrema, fit
 from ....problem.cases import AnyClaim, ValueClaim, named_places
-from ...documents import Finding
-from ..sentences import place_of_value
-from ..study import Study
-from .motion_numbers import SAMPLES, NumberBeside, finding_of_numbers, nearest_number
-from .peaks import each_motion, has_curve, peak_numbers
-from .wording import in_units, unit_shown
+from ..printed_row import PrintedRow
+from ..stated import place_of_value
+from .beside import SAMPLES, Beside, nearest_number
 
-_NO_MOTION = "Without durations, this cannot be computed."
-"""Said of a value where nothing defines a motion."""
 _ORDERS = {"position": 0, **{name: order for order, name in enumerate(QUANTITIES, 1)}}
 """Order of each derivative."""
 _SAME = 1e-9
 """Share of a value by which its two sides differ where it jumps: far above rounding."""
 
 
-def judge_values(study: Study) -> Iterator[Finding]:
-    """Findings of TG211."""
-    return each_motion(study, ValueClaim, _values, "TG211", _NO_MOTION)
-
-
-def _values(study: Study, claim: ValueClaim, motion: AnyClaim) -> Iterator[Finding]:
-    for pid, rid in study.claim_pairs(motion):
-        if claim.problem not in (None, pid) or not has_curve(study, motion, pid, rid):
-            continue
-        joints = study.claim_problem(motion, pid, rid).joints
-        sole = joints[0] if len(joints) == 1 else None
-        pairs = [(sole if j is None else j, n) for j, n in peak_numbers(study, claim)]
-        found = [
-            (joint, value_beside(study, claim, number, motion, joint, pid, rid))
-            for joint, number in pairs
-            if joint in joints
-        ]
-        if not found:
-            continue
-        where = place_of_value(study.case, claim)
-        size = f"{claim.place} " if claim.place in ("largest", "smallest") else ""
-
-        def unit(joint: str | None, pair: tuple[str, str] = (pid, rid)) -> str:
-            return unit_shown(study, *pair, claim.derivative, joint)
-
-        def name(joint: str | None, one: NumberBeside, size: str = size, at: str = where) -> str:
-            return f"the {size}{claim.derivative} of joint {joint}{at}{one.meaning}"
-
-        yield finding_of_numbers(study, "TG211", claim, motion, (pid, rid), found, unit, name)
-
-
 def value_beside(
-    study: Study,
-    claim: ValueClaim,
-    printed: Printed,
-    motion: AnyClaim,
-    joint: str | None,
-    pid: str,
-    rid: str,
-) -> NumberBeside:
+    row: PrintedRow[AnyClaim], claim: ValueClaim, printed: Printed, joint: str | None
+) -> Beside | None:
     """A printed number beside the value of one joint; where it jumps, on its nearer side."""
-    problem = study.claim_problem(motion, pid, rid)
-    box, points = study.claim_boxes(motion, pid, rid)
-    j, order = problem.joints.index(str(joint)), _ORDERS[claim.derivative]
-    unit = in_units(study, pid, rid, claim.derivative, 1.0, joint)
-    statement = study.case.statement(pid, rid)
+    problem = row.posed()
+    if joint is None and len(problem.joints) == 1:
+        joint = problem.joints[0]
+    if joint not in problem.joints:
+        return None
+    j, order = problem.joints.index(joint), _ORDERS[claim.derivative]
+    unit = row.in_units(claim.derivative, 1.0, joint)
+    statement = row.statement
     at = None if claim.place is None else named_places(statement)[claim.place]
     spread, instant = 0.0, None
-    drawn = fit(problem.curve, points.value, box.value)
+    drawn, printed_durations = row.motion, row.durations.value
     if claim.time is not None:
-        measured = study.case.measured(claim.time, "time", claim.problem, rid)
+        measured = row.measured(claim.time, "time")
         instant = measured.value
         ends = [_near(drawn, t, j, order) for t in (measured.lower, measured.upper, instant)]
         spread = unit * max(abs(x - y) for x in ends[2] for end in ends[:2] for y in end)
@@ -84,7 +43,7 @@ def value_beside(
         time = _time_of(problem.curve, durations, at) if instant is None else instant  # type: ignore[arg-type]
         return _near(trajectory, time, j, order)
 
-    pair = sides(drawn, box.value)
+    pair = sides(drawn, printed_durations)
     jumps = pair is not None and abs(pair[0] - pair[1]) > _SAME * max(map(abs, pair))
 
     def meant(waypoints: Array, durations: Array) -> dict[str, float]:
@@ -103,7 +62,8 @@ def value_beside(
             values = drawn(np.linspace(drawn.breaks[0], drawn.breaks[-1], count), order)[:, j]
             top = values.max() if claim.place == "largest" else values.min()
             samples.append({"": unit * float(top)})
-    return nearest_number(printed, meant, samples, box, points, spread)
+    shown = row.unit(claim.derivative, joint)
+    return nearest_number(printed, shown, joint, meant, samples, row.boxes, spread)
 
 
 def _time_of(curve: Curve, durations: Array, waypoint: int) -> float:
@@ -126,3 +86,10 @@ def _near(motion: Trajectory, time: float, joint: int, order: int) -> tuple[floa
         min(at, pieces - 1), joint, order, np.array([0.0 if at < pieces else 1.0])
     )[0]
     return float(before), float(after)
+
+
+def value_described(row: PrintedRow[AnyClaim], claim: ValueClaim, one: Beside) -> str:
+    """One printed value beside that of the motion."""
+    size = f"{claim.place} " if claim.place in ("largest", "smallest") else ""
+    where = place_of_value(row.study.case, claim)
+    return one.told(f"the {size}{claim.derivative} of joint {one.joint}{where}{one.meaning}")

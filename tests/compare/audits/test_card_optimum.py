@@ -11,6 +11,7 @@ import pytest
 from support.findings import audited_text, study_of, verdicts
 from support.made_up import CUBIC, algorithms, claim, entry, gain, paper, row, sentence, total
 from support.studies import shipped
+from trajgap.compare.audits import Pair
 from trajgap.compare.audits.card_optimum import _beside_profiles, optimum_line
 from trajgap.compare.audits.waterfall import _free, waterfalls
 from trajgap.compare.documents import ClaimVerdict
@@ -199,7 +200,7 @@ def test_a_total_that_is_not_the_sum_has_the_sum_below_it(value: str, differs: b
 
 
 def test_a_shipped_proof_of_any_curve_stands_below_all_that_is_shorter() -> None:
-    step = _free(shipped("irb460-pso-353"), "limit-80", "waypoints-rad")
+    step = _free(shipped("irb460-pso-353"), Pair("limit-80", "waypoints-rad"))
     assert "no motion within the limits is shorter than" in step.note
 
 
@@ -272,7 +273,7 @@ def test_a_total_within_a_proven_interval_neither_agrees_nor_differs() -> None:
     """The optimum is 1.875 s; with a bound of 1.84 s nothing says where 1.86 s lies beside it."""
     study = study_of(asked(row("own", "1.86")))
     found = waterfalls(study)
-    wide = replace(study.optimum(*study.pairs[0]), lower_bound=1.84)
+    wide = replace(study.optimum(study.pairs[0]), lower_bound=1.84)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(study, "optimum", lambda *_: wide)
         said = optimum_line(study, found, {}, False)

@@ -13,7 +13,7 @@ from scipy.interpolate import CubicSpline
 from support.findings import audited_text, study_of, verdicts
 from support.made_up import Numbers, paper, readings, row, sentence, total
 from trajgap.compare import ClaimVerdict
-from trajgap.compare.audits import CaseAudit, waterfalls
+from trajgap.compare.audits import CaseAudit, PrintedRow, waterfalls
 from trajgap.compare.audits.card_optimum import optimum_line
 from trajgap.compare.audits.fixed_ratios import off_ratios
 from trajgap.compare.audits.rules.scaling_law import velocity_factor
@@ -160,8 +160,8 @@ def test_digits_of_durations_and_ratios_decide_whether_they_agree(
     durations: Numbers, ratios: object, rows: Sequence[Numbers], off: bool
 ) -> None:
     study = study_of(text(durations, ratios, rows=rows))
-    found = off_ratios(study, study.case.claim("d"), "main", "as-printed")
-    assert (found is not None) is off
+    row = PrintedRow(study, study.case.claim("d"), study.pairs[0])
+    assert (off_ratios(row) is not None) is off
 
 
 def test_two_readings_stand_side_by_side() -> None:

@@ -50,7 +50,7 @@ def test_an_audit_certifies_what_it_can() -> None:
     (one,) = audit(stated(), seeds=2).cases
     assert distance_of(one) is Evidence.CERTIFIED
     assert one.document.left_out == ()
-    optimum = one.study.optimum("main", "as-printed")
+    optimum = one.study.optimum(one.study.pairs[0])
     assert optimum.lower_bound is not None
     assert optimum.lower_bound <= optimum.best <= optimum.lower_bound * 1.01
 
@@ -117,7 +117,7 @@ def test_a_given_certificate_counts_once_it_is_proved_again() -> None:
 def test_an_unconverged_search_is_no_step_of_a_waterfall(monkeypatch) -> None:
     study = Study(stated(), seeds=2, certify_seconds=0)
     early = Solution(
-        study.problem(*study.pairs[0]), Status.FEASIBLE, "KKT residual 3e-01", np.ones(3)
+        study.problem(study.pairs[0]), Status.FEASIBLE, "KKT residual 3e-01", np.ones(3)
     )
     monkeypatch.setattr(Study, "relaxed", lambda *_: early)
     steps = {s.name: s for s in waterfalls(study)[0].steps}

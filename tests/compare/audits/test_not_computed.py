@@ -13,7 +13,7 @@ from support.findings import audited_text, study_of, verdicts
 from support.made_up import claim, entry, one_joint, paper, readings, row, sentence
 from trajgap.compare.audits import CaseAudit, Study, audit, case_audit
 from trajgap.compare.audits.case_audit import AuditReport
-from trajgap.compare.audits.rules.registry import RuleGroup
+from trajgap.compare.audits.rules import RuleGroup
 from trajgap.compare.cli import main
 from trajgap.compare.documents import ClaimVerdict, Finding, Why
 from trajgap.compare.gaps import reference_of

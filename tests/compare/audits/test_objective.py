@@ -7,6 +7,7 @@ import json
 import pytest
 from support.findings import audited_text, verdicts
 from support.made_up import entry, paper, row, sentence
+from trajgap.compare.audits import Pair
 from trajgap.compare.audits.case_audit import CaseAudit
 from trajgap.compare.documents import ClaimVerdict, Severity, json_text
 from trajgap.compare.sphinx import paper_row
@@ -59,7 +60,7 @@ def test_optimal_for_another_objective_is_not_judged_by_time(weighted: CaseAudit
 
 
 def test_the_shortest_time_is_given_as_information(weighted: CaseAudit, plain: CaseAudit) -> None:
-    best = weighted.study.optimum("one", "as-printed").best
+    best = weighted.study.optimum(Pair("one", "as-printed")).best
     said = weighted.card.optimum
     assert said.startswith(f"18.0 s was not minimised for time alone ({AIM}); ")
     assert f"{best:.4f} s" in said

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from support.studies import changed, shipped
+from trajgap.compare.audits import Pair
 from trajgap.compare.audits.paper_runs import kept_runs, reached
 from trajgap.compare.documents import Gap
 from trajgap.heuristics import from_settings, run_within
@@ -34,7 +35,7 @@ def test_each_algorithm_has_its_gap_under_each_handling(case):
 def test_evaluations_were_counted_against_the_optimum_of_today(case):
     for group in kept_runs().groups:
         if group.case == case and group.optimum is not None:
-            own = shipped(case).optimum(group.problem, group.reading)
+            own = shipped(case).optimum(group.pair)
             assert group.optimum.upper == pytest.approx(own.total_time, rel=1e-6)
 
 
@@ -64,8 +65,9 @@ def test_a_run_made_again_ends_where_it_did():
 def test_joints_planned_one_by_one_are_set_beside_their_own_optima():
     study = shipped(PUMA)
     apart = [one for one in reached(study) if one.searched.startswith("each joint")]
-    own = study.per_joint("six-joints", study.main_reading).total_time
-    shared = study.optimum("six-joints", study.main_reading).total_time
+    pair = Pair("six-joints", study.main_reading)
+    own = study.per_joint(pair).total_time
+    shared = study.optimum(pair).total_time
     assert own > 1.01 * shared
     assert {one.gap.reference.upper for one in apart} == {own}
     # Counted by hand from the sorted totals: the mean of the two in the middle.

@@ -16,7 +16,7 @@ from support.findings import study_of
 from support.made_up import TWO_UNITS, one_joint, paper, readings, row
 from support.studies import shipped
 from trajgap.compare.audits.case_audit import AuditReport, CaseAudit
-from trajgap.compare.audits.reading_words import answers, holding, segments
+from trajgap.compare.audits.readings import answers, holding, segments
 from trajgap.compare.audits.rules.continuous_time import judge_motions
 from trajgap.compare.audits.study import Study
 from trajgap.compare.cli.auditing import audited

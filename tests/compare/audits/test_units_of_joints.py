@@ -6,7 +6,7 @@ import json
 import re
 from dataclasses import replace
 from decimal import Decimal
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +18,8 @@ from support.scara import SCARA, scara
 from trajgap.compare.audits import claim_text, digits_of
 from trajgap.compare.audits.case_audit import CaseAudit
 from trajgap.compare.audits.causes import find_causes
+from trajgap.compare.audits.explanations import explained
+from trajgap.compare.audits.rules import GROUPS
 from trajgap.compare.audits.rules.clues import reading_clues
 from trajgap.compare.audits.study import Study
 from trajgap.compare.documents import Finding
@@ -234,7 +236,9 @@ def test_control_vertices_are_judged_joint_by_joint() -> None:
 
 
 def test_a_turn_explains_no_slide() -> None:
-    found = find_causes(study(), [f for f in findings() if f.rule == "TG201"])
+    own = study()
+    told = partial(explained, own, GROUPS)
+    found = find_causes(own, [f for f in findings() if f.rule == "TG201"], told)
     changes = [each.change for cause in found for each in cause.explanations]
     assert changes
     assert not any("full turn" in change and "d3" in change for change in changes)

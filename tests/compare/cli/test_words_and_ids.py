@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from support.command_line import IRB, PUMA, Run
 from support.made_up import claim, paper, total
-from trajgap.compare.audits import Study, asked_as, in_words
+from trajgap.compare.audits import Pair, PrintedRow, Study, asked_as, in_words
 from trajgap.compare.cli import solving
 from trajgap.problem import load_case
 
@@ -100,5 +100,6 @@ def test_what_is_being_done_is_said_in_words(run: Run, monkeypatch: pytest.Monke
     assert said == [WORDS]
     said.clear()
     study = Study(load_case(IRB), seeds=2, certify_seconds=0, progress=said.append)
-    study.claim_rounding(study.case.claim("durations-110"), "limit-110", "waypoints-rad")
+    claim = study.case.claim("durations-110")
+    assert PrintedRow(study, claim, Pair("limit-110", "waypoints-rad")).rounding
     assert said == [f"{IRB}: rounding of Table 4, column 110 °/s; {WORDS.replace('80', '110')}"]

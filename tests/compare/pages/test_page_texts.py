@@ -104,7 +104,7 @@ def test_many_readings_share_a_table_and_few_have_pictures() -> None:
 def test_a_total_that_nothing_limits_is_no_line_among_those_of_runs() -> None:
     for velocity, shown in ((1, 1), (Bare("inf"), 0)):
         study = study_of(paper([[0, 1]], row("d", "1.90"), velocity=velocity))
-        assert len(_totals(study, *study.pairs[0])[0]) == shown
+        assert len(_totals(study, study.pairs[0])[0]) == shown
 
 
 def test_a_section_that_holds_nothing_is_left_out() -> None:

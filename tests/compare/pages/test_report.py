@@ -189,8 +189,8 @@ def test_what_the_document_says_stands_on_the_page(page: Tree, report: AuditRepo
         texts += [shown for shown in (finding.printed, finding.computed) if shown is not None]
         if isinstance(finding.gap, Gap):
             texts.append(f"{finding.gap.percent} {finding.gap.kind}")
-    for pid, rid in one.study.pairs:
-        solution = one.study.optimum(pid, rid)
+    for pair in one.study.pairs:
+        solution = one.study.optimum(pair)
         change = f"{sum(a.sensitivity for a in solution.active):+.6f} s".replace("-", "−")
         durations = ", ".join(f"{d:.6f}" for d in solution.durations)
         texts += [f"{solution.total_time:.6f} s", durations, change]

@@ -8,6 +8,7 @@ import pytest
 from matplotlib.text import Annotation
 from support.drawn import sound
 from support.studies import changed, shipped
+from trajgap.compare.audits import Pair, PrintedRow
 from trajgap.compare.audits.rules.printed_vertices import Vertex
 from trajgap.compare.audits.study import Study
 from trajgap.compare.pages.exhibits import exhibits_of_motion, exhibits_of_search
@@ -160,7 +161,7 @@ def test_the_polishing_case_shows_jumps_and_polygon(irb1600: Study) -> None:
     stretched = "angles-rad-v-rad-a-rad-stretched"
     assert irb1600.case.labels[stretched] in picture.caption
     (grid,) = folded.blocks
-    found = irb1600.claim_check(irb1600.case.claim("after"), "nine-segments", stretched)
+    found = PrintedRow(irb1600, irb1600.case.claim("after"), Pair("nine-segments", stretched)).check
     assert len(grid.rows) == sum(j.order == 1 for j in found.jumps)
     (shown,) = polygon.blocks
     assert shown.document.count("12 of 12 within rounding") >= 6

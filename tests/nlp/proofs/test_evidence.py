@@ -13,6 +13,8 @@ import pytest
 from support.checkout import ROOT
 from support.documents import assert_valid, plain
 from support.shipped_problems import COVERED_PROBLEMS
+from trajgap.compare.audits import Pair
+from trajgap.compare.audits.chosen_case import Total
 from trajgap.compare.audits.rules.distances import judge_distances
 from trajgap.compare.audits.study import Study
 from trajgap.compare.audits.waterfall import waterfalls
@@ -51,7 +53,7 @@ evidence_module = import_module("trajgap.nlp.proofs.evidence")
 intervals_module = import_module("trajgap.compare.audits.intervals")
 certificate_module = import_module("trajgap.nlp.proofs.document")
 IRB, PUMA, GA = "irb460-pso-353", "puma560-mnam-pso-353", "irb1600-ga-cubic-bspline"
-PAIR = ("limit-80", "waypoints-rad")
+PAIR = Pair("limit-80", "waypoints-rad")
 VERDICTS = (ROOT / "docs" / "explanation" / "verdicts.md").read_text("utf-8")
 
 
@@ -84,7 +86,7 @@ def test_what_is_proved_is_called_certified() -> None:
     texts, words = said(study)
     assert Evidence.CERTIFIED in words
     assert any("certified optimum" in text and "proved, gap" in text for text in texts)
-    answer = study.optimum(*PAIR)
+    answer = study.optimum(PAIR)
     interval = proved(printed_problem(study.case.statement(*PAIR)))
     assert Fraction(answer.lower_bound) <= interval.lower < answer.total_time
     (waterfall,) = waterfalls(study)
@@ -101,7 +103,7 @@ def test_a_proof_of_a_wide_interval_certifies_nothing(
     problem = replace(COVERED_PROBLEMS[f"{IRB}.{PAIR[0]}.{PAIR[1]}"], name=f"width {width}")
     document = certificate(certify(problem, gap=width))
     monkeypatch.setattr(evidence_module, "shipped", lambda *_: document)
-    answer = solve(known_study().problem(*PAIR))
+    answer = solve(known_study().problem(PAIR))
     evidence_module.proved.cache_clear()
     assert with_interval(answer, proved(problem)).evidence == word
     evidence_module.proved.cache_clear()
@@ -114,7 +116,7 @@ def test_nothing_is_called_certified_without_a_certificate() -> None:
     assert Evidence.CERTIFIED not in words
     assert not any("certified" in text for text in texts)
     assert any("best known optimum" in text for text in texts)
-    document = plain(SolveDocument(results=(solve_result(IRB, *PAIR, study.optimum(*PAIR)),)))
+    document = plain(SolveDocument(results=(solve_result(IRB, *PAIR, study.optimum(PAIR)),)))
     assert_valid(document, "solve")
     assert document["results"][0]["lower_bound"] is None
     assert document["results"][0]["evidence"] == "best known"
@@ -190,7 +192,7 @@ def test_a_closed_form_needs_no_file() -> None:
 )
 def test_an_answer_beyond_the_interval(factor: float, evidence: Evidence) -> None:
     """Below it it is not certified, and above it that of the certificate takes its place."""
-    answer = known_study().optimum(*PAIR)
+    answer = known_study().optimum(PAIR)
     h = answer.durations * factor
     other = replace(answer, status=Status.CONVERGED, vector=h, lower_bound=None)
     found = with_interval(other, proved(COVERED_PROBLEMS[f"{IRB}.limit-80.waypoints-rad"]))
@@ -248,7 +250,7 @@ def test_the_weakest_word_stands_for_all() -> None:
 
 def test_a_total_below_the_proved_bound_is_called_that(monkeypatch: pytest.MonkeyPatch) -> None:
     study = known_study()
-    monkeypatch.setattr(Study, "claim_total", lambda *_: ("1.5 s", (1.4995, 1.5005)))
+    monkeypatch.setattr(Study, "claim_total", lambda *_: Total("1.5 s", (1.4995, 1.5005)))
     (message,) = (
         f.message
         for f in judge_distances(study)
@@ -286,7 +288,7 @@ def test_a_bound_for_any_curve_may_round_above_the_answer_and_no_more(
     monkeypatch: pytest.MonkeyPatch, above: float, certified: bool
 ) -> None:
     study = known_study()
-    found = estimate_any_curve(study.problem(*study.pairs[0])).total_time
+    found = estimate_any_curve(study.problem(study.pairs[0])).total_time
     lower = Fraction(found) * Fraction(1 + above)
     bound = ProvedInterval(lower, lower + Fraction(1, 10**9), None, False)
     monkeypatch.setattr(

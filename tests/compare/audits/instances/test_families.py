@@ -13,6 +13,8 @@ from support.documents import SCHEMA, validator
 from support.findings import verdicts
 from trajgap.compare import audit
 from trajgap.compare.audits.case_audit import audit_case
+from trajgap.compare.audits.instances import examinable
+from trajgap.compare.audits.instances import examined as examine_once
 from trajgap.compare.audits.instances import study as family_study
 from trajgap.compare.audits.instances.drawn import printed_reduction
 from trajgap.compare.audits.instances.result import (
@@ -64,7 +66,7 @@ def small(*changes: tuple[str, str]) -> Case:
 
 def examined(*changes: tuple[str, str]) -> InstancesResult:
     study = Study(small(*changes), seeds=2, certify_seconds=0)
-    return study.instances(study.instance_blocks[0])
+    return examine_once(study, examinable(study)[0])
 
 
 @pytest.fixture(scope="module")
@@ -109,7 +111,7 @@ def test_a_step_that_nothing_reaches_is_named() -> None:
     case = small(('kind = "joint"', 'kind = "end"'), ("[0.3, 0.9]", "[5]"))
     study = Study(case, seeds=2, certify_seconds=0)
     with pytest.raises(TrajgapError, match=r"^small\.toml: families\.drawn: step: none of the 50"):
-        study.instances(study.instance_blocks[0])
+        examine_once(study, examinable(study)[0])
 
 
 # --- what is computed -----------------------------------------------------------------------------
@@ -250,13 +252,13 @@ def test_reproduced_means_within_the_middle(printed: tuple[float, float], expect
 
 def test_the_printed_reduction_is_an_interval_of_the_digits() -> None:
     study = Study(load_case(WHALE), seeds=2, certify_seconds=0)
-    # The design itself: to say that it can be examined, `instance_blocks` would examine it.
+    # The design itself: to say that it can be examined, `examinable` would examine it.
     low, high = printed_reduction(study, study.case.instances[0]) or (0, 0)
     assert low == pytest.approx(1 - 11.715 / 13.075, rel=1e-12)
     assert high == pytest.approx(1 - 11.705 / 13.085, rel=1e-12)
     printed = small(('slower = "old-total"', 'slower = "old-total"\npercent = "24.9"'))
     study = Study(printed, seeds=2, certify_seconds=0)
-    assert study.instances(printed.instances[0]).printed == pytest.approx((0.2485, 0.2495))
+    assert examine_once(study, printed.instances[0]).printed == pytest.approx((0.2485, 0.2495))
 
 
 def test_findings_inform_and_decide_nothing() -> None:
@@ -280,11 +282,11 @@ def test_without_a_pair_of_answers_nothing_is_computed() -> None:
 
 
 def test_one_problem_or_reading_selects() -> None:
-    assert Study(small(), seeds=2, problem="spline", certify_seconds=0).instance_blocks == ()
+    assert examinable(Study(small(), seeds=2, problem="spline", certify_seconds=0)) == ()
     study = Study(small(), seeds=2, reading="joined", certify_seconds=0)
-    assert study.instances(study.instance_blocks[0]).readings == ("joined",)
+    assert examine_once(study, examinable(study)[0]).readings == ("joined",)
     unknown = small(('kind = "woa"', 'kind = "not-written"'))
-    assert Study(unknown, seeds=2, certify_seconds=0).instance_blocks == ()
+    assert examinable(Study(unknown, seeds=2, certify_seconds=0)) == ()
 
 
 # --- page, document, picture ----------------------------------------------------------------------

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from support.findings import study_of
 from support.made_up import Numbers, entry, paper, readings, row, sentence
+from trajgap.compare.audits import Pair, PrintedRow
 from trajgap.compare.audits.rules.clues import held_otherwise, reading_clues
 from trajgap.compare.audits.study import Study
 from trajgap.compare.documents import HeldOtherwise, ReadingClue, Speaks
@@ -112,7 +113,7 @@ def spline() -> Study:
 
 
 def held(study: Study, reading: str = "as-printed") -> HeldOtherwise:
-    found = held_otherwise(study, study.case.claim("d"), "main", reading)
+    found = held_otherwise(PrintedRow(study, study.case.claim("d"), Pair("main", reading)))
     assert isinstance(found, HeldOtherwise)
     return found
 

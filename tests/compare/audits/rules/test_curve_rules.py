@@ -14,6 +14,7 @@ from support.findings import judged, said_of, study_of
 from support.made_up import claim, paper, readings, row, sentence
 from support.papers.motions import vertices as solved
 from support.studies import changed, shipped
+from trajgap.compare.audits import Pair, PrintedRow
 from trajgap.compare.audits.rules.continuous_time import judge_motions
 from trajgap.compare.audits.rules.distances import judge_distances
 from trajgap.compare.audits.rules.open_points import list_open_points
@@ -197,7 +198,7 @@ def test_the_printed_durations_are_optimal_under_no_reading() -> None:
     assert len(study.readings) == 19
     claim = study.case.claim("time-optimal")
     for reading in FEW:
-        own = study.only(claim, pair=("nine-segments", reading))
+        own = study.only(claim, pair=Pair("nine-segments", reading))
         (found,) = of(judge_distances(own), "TG302")
         assert found.verdict is ClaimVerdict.REFUTED
         # Angles in radians under limits in degrees: the printed total lies below the optimum.
@@ -231,7 +232,7 @@ def test_acceleration_said_to_jump_does_in_the_reading_that_stretches(
         assert one.verdict == ("supported" if jumps else "not checkable")
     study = shipped(POLISH)
     stretched = "angles-rad-v-rad-a-rad-stretched"
-    at = study.claim_check(study.case.claim("after"), "nine-segments", stretched).jumps
+    at = PrintedRow(study, study.case.claim("after"), Pair("nine-segments", stretched)).check.jumps
     largest = max((j for j in at if j.order == 2 and j.joint == "2"), key=lambda j: abs(j.size))
     assert f"by {largest.size:.6g} rad/s²" in found[stretched].message
 

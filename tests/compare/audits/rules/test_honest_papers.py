@@ -18,6 +18,7 @@ from support.made_up import (
 )
 from support.papers.apart import apart
 from support.papers.claims import draw
+from trajgap.compare.audits import printed_rows
 from trajgap.compare.audits.rules.kept_limits import said_to_keep
 from trajgap.compare.documents import Basis, ClaimVerdict, Finding, Scope, Severity
 from trajgap.nlp import Evidence, Status
@@ -125,7 +126,7 @@ def test_a_duration_cut_off_beside_its_total_rounded_is_not_below_the_optimum(
     tail = row("m", time, total=value) + sentence("best", "optimal", "m")
     text = one_joint("0, 1", repr(PEAK / 1.80167), "1.80168", "within_limits", tail)
     study = study_of(text)
-    assert study.optimum("main", "as-printed").lower_bound is not None
+    assert study.optimum(study.pairs[0]).lower_bound is not None
     (found,) = said_of(study, "best", "TG302")
     assert (found.verdict is ClaimVerdict.REFUTED) == refuted
 
@@ -136,8 +137,8 @@ def test_a_total_that_is_the_sum_of_the_printed_durations_bounds_no_more_than_th
 ) -> None:
     """1.336 + 1.580 + 0.997 = 3.913; each may be cut off, and then so may their sum by 0.003."""
     study = study_of(paper([[0, 1, 2, 3]], row("m", "1.336 1.580 0.997", total=value), velocity=1))
-    found = study.longest_total(study.case.claim("m"), "as-printed")
-    assert found == pytest.approx(longest, abs=1e-9)
+    (found,) = printed_rows(study, study.case.claim("m"))
+    assert found.longest_total == pytest.approx(longest, abs=1e-9)
 
 
 @pytest.mark.parametrize(("value", "agrees"), [("2.635", True), ("2.638", False)])
@@ -174,7 +175,7 @@ def test_a_printed_peak_above_a_printed_limit_contradicts_what_is_said_of_limits
 
 def test_without_limits_no_motion_is_the_shortest_and_none_refutes() -> None:
     study = study_of(one_joint('"0.1", "1.3"', "inf", "2.5", "optimal"))
-    assert study.optimum("main", "as-printed").status is Status.NOT_ATTAINED
+    assert study.optimum(study.pairs[0]).status is Status.NOT_ATTAINED
     (found,) = said_of(study, "s", "TG302")
     assert (found.verdict, found.severity) == (ClaimVerdict.NOT_CHECKABLE, Severity.INFO)
     assert "no limit is printed" in found.message

@@ -82,7 +82,7 @@ def test_a_broken_limit_refutes_without_an_optimum(points: Any, time: str, verdi
     """At most 0.5 s are allowed, and 0.987 s are needed: no optimum, and 0.4 s break the limit."""
     parts = row("d", time), sentence("s", "optimal", "d")
     study = study_of(paper([points], *parts, bounds={"upper": 0.5}, velocity=1.9))
-    assert not study.optimum("main", "as-printed").found
+    assert not study.optimum(study.pairs[0]).found
     (found,) = said_of(study, "s", "TG302")
     assert found.verdict == verdict
 

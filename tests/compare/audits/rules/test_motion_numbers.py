@@ -12,9 +12,10 @@ from scipy.integrate import quad
 from scipy.interpolate import CubicSpline
 from support.findings import finding, study_of
 from support.made_up import Numbers, claim, paper, peak, row
+from trajgap.compare.audits import printed_rows
+from trajgap.compare.audits.rules.beside import Beside
 from trajgap.compare.audits.rules.measures import NAMES, measured
-from trajgap.compare.audits.rules.motion_numbers import NumberBeside
-from trajgap.compare.audits.rules.norms import _top, largest_norm
+from trajgap.compare.audits.rules.peaks import _norm_top, largest_norm
 from trajgap.compare.documents import ClaimVerdict, Confidence
 from trajgap.problem import (
     Curve,
@@ -183,18 +184,22 @@ def test_one_number_of_several_joints_may_be_their_norm_largest_or_mean() -> Non
     ("exact", "reach", "far", "sampled", "said"),
     [
         # 2.0 is rounded from 1.95 to 2.05, or cut off from up to 2.1.
-        (1.90, 0.06, 0.12, 1.90, "equal"), (2.10, 0.06, 0.12, 2.10, "equal"),
+        (1.90, 0.06, 0.12, 1.90, "rounding"), (2.10, 0.06, 0.12, 2.10, "rounding"),
         (1.90, 0.04, 0.08, 1.90, "cut off"), (2.16, 0.04, 0.08, 2.16, "cut off"),
-        (1.60, 0.00, 0.30, 1.60, ""), (2.45, 0.00, 0.30, 2.45, ""),
-        (3.00, 0.00, 0.30, 1.70, "samples"), (3.00, 0.00, 0.30, 2.30, "samples"),
-        (3.00, 0.00, 0.30, 1.60, ""), (3.00, 0.00, 0.30, 2.45, ""),
+        (1.60, 0.00, 0.30, 1.60, "off"), (2.45, 0.00, 0.30, 2.45, "off"),
+        (3.00, 0.00, 0.30, 1.70, "sampling"), (3.00, 0.00, 0.30, 2.30, "sampling"),
+        (3.00, 0.00, 0.30, 1.60, "off"), (3.00, 0.00, 0.30, 2.45, "off"),
+        (1.155, 0.0, 0.01, 1.155, "off"), (4.00, 0.00, 0.30, 4.00, "off"),
     ],
 )  # fmt: skip
 def test_a_number_agrees_as_far_as_its_digits_and_those_of_the_motion_reach(
     exact: float, reach: float, far: float, sampled: float, said: str
 ) -> None:
-    one = NumberBeside(Printed("2.0"), "", exact, reach, far, sampled, sampled)
-    assert (said in one.fits) if said else (one.fits == "")
+    one = Beside(
+        Printed("2.0"), (1.95, 2.05), (1.95, 2.1), exact, reach, far, (sampled, sampled), "rad"
+    )
+    assert one.kind == said
+    assert one.fits is (said != "off")
 
 
 QUINTIC = {"family": "quintic-spline"}
@@ -234,9 +239,9 @@ def test_a_printed_norm_accuses_nobody(curve: dict[str, Any], printed: str, verd
 
 def test_the_norm_moves_with_the_durations_as_first_order_says() -> None:
     study = study_of(arm(QUINTIC, speed("2.9"), "1.000 " * 7))
-    claim = study.case.claim("d")
-    found = largest_norm(study, claim, "main", "as-printed", 1)
-    problem = study.problem("main", "as-printed")
+    (row,) = printed_rows(study, study.case.claim("d"))
+    found = largest_norm(row, 1)
+    problem = row.posed()
 
     def top(durations: np.ndarray) -> float:
         times = np.linspace(0.0, durations.sum(), 200_001)
@@ -253,7 +258,7 @@ def test_the_largest_norm_is_that_of_a_dense_grid_and_never_below_it() -> None:
     waypoints = np.array([[0.0, 0.0], [1.0, -0.3], [0.2, 0.9]])
     trajectory = fit(rest_to_rest(2, 5), waypoints, np.array([0.8, 1.1]))
     for order in (1, 2, 3):
-        top = max(_top(trajectory, k, order)[0] for k in range(2))
+        top = max(_norm_top(trajectory, k, order)[0] for k in range(2))
         times = np.linspace(0.0, 1.9, 200_001)
         dense = np.linalg.norm(trajectory(times, order), axis=1).max()
         assert dense <= top * (1 + 1e-12)

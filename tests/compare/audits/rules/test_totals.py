@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from support.findings import audited_text, finding, said_of, study_of
 from support.made_up import algorithms, claim, entry, gain, one_joint, paper, row, sentence, total
-from trajgap.compare.audits import study as study_module
+from trajgap.compare.audits import printed_row as row_module
 from trajgap.compare.audits.card_errors import plainly
 from trajgap.compare.audits.case_audit import audit_case
 from trajgap.compare.audits.rounding import RoundingBox
@@ -82,7 +82,7 @@ def test_no_total_is_excluded_that_a_motion_takes() -> None:
 def test_what_would_take_more_boxes_to_exclude_is_said_and_accuses_nobody(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(study_module, "excludes_total", lambda *_: None)
+    monkeypatch.setattr(row_module, "excludes_total", lambda *_: None)
     study = bare("0.7", "within_limits")
     (found,) = said_of(study, "said", "TG201")
     assert found.verdict == "not checkable"
@@ -94,7 +94,7 @@ def test_a_total_that_a_known_motion_takes_is_never_tried(monkeypatch: pytest.Mo
     def never(*_: object, **__: object) -> bool:
         raise AssertionError("a proof was tried that cannot succeed")
 
-    monkeypatch.setattr(study_module, "excludes_total", never)
+    monkeypatch.setattr(row_module, "excludes_total", never)
     (found,) = said_of(bare("1.2", "within_limits"), "said", "TG201")
     assert found.verdict == "not checkable"
 

@@ -1,0 +1,344 @@
+"""A row of a paper under a reading: one claim, asked about one problem of its case."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+from typing import Generic, TypeVar
+
+import numpy as np
+
+from ...nlp import Solution
+from ...problem import (
+    Array,
+    CaseError,
+    Check,
+    Measured,
+    Printed,
+    Problem,
+    Quantity,
+    Trajectory,
+    TrajgapError,
+    Verdict,
+    check,
+    fit,
+    from_si,
+    reachable_total,
+    shown_unit,
+)
+from ...problem.cases import (
+    AnyClaim,
+    Claim,
+    Digits,
+    DurationBox,
+    Statement,
+)
+from ..documents import UNITS, Keeping, Rounding, noted, si_unit
+from .chosen_case import Pair, Total
+from .rounding import RoundingBox, RoundingVerdict, judge_rounding
+from .stated import in_words, in_words_among, own_total, place, prints_durations
+from .study import Study
+from .total_bound import BOXES, excludes_total
+
+C = TypeVar("C", bound=Claim, covariant=True)
+T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class PrintedRow(Generic[C]):
+    """A claim under a problem and a reading; what is computed of it is kept in its study.
+
+    Attributes
+    ----------
+    study : Study
+    claim : Claim
+        With durations or a total where a motion or a time is asked for.
+    pair : Pair
+        Problem and reading.
+    """
+
+    study: Study
+    claim: C
+    pair: Pair
+
+    @property
+    def problem(self) -> str:
+        """Id of the problem."""
+        return self.pair.problem
+
+    @property
+    def reading(self) -> str:
+        """Id of the reading."""
+        return self.pair.reading
+
+    @property
+    def words(self) -> str:
+        """The problem and the reading in words."""
+        return in_words(self.study.case, *self.pair)
+
+    @property
+    def statement(self) -> Statement:
+        """What the case states of the problem under the reading."""
+        return self.study.case.statement(*self.pair)
+
+    def once(self, what: str, compute: Callable[[], T], *more: object) -> T:
+        """What the study keeps of this row under a name, computed where nothing is."""
+        return self.study.once((what, self.claim.id, self.pair, *more), compute)
+
+    def measured(self, number: Printed, quantity: Quantity, joint: str | None = None) -> Measured:
+        """A printed number in the SI unit, with what rounds to its digits."""
+        return self.study.case.measured(number, quantity, *self.pair, joint)
+
+    def _unit(self, quantity: str, joint: str | None) -> tuple[str | None, bool]:
+        """The unit that a quantity is printed in, if one is stated; whether the joint slides."""
+        statement = self.statement
+        if quantity not in UNITS:
+            return (statement.units.time if quantity in ("duration", "time") else None), False
+        place = None if joint is None else statement.labels.index(joint)
+        linear = statement.linear[statement.joints[0] if place is None else place]
+        return statement.unit(quantity, place), linear  # type: ignore[arg-type]
+
+    def unit(self, quantity: str, joint: str | None = None) -> str:
+        """The unit that a quantity is printed in, as a sentence writes it; SI where none is stated.
+
+        Parameters
+        ----------
+        quantity : str
+            "position", "velocity", "acceleration", "jerk" or "time".
+        joint : str, optional
+            Label of the joint whose unit it is; needed where units differ.
+        """
+        unit, linear = self._unit(quantity, joint)
+        if unit is not None:
+            return shown_unit(unit)
+        return si_unit(quantity, linear) if quantity in UNITS else "s"
+
+    def in_units(self, quantity: str, value: float, joint: str | None = None) -> float:
+        """A number in rad or m and s, in the unit that its quantity is printed in; as `unit`."""
+        unit, _ = self._unit(quantity, joint)
+        return value if unit is None else from_si(value, unit)
+
+    def time(self, number: Printed) -> Measured:
+        """A printed time of the claim, s, with what rounds to its digits."""
+        return self.study.case.measured(number, "time", self.claim.problem, self.reading)
+
+    def posed(self, digits: Digits = Digits.PRINTED) -> Problem:
+        """The problem the claim's durations belong to: one joint's, or that of all joints."""
+        study, label = self.study, self.claim.joint
+        problem = study.problem(self.pair)
+        if digits is not Digits.PRINTED:
+            problem = study.once(
+                ("problem", self.pair, digits), lambda: study.case.problem_at(digits, *self.pair)
+            )
+        if label is None or label not in problem.joints:
+            return problem
+        return problem.joint(problem.joints.index(label))
+
+    @property
+    def durations(self) -> DurationBox:
+        """The printed durations, s, with what rounds to them."""
+        return self.study.case.claim_durations(self.claim, self.reading)
+
+    @property
+    def motion(self) -> Trajectory:
+        """The motion of the printed durations, at the printed way-points."""
+        problem = self.posed()
+        return fit(problem.curve, problem.waypoints, self.durations.value)
+
+    @property
+    def total(self) -> Total | None:
+        """The total as printed, or as summed, and its interval in seconds."""
+        return self.study.claim_total(self.claim, self.reading)
+
+    @property
+    def longest_total(self) -> float:
+        """The longest total (s) of which the digits may have been rounded or cut off.
+
+        Each number by itself: durations may be cut off beside a total that is rounded.
+        """
+        found, number = [], own_total(self.claim)
+        if prints_durations(self.claim):
+            found.append(float(self._duration_box.or_cut_off().upper.sum()))
+        if number is not None:
+            found.append(self.time(number).cut_off().upper)
+        return min(found, default=float("inf"))
+
+    @property
+    def optimum(self) -> Solution:
+        """Best known answer of `posed`."""
+        return self.study.optimum(self.pair, self.claim.joint)
+
+    @property
+    def unmoved(self) -> str | None:
+        """Why durations alone define no motion; None if they do."""
+        curve = self.posed().curve
+        printed = self.study.case.printed_durations(self.claim)
+        if printed and len(printed) != curve.segments:
+            return (
+                f"the curve ({curve.name}) has {curve.segments} segments, but {len(printed)} "
+                "durations are printed"
+            )
+        if not curve.free:
+            return None
+        many = f"{curve.free} coefficient{'s' if curve.free > 1 else ''}"
+        return (
+            f"the curve ({curve.name}) leaves {many} per joint free, so that durations alone "
+            "define no motion"
+        )
+
+    def _determined(self) -> Problem:
+        """`posed`, whose curve durations settle; raises if they do not."""
+        why = self.unmoved
+        if why is not None:
+            raise TrajgapError(why)
+        return self.posed()
+
+    @property
+    def check(self) -> Check:
+        """The printed durations judged at the printed point."""
+        return self.once("check", lambda: check(self._determined(), self.durations.value))
+
+    @property
+    def check_or_none(self) -> Check | None:
+        """`check`; None where the printed numbers define no motion, as a finding says."""
+        try:
+            return self.check
+        except TrajgapError:
+            return None
+
+    @property
+    def has_curve(self) -> bool:
+        """Whether the printed durations define a curve under the reading."""
+        worst = self.check.worst
+        return worst is None or worst.quantity != "curve"
+
+    @property
+    def rounding(self) -> RoundingVerdict:
+        """The printed durations judged over the box of all inputs that round to the digits."""
+        return self.once("rounding", lambda: self._judged_box(cut=False))
+
+    @property
+    def kept(self) -> bool:
+        """Whether durations are printed that keep the limits, as printed or within rounding."""
+        if not prints_durations(self.claim) or self.unmoved is not None:
+            return False
+        return self.rounding.verdict in (Rounding.KEEPS, Rounding.CONSISTENT)
+
+    @property
+    def cut(self) -> RoundingVerdict:
+        """The same over a wider box, of inputs whose digits were rounded or cut off."""
+        return self.once("cut", lambda: self._judged_box(cut=True))
+
+    @property
+    def keeping(self) -> Keeping:
+        """Whether the motion keeps the limits, its digits rounded or cut off."""
+        verdict = self.rounding.verdict
+        if verdict is Rounding.BREAKS:
+            verdict = self.cut.verdict
+        found = self.check
+        jumping = any(jump.order == 1 for jump in found.jumps)
+        if verdict is Rounding.UNDECIDED and jumping and found.limits is Verdict.PASS:
+            return Keeping.DISCONTINUOUS
+        return Keeping(str(verdict))
+
+    def _judged_box(self, cut: bool) -> RoundingVerdict:
+        self._progress("rounding")
+        problem = self._determined()
+        durations, waypoints = self.boxes
+        if cut:
+            durations, waypoints = durations.or_cut_off(), waypoints.or_cut_off()
+        return judge_rounding(
+            problem,
+            durations,
+            waypoints,
+            loosest=self.posed(Digits.LOOSEST_CUT if cut else Digits.LOOSEST),
+            loose_ends=self.statement.loose_ends,
+        )
+
+    def _progress(self, what: str) -> None:
+        self.study.progress(f"{what} of {place(self.claim)}; {self.words}")
+
+    def waypoint_box(self, problem: Problem) -> RoundingBox:
+        """The way-points of ``problem``, all of its joints or one, and what rounds to them."""
+        lower, upper = self.study.case.waypoint_box(*self.pair)
+        labels = self.study.problem(self.pair).joints
+        columns = [labels.index(label) for label in problem.joints]
+        return RoundingBox(problem.waypoints, lower[:, columns], upper[:, columns])
+
+    @property
+    def _duration_box(self) -> RoundingBox:
+        printed = self.durations
+        return RoundingBox(printed.value, printed.lower, printed.upper)
+
+    @property
+    def boxes(self) -> tuple[RoundingBox, RoundingBox]:
+        """Durations and way-points of the claim's motion, and what rounds to them."""
+        return self._duration_box, self.waypoint_box(self.posed())
+
+    def reachable(self, durations: Array) -> float | None:
+        """A total (s) that some stretch of ``durations`` keeps whatever the digits stand for.
+
+        It holds for every way-point that rounds to the printed digits or is cut off to them, and
+        every limit that rounds to them; None if there is no such stretch, if durations alone
+        define no motion, or if the curve itself is printed in rounded numbers. Where exact ratios
+        are fixed, the durations take them first.
+        """
+        try:
+            problem = self.posed(Digits.TIGHTEST)
+        except CaseError:  # the tightest ranges are empty
+            return None
+        if problem.shares is not None:
+            if self.statement.loose_ratios:
+                return None  # other ratios, which the digits stand for too, may take longer
+            durations = problem.shares * float(np.sum(durations))
+        if problem.curve.free or self.statement.loose_ends:
+            return None
+        box = self.waypoint_box(problem).or_cut_off()
+        return reachable_total(problem, durations, box.lower, box.upper)
+
+    @property
+    def total_excluded(self) -> bool:
+        """Whether no motion within the limits takes the claim's total or less.
+
+        Proved for every value that rounds to the printed digits or is cut off to them.
+        """
+        return self.once("excluded", self._excludes_total)
+
+    def _excludes_total(self) -> bool:
+        total = self.total
+        if total is None or self.statement.loose_ends:
+            return False
+        low, high = total.interval
+        longest = high + (high - low)
+        best = self.optimum
+        if best.found and best.best <= longest:
+            return False  # a motion within the limits takes no longer
+        self._progress("total")
+        problem = self.posed(Digits.LOOSEST_CUT)
+        excluded = excludes_total(problem, longest, self.waypoint_box(problem).or_cut_off())
+        if excluded is None:
+            asked = in_words_among(self.study.case, *self.pair)
+            self.study.intervals.left_out.append(
+                noted(f"whether any motion takes {total.shown} or less", asked)
+                + f", tried with {BOXES} boxes"
+            )
+        return excluded is True
+
+
+def printed_rows(study: Study, claim: C) -> Iterator[PrintedRow[C]]:  # type: ignore[misc]
+    """A claim under each problem and reading that it speaks about; none where it fits none."""
+    return (PrintedRow(study, claim, pair) for pair in study.pairs if study.fits(claim, pair))
+
+
+def rows_under(study: Study, claims: Iterable[C], reading: str) -> list[PrintedRow[C]]:
+    """Claims with each problem that they speak about under a reading."""
+    return [row for one in claims for row in printed_rows(study, one) if row.reading == reading]
+
+
+def left_out(study: Study, named: Iterable[AnyClaim], reading: str) -> list[AnyClaim]:
+    """Claims that a statement names and from which no motion is built under a reading.
+
+    They are of another curve, or have another number of durations than the curve has segments.
+    """
+    chosen = (None, *study.problems)
+    return [c for c in named if c.problem in chosen and not rows_under(study, [c], reading)]

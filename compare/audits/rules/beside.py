@@ -1,0 +1,371 @@
+"""A printed number of a motion beside what the motion gives, and beside what digits leave open."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from functools import cached_property
+from math import pi
+from typing import NamedTuple
+
+import numpy as np
+
+from ....problem import Array, Printed, TrajgapError
+from ..rounding import RoundingBox, hull
+
+Meant = Callable[[Array, Array], dict[str, float]]
+"""From way-points and durations to what a number may be, each in words."""
+SAMPLES = (50, 100, 200, 500, 1000)
+"""Numbers of samples of which a paper may have taken a mean, with or without the last instant."""
+_ROOTS = (2, 3, 5)
+"""Numbers whose square roots closed forms of peaks hold, such as 10/√3 of degree 5 and 84√5/25 of
+degree 7: one that is lost in print is named as an explanation."""
+UNEXPLAINED = "off by more than rounding, cut-off or sampling was found to explain"
+"""Said of a printed number of a motion that is not that of the printed durations."""
+_CORNERS = 6
+"""Corners of the rounding box that are looked at in turn at most, each way; a search of all of its
+2ⁿ corners would not end where there are many durations and way-points."""
+_FACTORS = {
+    180 / pi: "as between degrees and radians",
+    1000.0: "as a thousandth of the unit",
+    100.0: "as a hundredth of the unit",
+    60.0: "as per minute instead of per second",
+    2 * pi: "as turns instead of radians",
+    30 / pi: "as turns per minute instead of radians per second",
+}
+"""Ratios between units that are mixed up, and what that would mean; their inverses count too."""
+_LENGTH_FACTORS = {
+    1000.0: "as a thousandth of the unit",
+    100.0: "as a hundredth of the unit",
+    10.0: "as between millimetres and centimetres",
+    60.0: "as per minute instead of per second",
+}
+"""The same of joints that slide, whose numbers are no angles."""
+_NEAR_FACTOR = 0.01
+"""Relative distance from such a ratio below which the unit is named as an explanation."""
+
+
+class Class(StrEnum):
+    """How a printed number lies beside that of the motion."""
+
+    ROUNDING = "rounding"
+    CUT_OFF = "cut off"
+    SAMPLING = "sampling"
+    NORM = "norm over the joints"
+    UNIT = "other unit"
+    ROOT = "root left out"
+    OFF = "off"
+
+
+FITS = (Class.ROUNDING, Class.CUT_OFF, Class.SAMPLING, Class.NORM)
+"""The classes that accuse of nothing."""
+
+
+@dataclass(frozen=True, eq=False)
+class Beside:
+    """A printed number beside one of the motion, all in the unit of the paper.
+
+    Attributes
+    ----------
+    printed : Printed
+    rounded, wide : tuple of float
+        Ends of what the digits stand for, if they were rounded, and if they may be cut off.
+    exact : float
+        The motion's number, at the printed durations and way-points.
+    reach : float
+        Its change over all values that round to the printed digits: of first order, and where that
+        does not reach the printed number the largest that is found, if it is larger.
+    far : float
+        The same over values that are cut off to the printed digits, which lie up to a whole last
+        place away.
+    sampled : tuple of float
+        The least and the most that samples of that motion give.
+    unit : str
+        As a sentence writes it.
+    joint : str or None
+        Whose number it is; that of the robot if None.
+    meaning : str
+        Which of several numbers it may be, in words.
+    norm : Beside, optional
+        The same beside the largest norm over the joints, where one number speaks of several.
+    linear : bool, optional
+        Of a peak: whether its joint slides, so that units explain a factor between the two.
+    """
+
+    printed: Printed
+    rounded: tuple[float, float]
+    wide: tuple[float, float]
+    exact: float
+    reach: float
+    far: float
+    sampled: tuple[float, float]
+    unit: str
+    joint: str | None = None
+    meaning: str = ""
+    norm: Beside | None = None
+    linear: bool | None = None
+
+    @property
+    def met(self) -> bool:
+        """Whether the motion's number rounds to the printed digits, all others as printed."""
+        return self.rounded[0] <= self.exact <= self.rounded[1]
+
+    @property
+    def distance(self) -> float:
+        """Relative distance of the printed number from that of the motion."""
+        value = float(self.printed.fraction)
+        if self.exact == 0.0:
+            return 0.0 if value == 0.0 else np.inf
+        return (value - self.exact) / self.exact
+
+    def _meets(self, ends: tuple[float, float], low: float, high: float, factor: float = 1) -> bool:
+        return factor * ends[0] <= high and low <= factor * ends[1]
+
+    @cached_property
+    def kind(self) -> Class:
+        """How the two lie beside each other, the most charitable first."""
+        exact, reach, far = self.exact, self.reach, self.far
+        if self._meets(self.rounded, exact - reach, exact + reach):
+            return Class.ROUNDING
+        if self._meets(self.wide, exact - far, exact + far):
+            return Class.CUT_OFF
+        if self._meets(self.wide, self.sampled[0] - far, self.sampled[1] + far):
+            return Class.SAMPLING
+        if self.norm is not None and self.norm.fits:
+            return Class.NORM
+        if self.root is not None:
+            return Class.ROOT
+        return Class.OFF if self.factor is None else Class.UNIT
+
+    @property
+    def fits(self) -> bool:
+        """Whether nothing speaks against the printed number."""
+        return self.kind in FITS
+
+    @property
+    def around(self) -> str:
+        """The motion's number with what rounding may change of it."""
+        return f"{self.exact:.6g} ± {self.reach:.1g} {self.unit}"
+
+    def told(self, name: str) -> str:
+        """A number of a motion by its name, with what is printed and how the two agree."""
+        how = {
+            Class.ROUNDING: "equal within the rounding of the printed digits",
+            Class.CUT_OFF: "as digits that are cut off instead of rounded give it",
+            Class.SAMPLING: f"as {SAMPLES[0]} or more samples of the motion give it",
+        }.get(self.kind, UNEXPLAINED)
+        return f"{name} is {self.exact:.6g} {self.unit}, printed is {self.printed}, {how}"
+
+    @property
+    def root(self) -> int | None:
+        """Whose square root a printed peak lacks, if with it the two agree within rounding."""
+        if self.linear is None:
+            return None
+        low, high = self.exact - self.reach, self.exact + self.reach
+        return next((n for n in _ROOTS if self._meets(self.rounded, low, high, n**0.5)), None)
+
+    @property
+    def factor(self) -> str | None:
+        """What a ratio of peaks near that of two units would mean, if it is near one."""
+        value = float(self.printed.fraction)
+        if self.linear is None or not (self.exact > 0 and value > 0):
+            return None
+        return _meant_by_ratio(value / self.exact, self.linear)
+
+
+def _meant_by_ratio(ratio: float, linear: bool) -> str | None:
+    """The factor between two units that a ratio is near, and what it would mean.
+
+    Parameters
+    ----------
+    ratio : float
+        Positive.
+    linear : bool
+        Whether the numbers are those of a joint that slides.
+
+    Returns
+    -------
+    str or None
+        None where it is near none.
+    """
+    for factor, meaning in (_LENGTH_FACTORS if linear else _FACTORS).items():
+        for one in (factor, 1 / factor):
+            if abs(ratio / one - 1) <= _NEAR_FACTOR:
+                return f"{one:.6g}, {meaning}"
+    return None
+
+
+def nearest_number(
+    printed: Printed,
+    unit: str,
+    joint: str | None,
+    meant: Meant,
+    samples: Sequence[Mapping[str, float]],
+    boxes: tuple[RoundingBox, RoundingBox],
+    spread: float = 0.0,
+) -> Beside:
+    """A printed number beside the one that it is nearest to, of those that it may be.
+
+    Parameters
+    ----------
+    printed : Printed
+    unit : str
+        Of the paper, as a sentence writes it.
+    joint : str or None
+        Whose number it is.
+    meant : callable
+        In the unit of the paper.
+    samples : sequence of dict
+        What samples of the printed motion give instead, in the same words; may be empty.
+    boxes : tuple of RoundingBox
+        Of durations, shape (segments,), and of way-points, shape (way-points, joints).
+    spread : float
+        Further change that rounding allows, in the unit of the paper.
+
+    Returns
+    -------
+    Beside
+    """
+    durations, waypoints = boxes
+    at_print = meant(waypoints.value, durations.value)
+    reach = dict.fromkeys(at_print, 0.0)
+    for moved in _each_moved(durations, waypoints, "upper"):
+        for words, value in meant(*moved).items():
+            reach[words] += abs(value - at_print[words])
+    rounded, wide = (
+        (float(one.lower), float(one.upper)) for one in (printed.interval, hull(printed))
+    )
+    tried = []
+    for words, value in at_print.items():
+        sampled = [one[words] for one in samples] or [value]
+        near, far = reach[words] + spread, 2 * (reach[words] + spread)
+        ends = min(sampled), max(sampled)
+        tried.append(Beside(printed, rounded, wide, value, near, far, ends, unit, joint, words))
+    fitting = [one for one in tried if one.fits]
+    if not fitting:
+        for i, one in enumerate(tried):
+            near, far = (
+                _farthest(meant, one.meaning, durations, waypoints, share) for share in (1.0, 2.0)
+            )
+            near, far = near + spread, far + 2 * spread
+            tried[i] = replace(one, reach=max(one.reach, near), far=max(one.far, far))
+        fitting = [one for one in tried if one.fits]
+    return min(fitting or tried, key=lambda one: abs(one.exact - float(printed.fraction)))
+
+
+def _farthest(
+    meant: Meant,
+    words: str,
+    durations: RoundingBox,
+    waypoints: RoundingBox,
+    share: float,
+) -> float:
+    """Largest change of a number that is found in the rounding box, ``share`` as wide."""
+
+    def look(h: RoundingBox, q: RoundingBox) -> Look:
+        here = meant(q.value, h.value)[words]
+
+        def changes(end: str) -> Array:
+            found = []
+            for moved in _each_moved(h, q, end):
+                try:
+                    found.append(meant(*moved)[words] - here)
+                except TrajgapError:  # a duration that is not positive, or no curve
+                    found.append(np.nan)
+            return np.array(found)
+
+        return Look(here, changes("lower"), changes("upper"))
+
+    return largest_change(durations, waypoints, share, look)
+
+
+def _each_moved(h: RoundingBox, q: RoundingBox, end: str) -> Iterator[tuple[Array, Array]]:
+    """Way-points and durations with one number at an end: the durations first, row by row."""
+    for k in np.ndindex(h.value.shape):
+        yield q.value, _with(h.value, k, getattr(h, end))
+    for k in np.ndindex(q.value.shape):
+        yield _with(q.value, k, getattr(q, end)), h.value
+
+
+def _with(values: Array, k: tuple[int, ...], others: Array) -> Array:
+    found = values.copy()
+    found[k] = others[k]
+    return found
+
+
+class Look(NamedTuple):
+    """A number at one place of the rounding box.
+
+    Attributes
+    ----------
+    value : float
+    down, up : ndarray
+        What it would change by if one printed number went to the lower or the upper end of its
+        range while the others stay, the durations first, then the way-points row by row; not a
+        number where that end has no curve.
+    """
+
+    value: float
+    down: Array
+    up: Array
+
+
+def largest_change(
+    durations: RoundingBox,
+    waypoints: RoundingBox,
+    share: float,
+    look: Callable[[RoundingBox, RoundingBox], Look],
+) -> float:
+    """Largest change of a number that is found at corners of the rounding box.
+
+    The first order at the printed numbers tells little where a segment lasts few units of its last
+    digit. So every printed number goes to the end at which the number is better while the others
+    stay, and from that corner again, upwards and downwards.
+
+    Parameters
+    ----------
+    durations : RoundingBox, shape (segments,)
+    waypoints : RoundingBox, shape (way-points, joints)
+    share : float
+        How wide the box is: 1 for rounded digits, 2 for digits that may be cut off.
+    look : callable
+        Of durations and way-points; the value of each box is the place, its ends are those of the
+        wider box. May raise `TrajgapError` where there is no curve.
+
+    Returns
+    -------
+    float
+        In the unit of the number.
+    """
+    middle, low, high = (
+        np.append(getattr(durations, end), getattr(waypoints, end))
+        for end in ("value", "lower", "upper")
+    )
+    low, high = middle + share * (low - middle), middle + share * (high - middle)
+    segments, shape = durations.value.size, waypoints.value.shape
+
+    def looked(at: Array) -> Look:
+        h, q = (
+            RoundingBox(*parts)
+            for parts in zip(*(np.split(x, [segments]) for x in (at, low, high)), strict=True)
+        )
+        return look(h, RoundingBox(*(x.reshape(shape) for x in (q.value, q.lower, q.upper))))
+
+    widest, start = 0.0, looked(middle)
+    for side in (1.0, -1.0):
+        at, here = middle, start
+        for _ in range(_CORNERS):
+            down, up = (
+                np.where(np.isnan(change), -np.inf, side * change)
+                for change in (here.down, here.up)
+            )
+            ahead = np.where(up > down, high, np.where(down > up, low, middle))
+            if np.array_equal(ahead, at):
+                break
+            try:
+                at, here = ahead, looked(ahead)
+            except TrajgapError:  # a duration that is not positive, or no curve
+                break
+            widest = max(widest, side * (here.value - start.value))
+    return widest
