@@ -50,6 +50,7 @@ from .described import Described
 from .errors import (
     CaseError,
     CurveError,
+    PackageError,
     ProcessError,
     RatiosError,
     SingularError,
@@ -134,6 +135,7 @@ __all__ = [
     "LimitPair",
     "Limits",
     "Measured",
+    "PackageError",
     "Parameters",
     "Peak",
     "PeakGradients",
