@@ -176,16 +176,9 @@ def _summary(
         failed += len(bad)
         never_ran |= len(bad) == len(runs)
         passed = sum(row.feasible for row in runs)
-        cells = (
-            optimizer,
-            _readable(settings),
-            handling,
-            f"{budget:,}",
-            len(runs),
-            len(bad),
-            passed,
-        )
-        found.setdefault((problem, reading), []).append((*cells, *_gaps(runs)))
+        named = optimizer, _readable(settings), handling, f"{budget:,}"
+        cells = (*named, len(runs), len(bad), passed, *_gaps(runs))
+        found.setdefault((problem, reading), []).append(cells)
     parts: list[RenderableType] = [
         line(f"{path}: {session.run:,} runs done now, {session.resumed:,} were there", "bold"),
         *(_boards(plan, kept) if plan.file == LEADERBOARD else _tables(plan, found)),
