@@ -51,6 +51,7 @@ from .described import Described
 from .errors import (
     CaseError,
     CurveError,
+    PackageError,
     ProcessError,
     RatiosError,
     SingularError,
@@ -135,6 +136,7 @@ __all__ = [
     "LimitPair",
     "Limits",
     "Measured",
+    "PackageError",
     "Parameters",
     "Peak",
     "PeakGradients",

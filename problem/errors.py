@@ -70,6 +70,10 @@ class SingularError(CurveError):
         super().__init__(reason, segment, 0.0)
 
 
+class PackageError(TrajgapError):
+    """An optional package is not installed; the message says how to install it."""
+
+
 class CaseError(TrajgapError):
     """A case file, or a table meant to become one, cannot be used.
 

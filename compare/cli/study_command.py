@@ -13,7 +13,11 @@ _MOST = 10_000
 
 def study(
     file: Annotated[
-        Path, typer.Argument(metavar="FILE.toml", help="See docs/reference/studies.md.")
+        Path,
+        typer.Argument(
+            metavar="FILE.toml|leaderboard",
+            help="See docs/reference/studies.md; leaderboard is the study behind the leaderboard.",
+        ),
     ],
     store: Annotated[
         Path | None,
@@ -44,6 +48,14 @@ def study(
             "IOHprofiler's format. May be given several times.",
         ),
     ] = None,
+    summary: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE.csv",
+            help="Write one row for each optimiser, problem, handling and budget; an earlier file "
+            "is replaced.",
+        ),
+    ] = None,
     retry: Annotated[bool, typer.Option("--retry", help="Run the failed ones again.")] = False,
 ) -> int:
     """Run optimisers on many problems; what is finished is kept.
@@ -54,4 +66,4 @@ def study(
 
     if dask is not None and workers is not None:
         raise typer.BadParameter("--workers does not go with --dask, whose cluster has its own")
-    return conduct(file, store, workers, dask, export or [], retry)
+    return conduct(file, store, workers, dask, export or [], summary, retry)

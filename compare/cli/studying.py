@@ -19,10 +19,11 @@ from pathlib import Path
 import numpy as np
 from rich.console import RenderableType
 
-from ...problem import CaseError
+from ...problem import CaseError, replace_file
 from ..audits import in_words
 from ..documents import noted
 from ..gaps import (
+    LEADERBOARD,
     Engine,
     Row,
     RowStatus,
@@ -30,16 +31,21 @@ from ..gaps import (
     StudyPlan,
     StudyProblem,
     StudySession,
+    boards,
     check_export,
     export_rows,
+    leaderboard_study,
     load_study,
     on_dask,
     on_this_machine,
     quantiles,
     run_study,
     study_rows,
+    summaries,
+    summaries_text,
 )
 from .interrupt import INTERRUPTED
+from .leaderboard import BOARD_COLUMNS, board_cells
 from .output import NEVER_RAN, progress, rendered, say
 from .table import Columns, line
 
@@ -48,8 +54,8 @@ _ENDING = ".sqlite"
 _ONE_BY_ONE = 6
 """Problems up to which each has a table of its own, as in `bench`; of more there is one, in which
 they are called as in the exports."""
-_COLUMNS = ("optimiser", "~settings", "handling", ">runs", ">failed", ">feasible", ">best gap %",
-            ">median gap %")  # fmt: skip
+_COLUMNS = ("optimiser", "~settings", "handling", ">budget", ">runs", ">failed", ">feasible",
+            ">best gap %", ">median gap %")  # fmt: skip
 """What a table says of the runs of one optimiser under one settings."""
 Cells = tuple[object, ...]
 """A row of such a table."""
@@ -63,9 +69,11 @@ def conduct(
     workers: int | None,
     dask: str | None,
     exports: Sequence[Path],
+    summary: Path | None,
     retry: bool,
 ) -> int:
     """Run what is left of a study, export its rows, and say what they came to."""
+    shipped = file == Path(LEADERBOARD)
     path = store or file.with_suffix(_ENDING)
     if path == file:
         raise CaseError(str(path), "--store", "is the study file itself; name another")
@@ -73,7 +81,9 @@ def conduct(
         check_export(one)
         if exports.count(one) > 1:
             raise CaseError(str(one), "--export", "is named twice; name it once")
-    plan = load_study(file)
+    if summary is not None and summary.suffix != ".csv":
+        raise CaseError(str(summary), "--summary", "is no .csv file; name one")
+    plan = leaderboard_study() if shipped else load_study(file)
     again = ["trajgap", "study", str(file), *_options("--store", [] if store is None else [store])]
     with Store(path) as kept:
         session = StudySession(total=len(plan), resumed=0)
@@ -95,6 +105,8 @@ def conduct(
             return INTERRUPTED
         for one in exports:
             export_rows(study_rows(plan, kept), one)
+        if summary is not None:
+            replace_file(summary, summaries_text(summaries(plan, kept)))
         parts, never_ran = _summary(plan, kept, session, path, exports, again)
         say(rendered(parts))
     return NEVER_RAN if never_ran else 0
@@ -154,7 +166,7 @@ def _summary(
     """What the runs came to, and whether all of some optimiser on some problem failed."""
     found: dict[tuple[str, str], list[Cells]] = {}
     messages, failed, never_ran = dict[str, int](), 0, False
-    for (problem, reading, optimizer, settings, handling), group in groupby(
+    for (problem, reading, optimizer, settings, handling, budget), group in groupby(
         study_rows(plan, kept), _named
     ):
         runs = list(group)
@@ -164,12 +176,12 @@ def _summary(
         failed += len(bad)
         never_ran |= len(bad) == len(runs)
         passed = sum(row.feasible for row in runs)
-        found.setdefault((problem, reading), []).append(
-            (optimizer, _readable(settings), handling, len(runs), len(bad), passed, *_gaps(runs))
-        )
+        named = optimizer, _readable(settings), handling, f"{budget:,}"
+        cells = (*named, len(runs), len(bad), passed, *_gaps(runs))
+        found.setdefault((problem, reading), []).append(cells)
     parts: list[RenderableType] = [
         line(f"{path}: {session.run:,} runs done now, {session.resumed:,} were there", "bold"),
-        *_tables(plan, found),
+        *(_boards(plan, kept) if plan.file == LEADERBOARD else _tables(plan, found)),
         line("A gap is that of the feasible time, (T − U)/U against the best known total U."),
     ]
     for message, count in sorted(messages.items(), key=lambda one: -one[1])[:_MESSAGES]:
@@ -209,14 +221,27 @@ def _tables(
     return parts
 
 
+def _boards(plan: StudyPlan, kept: Store) -> list[RenderableType]:
+    """Where each optimiser stands over all problems: their own lines would be thousands."""
+    parts: list[RenderableType] = []
+    for board in boards(summaries(plan, kept)):
+        head = f"{board.handling}, {board.budget:,} evaluations, {len(board.problems)} instances"
+        parts.append(line(head, "bold"))
+        parts.append(Columns(BOARD_COLUMNS, board_cells(board)))
+        if board.missing:
+            parts.append(line(f"not complete: {', '.join(board.missing)}"))
+        parts.append(line(""))
+    return [*parts, *(line(note, "dim") for note in plan.notes)]
+
+
 def _words(one: StudyProblem) -> str:
     """What a problem of a study is called."""
     joint = "" if one.joint is None else f"joint {one.joint} alone; "
     return f"{joint}{in_words(one.case, one.problem_id, one.reading)}"
 
 
-def _named(row: Row) -> tuple[str, str, str, str, str]:
-    return row.problem, row.reading, row.optimizer, row.settings, row.handling
+def _named(row: Row) -> tuple[str, str, str, str, str, int]:
+    return row.problem, row.reading, row.optimizer, row.settings, row.handling, row.budget
 
 
 def _readable(settings: str) -> str:

@@ -1,6 +1,17 @@
 from .benching import BenchPlan, Entrant, Runs, bench, measure_gaps, plan_bench, run_bench
 from .engines import Engine, on_dask, on_this_machine, outcomes
 from .exports import COLUMNS, check_export, export_rows, rows_text
+from .leaderboard import (
+    LEADERBOARD,
+    SIZES,
+    Board,
+    Ranked,
+    boards,
+    curve_of,
+    leaderboard_rows,
+    leaderboard_study,
+    size_of,
+)
 from .many_problems import overall, relative_rows
 from .optimality_gap import gap, reference_of
 from .pairs import compare_pairs, vargha_delaney
@@ -19,6 +30,15 @@ from .statistics import (
 )
 from .store import Store
 from .studies import StudyPlan, StudyProblem, load_study, parse_study
+from .summaries import (
+    LADDER,
+    SOLVED,
+    Summary,
+    read_summaries,
+    summaries,
+    summaries_text,
+    summary_of,
+)
 from .targets import (
     CURVE_TARGETS,
     TARGETS,
@@ -27,6 +47,7 @@ from .targets import (
     hit,
     share_of_targets,
     share_within,
+    success_interval,
 )
 from .trial_process import TrialOutcome, run_apart
 from .trials import origin_of, run_trial
@@ -34,12 +55,18 @@ from .trials import origin_of, run_trial
 __all__ = [
     "COLUMNS",
     "CURVE_TARGETS",
+    "LADDER",
+    "LEADERBOARD",
     "SETTLED",
+    "SIZES",
+    "SOLVED",
     "TARGETS",
     "BenchPlan",
+    "Board",
     "Bracket",
     "Engine",
     "Entrant",
+    "Ranked",
     "Row",
     "RowStatus",
     "Runs",
@@ -48,21 +75,26 @@ __all__ = [
     "StudyPlan",
     "StudyProblem",
     "StudySession",
+    "Summary",
     "Trial",
     "TrialOutcome",
     "against",
     "band",
     "bench",
     "bench_result",
+    "boards",
     "canonical",
     "check_export",
     "checkpoints",
     "compare_pairs",
+    "curve_of",
     "expected_running_time",
     "export_rows",
     "failed",
     "gap",
     "hit",
+    "leaderboard_rows",
+    "leaderboard_study",
     "load_study",
     "measure_gaps",
     "on_dask",
@@ -73,6 +105,7 @@ __all__ = [
     "parse_study",
     "plan_bench",
     "quantiles",
+    "read_summaries",
     "reference_of",
     "relative_rows",
     "rows_text",
@@ -86,8 +119,13 @@ __all__ = [
     "share_of_pairs",
     "share_of_targets",
     "share_within",
+    "size_of",
     "spread",
     "study_rows",
+    "success_interval",
+    "summaries",
+    "summaries_text",
+    "summary_of",
     "target_reached",
     "totals_of",
     "trace_of",

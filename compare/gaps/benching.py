@@ -28,7 +28,7 @@ from .rows import Row, RowStatus, Trial, against, canonical
 from .standings import bench_result
 from .store import Store
 from .trial_process import TrialOutcome
-from .trials import origin_of, run_trial
+from .trials import DESCENT, origin_of, run_trial
 
 SEEDS = 30
 """Runs of each optimiser by default: as many as papers of this field report."""
@@ -37,7 +37,7 @@ BUDGET = 6000
 SECONDS = 300.0
 """Time limit of one run by default: thousands of times what the budget usually takes."""
 
-WITHOUT_DRAWS = frozenset({"rescale", "scipy:direct", "scipy:shgo"})
+WITHOUT_DRAWS = frozenset({DESCENT, "rescale", "scipy:direct", "scipy:shgo"})
 """Optimisers that draw no random numbers: every seed gives the same run, so one is made."""
 _FIRST_RANGES = ("position_initial", "position_range")
 """Settings of the papers' algorithms that say where their first positions are drawn."""

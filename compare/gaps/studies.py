@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from decimal import Decimal
@@ -16,6 +17,7 @@ from ...problem import (
     Case,
     CaseError,
     Coupling,
+    PackageError,
     Problem,
     Strict,
     TrajgapError,
@@ -37,7 +39,7 @@ from .benching import (
 from .references import bracket_of
 from .rows import Bracket, Trial, canonical
 from .store import Store
-from .trials import origin_of
+from .trials import DESCENT, origin_of
 
 STUDY_FORMAT = 1
 """The version of the study file format that this module reads."""
@@ -65,6 +67,12 @@ def _plain(raw: object) -> object:
 
 Ids = Annotated[tuple[str, ...], BeforeValidator(_several), Field(min_length=1)]
 """One id, or several."""
+Budgets = Annotated[
+    tuple[Annotated[int, Field(strict=True, ge=1, le=10**9)], ...],
+    BeforeValidator(_several),
+    Field(min_length=1),
+]
+"""One number of evaluations, or several: every run is made within each."""
 Settings = Annotated[
     tuple[Annotated[dict[str, Any], BeforeValidator(_plain)], ...],
     BeforeValidator(_several),
@@ -94,6 +102,8 @@ class OptimizerBlock(Strict):
     """As `trajgap bench --optimizer` takes it."""
     settings: Settings = ({},)
     """What is left out takes the optimiser's own default."""
+    label: str = ""
+    """Its name in summaries; by default the optimiser's, with its settings if it has some."""
 
 
 class StudyFile(Strict):
@@ -113,9 +123,12 @@ class StudyFile(Strict):
     """Number of seeds: independent runs of each combination."""
     first_seed: Annotated[int, Field(strict=True, ge=0, le=2**62)] = 0
     """The first of them; the others follow it."""
-    budget: Annotated[int, Field(strict=True, ge=1, le=10**9)] | None = None
-    """Evaluations of each run; the objective enforces it. Without it a paper's algorithm makes its
-    own iterations, and anything else has 6000."""
+    budget: Budgets | None = None
+    """Evaluations of each run; the objective enforces it. Several are runs of their own, the first
+    budget first. Without it a paper's algorithm makes its own iterations, and anything else has
+    6000."""
+    installed_only: bool = False
+    """Whether optimisers whose package is missing are left out, instead of refused."""
     seconds: Annotated[float, Field(gt=0, le=_LONGEST)] = _SECONDS
     """A run that takes longer has failed."""
 
@@ -167,17 +180,20 @@ class StudyPlan:
     file : str
     document : StudyFile
     problems : tuple of StudyProblem
+    missing : tuple of str
+        Why optimisers were left out.
     """
 
     file: str
     document: StudyFile
     problems: tuple[StudyProblem, ...]
+    missing: tuple[str, ...] = ()
 
     def __len__(self) -> int:
         """Number of its trials."""
         asked = self.document
         runs = sum(len(one.settings) * _seeds(one.name, asked) for one in asked.optimizers)
-        return len(self.problems) * len(asked.handlings) * runs
+        return len(self.problems) * len(asked.handlings) * len(asked.budget or [None]) * runs
 
     def trials(self, store: Store | None = None) -> Iterator[Trial]:
         """Every trial, one by one, in an order that the file alone determines.
@@ -187,41 +203,59 @@ class StudyPlan:
         store : Store, optional
             Knows or keeps the optima that gaps are set against; without it, rows have no gaps.
         """
+        for _, trials in self.groups(store):
+            yield from trials
+
+    def groups(self, store: Store | None = None) -> Iterator[tuple[str, tuple[Trial, ...]]]:
+        """The trials that differ by their seeds alone, with the label of their optimiser.
+
+        Parameters
+        ----------
+        store : Store, optional
+            As for `trials`.
+        """
         asked = self.document
-        for entry in self.problems:
-            bare = Trial(entry.problem, entry.name, entry.reading, "")
-            reference = None
-            if store is not None:
-                reference = store.optimum(bare.problem_sha256, entry.solve)
-            for name, settings, handling in self._entrants():
-                own = {**settings, **first_range(name, settings, entry.box)}
-                entrant = Entrant(name, own, handling, name)
-                first = replace(
-                    bare,
-                    optimizer=name,
-                    settings=canonical(own),
-                    handling=handling,
-                    seed=asked.first_seed,
-                    budget=run_budget(name, own, asked.budget),
-                    stream=(entrant.stream, *entry.stream),
-                    origin=origin_of(name),
-                    reference=reference,
-                    seconds=asked.seconds,
-                )
-                for seed in range(_seeds(name, asked)):
-                    yield replace(first, seed=asked.first_seed + seed)
+        for budget in asked.budget or (None,):
+            for entry in self.problems:
+                bare = Trial(entry.problem, entry.name, entry.reading, "")
+                reference = None
+                if store is not None:
+                    reference = store.optimum(bare.problem_sha256, entry.solve)
+                for one in self._entrants():
+                    name = one.optimizer
+                    own = {**one.settings, **first_range(name, one.settings, entry.box)}
+                    first = replace(
+                        bare,
+                        optimizer=name,
+                        settings=canonical(own),
+                        handling=one.handling,
+                        seed=asked.first_seed,
+                        budget=run_budget(name, own, budget),
+                        stream=(replace(one, settings=own).stream, *entry.stream),
+                        origin=origin_of(name),
+                        reference=reference,
+                        seconds=asked.seconds,
+                    )
+                    seeds = range(asked.first_seed, asked.first_seed + _seeds(name, asked))
+                    yield one.label, tuple(replace(first, seed=seed) for seed in seeds)
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What was run where the file states no budget."""
-        entrants = [Entrant(*one, one[0]) for one in self._entrants()]
-        return tuple(dict.fromkeys(budget_notes(entrants, self.document.budget)))
+        """What was run where the file states no budget, and what was left out."""
+        budget = None if self.document.budget is None else self.document.budget[0]
+        entrants = [replace(one, label=one.optimizer) for one in self._entrants()]
+        return (*dict.fromkeys(budget_notes(entrants, budget)), *self.missing)
 
-    def _entrants(self) -> Iterator[tuple[str, dict[str, Any], str]]:
+    def _entrants(self) -> Iterator[Entrant]:
         for optimizer in self.document.optimizers:
             for settings in optimizer.settings:
                 for handling in self.document.handlings:
-                    yield optimizer.name, settings, str(handling)
+                    label = _label(optimizer, settings)
+                    yield Entrant(optimizer.name, settings, str(handling), label)
+
+
+def _label(optimizer: OptimizerBlock, settings: dict[str, Any]) -> str:
+    return optimizer.label or f"{optimizer.name} {canonical(settings) if settings else ''}".rstrip()
 
 
 def _seeds(name: str, asked: StudyFile) -> int:
@@ -278,14 +312,14 @@ def parse_study(text: str, file: str, folder: Path) -> StudyPlan:
         document = StudyFile.model_validate(raw)
     except ValidationError as error:
         raise refusal(file, all_faults(error)) from None
-    _check_optimizers(document, file)
+    document, missing = _check_optimizers(document, file)
     problems = tuple(
         entry
         for at, block in enumerate(document.problems)
         for entry in _entries(block, document.handlings, file, f"problems[{at}]", folder)
     )
     _check_repeats(problems, document, file)
-    return StudyPlan(file, document, problems)
+    return StudyPlan(file, document, problems, missing)
 
 
 def _check_repeats(problems: tuple[StudyProblem, ...], document: StudyFile, file: str) -> None:
@@ -297,26 +331,52 @@ def _check_repeats(problems: tuple[StudyProblem, ...], document: StudyFile, file
             [f"{b.name} {canonical(s)}" for b in document.optimizers for s in b.settings],
         ),
         ("handlings", [str(handling) for handling in document.handlings]),
+        ("budget", [str(budget) for budget in document.budget or ()]),
+        ("optimizers", [_label(b, s) for b in document.optimizers for s in b.settings]),
     ]
     for field, names in asked:
-        for name in names:
-            if names.count(name) > 1:
+        for name, count in Counter(names).items():
+            if count > 1:
                 raise CaseError(file, field, f"{name} is named twice; name it once")
 
 
-def _check_optimizers(document: StudyFile, file: str) -> None:
+def _check_optimizers(document: StudyFile, file: str) -> tuple[StudyFile, tuple[str, ...]]:
+    """The study without optimisers whose package may be missing and is, and what is missing.
+
+    Raises
+    ------
+    CaseError
+        If an optimiser or a setting is unknown.
+    """
+    found, missing = [], []
     for at, block in enumerate(document.optimizers):
-        for place, settings in enumerate(block.settings):
-            field = f"optimizers[{at}]"
-            if settings:
-                field += f".settings[{place}]" if len(block.settings) > 1 else ".settings"
-            try:
-                canonical(settings)
-                find_optimizer(block.name, document.budget, **settings)
-            except TrajgapError as error:
-                raise CaseError(file, field, str(error)) from None
-            except TypeError as error:
-                raise CaseError(file, field, f"{error}; see the optimiser's manual") from None
+        try:
+            _check_optimizer(block, document, file, at)
+        except PackageError as error:
+            if not document.installed_only:
+                raise CaseError(file, f"optimizers[{at}]", str(error)) from None
+            missing.append(f"Left out: {error}.")
+        else:
+            found.append(block)
+    return document.model_copy(update={"optimizers": tuple(found)}), tuple(missing)
+
+
+def _check_optimizer(block: OptimizerBlock, document: StudyFile, file: str, at: int) -> None:
+    largest = max(document.budget or (0,)) or None
+    for place, settings in enumerate(block.settings):
+        field = f"optimizers[{at}]"
+        if settings:
+            field += f".settings[{place}]" if len(block.settings) > 1 else ".settings"
+        try:
+            canonical(settings)
+            if block.name != DESCENT:
+                find_optimizer(block.name, largest, **settings)
+        except PackageError:
+            raise
+        except TrajgapError as error:
+            raise CaseError(file, field, str(error)) from None
+        except TypeError as error:
+            raise CaseError(file, field, f"{error}; see the optimiser's manual") from None
 
 
 def _entries(

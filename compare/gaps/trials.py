@@ -28,6 +28,10 @@ _LONGEST_MESSAGE = 300
 LIBRARIES = {"scipy": "scipy", "mealpy": "mealpy", "pymoo": "pymoo", "pygmo": "pygmo", "cma": "cma"}
 """Distribution that an optimiser's prefix names: its version can change what a run finds."""
 
+DESCENT = "descent"
+"""What a study calls this package's own solver: it is no optimiser that a paper could use, since it
+knows the derivatives of the limits, and stands beside them as a reference."""
+
 
 @lru_cache(maxsize=256)
 def origin_of(optimizer: str) -> str:
@@ -111,6 +115,8 @@ def run_trial(trial: Trial) -> Row:
         rules or takes too long. One that hangs in compiled code, or ends the process, is caught
         by the engines alone.
     """
+    if trial.optimizer == DESCENT:
+        return _descended(trial)
     own = os.getpid()
     try:
         with _alone(trial):
@@ -149,6 +155,18 @@ def shortened(message: str) -> str:
     """A message in one line of bounded length, of characters that can be seen and written."""
     text = visible(" ".join(message.split()).removesuffix(":"))
     return text if len(text) <= _LONGEST_MESSAGE else text[: _LONGEST_MESSAGE - 1] + "…"
+
+
+def _descended(trial: Trial) -> Row:
+    """The answer of this package's solver, whose steps stand for evaluations."""
+    from ...nlp import solve  # processes that run no descent start in two thirds of the time
+
+    found = solve(trial.problem, prove=0.0)
+    if not math.isfinite(found.total_time):
+        return failed(trial, shortened(found.why or str(found.status)))
+    steps = max(1, found.iterations)
+    run = BudgetedRun(found.durations, found.total_time, np.full(steps, found.total_time))
+    return _row(trial, run)
 
 
 def _row(trial: Trial, found: BudgetedRun) -> Row:

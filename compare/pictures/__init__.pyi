@@ -3,6 +3,7 @@ from .drawing import DARK, THEME, Picture, embedded, svg, themed
 from .gap_bands import Anytime, gap_picture, profile_picture
 from .instances import instances_picture
 from .jumps import jump_picture, velocity_jumps
+from .leaderboard import BoardPanel, leaderboard_picture
 from .motion import motion_picture
 from .papers import PaperBar, papers_picture
 from .polygon import polygon_picture
@@ -17,6 +18,7 @@ __all__ = [
     "THEME",
     "Anytime",
     "ArmMotion",
+    "BoardPanel",
     "PaperBar",
     "Picture",
     "Runs",
@@ -28,6 +30,7 @@ __all__ = [
     "instances_picture",
     "jump_picture",
     "landscape",
+    "leaderboard_picture",
     "motion_picture",
     "papers_picture",
     "polygon_picture",

@@ -32,6 +32,7 @@ from ..documents import (
 )
 from ..pictures import reached_picture, waterfall_picture
 from .claim_words import none_said, wanted_words
+from .leaderboard import Leaderboard
 from .papers import COLUMNS, PaperRow, paper_rows, papers_drawn, reference
 from .parts import badge, folded, paragraph, picture, steps, table
 from .proofs import proved_again
@@ -416,5 +417,6 @@ DIRECTIVES: dict[str, type[SphinxDirective]] = {
     "trajgap-certificate": CertificateShown,
     "trajgap-suite": SuiteTable,
     "trajgap-instance": InstanceShown,
+    "trajgap-leaderboard": Leaderboard,
 }
 """Directives by the name that a page calls them."""

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ...problem import Array, TrajgapError
+from ...problem import Array, PackageError, TrajgapError
 from ..settings import nearest
 from .borrowed import BorrowedTask
 
@@ -31,13 +31,13 @@ def load_package(name: str, wanted_by: str) -> Any:
 
     Raises
     ------
-    TrajgapError
+    PackageError
         If it is not installed; says how to install it.
     """
     try:
         return importlib.import_module(name)
     except ImportError as error:
-        raise TrajgapError(
+        raise PackageError(
             f"{wanted_by}: needs the package {name} ({error}); "
             f"install it with `python -m pip install {name}`"
         ) from None

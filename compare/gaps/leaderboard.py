@@ -1,0 +1,191 @@
+"""The leaderboard: which optimiser gets how near to the proven optimum, over many problems."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from importlib.resources import files
+from pathlib import Path
+
+import numpy as np
+
+from ...problem import Array
+from ...problem.suite import load_instance
+from .statistics import quantiles
+from .studies import StudyPlan, parse_study
+from .summaries import LADDER, SOLVED, Summary, read_summaries
+
+LEADERBOARD = "leaderboard"
+"""The word by which commands know the shipped study and its results."""
+_SAMPLES = 2000
+"""Samples of problems behind an interval: its ends move by about 1 % of its width with the seed."""
+SIZES = ("1 to 3 segments", "4 to 6 segments", "7 to 10 segments")
+"""Classes of instances by their number of segments: half of the suite has three."""
+
+
+@dataclass(frozen=True, eq=False)
+class Ranked:
+    """One optimiser over all problems of a leaderboard, each counting alike.
+
+    Attributes
+    ----------
+    optimizer : str
+        Label in the study.
+    problems, runs, failed : int
+    median : float
+        Median over the problems of the median gap, relative; inf without an answer.
+    within : ndarray, shape (gaps,)
+        Share of runs that come within each gap of `LADDER`.
+    solved : tuple of (float, float, float)
+        For each gap of `SOLVED` the share of runs within it, with its 95 % interval.
+    expected : tuple of (float, float, float)
+        For each gap of `SOLVED` the evaluations of all runs over the number of hits, with its 95 %
+        interval; inf without a hit.
+
+    Notes
+    -----
+    Intervals come from resampling the problems: they say how far the numbers depend on the choice
+    of problems.
+    """
+
+    optimizer: str
+    problems: int
+    runs: int
+    failed: int
+    median: float
+    within: Array
+    solved: tuple[tuple[float, float, float], ...]
+    expected: tuple[tuple[float, float, float], ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Board:
+    """Optimisers with the same budget and handling on the same problems.
+
+    Attributes
+    ----------
+    budget : int
+    handling : str
+    problems : tuple of str
+        On which each of them has all its runs.
+    standings : tuple of Ranked
+        The largest share of runs within 0.1 % first, then within 0.01 %, then within 1 %.
+    missing : tuple of str
+        Optimisers whose runs are not complete on these problems.
+    """
+
+    budget: int
+    handling: str
+    problems: tuple[str, ...]
+    standings: tuple[Ranked, ...]
+    missing: tuple[str, ...]
+
+
+def leaderboard_study() -> StudyPlan:
+    """The study behind the leaderboard."""
+    text = files(__package__ or "").joinpath("leaderboard.toml").read_text(encoding="utf-8")
+    return parse_study(text, LEADERBOARD, Path())
+
+
+@lru_cache(maxsize=1)
+def leaderboard_rows() -> tuple[Summary, ...]:
+    """The committed results of `trajgap study leaderboard`."""
+    text = files(__package__ or "").joinpath("leaderboard.csv").read_text(encoding="utf-8")
+    return read_summaries(text)
+
+
+def boards(
+    found: Iterable[Summary], keeping: Callable[[str], bool] = lambda problem: True
+) -> tuple[Board, ...]:
+    """Standings for each budget and handling.
+
+    An optimiser stands in a board only with all its runs on all problems of the board, which are
+    those that at least half of the optimisers have finished.
+
+    Parameters
+    ----------
+    found : iterable of Summary
+    keeping : callable
+        Whether a problem, by its name in rows, takes part.
+
+    Returns
+    -------
+    tuple of Board
+        By budget, then by handling, without those that no problem is complete for.
+    """
+    parts: dict[tuple[int, str], dict[str, dict[str, Summary]]] = {}
+    for one in found:
+        if keeping(one.problem):
+            own = parts.setdefault((one.budget, one.handling), {})
+            own.setdefault(one.optimizer, {})[one.problem] = one
+    made = (_board(*key, own) for key, own in sorted(parts.items()))
+    return tuple(board for board in made if board.problems)
+
+
+def _board(budget: int, handling: str, own: dict[str, dict[str, Summary]]) -> Board:
+    finished = Counter(problem for each in own.values() for problem in each)
+    problems = tuple(sorted(name for name, n in finished.items() if 2 * n >= len(own)))
+    complete = {
+        label: [each[name] for name in problems]
+        for label, each in own.items()
+        if all(name in each for name in problems)
+    }
+    ranked = [_ranked(label, rows) for label, rows in complete.items()] if problems else []
+    ranked.sort(key=_order)
+    missing = tuple(label for label in own if label not in complete)
+    return Board(budget, handling, problems, tuple(ranked), missing)
+
+
+def _order(one: Ranked) -> tuple[float, float, float, float]:
+    coarse, middle, fine = (share for share, _, _ in one.solved)
+    return -middle, -fine, -coarse, one.median
+
+
+def _ranked(label: str, rows: Sequence[Summary]) -> Ranked:
+    runs = np.array([one.runs for one in rows])
+    within = np.array([one.within for one in rows])
+    spent = np.array([one.spent for one in rows])
+    at = [LADDER.index(gap) for gap in SOLVED]
+    shares = within / runs[:, None]
+    rng = np.random.Generator(np.random.PCG64(0))
+    drawn = rng.integers(len(rows), size=(_SAMPLES, len(rows)))
+    expected = _running_times(spent[drawn].sum(axis=1), within[drawn][:, :, at].sum(axis=1))
+    return Ranked(
+        optimizer=label,
+        problems=len(rows),
+        runs=int(runs.sum()),
+        failed=sum(one.failed for one in rows),
+        median=float(quantiles(np.array([one.median for one in rows]), [0.5])[0]),
+        within=shares.mean(axis=0),
+        solved=_with_ends(shares.mean(axis=0)[at], shares[drawn][:, :, at].mean(axis=1)),
+        expected=_with_ends(_running_times(spent.sum(axis=0), within[:, at].sum(axis=0)), expected),
+    )
+
+
+def _running_times(spent: Array, hits: Array) -> Array:
+    """Evaluations for each hit; inf where there is none."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.asarray(np.where(hits > 0, spent / hits, np.inf), dtype=np.float64)
+
+
+def _with_ends(values: Array, samples: Array) -> tuple[tuple[float, float, float], ...]:
+    """Values with the 95 % interval of their samples, shape (samples, values)."""
+    # Quantiles that are samples: between a number and infinity there is no mean.
+    low, high = np.quantile(samples, (0.025, 0.975), axis=0, method="inverted_cdf")
+    return tuple(
+        (float(value), float(one), float(other))
+        for value, one, other in zip(values, low, high, strict=True)
+    )
+
+
+def curve_of(problem: str) -> str:
+    """Kind of curve of an instance, by the name of its problem in rows."""
+    return load_instance(problem.partition("/")[0]).curve
+
+
+def size_of(problem: str) -> str:
+    """Class of `SIZES` of an instance, by the name of its problem in rows."""
+    segments = load_instance(problem.partition("/")[0]).segments
+    return SIZES[0 if segments <= 3 else 1 if segments <= 6 else 2]

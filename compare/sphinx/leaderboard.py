@@ -1,0 +1,244 @@
+"""The leaderboard on a page: its picture, its tables, and what they say in four sentences."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from typing import Any, ClassVar
+
+import numpy as np
+from docutils import nodes
+from docutils.parsers.rst import directives
+from sphinx.util.docutils import SphinxDirective
+
+from ...heuristics import KINDS
+from ..documents import percent
+from ..gaps import (
+    LADDER,
+    SIZES,
+    SOLVED,
+    Board,
+    Ranked,
+    boards,
+    curve_of,
+    leaderboard_rows,
+    size_of,
+    success_interval,
+)
+from ..pictures import BoardPanel, Picture, leaderboard_picture
+from .parts import paragraph, picture, table
+
+_REFERENCE = "descent"
+"""Label of this package's own solver."""
+_HANDLINGS = {
+    "death-penalty": "Death penalty: a motion beyond a limit is rejected",
+    "stretch": "Stretch: it is slowed down until it keeps every limit",
+}
+"""What each handling does, as the title of its panel."""
+_IMPROVED = {"mnam-pso": "pso", "improved-woa": "woa", "improved-ga": "ga"}
+"""The papers' improved algorithms, and the standard one that each extends."""
+_MIDDLE = SOLVED.index(1e-3)
+"""Place of the target that sentences speak of: 0.1 %, which printed digits can tell apart."""
+COLUMNS = ("place", "optimiser", "runs within 1 %", "within 0.1 %", "within 0.01 %",
+           "median gap", "evaluations to 1 %", "to 0.1 %", "to 0.01 %", "failed")  # fmt: skip
+"""What a row of the table says."""
+
+
+def board_of(handling: str, budget: int) -> Board:
+    """Standings of one handling and budget."""
+    return next(
+        b for b in boards(leaderboard_rows()) if (b.budget, b.handling) == (budget, handling)
+    )
+
+
+def searches(board: Board) -> tuple[Ranked, ...]:
+    """The black boxes of a board: all but this package's own solver."""
+    return tuple(one for one in board.standings if one.optimizer != _REFERENCE)
+
+
+def papers_own(one: Ranked) -> bool:
+    """Whether an optimiser is an algorithm of the papers, as printed."""
+    return one.optimizer in KINDS
+
+
+def said(penalty: Board, stretch: Board) -> tuple[str, ...]:
+    """What both boards of one budget mean, in four sentences of numbers alone."""
+    strict, loose = searches(penalty), searches(stretch)
+    best, random = strict[0], _named(penalty, "random")
+    found = [
+        f"With {penalty.budget:,} evaluations and the papers' death penalty, {best.optimizer} "
+        f"comes within 0.1 % of the proven optimum in {_share(best)} of its runs, more often than "
+        f"the other {len(strict) - 1} optimisers; half of them do so in at most "
+        f"{_median(strict)}, and random search in {_share(random)}.",
+        "If a motion beyond a limit is slowed down instead of rejected, half of the optimisers "
+        f"come within 0.1 % in at least {_median(loose)} of their runs, and the first, "
+        f"{loose[0].optimizer}, in {_share(loose[0])}.",
+        f"Of the papers' improved algorithms, {_better(penalty)} come within 0.1 % more often than "
+        f"the standard algorithm that they extend under the death penalty, and {_better(stretch)} "
+        f"under the stretch; the best of the papers' algorithms are {_papers_best(strict)} and "
+        f"{_papers_best(loose)}.",
+    ]
+    reference = _named(penalty, _REFERENCE)
+    solved = round(reference.solved[2][0] * reference.problems)
+    found.append(
+        f"A descent that knows the derivatives of the limits ends within 0.01 % on {solved} of "
+        f"{reference.problems} instances, so what remains between an optimiser and the optimum is "
+        "the optimiser's own."
+    )
+    return tuple(found)
+
+
+def _named(board: Board, label: str) -> Ranked:
+    return next(one for one in board.standings if one.optimizer == label)
+
+
+def _share(one: Ranked) -> str:
+    return f"{100 * one.solved[_MIDDLE][0]:.0f} %"
+
+
+def _median(standings: Sequence[Ranked]) -> str:
+    return f"{100 * float(np.median([one.solved[_MIDDLE][0] for one in standings])):.0f} %"
+
+
+def _papers_best(standings: Sequence[Ranked]) -> str:
+    first = next(one for one in standings if papers_own(one))
+    return f"{first.optimizer} ({_share(first)})"
+
+
+def _better(board: Board) -> str:
+    better = sum(
+        _named(board, new).solved[_MIDDLE][0] > _named(board, old).solved[_MIDDLE][0]
+        for new, old in _IMPROVED.items()
+    )
+    return f"{better} of {len(_IMPROVED)}"
+
+
+def drawn(panels: Sequence[Board]) -> Picture:
+    """The picture of boards with the same budget and problems, one panel each."""
+    first = panels[0]
+    count = len(searches(first))
+    title = (
+        f"How near {count} optimisers come to the proven optimum in {first.budget:,} evaluations "
+        f"({len(first.problems)} instances, 15 runs each)"
+    )
+    return leaderboard_picture([_panel(board) for board in panels], LADDER, title=title)
+
+
+def _panel(board: Board) -> BoardPanel:
+    standings = searches(board)
+    own = next(one for one in standings if papers_own(one))
+    marked = {
+        f"the first: {standings[0].optimizer}": standings[0],
+        f"the first of the papers: {own.optimizer}": own,
+        "random search": _named(board, "random"),
+        "uniform rescaling": _named(board, "uniform rescaling"),
+    }
+    names = {one.optimizer for one in marked.values()}
+    return BoardPanel(
+        _HANDLINGS[board.handling],
+        {label: one.within for label, one in marked.items()},
+        [one.within for one in standings if one.optimizer not in names],
+    )
+
+
+def cells(place: int, one: Ranked) -> list[nodes.Node | str]:
+    """The row of an optimiser, as `COLUMNS`."""
+    black = one.optimizer != _REFERENCE
+    return [
+        str(place) if black else "–",
+        one.optimizer if black else "descent (reference, no black box)",
+        *(_with_interval(share, low, high) for share, low, high in one.solved),
+        percent(one.median) if math.isfinite(one.median) else "no answer",
+        *(_evaluations(ends) if black else "–" for ends in one.expected),
+        str(one.failed),
+    ]
+
+
+def _with_interval(share: float, low: float, high: float) -> nodes.Node:
+    found = nodes.inline("", f"{100 * share:.0f} %")
+    found += nodes.inline("", f" ({100 * low:.0f} to {100 * high:.0f})", classes=["trajgap-beside"])
+    return found
+
+
+def _evaluations(ends: tuple[float, float, float]) -> nodes.Node | str:
+    value, low, high = ("∞" if math.isinf(end) else f"{end:.0f}" for end in ends)
+    if value == "∞":
+        return "–"
+    found = nodes.inline("", value)
+    found += nodes.inline("", f" ({low} to {high})", classes=["trajgap-beside"])
+    return found
+
+
+class Leaderboard(SphinxDirective):
+    """``{trajgap-leaderboard} said|picture|table|curves|sizes``, of one budget and handling."""
+
+    required_arguments = 1
+    option_spec: ClassVar[dict[str, Any]] = {
+        "budget": directives.positive_int,
+        "handling": directives.unchanged,
+    }
+
+    def run(self) -> list[nodes.Node]:
+        """The part that is asked for."""
+        budget = self.options.get("budget", 1000)
+        handling = self.options.get("handling", "death-penalty")
+        both = [board_of(one, budget) for one in _HANDLINGS]
+        match self.arguments[0]:
+            case "said":
+                return [paragraph(" ".join(said(*both)))]
+            case "picture":
+                made = drawn(both)
+                return picture(made, "leaderboard", paragraph(made.description))
+            case "table":
+                return self._table(board_of(handling, budget))
+            case "curves":
+                return [self._parts(handling, budget, "curve", curve_of)]
+            case "sizes":
+                return [self._parts(handling, budget, "size", size_of)]
+        raise self.error("trajgap-leaderboard: say said, picture, table, curves or sizes")
+
+    def _table(self, board: Board) -> list[nodes.Node]:
+        places = [one.optimizer for one in searches(board)]
+        rows = [
+            cells(places.index(one.optimizer) + 1 if one.optimizer in places else 0, one)
+            for one in board.standings
+        ]
+        found: list[nodes.Node] = [table(COLUMNS, rows, "trajgap-sortable")]
+        if board.missing:
+            found.append(paragraph(f"Not complete yet: {', '.join(board.missing)}."))
+        return found
+
+    def _parts(
+        self, handling: str, budget: int, name: str, part_of: Callable[[str], str]
+    ) -> nodes.table:
+        """Share of runs within 0.1 % in each class of instances."""
+        board = board_of(handling, budget)
+        found = {part_of(problem) for problem in board.problems}
+        parts = sorted(found, key=lambda one: SIZES.index(one) if one in SIZES else 0)
+        if name == "curve":
+            parts = sorted(found)
+        each = {part: _within(part, part_of, board) for part in parts}
+        rows = [
+            [one.optimizer, *(each[part].get(one.optimizer, "–") for part in parts)]
+            for one in board.standings
+        ]
+        counts = [sum(part_of(problem) == part for problem in board.problems) for part in parts]
+        heads = [f"{part} ({count})" for part, count in zip(parts, counts, strict=True)]
+        return table(("optimiser", *heads), rows, "trajgap-sortable")
+
+
+def _within(part: str, part_of: Callable[[str], str], board: Board) -> dict[str, nodes.Node]:
+    kept = [
+        one
+        for one in boards(
+            leaderboard_rows(),
+            lambda problem: problem in board.problems and part_of(problem) == part,
+        )
+        if (one.budget, one.handling) == (board.budget, board.handling)
+    ]
+    found = {}
+    for one in (standing for whole in kept for standing in whole.standings):
+        share = one.solved[_MIDDLE][0]
+        ends = success_interval(round(share * one.runs), one.runs)
+        found[one.optimizer] = _with_interval(share, *ends)
+    return found
