@@ -12,9 +12,9 @@ import os
 import signal
 import threading
 import time
-from cProfile import Profile
 from collections.abc import Generator, Iterator
 from contextlib import contextmanager
+from cProfile import Profile
 from pathlib import Path
 from types import CodeType, FrameType
 from typing import Any

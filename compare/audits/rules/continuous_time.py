@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ....problem import QUANTITIES, Verdict, shown_bound
+from ....problem import QUANTITIES, Verdict
 from ....problem.cases import (
     AnyClaim,
     DurationsClaim,
