@@ -166,12 +166,14 @@ def _differing(study: Study, found: Mapping[str, set[ClaimVerdict]], where: str)
         ]
         return f"Limits{where} are {', '.join(shares)}"
     ordered = sorted(said.items(), key=lambda item: all(one in far for one in item[1]))
-    parts = []
-    for word, own in ordered:
-        mark = "the implausible " if all(one in far for one in own) else ""
+
+    def under(own: Sequence[str]) -> str:
         which = " and ".join(quoted(one, study.case.labels) for one in own)
-        parts.append(f"{word} under {mark}{which}")
-    return f"Limits{where} are {', '.join(parts)}"
+        return f"under {which}" + (" (implausible)" if all(one in far for one in own) else "")
+
+    (word, own), *others = ordered
+    rest = [f"{under(own)} they are {word}" for word, own in others]
+    return "; ".join([f"Limits{where} are {word} {under(own)}", *rest])
 
 
 def _of_limits(study: Study, claim: AnyClaim) -> dict[str, ClaimVerdict]:

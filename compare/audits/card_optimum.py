@@ -244,7 +244,7 @@ def _beside(study: Study, waterfall: Waterfall) -> list[_Part]:
     solution = study.optimum(pair)
     why = _unknown(solution)
     if why and not study.limited(pair):
-        why = "without limits no motion is the shortest: there is no optimum to compare with"
+        why = "there are no limits, so that no motion is the shortest"
     if why:
         return [_Unknown(why)]
     claim = _totalled(study, waterfall)

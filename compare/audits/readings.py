@@ -254,7 +254,8 @@ def _of_answers(summary: ReadingsSummary, called: Callable[[str, str], str]) -> 
         said = ", ".join(
             f"{KEPT[k]} {under(found[k], summary.admissible, named, why=True)}" for k in words
         )
-        yield f"{called(claim, problem)}: the limits are {said}.{_of_gaps(own, summary)}"
+        limits = f"the limits are {said}" if said else "limits cannot be judged"
+        yield f"{called(claim, problem)}: {limits}.{_of_gaps(own, summary)}"
 
 
 def _names(summary: ReadingsSummary) -> Named:

@@ -55,7 +55,7 @@ class Recorder:
         self._profiler.enable(subcalls=False, builtins=False)
 
     def stop(self) -> None:
-        """Note no further call of this thread; those since the start belong to the innermost set."""
+        """Note no further call of this thread; those so far belong to the innermost set."""
         self._profiler.disable()
         for entry in self._profiler.getstats():
             if not isinstance(entry.code, str):

@@ -55,8 +55,8 @@ def comparison_words(known: Comparison, case: Case) -> Iterator[str]:
         ]
         best = max(known.designed, key=lambda one: one.most or 0.0)
         yield (
-            f"With all that the text leaves open varied together, that is typical (in half of the "
-            f"pairs of runs or more) in {' and in '.join(counts)}"
+            f"With everything that the text leaves open varied together, this is typical (in at "
+            f"least half of the pairs of runs) in {' and in '.join(counts)}"
             + (f", most often with {_settings(known, best)} ({_percent(best.most)})." if best.most
                else ".")
         )  # fmt: skip

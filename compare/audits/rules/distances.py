@@ -106,8 +106,8 @@ def _distance(
     informs = minimised is not None and distance.lowest > 0
     if informs:
         said = [
-            f"Printed {shown} was not minimised for time alone ({minimised}): as information, the "
-            f"shortest motion{which}{at_ratios(solution.problem)} takes {reference.upper:.6f} s, "
+            f"The printed {shown} was not minimised for time alone ({minimised}); for information, "
+            f"the shortest motion{which}{at_ratios(solution.problem)} takes {reference.upper:.6f} s, "
             f"{reference.evidence}{_bounded(reference)}."
         ]
     timed = not isinstance(claim, TotalTimeClaim) and row.unmoved is None
@@ -322,7 +322,7 @@ def _no_optimum(solution: Solution) -> str:
     if solution.status is Status.NOT_ATTAINED:
         limits = solution.problem.limits
         free = not np.isfinite(limits.sides).any()
-        said = "no limit is printed, and no motion is the shortest"
+        said = "no limit is printed, so that no motion is the shortest"
         return (said if free else "no shortest motion was found") + why
     if solution.status is Status.INFEASIBLE:
         of = at_ratios(solution.problem)

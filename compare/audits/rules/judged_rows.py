@@ -98,9 +98,9 @@ def _judged_total(row: PrintedRow[AnyClaim]) -> JudgedRow:
         )
         return JudgedRow(ClaimVerdict.REFUTED, Severity.ERROR, (excluded,), "total excluded")
     said = (
-        f"Only the total is printed, {printed}, and no durations: whether its motion keeps the "
-        "limits cannot be computed.",
-        "That none of that length does was not shown.",
+        f"Only the total is printed, {printed}, and no durations, so that whether its motion keeps "
+        "the limits cannot be computed.",
+        "It was not shown that every motion of that length breaks them.",
     )
     return JudgedRow(ClaimVerdict.NOT_CHECKABLE, Severity.INFO, said, "total open")
 

@@ -103,7 +103,10 @@ class MotionNumbers(Generic[_Value]):
             printed=", ".join(map(str, claim.printed)),
             computed="; ".join(one.around for one in found),
             kind=", ".join(_word(one) for one in wrong or found),
-            sentences=(f"Of the printed durations ({called(row.claim)}): {'; '.join(said)}.", note),
+            sentences=(
+                f"For the printed durations ({called(row.claim)}): {'; '.join(said)}.",
+                note,
+            ),
             root=f"{claim.quantity}s of {row.claim.id}" if clash else "",
             between=(claim.id, row.claim.id) if clash else (),
         )

@@ -74,7 +74,7 @@ EXPLAINED = {
     ),
     "TG106": Explained(
         "Do way-points repeat the digits of a column of another kind, such as lengths of links?",
-        "A warning: the digits alone do not say which column, if either, is the wrong one. No "
+        "A warning: the digits alone do not tell which column, if either, is wrong. No "
         "claim is judged by it.",
         "Three of four angles of joint 2 print the digits of the link offsets: 0.4318, "
         "0.1501, 0.4331.",
@@ -193,8 +193,8 @@ EXPLAINED = {
     ),
     "TG301": Explained(
         "One path is timed under two velocity limits, and nothing else is limited. Then "
-        "shortest time times limit is a constant, with no solver needed. Do the two printed "
-        "totals obey that?",
+        "the shortest time multiplied by the limit is constant, with no solver needed. Do the two "
+        "printed totals obey that?",
         "Where both are called optimal and one is longer than the law allows, refuted. The "
         "rounding of way-points, limits and durations is allowed for.",
         "At 80 °/s the total is 1.87 s. At 110 °/s the same motion, run faster, takes 1.36 s. "

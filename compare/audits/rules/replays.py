@@ -113,7 +113,7 @@ def _improvement(study: Study, claim: ImprovementClaim) -> Iterator[Finding]:
         ]
         if len(each) > 1:
             said.append(
-                f"With all that the text leaves open varied together ({len(totals[0])} and "
+                f"With everything that the text leaves open varied together ({len(totals[0])} and "
                 f"{len(totals[1])} settings), the probability is at most {_percent(each[most])}: "
                 f"at {_at(one, most[0])}; {_at(other, most[1])}."
             )
@@ -212,7 +212,7 @@ def _typical(spreads: dict[str, Spread], low: float, high: float) -> Iterator[st
     nearest = min(off, key=lambda name: off[name])
     inside = [n for n, s in spreads.items() if s.lowest <= high and s.highest >= low]
     yield (
-        f"With all that the text leaves open varied together ({len(medians)} settings), medians "
+        f"With everything that the text leaves open varied together ({len(medians)} settings), medians "
         f"are {ranged(min(medians.values()), max(medians.values()), '.4f')} s; nearest to the "
         f"printed total is {medians[nearest]:.4f} s with {nearest}."
     )

@@ -122,11 +122,11 @@ def _stretched(
         computed=f"{reachable:.6g} s",
         kind="not both shortest",
         sentences=(
-            "With velocity limits only, shortest time times limit is a constant, so the two "
-            "printed results cannot both be shortest.",
+            "With velocity limits only, the shortest time multiplied by the limit is constant, so "
+            "the two printed results cannot both be shortest.",
             f"The durations in {places[0]} sum to {summed:.6g} s.",
-            f"Times {factor:.6g}, the ratio of the two limits, that is {exact}.",
-            f"So scaled they keep the limit of {places[1]}; {shown}, printed there, is longer.",
+            f"Multiplied by {factor:.6g}, the ratio of the two limits, that is {exact}.",
+            f"Scaled in this way, they keep the limit of {places[1]}; the {shown} printed there is longer.",
         ),
         follows=tuple(f"{OPTIMAL} {s.id}" for s in statements if target.id in s.of),
     )

@@ -72,7 +72,7 @@ def test_without_limits_the_card_praises_no_motion_for_keeping_them() -> None:
     """Any durations would: a table of times for a given path often prints no limits."""
     card = card_of(row("t", "1.0 1.0 1.0"))
     assert card.limits == "No limits are stated, so that none can be broken."
-    assert card.optimum.startswith("Without limits no motion is the shortest")
+    assert card.optimum.startswith("There are no limits, so that no motion is the shortest")
 
 
 @pytest.mark.parametrize(
