@@ -107,8 +107,8 @@ def _distance(
     if informs:
         said = [
             f"The printed {shown} was not minimised for time alone ({minimised}); for information, "
-            f"the shortest motion{which}{at_ratios(solution.problem)} takes {reference.upper:.6f} s, "
-            f"{reference.evidence}{_bounded(reference)}."
+            f"the shortest motion{which}{at_ratios(solution.problem)} takes "
+            f"{reference.upper:.6f} s, {reference.evidence}{_bounded(reference)}."
         ]
     timed = not isinstance(claim, TotalTimeClaim) and row.unmoved is None
     if timed and not informs:

@@ -236,7 +236,7 @@ def test_two_problems_of_one_reading_are_measured_by_the_worse() -> None:
     factor = f"{180 / pi / stretch:.3g}"
     assert said == f"printed durations divided by {factor} would still keep every limit"
     limits = next(one for one in answers(found) if one.startswith("durations-110"))
-    assert "under “way-points in degrees” (implausible) they are kept" in limits
+    assert "kept under the implausible “way-points in degrees”" in limits
     assert limits.endswith("21.4 % above it (1 implausible reading left out).")
 
 
