@@ -288,7 +288,7 @@ def _repeated_digits(study: Study) -> Iterator[Finding]:
                         f"{len(repeated)} of the {len(entries)} way-points of joint {label} "
                         f"({statement.waypoints.where}: {', '.join(repeated)}) repeat digits of "
                         f"{where}, a quantity of another kind.",
-                        "The digits alone do not tell whether one of the columns is meant differently.",
+                        "The digits alone do not tell whether one column is meant differently.",
                     ),
                 )
 

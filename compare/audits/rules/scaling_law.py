@@ -126,7 +126,8 @@ def _stretched(
             "the two printed results cannot both be shortest.",
             f"The durations in {places[0]} sum to {summed:.6g} s.",
             f"Multiplied by {factor:.6g}, the ratio of the two limits, that is {exact}.",
-            f"Scaled in this way, they keep the limit of {places[1]}; the {shown} printed there is longer.",
+            f"Scaled in this way, they keep the limit of {places[1]}; the {shown} printed there is "
+            "longer.",
         ),
         follows=tuple(f"{OPTIMAL} {s.id}" for s in statements if target.id in s.of),
     )
