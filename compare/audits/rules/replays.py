@@ -213,8 +213,8 @@ def _typical(spreads: dict[str, Spread], low: float, high: float) -> Iterator[st
     inside = [n for n, s in spreads.items() if s.lowest <= high and s.highest >= low]
     yield (
         f"With everything that the text leaves open varied together ({len(medians)} settings), "
-        f"medians are {ranged(min(medians.values()), max(medians.values()), '.4f')} s; nearest to the "
-        f"printed total is {medians[nearest]:.4f} s with {nearest}."
+        f"medians are {ranged(min(medians.values()), max(medians.values()), '.4f')} s; nearest to "
+        f"the printed total is {medians[nearest]:.4f} s with {nearest}."
     )
     if inside:
         return
