@@ -5,7 +5,7 @@ import re
 import tomllib
 from collections.abc import Iterator
 from importlib import import_module
-from inspect import isfunction
+from inspect import isfunction, ismodule
 from pathlib import Path
 from typing import Any
 
@@ -56,7 +56,8 @@ def api(face: str) -> str:
     package = import_module(f"trajgap.{face}")
     title = f"trajgap.{face}"
     lines = [title, "=" * len(title), "", f".. currentmodule:: trajgap.{face}", ""]
-    for name in sorted(package.__all__, key=str.lower):
+    public = [n for n, x in vars(package).items() if n[0] != "_" and not ismodule(x)]
+    for name in sorted(getattr(package, "__all__", public), key=str.lower):
         found = getattr(package, name)
         if isinstance(found, type):
             lines += [f".. autoclass:: {name}", "   :members:", ""]

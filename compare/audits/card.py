@@ -55,7 +55,7 @@ def verdict_card(
     limits, judged = limits_line(study, words)
     before = any(on_doubted_points(words[one]) for one in judged if one in words)
     if before:
-        limits = f"The way-points are in doubt. {limits}"
+        limits = f"Way-points are doubted; {limits[:1].lower()}{limits[1:]}"
     optimum = optimum_line(study, waterfalls, words, before)
     improvement, improved = _improvement(study, words)
     # What the first lines have said is not said again.

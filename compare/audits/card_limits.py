@@ -166,14 +166,12 @@ def _differing(study: Study, found: Mapping[str, set[ClaimVerdict]], where: str)
         ]
         return f"Limits{where} are {', '.join(shares)}"
     ordered = sorted(said.items(), key=lambda item: all(one in far for one in item[1]))
-
-    def under(own: Sequence[str]) -> str:
+    parts = []
+    for word, own in ordered:
         which = " and ".join(quoted(one, study.case.labels) for one in own)
-        return f"under {which}" + (" (implausible)" if all(one in far for one in own) else "")
-
-    (word, own), *others = ordered
-    rest = [f"{under(own)} they are {word}" for word, own in others]
-    return "; ".join([f"Limits{where} are {word} {under(own)}", *rest])
+        mark = " (implausible)" if all(one in far for one in own) else ""
+        parts.append(f"{word} under {which}{mark}")
+    return f"Limits{where} are {', '.join(parts)}"
 
 
 def _of_limits(study: Study, claim: AnyClaim) -> dict[str, ClaimVerdict]:
