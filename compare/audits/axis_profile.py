@@ -87,16 +87,20 @@ class Profile:
 
     @property
     def corners(self) -> tuple[State, ...]:
-        """The states where phases meet, and where the velocity turns within one."""
-        found, begin = [self.start], 0.0
+        """The states where phases meet, and where velocity or position turns within one."""
+        found = [self.start]
         for phase in self.phases:
-            turn = -phase.acceleration / phase.jerk if phase.jerk else 0.0
-            found += [self.at(begin + t) for t in (turn, phase.time) if 0.0 < t <= phase.time]
-            begin += phase.time
+            own = Profile(found[-1], (phase,))
+            turns = np.roots([phase.jerk / 2.0, phase.acceleration, found[-1].velocity])
+            times = [float(t.real) for t in turns if t.imag == 0.0]
+            if phase.jerk:
+                times.append(-phase.acceleration / phase.jerk)
+            times = [t for t in sorted(times) if 0.0 < t < phase.time]
+            found += [own.at(t) for t in (*times, phase.time)]
         return tuple(found)
 
     def then(self, other: Profile) -> Profile:
-        """This motion, and after it another that starts where it ends."""
+        """The motion, and after it another that starts where it ends."""
         return Profile(self.start, (*self.phases, *other.phases))
 
     def mirrored(self) -> Profile:
@@ -309,9 +313,7 @@ def _candidates(start: State, finish: State, top: float, most: float) -> Iterato
         )
 
 
-def _peaks(
-    start: State, finish: State, most: float
-) -> Iterator[tuple[float, float, float, float]]:
+def _peaks(start: State, finish: State, most: float) -> Iterator[tuple[float, float, float, float]]:
     """Peak of the acceleration, the time there, its trough and the time there, at velocity 1.
 
     With e = v − a²/2 at both ends and K = e₁ − e₀ the velocity asks for p² − m² = K where nothing

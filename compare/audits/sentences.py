@@ -13,6 +13,7 @@ from ...problem.cases import (
     MaximumClaim,
     MeasureClaim,
     MotionValueClaim,
+    PhasesClaim,
     TotalTimeClaim,
     ValueClaim,
     with_unit,
@@ -81,6 +82,9 @@ def _said(case: Case, claim: AnyClaim) -> str:
             before = "before optimisation, " if claim.state == "before" else ""
             curve = f" ({claim.other_curve})" if claim.other_curve else ""
             return f"{before}{_timed(claim, time, whose)}{curve}"
+        case PhasesClaim():
+            lengths = ", ".join(map(str, claim.phases))
+            return f"the phases{whose} take {lengths} {time} ({claim.other_curve})"
         case ImprovementClaim(percent=percent) if percent is not None:
             return f"the motion is {percent} % shorter"
         case ImprovementClaim(seconds=saved):

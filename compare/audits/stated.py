@@ -12,6 +12,7 @@ from ...problem.cases import (
     ImprovementClaim,
     MaximumClaim,
     MotionValueClaim,
+    PhasesClaim,
     TimeClaim,
     TotalTimeClaim,
 )
@@ -100,6 +101,8 @@ def digits_of(case: Case, claim: AnyClaim) -> str:
         return shown + (f"; total {claim.total}{time}" if claim.total is not None else "")
     if isinstance(claim, TotalTimeClaim):
         return f"{claim.value}{time}"
+    if isinstance(claim, PhasesClaim):
+        return ", ".join(map(str, (*claim.phases, *(claim.ramps or ())))) + time
     if isinstance(claim, ImprovementClaim):
         parts = [f"{claim.percent} %"] if claim.percent is not None else []
         return "; ".join(parts + ([f"{claim.seconds}{time}"] if claim.seconds is not None else []))

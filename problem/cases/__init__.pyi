@@ -13,15 +13,18 @@ from .claim import (
     MotionValueClaim,
     Nature,
     PeakClaim,
+    PhasesClaim,
+    ProfiledClaim,
     StatementClaim,
     TimeClaim,
     TotalTimeClaim,
     ValueClaim,
 )
-from .claim_fit import motions_of, named_places
+from .claim_fit import motions_of, named_places, profile_of
 from .clue import AnyClue, AxisClue, DataSheetClue, HalfTurnsClue, SmoothClue
 from .data_files import PUBLISHED, SUITE_PREFIX, case_files
 from .digits import Digits
+from .end_states import end_states
 from .faults import all_faults, refusal
 from .instances import InstancesBlock, instance_waypoints
 from .joint_units import unit_of, with_unit
@@ -78,7 +81,9 @@ __all__ = [
     "Nature",
     "NotCheckable",
     "PeakClaim",
+    "PhasesClaim",
     "ProblemBlock",
+    "ProfiledClaim",
     "Reading",
     "Robot",
     "SmoothClue",
@@ -95,6 +100,7 @@ __all__ = [
     "case_schema",
     "check_case",
     "compare_transcriptions",
+    "end_states",
     "identity_of",
     "instance_waypoints",
     "load_case",
@@ -102,6 +108,7 @@ __all__ = [
     "motions_of",
     "named_places",
     "parse_case",
+    "profile_of",
     "published_ids",
     "ratio_words",
     "refusal",

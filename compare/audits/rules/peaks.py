@@ -19,7 +19,7 @@ from ....problem import (
     fit,
     peak_gradients,
 )
-from ....problem.cases import AnyClaim, MotionValueClaim, PeakClaim, motions_of
+from ....problem.cases import AnyClaim, MotionValueClaim, PeakClaim, motions_of, profile_of
 from ...documents import Basis, ClaimVerdict, Finding
 from ..rounding import RoundingBox
 from ..study import Study
@@ -324,7 +324,8 @@ def each_motion(
     ``without`` is said of a claim where nothing printed defines such a motion.
     """
     for claim in study.claims:
-        if isinstance(claim, kind):
+        # TG304 judges numbers of a profile.
+        if isinstance(claim, kind) and profile_of(study.case.claims, claim) is None:
             meant = motions_of(study.case.claims, claim)
             for motion in meant:
                 yield from judge(study, claim, motion)

@@ -1,177 +1,261 @@
-"""TG304: printed totals of point-to-point profiles beside the shortest that the limits allow."""
+"""TG304: printed totals, phases and values of profiles beside those that the limits allow."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from math import cbrt, inf, pi, sqrt
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, replace
+from functools import partial
+from math import inf
+from typing import Any
 
 import numpy as np
 
-from ....problem import Array, CaseError, Problem
-from ....problem.cases import Digits, TotalTimeClaim
+from ....problem import QUANTITIES, Array, CaseError, Problem
+from ....problem.cases import (
+    AnyClaim,
+    Digits,
+    PeakClaim,
+    PhasesClaim,
+    StatementClaim,
+    TotalTimeClaim,
+    ValueClaim,
+    end_states,
+    named_places,
+    profile_of,
+)
 from ...documents import Basis, ClaimVerdict, Finding
+from ..profile_motions import SHORTEST, Motion, Range, motions, profiled_limits
+from ..rest_profile import PROFILES, shortest, shortest_straight
+from ..sentences import place_of_value
 from ..study import Study
+from .peaks import peak_numbers
+from .wording import in_units, unit_shown
 
 _SLACK = 1e-12
 """Relative margin that outweighs the few roundings of a closed form in floats."""
-
-
-def trapezoidal(way: float, velocity: float, acceleration: float, jerk: float) -> float:
-    """Shortest time from rest to rest with constant acceleration, constant speed and braking.
-
-    Parameters
-    ----------
-    way : float
-        rad, not negative.
-    velocity, acceleration : float
-        Limits, rad/s and rad/s²; may be infinite.
-    jerk : float
-        Not read: the acceleration jumps.
-
-    Returns
-    -------
-    float
-        s.
-    """
-    if way == 0.0:
-        return 0.0
-    if way * acceleration <= velocity**2:
-        return 2.0 * sqrt(way / acceleration)
-    return way / velocity + velocity / acceleration
-
-
-def s_curve(way: float, velocity: float, acceleration: float, jerk: float) -> float:
-    """Shortest time from rest to rest with a jerk that is constant in at most seven phases.
-
-    Parameters
-    ----------
-    way : float
-        rad, not negative.
-    velocity, acceleration, jerk : float
-        Limits, rad/s, rad/s² and rad/s³; may be infinite.
-
-    Returns
-    -------
-    float
-        s.
-    """
-    if way == 0.0 or jerk == inf:
-        return trapezoidal(way, velocity, acceleration, jerk)
-    # Time to the full speed and back takes `speeding` each, and half of speed times that as way.
-    if velocity * jerk >= acceleration**2:
-        speeding = velocity / acceleration + acceleration / jerk
-    else:
-        speeding = 2.0 * sqrt(velocity / jerk)
-    if way >= velocity * speeding:
-        return speeding + way / velocity
-    if way * jerk**2 >= 2.0 * acceleration**3:
-        ramp = acceleration / jerk
-        return ramp + sqrt(ramp**2 + 4.0 * way / acceleration)
-    return 4.0 * cbrt(way / (2.0 * jerk))
-
-
-def sine_jerk(way: float, velocity: float, acceleration: float, jerk: float) -> float:
-    """Shortest time from rest to rest in seven phases whose jerk is a half sine on each ramp.
-
-    Parameters
-    ----------
-    way : float
-        rad, not negative.
-    velocity, acceleration, jerk : float
-        Limits, rad/s, rad/s² and rad/s³; may be infinite.
-
-    Returns
-    -------
-    float
-        s.
-
-    Notes
-    -----
-    On a ramp of length τ the jerk is J sin(πt/τ), and the acceleration changes by ∫ = 2Jτ/π, as by
-    a constant jerk of 2J/π. It is (Jτ/π)(1 − cos(πt/τ)), which with its mirror image about the
-    middle of the ramp sums to the whole change, as a straight line does: velocity changes by the
-    same amount over the ramp. Both profiles are mirror images about the middle of each half and of
-    the whole, so that the ways are half of velocity times time in both. With phases of equal length
-    they have the same peaks of velocity and acceleration and the same way. The shortest total is
-    that of the S-curve within 2/π of the jerk limit.
-    """
-    return s_curve(way, velocity, acceleration, 2.0 / pi * jerk)
-
-
-PROFILES: dict[str, Callable[[float, float, float, float], float]] = {
-    "trapezoidal": trapezoidal,
-    "s-curve": s_curve,
-    "sine-jerk": sine_jerk,
+_ORDERS = {"position": 0, **{name: order for order, name in enumerate(QUANTITIES[:2], 1)}}
+"""Order of each derivative that a profile has everywhere."""
+_SPELLED = {"biagiotti-melchiorri": "profile of Biagiotti and Melchiorri's algorithm"}
+"""Profiles that are no shortest ones, as sentences call them."""
+_PATHS = {
+    False: "each segment as long as its slowest joint needs",
+    True: "all joints on a straight line in each segment",
 }
-"""The shortest time of each profile: longer for a longer way, shorter for larger limits."""
+"""How the joints go together, by whether they stay on a straight line."""
+_Profiled = TotalTimeClaim | PhasesClaim
+_Judge = Callable[[Study, "_Asked"], Finding]
 
 
-def shortest(profile: str, ways: Array, limits: Array) -> float:
-    """Shortest total through way-points at rest, each segment as long as its slowest joint needs.
+@dataclass(frozen=True)
+class _Asked:
+    """A claim, the claim of the profile that it speaks of, and under which problem and reading."""
 
-    Parameters
-    ----------
-    profile : str
-        A key of `PROFILES`.
-    ways : ndarray, shape (segments, joints)
-        rad, not negative.
-    limits : ndarray, shape (joints, 3)
-        Of velocity, acceleration and jerk.
+    claim: AnyClaim
+    of: _Profiled
+    pid: str
+    rid: str
 
-    Returns
-    -------
-    float
-        s.
-    """
-    each = [
-        [_time(profile, float(w), own) for w, own in zip(row, limits, strict=True)] for row in ways
-    ]
-    return float(np.max(each, axis=1).sum())
+    @property
+    def profile(self) -> str:
+        return str(self.of.profile)
 
-
-def shortest_straight(profile: str, ways: Array, limits: Array) -> float:
-    """Shortest total where all joints follow one time law, on a straight line in each segment.
-
-    Joint j moves by way_j·s(t) while s goes from 0 to 1 by the profile, so that the derivatives of
-    s keep the smallest limit_j/way_j over the joints that move.
-
-    Parameters
-    ----------
-    profile : str
-        A key of `PROFILES`.
-    ways : ndarray, shape (segments, joints)
-        rad, not negative.
-    limits : ndarray, shape (joints, 3)
-        Of velocity, acceleration and jerk.
-
-    Returns
-    -------
-    float
-        s.
-    """
-    total = 0.0
-    for row in ways:
-        moving = row > 0.0
-        if moving.any():
-            total += _time(profile, 1.0, (limits[moving] / row[moving, None]).min(axis=0))
-    return total
-
-
-def _time(profile: str, way: float, limits: Array) -> float:
-    """Time of one segment, infinite where a joint moves that must not."""
-    velocity, acceleration, jerk = map(float, limits)
-    if way > 0.0 and not (velocity > 0.0 and acceleration > 0.0 and jerk > 0.0):
-        return inf
-    return PROFILES[profile](way, velocity, acceleration, jerk)
+    @property
+    def called(self) -> str:
+        return _SPELLED.get(self.profile, f"shortest {self.profile} profile")
 
 
 def judge_profiles(study: Study) -> Iterator[Finding]:
     """Findings of TG304."""
     for claim in study.claims:
+        of: _Profiled
+        judge: _Judge
         if isinstance(claim, TotalTimeClaim) and claim.profile is not None:
-            for pid, rid in study.pairs:
-                if claim.problem in (None, pid):
-                    yield _beside(study, claim, claim.profile, pid, rid)
+            of, judge = claim, _total_beside
+        elif isinstance(claim, PhasesClaim):
+            of, judge = claim, _phases_beside
+        else:
+            named = profile_of(study.case.claims, claim)
+            if named is None:
+                yield from _optimal(study, claim)
+                continue
+            of, judge = named, _numbers_beside
+        for pid, rid in study.pairs:
+            if of.problem in (None, pid):
+                asked = _Asked(claim, of, pid, rid)
+                why = _not_computed(study, asked)
+                yield judge(study, asked) if why is None else _unknown(asked, why)
+
+
+def _unknown(asked: _Asked, why: str) -> Finding:
+    return Finding(
+        rule="TG304",
+        basis=Basis.CHECK,
+        claim=asked.claim.id,
+        problem=asked.pid,
+        reading=asked.rid,
+        kind="other profile",
+        sentences=(why,),
+    )
+
+
+def _not_computed(study: Study, asked: _Asked) -> str | None:
+    """Why the profile of a problem is none of those computed here, as a sentence; None if it is."""
+    problem = study.claim_problem(asked.of, asked.pid, asked.rid)
+    profile, several = asked.profile, len(problem.joints) > 1
+    if problem.limits.uneven:
+        return (
+            f"The lower and upper limits differ; the {profile} profile is computed within limits "
+            "of equal size only."
+        )
+    resting = study.case.statement(asked.pid, asked.rid).declaration.at_rest
+    if not resting and (several or profile not in SHORTEST):
+        which = "of one joint" if several and profile in SHORTEST else "from rest to rest"
+        return (
+            "The case file gives derivatives other than 0 at the ends of the motion; the "
+            f"{profile} profile is computed {which} only."
+        )
+    total = isinstance(asked.claim, TotalTimeClaim) and profile in PROFILES
+    if total and resting:
+        return None
+    if profile not in SHORTEST:
+        return f"Phases and values of the {profile} profile are not computed."
+    if several and asked.of.path is None:
+        return "Several joints, each by itself, have no one profile."
+    if profile not in PROFILES and end_states(
+        study.case.statement(asked.pid, asked.rid)
+    )[:, :, 1].any():  # fmt: skip
+        return "The algorithm of Biagiotti and Melchiorri has no acceleration at its ends."
+    every = motions(study, asked.of, profile, asked.pid, asked.rid)
+    if every is None:
+        return "More numbers stand for intervals than can be combined."
+    if every[0] is None:
+        return f"No {profile} profile joins the states at both ends within the limits."
+    return _out_of_range(problem, every[0])
+
+
+def _out_of_range(problem: Problem, motion: Motion) -> str | None:
+    """That a profile leaves the position range, which is none of the limits that shape it."""
+    for j, label in enumerate(problem.joints):
+        places = motion.states(j)[:, 0]
+        low, high = problem.limits.position_lower[j], problem.limits.position_upper[j]
+        room = _SLACK * max(map(abs, places))
+        if places.min() < low - room or places.max() > high + room:
+            return (
+                f"The shortest profile leaves the position range of joint {label}, within which "
+                "no profile is computed."
+            )
+    return None
+
+
+def _total_beside(study: Study, asked: _Asked) -> Finding:
+    claim = asked.claim
+    assert isinstance(claim, TotalTimeClaim)
+    number = study.case.measured(claim.value, "time", claim.problem, asked.rid)
+    resting = study.case.statement(asked.pid, asked.rid).declaration.at_rest
+    straight = claim.path == "straight"
+    notes: tuple[str, ...] = ()
+    verdict, kind, said = ClaimVerdict.SUPPORTED, "fits", "which fits"
+    if resting and asked.profile in PROFILES:
+        how = f"from rest to rest, {_PATHS[straight]},"
+        plain, fits = _fitted(study, claim, asked, straight)
+        if plain == 0.0 < number.value:
+            verdict, kind, said = ClaimVerdict.NOT_CHECKABLE, "at rest", "and no joint moves"
+        elif plain == inf:
+            verdict, kind = ClaimVerdict.NOT_CHECKABLE, "limit 0"
+            said = "and a joint moves whose limit is 0"
+        elif not fits and not straight and _fitted(study, claim, asked, True)[1]:
+            verdict, kind = ClaimVerdict.NOT_CHECKABLE, "straight"
+            said = (
+                'which fits where the joints stay on a straight line: path = "straight" if they do'
+            )
+    else:
+        how = "between the states at both ends"
+        totals = _range(study, asked, lambda motion: [motion.total_time])
+        plain, fits = totals.plain, totals.meets(number.lower, number.cut_off().upper)
+        notes = _notes(study, asked, totals)
+        if not fits and totals.spans(number.lower, number.cut_off().upper):
+            verdict, kind = ClaimVerdict.NOT_CHECKABLE, "jump"
+            said = "which lies where it jumps"
+    if verdict is ClaimVerdict.SUPPORTED and not fits:
+        verdict, kind = ClaimVerdict.INCONSISTENT, "other total"
+        away = f"{100 * abs(number.value / plain - 1):.2f} % " if plain else ""
+        said = f"which is {away}{'shorter' if number.value < plain else 'longer'}"
+    return _found(
+        asked,
+        verdict,
+        kind,
+        printed=f"{claim.value} {study.time_unit}",
+        computed=f"{plain:.6g} s",
+        sentences=(
+            f"The {asked.called} {how} takes {plain:.6g} s; printed is {claim.value} "
+            f"{study.time_unit}, {said}.",
+            *notes,
+        ),
+    )
+
+
+def _found(asked: _Asked, verdict: ClaimVerdict, kind: str, **facts: Any) -> Finding:
+    return Finding(
+        rule="TG304",
+        verdict=verdict,
+        basis=Basis.CHECK,
+        claim=asked.claim.id,
+        problem=asked.pid,
+        reading=asked.rid,
+        kind=kind,
+        **facts,
+    )
+
+
+def _range(
+    study: Study, asked: _Asked, number: Callable[[Motion], Iterable[float]], profile: str = ""
+) -> Range:
+    every = motions(study, asked.of, profile or asked.profile, asked.pid, asked.rid)
+    return Range.of(every or [], number)
+
+
+def _notes(study: Study, asked: _Asked, totals: Range) -> tuple[str, ...]:
+    """What else is to be known of a total: where it jumps, a start outside, what is shorter."""
+    notes = []
+    if totals.jump is not None:
+        low, high = totals.jump
+        notes.append(
+            f"Within the rounding of the printed digits it jumps from {low:.6g} s to {high:.6g} s."
+        )
+    every = motions(study, asked.of, asked.profile, asked.pid, asked.rid)
+    if every and every[0] is not None and every[0].starts_outside:
+        notes.append(
+            "The start lies outside the limits: the profile brakes into them at once, and is the "
+            "shortest from there."
+        )
+    if asked.profile not in PROFILES:
+        best = _range(study, asked, lambda motion: [motion.total_time], "s-curve")
+        less = 100 * (1 - best.plain / totals.plain)
+        beside = f", {less:.2f} % less" if less >= 0.01 else " too"
+        notes.append(f"The shortest s-curve profile takes {best.plain:.6g} s{beside}.")
+    return tuple(notes)
+
+
+def _fitted(
+    study: Study, claim: TotalTimeClaim, asked: _Asked, straight: bool
+) -> tuple[float, bool]:
+    """The shortest total at the printed numbers, and whether the printed one fits its interval."""
+    total, profile = (shortest_straight if straight else shortest), asked.profile
+    pair = asked.pid, asked.rid
+    problem = study.claim_problem(claim, *pair)
+    ways = np.abs(np.diff(problem.waypoints, axis=0))
+    plain = total(profile, ways, profiled_limits(study, claim, *pair, Digits.PRINTED))
+    least, most = _ways(problem, study, *pair)
+    loose = profiled_limits(study, claim, *pair, Digits.LOOSEST_CUT)
+    low = total(profile, least, loose) * (1.0 - _SLACK)
+    try:
+        tight = profiled_limits(study, claim, *pair, Digits.TIGHTEST)
+        high = total(profile, most, tight) * (1.0 + _SLACK)
+    except CaseError:
+        high = inf
+    number = study.case.measured(claim.value, "time", claim.problem, asked.rid)
+    cut = number.cut_off()
+    return plain, min(number.lower, cut.lower) <= high and low <= max(number.upper, cut.upper)
 
 
 def _ways(problem: Problem, study: Study, pid: str, rid: str) -> tuple[Array, Array]:
@@ -183,92 +267,114 @@ def _ways(problem: Problem, study: Study, pid: str, rid: str) -> tuple[Array, Ar
     return least, most
 
 
-def _beside(study: Study, claim: TotalTimeClaim, profile: str, pid: str, rid: str) -> Finding:
-    why = _not_computed(study, claim, profile, pid, rid)
-    if why:
-        return Finding(
-            rule="TG304",
-            basis=Basis.CHECK,
-            claim=claim.id,
-            problem=pid,
-            reading=rid,
-            kind="other profile",
-            sentences=(why,),
-        )
-    straight = claim.path == "straight"
-    plain, fits = _fitted(study, claim, profile, pid, rid, straight)
-    number = study.case.measured(claim.value, "time", claim.problem, rid)
-    verdict, kind, said = ClaimVerdict.SUPPORTED, "fits", "which fits"
-    if plain == 0.0:
-        verdict, kind, said = ClaimVerdict.NOT_CHECKABLE, "at rest", "and no joint moves"
-    elif plain == inf:
-        verdict, kind = ClaimVerdict.NOT_CHECKABLE, "limit 0"
-        said = "and a joint moves whose limit is 0"
-    elif not fits and not straight and _fitted(study, claim, profile, pid, rid, True)[1]:
-        verdict, kind = ClaimVerdict.NOT_CHECKABLE, "straight"
-        said = 'which fits where the joints stay on a straight line: path = "straight" if they do'
-    elif not fits:
-        verdict, kind = ClaimVerdict.INCONSISTENT, "other total"
-        said = f"which is {100 * abs(number.value / plain - 1):.2f} % "
-        said += "shorter" if number.value < plain else "longer"
-    return Finding(
-        rule="TG304",
-        verdict=verdict,
-        basis=Basis.CHECK,
-        claim=claim.id,
-        problem=pid,
-        reading=rid,
-        printed=f"{claim.value} {study.time_unit}",
-        computed=f"{plain:.6g} s",
-        kind=kind,
+def _phases_beside(study: Study, asked: _Asked) -> Finding:
+    claim = asked.claim
+    assert isinstance(claim, PhasesClaim)
+    printed = (*claim.phases, *(claim.ramps or ()))
+    found = [
+        _range(study, asked, lambda motion, k=k: [motion.parts[k]])  # type: ignore[misc]
+        for k in range(len(printed))
+    ]
+    sizes = [study.case.measured(one, "time", claim.problem, asked.rid) for one in printed]
+    fits = all(
+        one.meets(size.lower, size.cut_off().upper) for one, size in zip(found, sizes, strict=True)
+    )
+    totals = _range(study, asked, lambda motion: [motion.total_time])
+    shown = ", ".join(f"{one.plain:.5g}" for one in found)
+    digits = ", ".join(map(str, printed))
+    kind = "fits" if fits else "other phases" if totals.jump is None else "jump"
+    verdict = {
+        "fits": ClaimVerdict.SUPPORTED,
+        "other phases": ClaimVerdict.INCONSISTENT,
+        "jump": ClaimVerdict.NOT_CHECKABLE,
+    }[kind]
+    ramps = " and ramps" if claim.ramps else ""
+    return _found(
+        asked,
+        verdict,
+        kind,
+        printed=f"{digits} {study.time_unit}",
+        computed=f"{shown} s",
         sentences=(
-            f"The shortest {profile} profile from rest to rest, {_PATHS[straight]}, takes "
-            f"{plain:.6g} s; printed is {claim.value} {study.time_unit}, {said}.",
+            f"The {asked.called} between the states at both ends takes {totals.plain:.6g} s in "
+            f"phases{ramps} of {shown} s; printed are {digits} {study.time_unit}, which "
+            f"{'fit' if fits else 'are others'}.",
+            *_notes(study, asked, totals),
         ),
     )
 
 
-def _not_computed(
-    study: Study, claim: TotalTimeClaim, profile: str, pid: str, rid: str
-) -> str | None:
-    """Why the profile of a problem is none of those computed here, as a sentence; None if it is."""
-    problem = study.claim_problem(claim, pid, rid)
-    if problem.limits.uneven:
-        return (
-            f"The lower and upper limits differ; the {profile} profile is computed within limits "
-            "of equal size only."
-        )
-    if not study.case.statement(pid, rid).declaration.at_rest:
-        return (
-            "The case file gives derivatives other than 0 at the ends of the motion; the "
-            f"{profile} profile is computed from rest to rest only."
-        )
-    return None
+def _numbers_beside(study: Study, asked: _Asked) -> Finding:
+    """Peaks and values at one place of a profile."""
+    claim = asked.claim
+    assert isinstance(claim, PeakClaim | ValueClaim)
+    joints = study.claim_problem(asked.of, asked.pid, asked.rid).joints
+    if claim.derivative not in _ORDERS:
+        return _unknown(asked, "The jerk of a profile is not computed.")
+    said, wrong, plain = [], False, []
+    for label, number in peak_numbers(study, claim):
+        if label is not None and label not in joints:
+            continue
+        joint = joints[0] if label is None else label
+        size = study.case.measured(number, claim.derivative, claim.problem, asked.rid, joint)
+        j = joints.index(joint)
+        found = _range(study, asked, partial(_of_motion, study, claim, asked, j))
+        cut = size.cut_off()
+        fits = found.meets(min(size.lower, cut.lower), max(size.upper, cut.upper))
+        wrong = wrong or not fits
+        unit = unit_shown(study, asked.pid, asked.rid, claim.derivative, joint)
+        shown = in_units(study, asked.pid, asked.rid, claim.derivative, found.plain, joint)
+        plain.append(f"{shown:.6g} {unit}")
+        said.append(f"{plain[-1]}, printed is {number}, {'which fits' if fits else 'another'}")
+    where = (
+        "the largest size" if isinstance(claim, PeakClaim) else place_of_value(study.case, claim)
+    )
+    return _found(
+        asked,
+        ClaimVerdict.INCONSISTENT if wrong else ClaimVerdict.SUPPORTED,
+        "off" if wrong else "fits",
+        printed=", ".join(map(str, claim.printed)),
+        computed="; ".join(plain),
+        sentences=(
+            f"Of the {asked.called} between the states at both ends, {claim.derivative}"
+            f"{'' if where.startswith(' ') else ' '}{where}: {'; '.join(said)}.",
+        ),
+    )
 
 
-_PATHS = {
-    False: "each segment as long as its slowest joint needs",
-    True: "all joints on a straight line in each segment",
-}
-"""How the joints go together, by whether they stay on a straight line."""
+def _of_motion(
+    study: Study, claim: PeakClaim | ValueClaim, asked: _Asked, joint: int, motion: Motion
+) -> Iterable[float]:
+    """What a number of a joint may be: on both sides of an instant, or between its two ends."""
+    order = _ORDERS[claim.derivative]
+    if isinstance(claim, PeakClaim):
+        return [float(np.abs(motion.states(joint)[:, order]).max())]
+    if claim.place in ("largest", "smallest"):
+        values = motion.states(joint)[:, order]
+        return [float(values.max() if claim.place == "largest" else values.min())]
+    if claim.time is None:
+        statement = study.case.statement(asked.pid, asked.rid)
+        at = named_places(statement)[str(claim.place)]
+        times = [sum(law.total_time for law in motion.laws[:at])]
+    else:
+        one = study.case.measured(claim.time, "time", claim.problem, asked.rid).cut_off()
+        times = [one.value, one.lower, one.upper]
+    return [float(value) for t in times for value in motion.near(t, joint)[:, order]]
 
 
-def _fitted(
-    study: Study, claim: TotalTimeClaim, profile: str, pid: str, rid: str, straight: bool
-) -> tuple[float, bool]:
-    """The shortest total at the printed numbers, and whether the printed one fits its interval."""
-    total = shortest_straight if straight else shortest
-    problem = study.claim_problem(claim, pid, rid)
-    ways = np.abs(np.diff(problem.waypoints, axis=0))
-    plain = total(profile, ways, problem.limits.derivatives)
-    least, most = _ways(problem, study, pid, rid)
-    loose = study.claim_problem(claim, pid, rid, Digits.LOOSEST_CUT).limits.derivatives
-    low = total(profile, least, loose) * (1.0 - _SLACK)
-    try:
-        tight = study.claim_problem(claim, pid, rid, Digits.TIGHTEST).limits.derivatives
-        high = total(profile, most, tight) * (1.0 + _SLACK)
-    except CaseError:
-        high = inf
-    number = study.case.measured(claim.value, "time", claim.problem, rid)
-    cut = number.cut_off()
-    return plain, min(number.lower, cut.lower) <= high and low <= max(number.upper, cut.upper)
+def _optimal(study: Study, claim: AnyClaim) -> Iterator[Finding]:
+    """Whether the profiles that a statement calls optimal are printed as long as the shortest."""
+    if not isinstance(claim, StatementClaim) or claim.checks != "optimal":
+        return
+    for named in map(study.case.claim, claim.of):
+        if not isinstance(named, _Profiled) or named.profile is None:
+            continue
+        best = named.profile if named.profile in PROFILES else "s-curve"
+        meant = named.model_copy(update={"profile": best})
+        judge = _total_beside if isinstance(named, TotalTimeClaim) else _phases_beside
+        for pid, rid in study.pairs:
+            if named.problem in (None, pid):
+                asked = _Asked(meant, meant, pid, rid)
+                why = _not_computed(study, asked)
+                found = judge(study, asked) if why is None else _unknown(asked, why)
+                yield replace(found, claim=claim.id)

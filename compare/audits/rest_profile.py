@@ -1,0 +1,169 @@
+"""Shortest profiles from rest to rest, in closed form, for several joints together."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import cbrt, inf, pi, sqrt
+
+import numpy as np
+
+from ...problem import Array
+
+
+def trapezoidal(
+    way: float, velocity: float, acceleration: float, jerk: float, deceleration: float | None = None
+) -> float:
+    """Shortest time from rest to rest with constant acceleration, constant speed and braking.
+
+    Parameters
+    ----------
+    way : float
+        rad, not negative.
+    velocity, acceleration : float
+        Limits, rad/s and rad/s²; may be infinite.
+    jerk : float
+        Not read: the acceleration jumps.
+    deceleration : float, optional
+        Limit of braking, rad/s²; as of speeding up if absent.
+
+    Returns
+    -------
+    float
+        s.
+    """
+    if way == 0.0:
+        return 0.0
+    braking = acceleration if deceleration is None else deceleration
+    if acceleration == inf == braking:
+        return way / velocity
+    # Both ramps, v/A + v/D long, pass half of v times that; 2/(1/A + 1/D) is A where both are A.
+    mean = acceleration
+    if braking != acceleration:
+        mean = 2.0 / (1.0 / acceleration + 1.0 / braking)
+    if way * mean <= velocity**2:
+        return 2.0 * sqrt(way / mean)
+    return way / velocity + velocity / mean
+
+
+def s_curve(way: float, velocity: float, acceleration: float, jerk: float) -> float:
+    """Shortest time from rest to rest with a jerk that is constant in at most seven phases.
+
+    Parameters
+    ----------
+    way : float
+        rad, not negative.
+    velocity, acceleration, jerk : float
+        Limits, rad/s, rad/s² and rad/s³; may be infinite.
+
+    Returns
+    -------
+    float
+        s.
+    """
+    if way == 0.0 or jerk == inf:
+        return trapezoidal(way, velocity, acceleration, jerk)
+    # Time to the full speed and back takes `speeding` each, and half of speed times that as way.
+    if velocity * jerk >= acceleration**2:
+        speeding = velocity / acceleration + acceleration / jerk
+    else:
+        speeding = 2.0 * sqrt(velocity / jerk)
+    if way >= velocity * speeding:
+        return speeding + way / velocity
+    if way * jerk**2 >= 2.0 * acceleration**3:
+        ramp = acceleration / jerk
+        return ramp + sqrt(ramp**2 + 4.0 * way / acceleration)
+    return 4.0 * cbrt(way / (2.0 * jerk))
+
+
+def sine_jerk(way: float, velocity: float, acceleration: float, jerk: float) -> float:
+    """Shortest time from rest to rest in seven phases whose jerk is a half sine on each ramp.
+
+    Parameters
+    ----------
+    way : float
+        rad, not negative.
+    velocity, acceleration, jerk : float
+        Limits, rad/s, rad/s² and rad/s³; may be infinite.
+
+    Returns
+    -------
+    float
+        s.
+
+    Notes
+    -----
+    On a ramp of length τ the jerk is J sin(πt/τ), and the acceleration changes by ∫ = 2Jτ/π, as by
+    a constant jerk of 2J/π. It is (Jτ/π)(1 − cos(πt/τ)), which with its mirror image about the
+    middle of the ramp sums to the whole change, as a straight line does: velocity changes by the
+    same amount over the ramp. Both profiles are mirror images about the middle of each half and of
+    the whole, so that the ways are half of velocity times time in both. With phases of equal length
+    they have the same peaks of velocity and acceleration and the same way. The shortest total is
+    that of the S-curve within 2/π of the jerk limit.
+    """
+    return s_curve(way, velocity, acceleration, 2.0 / pi * jerk)
+
+
+PROFILES: dict[str, Callable[..., float]] = {
+    "trapezoidal": trapezoidal,
+    "s-curve": s_curve,
+    "sine-jerk": sine_jerk,
+}
+"""The shortest time of each profile: longer for a longer way, shorter for larger limits."""
+
+
+def shortest(profile: str, ways: Array, limits: Array) -> float:
+    """Shortest total through way-points at rest, each segment as long as its slowest joint needs.
+
+    Parameters
+    ----------
+    profile : str
+        A key of `PROFILES`.
+    ways : ndarray, shape (segments, joints)
+        rad, not negative.
+    limits : ndarray, shape (joints, 3) or (joints, 4)
+        Of velocity, acceleration and jerk, and of deceleration where it is another one.
+
+    Returns
+    -------
+    float
+        s.
+    """
+    each = [
+        [_time(profile, float(w), own) for w, own in zip(row, limits, strict=True)] for row in ways
+    ]
+    return float(np.max(each, axis=1).sum())
+
+
+def shortest_straight(profile: str, ways: Array, limits: Array) -> float:
+    """Shortest total where all joints follow one time law, on a straight line in each segment.
+
+    Joint j moves by way_j·s(t) while s goes from 0 to 1 by the profile, so that the derivatives of
+    s keep the smallest limit_j/way_j over the joints that move.
+
+    Parameters
+    ----------
+    profile : str
+        A key of `PROFILES`.
+    ways : ndarray, shape (segments, joints)
+        rad, not negative.
+    limits : ndarray, shape (joints, 3) or (joints, 4)
+        Of velocity, acceleration and jerk, and of deceleration where it is another one.
+
+    Returns
+    -------
+    float
+        s.
+    """
+    total = 0.0
+    for row in ways:
+        moving = row > 0.0
+        if moving.any():
+            total += _time(profile, 1.0, (limits[moving] / row[moving, None]).min(axis=0))
+    return total
+
+
+def _time(profile: str, way: float, limits: Array) -> float:
+    """Time of one segment, infinite where a joint moves that must not."""
+    if way > 0.0 and not (limits > 0.0).all():
+        return inf
+    return PROFILES[profile](way, *map(float, limits))
