@@ -166,4 +166,6 @@ def _time(profile: str, way: float, limits: Array) -> float:
     """Time of one segment, infinite where a joint moves that must not."""
     if way > 0.0 and not (limits > 0.0).all():
         return inf
-    return PROFILES[profile](way, *map(float, limits))
+    # Where the jerk is limited, slowing down has no limit of its own.
+    known = limits if profile == "trapezoidal" else limits[:3]
+    return PROFILES[profile](way, *map(float, known))

@@ -42,6 +42,8 @@ _PATHS = {
     True: "all joints on a straight line in each segment",
 }
 """How the joints go together, by whether they stay on a straight line."""
+_SIZES = ("largest", "smallest")
+"""Places of a motion that are values."""
 _Profiled = TotalTimeClaim | PhasesClaim
 _Judge = Callable[[Study, "_Asked"], Finding]
 
@@ -169,7 +171,7 @@ def _total_beside(study: Study, asked: _Asked) -> Finding:
                 'which fits where the joints stay on a straight line: path = "straight" if they do'
             )
     else:
-        how = "between the states at both ends"
+        how = _between(study, asked)
         totals = _range(study, asked, lambda motion: [motion.total_time])
         plain, fits = totals.plain, totals.meets(number.lower, number.cut_off().upper)
         notes = _notes(study, asked, totals)
@@ -192,6 +194,12 @@ def _total_beside(study: Study, asked: _Asked) -> Finding:
             *notes,
         ),
     )
+
+
+def _between(study: Study, asked: _Asked) -> str:
+    """Which states a profile joins."""
+    resting = study.case.statement(asked.pid, asked.rid).declaration.at_rest
+    return "from rest to rest" if resting else "between the states at both ends"
 
 
 def _found(asked: _Asked, verdict: ClaimVerdict, kind: str, **facts: Any) -> Finding:
@@ -230,8 +238,8 @@ def _notes(study: Study, asked: _Asked, totals: Range) -> tuple[str, ...]:
         )
     if asked.profile not in PROFILES:
         best = _range(study, asked, lambda motion: [motion.total_time], "s-curve")
-        less = 100 * (1 - best.plain / totals.plain)
-        beside = f", {less:.2f} % less" if less >= 0.01 else " too"
+        more = 100 * (totals.plain / best.plain - 1)
+        beside = f"; the algorithm's is {more:.2f} % longer" if more >= 0.01 else " too"
         notes.append(f"The shortest s-curve profile takes {best.plain:.6g} s{beside}.")
     return tuple(notes)
 
@@ -296,8 +304,8 @@ def _phases_beside(study: Study, asked: _Asked) -> Finding:
         printed=f"{digits} {study.time_unit}",
         computed=f"{shown} s",
         sentences=(
-            f"The {asked.called} between the states at both ends takes {totals.plain:.6g} s in "
-            f"phases{ramps} of {shown} s; printed are {digits} {study.time_unit}, which "
+            f"The {asked.called} {_between(study, asked)} takes {totals.plain:.6g} s in phases"
+            f"{ramps} of {shown} s; printed are {digits} {study.time_unit}, which "
             f"{'fit' if fits else 'are others'}.",
             *_notes(study, asked, totals),
         ),
@@ -312,6 +320,9 @@ def _numbers_beside(study: Study, asked: _Asked) -> Finding:
     if claim.derivative not in _ORDERS:
         return _unknown(asked, "The jerk of a profile is not computed.")
     said, wrong, plain = [], False, []
+    peak = isinstance(claim, PeakClaim)
+    where = "" if isinstance(claim, PeakClaim) else place_of_value(study.case, claim)
+    size_word = "largest " if peak else f"{claim.place} " if claim.place in _SIZES else ""
     for label, number in peak_numbers(study, claim):
         if label is not None and label not in joints:
             continue
@@ -325,20 +336,17 @@ def _numbers_beside(study: Study, asked: _Asked) -> Finding:
         unit = unit_shown(study, asked.pid, asked.rid, claim.derivative, joint)
         shown = in_units(study, asked.pid, asked.rid, claim.derivative, found.plain, joint)
         plain.append(f"{shown:.6g} {unit}")
-        said.append(f"{plain[-1]}, printed is {number}, {'which fits' if fits else 'another'}")
-    where = (
-        "the largest size" if isinstance(claim, PeakClaim) else place_of_value(study.case, claim)
-    )
+        said.append(
+            f"the {size_word}{claim.derivative} of joint {joint}{where} is {plain[-1]}, printed is "
+            f"{number}, {'which fits' if fits else 'which is another'}"
+        )
     return _found(
         asked,
         ClaimVerdict.INCONSISTENT if wrong else ClaimVerdict.SUPPORTED,
         "off" if wrong else "fits",
         printed=", ".join(map(str, claim.printed)),
         computed="; ".join(plain),
-        sentences=(
-            f"Of the {asked.called} between the states at both ends, {claim.derivative}"
-            f"{'' if where.startswith(' ') else ' '}{where}: {'; '.join(said)}.",
-        ),
+        sentences=(f"Of the {asked.called} {_between(study, asked)}: {'; '.join(said)}.",),
     )
 
 
@@ -349,7 +357,7 @@ def _of_motion(
     order = _ORDERS[claim.derivative]
     if isinstance(claim, PeakClaim):
         return [float(np.abs(motion.states(joint)[:, order]).max())]
-    if claim.place in ("largest", "smallest"):
+    if claim.place in _SIZES:
         values = motion.states(joint)[:, order]
         return [float(values.max() if claim.place == "largest" else values.min())]
     if claim.time is None:
