@@ -10,8 +10,8 @@ from math import inf
 
 import numpy as np
 
-from ...problem import Array, CaseError
-from ...problem.cases import Digits, ProfiledClaim, end_states
+from ...problem import Array, CaseError, Printed, Quantity
+from ...problem.cases import Digits, ProfiledClaim, end, end_states
 from .axis_profile import Profile, Sizes, State, shortest_s_curve, shortest_trapezoid
 from .double_s import double_s
 from .study import Study
@@ -42,7 +42,7 @@ class Question:
     ends : ndarray, shape (2, joints, 2)
         Velocity and acceleration at the start and at the finish.
     limits : ndarray, shape (joints, 4)
-        Of velocity, acceleration, jerk and deceleration.
+        As `profiled_limits` gives them.
     """
 
     points: Array
@@ -115,14 +115,14 @@ class Motion:
         lengths, ramps, first = [0.0, 0.0, 0.0], [0.0, 0.0], True
         for phase in law.phases:
             turn = -phase.acceleration / phase.jerk if phase.jerk else 0.0
-            for begin, end in pairwise(sorted({0.0, min(max(turn, 0.0), phase.time), phase.time})):
-                middle = sign * (phase.acceleration + phase.jerk * (begin + end) / 2.0)
+            for begin, until in pairwise(sorted({0.0, min(max(turn, 0.0), phase.time), phase.time})):
+                middle = sign * (phase.acceleration + phase.jerk * (begin + until) / 2.0)
                 part = 0 if middle > 0.0 and first else 1 if middle == 0.0 else 2
                 first = part == 0
                 if part == 0 and lengths[0] == 0.0 and phase.jerk:
-                    ramps[0] = end - begin
-                lengths[part] += end - begin
-                ramps[1] = end - begin if part == 2 and phase.jerk else 0.0
+                    ramps[0] = until - begin
+                lengths[part] += until - begin
+                ramps[1] = until - begin if part == 2 and phase.jerk else 0.0
         return (*lengths, *ramps)  # type: ignore[return-value]
 
     def near(self, time: float, joint: int) -> Array:
@@ -232,26 +232,30 @@ class Range:
 def profiled_limits(
     study: Study, claim: ProfiledClaim, pid: str, rid: str, digits: Digits
 ) -> Array:
-    """Limits of the joints of a claim with that of deceleration, shape (joints, 4)."""
+    """Limits of the joints of a claim with the one that only its profile has.
+
+    Returns
+    -------
+    ndarray, shape (joints, 4)
+        Of velocity, acceleration and jerk; and of snap, or of deceleration, which is that of
+        acceleration where none is stated.
+    """
     problem = study.claim_problem(claim, pid, rid, digits)
     limits = problem.limits.derivatives
-    braking = limits[:, 1]
-    if claim.deceleration is not None:
-        statement = study.case.statement(pid, rid)
-        each = []
-        for label in problem.joints:
-            j = statement.labels.index(label)
-            given = claim.deceleration
-            size = statement.si(
-                given[j] if isinstance(given, tuple) else given, "acceleration", "", j
-            )
-            loose = digits is Digits.LOOSEST_CUT
-            each.append(
-                size.cut_off().upper if loose else size.value if digits is Digits.PRINTED
-                else size.lower
-            )  # fmt: skip
-        braking = np.array(each)
-    return np.column_stack([limits, braking])
+    given = claim.deceleration if claim.snap is None else claim.snap
+    if given is None:
+        return np.column_stack([limits, limits[:, 1]])
+    statement = study.case.statement(pid, rid)
+    quantity: Quantity = "acceleration" if claim.snap is None else "jerk"
+    places = [statement.labels.index(label) for label in problem.joints]
+    sizes = [
+        statement.si(given[j] if isinstance(given, tuple) else given, quantity, "", j)
+        for j in places
+    ]
+    own = end(sizes, digits, upper=True)
+    if claim.snap is not None:  # of jerk in one unit of time
+        own = own / statement.si(Printed.number(1), "time").value
+    return np.column_stack([limits, own])
 
 
 def questions(study: Study, claim: ProfiledClaim, pid: str, rid: str) -> list[Question] | None:

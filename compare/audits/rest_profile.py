@@ -6,6 +6,7 @@ from collections.abc import Callable
 from math import cbrt, inf, pi, sqrt
 
 import numpy as np
+from scipy.optimize import brentq
 
 from ...problem import Array
 
@@ -103,12 +104,54 @@ def sine_jerk(way: float, velocity: float, acceleration: float, jerk: float) -> 
     return s_curve(way, velocity, acceleration, 2.0 / pi * jerk)
 
 
+def fourth_order(
+    way: float, velocity: float, acceleration: float, jerk: float, snap: float
+) -> float:
+    """Time from rest to rest in at most fifteen phases of constant snap, a mirror image of itself.
+
+    A little longer than the shortest motion within the limits, which has more phases.
+
+    Parameters
+    ----------
+    way : float
+        rad, not negative.
+    velocity, acceleration, jerk, snap : float
+        Limits, rad/s to rad/s⁴; jerk and snap finite.
+
+    Returns
+    -------
+    float
+        s.
+
+    Notes
+    -----
+    The velocity rises to v as the position of an S-curve does, whose limits are those of the next
+    derivatives, in the time T(v). Its rise is the mirror image of itself about its middle, so that
+    it takes the way v·T(v)/2, and slowing down as much. The whole is v·T(v) and the cruise.
+    """
+    if way == 0.0:
+        return 0.0
+
+    def rising(speed: float) -> float:
+        return s_curve(speed, acceleration, jerk, snap)
+
+    if velocity < inf and velocity * rising(velocity) <= way:
+        return rising(velocity) + way / velocity
+    # At least 4 cbrt(v/(2 snap)) pass for a rise, so that v·T(v) exceeds the way at this speed.
+    above = min(velocity, (way * cbrt(2.0 * snap) / 4.0) ** 0.75)
+    speed = float(brentq(lambda v: v * rising(v) - way, 0.0, above, xtol=0.0, rtol=_RTOL))
+    return 2.0 * rising(speed)
+
+
+_RTOL = 4.0 * float(np.finfo(float).eps)
+"""The smallest relative tolerance of a root that `scipy` takes."""
 PROFILES: dict[str, Callable[..., float]] = {
     "trapezoidal": trapezoidal,
     "s-curve": s_curve,
     "sine-jerk": sine_jerk,
+    "fourth-order": fourth_order,
 }
-"""The shortest time of each profile: longer for a longer way, shorter for larger limits."""
+"""The time of each profile: longer for a longer way, shorter for larger limits."""
 
 
 def shortest(profile: str, ways: Array, limits: Array) -> float:
@@ -121,7 +164,7 @@ def shortest(profile: str, ways: Array, limits: Array) -> float:
     ways : ndarray, shape (segments, joints)
         rad, not negative.
     limits : ndarray, shape (joints, 3) or (joints, 4)
-        Of velocity, acceleration and jerk, and of deceleration where it is another one.
+        Of velocity, acceleration and jerk, and of deceleration or of snap.
 
     Returns
     -------
@@ -147,7 +190,7 @@ def shortest_straight(profile: str, ways: Array, limits: Array) -> float:
     ways : ndarray, shape (segments, joints)
         rad, not negative.
     limits : ndarray, shape (joints, 3) or (joints, 4)
-        Of velocity, acceleration and jerk, and of deceleration where it is another one.
+        Of velocity, acceleration and jerk, and of deceleration or of snap.
 
     Returns
     -------
@@ -166,6 +209,5 @@ def _time(profile: str, way: float, limits: Array) -> float:
     """Time of one segment, infinite where a joint moves that must not."""
     if way > 0.0 and not (limits > 0.0).all():
         return inf
-    # Where the jerk is limited, slowing down has no limit of its own.
-    known = limits if profile == "trapezoidal" else limits[:3]
+    known = limits if profile in ("trapezoidal", "fourth-order") else limits[:3]
     return PROFILES[profile](way, *map(float, known))

@@ -23,7 +23,7 @@ from .claim import (
 from .claim_fit import motions_of, named_places, profile_of
 from .clue import AnyClue, AxisClue, DataSheetClue, HalfTurnsClue, SmoothClue
 from .data_files import PUBLISHED, SUITE_PREFIX, case_files
-from .digits import Digits
+from .digits import Digits, end
 from .end_states import end_states
 from .faults import all_faults, refusal
 from .instances import InstancesBlock, instance_waypoints
@@ -100,6 +100,7 @@ __all__ = [
     "case_schema",
     "check_case",
     "compare_transcriptions",
+    "end",
     "end_states",
     "identity_of",
     "instance_waypoints",

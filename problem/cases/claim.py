@@ -122,17 +122,24 @@ class MaximumClaim(TimeClaim):
 class ProfiledClaim(TimeClaim):
     """What claims of a profile of velocity have in common."""
 
-    profile: Literal["trapezoidal", "s-curve", "sine-jerk", "biagiotti-melchiorri"] | None = None
+    profile: (
+        Literal["trapezoidal", "s-curve", "sine-jerk", "fourth-order", "biagiotti-melchiorri"]
+        | None
+    ) = None
     """The profile of `other_curve`, where it is one that joins the way-points segment by segment:
     the shortest with constant acceleration and speed, with constant jerk, or with jerk in half
-    sines; or that of the algorithm of Biagiotti and Melchiorri, which is not always the shortest.
-    It is at rest at way-points in between, and at the ends as the interpolant prescribes."""
+    sines; with constant snap; or that of the algorithm of Biagiotti and Melchiorri, which is not
+    always the shortest. It is at rest at way-points in between, and at the ends as the interpolant
+    prescribes."""
     path: Literal["straight"] | None = None
     """How the joints go together in a profile: on a straight line between way-points, all by one
     time law. Each by itself if absent."""
     deceleration: OneOrEachLength | None = None
     """Trapezoids: largest acceleration while the speed falls, in the unit of acceleration, where it
     differs from that while the speed grows."""
+    snap: OneOrEachLength | None = None
+    """Fourth-order profiles: largest derivative of the jerk, in the unit of jerk per unit of
+    time."""
 
     @model_validator(mode="after")
     def _on_another_curve(self) -> Self:
@@ -140,10 +147,13 @@ class ProfiledClaim(TimeClaim):
             raise fault(".profile", "goes with other_curve; name the curve there as the paper does")
         if self.path is not None and self.profile is None:
             raise fault(".path", "goes with profile; add it, or leave this out")
-        if self.deceleration is not None and self.profile != "trapezoidal":
-            raise fault(
-                ".deceleration", 'goes with profile = "trapezoidal" only; add that, or leave it out'
-            )
+        for key, profile in (("deceleration", "trapezoidal"), ("snap", "fourth-order")):
+            if getattr(self, key) is not None and self.profile != profile:
+                raise fault(
+                    f".{key}", f'goes with profile = "{profile}" only; add that, or leave it out'
+                )
+        if self.profile == "fourth-order" and self.snap is None:
+            raise fault(".snap", 'is missing; profile "fourth-order" needs it')
         return self
 
 

@@ -189,6 +189,7 @@ _BOUNDED_BY: dict[str, Quantity] = {
     "trapezoidal": "acceleration",
     "s-curve": "jerk",
     "sine-jerk": "jerk",
+    "fourth-order": "jerk",
     "biagiotti-melchiorri": "jerk",
 }
 """The limit without which each profile is another one: its highest derivative would jump."""
@@ -202,6 +203,8 @@ def _check_profile(
         return
     if claim.deceleration is not None:
         _check_each(faults, claim.deceleration, "acceleration", every, f"{at}.deceleration")
+    if claim.snap is not None:
+        _check_each(faults, claim.snap, "jerk", every, f"{at}.snap")
     needed = _BOUNDED_BY[claim.profile]
     for statement in every:
         given = getattr(statement.limits, needed)

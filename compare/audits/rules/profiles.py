@@ -35,7 +35,10 @@ _SLACK = 1e-12
 """Relative margin that outweighs the few roundings of a closed form in floats."""
 _ORDERS = {"position": 0, **{name: order for order, name in enumerate(QUANTITIES[:2], 1)}}
 """Order of each derivative that a profile has everywhere."""
-_SPELLED = {"biagiotti-melchiorri": "profile of Biagiotti and Melchiorri's algorithm"}
+_SPELLED = {
+    "biagiotti-melchiorri": "profile of Biagiotti and Melchiorri's algorithm",
+    "fourth-order": "fourth-order profile, a mirror image of itself,",
+}
 """Profiles that are no shortest ones, as sentences call them."""
 _PATHS = {
     False: "each segment as long as its slowest joint needs",
@@ -320,9 +323,9 @@ def _numbers_beside(study: Study, asked: _Asked) -> Finding:
     if claim.derivative not in _ORDERS:
         return _unknown(asked, "The jerk of a profile is not computed.")
     said, wrong, plain = [], False, []
-    peak = isinstance(claim, PeakClaim)
     where = "" if isinstance(claim, PeakClaim) else place_of_value(study.case, claim)
-    size_word = "largest " if peak else f"{claim.place} " if claim.place in _SIZES else ""
+    place = "largest" if isinstance(claim, PeakClaim) else claim.place
+    size_word = f"{place} " if place in _SIZES else ""
     for label, number in peak_numbers(study, claim):
         if label is not None and label not in joints:
             continue
@@ -377,12 +380,14 @@ def _optimal(study: Study, claim: AnyClaim) -> Iterator[Finding]:
     for named in map(study.case.claim, claim.of):
         if not isinstance(named, _Profiled) or named.profile is None:
             continue
-        best = named.profile if named.profile in PROFILES else "s-curve"
+        best = "s-curve" if named.profile in _SPELLED else named.profile
         meant = named.model_copy(update={"profile": best})
         judge = _total_beside if isinstance(named, TotalTimeClaim) else _phases_beside
         for pid, rid in study.pairs:
             if named.problem in (None, pid):
                 asked = _Asked(meant, meant, pid, rid)
                 why = _not_computed(study, asked)
+                if named.snap is not None:
+                    why = "The shortest profile within a limit of snap is not computed."
                 found = judge(study, asked) if why is None else _unknown(asked, why)
                 yield replace(found, claim=claim.id)
