@@ -22,6 +22,11 @@ SHORTEST: dict[str, Callable[[State, State, Sizes], Profile | None]] = {
     "biagiotti-melchiorri": double_s,
 }
 """The motion of one axis between two states by the name of its profile."""
+NOT_SHORTEST = {
+    "biagiotti-melchiorri": "profile of Biagiotti and Melchiorri's algorithm",
+    "fourth-order": "fourth-order profile",
+}
+"""Profiles than which a motion within the same limits may be shorter, as sentences call them."""
 _MOST_OPEN = 10
 """Printed numbers whose both ends are combined: 1024 profiles take a few seconds."""
 _AWAY = 1e-12
@@ -30,6 +35,13 @@ exact number, rounding alone must not choose the side."""
 _JUMP = 0.01
 """Share of the shortest total by which totals of one rounding box must differ to be called a jump:
 ordinary digits change them by far less."""
+
+
+def profile_called(profiles: Sequence[str]) -> str:
+    """What a sentence calls some profiles, after "the"."""
+    shortest = [one for one in profiles if one not in NOT_SHORTEST]
+    said = [f"shortest {' or '.join(shortest)} profile"] if shortest else []
+    return " or ".join(said + [NOT_SHORTEST[one] for one in profiles if one in NOT_SHORTEST])
 
 
 @dataclass(frozen=True)
@@ -115,7 +127,9 @@ class Motion:
         lengths, ramps, first = [0.0, 0.0, 0.0], [0.0, 0.0], True
         for phase in law.phases:
             turn = -phase.acceleration / phase.jerk if phase.jerk else 0.0
-            for begin, until in pairwise(sorted({0.0, min(max(turn, 0.0), phase.time), phase.time})):
+            for begin, until in pairwise(
+                sorted({0.0, min(max(turn, 0.0), phase.time), phase.time})
+            ):
                 middle = sign * (phase.acceleration + phase.jerk * (begin + until) / 2.0)
                 part = 0 if middle > 0.0 and first else 1 if middle == 0.0 else 2
                 first = part == 0

@@ -130,7 +130,7 @@ def _waterfall(study: Study, pid: str, rid: str) -> Waterfall:
         steps.append(_procedure(study, pid, rid))
     shared = study.optimum(pid, rid)
     own = SHARED_OPTIMUM if problem.ratios is None else RATIOS_OPTIMUM
-    steps.append(_known(STAND_IN_OPTIMUM if _stands_in(study) else own, shared))
+    steps.append(_known(STAND_IN_OPTIMUM if stands_in(study) else own, shared))
     steps.append(_retimed(OPTIMUM_RETIMED, shared))
     if problem.ratios is not None:
         steps.append(_known(FREED_OPTIMUM, _converged(study.freed(pid, rid))))
@@ -153,7 +153,7 @@ def _longest_optimum(study: Study, claim: AnyClaim | None, pid: str, rid: str) -
     return None if claim is None else optimum_range(study, claim, pid, rid).upper
 
 
-def _stands_in(study: Study) -> bool:
+def stands_in(study: Study) -> bool:
     """Whether times are printed, and none of them is of the curve that the case file declares."""
     timed = [c for c in study.case.claims if isinstance(c, TimeClaim)]
     return bool(timed) and all(

@@ -77,6 +77,12 @@ def _check_claim(
     if isinstance(claim, TotalTimeClaim):
         number(claim.value, "time", "value")
     if isinstance(claim, PhasesClaim):
+        if statement.waypoints.number != 2:
+            faults.add(
+                f"{at}.phases",
+                f"are of one segment, and there are {statement.waypoints.number} way-points; "
+                f"state a total instead{statement.selected}",
+            )
         for key in ("phases", "ramps"):
             for position, length in enumerate(getattr(claim, key) or ()):
                 number(length, "time", f"{key}[{position}]")

@@ -24,7 +24,15 @@ from ....problem.cases import (
     profile_of,
 )
 from ...documents import Basis, ClaimVerdict, Finding
-from ..profile_motions import SHORTEST, Motion, Range, motions, profiled_limits
+from ..profile_motions import (
+    NOT_SHORTEST,
+    SHORTEST,
+    Motion,
+    Range,
+    motions,
+    profile_called,
+    profiled_limits,
+)
 from ..rest_profile import PROFILES, shortest, shortest_straight
 from ..sentences import place_of_value
 from ..study import Study
@@ -35,11 +43,6 @@ _SLACK = 1e-12
 """Relative margin that outweighs the few roundings of a closed form in floats."""
 _ORDERS = {"position": 0, **{name: order for order, name in enumerate(QUANTITIES[:2], 1)}}
 """Order of each derivative that a profile has everywhere."""
-_SPELLED = {
-    "biagiotti-melchiorri": "profile of Biagiotti and Melchiorri's algorithm",
-    "fourth-order": "fourth-order profile, a mirror image of itself,",
-}
-"""Profiles that are no shortest ones, as sentences call them."""
 _PATHS = {
     False: "each segment as long as its slowest joint needs",
     True: "all joints on a straight line in each segment",
@@ -66,7 +69,7 @@ class _Asked:
 
     @property
     def called(self) -> str:
-        return _SPELLED.get(self.profile, f"shortest {self.profile} profile")
+        return profile_called([self.profile])
 
 
 def judge_profiles(study: Study) -> Iterator[Finding]:
@@ -380,7 +383,7 @@ def _optimal(study: Study, claim: AnyClaim) -> Iterator[Finding]:
     for named in map(study.case.claim, claim.of):
         if not isinstance(named, _Profiled) or named.profile is None:
             continue
-        best = "s-curve" if named.profile in _SPELLED else named.profile
+        best = "s-curve" if named.profile in NOT_SHORTEST else named.profile
         meant = named.model_copy(update={"profile": best})
         judge = _total_beside if isinstance(named, TotalTimeClaim) else _phases_beside
         for pid, rid in study.pairs:

@@ -10,7 +10,7 @@ from scipy.integrate import quad
 from scipy.optimize import linprog
 from support.findings import finding
 from support.made_up import QUINTIC, paper, total
-from trajgap.compare.audits.rules.profiles import (
+from trajgap.compare.audits.rest_profile import (
     s_curve,
     shortest,
     shortest_straight,
