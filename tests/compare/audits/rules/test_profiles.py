@@ -18,6 +18,7 @@ from trajgap.compare.audits.rest_profile import (
     trapezoidal,
 )
 from trajgap.compare.documents import ClaimVerdict, Finding
+from trajgap.problem import CaseError, parse_case
 
 STEPS = 120
 
@@ -199,3 +200,60 @@ def test_a_joint_that_must_not_move_and_does_is_no_fault_of_the_total() -> None:
     found = judged("trapezoidal", "2.00", TWO, velocity=2, acceleration=[0, 4])
     assert found.verdict is ClaimVerdict.NOT_CHECKABLE
     assert "a joint moves whose limit is 0" in found.message
+
+
+ONE = {"velocity": 2, "acceleration": 4, "jerk": 20}
+MOVING = {"family": "polynomials", "degrees": [5], "finish_derivatives": [0, 0]}
+
+
+@pytest.mark.parametrize(
+    ("profile", "value", "more", "verdict"),
+    [
+        # 1 rad from 1 rad/s: the peak is sqrt(4.5), above 2 rad/s, so that 1/16 s of cruise remain.
+        ("trapezoidal", "0.8125", {}, "supported"),
+        ("trapezoidal", "0.8325", {}, "inconsistent"),
+        ("sine-jerk", "0.8125", {}, "not checkable"),
+        ("fourth-order", "0.8125", {"snap": 900}, "not checkable"),
+    ],
+)
+def test_a_total_from_motion_is_set_beside_the_profile_from_there(
+    profile: str, value: str, more: dict[str, Any], verdict: str
+) -> None:
+    curve = MOVING | {"end_derivatives": [1, 0]}
+    claim = total("t", value, profile=profile, **CLAIM | more)
+    assert finding(paper([[0, 1]], claim, curve=curve, **ONE), "t", "TG304").verdict == verdict
+
+
+def test_braking_less_than_speeding_up_takes_longer() -> None:
+    """1 rad within 4 and 1 rad/s²: sqrt(2 (1/4 + 1)) s."""
+    for value, verdict in (("1.581", "supported"), ("1.000", "inconsistent")):
+        claim = total("t", value, profile="trapezoidal", deceleration=1, **CLAIM)
+        text = paper([[0, 1]], claim, curve=QUINTIC, velocity=2, acceleration=4)
+        assert finding(text, "t", "TG304").verdict == verdict
+
+
+def test_an_optimal_profile_is_the_shortest() -> None:
+    said = {"id": "s", "quantity": "statement", "where": "text", "checks": "optimal", "of": ["t"]}
+    for value, verdict in (("1.220", "supported"), ("1.400", "inconsistent")):
+        claim = total("t", value, profile="s-curve", **CLAIM)
+        text = paper([[0, 1]], claim, said, curve=QUINTIC, **ONE)
+        assert finding(text, "s", "TG304").verdict == verdict
+
+
+@pytest.mark.parametrize(
+    ("keys", "why"),
+    [
+        ({"profile": "s-curve", "deceleration": 1}, "deceleration: goes with profile"),
+        ({"profile": "s-curve", "snap": 1}, "snap: goes with profile"),
+        ({"profile": "fourth-order"}, "snap: is missing"),
+        ({"profile": "trapezoidal", "deceleration": [1, 2]}, "deceleration: 2 values for 1 joints"),
+        ({"quantity": "phases", "phases": [1, 0, 1]}, "profile: is missing"),
+        ({"quantity": "phases", "phases": [1, 0, 1], "profile": "s-curve"}, "are of one segment"),
+    ],
+)
+def test_keys_that_a_profile_does_not_have_are_refused(keys: dict[str, Any], why: str) -> None:
+    claim = total("t", "1.0", **CLAIM) | keys
+    if "phases" in keys:
+        del claim["value"]
+    with pytest.raises(CaseError, match=why):
+        parse_case(paper([[0, 1, 2]], claim, curve=QUINTIC, **ONE))
