@@ -9,7 +9,7 @@ import pytest
 from scipy.integrate import quad
 from scipy.optimize import linprog
 from support.findings import finding
-from support.made_up import QUINTIC, paper, total
+from support.made_up import QUINTIC, claim, paper, sentence, total
 from trajgap.compare.audits.rest_profile import (
     s_curve,
     shortest,
@@ -220,23 +220,22 @@ def test_a_total_from_motion_is_set_beside_the_profile_from_there(
     profile: str, value: str, more: dict[str, Any], verdict: str
 ) -> None:
     curve = MOVING | {"end_derivatives": [1, 0]}
-    claim = total("t", value, profile=profile, **CLAIM | more)
-    assert finding(paper([[0, 1]], claim, curve=curve, **ONE), "t", "TG304").verdict == verdict
+    own = total("t", value, profile=profile, **CLAIM | more)
+    assert finding(paper([[0, 1]], own, curve=curve, **ONE), "t", "TG304").verdict == verdict
 
 
 def test_braking_less_than_speeding_up_takes_longer() -> None:
     """1 rad within 4 and 1 rad/s²: sqrt(2 (1/4 + 1)) s."""
     for value, verdict in (("1.581", "supported"), ("1.000", "inconsistent")):
-        claim = total("t", value, profile="trapezoidal", deceleration=1, **CLAIM)
-        text = paper([[0, 1]], claim, curve=QUINTIC, velocity=2, acceleration=4)
+        own = total("t", value, profile="trapezoidal", deceleration=1, **CLAIM)
+        text = paper([[0, 1]], own, curve=QUINTIC, velocity=2, acceleration=4)
         assert finding(text, "t", "TG304").verdict == verdict
 
 
 def test_an_optimal_profile_is_the_shortest() -> None:
-    said = {"id": "s", "quantity": "statement", "where": "text", "checks": "optimal", "of": ["t"]}
     for value, verdict in (("1.220", "supported"), ("1.400", "inconsistent")):
-        claim = total("t", value, profile="s-curve", **CLAIM)
-        text = paper([[0, 1]], claim, said, curve=QUINTIC, **ONE)
+        own = total("t", value, profile="s-curve", **CLAIM)
+        text = paper([[0, 1]], own, sentence("s", "optimal", "t"), curve=QUINTIC, **ONE)
         assert finding(text, "s", "TG304").verdict == verdict
 
 
@@ -252,8 +251,8 @@ def test_an_optimal_profile_is_the_shortest() -> None:
     ],
 )
 def test_keys_that_a_profile_does_not_have_are_refused(keys: dict[str, Any], why: str) -> None:
-    claim = total("t", "1.0", **CLAIM) | keys
-    if "phases" in keys:
-        del claim["value"]
+    own = {"value": "1.0", "quantity": "total_time"} if "phases" not in keys else {}
+    given = own | CLAIM | keys
+    text = paper([[0, 1, 2]], claim("t", given.pop("quantity"), **given), curve=QUINTIC, **ONE)
     with pytest.raises(CaseError, match=why):
-        parse_case(paper([[0, 1, 2]], claim, curve=QUINTIC, **ONE))
+        parse_case(text)
