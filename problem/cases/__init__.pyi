@@ -24,12 +24,12 @@ from .claim_fit import motions_of, named_places, profile_of
 from .clue import AnyClue, AxisClue, DataSheetClue, HalfTurnsClue, SmoothClue
 from .data_files import PUBLISHED, SUITE_PREFIX, case_files
 from .digits import Digits, end
-from .end_states import end_states
 from .faults import all_faults, refusal
 from .instances import InstancesBlock, instance_waypoints
 from .joint_units import unit_of, with_unit
 from .labels import ratio_words
 from .load import check_case, load_case, parse_case, published_ids
+from .moving_ends import end_states
 from .robot_file import load_robot, robot_ids
 from .scaffolding import identity_of, scaffold
 from .schema import (

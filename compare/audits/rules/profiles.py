@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from math import inf
 from typing import Any
@@ -393,4 +393,4 @@ def _optimal(study: Study, claim: AnyClaim) -> Iterator[Finding]:
                 if named.snap is not None:
                     why = "The shortest profile within a limit of snap is not computed."
                 found = judge(study, asked) if why is None else _unknown(asked, why)
-                yield replace(found, claim=claim.id)
+                yield found.model_copy(update={"claim": claim.id})

@@ -255,4 +255,4 @@ def test_keys_that_a_profile_does_not_have_are_refused(keys: dict[str, Any], why
     given = own | CLAIM | keys
     text = paper([[0, 1, 2]], claim("t", given.pop("quantity"), **given), curve=QUINTIC, **ONE)
     with pytest.raises(CaseError, match=why):
-        parse_case(text)
+        parse_case(text, "made-up.toml")
