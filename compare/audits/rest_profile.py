@@ -139,7 +139,7 @@ def fourth_order(
         return rising(velocity) + way / velocity
     # At least 4 cbrt(v/(2 snap)) pass for a rise, so that v·T(v) exceeds the way at this speed.
     above = min(velocity, (way * cbrt(2.0 * snap) / 4.0) ** 0.75)
-    speed = float(brentq(lambda v: v * rising(v) - way, 0.0, above, xtol=0.0, rtol=_RTOL))
+    speed = float(brentq(lambda v: v * rising(v) - way, 0.0, above, xtol=_RTOL * above, rtol=_RTOL))
     return 2.0 * rising(speed)
 
 
