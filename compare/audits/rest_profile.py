@@ -137,8 +137,9 @@ def fourth_order(
 
     if velocity < inf and velocity * rising(velocity) <= way:
         return rising(velocity) + way / velocity
-    # At least 4 cbrt(v/(2 snap)) pass for a rise, so that v·T(v) exceeds the way at this speed.
-    above = min(velocity, (way * cbrt(2.0 * snap) / 4.0) ** 0.75)
+    # At least 4 cbrt(v/(2 snap)) pass for a rise, so that v·T(v) exceeds the way at twice the speed
+    # at which it would be equal then.
+    above = min(velocity, 2.0 * (way * cbrt(2.0 * snap) / 4.0) ** 0.75)
     speed = float(brentq(lambda v: v * rising(v) - way, 0.0, above, xtol=_RTOL * above, rtol=_RTOL))
     return 2.0 * rising(speed)
 
