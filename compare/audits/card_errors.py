@@ -104,7 +104,9 @@ def _plain(
         "TG205": f"Control vertices in {where} do not follow from the way-points",
         "TG301": "Under velocity limits alone, times scale inversely: the printed two "
         "cannot both be shortest",
-        "TG304": f"The total in {where} is not that of the shortest profile",
+        "TG304": f"The total in {where} is not that of the shortest profile"
+        if isinstance(claim, TotalTimeClaim)
+        else f"What {where} prints of a profile is not that profile's",
         "TG601": "Printed joint angles and positions do not fit the printed robot",
     }.get(cause.rule)
     if cause.rule == "TG103" and not computed:

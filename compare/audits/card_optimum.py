@@ -12,8 +12,8 @@ from ...problem import Coupling, shown_bound
 from ...problem.cases import (
     AnyClaim,
     MaximumClaim,
+    ProfiledClaim,
     TimeClaim,
-    TotalTimeClaim,
 )
 from ..documents import (
     CaveatKind,
@@ -30,9 +30,11 @@ from .digit_ranges import all_exact, optimum_range
 from .fixed_ratios import at_ratios, off_ratios, planned_apart
 from .own_result import bare_totals, own_result
 from .printed_row import PrintedRow
+from .profile_motions import profile_called
 from .stated import other_objective, printed_total, prints_durations
 from .stated_totals import contradicts_its_parts, other_totals
 from .study import Study
+from .waterfall import stands_in
 
 _FEW = 2
 """Totals that are each set beside their optimum; more are counted."""
@@ -72,7 +74,7 @@ def optimum_line(
         return "No optimum can be computed."
     main = [w for w in waterfalls if w.reading == study.main_reading]
     beside = [found for w in main for found in _beside(study, w)]
-    if not beside:
+    if not beside or stands_in(study):
         return _without_totals(study, words)
     where = ["under the default reading"] if len(study.readings) > 1 else []
     if any(w.claim in words and on_doubted_points(words[w.claim]) for w in main if w.claim):
@@ -125,12 +127,10 @@ def _without_totals(study: Study, words: Mapping[str, Judgement]) -> str:
     the paper's.
     """
     timed = [c for c in study.case.claims if isinstance(c, TimeClaim) and c.id in words]
-    profiles = dict.fromkeys(
-        str(c.profile) for c in timed if isinstance(c, TotalTimeClaim) and c.profile is not None
-    )
-    judged = [c for c in timed if getattr(c, "profile", None) is not None]
+    judged = [c for c in timed if isinstance(c, ProfiledClaim) and c.profile is not None]
     if judged:
-        return _beside_profiles([words[c.id].verdict for c in judged], " or ".join(profiles))
+        profiles = [*dict.fromkeys(str(c.profile) for c in judged)]
+        return _beside_profiles([words[c.id].verdict for c in judged], profile_called(profiles))
     curves = dict.fromkeys(c.other_curve for c in timed if c.other_curve is not None)
     if curves:
         named = ", ".join(curves)
@@ -138,9 +138,8 @@ def _without_totals(study: Study, words: Mapping[str, Judgement]) -> str:
     return "No printed total stands beside an optimum."
 
 
-def _beside_profiles(verdicts: Sequence[ClaimVerdict], profile: str) -> str:
-    """How many printed times agree with their shortest profiles; what is open accuses none."""
-    own = f"shortest {profile} profile"
+def _beside_profiles(verdicts: Sequence[ClaimVerdict], own: str) -> str:
+    """How many printed times agree with their profiles; what is open accuses none."""
     agree = verdicts.count(ClaimVerdict.SUPPORTED)
     differ = verdicts.count(ClaimVerdict.INCONSISTENT) + verdicts.count(ClaimVerdict.REFUTED)
     if len(verdicts) == 1:
@@ -152,7 +151,7 @@ def _beside_profiles(verdicts: Sequence[ClaimVerdict], profile: str) -> str:
         which = "Both" if agree == _FEW else f"All {agree}"
     left = len(verdicts) - agree - differ
     note = f"; {left} {'is' if left == 1 else 'are'} open" if left else ""
-    return f"{which} printed times agree with their {own}s{note}."
+    return f"{which} printed times agree with their {own.replace('profile', 'profiles')}{note}."
 
 
 @dataclass(frozen=True)

@@ -16,6 +16,7 @@ from ...problem.cases import (
     MaximumClaim,
     MeasureClaim,
     MotionValueClaim,
+    PhasesClaim,
     TimeClaim,
     TotalTimeClaim,
     ValueClaim,
@@ -105,6 +106,8 @@ def digits_of(case: Case, claim: AnyClaim) -> str:
         return shown + (f"; total {claim.total}{time}" if claim.total is not None else "")
     if isinstance(claim, TotalTimeClaim):
         return f"{claim.value}{time}"
+    if isinstance(claim, PhasesClaim):
+        return ", ".join(map(str, (*claim.phases, *(claim.ramps or ())))) + time
     if isinstance(claim, ImprovementClaim):
         parts = [f"{claim.percent} %"] if claim.percent is not None else []
         return "; ".join(parts + ([f"{claim.seconds}{time}"] if claim.seconds is not None else []))
@@ -249,6 +252,9 @@ def _said(case: Case, claim: AnyClaim) -> str:
             before = "before optimisation, " if claim.state == "before" else ""
             curve = f" ({claim.other_curve})" if claim.other_curve else ""
             return f"{before}{_timed(claim, time, whose)}{curve}"
+        case PhasesClaim():
+            lengths = ", ".join(map(str, claim.phases))
+            return f"the phases{whose} take {lengths} {time} ({claim.other_curve})"
         case ImprovementClaim(percent=percent) if percent is not None:
             return f"the motion is {percent} % shorter"
         case ImprovementClaim(seconds=saved):

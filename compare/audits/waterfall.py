@@ -121,7 +121,7 @@ def _waterfall(study: Study, pair: Pair) -> Waterfall:
         steps.append(_procedure(study, pair))
     shared = study.optimum(pair)
     own = SHARED_OPTIMUM if problem.ratios is None else RATIOS_OPTIMUM
-    steps.append(_known(STAND_IN_OPTIMUM if _stands_in(study) else own, shared))
+    steps.append(_known(STAND_IN_OPTIMUM if stands_in(study) else own, shared))
     steps.append(_retimed(OPTIMUM_RETIMED, shared))
     if problem.ratios is not None:
         steps.append(_known(FREED_OPTIMUM, _converged(study.freed(pair))))
@@ -141,7 +141,7 @@ def _waterfall(study: Study, pair: Pair) -> Waterfall:
     )
 
 
-def _stands_in(study: Study) -> bool:
+def stands_in(study: Study) -> bool:
     """Whether times are printed, and none of them is of the curve that the case file declares."""
     timed = [c for c in study.case.claims if isinstance(c, TimeClaim)]
     return bool(timed) and all(

@@ -16,6 +16,7 @@ from ...problem.cases import (
     ImprovementClaim,
     MaximumClaim,
     MotionValueClaim,
+    PhasesClaim,
     Reading,
     Statement,
     TotalTimeClaim,
@@ -153,6 +154,8 @@ def _digits(claim: AnyClaim) -> str:
             return " ".join(map(str, claim.durations)) + total
         case TotalTimeClaim():
             return str(claim.value)
+        case PhasesClaim():
+            return " ".join(map(str, claim.phases))
         case MotionValueClaim():
             return " ".join(map(str, claim.printed))
         case ImprovementClaim(percent=percent) if percent is not None:

@@ -13,20 +13,23 @@ from .claim import (
     MotionValueClaim,
     Nature,
     PeakClaim,
+    PhasesClaim,
+    ProfiledClaim,
     StatementClaim,
     TimeClaim,
     TotalTimeClaim,
     ValueClaim,
 )
-from .claim_fit import motions_of, named_places
+from .claim_fit import motions_of, named_places, profile_of
 from .clue import AnyClue, AxisClue, DataSheetClue, HalfTurnsClue, SmoothClue
 from .data_files import PUBLISHED, SUITE_PREFIX, case_files
-from .digits import Digits
+from .digits import Digits, end
 from .faults import all_faults, refusal
 from .instances import InstancesBlock, instance_waypoints
 from .joint_units import unit_of, with_unit
 from .labels import ratio_words
 from .load import check_case, load_case, parse_case, published_ids
+from .moving_ends import end_states
 from .robot_file import load_robot, robot_ids
 from .scaffolding import identity_of, scaffold
 from .schema import (
@@ -78,7 +81,9 @@ __all__ = [
     "Nature",
     "NotCheckable",
     "PeakClaim",
+    "PhasesClaim",
     "ProblemBlock",
+    "ProfiledClaim",
     "Reading",
     "Robot",
     "SmoothClue",
@@ -95,6 +100,8 @@ __all__ = [
     "case_schema",
     "check_case",
     "compare_transcriptions",
+    "end",
+    "end_states",
     "identity_of",
     "instance_waypoints",
     "load_case",
@@ -102,6 +109,7 @@ __all__ = [
     "motions_of",
     "named_places",
     "parse_case",
+    "profile_of",
     "published_ids",
     "ratio_words",
     "refusal",

@@ -119,20 +119,27 @@ class MaximumClaim(TimeClaim):
     """Printed total."""
 
 
-class TotalTimeClaim(TimeClaim):
-    """A total time printed by itself."""
+class ProfiledClaim(TimeClaim):
+    """What claims of a profile of velocity have in common."""
 
-    quantity: Literal["total_time"]
-    of: Id | None = None
-    """The claim of durations whose total it states, where that is printed elsewhere."""
-    value: Length
-    """Total time."""
-    profile: Literal["trapezoidal", "s-curve", "sine-jerk"] | None = None
-    """The profile of `other_curve`, where it is one that starts and ends each segment at rest:
-    constant acceleration and speed, constant jerk, or jerk in half sines."""
+    profile: (
+        Literal["trapezoidal", "s-curve", "sine-jerk", "fourth-order", "biagiotti-melchiorri"]
+        | None
+    ) = None
+    """The profile of `other_curve`, where it is one that joins the way-points segment by segment:
+    the shortest with constant acceleration and speed, with constant jerk, or with jerk in half
+    sines; with constant snap; or that of the algorithm of Biagiotti and Melchiorri, which is not
+    always the shortest. It is at rest at way-points in between, and at the ends as the interpolant
+    prescribes."""
     path: Literal["straight"] | None = None
     """How the joints go together in a profile: on a straight line between way-points, all by one
     time law. Each by itself if absent."""
+    deceleration: OneOrEachLength | None = None
+    """Trapezoids: largest acceleration while the speed falls, in the unit of acceleration, where it
+    differs from that while the speed grows."""
+    snap: OneOrEachLength | None = None
+    """Fourth-order profiles: largest derivative of the jerk, in the unit of jerk per unit of
+    time."""
 
     @model_validator(mode="after")
     def _on_another_curve(self) -> Self:
@@ -140,6 +147,40 @@ class TotalTimeClaim(TimeClaim):
             raise fault(".profile", "goes with other_curve; name the curve there as the paper does")
         if self.path is not None and self.profile is None:
             raise fault(".path", "goes with profile; add it, or leave this out")
+        for key, profile in (("deceleration", "trapezoidal"), ("snap", "fourth-order")):
+            if getattr(self, key) is not None and self.profile != profile:
+                raise fault(
+                    f".{key}", f'goes with profile = "{profile}" only; add that, or leave it out'
+                )
+        if self.profile == "fourth-order" and self.snap is None:
+            raise fault(".snap", 'is missing; profile "fourth-order" needs it')
+        return self
+
+
+class TotalTimeClaim(ProfiledClaim):
+    """A total time printed by itself."""
+
+    quantity: Literal["total_time"]
+    of: Id | None = None
+    """The claim of durations whose total it states, where that is printed elsewhere."""
+    value: Length
+    """Total time."""
+
+
+class PhasesClaim(ProfiledClaim):
+    """The phases of a profile of one segment, printed with their total or instead of it."""
+
+    quantity: Literal["phases"]
+    phases: tuple[Length, Length, Length]
+    """How long it accelerates in the direction of the way, keeps its speed, and accelerates against
+    that direction."""
+    ramps: tuple[Length, Length] | None = None
+    """How long the jerk lasts at the start of the first phase and at the end of the last one."""
+
+    @model_validator(mode="after")
+    def _of_a_profile(self) -> Self:
+        if self.profile is None:
+            raise fault(".profile", "is missing; name the profile that has these phases")
         return self
 
 
@@ -171,7 +212,8 @@ class MotionValueClaim(Claim):
     """What claims of a derivative of a motion have in common: one number, or one for each joint."""
 
     of: Id | None = None
-    """The claim of durations whose motion it describes; the only one that fits if absent."""
+    """The claim of durations whose motion it describes; the only one that fits if absent. Of a peak
+    or a value also the claim of a profile."""
     derivative: Literal["velocity", "acceleration", "jerk"]
     """Which derivative."""
     value: Length | None = None
@@ -340,6 +382,7 @@ AnyClaim = Annotated[
     DurationsClaim
     | MaximumClaim
     | TotalTimeClaim
+    | PhasesClaim
     | ImprovementClaim
     | PeakClaim
     | MeasureClaim
@@ -356,6 +399,7 @@ QUANTITY_KINDS = (
     "durations",
     "maximum",
     "total_time",
+    "phases",
     "improvement",
     "peak",
     "measure",

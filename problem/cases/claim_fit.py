@@ -16,6 +16,8 @@ from .claim import (
     MeasureClaim,
     MotionValueClaim,
     PeakClaim,
+    PhasesClaim,
+    ProfiledClaim,
     TimeClaim,
     TotalTimeClaim,
     ValueClaim,
@@ -74,6 +76,17 @@ def _check_claim(
         _check_blends(faults, claim, every, at)
     if isinstance(claim, TotalTimeClaim):
         number(claim.value, "time", "value")
+    if isinstance(claim, PhasesClaim):
+        if statement.waypoints.number != 2:
+            faults.add(
+                f"{at}.phases",
+                f"are of one segment, and there are {statement.waypoints.number} way-points; "
+                f"state a total instead{statement.selected}",
+            )
+        for key in ("phases", "ramps"):
+            for position, length in enumerate(getattr(claim, key) or ()):
+                number(length, "time", f"{key}[{position}]")
+    if isinstance(claim, ProfiledClaim):
         _check_profile(faults, claim, every, at)
     if isinstance(claim, PeakClaim | MeasureClaim | ValueClaim):
         for position, printed in enumerate(claim.printed):
@@ -143,6 +156,27 @@ def motions_of(claims: Iterable[AnyClaim], value: MotionValueClaim) -> list[AnyC
     ]
 
 
+def profile_of(claims: Iterable[AnyClaim], value: AnyClaim) -> TotalTimeClaim | PhasesClaim | None:
+    """The claim of a profile whose peak or value a claim states; None if it states neither.
+
+    Parameters
+    ----------
+    claims : iterable of AnyClaim
+        Of the file.
+    value : AnyClaim
+
+    Returns
+    -------
+    TotalTimeClaim or PhasesClaim or None
+    """
+    if not isinstance(value, PeakClaim | ValueClaim) or value.of is None:
+        return None
+    for claim in claims:
+        if isinstance(claim, TotalTimeClaim | PhasesClaim) and claim.id == value.of:
+            return claim
+    return None
+
+
 def _check_curves(document: CaseFile, faults: Faults, claim: MaximumClaim, at: str) -> None:
     """Check that a maximum is of the curve that its rows are of: no motion is built otherwise."""
     rows = [one for one in document.claims if one.id in claim.of and isinstance(one, TimeClaim)]
@@ -157,16 +191,26 @@ def _check_curves(document: CaseFile, faults: Faults, claim: MaximumClaim, at: s
             return
 
 
-_BOUNDED_BY = {"trapezoidal": "acceleration", "s-curve": "jerk", "sine-jerk": "jerk"}
+_BOUNDED_BY: dict[str, Quantity] = {
+    "trapezoidal": "acceleration",
+    "s-curve": "jerk",
+    "sine-jerk": "jerk",
+    "fourth-order": "jerk",
+    "biagiotti-melchiorri": "jerk",
+}
 """The limit without which each profile is another one: its highest derivative would jump."""
 
 
 def _check_profile(
-    faults: Faults, claim: TotalTimeClaim, every: Sequence[Statement], at: str
+    faults: Faults, claim: ProfiledClaim, every: Sequence[Statement], at: str
 ) -> None:
     """Refuse a profile without the limit that makes it the one that is named."""
     if claim.profile is None:
         return
+    if claim.deceleration is not None:
+        _check_each(faults, claim.deceleration, "acceleration", every, f"{at}.deceleration")
+    if claim.snap is not None:
+        _check_each(faults, claim.snap, "jerk", every, f"{at}.snap")
     needed = _BOUNDED_BY[claim.profile]
     for statement in every:
         given = getattr(statement.limits, needed)
@@ -183,12 +227,35 @@ def _check_profile(
             return
 
 
+def _check_each(
+    faults: Faults,
+    size: Printed | tuple[Printed, ...],
+    quantity: Quantity,
+    every: Sequence[Statement],
+    field: str,
+) -> None:
+    """Check that a size fits the joints, one for all or one each, and that it has a unit."""
+    statement = every[0]
+    if not isinstance(size, tuple):
+        _check_one_unit(faults, quantity, every, field)
+        with faults.noted():
+            statement.si(size, quantity, field)
+        return
+    joints = len(statement.labels)
+    if len(size) != joints:
+        faults.add(field, f"{len(size)} values for {joints} joints; give one each, or one for all")
+        return
+    for joint, number in enumerate(size):
+        with faults.noted():
+            statement.si(number, quantity, f"{field}[{joint}]", joint)
+
+
 def _check_blends(
     faults: Faults, claim: DurationsClaim, every: Sequence[Statement], at: str
 ) -> None:
     """Check that blends fit the way-points or the joints, and that they have a unit."""
     statement = every[0]
-    points, joints = statement.waypoints.number, len(statement.labels)
+    points = statement.waypoints.number
     blends, size = claim.blends, claim.blend_acceleration
     if blends is not None:
         each = blends if isinstance(blends, tuple) else (blends,)
@@ -200,20 +267,8 @@ def _check_blends(
                 f"{at}.blends",
                 f"{len(blends)} blends for {points} way-points; give one for each, or one for all",
             )
-    if isinstance(size, tuple):
-        if len(size) != joints:
-            faults.add(
-                f"{at}.blend_acceleration",
-                f"{len(size)} values for {joints} joints; give one each, or one for all",
-            )
-            return
-        for joint, number in enumerate(size):
-            with faults.noted():
-                statement.si(number, "acceleration", f"{at}.blend_acceleration[{joint}]", joint)
-    elif size is not None:
-        _check_one_unit(faults, "acceleration", every, f"{at}.blend_acceleration")
-        with faults.noted():
-            statement.si(size, "acceleration", f"{at}.blend_acceleration")
+    if size is not None:
+        _check_each(faults, size, "acceleration", every, f"{at}.blend_acceleration")
 
 
 def _check_one_unit(

@@ -16,8 +16,12 @@ from .claim import (
     ImprovementClaim,
     MaximumClaim,
     MotionValueClaim,
+    PeakClaim,
+    PhasesClaim,
+    ProfiledClaim,
     StatementClaim,
     TotalTimeClaim,
+    ValueClaim,
 )
 from .clue import AxisClue, DataSheetClue, HalfTurnsClue, SmoothClue
 from .faults import Faults
@@ -30,6 +34,7 @@ _OF_ONE_PROBLEM = (
     DurationsClaim,
     MaximumClaim,
     TotalTimeClaim,
+    PhasesClaim,
     MotionValueClaim,
     ControlVerticesClaim,
 )
@@ -154,15 +159,25 @@ def _check_kinds(document: CaseFile, faults: Faults) -> None:
         any_time = isinstance(claim, ImprovementClaim) or (
             isinstance(claim, StatementClaim) and claim.checks in ("optimal", "within_limits")
         )
-        wanted = totals if any_time else totals[:2]
+        wanted: tuple[type, ...] = totals if any_time else totals[:2]
         for field, name in _claim_references(claim):
             if name in by_id and not isinstance(by_id[name], wanted):
+                if _states_profile(claim, by_id[name]):
+                    continue
                 what = "a time" if any_time else "durations"
                 faults.add(
                     f"claims[{index}].{field}",
                     f"{name!r} is a claim of quantity {by_id[name].quantity!r}; "
                     f"name one that states {what}",
                 )
+
+
+def _states_profile(claim: Claim, named: Claim) -> bool:
+    """Whether a claim may speak of the profile of another one: its peaks, values and optimality."""
+    speaks = isinstance(claim, PeakClaim | ValueClaim) or (
+        isinstance(claim, StatementClaim) and claim.checks == "optimal"
+    )
+    return speaks and isinstance(named, ProfiledClaim) and named.profile is not None
 
 
 def _check_clues(document: CaseFile, faults: Faults, claims: Sequence[str]) -> None:

@@ -14,6 +14,7 @@ from ....problem.cases import (
     PeakClaim,
     ValueClaim,
     motions_of,
+    profile_of,
 )
 from ...documents import Basis, ClaimVerdict, Finding
 from ..printed_row import PrintedRow, printed_rows
@@ -67,7 +68,8 @@ class MotionNumbers(Generic[_Value]):
     def judge(self, study: Study) -> Iterator[Finding]:
         """Findings on each claim of the kind beside each motion that it may describe."""
         for claim in study.claims:
-            if not isinstance(claim, self.kind):
+            # TG304 judges numbers of a profile.
+            if not isinstance(claim, self.kind) or profile_of(study.case.claims, claim) is not None:
                 continue
             meant = motions_of(study.case.claims, claim)
             for row in (row for motion in meant for row in printed_rows(study, motion)):

@@ -215,10 +215,11 @@ EXPLAINED = {
         "durations: 3.53 s. Optimised together, the joints need 3.30 s.",
     ),
     "TG304": Explained(
-        "Is the printed total of a trapezoidal, S-curve or sine-jerk profile the shortest that the "
-        "limits allow, from rest to rest in every segment?",
+        "Is the printed total of a trapezoidal, S-curve or other profile the shortest that the "
+        "limits allow between the states at its ends? Are phases, peaks and values its own?",
         "Supported within rounding, else inconsistent: the paper may have meant another profile. "
-        "Not checkable where derivatives at the ends of the motion are not 0.",
+        "Not checkable where the shortest total jumps within the rounding, and for several joints "
+        "between moving ends.",
         "140° within 150 °/s, 70 °/s² and 70 °/s³ take 4 s with a jerk that is constant in phases.",
     ),
     "TG401": Explained(

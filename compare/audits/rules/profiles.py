@@ -1,181 +1,271 @@
-"""TG304: printed totals of point-to-point profiles beside the shortest that the limits allow."""
+"""TG304: printed totals, phases and values of profiles beside those that the limits allow."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from math import cbrt, inf, pi, sqrt
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+from functools import partial
+from math import inf
+from typing import Any
 
 import numpy as np
 
-from ....problem import Array, CaseError, Problem
-from ....problem.cases import Claim, Digits, TotalTimeClaim
+from ....problem import QUANTITIES, Array, CaseError, Measured, Problem
+from ....problem.cases import (
+    AnyClaim,
+    Digits,
+    PeakClaim,
+    PhasesClaim,
+    StatementClaim,
+    TotalTimeClaim,
+    ValueClaim,
+    end_states,
+    named_places,
+    profile_of,
+)
 from ...documents import Basis, ClaimVerdict, Finding
 from ..printed_row import PrintedRow
+from ..profile_motions import (
+    NOT_SHORTEST,
+    SHORTEST,
+    Motion,
+    Range,
+    motions,
+    profile_called,
+    profiled_limits,
+)
+from ..rest_profile import PROFILES, shortest, shortest_straight
+from ..stated import place_of_value
 from ..study import Study
 
 _SLACK = 1e-12
 """Relative margin that outweighs the few roundings of a closed form in floats."""
-
-
-def trapezoidal(way: float, velocity: float, acceleration: float, jerk: float) -> float:
-    """Shortest time from rest to rest with constant acceleration, constant speed and braking.
-
-    Parameters
-    ----------
-    way : float
-        rad, not negative.
-    velocity, acceleration : float
-        Limits, rad/s and rad/s²; may be infinite.
-    jerk : float
-        Not read: the acceleration jumps.
-
-    Returns
-    -------
-    float
-        s.
-    """
-    if way == 0.0:
-        return 0.0
-    if way * acceleration <= velocity**2:
-        return 2.0 * sqrt(way / acceleration)
-    return way / velocity + velocity / acceleration
-
-
-def s_curve(way: float, velocity: float, acceleration: float, jerk: float) -> float:
-    """Shortest time from rest to rest with a jerk that is constant in at most seven phases.
-
-    Parameters
-    ----------
-    way : float
-        rad, not negative.
-    velocity, acceleration, jerk : float
-        Limits, rad/s, rad/s² and rad/s³; may be infinite.
-
-    Returns
-    -------
-    float
-        s.
-    """
-    if way == 0.0 or jerk == inf:
-        return trapezoidal(way, velocity, acceleration, jerk)
-    # Time to the full speed and back takes `speeding` each, and half of speed times that as way.
-    if velocity * jerk >= acceleration**2:
-        speeding = velocity / acceleration + acceleration / jerk
-    else:
-        speeding = 2.0 * sqrt(velocity / jerk)
-    if way >= velocity * speeding:
-        return speeding + way / velocity
-    if way * jerk**2 >= 2.0 * acceleration**3:
-        ramp = acceleration / jerk
-        return ramp + sqrt(ramp**2 + 4.0 * way / acceleration)
-    return 4.0 * cbrt(way / (2.0 * jerk))
-
-
-def sine_jerk(way: float, velocity: float, acceleration: float, jerk: float) -> float:
-    """Shortest time from rest to rest in seven phases whose jerk is a half sine on each ramp.
-
-    Parameters
-    ----------
-    way : float
-        rad, not negative.
-    velocity, acceleration, jerk : float
-        Limits, rad/s, rad/s² and rad/s³; may be infinite.
-
-    Returns
-    -------
-    float
-        s.
-
-    Notes
-    -----
-    On a ramp of length τ the jerk is J sin(πt/τ), and the acceleration changes by ∫ = 2Jτ/π, as by
-    a constant jerk of 2J/π. It is (Jτ/π)(1 − cos(πt/τ)), which with its mirror image about the
-    middle of the ramp sums to the whole change, as a straight line does: velocity changes by the
-    same amount over the ramp. Both profiles are mirror images about the middle of each half and of
-    the whole, so that the ways are half of velocity times time in both. With phases of equal length
-    they have the same peaks of velocity and acceleration and the same way. The shortest total is
-    that of the S-curve within 2/π of the jerk limit.
-    """
-    return s_curve(way, velocity, acceleration, 2.0 / pi * jerk)
-
-
-PROFILES: dict[str, Callable[[float, float, float, float], float]] = {
-    "trapezoidal": trapezoidal,
-    "s-curve": s_curve,
-    "sine-jerk": sine_jerk,
+_ORDERS = {"position": 0, **{name: order for order, name in enumerate(QUANTITIES[:2], 1)}}
+"""Order of each derivative that a profile has everywhere."""
+_PATHS = {
+    False: "each segment as long as its slowest joint needs",
+    True: "all joints on a straight line in each segment",
 }
-"""The shortest time of each profile: longer for a longer way, shorter for larger limits."""
+"""How the joints go together, by whether they stay on a straight line."""
+_SIZES = ("largest", "smallest")
+"""Places of a motion that are values."""
+_Profiled = TotalTimeClaim | PhasesClaim
+_Judge = Callable[["_Asked"], Finding]
 
 
-def shortest(profile: str, ways: Array, limits: Array) -> float:
-    """Shortest total through way-points at rest, each segment as long as its slowest joint needs.
+@dataclass(frozen=True)
+class _Asked:
+    """A claim, and the row of the profile that it speaks of."""
 
-    Parameters
-    ----------
-    profile : str
-        A key of `PROFILES`.
-    ways : ndarray, shape (segments, joints)
-        rad, not negative.
-    limits : ndarray, shape (joints, 3)
-        Of velocity, acceleration and jerk.
+    claim: AnyClaim
+    row: PrintedRow[_Profiled]
 
-    Returns
-    -------
-    float
-        s.
-    """
-    each = [
-        [_time(profile, float(w), own) for w, own in zip(row, limits, strict=True)] for row in ways
-    ]
-    return float(np.max(each, axis=1).sum())
+    @property
+    def profile(self) -> str:
+        return str(self.row.claim.profile)
 
+    @property
+    def resting(self) -> bool:
+        return self.row.statement.declaration.at_rest
 
-def shortest_straight(profile: str, ways: Array, limits: Array) -> float:
-    """Shortest total where all joints follow one time law, on a straight line in each segment.
+    @property
+    def between(self) -> str:
+        """Which states the profile joins."""
+        return "from rest to rest" if self.resting else "between the states at both ends"
 
-    Joint j moves by way_j·s(t) while s goes from 0 to 1 by the profile, so that the derivatives of
-    s keep the smallest limit_j/way_j over the joints that move.
+    def every(self, profile: str = "") -> list[Motion | None]:
+        """The profile, or another one, at the printed numbers and at the ends of their digits."""
+        return motions(self.row, profile or self.profile) or []
 
-    Parameters
-    ----------
-    profile : str
-        A key of `PROFILES`.
-    ways : ndarray, shape (segments, joints)
-        rad, not negative.
-    limits : ndarray, shape (joints, 3)
-        Of velocity, acceleration and jerk.
+    def range(self, number: Callable[[Motion], Iterable[float]], profile: str = "") -> Range:
+        """A number of the profile, or of another one."""
+        return Range.of(self.every(profile), number)
 
-    Returns
-    -------
-    float
-        s.
-    """
-    total = 0.0
-    for row in ways:
-        moving = row > 0.0
-        if moving.any():
-            total += _time(profile, 1.0, (limits[moving] / row[moving, None]).min(axis=0))
-    return total
-
-
-def _time(profile: str, way: float, limits: Array) -> float:
-    """Time of one segment, infinite where a joint moves that must not."""
-    velocity, acceleration, jerk = map(float, limits)
-    if way > 0.0 and not (velocity > 0.0 and acceleration > 0.0 and jerk > 0.0):
-        return inf
-    return PROFILES[profile](way, velocity, acceleration, jerk)
+    @property
+    def called(self) -> str:
+        return profile_called([self.profile])
 
 
 def judge_profiles(study: Study) -> Iterator[Finding]:
     """Findings of TG304."""
     for claim in study.claims:
+        of: _Profiled
+        judge: _Judge
         if isinstance(claim, TotalTimeClaim) and claim.profile is not None:
-            for pair in study.pairs:
-                if claim.problem in (None, pair.problem):
-                    yield _beside(PrintedRow(study, claim, pair), claim.profile)
+            of, judge = claim, _total_beside
+        elif isinstance(claim, PhasesClaim):
+            of, judge = claim, _phases_beside
+        else:
+            named = profile_of(study.case.claims, claim)
+            if named is None:
+                yield from _optimal(study, claim)
+                continue
+            of, judge = named, _numbers_beside
+        for pair in study.pairs:
+            if of.problem in (None, pair.problem):
+                asked = _Asked(claim, PrintedRow(study, of, pair))
+                why = _not_computed(asked)
+                yield judge(asked) if why is None else _unknown(asked, why)
 
 
-def _ways(row: PrintedRow[Claim], problem: Problem) -> tuple[Array, Array]:
+def _unknown(asked: _Asked, why: str) -> Finding:
+    return Finding(
+        rule="TG304",
+        basis=Basis.CHECK,
+        claim=asked.claim.id,
+        problem=asked.row.problem,
+        reading=asked.row.reading,
+        kind="other profile",
+        sentences=(why,),
+    )
+
+
+def _not_computed(asked: _Asked) -> str | None:
+    """Why the profile of a problem is none of those computed here, as a sentence; None if it is."""
+    problem = asked.row.posed()
+    profile, several = asked.profile, len(problem.joints) > 1
+    if problem.limits.uneven:
+        return (
+            f"The lower and upper limits differ; the {profile} profile is computed within limits "
+            "of equal size only."
+        )
+    if not asked.resting and (several or profile not in SHORTEST):
+        which = "of one joint" if several and profile in SHORTEST else "from rest to rest"
+        return (
+            "The case file gives derivatives other than 0 at the ends of the motion; the "
+            f"{profile} profile is computed {which} only."
+        )
+    total = isinstance(asked.claim, TotalTimeClaim) and profile in PROFILES
+    if total and asked.resting:
+        return None
+    if profile not in SHORTEST:
+        return f"Phases and values of the {profile} profile are not computed."
+    if several and asked.row.claim.path is None:
+        return "Several joints, each by itself, have no one profile."
+    if profile not in PROFILES and end_states(asked.row.statement)[:, :, 1].any():
+        return "The algorithm of Biagiotti and Melchiorri has no acceleration at its ends."
+    every = motions(asked.row, profile)
+    if every is None:
+        return "More numbers stand for intervals than can be combined."
+    if every[0] is None:
+        return f"No {profile} profile joins the states at both ends within the limits."
+    return _out_of_range(problem, every[0])
+
+
+def _out_of_range(problem: Problem, motion: Motion) -> str | None:
+    """That a profile leaves the position range, which is none of the limits that shape it."""
+    for j, label in enumerate(problem.joints):
+        places = motion.states(j)[:, 0]
+        low, high = problem.limits.position_lower[j], problem.limits.position_upper[j]
+        room = _SLACK * max(map(abs, places))
+        if places.min() < low - room or places.max() > high + room:
+            return (
+                f"The shortest profile leaves the position range of joint {label}, within which "
+                "no profile is computed."
+            )
+    return None
+
+
+def _total_beside(asked: _Asked) -> Finding:
+    claim, row = asked.claim, asked.row
+    assert isinstance(claim, TotalTimeClaim)
+    number, unit = row.time(claim.value), row.study.time_unit
+    straight = claim.path == "straight"
+    notes: tuple[str, ...] = ()
+    verdict, kind, said = ClaimVerdict.SUPPORTED, "fits", "which fits"
+    if asked.resting and asked.profile in PROFILES:
+        how = f"from rest to rest, {_PATHS[straight]},"
+        plain, fits = _fitted(asked, number, straight)
+        if plain == 0.0 < number.value:
+            verdict, kind, said = ClaimVerdict.NOT_CHECKABLE, "at rest", "and no joint moves"
+        elif plain == inf:
+            verdict, kind = ClaimVerdict.NOT_CHECKABLE, "limit 0"
+            said = "and a joint moves whose limit is 0"
+        elif not fits and not straight and _fitted(asked, number, True)[1]:
+            verdict, kind = ClaimVerdict.NOT_CHECKABLE, "straight"
+            said = (
+                'which fits where the joints stay on a straight line: path = "straight" if they do'
+            )
+    else:
+        how = asked.between
+        totals = asked.range(lambda motion: [motion.total_time])
+        plain, fits = totals.plain, totals.meets(number.lower, number.cut_off().upper)
+        notes = _notes(asked, totals)
+        if not fits and totals.spans(number.lower, number.cut_off().upper):
+            verdict, kind = ClaimVerdict.NOT_CHECKABLE, "jump"
+            said = "which lies where it jumps"
+    if verdict is ClaimVerdict.SUPPORTED and not fits:
+        verdict, kind = ClaimVerdict.INCONSISTENT, "other total"
+        away = f"{100 * abs(number.value / plain - 1):.2f} % " if plain else ""
+        said = f"which is {away}{'shorter' if number.value < plain else 'longer'}"
+    return _found(
+        asked,
+        verdict,
+        kind,
+        printed=f"{claim.value} {unit}",
+        computed=f"{plain:.6g} s",
+        sentences=(
+            f"The {asked.called} {how} takes {plain:.6g} s; printed is {claim.value} {unit}, "
+            f"{said}.",
+            *notes,
+        ),
+    )
+
+
+def _found(asked: _Asked, verdict: ClaimVerdict, kind: str, **facts: Any) -> Finding:
+    return Finding(
+        rule="TG304",
+        verdict=verdict,
+        basis=Basis.CHECK,
+        claim=asked.claim.id,
+        problem=asked.row.problem,
+        reading=asked.row.reading,
+        kind=kind,
+        **facts,
+    )
+
+
+def _notes(asked: _Asked, totals: Range) -> tuple[str, ...]:
+    """What else is to be known of a total: where it jumps, a start outside, what is shorter."""
+    notes = []
+    if totals.jump is not None:
+        low, high = totals.jump
+        notes.append(
+            f"Within the rounding of the printed digits it jumps from {low:.6g} s to {high:.6g} s."
+        )
+    every = asked.every()
+    if every and every[0] is not None and every[0].starts_outside:
+        notes.append(
+            "The start lies outside the limits: the profile brakes into them at once, and is the "
+            "shortest from there."
+        )
+    if asked.profile not in PROFILES:
+        best = asked.range(lambda motion: [motion.total_time], "s-curve")
+        more = 100 * (totals.plain / best.plain - 1)
+        beside = f"; the algorithm's is {more:.2f} % longer" if more >= 0.01 else " too"
+        notes.append(f"The shortest s-curve profile takes {best.plain:.6g} s{beside}.")
+    return tuple(notes)
+
+
+def _fitted(asked: _Asked, number: Measured, straight: bool) -> tuple[float, bool]:
+    """The shortest total at the printed numbers, and whether the printed one fits its interval."""
+    total, profile, row = (shortest_straight if straight else shortest), asked.profile, asked.row
+    problem = row.posed()
+    ways = np.abs(np.diff(problem.waypoints, axis=0))
+    plain = total(profile, ways, profiled_limits(row, Digits.PRINTED))
+    least, most = _ways(row, problem)
+    loose = profiled_limits(row, Digits.LOOSEST_CUT)
+    low = total(profile, least, loose) * (1.0 - _SLACK)
+    try:
+        tight = profiled_limits(row, Digits.TIGHTEST)
+        high = total(profile, most, tight) * (1.0 + _SLACK)
+    except CaseError:
+        high = inf
+    cut = number.cut_off()
+    return plain, cut.lower <= high and low <= cut.upper
+
+
+def _ways(row: PrintedRow[_Profiled], problem: Problem) -> tuple[Array, Array]:
     """Least and most that each joint moves in each segment, digits rounded or cut off."""
     box = row.waypoint_box(problem).or_cut_off()
     low, high = box.lower[1:] - box.upper[:-1], box.upper[1:] - box.lower[:-1]
@@ -184,89 +274,114 @@ def _ways(row: PrintedRow[Claim], problem: Problem) -> tuple[Array, Array]:
     return least, most
 
 
-def _beside(row: PrintedRow[TotalTimeClaim], profile: str) -> Finding:
-    study, claim = row.study, row.claim
-    why = _not_computed(row, profile)
-    if why:
-        return Finding(
-            rule="TG304",
-            basis=Basis.CHECK,
-            claim=claim.id,
-            problem=row.problem,
-            reading=row.reading,
-            kind="other profile",
-            sentences=(why,),
-        )
-    straight = claim.path == "straight"
-    plain, fits = _fitted(row, profile, straight)
-    number = row.time(claim.value)
-    verdict, kind, said = ClaimVerdict.SUPPORTED, "fits", "which fits"
-    if plain == 0.0:
-        verdict, kind, said = ClaimVerdict.NOT_CHECKABLE, "at rest", "and no joint moves"
-    elif plain == inf:
-        verdict, kind = ClaimVerdict.NOT_CHECKABLE, "limit 0"
-        said = "and a joint moves whose limit is 0"
-    elif not fits and not straight and _fitted(row, profile, True)[1]:
-        verdict, kind = ClaimVerdict.NOT_CHECKABLE, "straight"
-        said = 'which fits where the joints stay on a straight line: path = "straight" if they do'
-    elif not fits:
-        verdict, kind = ClaimVerdict.INCONSISTENT, "other total"
-        said = f"which is {100 * abs(number.value / plain - 1):.2f} % "
-        said += "shorter" if number.value < plain else "longer"
-    return Finding(
-        rule="TG304",
-        verdict=verdict,
-        basis=Basis.CHECK,
-        claim=claim.id,
-        problem=row.problem,
-        reading=row.reading,
-        printed=f"{claim.value} {study.time_unit}",
-        computed=f"{plain:.6g} s",
-        kind=kind,
+def _phases_beside(asked: _Asked) -> Finding:
+    claim, unit = asked.claim, asked.row.study.time_unit
+    assert isinstance(claim, PhasesClaim)
+    printed = (*claim.phases, *(claim.ramps or ()))
+    found = [
+        asked.range(lambda motion, k=k: [motion.parts[k]])  # type: ignore[misc]
+        for k in range(len(printed))
+    ]
+    sizes = [asked.row.time(one) for one in printed]
+    fits = all(
+        one.meets(size.lower, size.cut_off().upper) for one, size in zip(found, sizes, strict=True)
+    )
+    totals = asked.range(lambda motion: [motion.total_time])
+    shown = ", ".join(f"{one.plain:.5g}" for one in found)
+    digits = ", ".join(map(str, printed))
+    kind = "fits" if fits else "other phases" if totals.jump is None else "jump"
+    verdict = {
+        "fits": ClaimVerdict.SUPPORTED,
+        "other phases": ClaimVerdict.INCONSISTENT,
+        "jump": ClaimVerdict.NOT_CHECKABLE,
+    }[kind]
+    ramps = " and ramps" if claim.ramps else ""
+    return _found(
+        asked,
+        verdict,
+        kind,
+        printed=f"{digits} {unit}",
+        computed=f"{shown} s",
         sentences=(
-            f"The shortest {profile} profile from rest to rest, {_PATHS[straight]}, takes "
-            f"{plain:.6g} s; printed is {claim.value} {study.time_unit}, {said}.",
+            f"The {asked.called} {asked.between} takes {totals.plain:.6g} s in phases"
+            f"{ramps} of {shown} s; printed are {digits} {unit}, which "
+            f"{'fit' if fits else 'are others'}.",
+            *_notes(asked, totals),
         ),
     )
 
 
-def _not_computed(row: PrintedRow[TotalTimeClaim], profile: str) -> str | None:
-    """Why the profile of a problem is none of those computed here, as a sentence; None if it is."""
-    problem = row.posed()
-    if problem.limits.uneven:
-        return (
-            f"The lower and upper limits differ; the {profile} profile is computed within limits "
-            "of equal size only."
+def _numbers_beside(asked: _Asked) -> Finding:
+    """Peaks and values at one place of a profile."""
+    claim, row = asked.claim, asked.row
+    assert isinstance(claim, PeakClaim | ValueClaim)
+    joints = row.posed().joints
+    if claim.derivative not in _ORDERS:
+        return _unknown(asked, "The jerk of a profile is not computed.")
+    said, wrong, plain = [], False, []
+    where = "" if isinstance(claim, PeakClaim) else place_of_value(row.study.case, claim)
+    place = "largest" if isinstance(claim, PeakClaim) else claim.place
+    size_word = f"{place} " if place in _SIZES else ""
+    for label, number in row.study.printed_numbers(claim):
+        if label is not None and label not in joints:
+            continue
+        joint = joints[0] if label is None else label
+        size = row.measured(number, claim.derivative, joint)
+        j = joints.index(joint)
+        found = asked.range(partial(_of_motion, row, claim, j))
+        cut = size.cut_off()
+        fits = found.meets(min(size.lower, cut.lower), max(size.upper, cut.upper))
+        wrong = wrong or not fits
+        shown = row.in_units(claim.derivative, found.plain, joint)
+        plain.append(f"{shown:.6g} {row.unit(claim.derivative, joint)}")
+        said.append(
+            f"the {size_word}{claim.derivative} of joint {joint}{where} is {plain[-1]}, printed is "
+            f"{number}, {'which fits' if fits else 'which is another'}"
         )
-    if not row.statement.declaration.at_rest:
-        return (
-            "The case file gives derivatives other than 0 at the ends of the motion; the "
-            f"{profile} profile is computed from rest to rest only."
-        )
-    return None
+    return _found(
+        asked,
+        ClaimVerdict.INCONSISTENT if wrong else ClaimVerdict.SUPPORTED,
+        "off" if wrong else "fits",
+        printed=", ".join(map(str, claim.printed)),
+        computed="; ".join(plain),
+        sentences=(f"For the {asked.called} {asked.between}: {'; '.join(said)}.",),
+    )
 
 
-_PATHS = {
-    False: "each segment as long as its slowest joint needs",
-    True: "all joints on a straight line in each segment",
-}
-"""How the joints go together, by whether they stay on a straight line."""
+def _of_motion(
+    row: PrintedRow[_Profiled], claim: PeakClaim | ValueClaim, joint: int, motion: Motion
+) -> Iterable[float]:
+    """What a number of a joint may be: on both sides of an instant, or between its two ends."""
+    order = _ORDERS[claim.derivative]
+    if isinstance(claim, PeakClaim):
+        return [float(np.abs(motion.states(joint)[:, order]).max())]
+    if claim.place in _SIZES:
+        values = motion.states(joint)[:, order]
+        return [float(values.max() if claim.place == "largest" else values.min())]
+    if claim.time is None:
+        at = named_places(row.statement)[str(claim.place)]
+        times = [sum(law.total_time for law in motion.laws[:at])]
+    else:
+        one = row.time(claim.time).cut_off()
+        times = [one.value, one.lower, one.upper]
+    return [float(value) for t in times for value in motion.near(t, joint)[:, order]]
 
 
-def _fitted(row: PrintedRow[TotalTimeClaim], profile: str, straight: bool) -> tuple[float, bool]:
-    """The shortest total at the printed numbers, and whether the printed one fits its interval."""
-    total = shortest_straight if straight else shortest
-    problem = row.posed()
-    ways = np.abs(np.diff(problem.waypoints, axis=0))
-    plain = total(profile, ways, problem.limits.derivatives)
-    least, most = _ways(row, problem)
-    loose = row.posed(Digits.LOOSEST_CUT).limits.derivatives
-    low = total(profile, least, loose) * (1.0 - _SLACK)
-    try:
-        tight = row.posed(Digits.TIGHTEST).limits.derivatives
-        high = total(profile, most, tight) * (1.0 + _SLACK)
-    except CaseError:
-        high = inf
-    number = row.time(row.claim.value)
-    cut = number.cut_off()
-    return plain, cut.lower <= high and low <= cut.upper
+def _optimal(study: Study, claim: AnyClaim) -> Iterator[Finding]:
+    """Whether the profiles that a statement calls optimal are printed as long as the shortest."""
+    if not isinstance(claim, StatementClaim) or claim.checks != "optimal":
+        return
+    for named in map(study.case.claim, claim.of):
+        if not isinstance(named, _Profiled) or named.profile is None:
+            continue
+        best = "s-curve" if named.profile in NOT_SHORTEST else named.profile
+        meant = named.model_copy(update={"profile": best})
+        judge = _total_beside if isinstance(named, TotalTimeClaim) else _phases_beside
+        for pair in study.pairs:
+            if named.problem in (None, pair.problem):
+                asked = _Asked(meant, PrintedRow(study, meant, pair))
+                why = _not_computed(asked)
+                if named.snap is not None:
+                    why = "The shortest profile within a limit of snap is not computed."
+                found = judge(asked) if why is None else _unknown(asked, why)
+                yield found.model_copy(update={"claim": claim.id})

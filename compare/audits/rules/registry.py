@@ -105,7 +105,7 @@ GROUPS = (
     ),
     RuleGroup(
         judge_profiles,
-        {"TG304": "A printed total of a profile beside the shortest of its kind"},
+        {"TG304": "What is printed of a profile beside the profile that the limits allow"},
     ),
     RuleGroup(
         judge_replays,

@@ -9,8 +9,8 @@ import pytest
 from scipy.integrate import quad
 from scipy.optimize import linprog
 from support.findings import finding
-from support.made_up import QUINTIC, paper, total
-from trajgap.compare.audits.rules.profiles import (
+from support.made_up import QUINTIC, claim, paper, sentence, total
+from trajgap.compare.audits.rest_profile import (
     s_curve,
     shortest,
     shortest_straight,
@@ -18,6 +18,7 @@ from trajgap.compare.audits.rules.profiles import (
     trapezoidal,
 )
 from trajgap.compare.documents import ClaimVerdict, Finding
+from trajgap.problem import CaseError, parse_case
 
 STEPS = 120
 
@@ -199,3 +200,59 @@ def test_a_joint_that_must_not_move_and_does_is_no_fault_of_the_total() -> None:
     found = judged("trapezoidal", "2.00", TWO, velocity=2, acceleration=[0, 4])
     assert found.verdict is ClaimVerdict.NOT_CHECKABLE
     assert "a joint moves whose limit is 0" in found.message
+
+
+ONE = {"velocity": 2, "acceleration": 4, "jerk": 20}
+MOVING = {"family": "polynomials", "degrees": [5], "finish_derivatives": [0, 0]}
+
+
+@pytest.mark.parametrize(
+    ("profile", "value", "more", "verdict"),
+    [
+        # 1 rad from 1 rad/s: the peak is sqrt(4.5), above 2 rad/s, so that 1/16 s of cruise remain.
+        ("trapezoidal", "0.8125", {}, "supported"),
+        ("trapezoidal", "0.8325", {}, "inconsistent"),
+        ("sine-jerk", "0.8125", {}, "not checkable"),
+        ("fourth-order", "0.8125", {"snap": 900}, "not checkable"),
+    ],
+)
+def test_a_total_from_motion_is_set_beside_the_profile_from_there(
+    profile: str, value: str, more: dict[str, Any], verdict: str
+) -> None:
+    curve = MOVING | {"end_derivatives": [1, 0]}
+    own = total("t", value, profile=profile, **CLAIM | more)
+    assert finding(paper([[0, 1]], own, curve=curve, **ONE), "t", "TG304").verdict == verdict
+
+
+def test_braking_less_than_speeding_up_takes_longer() -> None:
+    """1 rad within 4 and 1 rad/s²: sqrt(2 (1/4 + 1)) s."""
+    for value, verdict in (("1.581", "supported"), ("1.000", "inconsistent")):
+        own = total("t", value, profile="trapezoidal", deceleration=1, **CLAIM)
+        text = paper([[0, 1]], own, curve=QUINTIC, velocity=2, acceleration=4)
+        assert finding(text, "t", "TG304").verdict == verdict
+
+
+def test_an_optimal_profile_is_the_shortest() -> None:
+    for value, verdict in (("1.220", "supported"), ("1.400", "inconsistent")):
+        own = total("t", value, profile="s-curve", **CLAIM)
+        text = paper([[0, 1]], own, sentence("s", "optimal", "t"), curve=QUINTIC, **ONE)
+        assert finding(text, "s", "TG304").verdict == verdict
+
+
+@pytest.mark.parametrize(
+    ("keys", "why"),
+    [
+        ({"profile": "s-curve", "deceleration": 1}, "deceleration: goes with profile"),
+        ({"profile": "s-curve", "snap": 1}, "snap: goes with profile"),
+        ({"profile": "fourth-order"}, "snap: is missing"),
+        ({"profile": "trapezoidal", "deceleration": [1, 2]}, "deceleration: 2 values for 1 joints"),
+        ({"quantity": "phases", "phases": [1, 0, 1]}, "profile: is missing"),
+        ({"quantity": "phases", "phases": [1, 0, 1], "profile": "s-curve"}, "are of one segment"),
+    ],
+)
+def test_keys_that_a_profile_does_not_have_are_refused(keys: dict[str, Any], why: str) -> None:
+    own = {"value": "1.0", "quantity": "total_time"} if "phases" not in keys else {}
+    given = own | CLAIM | keys
+    text = paper([[0, 1, 2]], claim("t", given.pop("quantity"), **given), curve=QUINTIC, **ONE)
+    with pytest.raises(CaseError, match=why):
+        parse_case(text, "made-up.toml")

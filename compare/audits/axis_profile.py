@@ -1,0 +1,378 @@
+"""The shortest profile of one axis between two states: constant acceleration, or constant jerk."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from math import cbrt, copysign, inf, isfinite, sqrt
+from typing import NamedTuple
+
+import numpy as np
+from numpy.polynomial import Polynomial
+
+_CLOSE = 1e-9
+"""How far a profile may miss the goal, and a phase may be negative, where all sizes are about 1:
+well above the rounding of a quartic's roots, well below any printed digit."""
+_BRAKED = 1e-12
+"""How far above its limit a scaled velocity may be by rounding alone."""
+
+
+class State(NamedTuple):
+    """Position, velocity and acceleration of an axis, rad and s."""
+
+    position: float
+    velocity: float = 0.0
+    acceleration: float = 0.0
+
+    def mirrored(self) -> State:
+        """The state seen from the other side."""
+        return State(-self.position, -self.velocity, -self.acceleration)
+
+
+class Sizes(NamedTuple):
+    """Limits of an axis on both sides, rad and s; may be infinite."""
+
+    velocity: float
+    acceleration: float
+    jerk: float
+    deceleration: float | None = None
+    """Of the acceleration while the speed falls; None where it is `acceleration`."""
+
+    @property
+    def braking(self) -> float:
+        """Largest acceleration against the velocity."""
+        return self.acceleration if self.deceleration is None else self.deceleration
+
+
+class Phase(NamedTuple):
+    """A time in which the jerk is constant: its length, and acceleration and jerk at its start."""
+
+    time: float
+    acceleration: float
+    jerk: float = 0.0
+
+
+@dataclass(frozen=True)
+class Profile:
+    """A motion of one axis in phases of constant jerk.
+
+    Attributes
+    ----------
+    start : State
+    phases : tuple of Phase
+    """
+
+    start: State
+    phases: tuple[Phase, ...]
+
+    @property
+    def total_time(self) -> float:
+        """Its length, s."""
+        return sum(phase.time for phase in self.phases)
+
+    def at(self, time: float) -> State:
+        """The state at a time from the start, s; where the acceleration jumps, that before."""
+        position, velocity, acceleration = self.start
+        left = time
+        for phase in self.phases:
+            acceleration, jerk = phase.acceleration, phase.jerk
+            t = max(0.0, min(phase.time, left))
+            position += t * (velocity + t * (acceleration / 2.0 + t * jerk / 6.0))
+            velocity += t * (acceleration + t * jerk / 2.0)
+            acceleration += t * jerk
+            left -= phase.time
+            if left <= 0.0:
+                break
+        return State(position, velocity, acceleration)
+
+    @property
+    def corners(self) -> tuple[State, ...]:
+        """The states where phases meet, and where velocity or position turns within one."""
+        found = [self.start]
+        for phase in self.phases:
+            own = Profile(found[-1], (phase,))
+            turns = np.roots([phase.jerk / 2.0, phase.acceleration, found[-1].velocity])
+            times = [float(t.real) for t in turns if t.imag == 0.0]
+            if phase.jerk:
+                times.append(-phase.acceleration / phase.jerk)
+            times = [t for t in sorted(times) if 0.0 < t < phase.time]
+            found += [own.at(t) for t in (*times, phase.time)]
+        return tuple(found)
+
+    def then(self, other: Profile) -> Profile:
+        """The motion, and after it another that starts where it ends."""
+        return Profile(self.start, (*self.phases, *other.phases))
+
+    def mirrored(self) -> Profile:
+        """The motion seen from the other side."""
+        phases = tuple(Phase(p.time, -p.acceleration, -p.jerk) for p in self.phases)
+        return Profile(self.start.mirrored(), phases)
+
+
+def shortest_trapezoid(start: State, finish: State, sizes: Sizes) -> Profile | None:
+    """The shortest motion whose acceleration is limited; accelerations of the states do not count.
+
+    The velocity rises to one value v, stays and falls, or the other way round. Rising through dv
+    takes the way v dv/a with a = A where the speed grows and a = D where it falls, so that rising
+    from u to v takes g(v) − g(u), and falling from v to w takes g(−w) − g(−v), where g(v) is
+    v²/(2A) for positive v and v²/(2D) for others. It rises first if the way is longer than that
+    of the direct change from the first velocity to the last.
+
+    Parameters
+    ----------
+    start, finish : State
+    sizes : Sizes
+        A start above the velocity limit is braked into it first.
+
+    Returns
+    -------
+    Profile or None
+        None if no motion keeps the limits.
+    """
+    top = sizes.velocity
+    if abs(finish.velocity) > top:
+        return None
+    if abs(start.velocity) > top:
+        first = _ramp(start, copysign(top, start.velocity), sizes)
+        rest = shortest_trapezoid(first.at(inf), finish, sizes)
+        return None if rest is None else first.then(rest)
+
+    def way(velocity: float) -> float:
+        size = sizes.acceleration if velocity > 0.0 else sizes.braking
+        return velocity**2 / (2.0 * size) if velocity else 0.0
+
+    if finish.position - start.position < _ramp(start, finish.velocity, sizes).at(inf).position - (
+        start.position
+    ):
+        mirror = shortest_trapezoid(start.mirrored(), finish.mirrored(), sizes)
+        return None if mirror is None else mirror.mirrored()
+    needed = finish.position - start.position + way(start.velocity) + way(-finish.velocity)
+    bend = 1.0 / (2.0 * sizes.acceleration) + 1.0 / (2.0 * sizes.braking)
+    if not isfinite(bend):
+        return None if needed > 0.0 else Profile(start, ())
+    peak = min(top, sqrt(max(needed, 0.0) / bend) if bend else inf)
+    if not isfinite(peak):
+        return Profile(start, ())
+    rising = _ramp(start, peak, sizes)
+    cruise = 0.0
+    if peak == top and peak > 0.0:
+        cruise = max(0.0, (needed - top**2 * bend) / top)
+    held = rising.then(Profile(rising.at(inf), (Phase(cruise, 0.0),)))
+    return held.then(_ramp(held.at(inf), finish.velocity, sizes))
+
+
+def _ramp(start: State, velocity: float, sizes: Sizes) -> Profile:
+    """Change of the velocity alone: the speed falls to 0 first where the sign changes."""
+    now, phases = start.velocity, []
+    up = copysign(1.0, velocity - now)
+    if now * up < 0.0:
+        turn = min(0.0, velocity * up) * up
+        phases.append(Phase(abs(turn - now) / sizes.braking, up * sizes.braking))
+        now = turn
+    if velocity != now:
+        phases.append(Phase(abs(velocity - now) / sizes.acceleration, up * sizes.acceleration))
+    return Profile(start, tuple(phases))
+
+
+def shortest_s_curve(start: State, finish: State, sizes: Sizes) -> Profile | None:
+    """The shortest motion whose jerk is limited, also where no limit is symmetric about its states.
+
+    The jerk is at its limit or 0. Either the velocity reaches its limit, and then the motion goes
+    to that speed as fast as it can, keeps it and leaves it as fast as it can; or the acceleration
+    rises to a peak p, falls to a trough m and rises to its last value, or the other way round, and
+    stays a while at p or m where that is at the limit. Every such motion is computed, and the
+    shortest within the limits is the answer.
+
+    Parameters
+    ----------
+    start, finish : State
+    sizes : Sizes
+        Finite jerk. A start outside the limits of velocity or acceleration, or on the way out of
+        them, is braked into them first.
+
+    Returns
+    -------
+    Profile or None
+        None if no motion keeps the limits.
+    """
+    way = finish.position - start.position
+    unit = max(
+        cbrt(abs(way) / sizes.jerk),
+        *(sqrt(abs(state.velocity) / sizes.jerk) for state in (start, finish)),
+        *(abs(state.acceleration) / sizes.jerk for state in (start, finish)),
+    )
+    if unit == 0.0:
+        return Profile(start, ())
+    # In units of time and way in which the jerk limit is 1 and no state is larger than 1.
+    scale = (sizes.jerk * unit**3, sizes.jerk * unit**2, sizes.jerk * unit)
+    first = State(0.0, start.velocity / scale[1], start.acceleration / scale[2])
+    last = State(way / scale[0], finish.velocity / scale[1], finish.acceleration / scale[2])
+    top, most = sizes.velocity / scale[1], sizes.acceleration / scale[2]
+    if not _can_end(last, top, most):
+        return None
+    braked = _braked(first, top, most)
+    begin = braked.at(inf)
+    found = [
+        one
+        for sign in (1.0, -1.0)
+        for one in _candidates(*_seen(begin, last, sign), top, most)
+        if _keeps(one, _seen(begin, last, sign)[1], top, most)
+    ]
+    if not found:
+        return None
+    best = min(found, key=lambda one: one.total_time)
+    if best.start != begin:
+        best = best.mirrored()
+    phases = (
+        Phase(p.time * unit, p.acceleration * scale[2], p.jerk * sizes.jerk)
+        for p in braked.then(best).phases
+        if p.time > 0.0
+    )
+    return Profile(start, tuple(phases))
+
+
+def _seen(start: State, finish: State, sign: float) -> tuple[State, State]:
+    return (start, finish) if sign > 0.0 else (start.mirrored(), finish.mirrored())
+
+
+def _can_end(last: State, top: float, most: float) -> bool:
+    """Whether a state within the limits can be reached from within them."""
+    # An acceleration at the end began at 0 with a velocity nearer to the other limit.
+    earlier = last.velocity - copysign(last.acceleration**2 / 2.0, last.acceleration)
+    within = max(abs(last.velocity), abs(earlier)) <= top + _BRAKED
+    return within and abs(last.acceleration) <= most + _BRAKED
+
+
+def _braked(first: State, top: float, most: float) -> Profile:
+    """What comes before the first state within the limits and not on the way out, jerk 1."""
+    for sign in (1.0, -1.0):
+        acceleration = sign * first.acceleration
+        if acceleration > most + _BRAKED:
+            back = Profile(first, (Phase(acceleration - most, first.acceleration, -sign),))
+            return back.then(_braked(back.at(inf), top, most))
+    for sign in (1.0, -1.0):
+        velocity, acceleration = sign * first.velocity, sign * first.acceleration
+        # An acceleration that goes to 0 changes the velocity by half its square.
+        ahead = velocity + max(acceleration, 0.0) * acceleration / 2.0
+        if max(velocity, ahead) > top + _BRAKED:
+            # It falls until v + a t − t²/2 = top, or stays where it is at its own limit.
+            until = acceleration + sqrt(max(0.0, acceleration**2 + 2.0 * (velocity - top)))
+            fall = min(until, acceleration + most)
+            left = velocity + fall * (acceleration - fall / 2.0) - top
+            held = left / most if fall < until else 0.0
+            phases = (
+                Phase(fall, first.acceleration, -sign),
+                Phase(held, first.acceleration - sign * fall),
+            )
+            return Profile(first, phases)
+    return Profile(first, ())
+
+
+def _change(start: State, velocity: float, acceleration: float, most: float) -> Profile:
+    """The fastest change of velocity and acceleration, jerk 1.
+
+    The acceleration rises to p and falls, or the other way round. Rising from a to p and falling
+    to b changes the velocity by p² − (a² + b²)/2.
+    """
+    _, v, a = start
+    direct = (acceleration**2 - a**2) / 2.0 * copysign(1.0, acceleration - a)
+    sign = 1.0 if velocity - v >= direct else -1.0
+    square = max(0.0, sign * (velocity - v) + (a**2 + acceleration**2) / 2.0)
+    peak = min(sqrt(square), most)
+    held = (square - peak**2) / peak if peak > 0.0 else 0.0
+    peak = max(peak, sign * a, sign * acceleration)
+    return Profile(
+        start,
+        (
+            Phase(peak - sign * a, a, sign),
+            Phase(held, sign * peak),
+            Phase(peak - sign * acceleration, sign * peak, -sign),
+        ),
+    )
+
+
+def _candidates(start: State, finish: State, top: float, most: float) -> Iterator[Profile]:
+    """The motions that go to the largest velocity, or whose acceleration rises first, jerk 1."""
+    if isfinite(top):
+        first = _change(start, top, 0.0, most)
+        leaving = _change(State(0.0, top), finish.velocity, finish.acceleration, most)
+        left = finish.position - first.at(inf).position - leaving.at(inf).position
+        if top > 0.0:
+            cruise = Profile(first.at(inf), (Phase(left / top, 0.0),))
+            yield first.then(cruise).then(leaving)
+    for peak, held, trough, kept in _peaks(start, finish, most):
+        yield Profile(
+            start,
+            (
+                Phase(peak - start.acceleration, start.acceleration, 1.0),
+                Phase(held, peak),
+                Phase(peak - trough, peak, -1.0),
+                Phase(kept, trough),
+                Phase(finish.acceleration - trough, trough, 1.0),
+            ),
+        )
+
+
+def _peaks(start: State, finish: State, most: float) -> Iterator[tuple[float, float, float, float]]:
+    """Peak of the acceleration, the time there, its trough and the time there, at velocity 1.
+
+    With e = v − a²/2 at both ends and K = e₁ − e₀ the velocity asks for p² − m² = K where nothing
+    is held. The way is then C + u³/4 + (e₀ + e₁)u − K²/(4u) with u = p − m, p + m = K/u and
+    C = v₁a₁ − a₁³/3 − v₀a₀ + a₀³/3. A time h at the limit A adds A·h to p² or m².
+    """
+    (place, v0, a0), (goal, v1, a1) = start, finish
+    e0, e1 = v0 - a0**2 / 2.0, v1 - a1**2 / 2.0
+    square = e1 - e0
+    way = goal - place - (v1 * a1 - a1**3 / 3.0) + (v0 * a0 - a0**3 / 3.0)
+    for u in _roots([-(square**2), -4.0 * way, 4.0 * (e0 + e1), 0.0, 1.0]):
+        if u > 0.0:
+            yield (square / u + u) / 2.0, 0.0, (square / u - u) / 2.0, 0.0
+    if not (isfinite(most) and most > 0.0):
+        return
+    x = Polynomial([0.0, 1.0])
+    held: Sequence[tuple[Polynomial | float, ...]] = (
+        (most, (square + x**2 - most**2) / most, x, 0.0),
+        (x, 0.0, -most, (x**2 - square - most**2) / most),
+        (most, x, -most, x - square / most),
+    )
+    for peak, high, trough, low in held:
+        lengths = (peak - a0, high, peak - trough, low, a1 - trough)
+        accelerations = (a0, peak, peak, trough, trough)
+        miss, velocity = Polynomial([place - goal]), Polynomial([v0])
+        for t, a, jerk in zip(lengths, accelerations, (1.0, 0.0, -1.0, 0.0, 1.0), strict=True):
+            miss = miss + t * (velocity + t * (a / 2.0 + t * jerk / 6.0))
+            velocity = velocity + t * (a + t * jerk / 2.0)
+        for root in _roots(list(miss.coef)):
+            yield tuple(  # type: ignore[misc]
+                one(root) if isinstance(one, Polynomial) else one
+                for one in (peak, high, trough, low)
+            )
+
+
+def _roots(coefficients: Sequence[float]) -> Iterator[float]:
+    """Real parts of the roots that may be real, the lowest power first, after a Newton step."""
+    polynomial = Polynomial(np.trim_zeros(np.array(coefficients), "b"))
+    slope = polynomial.deriv()
+    for root in polynomial.roots():
+        # Two roots that meet are found off the real line by the root of the rounding.
+        if abs(root.imag) > 1e-5 * (1.0 + abs(root.real)):
+            continue
+        x = float(root.real)
+        for _ in range(2):
+            bend = float(slope(x))
+            step = float(polynomial(x)) / bend if bend else 0.0
+            x -= step if abs(step) < 1e-5 * (1.0 + abs(x)) else 0.0
+        yield x
+
+
+def _keeps(profile: Profile, finish: State, top: float, most: float) -> bool:
+    """Whether a motion reaches the last state within the limits, to `_CLOSE`."""
+    if any(phase.time < -_CLOSE for phase in profile.phases):
+        return False
+    corners = profile.corners
+    missed = np.abs(np.subtract(corners[-1], finish)).max()
+    return bool(
+        missed <= _CLOSE
+        and all(abs(one.velocity) <= top + _CLOSE for one in corners)
+        and all(abs(one.acceleration) <= most + _CLOSE for one in corners)
+    )

@@ -1,0 +1,158 @@
+"""Shortest profiles between two states, beside ruckig, closed forms and their own reversal."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from trajgap.compare.audits.axis_profile import (
+    Profile,
+    Sizes,
+    State,
+    shortest_s_curve,
+    shortest_trapezoid,
+)
+from trajgap.compare.audits.double_s import double_s
+from trajgap.compare.audits.rest_profile import fourth_order, s_curve
+
+
+def by_ruckig(start: State, finish: State, sizes: Sizes) -> float | None:
+    """The same by another library; None where it refuses the states."""
+    ruckig = pytest.importorskip("ruckig")
+    asked = ruckig.InputParameter(1)
+    for name, state in (("current", start), ("target", finish)):
+        for quantity, value in zip(("position", "velocity", "acceleration"), state, strict=True):
+            setattr(asked, f"{name}_{quantity}", [value])
+    asked.max_velocity, asked.max_acceleration = [sizes.velocity], [sizes.acceleration]
+    asked.max_jerk = [sizes.jerk]
+    found = ruckig.Trajectory(1)
+    try:
+        result = ruckig.Ruckig(1).calculate(asked, found)
+    except ruckig.RuckigError:
+        return None
+    return float(found.duration) if result == ruckig.Result.Working else None
+
+
+def drawn(rng: np.random.Generator, k: int) -> tuple[State, State, Sizes]:
+    """States within the limits and, every few draws, at rest or outside them."""
+    v, a, j = map(float, 10 ** rng.uniform(-1, 1, 3))
+    share = rng.uniform(-1, 1, 4) * [1.3 if k % 5 == 0 else 1, k % 3 > 0, k % 4 > 0, k % 2]
+    place = rng.normal(size=2) * 10 ** rng.uniform(-2, 1, 2)
+    start = State(float(place[0]), float(share[0] * v), float(share[1] * a))
+    return start, State(float(place[1]), float(share[2] * v), float(share[3] * a)), Sizes(v, a, j)
+
+
+def arrives(profile: Profile, finish: State) -> bool:
+    end = profile.at(math.inf)
+    return bool(np.allclose(end[:2], finish[:2], rtol=1e-6, atol=1e-6))
+
+
+@pytest.mark.parametrize("count", [2000, pytest.param(100_000, marks=pytest.mark.slow)])
+def test_s_curves_between_random_states_take_ruckigs_time(count: int) -> None:
+    """Starts from which a limit is exceeded on both sides have no profile here."""
+    rng = np.random.default_rng(31)
+    compared = 0
+    for k in range(count):
+        start, finish, sizes = drawn(rng, k)
+        truth, found = by_ruckig(start, finish, sizes), shortest_s_curve(start, finish, sizes)
+        if truth is None:
+            assert found is None
+        elif found is not None:
+            compared += 1
+            assert found.total_time == pytest.approx(truth, rel=1e-7, abs=1e-7), (k, start, finish)
+            assert arrives(found, finish)
+        else:
+            change = start.acceleration**2 / (2.0 * sizes.jerk)
+            assert abs(start.velocity) + change > sizes.velocity
+    assert compared > count // 3
+
+
+def test_trapezoids_take_ruckigs_time_and_reversed_swap_both_limits() -> None:
+    """Played backwards, speeding up is slowing down."""
+    rng = np.random.default_rng(32)
+    for k in range(500):
+        start, finish, sizes = drawn(rng, k)
+        start, finish = start._replace(acceleration=0.0), finish._replace(acceleration=0.0)
+        one = sizes._replace(jerk=math.inf)
+        found = shortest_trapezoid(start, finish, one)
+        assert found is not None
+        assert found.total_time == pytest.approx(by_ruckig(start, finish, one), rel=1e-7, abs=1e-7)
+        if abs(start.velocity) > sizes.velocity:
+            continue
+        braking = sizes._replace(deceleration=float(rng.uniform(0.2, 3)) * sizes.acceleration)
+        forth = shortest_trapezoid(start, finish, braking)
+        swapped = braking._replace(acceleration=braking.braking, deceleration=braking.acceleration)
+        back = [s._replace(velocity=-s.velocity) for s in (finish, start)]
+        again = shortest_trapezoid(back[0], back[1], swapped)
+        assert forth is not None
+        assert again is not None
+        assert arrives(forth, finish)
+        assert forth.total_time == pytest.approx(again.total_time, rel=1e-9, abs=1e-9)
+
+
+def test_slowing_down_less_than_speeding_up() -> None:
+    """It stops in 2 s at 5, and goes back 1 with 2 and 1: sqrt(2 (1/2 + 1)) = 3 sqrt(1/3)."""
+    sizes = Sizes(4.0, 2.0, math.inf, 1.0)
+    found = shortest_trapezoid(State(3.0, 2.0), State(4.0), sizes)
+    assert found is not None
+    assert found.total_time == pytest.approx(2 + 3 * math.sqrt(1 / 3))
+    assert [round(p.time, 4) for p in found.phases if p.time] == [2.0, 0.5774, 1.1547]
+    assert found.phases[0].acceleration == -1.0
+    still = shortest_trapezoid(State(5.0), State(5.0), sizes)
+    assert still is not None
+    assert still.total_time == 0.0
+
+
+def test_the_shortest_total_jumps_where_the_start_moves_a_little() -> None:
+    """Ruckig's issue 204."""
+    finish, sizes = State(0.136553, 0.136894), Sizes(1.15145, 5.0, 40.0)
+    each = [
+        shortest_s_curve(State(q, 0.416965, 3.28077), finish, sizes) for q in (0.02491, 0.0249108)
+    ]
+    assert [one and round(one.total_time, 6) for one in each] == [0.285641, 0.450706]
+
+
+def test_no_profile_ends_where_a_limit_was_exceeded_before() -> None:
+    sizes = Sizes(1.0, 2.0, 4.0)
+    assert shortest_s_curve(State(0.0), State(1.0, 1.5), sizes) is None
+    assert shortest_s_curve(State(0.0), State(1.0, 0.9, -1.5), sizes) is None
+    assert shortest_trapezoid(State(0.0), State(1.0, 1.5), sizes) is None
+
+
+def test_the_algorithm_of_the_book_is_not_the_shortest() -> None:
+    """Examples 3.11 and 3.12: 8.9 and 52 % longer; from rest to rest it is the shortest."""
+    sizes = Sizes(10.0, 10.0, 30.0)
+    for speed, book, best in ((7.0, 1.93837, 1.78045), (7.5, 2.66667, 1.75422)):
+        start = State(0.0, speed)
+        made, shortest = (
+            double_s(start, State(10.0), sizes),
+            shortest_s_curve(start, State(10.0), sizes),
+        )
+        assert made is not None
+        assert shortest is not None
+        assert arrives(made, State(10.0))
+        assert (round(made.total_time, 5), round(shortest.total_time, 5)) == (book, best)
+        mirror = double_s(start.mirrored(), State(-10.0), sizes)
+        assert mirror is not None
+        assert mirror.total_time == made.total_time
+    for way in (0.5, 3.0, 40.0):
+        made = double_s(State(0.0), State(way), Sizes(2.0, 4.0, 9.0))
+        assert made is not None
+        assert made.total_time == pytest.approx(s_curve(way, 2.0, 4.0, 9.0), rel=0.02)
+        assert made.total_time >= s_curve(way, 2.0, 4.0, 9.0) - 1e-12
+
+
+@pytest.mark.parametrize(("speed", "cruise"), [(0.01, 0.0), (0.2, 0.0), (0.8, 0.0), (0.8, 1.7)])
+def test_a_fourth_order_profile_passes_the_integral_of_its_speed(
+    speed: float, cruise: float
+) -> None:
+    limits = (0.8, 3.0, 20.0, 400.0)
+    rise = shortest_s_curve(State(0.0), State(speed), Sizes(*limits[1:]))
+    assert rise is not None
+    times = np.linspace(0.0, rise.total_time, 4001)
+    passed = float(np.trapezoid([rise.at(float(t)).position for t in times], times))
+    way, total = 2.0 * passed + speed * cruise, 2.0 * rise.total_time + cruise
+    assert fourth_order(way, *limits) == pytest.approx(total, rel=1e-6)
+    assert total > s_curve(way, *limits[:3])
+    assert fourth_order(way, *limits[:3], 1e9) == pytest.approx(s_curve(way, *limits[:3]), rel=1e-3)
