@@ -69,13 +69,13 @@ def said(penalty: Board, stretch: Board) -> tuple[str, ...]:
     solved = round(reference.solved[2][0] * reference.problems)
     return (
         f"With {penalty.budget:,} evaluations and the papers' death penalty, {best.optimizer} is "
-        f"first of {len(strict)} optimisers: {_share(best)} of its runs come within 0.1\N{NBSP}% of "
-        f"the proven optimum, against {_share(random)} of random search; half of the optimisers "
+        f"first of {len(strict)} optimisers: {_share(best)} of its runs come within 0.1\N{NBSP}% "
+        f"of the proven optimum, against {_share(random)} of random search; half of the optimisers "
         f"reach {_median(strict)} or less.",
         "If a motion beyond a limit is slowed down instead of rejected, half of the optimisers "
         f"reach {_median(loose)} or more, and the first, {loose[0].optimizer}, {_share(loose[0])}.",
-        f"Of the papers' improved algorithms, {_better(penalty)} come within 0.1\N{NBSP}% more often "
-        f"than the standard algorithm that they extend under the death penalty, and "
+        f"Of the papers' improved algorithms, {_better(penalty)} come within 0.1\N{NBSP}% more "
+        f"often than the standard algorithm that they extend under the death penalty, and "
         f"{_better(stretch)} under the stretch; the best of the papers' algorithms are "
         f"{_papers_best(strict)} and {_papers_best(loose)}.",
         "A descent that knows the derivatives of the limits ends within 0.01\N{NBSP}% on "
