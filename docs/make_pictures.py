@@ -12,7 +12,7 @@ from trajgap.compare.pages.blocks import Drawn
 from trajgap.compare.pages.exhibits import exhibits_of_motion, exhibits_of_search
 from trajgap.compare.pictures import ArmMotion, arm_picture
 from trajgap.compare.pictures.drawing import svg, themed
-from trajgap.compare.sphinx import Results, paper_rows, papers_drawn
+from trajgap.compare.sphinx import Results, board_of, boards_drawn, paper_rows, papers_drawn
 from trajgap.nlp import solve
 from trajgap.problem import Limits, Problem, Trajectory, file_name, fit, load_case, load_robot
 
@@ -23,6 +23,12 @@ def papers() -> str:
     """Every audited paper that minimises time alone, beside its optimum."""
     rows = paper_rows(Results(PICTURES.parent / "results"), "paper")
     return themed(svg(papers_drawn(rows)))
+
+
+def leaderboard() -> str:
+    """How near the optimisers come to the proven optimum, under both handlings."""
+    both = [board_of(handling, 1000) for handling in ("death-penalty", "stretch")]
+    return themed(svg(boards_drawn(both)))
 
 
 EXHIBITS = {
@@ -101,5 +107,6 @@ if __name__ == "__main__":
     (PICTURES / "arm-puma560.html").write_text(arm(), encoding="utf-8")
     PICTURES.mkdir(exist_ok=True)
     (PICTURES / "papers.svg").write_text(papers(), encoding="utf-8")
+    (PICTURES / "leaderboard.svg").write_text(leaderboard(), encoding="utf-8")
     for name, document in exhibits():
         (PICTURES / f"{name}.svg").write_text(document, encoding="utf-8")

@@ -65,27 +65,22 @@ def said(penalty: Board, stretch: Board) -> tuple[str, ...]:
     """What both boards of one budget mean, in four sentences of numbers alone."""
     strict, loose = searches(penalty), searches(stretch)
     best, random = strict[0], _named(penalty, "random")
-    found = [
-        f"With {penalty.budget:,} evaluations and the papers' death penalty, {best.optimizer} "
-        f"comes within 0.1 % of the proven optimum in {_share(best)} of its runs, more often than "
-        f"the other {len(strict) - 1} optimisers; half of them do so in at most "
-        f"{_median(strict)}, and random search in {_share(random)}.",
-        "If a motion beyond a limit is slowed down instead of rejected, half of the optimisers "
-        f"come within 0.1 % in at least {_median(loose)} of their runs, and the first, "
-        f"{loose[0].optimizer}, in {_share(loose[0])}.",
-        f"Of the papers' improved algorithms, {_better(penalty)} come within 0.1 % more often than "
-        f"the standard algorithm that they extend under the death penalty, and {_better(stretch)} "
-        f"under the stretch; the best of the papers' algorithms are {_papers_best(strict)} and "
-        f"{_papers_best(loose)}.",
-    ]
     reference = _named(penalty, _REFERENCE)
     solved = round(reference.solved[2][0] * reference.problems)
-    found.append(
-        f"A descent that knows the derivatives of the limits ends within 0.01 % on {solved} of "
-        f"{reference.problems} instances, so what remains between an optimiser and the optimum is "
-        "the optimiser's own."
+    return (
+        f"With {penalty.budget:,} evaluations and the papers' death penalty, {best.optimizer} is "
+        f"first of {len(strict)} optimisers: {_share(best)} of its runs come within 0.1\N{NBSP}% "
+        f"of the proven optimum, against {_share(random)} of random search; half of the optimisers "
+        f"reach {_median(strict)} or less.",
+        "If a motion beyond a limit is slowed down instead of rejected, half of the optimisers "
+        f"reach {_median(loose)} or more, and the first, {loose[0].optimizer}, {_share(loose[0])}.",
+        f"Of the papers' improved algorithms, {_better(penalty)} come within 0.1\N{NBSP}% more "
+        f"often than the standard algorithm that they extend under the death penalty, and "
+        f"{_better(stretch)} under the stretch; the best of the papers' algorithms are "
+        f"{_papers_best(strict)} and {_papers_best(loose)}.",
+        "A descent that knows the derivatives of the limits ends within 0.01\N{NBSP}% on "
+        f"{solved} of {reference.problems} instances.",
     )
-    return tuple(found)
 
 
 def _named(board: Board, label: str) -> Ranked:
@@ -93,11 +88,12 @@ def _named(board: Board, label: str) -> Ranked:
 
 
 def _share(one: Ranked) -> str:
-    return f"{100 * one.solved[_MIDDLE][0]:.0f} %"
+    return f"{100 * one.solved[_MIDDLE][0]:.0f}\N{NBSP}%"
 
 
 def _median(standings: Sequence[Ranked]) -> str:
-    return f"{100 * float(np.median([one.solved[_MIDDLE][0] for one in standings])):.0f} %"
+    middle = float(np.median([one.solved[_MIDDLE][0] for one in standings]))
+    return f"{100 * middle:.0f}\N{NBSP}%"
 
 
 def _papers_best(standings: Sequence[Ranked]) -> str:
@@ -113,7 +109,7 @@ def _better(board: Board) -> str:
     return f"{better} of {len(_IMPROVED)}"
 
 
-def drawn(panels: Sequence[Board]) -> Picture:
+def boards_drawn(panels: Sequence[Board]) -> Picture:
     """The picture of boards with the same budget and problems, one panel each."""
     first = panels[0]
     count = len(searches(first))
@@ -185,9 +181,11 @@ class Leaderboard(SphinxDirective):
         both = [board_of(one, budget) for one in _HANDLINGS]
         match self.arguments[0]:
             case "said":
-                return [paragraph(" ".join(said(*both)))]
+                found = nodes.bullet_list()
+                found += [nodes.list_item("", paragraph(one)) for one in said(*both)]
+                return [found]
             case "picture":
-                made = drawn(both)
+                made = boards_drawn(both)
                 return picture(made, "leaderboard", paragraph(made.description))
             case "table":
                 return self._table(board_of(handling, budget))
