@@ -17,16 +17,16 @@ _BRAKED = 1e-12
 """How far above its limit a scaled velocity may be by rounding alone."""
 
 
-class State(NamedTuple):
+class AxisState(NamedTuple):
     """Position, velocity and acceleration of an axis, rad and s."""
 
     position: float
     velocity: float = 0.0
     acceleration: float = 0.0
 
-    def mirrored(self) -> State:
+    def mirrored(self) -> AxisState:
         """The state seen from the other side."""
-        return State(-self.position, -self.velocity, -self.acceleration)
+        return AxisState(-self.position, -self.velocity, -self.acceleration)
 
 
 class Sizes(NamedTuple):
@@ -53,16 +53,16 @@ class Phase(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Profile:
+class AxisProfile:
     """A motion of one axis in phases of constant jerk.
 
     Attributes
     ----------
-    start : State
+    start : AxisState
     phases : tuple of Phase
     """
 
-    start: State
+    start: AxisState
     phases: tuple[Phase, ...]
 
     @property
@@ -70,7 +70,7 @@ class Profile:
         """Its length, s."""
         return sum(phase.time for phase in self.phases)
 
-    def at(self, time: float) -> State:
+    def at(self, time: float) -> AxisState:
         """The state at a time from the start, s; where the acceleration jumps, that before."""
         position, velocity, acceleration = self.start
         left = time
@@ -83,14 +83,14 @@ class Profile:
             left -= phase.time
             if left <= 0.0:
                 break
-        return State(position, velocity, acceleration)
+        return AxisState(position, velocity, acceleration)
 
     @property
-    def corners(self) -> tuple[State, ...]:
+    def corners(self) -> tuple[AxisState, ...]:
         """The states where phases meet, and where velocity or position turns within one."""
         found = [self.start]
         for phase in self.phases:
-            own = Profile(found[-1], (phase,))
+            own = AxisProfile(found[-1], (phase,))
             turns = np.roots([phase.jerk / 2.0, phase.acceleration, found[-1].velocity])
             times = [float(t.real) for t in turns if t.imag == 0.0]
             if phase.jerk:
@@ -99,17 +99,17 @@ class Profile:
             found += [own.at(t) for t in (*times, phase.time)]
         return tuple(found)
 
-    def then(self, other: Profile) -> Profile:
+    def then(self, other: AxisProfile) -> AxisProfile:
         """The motion, and after it another that starts where it ends."""
-        return Profile(self.start, (*self.phases, *other.phases))
+        return AxisProfile(self.start, (*self.phases, *other.phases))
 
-    def mirrored(self) -> Profile:
+    def mirrored(self) -> AxisProfile:
         """The motion seen from the other side."""
         phases = tuple(Phase(p.time, -p.acceleration, -p.jerk) for p in self.phases)
-        return Profile(self.start.mirrored(), phases)
+        return AxisProfile(self.start.mirrored(), phases)
 
 
-def shortest_trapezoid(start: State, finish: State, sizes: Sizes) -> Profile | None:
+def shortest_trapezoid(start: AxisState, finish: AxisState, sizes: Sizes) -> AxisProfile | None:
     """The shortest motion whose acceleration is limited; accelerations of the states do not count.
 
     The velocity rises to one value v, stays and falls, or the other way round. Rising through dv
@@ -120,13 +120,13 @@ def shortest_trapezoid(start: State, finish: State, sizes: Sizes) -> Profile | N
 
     Parameters
     ----------
-    start, finish : State
+    start, finish : AxisState
     sizes : Sizes
         A start above the velocity limit is braked into it first.
 
     Returns
     -------
-    Profile or None
+    AxisProfile or None
         None if no motion keeps the limits.
     """
     top = sizes.velocity
@@ -149,19 +149,19 @@ def shortest_trapezoid(start: State, finish: State, sizes: Sizes) -> Profile | N
     needed = finish.position - start.position + way(start.velocity) + way(-finish.velocity)
     bend = 1.0 / (2.0 * sizes.acceleration) + 1.0 / (2.0 * sizes.braking)
     if not isfinite(bend):
-        return None if needed > 0.0 else Profile(start, ())
+        return None if needed > 0.0 else AxisProfile(start, ())
     peak = min(top, sqrt(max(needed, 0.0) / bend) if bend else inf)
     if not isfinite(peak):
-        return Profile(start, ())
+        return AxisProfile(start, ())
     rising = _ramp(start, peak, sizes)
     cruise = 0.0
     if peak == top and peak > 0.0:
         cruise = max(0.0, (needed - top**2 * bend) / top)
-    held = rising.then(Profile(rising.at(inf), (Phase(cruise, 0.0),)))
+    held = rising.then(AxisProfile(rising.at(inf), (Phase(cruise, 0.0),)))
     return held.then(_ramp(held.at(inf), finish.velocity, sizes))
 
 
-def _ramp(start: State, velocity: float, sizes: Sizes) -> Profile:
+def _ramp(start: AxisState, velocity: float, sizes: Sizes) -> AxisProfile:
     """Change of the velocity alone: the speed falls to 0 first where the sign changes."""
     now, phases = start.velocity, []
     up = copysign(1.0, velocity - now)
@@ -171,10 +171,10 @@ def _ramp(start: State, velocity: float, sizes: Sizes) -> Profile:
         now = turn
     if velocity != now:
         phases.append(Phase(abs(velocity - now) / sizes.acceleration, up * sizes.acceleration))
-    return Profile(start, tuple(phases))
+    return AxisProfile(start, tuple(phases))
 
 
-def shortest_s_curve(start: State, finish: State, sizes: Sizes) -> Profile | None:
+def shortest_s_curve(start: AxisState, finish: AxisState, sizes: Sizes) -> AxisProfile | None:
     """The shortest motion whose jerk is limited, also where no limit is symmetric about its states.
 
     The jerk is at its limit or 0. Either the velocity reaches its limit, and then the motion goes
@@ -185,14 +185,14 @@ def shortest_s_curve(start: State, finish: State, sizes: Sizes) -> Profile | Non
 
     Parameters
     ----------
-    start, finish : State
+    start, finish : AxisState
     sizes : Sizes
         Finite jerk. A start outside the limits of velocity or acceleration, or on the way out of
         them, is braked into them first.
 
     Returns
     -------
-    Profile or None
+    AxisProfile or None
         None if no motion keeps the limits.
     """
     way = finish.position - start.position
@@ -202,11 +202,11 @@ def shortest_s_curve(start: State, finish: State, sizes: Sizes) -> Profile | Non
         *(abs(state.acceleration) / sizes.jerk for state in (start, finish)),
     )
     if unit == 0.0:
-        return Profile(start, ())
+        return AxisProfile(start, ())
     # In units of time and way in which the jerk limit is 1 and no state is larger than 1.
     scale = (sizes.jerk * unit**3, sizes.jerk * unit**2, sizes.jerk * unit)
-    first = State(0.0, start.velocity / scale[1], start.acceleration / scale[2])
-    last = State(way / scale[0], finish.velocity / scale[1], finish.acceleration / scale[2])
+    first = AxisState(0.0, start.velocity / scale[1], start.acceleration / scale[2])
+    last = AxisState(way / scale[0], finish.velocity / scale[1], finish.acceleration / scale[2])
     top, most = sizes.velocity / scale[1], sizes.acceleration / scale[2]
     if not _can_end(last, top, most):
         return None
@@ -228,14 +228,14 @@ def shortest_s_curve(start: State, finish: State, sizes: Sizes) -> Profile | Non
         for p in braked.then(best).phases
         if p.time > 0.0
     )
-    return Profile(start, tuple(phases))
+    return AxisProfile(start, tuple(phases))
 
 
-def _seen(start: State, finish: State, sign: float) -> tuple[State, State]:
+def _seen(start: AxisState, finish: AxisState, sign: float) -> tuple[AxisState, AxisState]:
     return (start, finish) if sign > 0.0 else (start.mirrored(), finish.mirrored())
 
 
-def _can_end(last: State, top: float, most: float) -> bool:
+def _can_end(last: AxisState, top: float, most: float) -> bool:
     """Whether a state within the limits can be reached from within them."""
     # An acceleration at the end began at 0 with a velocity nearer to the other limit.
     earlier = last.velocity - copysign(last.acceleration**2 / 2.0, last.acceleration)
@@ -243,12 +243,12 @@ def _can_end(last: State, top: float, most: float) -> bool:
     return within and abs(last.acceleration) <= most + _BRAKED
 
 
-def _braked(first: State, top: float, most: float) -> Profile:
+def _braked(first: AxisState, top: float, most: float) -> AxisProfile:
     """What comes before the first state within the limits and not on the way out, jerk 1."""
     for sign in (1.0, -1.0):
         acceleration = sign * first.acceleration
         if acceleration > most + _BRAKED:
-            back = Profile(first, (Phase(acceleration - most, first.acceleration, -sign),))
+            back = AxisProfile(first, (Phase(acceleration - most, first.acceleration, -sign),))
             return back.then(_braked(back.at(inf), top, most))
     for sign in (1.0, -1.0):
         velocity, acceleration = sign * first.velocity, sign * first.acceleration
@@ -264,11 +264,11 @@ def _braked(first: State, top: float, most: float) -> Profile:
                 Phase(fall, first.acceleration, -sign),
                 Phase(held, first.acceleration - sign * fall),
             )
-            return Profile(first, phases)
-    return Profile(first, ())
+            return AxisProfile(first, phases)
+    return AxisProfile(first, ())
 
 
-def _change(start: State, velocity: float, acceleration: float, most: float) -> Profile:
+def _change(start: AxisState, velocity: float, acceleration: float, most: float) -> AxisProfile:
     """The fastest change of velocity and acceleration, jerk 1.
 
     The acceleration rises to p and falls, or the other way round. Rising from a to p and falling
@@ -281,7 +281,7 @@ def _change(start: State, velocity: float, acceleration: float, most: float) -> 
     peak = min(sqrt(square), most)
     held = (square - peak**2) / peak if peak > 0.0 else 0.0
     peak = max(peak, sign * a, sign * acceleration)
-    return Profile(
+    return AxisProfile(
         start,
         (
             Phase(peak - sign * a, a, sign),
@@ -291,17 +291,19 @@ def _change(start: State, velocity: float, acceleration: float, most: float) -> 
     )
 
 
-def _candidates(start: State, finish: State, top: float, most: float) -> Iterator[Profile]:
+def _candidates(
+    start: AxisState, finish: AxisState, top: float, most: float
+) -> Iterator[AxisProfile]:
     """The motions that go to the largest velocity, or whose acceleration rises first, jerk 1."""
     if isfinite(top):
         first = _change(start, top, 0.0, most)
-        leaving = _change(State(0.0, top), finish.velocity, finish.acceleration, most)
+        leaving = _change(AxisState(0.0, top), finish.velocity, finish.acceleration, most)
         left = finish.position - first.at(inf).position - leaving.at(inf).position
         if top > 0.0:
-            cruise = Profile(first.at(inf), (Phase(left / top, 0.0),))
+            cruise = AxisProfile(first.at(inf), (Phase(left / top, 0.0),))
             yield first.then(cruise).then(leaving)
     for peak, held, trough, kept in _peaks(start, finish, most):
-        yield Profile(
+        yield AxisProfile(
             start,
             (
                 Phase(peak - start.acceleration, start.acceleration, 1.0),
@@ -313,7 +315,9 @@ def _candidates(start: State, finish: State, top: float, most: float) -> Iterato
         )
 
 
-def _peaks(start: State, finish: State, most: float) -> Iterator[tuple[float, float, float, float]]:
+def _peaks(
+    start: AxisState, finish: AxisState, most: float
+) -> Iterator[tuple[float, float, float, float]]:
     """Peak of the acceleration, the time there, its trough and the time there, at velocity 1.
 
     With e = v − a²/2 at both ends and K = e₁ − e₀ the velocity asks for p² − m² = K where nothing
@@ -365,7 +369,7 @@ def _roots(coefficients: Sequence[float]) -> Iterator[float]:
         yield x
 
 
-def _keeps(profile: Profile, finish: State, top: float, most: float) -> bool:
+def _keeps(profile: AxisProfile, finish: AxisState, top: float, most: float) -> bool:
     """Whether a motion reaches the last state within the limits, to `_CLOSE`."""
     if any(phase.time < -_CLOSE for phase in profile.phases):
         return False

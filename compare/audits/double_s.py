@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import repeat
 from math import inf, sqrt
 
-from .axis_profile import Phase, Profile, Sizes, State
+from .axis_profile import AxisProfile, AxisState, Phase, Sizes
 
 _GAMMA = 0.99
 """Factor by which the book shrinks the acceleration until its formulas close: with it, Example 3.11
@@ -14,19 +14,19 @@ _TRIALS = 10_000
 """Bound of that loop; 0.99¹⁰⁰⁰⁰ is 10⁻⁴⁴."""
 
 
-def double_s(start: State, finish: State, sizes: Sizes) -> Profile | None:
+def double_s(start: AxisState, finish: AxisState, sizes: Sizes) -> AxisProfile | None:
     """The profile of the algorithm, which is not the shortest where it shrinks the acceleration.
 
     Parameters
     ----------
-    start, finish : State
+    start, finish : AxisState
         Accelerations of 0, velocities within the limit.
     sizes : Sizes
         Finite.
 
     Returns
     -------
-    Profile or None
+    AxisProfile or None
         None if the algorithm has no answer.
 
     Notes
@@ -75,7 +75,9 @@ def _to_speed(change: float, sizes: Sizes) -> tuple[float, float]:
     return ramp, ramp + change / sizes.acceleration
 
 
-def _one_sided(start: State, way: float, last: float, jerk: float, falling: bool) -> Profile | None:
+def _one_sided(
+    start: AxisState, way: float, last: float, jerk: float, falling: bool
+) -> AxisProfile | None:
     """Equations 3.38 and 3.39 of the book: the velocity changes once, over the whole way."""
     total = start.velocity + last
     change = (last - start.velocity) * (1.0 if falling else -1.0)
@@ -89,12 +91,12 @@ def _one_sided(start: State, way: float, last: float, jerk: float, falling: bool
 
 
 def _of_parts(
-    start: State,
+    start: AxisState,
     lengths: tuple[float, ...],
     ramps: tuple[float, ...],
     cruise: float,
     jerk: float,
-) -> Profile:
+) -> AxisProfile:
     """Seven phases: ramp, constant acceleration and ramp on both sides of the cruise."""
     phases: list[Phase] = []
     for sign, length, ramp in zip((1.0, -1.0), lengths, ramps, strict=True):
@@ -106,4 +108,4 @@ def _of_parts(
         ]
         if sign > 0.0:
             phases.append(Phase(cruise, 0.0))
-    return Profile(start, tuple(phases))
+    return AxisProfile(start, tuple(phases))

@@ -12,11 +12,11 @@ import numpy as np
 
 from ...problem import Array, CaseError, Printed, Quantity
 from ...problem.cases import Digits, ProfiledClaim, end, end_states
-from .axis_profile import Profile, Sizes, State, shortest_s_curve, shortest_trapezoid
+from .axis_profile import AxisProfile, AxisState, Sizes, shortest_s_curve, shortest_trapezoid
 from .double_s import double_s
 from .printed_row import PrintedRow
 
-SHORTEST: dict[str, Callable[[State, State, Sizes], Profile | None]] = {
+SHORTEST: dict[str, Callable[[AxisState, AxisState, Sizes], AxisProfile | None]] = {
     "trapezoidal": shortest_trapezoid,
     "s-curve": shortest_s_curve,
     "biagiotti-melchiorri": double_s,
@@ -45,7 +45,7 @@ def profile_called(profiles: Sequence[str]) -> str:
 
 
 @dataclass(frozen=True)
-class Question:
+class ProfileQuestion:
     """Numbers that define the profile of some joints, rad and s.
 
     Attributes
@@ -61,7 +61,7 @@ class Question:
     ends: Array
     limits: Array
 
-    def laws(self, profile: str, straight: bool) -> tuple[Profile, ...] | None:
+    def laws(self, profile: str, straight: bool) -> tuple[AxisProfile, ...] | None:
         """The motion of each segment: of the one joint, or of all on a straight line from 0 to 1.
 
         Parameters
@@ -71,7 +71,7 @@ class Question:
 
         Returns
         -------
-        tuple of Profile or None
+        tuple of AxisProfile or None
             None if no motion keeps the limits.
         """
         found = []
@@ -81,14 +81,16 @@ class Question:
                 way = np.abs(there - here)
                 moves = way > 0.0
                 limits = (self.limits[moves] / way[moves, None]).min(axis=0, initial=inf)
-                start, finish = State(0.0), State(float(moves.any()))
+                start, finish = AxisState(0.0), AxisState(float(moves.any()))
             else:
                 limits = self.limits[0]
-                start = State(float(here[0]), *map(float, self.ends[0, 0] if k == 0 else (0, 0)))
+                start = AxisState(
+                    float(here[0]), *map(float, self.ends[0, 0] if k == 0 else (0, 0))
+                )
                 goal = self.ends[1, 0] if k == last else (0, 0)
-                finish = State(float(there[0]), *map(float, goal))
+                finish = AxisState(float(there[0]), *map(float, goal))
             if start == finish and not any(start[1:]):
-                found.append(Profile(start, ()))
+                found.append(AxisProfile(start, ()))
                 continue
             able = bool((limits > 0.0).all())
             one = SHORTEST[profile](start, finish, Sizes(*map(float, limits))) if able else None
@@ -99,11 +101,11 @@ class Question:
 
 
 @dataclass(frozen=True)
-class Motion:
+class ProfileMotion:
     """A profile with the way-points that it joins."""
 
-    question: Question
-    laws: tuple[Profile, ...]
+    question: ProfileQuestion
+    laws: tuple[AxisProfile, ...]
     straight: bool
 
     @cached_property
@@ -162,19 +164,19 @@ class Motion:
         -------
         ndarray, shape (states, 3)
         """
-        found: list[State] = []
+        found: list[AxisState] = []
         for k, law in enumerate(self.laws):
             state = law.start
             for phase in law.phases:
                 if phase.time > 0.0:
                     # The acceleration may have jumped.
                     first = state._replace(acceleration=phase.acceleration)
-                    inside = Profile(first, (phase,)).corners
+                    inside = AxisProfile(first, (phase,)).corners
                     found += [self._of(one, k, joint) for one in inside]
                     state = inside[-1]
         return np.array(found or [self._of(self.laws[0].start, 0, joint)])
 
-    def _at(self, time: float, joint: int) -> State:
+    def _at(self, time: float, joint: int) -> AxisState:
         left = time
         for k, law in enumerate(self.laws):
             if left <= law.total_time or k == len(self.laws) - 1:
@@ -182,18 +184,18 @@ class Motion:
             left -= law.total_time
         raise AssertionError("a motion has a segment")
 
-    def _of(self, state: State, segment: int, joint: int) -> State:
+    def _of(self, state: AxisState, segment: int, joint: int) -> AxisState:
         if not self.straight:
             return state
         here, there = self.question.points[segment : segment + 2, joint]
         way = float(there - here)
-        return State(
+        return AxisState(
             float(here) + way * state.position, way * state.velocity, way * state.acceleration
         )
 
 
 @dataclass(frozen=True)
-class Range:
+class NumberRange:
     """A number of a profile at the printed numbers, and at all others that digits leave.
 
     Attributes
@@ -208,8 +210,10 @@ class Range:
 
     @classmethod
     def of(
-        cls, every: Sequence[Motion | None], number: Callable[[Motion], Iterable[float]]
-    ) -> Range:
+        cls,
+        every: Sequence[ProfileMotion | None],
+        number: Callable[[ProfileMotion], Iterable[float]],
+    ) -> NumberRange:
         """A number of the printed motion, the first, and of all others that exist."""
         found = [[*number(one)] for one in every if one is not None]
         return cls(found[0][0], np.sort([value for values in found for value in values]))
@@ -270,7 +274,7 @@ def profiled_limits(row: PrintedRow[ProfiledClaim], digits: Digits) -> Array:
     return np.column_stack([limits, own])
 
 
-def questions(row: PrintedRow[ProfiledClaim]) -> list[Question] | None:
+def questions(row: PrintedRow[ProfiledClaim]) -> list[ProfileQuestion] | None:
     """The printed numbers first, then every combination of ends of what their digits leave.
 
     Parameters
@@ -279,14 +283,14 @@ def questions(row: PrintedRow[ProfiledClaim]) -> list[Question] | None:
 
     Returns
     -------
-    list of Question or None
+    list of ProfileQuestion or None
         None if too many numbers are printed digits.
     """
     problem = row.posed()
     box = row.waypoint_box(problem).or_cut_off()
     columns = [row.study.problem(row.pair).joints.index(label) for label in problem.joints]
     ends = end_states(row.statement)[:, columns]
-    plain = Question(box.value, ends[..., 0], profiled_limits(row, Digits.PRINTED))
+    plain = ProfileQuestion(box.value, ends[..., 0], profiled_limits(row, Digits.PRINTED))
     try:
         loosest, tightest = (
             profiled_limits(row, digits) for digits in (Digits.LOOSEST_CUT, Digits.TIGHTEST)
@@ -312,11 +316,11 @@ def questions(row: PrintedRow[ProfiledClaim]) -> list[Question] | None:
             points[at] = (box.lower if side == 1 else box.upper)[at]
         for at, side in zip(map(tuple, moved), chosen[len(free) :], strict=True):
             states[at] = ends[(*at, side)]
-        found.append(Question(points, states, limits))
+        found.append(ProfileQuestion(points, states, limits))
     return found
 
 
-def motions(row: PrintedRow[ProfiledClaim], profile: str) -> list[Motion | None] | None:
+def motions(row: PrintedRow[ProfiledClaim], profile: str) -> list[ProfileMotion | None] | None:
     """The profile at each of `questions`, the printed numbers first.
 
     Parameters
@@ -327,12 +331,12 @@ def motions(row: PrintedRow[ProfiledClaim], profile: str) -> list[Motion | None]
 
     Returns
     -------
-    list of (Motion or None) or None
+    list of (ProfileMotion or None) or None
         None for numbers at which no motion keeps the limits, and in place of all if `questions`
         has no answer.
     """
 
-    def compute() -> list[Motion | None] | None:
+    def compute() -> list[ProfileMotion | None] | None:
         asked = questions(row)
         if asked is None:
             return None
@@ -340,7 +344,7 @@ def motions(row: PrintedRow[ProfiledClaim], profile: str) -> list[Motion | None]
         found = []
         for one in asked:
             laws = one.laws(profile, straight)
-            found.append(None if laws is None else Motion(one, laws, straight))
+            found.append(None if laws is None else ProfileMotion(one, laws, straight))
         return found
 
     return row.once("profile", compute, profile)

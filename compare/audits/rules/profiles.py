@@ -28,8 +28,8 @@ from ..printed_row import PrintedRow
 from ..profile_motions import (
     NOT_SHORTEST,
     SHORTEST,
-    Motion,
-    Range,
+    NumberRange,
+    ProfileMotion,
     motions,
     profile_called,
     profiled_limits,
@@ -73,13 +73,15 @@ class _Asked:
         """Which states the profile joins."""
         return "from rest to rest" if self.resting else "between the states at both ends"
 
-    def every(self, profile: str = "") -> list[Motion | None]:
+    def every(self, profile: str = "") -> list[ProfileMotion | None]:
         """The profile, or another one, at the printed numbers and at the ends of their digits."""
         return motions(self.row, profile or self.profile) or []
 
-    def range(self, number: Callable[[Motion], Iterable[float]], profile: str = "") -> Range:
+    def range(
+        self, number: Callable[[ProfileMotion], Iterable[float]], profile: str = ""
+    ) -> NumberRange:
         """A number of the profile, or of another one."""
-        return Range.of(self.every(profile), number)
+        return NumberRange.of(self.every(profile), number)
 
     @property
     def called(self) -> str:
@@ -152,7 +154,7 @@ def _not_computed(asked: _Asked) -> str | None:
     return _out_of_range(problem, every[0])
 
 
-def _out_of_range(problem: Problem, motion: Motion) -> str | None:
+def _out_of_range(problem: Problem, motion: ProfileMotion) -> str | None:
     """That a profile leaves the position range, which is none of the limits that shape it."""
     for j, label in enumerate(problem.joints):
         places = motion.states(j)[:, 0]
@@ -225,7 +227,7 @@ def _found(asked: _Asked, verdict: ClaimVerdict, kind: str, **facts: Any) -> Fin
     )
 
 
-def _notes(asked: _Asked, totals: Range) -> tuple[str, ...]:
+def _notes(asked: _Asked, totals: NumberRange) -> tuple[str, ...]:
     """What else is to be known of a total: where it jumps, a start outside, what is shorter."""
     notes = []
     if totals.jump is not None:
@@ -349,7 +351,7 @@ def _numbers_beside(asked: _Asked) -> Finding:
 
 
 def _of_motion(
-    row: PrintedRow[_Profiled], claim: PeakClaim | ValueClaim, joint: int, motion: Motion
+    row: PrintedRow[_Profiled], claim: PeakClaim | ValueClaim, joint: int, motion: ProfileMotion
 ) -> Iterable[float]:
     """What a number of a joint may be: on both sides of an instant, or between its two ends."""
     order = _ORDERS[claim.derivative]

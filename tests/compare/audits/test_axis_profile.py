@@ -7,9 +7,9 @@ import math
 import numpy as np
 import pytest
 from trajgap.compare.audits.axis_profile import (
-    Profile,
+    AxisProfile,
+    AxisState,
     Sizes,
-    State,
     shortest_s_curve,
     shortest_trapezoid,
 )
@@ -17,7 +17,7 @@ from trajgap.compare.audits.double_s import double_s
 from trajgap.compare.audits.rest_profile import fourth_order, s_curve
 
 
-def by_ruckig(start: State, finish: State, sizes: Sizes) -> float | None:
+def by_ruckig(start: AxisState, finish: AxisState, sizes: Sizes) -> float | None:
     """The same by another library; None where it refuses the states."""
     ruckig = pytest.importorskip("ruckig")
     asked = ruckig.InputParameter(1)
@@ -34,16 +34,20 @@ def by_ruckig(start: State, finish: State, sizes: Sizes) -> float | None:
     return float(found.duration) if result == ruckig.Result.Working else None
 
 
-def drawn(rng: np.random.Generator, k: int) -> tuple[State, State, Sizes]:
+def drawn(rng: np.random.Generator, k: int) -> tuple[AxisState, AxisState, Sizes]:
     """States within the limits and, every few draws, at rest or outside them."""
     v, a, j = map(float, 10 ** rng.uniform(-1, 1, 3))
     share = rng.uniform(-1, 1, 4) * [1.3 if k % 5 == 0 else 1, k % 3 > 0, k % 4 > 0, k % 2]
     place = rng.normal(size=2) * 10 ** rng.uniform(-2, 1, 2)
-    start = State(float(place[0]), float(share[0] * v), float(share[1] * a))
-    return start, State(float(place[1]), float(share[2] * v), float(share[3] * a)), Sizes(v, a, j)
+    start = AxisState(float(place[0]), float(share[0] * v), float(share[1] * a))
+    return (
+        start,
+        AxisState(float(place[1]), float(share[2] * v), float(share[3] * a)),
+        Sizes(v, a, j),
+    )
 
 
-def arrives(profile: Profile, finish: State) -> bool:
+def arrives(profile: AxisProfile, finish: AxisState) -> bool:
     end = profile.at(math.inf)
     return bool(np.allclose(end[:2], finish[:2], rtol=1e-6, atol=1e-6))
 
@@ -94,50 +98,51 @@ def test_trapezoids_take_ruckigs_time_and_reversed_swap_both_limits() -> None:
 def test_slowing_down_less_than_speeding_up() -> None:
     """It stops in 2 s at 5, and goes back 1 with 2 and 1: sqrt(2 (1/2 + 1)) = 3 sqrt(1/3)."""
     sizes = Sizes(4.0, 2.0, math.inf, 1.0)
-    found = shortest_trapezoid(State(3.0, 2.0), State(4.0), sizes)
+    found = shortest_trapezoid(AxisState(3.0, 2.0), AxisState(4.0), sizes)
     assert found is not None
     assert found.total_time == pytest.approx(2 + 3 * math.sqrt(1 / 3))
     assert [round(p.time, 4) for p in found.phases if p.time] == [2.0, 0.5774, 1.1547]
     assert found.phases[0].acceleration == -1.0
-    still = shortest_trapezoid(State(5.0), State(5.0), sizes)
+    still = shortest_trapezoid(AxisState(5.0), AxisState(5.0), sizes)
     assert still is not None
     assert still.total_time == 0.0
 
 
 def test_the_shortest_total_jumps_where_the_start_moves_a_little() -> None:
     """Ruckig's issue 204."""
-    finish, sizes = State(0.136553, 0.136894), Sizes(1.15145, 5.0, 40.0)
+    finish, sizes = AxisState(0.136553, 0.136894), Sizes(1.15145, 5.0, 40.0)
     each = [
-        shortest_s_curve(State(q, 0.416965, 3.28077), finish, sizes) for q in (0.02491, 0.0249108)
+        shortest_s_curve(AxisState(q, 0.416965, 3.28077), finish, sizes)
+        for q in (0.02491, 0.0249108)
     ]
     assert [one and round(one.total_time, 6) for one in each] == [0.285641, 0.450706]
 
 
 def test_no_profile_ends_where_a_limit_was_exceeded_before() -> None:
     sizes = Sizes(1.0, 2.0, 4.0)
-    assert shortest_s_curve(State(0.0), State(1.0, 1.5), sizes) is None
-    assert shortest_s_curve(State(0.0), State(1.0, 0.9, -1.5), sizes) is None
-    assert shortest_trapezoid(State(0.0), State(1.0, 1.5), sizes) is None
+    assert shortest_s_curve(AxisState(0.0), AxisState(1.0, 1.5), sizes) is None
+    assert shortest_s_curve(AxisState(0.0), AxisState(1.0, 0.9, -1.5), sizes) is None
+    assert shortest_trapezoid(AxisState(0.0), AxisState(1.0, 1.5), sizes) is None
 
 
 def test_the_algorithm_of_the_book_is_not_the_shortest() -> None:
     """Examples 3.11 and 3.12: 8.9 and 52 % longer; from rest to rest it is the shortest."""
     sizes = Sizes(10.0, 10.0, 30.0)
     for speed, book, best in ((7.0, 1.93837, 1.78045), (7.5, 2.66667, 1.75422)):
-        start = State(0.0, speed)
+        start = AxisState(0.0, speed)
         made, shortest = (
-            double_s(start, State(10.0), sizes),
-            shortest_s_curve(start, State(10.0), sizes),
+            double_s(start, AxisState(10.0), sizes),
+            shortest_s_curve(start, AxisState(10.0), sizes),
         )
         assert made is not None
         assert shortest is not None
-        assert arrives(made, State(10.0))
+        assert arrives(made, AxisState(10.0))
         assert (round(made.total_time, 5), round(shortest.total_time, 5)) == (book, best)
-        mirror = double_s(start.mirrored(), State(-10.0), sizes)
+        mirror = double_s(start.mirrored(), AxisState(-10.0), sizes)
         assert mirror is not None
         assert mirror.total_time == made.total_time
     for way in (0.5, 3.0, 40.0):
-        made = double_s(State(0.0), State(way), Sizes(2.0, 4.0, 9.0))
+        made = double_s(AxisState(0.0), AxisState(way), Sizes(2.0, 4.0, 9.0))
         assert made is not None
         assert made.total_time == pytest.approx(s_curve(way, 2.0, 4.0, 9.0), rel=0.02)
         assert made.total_time >= s_curve(way, 2.0, 4.0, 9.0) - 1e-12
@@ -148,7 +153,7 @@ def test_a_fourth_order_profile_passes_the_integral_of_its_speed(
     speed: float, cruise: float
 ) -> None:
     limits = (0.8, 3.0, 20.0, 400.0)
-    rise = shortest_s_curve(State(0.0), State(speed), Sizes(*limits[1:]))
+    rise = shortest_s_curve(AxisState(0.0), AxisState(speed), Sizes(*limits[1:]))
     assert rise is not None
     times = np.linspace(0.0, rise.total_time, 4001)
     passed = float(np.trapezoid([rise.at(float(t)).position for t in times], times))
