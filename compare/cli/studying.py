@@ -41,8 +41,8 @@ from ..gaps import (
     quantiles,
     run_study,
     study_rows,
-    summaries,
     summaries_text,
+    summed_up,
 )
 from .interrupt import INTERRUPTED
 from .leaderboard import BOARD_COLUMNS, board_cells
@@ -106,7 +106,7 @@ def conduct(
         for one in exports:
             export_rows(study_rows(plan, kept), one)
         if summary is not None:
-            replace_file(summary, summaries_text(summaries(plan, kept)))
+            replace_file(summary, summaries_text(summed_up(plan, kept)))
         parts, never_ran = _summary(plan, kept, session, path, exports, again)
         say(rendered(parts))
     return NEVER_RAN if never_ran else 0
@@ -224,7 +224,7 @@ def _tables(
 def _boards(plan: StudyPlan, kept: Store) -> list[RenderableType]:
     """Where each optimiser stands over all problems: their own lines would be thousands."""
     parts: list[RenderableType] = []
-    for board in boards(summaries(plan, kept)):
+    for board in boards(summed_up(plan, kept)):
         head = f"{board.handling}, {board.budget:,} evaluations, {len(board.problems)} instances"
         parts.append(line(head, "bold"))
         parts.append(Columns(BOARD_COLUMNS, board_cells(board)))

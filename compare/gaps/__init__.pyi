@@ -35,9 +35,9 @@ from .summaries import (
     SOLVED,
     Summary,
     read_summaries,
-    summaries,
     summaries_text,
     summary_of,
+    summed_up,
 )
 from .targets import (
     CURVE_TARGETS,
@@ -123,9 +123,9 @@ __all__ = [
     "spread",
     "study_rows",
     "success_interval",
-    "summaries",
     "summaries_text",
     "summary_of",
+    "summed_up",
     "target_reached",
     "totals_of",
     "trace_of",

@@ -103,7 +103,7 @@ def summary_of(label: str, rows: Sequence[Row]) -> Summary:
     )
 
 
-def summaries(study: StudyPlan, store: Store) -> Iterator[Summary]:
+def summed_up(study: StudyPlan, store: Store) -> Iterator[Summary]:
     """Sum up what a store holds of a study, leaving out what is not complete.
 
     Parameters

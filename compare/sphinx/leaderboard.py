@@ -70,10 +70,11 @@ def said(penalty: Board, stretch: Board) -> tuple[str, ...]:
     return (
         f"With {penalty.budget:,} evaluations and the papers' death penalty, {best.optimizer} is "
         f"first of {len(strict)} optimisers: {_share(best)} of its runs come within 0.1\N{NBSP}% "
-        f"of the proven optimum, against {_share(random)} of random search; half of the optimisers "
-        f"reach {_median(strict)} or less.",
-        "If a motion beyond a limit is slowed down instead of rejected, half of the optimisers "
-        f"reach {_median(loose)} or more, and the first, {loose[0].optimizer}, {_share(loose[0])}.",
+        f"of the proven optimum, against {_share(random)} of random search; the median "
+        f"of the optimisers is {_median(strict)}.",
+        "If a motion beyond a limit is slowed down instead of rejected, the median of the "
+        f"optimisers is {_median(loose)}, and the first, {loose[0].optimizer}, reaches "
+        f"{_share(loose[0])}.",
         f"Of the papers' improved algorithms, {_better(penalty)} come within 0.1\N{NBSP}% more "
         f"often than the standard algorithm that they extend under the death penalty, and "
         f"{_better(stretch)} under the stretch; the best of the papers' algorithms are "
