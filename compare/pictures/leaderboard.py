@@ -101,7 +101,7 @@ def _panel(axes: Axes, panel: BoardPanel, gaps: Array) -> None:
     axes.set_xticks(ticks, [f"{100 * tick:.10g} %" for tick in ticks])
     axes.minorticks_off()
     axes.set_ylim(0, 102)
-    axes.set_xlabel("distance from the proven optimum, at most")
+    axes.set_xlabel("distance from the certified optimum, at most")
     axes.set_title(panel.title)
     light_grid(axes)
     handles, labels = axes.get_legend_handles_labels()

@@ -204,7 +204,7 @@ def _found(case: Mapping[str, Any], counts: Counter[ClaimVerdict], against: bool
         return "No claim can be checked from the text."
     if supported == every:
         return f"Clean: all {every} claims are supported."
-    return f"Clean: {supported} of {every} claims are supported, the others are not checkable."
+    return f"{supported} of {every} claims are supported; the others cannot be checked."
 
 
 def cited(source: Mapping[str, Any]) -> str:
