@@ -141,8 +141,8 @@ def taken(shape: dict[str, Any]) -> str:
     if "enum" in shape:
         return ", ".join(f"`{word}`" for word in shape["enum"])
     if shape.get("type") == "array":
-        inner = taken(shape["items"]) if shape.get("items") else "anything"
-        return f"list of {inner}"
+        first = shape.get("items") or (shape.get("prefixItems") or [{}])[0]
+        return f"list of {taken(first)}"
     if shape.get("type") == "object":
         inner = shape.get("additionalProperties")
         return f"table of {taken(inner)}" if isinstance(inner, dict) else "table"
