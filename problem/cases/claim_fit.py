@@ -294,8 +294,8 @@ def _check_motion_value(
         raise statement.fail(
             f"{at}.values", f"{len(claim.values)} values for {joints} joints; give one each"
         )
-    meant = motions_of(document.claims, claim)
-    for motion in meant:
+    meant, profile = motions_of(document.claims, claim), profile_of(document.claims, claim)
+    for motion in [*meant, *([] if profile is None else [profile])]:
         if motion.problem != claim.problem:
             raise statement.fail(
                 f"{at}.of", f"{motion.id!r} is about another problem; name a motion of this one"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from math import inf
@@ -325,21 +325,27 @@ def _numbers_beside(asked: _Asked) -> Finding:
     place = "largest" if isinstance(claim, PeakClaim) else claim.place
     size_word = f"{place} " if place in _SIZES else ""
     for label, number in row.study.printed_numbers(claim):
-        if label is not None and label not in joints:
+        # A number of no joint is that of the one joint, or the largest of all.
+        own = joints if label is None else tuple(one for one in joints if one == label)
+        if not own:
             continue
-        joint = joints[0] if label is None else label
+        if len(own) > 1 and not isinstance(claim, PeakClaim):
+            return _unknown(asked, "One number is printed for several joints of a profile.")
+        joint = own[0] if len(own) == 1 else None
         size = row.measured(number, claim.derivative, joint)
-        j = joints.index(joint)
-        found = asked.range(partial(_of_motion, row, claim, j))
+        found = asked.range(partial(_of_motion, row, claim, [joints.index(one) for one in own]))
         cut = size.cut_off()
         fits = found.meets(min(size.lower, cut.lower), max(size.upper, cut.upper))
         wrong = wrong or not fits
         shown = row.in_units(claim.derivative, found.plain, joint)
         plain.append(f"{shown:.6g} {row.unit(claim.derivative, joint)}")
+        whose = "all joints" if joint is None else f"joint {joint}"
         said.append(
-            f"the {size_word}{claim.derivative} of joint {joint}{where} is {plain[-1]}, printed is "
+            f"the {size_word}{claim.derivative} of {whose}{where} is {plain[-1]}, printed is "
             f"{number}, {'which fits' if fits else 'which is another'}"
         )
+    if not said:
+        return _unknown(asked, "The profile is not of a joint whose number is printed.")
     return _found(
         asked,
         ClaimVerdict.INCONSISTENT if wrong else ClaimVerdict.SUPPORTED,
@@ -351,12 +357,19 @@ def _numbers_beside(asked: _Asked) -> Finding:
 
 
 def _of_motion(
-    row: PrintedRow[_Profiled], claim: PeakClaim | ValueClaim, joint: int, motion: ProfileMotion
+    row: PrintedRow[_Profiled],
+    claim: PeakClaim | ValueClaim,
+    joints: Sequence[int],
+    motion: ProfileMotion,
 ) -> Iterable[float]:
-    """What a number of a joint may be: on both sides of an instant, or between its two ends."""
+    """What a number may be: on both sides of an instant, or between its two ends.
+
+    A peak is the largest of all ``joints``; a value is of one joint.
+    """
     order = _ORDERS[claim.derivative]
     if isinstance(claim, PeakClaim):
-        return [float(np.abs(motion.states(joint)[:, order]).max())]
+        return [max(float(np.abs(motion.states(joint)[:, order]).max()) for joint in joints)]
+    (joint,) = joints
     if claim.place in _SIZES:
         values = motion.states(joint)[:, order]
         return [float(values.max() if claim.place == "largest" else values.min())]

@@ -239,6 +239,50 @@ def test_an_optimal_profile_is_the_shortest() -> None:
         assert finding(text, "s", "TG304").verdict == verdict
 
 
+STRAIGHT = {"profile": "trapezoidal", "path": "straight"}
+"""How the profile of several joints is stated."""
+
+
+def of_profile(value: str, asked: dict[str, Any], own: dict[str, Any]) -> Finding:
+    """The finding on a peak velocity of the profile of two joints on a straight line."""
+    printed = total("t", own.pop("total", "2.17"), **STRAIGHT, **CLAIM | own)
+    peak = claim("p", "peak", derivative="velocity", value=value, of="t", **asked)
+    text = paper([[0, 1], [0, -3]], printed, peak, curve=QUINTIC, velocity=2, acceleration=[1, 4])
+    return finding(text, "p", "TG304")
+
+
+@pytest.mark.parametrize(
+    ("value", "joint", "verdict"),
+    [
+        # The joints take 3/2 + 2/3 s: joint 2 reaches its 2 rad/s, and joint 1 a third of it.
+        ("2.0", None, "supported"),
+        ("0.67", None, "inconsistent"),
+        ("2.0", "2", "supported"),
+        ("0.67", "1", "supported"),
+        ("2.0", "1", "inconsistent"),
+    ],
+)
+def test_a_peak_without_a_joint_is_the_largest_of_all(
+    value: str, joint: str | None, verdict: str
+) -> None:
+    found = of_profile(value, {} if joint is None else {"joint": joint}, {})
+    assert found.verdict == verdict, found.message
+
+
+def test_a_peak_of_a_joint_that_the_profile_lacks_is_not_checkable() -> None:
+    found = of_profile("9.9", {"joint": "1"}, {"joint": "2"})
+    assert found.verdict is ClaimVerdict.NOT_CHECKABLE
+    assert found.message == "The profile is not of a joint whose number is printed."
+
+
+def test_a_peak_of_a_profile_of_another_problem_is_refused() -> None:
+    own = total("t", "1.0", profile="trapezoidal", problem="one", **CLAIM)
+    peak = claim("p", "peak", derivative="velocity", value="2.0", of="t")
+    text = paper([[0, 1]], own, peak, curve=QUINTIC, velocity=2, acceleration=4)
+    with pytest.raises(CaseError, match="'t' is about another problem"):
+        parse_case(text, "made-up.toml")
+
+
 @pytest.mark.parametrize(
     ("keys", "why"),
     [
