@@ -193,7 +193,8 @@ def shortest_s_curve(start: AxisState, finish: AxisState, sizes: Sizes) -> AxisP
     Returns
     -------
     AxisProfile or None
-        None if no motion keeps the limits.
+        None if none was found: no motion keeps the limits, or one would leave them on the other
+        side while it is braked into them.
     """
     way = finish.position - start.position
     unit = max(

@@ -130,7 +130,7 @@ def _without_totals(study: Study, words: Mapping[str, Judgement]) -> str:
     judged = [c for c in timed if isinstance(c, ProfiledClaim) and c.profile is not None]
     if judged:
         profiles = [*dict.fromkeys(str(c.profile) for c in judged)]
-        return _beside_profiles([words[c.id].verdict for c in judged], profile_called(profiles))
+        return _beside_profiles([words[c.id].verdict for c in judged], profiles)
     curves = dict.fromkeys(c.other_curve for c in timed if c.other_curve is not None)
     if curves:
         named = ", ".join(curves)
@@ -138,11 +138,12 @@ def _without_totals(study: Study, words: Mapping[str, Judgement]) -> str:
     return "No printed total stands beside an optimum."
 
 
-def _beside_profiles(verdicts: Sequence[ClaimVerdict], own: str) -> str:
+def _beside_profiles(verdicts: Sequence[ClaimVerdict], profiles: Sequence[str]) -> str:
     """How many printed times agree with their profiles; what is open accuses none."""
     agree = verdicts.count(ClaimVerdict.SUPPORTED)
     differ = verdicts.count(ClaimVerdict.INCONSISTENT) + verdicts.count(ClaimVerdict.REFUTED)
     if len(verdicts) == 1:
+        own = profile_called(profiles)
         if not agree and not differ:
             return f"Whether the printed time agrees with the {own} is open."
         return f"The printed time {'agrees' if agree else 'does not agree'} with the {own}."
@@ -151,7 +152,7 @@ def _beside_profiles(verdicts: Sequence[ClaimVerdict], own: str) -> str:
         which = "Both" if agree == _FEW else f"All {agree}"
     left = len(verdicts) - agree - differ
     note = f"; {left} {'is' if left == 1 else 'are'} open" if left else ""
-    return f"{which} printed times agree with their {own.replace('profile', 'profiles')}{note}."
+    return f"{which} printed times agree with their {profile_called(profiles, 'profiles')}{note}."
 
 
 @dataclass(frozen=True)

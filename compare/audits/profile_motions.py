@@ -23,8 +23,8 @@ SHORTEST: dict[str, Callable[[AxisState, AxisState, Sizes], AxisProfile | None]]
 }
 """The motion of one axis between two states by the name of its profile."""
 NOT_SHORTEST = {
-    "biagiotti-melchiorri": "profile of Biagiotti and Melchiorri's algorithm",
-    "fourth-order": "fourth-order profile",
+    "biagiotti-melchiorri": "{} of Biagiotti and Melchiorri's algorithm",
+    "fourth-order": "fourth-order {}",
 }
 """Profiles than which a motion within the same limits may be shorter, as sentences call them."""
 _MOST_OPEN = 10
@@ -37,11 +37,12 @@ _JUMP = 0.01
 ordinary digits change them by far less."""
 
 
-def profile_called(profiles: Sequence[str]) -> str:
-    """What a sentence calls some profiles, after "the"."""
+def profile_called(profiles: Sequence[str], noun: str = "profile") -> str:
+    """What a sentence calls some profiles, after "the"; the noun may be plural."""
     shortest = [one for one in profiles if one not in NOT_SHORTEST]
-    said = [f"shortest {' or '.join(shortest)} profile"] if shortest else []
-    return " or ".join(said + [NOT_SHORTEST[one] for one in profiles if one in NOT_SHORTEST])
+    said = [f"shortest {' or '.join(shortest)} {noun}"] if shortest else []
+    others = [NOT_SHORTEST[one].format(noun) for one in profiles if one in NOT_SHORTEST]
+    return " or ".join(said + others)
 
 
 @dataclass(frozen=True)
@@ -72,7 +73,7 @@ class ProfileQuestion:
         Returns
         -------
         tuple of AxisProfile or None
-            None if no motion keeps the limits.
+            None if none was found that keeps the limits.
         """
         found = []
         last = len(self.points) - 2
@@ -332,8 +333,8 @@ def motions(row: PrintedRow[ProfiledClaim], profile: str) -> list[ProfileMotion 
     Returns
     -------
     list of (ProfileMotion or None) or None
-        None for numbers at which no motion keeps the limits, and in place of all if `questions`
-        has no answer.
+        None for numbers at which none was found that keeps the limits, and in place of all if
+        `questions` has no answer.
     """
 
     def compute() -> list[ProfileMotion | None] | None:

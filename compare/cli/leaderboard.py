@@ -20,10 +20,10 @@ def board_cells(board: Board) -> list[tuple[str, ...]]:
     """A line for each optimiser, as `BOARD_COLUMNS`."""
     return [
         (
-            str(place),
+            str(board.place(one) or "–"),
             one.optimizer,
             *(f"{100 * share:.0f} %" for share, _, _ in one.solved),
             percent(one.median) if math.isfinite(one.median) else "none",
         )
-        for place, one in enumerate(board.standings, 1)
+        for one in board.standings
     ]

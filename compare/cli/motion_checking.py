@@ -16,6 +16,7 @@ from ...problem.motions import (
     JointLimits,
     Motion,
     MotionCheck,
+    MotionForm,
     Samples,
     check_motion,
     check_samples,
@@ -84,7 +85,9 @@ def check_file(source: str, options: MotionOptions, as_json: bool, out: Path | N
         how, found = judged(read, limits, how, options.tolerance)
 
         def check(path: Path) -> MotionCheck:
-            again = _read(path, replace(options, topic=None))
+            # Polynomials state their units, and what a bag held is one message.
+            units = options.units if read.form is MotionForm.CSV else None
+            again = _read(path, replace(options, topic=None, units=units))
             return judged(again, limits, how, options.tolerance)[1]
 
         slower = repair and repaired(read, found, repair, check, write_motion)

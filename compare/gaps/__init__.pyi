@@ -50,11 +50,12 @@ from .targets import (
     success_interval,
 )
 from .trial_process import TrialOutcome, run_apart
-from .trials import origin_of, run_trial
+from .trials import DESCENT, origin_of, run_trial
 
 __all__ = [
     "COLUMNS",
     "CURVE_TARGETS",
+    "DESCENT",
     "LADDER",
     "LEADERBOARD",
     "SETTLED",

@@ -1,9 +1,9 @@
-"""The leaderboard: which optimiser gets how near to the proven optimum, over many problems."""
+"""The leaderboard: how near each optimiser gets to the certified optima of many problems."""
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from importlib.resources import files
@@ -16,6 +16,7 @@ from ...problem.suite import load_instance
 from .statistics import quantiles
 from .studies import StudyPlan, parse_study
 from .summaries import LADDER, SOLVED, Summary, read_summaries
+from .trials import DESCENT
 
 LEADERBOARD = "leaderboard"
 """The word by which commands know the shipped study and its results."""
@@ -82,6 +83,15 @@ class Board:
     standings: tuple[Ranked, ...]
     missing: tuple[str, ...]
 
+    @property
+    def searches(self) -> tuple[Ranked, ...]:
+        """Those that see durations alone: all but this package's descent, a reference."""
+        return tuple(one for one in self.standings if one.optimizer != DESCENT)
+
+    def place(self, one: Ranked) -> int | None:
+        """The place of an optimiser among the searches, from 1; None for the reference."""
+        return self.searches.index(one) + 1 if one.optimizer != DESCENT else None
+
 
 def leaderboard_study() -> StudyPlan:
     """The study behind the leaderboard."""
@@ -96,9 +106,7 @@ def leaderboard_rows() -> tuple[Summary, ...]:
     return read_summaries(text)
 
 
-def boards(
-    found: Iterable[Summary], keeping: Callable[[str], bool] = lambda problem: True
-) -> tuple[Board, ...]:
+def boards(found: Iterable[Summary]) -> tuple[Board, ...]:
     """Standings for each budget and handling.
 
     An optimiser stands in a board only with all its runs on all problems of the board, which are
@@ -107,8 +115,6 @@ def boards(
     Parameters
     ----------
     found : iterable of Summary
-    keeping : callable
-        Whether a problem, by its name in rows, takes part.
 
     Returns
     -------
@@ -117,9 +123,8 @@ def boards(
     """
     parts: dict[tuple[int, str], dict[str, dict[str, Summary]]] = {}
     for one in found:
-        if keeping(one.problem):
-            own = parts.setdefault((one.budget, one.handling), {})
-            own.setdefault(one.optimizer, {})[one.problem] = one
+        own = parts.setdefault((one.budget, one.handling), {})
+        own.setdefault(one.optimizer, {})[one.problem] = one
     made = (_board(*key, own) for key, own in sorted(parts.items()))
     return tuple(board for board in made if board.problems)
 

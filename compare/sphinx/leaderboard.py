@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Callable, Sequence
+from functools import lru_cache
 from typing import Any, ClassVar
 
 import numpy as np
@@ -14,11 +16,13 @@ from sphinx.util.docutils import SphinxDirective
 from ...heuristics import KINDS
 from ..documents import percent
 from ..gaps import (
+    DESCENT,
     LADDER,
     SIZES,
     SOLVED,
     Board,
     Ranked,
+    Summary,
     boards,
     curve_of,
     leaderboard_rows,
@@ -28,8 +32,6 @@ from ..gaps import (
 from ..pictures import BoardPanel, Picture, leaderboard_picture
 from .parts import paragraph, picture, table
 
-_REFERENCE = "descent"
-"""Label of this package's own solver."""
 _HANDLINGS = {
     "death-penalty": "Death penalty: a motion beyond a limit is rejected",
     "stretch": "Stretch: it is slowed down until it keeps every limit",
@@ -42,16 +44,15 @@ COLUMNS = ("place", "optimiser", "runs within 1 %", "within 0.1 %", "within 0.01
 """What a row of the table says."""
 
 
+@lru_cache(maxsize=1)
+def _boards() -> dict[tuple[str, int], Board]:
+    """The committed standings: each part of the page asks for one of them."""
+    return {(board.handling, board.budget): board for board in boards(leaderboard_rows())}
+
+
 def board_of(handling: str, budget: int) -> Board:
     """Standings of one handling and budget."""
-    return next(
-        b for b in boards(leaderboard_rows()) if (b.budget, b.handling) == (budget, handling)
-    )
-
-
-def searches(board: Board) -> tuple[Ranked, ...]:
-    """The black boxes of a board: all but this package's own solver."""
-    return tuple(one for one in board.standings if one.optimizer != _REFERENCE)
+    return _boards()[handling, budget]
 
 
 def papers_own(one: Ranked) -> bool:
@@ -61,9 +62,9 @@ def papers_own(one: Ranked) -> bool:
 
 def said(penalty: Board, stretch: Board) -> tuple[str, ...]:
     """What both boards of one budget mean, in four sentences of numbers alone."""
-    strict, loose = searches(penalty), searches(stretch)
+    strict, loose = penalty.searches, stretch.searches
     best, random = strict[0], _named(penalty, "random")
-    reference = _named(penalty, _REFERENCE)
+    reference = _named(penalty, DESCENT)
     solved = round(reference.solved[2][0] * reference.problems)
     return (
         f"With {penalty.budget:,} evaluations and the papers' death penalty, {best.optimizer} is "
@@ -101,16 +102,16 @@ def _papers_best(standings: Sequence[Ranked]) -> str:
 def boards_drawn(panels: Sequence[Board]) -> Picture:
     """The picture of boards with the same budget and problems, one panel each."""
     first = panels[0]
-    count = len(searches(first))
+    runs = max(one.runs // one.problems for one in first.searches)
     title = (
-        f"How near {count} optimisers come to the certified optimum in {first.budget:,} "
-        f"evaluations ({len(first.problems)} instances, 15 runs each)"
+        f"How near {len(first.searches)} optimisers come to the certified optimum in "
+        f"{first.budget:,} evaluations ({len(first.problems)} instances, up to {runs} runs each)"
     )
     return leaderboard_picture([_panel(board) for board in panels], LADDER, title=title)
 
 
 def _panel(board: Board) -> BoardPanel:
-    standings = searches(board)
+    standings = board.searches
     own = next(one for one in standings if papers_own(one))
     marked = {
         f"the first: {standings[0].optimizer}": standings[0],
@@ -126,12 +127,12 @@ def _panel(board: Board) -> BoardPanel:
     )
 
 
-def cells(place: int, one: Ranked) -> list[nodes.Node | str]:
-    """The row of an optimiser, as `COLUMNS`."""
-    black = one.optimizer != _REFERENCE
+def cells(place: int | None, one: Ranked) -> list[nodes.Node | str]:
+    """The row of an optimiser, as `COLUMNS`; the reference has no place."""
+    black = place is not None
     return [
-        str(place) if black else "–",
-        one.optimizer if black else "descent (reference, no black box)",
+        str(place or "–"),
+        one.optimizer if black else f"{one.optimizer} (reference, no black box)",
         *(_with_interval(share, low, high) for share, low, high in one.solved),
         percent(one.median) if math.isfinite(one.median) else "no answer",
         *(_evaluations(ends) if black else "–" for ends in one.expected),
@@ -179,53 +180,40 @@ class Leaderboard(SphinxDirective):
             case "table":
                 return self._table(board_of(handling, budget))
             case "curves":
-                return [self._parts(handling, budget, "curve", curve_of)]
+                return [self._parts(board_of(handling, budget), curve_of, str)]
             case "sizes":
-                return [self._parts(handling, budget, "size", size_of)]
+                return [self._parts(board_of(handling, budget), size_of, SIZES.index)]
         raise self.error("trajgap-leaderboard: say said, picture, table, curves or sizes")
 
     def _table(self, board: Board) -> list[nodes.Node]:
-        places = [one.optimizer for one in searches(board)]
-        rows = [
-            cells(places.index(one.optimizer) + 1 if one.optimizer in places else 0, one)
-            for one in board.standings
-        ]
+        rows = [cells(board.place(one), one) for one in board.standings]
         found: list[nodes.Node] = [table(COLUMNS, rows, "trajgap-sortable")]
         if board.missing:
             found.append(paragraph(f"Not complete yet: {', '.join(board.missing)}."))
         return found
 
     def _parts(
-        self, handling: str, budget: int, name: str, part_of: Callable[[str], str]
+        self, board: Board, part_of: Callable[[str], str], order: Callable[[str], Any]
     ) -> nodes.table:
         """Share of runs within 0.1 % in each class of instances."""
-        board = board_of(handling, budget)
-        found = {part_of(problem) for problem in board.problems}
-        parts = sorted(found, key=lambda one: SIZES.index(one) if one in SIZES else 0)
-        if name == "curve":
-            parts = sorted(found)
-        each = {part: _within(part, part_of, board) for part in parts}
+        classes = {problem: part_of(problem) for problem in board.problems}
+        parts = sorted(set(classes.values()), key=order)
+        found: dict[tuple[str, str], list[Summary]] = {}
+        for row in leaderboard_rows():
+            asked = (row.budget, row.handling) == (board.budget, board.handling)
+            if asked and row.problem in classes:
+                found.setdefault((row.optimizer, classes[row.problem]), []).append(row)
         rows = [
-            [one.optimizer, *(each[part].get(one.optimizer, "–") for part in parts)]
+            [one.optimizer, *(_share_of(found[one.optimizer, part]) for part in parts)]
             for one in board.standings
         ]
-        counts = [sum(part_of(problem) == part for problem in board.problems) for part in parts]
-        heads = [f"{part} ({count})" for part, count in zip(parts, counts, strict=True)]
+        counts = Counter(classes.values())
+        heads = [f"{part} ({counts[part]})" for part in parts]
         return table(("optimiser", *heads), rows, "trajgap-sortable")
 
 
-def _within(part: str, part_of: Callable[[str], str], board: Board) -> dict[str, nodes.Node]:
-    kept = [
-        one
-        for one in boards(
-            leaderboard_rows(),
-            lambda problem: problem in board.problems and part_of(problem) == part,
-        )
-        if (one.budget, one.handling) == (board.budget, board.handling)
-    ]
-    found = {}
-    for one in (standing for whole in kept for standing in whole.standings):
-        share = one.solved[_MIDDLE][0]
-        ends = success_interval(round(share * one.runs), one.runs)
-        found[one.optimizer] = _with_interval(share, *ends)
-    return found
+def _share_of(rows: Sequence[Summary]) -> nodes.Node:
+    """Share of the runs within 0.1 %, each problem counting alike, with Wilson's interval."""
+    at, runs = LADDER.index(SOLVED[_MIDDLE]), sum(row.runs for row in rows)
+    share = float(np.mean([row.within[at] / row.runs for row in rows]))
+    return _with_interval(share, *success_interval(round(share * runs), runs))

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..errors import CaseError, TrajgapError
-from ..units import scale
+from ..units import is_linear, scale
 from .digits import HalfUnits
 from .motion import Motion
 from .parquet_file import read_parquet
@@ -94,7 +94,7 @@ class ForeignFile:
         """
         content = self.content
         if isinstance(content, Motion):
-            slides = [one not in ("rad", "deg") for one in self.units]
+            slides = [is_linear(one) for one in self.units]
             return json.dumps(polynomial_json(content, slides)) + "\n"
         if self.controller:
             return json.dumps(message_of_samples(content), indent=1) + "\n"

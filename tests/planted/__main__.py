@@ -85,7 +85,7 @@ def plant(
                     seconds,
                     fault.file,
                     source,
-                    interpreted=fault.file in COMPILED,
+                    interpreted=COMPILED in source,
                 )
             )
         else:

@@ -36,11 +36,9 @@ OPTIONS = [
 """Of every run: nothing is kept between runs, and a file of tests may be loaded again."""
 COMPILING = "tests/problem/curves/test_kernels.py"
 """Tests that call every function that numba compiles."""
-COMPILED = ("problem/curves/kernel.py", "problem/curves/blocks.py")
-"""Sources of compiled functions: with a fault, they are interpreted, since compiling takes longer.
-
-Their callers are known of the tests beside them alone, which are recorded without the compiler.
-"""
+COMPILED = "\n@compiled\n"
+"""What sources of compiled functions hold. With a fault they are interpreted, since compiling takes
+longer; their callers are known of the tests beside them alone, recorded without the compiler."""
 ENVIRONMENT = {
     "OPENBLAS_NUM_THREADS": "1",  # cores are shared out by -n
     "OMP_NUM_THREADS": "1",

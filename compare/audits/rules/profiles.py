@@ -150,7 +150,7 @@ def _not_computed(asked: _Asked) -> str | None:
     if every is None:
         return "More numbers stand for intervals than can be combined."
     if every[0] is None:
-        return f"No {profile} profile joins the states at both ends within the limits."
+        return f"No {profile} profile between the states at both ends was found within the limits."
     return _out_of_range(problem, every[0])
 
 
@@ -175,7 +175,9 @@ def _total_beside(asked: _Asked) -> Finding:
     straight = claim.path == "straight"
     notes: tuple[str, ...] = ()
     verdict, kind, said = ClaimVerdict.SUPPORTED, "fits", "which fits"
-    if asked.resting and asked.profile in PROFILES:
+    # The closed forms grow with the way and fall with the limits: two of them enclose all others.
+    enclosed = asked.resting and asked.profile in PROFILES
+    if enclosed:
         how = f"from rest to rest, {_PATHS[straight]},"
         plain, fits = _fitted(asked, number, straight)
         if plain == 0.0 < number.value:
@@ -204,6 +206,7 @@ def _total_beside(asked: _Asked) -> Finding:
         asked,
         verdict,
         kind,
+        enclosed,
         printed=f"{claim.value} {unit}",
         computed=f"{plain:.6g} s",
         sentences=(
@@ -214,11 +217,14 @@ def _total_beside(asked: _Asked) -> Finding:
     )
 
 
-def _found(asked: _Asked, verdict: ClaimVerdict, kind: str, **facts: Any) -> Finding:
+def _found(
+    asked: _Asked, verdict: ClaimVerdict, kind: str, enclosed: bool = False, **facts: Any
+) -> Finding:
+    """A finding that speaks of all that rounds to the digits: enclosed, or tried at their ends."""
     return Finding(
         rule="TG304",
         verdict=verdict,
-        basis=Basis.CHECK,
+        basis=Basis.CHECK if enclosed else Basis.COMPUTED,
         claim=asked.claim.id,
         problem=asked.row.problem,
         reading=asked.row.reading,

@@ -212,6 +212,22 @@ def test_a_repaired_message_and_polynomials_come_as_they_came_in(run, folder):
     assert json.loads((folder / "q.json").read_text())["breaks"] == [1.0, pytest.approx(4.0)]
 
 
+def test_a_repaired_file_is_read_back_whatever_was_stated_of_the_first(run, folder):
+    """Units and names are of the first file: polynomials state their own, tables have a header."""
+    cubic = {"joints": ["j1"], "x": [1.0, 3.0], "c": [[[-25.0]], [[75.0]], [[0.0]], [[0.0]]]}
+    (folder / "p.json").write_text(json.dumps(cubic))
+    flags = ["--velocity", "50", "--units", "deg", "--repair", "q.json"]
+    found = run.document("check", "p.json", *flags)["repaired"]
+    assert found["result"]["verdict"] == "pass"
+    assert found["slow_down"] == pytest.approx(1.5)
+    np.savetxt("h.csv", [[0, 0], [1, 1], [2, 3], [3, 4], [4, 4]], delimiter=",")
+    flags = ["--joints", "arm", "--velocity", "0.5", "--interpolation", "spline"]
+    flags += ["--repair", "s.csv"]
+    found = run.document("check", "h.csv", *flags)["repaired"]
+    assert found["result"]["verdict"] == "pass"
+    assert (folder / "s.csv").read_text().startswith("time,arm\n")
+
+
 def test_what_no_slow_down_repairs_is_not_written(run, folder):
     flags = ["--position", "-1:1", "--interpolation", "quintic", "--repair", "slow.csv"]
     found = run.document("check", "m.csv", *flags)

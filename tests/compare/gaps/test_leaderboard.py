@@ -8,7 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from support.small_studies import small_trial
+from trajgap.compare.cli.leaderboard import board_cells
 from trajgap.compare.gaps import (
+    DESCENT,
     LADDER,
     SOLVED,
     Bracket,
@@ -83,9 +85,20 @@ def test_a_board_weighs_problems_alike_and_takes_complete_optimisers_alone() -> 
     assert np.isinf(bad.expected[2][0])
     # Two problems are drawn: both a, both b, or one of each.
     assert good.solved[0][1:] == (0.5, 1.0)
-    (alone,) = boards(rows, lambda problem: problem == "a")
+    (alone,) = boards([row for row in rows if row.problem == "a"])
     assert [one.optimizer for one in alone.standings[:2]] == ["good", "once"]
     assert alone.missing == ()
+
+
+def test_the_reference_takes_no_place_of_an_optimiser() -> None:
+    (board,) = boards([made("a", DESCENT, 10), made("a", "good", 5), made("a", "bad", 0)])
+    assert [(one.optimizer, board.place(one)) for one in board.standings] == [
+        (DESCENT, None),
+        ("good", 1),
+        ("bad", 2),
+    ]
+    shown = [cells[:2] for cells in board_cells(board)]
+    assert shown == [("–", DESCENT), ("1", "good"), ("2", "bad")]
 
 
 def test_summaries_are_read_as_they_were_written() -> None:
