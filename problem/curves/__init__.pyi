@@ -23,7 +23,6 @@ from .interpolant import (
     MOST_OPEN,
     Interpolant,
     as_piecewise,
-    coefficients_of_many,
     right_hand_sides,
 )
 from .kind import Curve, Derivatives, Enclosed, Timing, as_curve, as_durations, fit
@@ -33,7 +32,6 @@ from .peak import (
     PeakGradients,
     extrema,
     furthest,
-    near_extrema,
 )
 from .polynomials import (
     MAX_COEFFICIENTS,
@@ -91,7 +89,6 @@ __all__ = [
     "clamped_control_points",
     "clamped_readings",
     "clock_matrix",
-    "coefficients_of_many",
     "control_vertices",
     "counts_in_words",
     "cubic_spline",
@@ -103,7 +100,6 @@ __all__ = [
     "fractions_of",
     "furthest",
     "jtraj",
-    "near_extrema",
     "numerators",
     "piecewise",
     "places_of",

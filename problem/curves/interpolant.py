@@ -24,7 +24,7 @@ from .kind import (
 )
 from .peak import Extremum, PeakGradients
 from .polynomials import MAX_COEFFICIENTS
-from .population import batch_coefficients, batch_reach
+from .population import batch_reach
 from .refined import refined_coefficients
 from .system import DENSE_UNKNOWNS, system
 from .trajectory import Trajectory
@@ -403,17 +403,6 @@ def right_hand_sides(interpolant: Interpolant, waypoints: Array, nodal: Array | 
         rows = plan.nodal >= 0
         values[rows] = nodal[plan.nodal[rows]]
     return values
-
-
-def coefficients_of_many(
-    interpolant: Interpolant, waypoints: Array, durations: Array, nodal: Array | None = None
-) -> Array:
-    """Scaled coefficients of many duration vectors, shape (vectors, segments, 10, joints).
-
-    Not finite where the system is singular.
-    """
-    values = right_hand_sides(interpolant, waypoints, nodal)
-    return batch_coefficients(interpolant.layout, values, durations)
 
 
 def _unit_matrix(conditions: Conditions) -> Array:

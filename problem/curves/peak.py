@@ -80,32 +80,12 @@ def extrema(trajectory: Trajectory, joint: int, order: int) -> list[Extremum]:
     list of Extremum
         The largest absolute value over all t is among them.
     """
-    pieces, places, values = near_extrema(trajectory, joint, order, np.inf, -np.inf)
-    times = trajectory.times(pieces, places).tolist()
-    rows = zip(pieces.tolist(), places.tolist(), times, values.tolist(), strict=True)
-    return [Extremum(joint, k, order, s, time, value) for k, s, time, value in rows]
-
-
-def near_extrema(
-    trajectory: Trajectory, joint: int, order: int, low: float, high: float
-) -> tuple[NDArray[np.int64], Array, Array]:
-    """Pieces, places and values of the extrema that lie at most at ``low`` or at least at ``high``.
-
-    Parameters
-    ----------
-    trajectory : Trajectory
-    joint, order : int
-    low, high : float
-        rad/sᵒʳᵈᵉʳ; what is not a number lies beyond both.
-
-    Returns
-    -------
-    pieces, places, values : ndarray, shape (extrema,)
-        In order of time.
-    """
     places, values = (found[:, :, joint].T for found in trajectory.turns(order))
-    wanted = ~np.isnan(places) & ~((values > low) & (values < high))
-    return np.nonzero(wanted)[0], places[wanted], values[wanted]
+    known = ~np.isnan(places)
+    pieces, s = np.nonzero(known)[0], places[known]
+    columns = pieces, s, trajectory.times(pieces, s), values[known]
+    rows = zip(*(column.tolist() for column in columns), strict=True)
+    return [Extremum(joint, k, order, s, time, value) for k, s, time, value in rows]
 
 
 @dataclass(frozen=True, eq=False)

@@ -59,24 +59,3 @@ def batch_reach(
     with ThreadPoolExecutor(workers) as pool:
         list(pool.map(run, cuts[:-1], cuts[1:]))
     return peaks
-
-
-def batch_coefficients(layout: Layout, values: Array, durations: Array) -> Array:
-    """Coefficients of many duration vectors, shape (vectors, segments, 10, joints).
-
-    Not finite where the system is singular.
-    """
-    from . import kernel
-
-    vectors, joints = len(durations), values.shape[1]
-    flat = np.empty((int(layout.first[-1]), joints * vectors))
-    lower, upper = layout.bandwidths
-    system = np.empty((layout.unknowns, 2 * lower + upper + 1, vectors))
-    right = np.empty((layout.unknowns, joints * vectors))
-    # Durations that may be written into: compiled for them alone.
-    h = np.array(durations.T, order="C")
-    kernel.fit_coefficients(h, vectors, values, *layout.rows, system, right, flat)
-    out = np.zeros((vectors, layout.segments, PERM.shape[0], joints))
-    segment, power = layout.places
-    out[:, segment, power] = flat.reshape(-1, joints, vectors).transpose(2, 0, 1)
-    return out

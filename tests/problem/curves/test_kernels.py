@@ -19,15 +19,9 @@ from trajgap.problem import (
     check,
     cubic_spline,
     evaluate,
-    fit,
     uniform_cubic_b_spline,
 )
-from trajgap.problem.curves import (
-    PERM,
-    coefficients_of_many,
-    kernel,
-    population,
-)
+from trajgap.problem.curves import PERM, kernel, population
 
 JOINTS = 3
 CURVES: dict[str, Curve] = {
@@ -74,18 +68,6 @@ def test_no_vector_looks_at_another(name: str, monkeypatch: pytest.MonkeyPatch) 
     np.testing.assert_array_equal(found[:, 0], found[:, 1:].max(axis=1))
     monkeypatch.setattr(population, "_PART", 20)
     np.testing.assert_array_equal(curve.batch_reach(values, h, *asked), found)
-
-
-@pytest.mark.parametrize("name", [*DECLARATIONS, *FREE])
-def test_many_fits_are_those_of_one(name: str) -> None:
-    curve = CURVES[name]
-    q, _, free = drawn(curve, 4)
-    h = np.exp(np.random.default_rng(1).normal(size=(20, curve.segments)))
-    nodal = free if name in FREE else None
-    found = coefficients_of_many(curve, q, h, nodal)
-    one_by_one = np.array([fit(curve, q, one, nodal).scaled for one in h])
-    sizes = np.abs(one_by_one).max(axis=(1, 2, 3), keepdims=True)
-    np.testing.assert_allclose(found / sizes, one_by_one / sizes, atol=1e-11)
 
 
 # --- what may not be written into -----------------------------------------------------------------
