@@ -25,7 +25,7 @@ from .interpolant import (
     as_piecewise,
     right_hand_sides,
 )
-from .kind import Curve, Derivatives, Enclosed, Timing, as_curve, as_durations, fit
+from .kind import Asked, Curve, Derivatives, Enclosed, Timing, as_curve, as_durations, fit
 from .peak import (
     Extremum,
     Furthest,
@@ -60,6 +60,7 @@ __all__ = [
     "MOST_OPEN",
     "PERM",
     "Adjoint",
+    "Asked",
     "ClampedBSpline",
     "ClampedReading",
     "ClockedTrajectory",

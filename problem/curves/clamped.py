@@ -7,7 +7,7 @@ from enum import StrEnum
 from itertools import product
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ..arrays import Array
 from ..errors import TrajgapError
@@ -21,8 +21,8 @@ from .clamped_declaration import (
     nearest_reading,
 )
 from .clamped_fit import (
+    clamped_by_durations,
     clamped_enclosed,
-    clamped_gradients,
     clamped_reach,
     clamped_shape,
     splines_of,
@@ -30,6 +30,7 @@ from .clamped_fit import (
 from .condition import counts_in_words
 from .families import piecewise, quintic_spline
 from .kind import (
+    Asked,
     Curve,
     Derivatives,
     Enclosed,
@@ -39,7 +40,7 @@ from .kind import (
     as_durations,
     as_waypoints,
 )
-from .peak import Extremum, PeakGradients
+from .peak import Extremum
 from .stretched import StretchedCurve
 
 
@@ -139,30 +140,17 @@ class ClampedBSpline(ClampedDeclaration, StretchedCurve):
         """The way-points themselves, unless stretched."""
         return super().motion_values(waypoints) if self.stretched else waypoints
 
-    def batch_reach(
-        self,
-        values: Array,
-        durations: Array,
-        wanted: NDArray[np.bool_],
-        sides: tuple[float, ...],
-        least: int = 1,
-    ) -> Array:
+    def batch_reach(self, values: Array, durations: Array, asked: Asked) -> Array:
         """Of all pieces at once."""
         if self.stretched:
-            return super().batch_reach(values, durations, wanted, sides, least)
-        return clamped_reach(self, values, as_batch(self, durations), wanted, sides, least)
+            return super().batch_reach(values, durations, asked)
+        return clamped_reach(self, values, as_batch(self, durations), asked)
 
-    def value_gradients(
-        self,
-        waypoints: Array,
-        durations: Array,
-        points: list[Extremum],
-        nodal: Array | None = None,
-    ) -> PeakGradients:
-        """By complex steps in the durations; by the way-points with knots and parameters held."""
+    def by_durations(self, waypoints: Array, durations: Array, points: list[Extremum]) -> Array:
+        """By complex steps; segments that are stretched in closed form."""
         if self.stretched:
-            return super().value_gradients(waypoints, durations, points)
-        return clamped_gradients(self, waypoints, durations, points)
+            return super().by_durations(waypoints, durations, points)
+        return clamped_by_durations(self, waypoints, durations, points)
 
 
 def clamped_control_points(

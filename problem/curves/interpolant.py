@@ -8,13 +8,13 @@ from functools import cached_property, partial
 from itertools import product
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..arrays import Array
 from ..errors import SingularError, TrajgapError
 from .adjoint import Adjoint, places_of
 from .condition import ConditionKind, Conditions, Layout, conditions_of, counts_in_words
 from .kind import (
+    Asked,
     Curve,
     Derivatives,
     Enclosed,
@@ -242,23 +242,12 @@ class Interpolant(Curve):
         values[(layout.orders == 0) & (layout.kinds != ConditionKind.MATCH)] -= waypoints[0]
         return values
 
-    def batch_reach(
-        self,
-        values: Array,
-        durations: Array,
-        wanted: NDArray[np.bool_],
-        sides: tuple[float, ...],
-        least: int = 1,
-    ) -> Array:
+    def batch_reach(self, values: Array, durations: Array, asked: Asked) -> Array:
         """By the compiled kernel, on several threads where that pays."""
-        return batch_reach(self.layout, values, as_batch(self, durations), wanted, sides, least)
+        return batch_reach(self.layout, values, as_batch(self, durations), asked)
 
     def value_gradients(
-        self,
-        waypoints: Array,
-        durations: Array,
-        points: list[Extremum],
-        nodal: Array | None = None,
+        self, waypoints: Array, durations: Array, points: list[Extremum], nodal: Array | None = None
     ) -> PeakGradients:
         """Gradients by implicit differentiation of the linear system."""
         return self.adjoint(waypoints, durations, nodal).gradients(places_of(points))

@@ -6,10 +6,10 @@ import os
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..arrays import Array
 from .condition import Layout
+from .kind import Asked
 from .polynomials import PERM
 
 _PART = 1000
@@ -17,14 +17,7 @@ _PART = 1000
 costs more than it saves."""
 
 
-def batch_reach(
-    layout: Layout,
-    values: Array,
-    durations: Array,
-    wanted: NDArray[np.bool_],
-    sides: tuple[float, ...],
-    least: int,
-) -> Array:
+def batch_reach(layout: Layout, values: Array, durations: Array, asked: Asked) -> Array:
     """`Curve.batch_reach` of a declared curve.
 
     Parameters
@@ -32,7 +25,7 @@ def batch_reach(
     layout : Layout
     values : ndarray, shape (rows, joints)
         What the conditions give, positions counted from the first way-point.
-    durations, wanted, sides, least
+    durations, asked
         As `Curve.batch_reach` takes them.
 
     Returns
@@ -43,12 +36,12 @@ def batch_reach(
     from . import kernel
 
     vectors, joints = len(durations), values.shape[1]
-    peaks = np.empty((vectors, len(sides), *wanted.shape))
-    rows = layout.rows
+    peaks = asked.room(vectors)
+    rows, sides = layout.rows, np.array(asked.sides)
 
     def run(first: int, last: int) -> None:
-        part = durations[first:last], values, *rows, PERM, wanted, least, np.array(sides)
-        kernel.batch_peaks(*part, peaks[first:last])
+        part = durations[first:last], values, *rows, PERM
+        kernel.batch_peaks(*part, asked.wanted, asked.least, sides, peaks[first:last])
 
     parts = vectors * joints // _PART
     if parts < 4:

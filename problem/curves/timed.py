@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import Array
 from ..errors import CurveError, TrajgapError
-from .kind import Enclosed, are_durations
+from .kind import Asked, Enclosed, are_durations
 from .peak import Extremum
 from .polynomials import (
     LOOSE,
@@ -158,7 +158,7 @@ class ClockedTrajectory(Trajectory):
         speed = derived(self._time[:, own], 1)
         return places, _in_time(self.numerators[order - 1][:, own], speed, order, places)
 
-    def derivative(self, segment: int, joint: int, order: int) -> Array:
+    def derivative(self, segment: int, joint: int | slice, order: int) -> Array:
         """Refuse: a derivative in time is no polynomial.
 
         Raises
@@ -181,7 +181,7 @@ class ClockedTrajectory(Trajectory):
         """Never: time is not linear in the parameter."""
         return False
 
-    def values(self, piece: int, joint: int, order: int, places: Array) -> Array:
+    def values(self, piece: int, joint: int | slice, order: int, places: Array) -> Array:
         """Derivative in time, up to order 4, at places of a piece."""
         if order == 0:
             return super().values(piece, joint, 0, places)
@@ -333,9 +333,7 @@ def runs_forwards(nodes: Array, durations: Array) -> tuple[Array, NDArray[np.boo
     return clocks, np.asarray(valid & (least > 0.0))
 
 
-def clocked_reach(
-    q: Array, clocks: Array, wanted: NDArray[np.bool_], sides: tuple[float, ...], least: int
-) -> Array:
+def clocked_reach(q: Array, clocks: Array, asked: Asked) -> Array:
     """How far derivatives in time go under many clocks that run forwards.
 
     On a piece Bernstein coefficients bound N_r, its least value t′; where that stays below what
@@ -347,26 +345,24 @@ def clocked_reach(
         Coefficients of q(e).
     clocks : ndarray, shape (4, batch, pieces)
         Of t(e).
-    wanted, sides, least
-        As `Curve.batch_reach` takes them.
 
     Returns
     -------
     ndarray, shape (batch, sides, joints, orders)
     """
-    found = np.zeros((clocks.shape[1], len(sides), *wanted.shape))
-    orders = (np.flatnonzero(wanted.any(axis=0)) + least).tolist()
+    found = asked.room(clocks.shape[1])
+    orders = (np.flatnonzero(asked.wanted.any(axis=0)) + asked.least).tolist()
     a, t = q.transpose(1, 0, 2)[:, None], clocks[..., None]
     speed = derived(t, 1)
     slowest = _least_speed(speed)[0]
     known = numerators(a, t, max(orders) + 1) if max(orders) else []
     for r in orders:
-        for side, sign in enumerate(sides):
+        for side, sign in enumerate(asked.sides):
             if r == 0:
                 top = tops(a, sign)
             else:
                 top = _tops_in_time(known[r - 1 : r + 1], speed, slowest ** (2 * r - 1), r, sign)
-            found[:, side, :, r - least] = top
+            found[:, side, :, r - asked.least] = top
     return found
 
 
