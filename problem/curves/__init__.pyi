@@ -3,10 +3,10 @@ from .clamped import (
     ClampedBSpline,
     ClampedReading,
     Count,
-    clamped_control_points,
     clamped_readings,
 )
 from .clamped_declaration import Knots, Parameters, average_matrix, fractions_of
+from .clamped_fit import splines_of
 from .condition import ConditionKind, Conditions, Layout, counts_in_words
 from .families import (
     cubic_spline,
@@ -87,7 +87,6 @@ __all__ = [
     "as_piecewise",
     "average_matrix",
     "bernstein",
-    "clamped_control_points",
     "clamped_readings",
     "clock_matrix",
     "control_vertices",
@@ -113,6 +112,7 @@ __all__ = [
     "shape_matrix",
     "shape_of",
     "solve_in_closed_form",
+    "splines_of",
     "three_five_three",
     "uniform_cubic_b_spline",
     "valued",

@@ -7,7 +7,6 @@ from enum import StrEnum
 from itertools import product
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from ..arrays import Array
 from ..errors import TrajgapError
@@ -25,7 +24,6 @@ from .clamped_fit import (
     clamped_enclosed,
     clamped_reach,
     clamped_shape,
-    splines_of,
 )
 from .condition import counts_in_words
 from .families import piecewise, quintic_spline
@@ -37,8 +35,6 @@ from .kind import (
     Shape,
     Timing,
     as_batch,
-    as_durations,
-    as_waypoints,
 )
 from .peak import Extremum
 from .stretched import StretchedCurve
@@ -151,44 +147,6 @@ class ClampedBSpline(ClampedDeclaration, StretchedCurve):
         if self.stretched:
             return super().by_durations(waypoints, durations, points)
         return clamped_by_durations(self, waypoints, durations, points)
-
-
-def clamped_control_points(
-    curve: ClampedBSpline, waypoints: ArrayLike, durations: ArrayLike
-) -> tuple[Array, Array]:
-    """Control points of each joint, and the knots they belong to.
-
-    Parameters
-    ----------
-    curve : ClampedBSpline
-        With time "timed".
-    waypoints : array_like, shape (way-points, joints)
-        rad.
-    durations : array_like, shape (segments,)
-        s.
-
-    Returns
-    -------
-    control : ndarray, shape (control points, joints)
-        rad.
-    knots : ndarray, shape (control points + degree + 1, joints)
-        s.
-
-    Raises
-    ------
-    TrajgapError
-        If shapes disagree, a duration is not positive, or no such curve passes the way-points.
-    """
-    q = as_waypoints(curve, waypoints)
-    h = as_durations(durations, curve.segments)
-    splines = splines_of(curve, q, h)
-    p = curve.degree
-    columns = [
-        np.concatenate([np.zeros(p), s.breaks, np.full(p, s.breaks[-1])])
-        for s in splines
-        for _ in range(s.scaled.shape[2])
-    ]
-    return np.concatenate([s.control for s in splines], axis=1), np.stack(columns, axis=1)
 
 
 DEGREES = (3, 4, 5, 6, 7)

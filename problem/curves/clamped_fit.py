@@ -12,8 +12,8 @@ from ..arrays import Array
 from ..errors import CurveError
 from .clamped_declaration import ClampedDeclaration, average_matrix, fractions_of, inside_support
 from .kind import STEP, Asked, Enclosed, Shape, are_durations, masked, value_errors
-from .peak import Extremum, rows_at
-from .polynomials import MAX_COEFFICIENTS, PERM, Numbers, derived, tops
+from .peak import Extremum
+from .polynomials import MAX_COEFFICIENTS, PERM, Numbers, derived, tops, valued
 from .refined import contained
 from .trajectory import Trajectory
 
@@ -36,13 +36,11 @@ class Spline:
     scaled, error : ndarray, shape (pieces, powers, joints)
         Ascending coefficients in the piece's own 0..1, and a bound on their error; no bound of
         complex numbers.
-    control : ndarray, shape (control points, joints)
     """
 
     breaks: Numbers
     scaled: Numbers
     error: Array
-    control: Numbers
 
     @property
     def lengths(self) -> Array:
@@ -153,7 +151,7 @@ def _interpolated(
 
     if np.iscomplexobj(matrix):
         solved = np.linalg.solve(matrix, right)
-        return Spline(breaks, powers(solved, bases), np.empty(0), solved)
+        return Spline(breaks, powers(solved, bases), np.empty(0))
     narrow = matrix.astype(np.float64)
     try:
         inverse = np.linalg.inv(narrow)
@@ -175,10 +173,8 @@ def _interpolated(
         raise _not_passing(curve, 0)
     scaled = powers(control, bases)
     error = powers(unsure.astype(matrix.dtype), sizes) + rounding * powers(np.abs(control), sizes)
-    breaks, scaled, error, control = (
-        np.asarray(one, dtype=np.float64) for one in (breaks, scaled, error, control)
-    )
-    return Spline(breaks, scaled, error + _EPS * np.abs(scaled), control)
+    scaled, error = (np.asarray(one, dtype=np.float64) for one in (scaled, error))
+    return Spline(breaks.astype(np.float64), scaled, error + _EPS * np.abs(scaled))
 
 
 def _not_passing(curve: ClampedDeclaration, waypoint: int) -> CurveError:
@@ -193,7 +189,13 @@ def _not_passing(curve: ClampedDeclaration, waypoint: int) -> CurveError:
 
 
 def splines_of(curve: ClampedDeclaration, waypoints: Numbers, durations: Numbers) -> list[Spline]:
-    """Splines of the joints in time: one for all, or one for each."""
+    """Splines of the joints in time: one for all, or one for each, between its own knots.
+
+    Raises
+    ------
+    CurveError
+        If no such curve passes the way-points at these times.
+    """
     times = np.concatenate([np.zeros(1, dtype=durations.dtype), np.cumsum(durations)])
     average, fractions = average_matrix(curve), fractions_of(curve, waypoints.real)
     if fractions is None:
@@ -302,15 +304,15 @@ def clamped_by_durations(
     curve: ClampedDeclaration, waypoints: Array, durations: Array, points: list[Extremum]
 ) -> Array:
     """`Curve.by_durations` of a curve whose time is not stretched, by complex steps."""
-    found, rows = np.empty((len(points), curve.segments)), rows_at(points)
+    found = np.empty((len(points), curve.segments))
     for k in range(curve.segments):
         step = durations.astype(np.complex128)
         step[k] += 1j * STEP
         moved = _joined(splines_of(curve, waypoints, step))
         widths = np.diff(moved.breaks)
-        for i, (e, row) in enumerate(zip(points, rows, strict=True)):
-            value = row @ moved.scaled[e.segment, :, e.joint] / widths[e.segment] ** e.order
-            found[i, k] = value.imag / STEP
+        for i, e in enumerate(points):
+            own = derived(moved.scaled[e.segment, :, e.joint], e.order)
+            found[i, k] = (valued(own, e.s) / widths[e.segment] ** e.order).imag / STEP
     return found
 
 

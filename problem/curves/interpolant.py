@@ -24,7 +24,6 @@ from .kind import (
 )
 from .peak import Extremum, PeakGradients
 from .polynomials import MAX_COEFFICIENTS
-from .population import batch_reach
 from .refined import refined_coefficients
 from .system import DENSE_UNKNOWNS, system
 from .trajectory import Trajectory
@@ -243,8 +242,10 @@ class Interpolant(Curve):
         return values
 
     def batch_reach(self, values: Array, durations: Array, asked: Asked) -> Array:
-        """By the compiled kernel, on several threads where that pays."""
-        return batch_reach(self.layout, values, as_batch(self, durations), asked)
+        """By the compiled kernel."""
+        from .kernel import reach_of
+
+        return reach_of(self.layout, values, as_batch(self, durations), asked)
 
     def value_gradients(
         self, waypoints: Array, durations: Array, points: list[Extremum], nodal: Array | None = None

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array, over_rows
-from .polynomials import LOOSE, bernstein, derivative_rows
+from .polynomials import LOOSE, bernstein
 from .trajectory import Trajectory
 
 
@@ -56,12 +56,6 @@ class PeakGradients:
     durations: Array
     waypoints: Array
     nodal: Array
-
-
-def rows_at(points: list[Extremum]) -> Array:
-    """Weights of ten coefficients in derivatives by s at some places, shape (places, 10)."""
-    orders = np.array([e.order for e in points], dtype=np.int64)
-    return derivative_rows(np.array([e.s for e in points]), orders)
 
 
 def extrema(trajectory: Trajectory, joint: int, order: int) -> list[Extremum]:
@@ -120,19 +114,9 @@ class Furthest:
     def largest(self, trajectory: Trajectory, joint: int, errors: Array) -> tuple[Extremum, float]:
         """The largest size of a joint, the first of equal ones, and a bound on its error.
 
-        Parameters
-        ----------
-        trajectory : Trajectory
-        joint : int
-        errors : ndarray, shape (pieces, joints)
-            As `furthest` has got them.
-
-        Returns
-        -------
-        Extremum, float
-            The true peak is at least its own extremum less that one's error, and at most the
-            largest sum of an extremum and its error: a short segment, whose error is large but
-            whose values are small, does not blur the peak of another.
+        With the errors that `furthest` has got, the true peak is at least its own extremum less
+        that one's error, and at most the largest sum of an extremum and its error: a short segment,
+        whose error is large but whose values are small, does not blur the peak of another.
         """
         sizes = np.abs(self.values[:, joint])
         where = [(self.pieces[side, joint], self.places[side, joint]) for side in (0, 1)]

@@ -61,16 +61,8 @@ def bernstein(a: Array) -> Array:
 def tops(a: Array, side: float) -> Array:
     """Largest values on [0, 1] over several pieces, found where bounds leave them open.
 
-    Parameters
-    ----------
-    a : ndarray, shape (powers, batch, pieces, joints)
-        Ascending coefficients.
-    side : float
-        0 for sizes; 1 for values above 0, −1 for those below, as sizes.
-
-    Returns
-    -------
-    ndarray, shape (batch, joints)
+    From ascending coefficients, shape (powers, batch, pieces, joints), for each vector of the batch
+    and joint; a side is one of `Asked.sides`.
     """
 
     def sized(value: Array) -> Array:

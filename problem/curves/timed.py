@@ -122,30 +122,19 @@ class ClockedTrajectory(Trajectory):
     def __call__(self, time: ArrayLike, order: int = 0) -> Array:
         """Derivative ``order`` in time at ``time`` (s), by inverting t(e)."""
         t = np.asarray(time, dtype=np.float64)
-        flat = t.ravel()
         last = len(self.clock) - 1
-        piece = np.clip(np.searchsorted(self.breaks, flat, side="right") - 1, 0, last)
-        values = np.empty((flat.size, self.joints))
-        for i, (k, target) in enumerate(zip(piece, flat, strict=True)):
-            e = np.array(self.place(int(k), float(target)))
-            values[i] = [self.values(int(k), j, order, e) for j in range(self.joints)]
-        return values.reshape(*t.shape, self.joints)
-
-    def place(self, piece: int, time: float) -> float:
-        """Parameter of the piece at which a time is reached; Newton steps within bisection."""
-        a = self.clock[piece].copy()
-        a[0] -= time
-        slope = derived(a, 1)
-        low, high, e = 0.0, 1.0, 0.5
-        for _ in range(100):
-            value = float(valued(a, e))
-            low, high = (e, high) if value < 0 else (low, e)
-            step = e - value / float(valued(slope, e))
-            step = step if low <= step <= high else 0.5 * (low + high)
-            if abs(step - e) <= 1e-16:
-                break
-            e = step
-        return e
+        piece = np.clip(np.searchsorted(self.breaks, t.ravel(), side="right") - 1, 0, last)
+        level = self.clock[piece].T
+        level[0] -= t.ravel()
+        # One root, as time grows; none at an end, nor beyond it.
+        found = np.fmax.reduce(roots_in_unit(level), axis=0)
+        places = np.where(np.isnan(found), level[0] < 0.0, found)
+        every = slice(None)
+        values = [
+            self.values(k, every, order, e)
+            for k, e in zip(piece.tolist(), places[:, None], strict=True)
+        ]
+        return np.array(values).reshape(*t.shape, self.joints)
 
     def turns(self, order: int, pieces: NDArray[np.int64] | None = None) -> tuple[Array, Array]:
         """As `Trajectory.turns`, of derivatives that are no polynomials."""
@@ -212,41 +201,11 @@ class ClockedTrajectory(Trajectory):
         return values[1, :-1], values[0, 1:], sizes[1, :-1] + sizes[0, 1:]
 
 
-def _checked_clock(clock: Array) -> None:
-    """Refuse a clock that does not run forwards everywhere.
-
-    Raises
-    ------
-    CurveError
-    """
-    values, places = _least_speed(derived(clock.T, 1))
-    k = int(values.argmin())
-    value, e = float(values[k]), float(places[k])
-    if not value > 0:
-        raise CurveError(
-            f"durations: time would not increase along the curve, dt/de = {value:.6g} s at "
-            f"e = {e:.4g} of segment {k + 1}; make neighbouring durations less unequal",
-            k,
-            value,
-        )
-
-
-def _trajectory(scaled: Array, clock: Array) -> ClockedTrajectory:
-    breaks = np.append(clock[:, 0], clock[-1].sum())
-    return ClockedTrajectory(np.diff(breaks), scaled, (3,) * len(clock), clock)
-
-
 def combined(matrix: Numbers, numbers: Array) -> tuple[Array, Array]:
     """Combinations in extended precision of way-points, or durations, and a bound on their error.
 
-    Parameters
-    ----------
-    matrix : ndarray of longdouble, shape (pieces, 4, numbers)
-    numbers : ndarray, shape (numbers, joints)
-
-    Returns
-    -------
-    scaled, error : ndarray, shape (pieces, 10, joints)
+    The matrix has shape (pieces, 4, numbers), the numbers (numbers, joints), both results
+    (pieces, 10, joints).
     """
     wide = numbers.astype(np.longdouble)
     tiny = np.finfo(np.longdouble).eps * (len(numbers) + 5)
@@ -260,11 +219,7 @@ def combined(matrix: Numbers, numbers: Array) -> tuple[Array, Array]:
 def enclosed_with_clock(q: Numbers, t: Numbers, waypoints: Array, durations: Array) -> Enclosed:
     """Trajectory of q(e) and t(e), with a bound on the error of every extremum.
 
-    Parameters
-    ----------
-    q, t : ndarray of longdouble, shape (pieces, 4, way-points), (pieces, 4, segments)
-        Coefficients in e as combinations of the way-points, and of the durations.
-    waypoints, durations : ndarray
+    Both are combinations, coefficients in e of way-points and of durations, in extended precision.
 
     Raises
     ------
@@ -273,8 +228,17 @@ def enclosed_with_clock(q: Numbers, t: Numbers, waypoints: Array, durations: Arr
     """
     scaled, error = combined(q, waypoints)
     clock, clock_error = (one[:, :4, 0] for one in combined(t, durations[:, None]))
-    _checked_clock(clock)
-    found = _trajectory(scaled, clock)
+    speeds, places = _least_speed(derived(clock.T, 1))
+    k = int(speeds.argmin())
+    if not speeds[k] > 0:
+        raise CurveError(
+            f"durations: time would not increase along the curve, dt/de = {speeds[k]:.6g} s at "
+            f"e = {places[k]:.4g} of segment {k + 1}; make neighbouring durations less unequal",
+            k,
+            float(speeds[k]),
+        )
+    lengths = np.diff(np.append(clock[:, 0], clock[-1].sum()))
+    found = ClockedTrajectory(lengths, scaled, (3,) * len(clock), clock)
     return Enclosed(found, _errors(found, error, clock_error))
 
 
@@ -314,17 +278,8 @@ def value_at(q: Numbers, t: Numbers, e: Extremum) -> Numbers:
 def runs_forwards(nodes: Array, durations: Array) -> tuple[Array, NDArray[np.bool_]]:
     """Clocks of many duration vectors, and which of them run forwards everywhere.
 
-    Parameters
-    ----------
-    nodes : ndarray, shape (pieces, 4, segments)
-        Coefficients in e of t, as combinations of the durations.
-    durations : ndarray, shape (batch, segments)
-        s.
-
-    Returns
-    -------
-    clocks : ndarray, shape (4, batch, pieces)
-    valid : ndarray of bool, shape (batch,)
+    From coefficients in e of t, (pieces, 4, segments), and durations (batch, segments): clocks of
+    shape (4, batch, pieces).
     """
     valid = are_durations(durations)
     h = np.where(valid[:, None], durations, 1.0)
@@ -339,16 +294,8 @@ def clocked_reach(q: Array, clocks: Array, asked: Asked) -> Array:
     On a piece Bernstein coefficients bound N_r, its least value t′; where that stays below what
     another piece has at one of its ends it is not looked at further.
 
-    Parameters
-    ----------
-    q : ndarray, shape (pieces, 4, joints)
-        Coefficients of q(e).
-    clocks : ndarray, shape (4, batch, pieces)
-        Of t(e).
-
-    Returns
-    -------
-    ndarray, shape (batch, sides, joints, orders)
+    Coefficients q have shape (pieces, 4, joints), clocks (4, batch, pieces); the answer is that of
+    `Curve.batch_reach`.
     """
     found = asked.room(clocks.shape[1])
     orders = (np.flatnonzero(asked.wanted.any(axis=0)) + asked.least).tolist()

@@ -56,16 +56,7 @@ def vertex_matrix(waypoints: int, natural: bool = False) -> tuple[tuple[Fraction
 def shape_matrix(waypoints: int, natural: bool = False) -> NDArray[np.longdouble]:
     """Coefficients in e of each segment as combinations of the way-points.
 
-    Parameters
-    ----------
-    waypoints : int
-    natural : bool
-        As in `vertex_matrix`.
-
-    Returns
-    -------
-    ndarray of longdouble, shape (segments, 4, way-points)
-        Exact rational numbers, rounded once.
+    Shape (segments, 4, way-points): exact rational numbers, rounded once.
     """
     v = np.array(vertex_matrix(waypoints, natural))
     # The four basis functions of (1) in powers of e.
@@ -82,15 +73,7 @@ def shape_matrix(waypoints: int, natural: bool = False) -> NDArray[np.longdouble
 def clock_matrix(waypoints: int, natural: bool = False) -> NDArray[np.longdouble]:
     """Coefficients in e of t on each segment as combinations of the durations.
 
-    Parameters
-    ----------
-    waypoints : int
-    natural : bool
-        As in `vertex_matrix`, for the time nodes.
-
-    Returns
-    -------
-    ndarray of longdouble, shape (segments, 4, segments)
+    Shape (segments, 4, segments); the nodes of time are those of `shape_matrix`.
     """
     nodes = shape_matrix(waypoints, natural)
     # Node i is the sum of the durations before it.
