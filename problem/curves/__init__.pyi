@@ -42,7 +42,7 @@ from .polynomials import (
     roots_in_unit,
     valued,
 )
-from .stretched import shape_of, solve_in_closed_form
+from .stretched import solve_in_closed_form
 from .timed import ClockedTrajectory, numerators
 from .trajectory import Trajectory
 from .uniform import (
@@ -110,7 +110,6 @@ __all__ = [
     "roots_in_unit",
     "septic_spline",
     "shape_matrix",
-    "shape_of",
     "solve_in_closed_form",
     "splines_of",
     "three_five_three",

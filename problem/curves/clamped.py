@@ -170,13 +170,8 @@ class ClampedReading:
 
     Attributes
     ----------
-    degree : int
-    knots : Knots
-    parameters : Parameters
-    time : Timing
     conditions, control_points : int
         Of one joint.
-    count : Count
     curve : ClampedBSpline or None
         The declaration, if it is determined.
     words : str
@@ -204,13 +199,6 @@ def clamped_readings(
     waypoints: int, end_orders: tuple[int, ...] = (1, 2), degrees: tuple[int, ...] = DEGREES
 ) -> tuple[ClampedReading, ...]:
     """Every reading of `z1-woa-bspline`, (1) to (12), for a number of way-points.
-
-    Parameters
-    ----------
-    waypoints : int
-    end_orders : tuple of int
-        Derivatives that are 0 at both ends.
-    degrees : tuple of int
 
     Returns
     -------

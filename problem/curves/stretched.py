@@ -25,12 +25,7 @@ from .trajectory import Trajectory
 
 
 def shape_of(curve: Curve, waypoints: Array) -> Shape:
-    """`Curve.shape`, refused where segments are not stretched.
-
-    Raises
-    ------
-    TrajgapError
-    """
+    """`Curve.shape`, refused where segments are not stretched."""
     form = curve.shape(waypoints)
     if form is None:
         raise TrajgapError(

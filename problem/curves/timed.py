@@ -14,11 +14,10 @@ from ..errors import CurveError, TrajgapError
 from .kind import Asked, Enclosed, are_durations
 from .peak import Extremum
 from .polynomials import (
-    LOOSE,
     MAX_COEFFICIENTS,
     Numbers,
-    bernstein,
     derived,
+    in_time,
     roots_in_unit,
     tops,
     valued,
@@ -62,11 +61,6 @@ def numerators(q: Numbers, t: Numbers, highest: int, sign: int = -1) -> list[Num
         # The leading terms of q″t′ and q′t″ cancel for two cubics.
         found.append(following[:3] if r == 1 and sign < 0 else following)
     return found
-
-
-def _in_time(numerator: Numbers, speed: Numbers, order: int, places: float | Array) -> Numbers:
-    """Derivative in time, N_r/t′²ʳ⁻¹, at places; powers lead in both, then places do."""
-    return np.asarray(valued(numerator, places) / valued(speed, places) ** (2 * order - 1))
 
 
 def _least_speed(speed: Array) -> tuple[Array, Array]:
@@ -145,7 +139,7 @@ class ClockedTrajectory(Trajectory):
         edge = np.zeros((1, *inner.shape[1:]))
         places = np.concatenate([edge, inner, edge + 1.0])
         speed = derived(self._time[:, own], 1)
-        return places, _in_time(self.numerators[order - 1][:, own], speed, order, places)
+        return places, in_time(self.numerators[order - 1][:, own], speed, order, places)
 
     def derivative(self, segment: int, joint: int | slice, order: int) -> Array:
         """Refuse: a derivative in time is no polynomial.
@@ -166,7 +160,7 @@ class ClockedTrajectory(Trajectory):
         return Trajectory(even, self.scaled, self.degrees)
 
     @property
-    def polynomial_in_time(self) -> bool:
+    def polynomialin_time(self) -> bool:
         """Never: time is not linear in the parameter."""
         return False
 
@@ -175,7 +169,7 @@ class ClockedTrajectory(Trajectory):
         if order == 0:
             return super().values(piece, joint, 0, places)
         speed = derived(self.clock[piece], 1)
-        return _in_time(self.numerators[order - 1][:, piece, joint], speed, order, places)
+        return in_time(self.numerators[order - 1][:, piece, joint], speed, order, places)
 
     def times(self, pieces: int | NDArray[np.int64], places: Array) -> Array:
         """As `Trajectory.times`, by the clock."""
@@ -196,8 +190,8 @@ class ClockedTrajectory(Trajectory):
         q, speed = self.derivatives(0), derived(self._time, 1)
         edges = np.stack([np.zeros(q.shape[1:]), np.ones(q.shape[1:])])
         terms = numerators(np.abs(q), np.abs(self._time), order, 1)[-1]
-        values = _in_time(self.numerators[order - 1], speed, order, edges)
-        sizes = _in_time(terms, speed, order, edges)
+        values = in_time(self.numerators[order - 1], speed, order, edges)
+        sizes = in_time(terms, speed, order, edges)
         return values[1, :-1], values[0, 1:], sizes[1, :-1] + sizes[0, 1:]
 
 
@@ -272,7 +266,7 @@ def value_at(q: Numbers, t: Numbers, e: Extremum) -> Numbers:
     """Derivatives at the place of an extremum, for coefficients along the first axis."""
     if e.order == 0:
         return np.asarray(valued(q, e.s))
-    return _in_time(numerators(q, t, e.order)[-1], derived(t, 1), e.order, e.s)
+    return in_time(numerators(q, t, e.order)[-1], derived(t, 1), e.order, e.s)
 
 
 def runs_forwards(nodes: Array, durations: Array) -> tuple[Array, NDArray[np.bool_]]:
@@ -302,34 +296,9 @@ def clocked_reach(q: Array, clocks: Array, asked: Asked) -> Array:
     a, t = q.transpose(1, 0, 2)[:, None], clocks[..., None]
     speed = derived(t, 1)
     slowest = _least_speed(speed)[0]
-    known = numerators(a, t, max(orders) + 1) if max(orders) else []
+    known = [a, *numerators(a, t, max(orders) + 1)]
     for r in orders:
+        clock = (known[r + 1], speed, r, slowest) if r else None
         for side, sign in enumerate(asked.sides):
-            if r == 0:
-                top = tops(a, sign)
-            else:
-                top = _tops_in_time(known[r - 1 : r + 1], speed, slowest ** (2 * r - 1), r, sign)
-            found[:, side, :, r - asked.least] = top
+            found[:, side, :, r - asked.least] = tops(known[r], sign, clock)
     return found
-
-
-def _tops_in_time(
-    known: list[Numbers], speed: Array, slowest: Array, order: int, side: float
-) -> Array:
-    """`tops` of N_r/t′²ʳ⁻¹, from N_r, N_{r+1} and the least denominators."""
-
-    def sized(value: Array) -> Array:
-        return np.abs(value) if side == 0.0 else side * value
-
-    shape = known[1].shape[1:]
-    a = np.asarray(np.broadcast_to(known[0], (len(known[0]), *shape)), dtype=np.float64)
-    edges = np.stack([np.zeros(shape), np.ones(shape)])
-    found = sized(_in_time(a, speed, order, edges)).max(axis=(0, 2))
-    bound = sized(bernstein(a)).max(axis=0) + LOOSE * np.abs(a).sum(axis=0)
-    open_ = ~(bound < (found[:, None] * slowest)) | ~(found[:, None] >= 0.0)
-    places = roots_in_unit(known[1][:, open_])
-    rate = np.broadcast_to(speed, (3, *shape))[:, open_]
-    inner = np.where(np.isnan(places), -np.inf, sized(_in_time(a[:, open_], rate, order, places)))
-    vector, _, joint = np.nonzero(open_)
-    np.maximum.at(found, (vector, joint), inner.max(axis=0, initial=-np.inf))
-    return np.asarray(found)

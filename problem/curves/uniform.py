@@ -109,11 +109,6 @@ class UniformBSpline(Curve):
     ----------
     waypoints : int
         Number of way-points, at least 2.
-
-    Raises
-    ------
-    TrajgapError
-        If there are fewer than two way-points.
     """
 
     waypoints: int
