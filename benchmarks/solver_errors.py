@@ -41,7 +41,6 @@ from trajgap.problem import (
     rest_to_rest,
     three_five_three,
 )
-from trajgap.problem.curves import coefficients_of_many
 
 IMPROVABLE = 1e-4
 """Relative gain of brute force from which an answer counts as improvable."""
@@ -51,9 +50,6 @@ TOLERATED = 1e-9
 """By how much, relative, `check` lets a motion be shorter than limits that are kept exactly."""
 WIDEST_LOG = (-14.0, 4.0)
 """Natural logarithms of the durations that brute force tries, over the usual one of the problem."""
-SAMPLES, FINE, MARGIN = 17, 129, 0.3
-"""Places of a segment at which brute force looks at positions, first and in the end, and by how
-much a parabola of usual bend rises above n places, times n²; `check` judges what it finds."""
 MEMBERS, GENERATIONS = 15, 100
 """Of differential evolution: members a segment, generations."""
 TRIES, EVALUATIONS = 2, 150
@@ -124,31 +120,12 @@ class Brute:
     durations: NDArray[np.float64] | None
 
 
-def _outside(problem: Problem, h: NDArray[np.float64], places: int) -> NDArray[np.float64]:
-    """Largest excess over the position range of each vector, relative to the way-points' span.
-
-    Way-points are left out: a range that just holds them is met there, whatever the durations.
-    """
-    limits, curve = problem.limits, problem.curve
-    assert isinstance(curve, Interpolant)
-    span = np.ptp(problem.waypoints, axis=0)
-    span = np.where(span > 0, span, 1.0)
-    c = coefficients_of_many(curve, problem.waypoints, h)
-    s = np.linspace(0.0, 1.0, places)[1:-1, None] ** np.arange(c.shape[2])
-    q = s @ c
-    over = np.maximum((q - limits.position_upper) / span, (limits.position_lower - q) / span)
-    return np.asarray(over.max(axis=(1, 2, 3)) + MARGIN / places**2)
-
-
-def objective(
-    problem: Problem, h: NDArray[np.float64], places: int = SAMPLES
-) -> NDArray[np.float64]:
+def objective(problem: Problem, h: NDArray[np.float64]) -> NDArray[np.float64]:
     """Totals of duration vectors once stretched to be tight; more where that keeps no limit."""
     h = _decoded(problem, h)
-    stretch = evaluate(problem, h).stretch
-    over = np.where(np.isfinite(stretch), np.maximum(stretch - 1.0 - 1e-10, 0.0), 1e3)
-    if problem.limits.limits_position:
-        over += np.maximum(_outside(problem, h, places), 0.0)
+    found = evaluate(problem, h)
+    reach = np.maximum(found.stretch, found.positions.max(axis=1))
+    over = np.where(np.isfinite(reach), np.maximum(reach - 1.0 - 1e-10, 0.0), 1e3)
     total = h.sum(axis=1)
     return np.asarray(np.where(over > 0, total * (10.0 + 100.0 * over), total))
 
@@ -177,7 +154,7 @@ def brute_force(problem: Problem, seed: int) -> Brute:
         return objective(problem, np.exp(np.clip(z.T, low, high)))
 
     def one(z: NDArray[np.float64]) -> float:
-        return float(objective(problem, np.exp(np.clip(z, low, high))[None], FINE)[0])
+        return float(objective(problem, np.exp(np.clip(z, low, high))[None])[0])
 
     found = differential_evolution(
         many,

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .arrays import Array
 from .checker import TOLERANCE
-from .curves import as_durations
+from .curves import Asked, as_durations
 from .errors import TrajgapError
 from .limits import Limits, half_range
 from .problem import Problem
@@ -57,8 +57,14 @@ class Evaluation:
         return stretch
 
 
-def _over(peaks: Array, limits: Array, plain: bool) -> Array:
+_Question = tuple[Array, Array, Asked, bool]
+"""Values, limits, which peaks are wanted, and whether no quotient of them can be undefined."""
+
+
+def _ratios(problem: Problem, question: _Question, durations: Array) -> Array:
     """Peaks by their limits."""
+    values, limits, asked, plain = question
+    peaks = problem.curve.batch_reach(values, durations, asked)[:, 0]
     if plain:
         return peaks / limits
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -96,11 +102,8 @@ def evaluate(problem: Problem, durations: ArrayLike, nodal: ArrayLike | None = N
     reach = None if asked is None else partial(_reached, problem, asked, h.copy())
     if problem.limits.uneven:
         return Evaluation(_uneven_ratios(problem, h, extra), reach)
-    values, limits, wanted, plain = (
-        _fixed_question(problem) if extra is None else _question(problem, extra)
-    )
-    peaks = problem.curve.batch_peaks(values, h, wanted)
-    return Evaluation(_over(peaks, limits, plain), reach)
+    question = _fixed_question(problem) if extra is None else _question(problem, extra)
+    return Evaluation(_ratios(problem, question, h), reach)
 
 
 def keeps_limits(problem: Problem, durations: Array, tolerance: float) -> NDArray[np.bool_]:
@@ -122,8 +125,7 @@ def keeps_limits(problem: Problem, durations: Array, tolerance: float) -> NDArra
     if problem.limits.uneven:
         ratios = _uneven_ratios(problem, durations)
     else:
-        values, limits, wanted, plain = _fixed_question(problem)
-        ratios = _over(problem.curve.batch_peaks(values, durations, wanted), limits, plain)
+        ratios = _ratios(problem, _fixed_question(problem), durations)
     # One axis is gone through far quicker than two.
     kept = np.asarray((ratios <= 1 + tolerance).reshape(len(ratios), -1).all(axis=1))
     return _within_positions(problem, durations, kept, tolerance)
@@ -183,7 +185,10 @@ def _positions_asked(problem: Problem) -> _PositionsAsked | None:
 
 def _reached(problem: Problem, asked: _PositionsAsked, durations: Array) -> Array:
     """The larger ratio of both limits, shape (batch, joints), as the checker's; −inf for none."""
-    ranges = problem.curve.batch_ranges(asked.values, durations, asked.wanted)
+    # The first way-point is at 0, and among the positions.
+    sides = Asked(asked.wanted[:, None], (-1.0, 1.0), least=0)
+    reach = problem.curve.batch_reach(asked.values, durations, sides)[..., 0]
+    ranges = reach.swapaxes(1, 2) * sides.sides
     with np.errstate(invalid="ignore", divide="ignore"):
         excess = np.array([-1.0, 1.0]) * (ranges - asked.room)
         ratios = 1.0 + excess / asked.half
@@ -205,17 +210,13 @@ def _uneven_ratios(problem: Problem, h: Array, nodal: Array | None = None) -> Ar
     return np.asarray(found.max(axis=0))
 
 
-_Question = tuple[Array, Array, NDArray[np.bool_], bool]
-"""Values, limits, which peaks are wanted, and whether no quotient of them can be undefined."""
-
-
 def _question(problem: Problem, nodal: Array | None) -> _Question:
     limits = problem.limits.derivatives
     wanted = np.isfinite(limits)
     values = problem.curve.motion_values(problem.waypoints, nodal)
     # A peak that is not wanted is 0, or inf where a duration is not positive: so is its ratio.
     divisors = np.where(wanted, limits, 1.0)
-    return values, divisors, wanted, bool((divisors > 0).all())
+    return values, divisors, Asked(wanted), bool((divisors > 0).all())
 
 
 @lru_cache(maxsize=64)

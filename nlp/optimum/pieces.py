@@ -20,10 +20,10 @@ from ...problem.curves import (
     TimedUniformBSpline,
     Trajectory,
     average_matrix,
-    clamped_control_points,
     fractions_of,
     numerators,
     piecewise,
+    splines_of,
 )
 
 Indices = NDArray[np.int64]
@@ -203,14 +203,12 @@ def left_derivatives(
     if pieces.widths is None:
         rates = motion.durations[:, None, None] ** np.arange(factorials.size)[:, None]
         return np.asarray(motion.scaled[:, : factorials.size] * factorials / rates)
-    from scipy.interpolate import PPoly  # half a second, and few curves need it
-
     assert isinstance(problem.curve, ClampedBSpline)
-    points, knots = clamped_control_points(problem.curve, problem.waypoints, durations)
-    p, found = problem.curve.degree, []
-    for own, control in zip(knots.T, points.T, strict=True):
-        found.append(PPoly.from_spline((own, control, p)).c[::-1, p : own.size - p - 1].T)
-    return np.stack(found, axis=2) * factorials
+    found = []
+    for spline in splines_of(problem.curve, problem.waypoints, durations):
+        rates = spline.lengths[:, None, None] ** np.arange(factorials.size)[:, None]
+        found.append(spline.scaled / rates)
+    return np.concatenate(found, axis=2) * factorials
 
 
 class Clock:

@@ -3,10 +3,10 @@ from .clamped import (
     ClampedBSpline,
     ClampedReading,
     Count,
-    clamped_control_points,
     clamped_readings,
 )
 from .clamped_declaration import Knots, Parameters, average_matrix, fractions_of
+from .clamped_fit import splines_of
 from .condition import ConditionKind, Conditions, Layout, counts_in_words
 from .families import (
     cubic_spline,
@@ -23,17 +23,15 @@ from .interpolant import (
     MOST_OPEN,
     Interpolant,
     as_piecewise,
-    coefficients_of_many,
     right_hand_sides,
 )
-from .kind import Curve, Derivatives, Enclosed, Timing, as_curve, as_durations, fit
+from .kind import Asked, Curve, Derivatives, Enclosed, Timing, as_curve, as_durations, fit
 from .peak import (
     Extremum,
     Furthest,
     PeakGradients,
     extrema,
     furthest,
-    near_extrema,
 )
 from .polynomials import (
     MAX_COEFFICIENTS,
@@ -44,7 +42,7 @@ from .polynomials import (
     roots_in_unit,
     valued,
 )
-from .stretched import shape_of, solve_in_closed_form
+from .stretched import solve_in_closed_form
 from .timed import ClockedTrajectory, numerators
 from .trajectory import Trajectory
 from .uniform import (
@@ -62,6 +60,7 @@ __all__ = [
     "MOST_OPEN",
     "PERM",
     "Adjoint",
+    "Asked",
     "ClampedBSpline",
     "ClampedReading",
     "ClockedTrajectory",
@@ -88,10 +87,8 @@ __all__ = [
     "as_piecewise",
     "average_matrix",
     "bernstein",
-    "clamped_control_points",
     "clamped_readings",
     "clock_matrix",
-    "coefficients_of_many",
     "control_vertices",
     "counts_in_words",
     "cubic_spline",
@@ -103,7 +100,6 @@ __all__ = [
     "fractions_of",
     "furthest",
     "jtraj",
-    "near_extrema",
     "numerators",
     "piecewise",
     "places_of",
@@ -114,8 +110,8 @@ __all__ = [
     "roots_in_unit",
     "septic_spline",
     "shape_matrix",
-    "shape_of",
     "solve_in_closed_form",
+    "splines_of",
     "three_five_three",
     "uniform_cubic_b_spline",
     "valued",

@@ -7,7 +7,6 @@ from enum import StrEnum
 from itertools import product
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import Array
 from ..errors import TrajgapError
@@ -21,25 +20,23 @@ from .clamped_declaration import (
     nearest_reading,
 )
 from .clamped_fit import (
+    clamped_by_durations,
     clamped_enclosed,
-    clamped_gradients,
     clamped_reach,
     clamped_shape,
-    splines_of,
 )
 from .condition import counts_in_words
 from .families import piecewise, quintic_spline
 from .kind import (
+    Asked,
     Curve,
     Derivatives,
     Enclosed,
     Shape,
     Timing,
     as_batch,
-    as_durations,
-    as_waypoints,
 )
-from .peak import Extremum, PeakGradients
+from .peak import Extremum
 from .stretched import StretchedCurve
 
 
@@ -139,68 +136,17 @@ class ClampedBSpline(ClampedDeclaration, StretchedCurve):
         """The way-points themselves, unless stretched."""
         return super().motion_values(waypoints) if self.stretched else waypoints
 
-    def batch_reach(
-        self,
-        values: Array,
-        durations: Array,
-        wanted: NDArray[np.bool_],
-        sides: tuple[float, ...],
-        least: int = 1,
-    ) -> Array:
+    def batch_reach(self, values: Array, durations: Array, asked: Asked) -> Array:
         """Of all pieces at once."""
         if self.stretched:
-            return super().batch_reach(values, durations, wanted, sides, least)
-        return clamped_reach(self, values, as_batch(self, durations), wanted, sides, least)
+            return super().batch_reach(values, durations, asked)
+        return clamped_reach(self, values, as_batch(self, durations), asked)
 
-    def value_gradients(
-        self,
-        waypoints: Array,
-        durations: Array,
-        points: list[Extremum],
-        nodal: Array | None = None,
-    ) -> PeakGradients:
-        """By complex steps in the durations; by the way-points with knots and parameters held."""
+    def by_durations(self, waypoints: Array, durations: Array, points: list[Extremum]) -> Array:
+        """By complex steps; segments that are stretched in closed form."""
         if self.stretched:
-            return super().value_gradients(waypoints, durations, points)
-        return clamped_gradients(self, waypoints, durations, points)
-
-
-def clamped_control_points(
-    curve: ClampedBSpline, waypoints: ArrayLike, durations: ArrayLike
-) -> tuple[Array, Array]:
-    """Control points of each joint, and the knots they belong to.
-
-    Parameters
-    ----------
-    curve : ClampedBSpline
-        With time "timed".
-    waypoints : array_like, shape (way-points, joints)
-        rad.
-    durations : array_like, shape (segments,)
-        s.
-
-    Returns
-    -------
-    control : ndarray, shape (control points, joints)
-        rad.
-    knots : ndarray, shape (control points + degree + 1, joints)
-        s.
-
-    Raises
-    ------
-    TrajgapError
-        If shapes disagree, a duration is not positive, or no such curve passes the way-points.
-    """
-    q = as_waypoints(curve, waypoints)
-    h = as_durations(durations, curve.segments)
-    splines = splines_of(curve, q, h)
-    p = curve.degree
-    columns = [
-        np.concatenate([np.zeros(p), s.breaks, np.full(p, s.breaks[-1])])
-        for s in splines
-        for _ in range(s.scaled.shape[2])
-    ]
-    return np.concatenate([s.control for s in splines], axis=1), np.stack(columns, axis=1)
+            return super().by_durations(waypoints, durations, points)
+        return clamped_by_durations(self, waypoints, durations, points)
 
 
 DEGREES = (3, 4, 5, 6, 7)
@@ -224,13 +170,8 @@ class ClampedReading:
 
     Attributes
     ----------
-    degree : int
-    knots : Knots
-    parameters : Parameters
-    time : Timing
     conditions, control_points : int
         Of one joint.
-    count : Count
     curve : ClampedBSpline or None
         The declaration, if it is determined.
     words : str
@@ -258,13 +199,6 @@ def clamped_readings(
     waypoints: int, end_orders: tuple[int, ...] = (1, 2), degrees: tuple[int, ...] = DEGREES
 ) -> tuple[ClampedReading, ...]:
     """Every reading of `z1-woa-bspline`, (1) to (12), for a number of way-points.
-
-    Parameters
-    ----------
-    waypoints : int
-    end_orders : tuple of int
-        Derivatives that are 0 at both ends.
-    degrees : tuple of int
 
     Returns
     -------

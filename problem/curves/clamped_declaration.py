@@ -103,16 +103,7 @@ def inside_support(
 ) -> NDArray[np.bool_]:
     """Which sites lie in the support of their basis function (Schoenberg and Whitney).
 
-    Parameters
-    ----------
-    knots : ndarray, shape (..., sites + degree + 1)
-    sites : ndarray, shape (..., sites)
-        Those of end conditions included: an end as often as something is asked there.
-    degree : int
-
-    Returns
-    -------
-    ndarray of bool, shape (..., sites)
+    Sites of end conditions are included: an end as often as something is asked there.
     """
     count = sites.shape[-1]
     low, high = knots[..., :count], knots[..., degree + 1 : degree + 1 + count]
@@ -145,10 +136,6 @@ def nearest_reading(knots: Knots, degree: int, end_orders: tuple[int, ...]) -> s
 def chord_fractions(waypoints: NDArray[np.generic]) -> Fractions:
     """Chord parameters (5) of way-points, from 0 to 1.
 
-    Parameters
-    ----------
-    waypoints : ndarray, shape (way-points, joints)
-
     Raises
     ------
     TrajgapError
@@ -168,13 +155,7 @@ def chord_fractions(waypoints: NDArray[np.generic]) -> Fractions:
 
 @dataclass(frozen=True)
 class ClampedDeclaration:
-    """The fields of `ClampedBSpline`, checked and counted.
-
-    Raises
-    ------
-    TrajgapError
-        If a word is unknown, or the conditions do not determine the control points.
-    """
+    """The fields of `ClampedBSpline`, checked and counted."""
 
     waypoints: int
     degree: int

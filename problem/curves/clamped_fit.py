@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from ..arrays import Array
 from ..errors import CurveError
 from .clamped_declaration import ClampedDeclaration, average_matrix, fractions_of, inside_support
-from .kind import STEP, Enclosed, Shape, are_durations, masked, value_errors
-from .peak import Extremum, PeakGradients, rows_at
-from .polynomials import MAX_COEFFICIENTS, PERM, Numbers, derived, tops
+from .kind import STEP, Asked, Enclosed, Shape, are_durations, masked, value_errors
+from .peak import Extremum
+from .polynomials import MAX_COEFFICIENTS, PERM, Numbers, derived, tops, valued
 from .refined import contained
 from .trajectory import Trajectory
 
@@ -36,16 +36,11 @@ class Spline:
     scaled, error : ndarray, shape (pieces, powers, joints)
         Ascending coefficients in the piece's own 0..1, and a bound on their error; no bound of
         complex numbers.
-    by_waypoint : ndarray, shape (1 or joints, pieces, powers, way-points)
-        Their derivatives by the joint's way-points; not of complex numbers.
-    control : ndarray, shape (control points, joints)
     """
 
     breaks: Numbers
     scaled: Numbers
     error: Array
-    by_waypoint: Numbers
-    control: Numbers
 
     @property
     def lengths(self) -> Array:
@@ -149,14 +144,14 @@ def _interpolated(
     right = np.zeros((matrix.shape[0], waypoints.shape[1]), dtype=matrix.dtype)
     right[: sites.size] = waypoints
     index = np.arange(bases.shape[0])[:, None] + np.arange(p + 1)
-    breaks, none = knots[p : knots.size - p], np.empty(0)
+    breaks = knots[p : knots.size - p]
 
     def powers(control: Numbers, of: Numbers) -> Numbers:
         return np.asarray(np.einsum("pam,paj->pmj", of, control[index]))
 
     if np.iscomplexobj(matrix):
         solved = np.linalg.solve(matrix, right)
-        return Spline(breaks, powers(solved, bases), none, none, solved)
+        return Spline(breaks, powers(solved, bases), np.empty(0))
     narrow = matrix.astype(np.float64)
     try:
         inverse = np.linalg.inv(narrow)
@@ -178,11 +173,8 @@ def _interpolated(
         raise _not_passing(curve, 0)
     scaled = powers(control, bases)
     error = powers(unsure.astype(matrix.dtype), sizes) + rounding * powers(np.abs(control), sizes)
-    by_waypoint = powers(inverse[:, : sites.size].astype(matrix.dtype), bases)[None]
-    breaks, scaled, error, by_waypoint, control = (
-        np.asarray(one, dtype=np.float64) for one in (breaks, scaled, error, by_waypoint, control)
-    )
-    return Spline(breaks, scaled, error + _EPS * np.abs(scaled), by_waypoint, control)
+    scaled, error = (np.asarray(one, dtype=np.float64) for one in (scaled, error))
+    return Spline(breaks.astype(np.float64), scaled, error + _EPS * np.abs(scaled))
 
 
 def _not_passing(curve: ClampedDeclaration, waypoint: int) -> CurveError:
@@ -197,7 +189,13 @@ def _not_passing(curve: ClampedDeclaration, waypoint: int) -> CurveError:
 
 
 def splines_of(curve: ClampedDeclaration, waypoints: Numbers, durations: Numbers) -> list[Spline]:
-    """Splines of the joints in time: one for all, or one for each."""
+    """Splines of the joints in time: one for all, or one for each, between its own knots.
+
+    Raises
+    ------
+    CurveError
+        If no such curve passes the way-points at these times.
+    """
     times = np.concatenate([np.zeros(1, dtype=durations.dtype), np.cumsum(durations)])
     average, fractions = average_matrix(curve), fractions_of(curve, waypoints.real)
     if fractions is None:
@@ -228,8 +226,7 @@ def _cut(spline: Spline, breaks: Numbers) -> Spline:
     if np.iscomplexobj(breaks):
         return moved
     sizes = spline.error[parent] + 4 * size * _EPS * np.abs(spline.scaled[parent])
-    by_waypoint = shift @ spline.by_waypoint[:, parent]
-    return replace(moved, error=np.abs(shift) @ sizes, by_waypoint=by_waypoint)
+    return replace(moved, error=np.abs(shift) @ sizes)
 
 
 def _union(breaks: list[Numbers]) -> Numbers:
@@ -255,20 +252,13 @@ def _joined(splines: list[Spline], cuts: tuple[Numbers, ...] = ()) -> Spline:
         splines = [_cut(s, breaks) for s in splines]
     more = MAX_COEFFICIENTS - splines[0].scaled.shape[1]
 
-    def padded(parts: list[Numbers], axis: int) -> Numbers:
-        widths = [(0, more if i == parts[0].ndim - 2 else 0) for i in range(parts[0].ndim)]
-        return np.pad(np.concatenate(parts, axis=axis), widths)
+    def padded(parts: list[Numbers]) -> Numbers:
+        return np.pad(np.concatenate(parts, axis=2), ((0, 0), (0, more), (0, 0)))
 
-    scaled = padded([s.scaled for s in splines], 2)
-    found = replace(splines[0], scaled=scaled)
-    if np.iscomplexobj(scaled):
+    found = replace(splines[0], scaled=padded([s.scaled for s in splines]))
+    if np.iscomplexobj(found.scaled):
         return found
-    by_waypoint = padded([s.by_waypoint for s in splines], 0)
-    return replace(
-        found,
-        error=padded([s.error for s in splines], 2),
-        by_waypoint=np.broadcast_to(by_waypoint, (scaled.shape[2], *by_waypoint.shape[1:])),
-    )
+    return replace(found, error=padded([s.error for s in splines]))
 
 
 def clamped_shape(curve: ClampedDeclaration, waypoints: Array) -> Shape:
@@ -289,7 +279,6 @@ def clamped_shape(curve: ClampedDeclaration, waypoints: Array) -> Shape:
         degree=curve.degree,
         scaled=found.scaled,
         error=found.error,
-        by_waypoint=found.by_waypoint,
     )
 
 
@@ -311,39 +300,27 @@ def clamped_enclosed(curve: ClampedDeclaration, waypoints: Array, durations: Arr
     return Enclosed(trajectory, value_errors(trajectory, found.error))
 
 
-def clamped_gradients(
+def clamped_by_durations(
     curve: ClampedDeclaration, waypoints: Array, durations: Array, points: list[Extremum]
-) -> PeakGradients:
-    """Gradients of the values at fixed places: by complex steps in the durations."""
-    found = _joined(splines_of(curve, waypoints, durations))
-    by_duration = np.empty((len(points), curve.segments))
-    by_waypoint = np.empty((len(points), curve.waypoints))
-    rows = rows_at(points)
+) -> Array:
+    """`Curve.by_durations` of a curve whose time is not stretched, by complex steps."""
+    found = np.empty((len(points), curve.segments))
     for k in range(curve.segments):
         step = durations.astype(np.complex128)
         step[k] += 1j * STEP
         moved = _joined(splines_of(curve, waypoints, step))
-        scaled, widths = moved.scaled.imag / STEP, np.diff(moved.breaks).imag / STEP
-        for i, (e, row) in enumerate(zip(points, rows, strict=True)):
-            length = found.lengths[e.segment]
-            change = row @ scaled[e.segment, :, e.joint] / length**e.order
-            by_duration[i, k] = change - e.order * e.value * widths[e.segment] / length
-    for i, (e, row) in enumerate(zip(points, rows, strict=True)):
-        scale = found.lengths[e.segment] ** e.order
-        by_waypoint[i] = row @ found.by_waypoint[e.joint, e.segment] / scale
-    return PeakGradients(by_duration, by_waypoint, np.empty((len(points), 0)))
+        widths = np.diff(moved.breaks)
+        for i, e in enumerate(points):
+            own = derived(moved.scaled[e.segment, :, e.joint], e.order)
+            found[i, k] = (valued(own, e.s) / widths[e.segment] ** e.order).imag / STEP
+    return found
 
 
 def clamped_reach(
-    curve: ClampedDeclaration,
-    waypoints: Array,
-    durations: Array,
-    wanted: NDArray[np.bool_],
-    sides: tuple[float, ...],
-    least: int,
+    curve: ClampedDeclaration, waypoints: Array, durations: Array, asked: Asked
 ) -> Array:
     """`Curve.batch_reach` of a curve whose time is not stretched, for these way-points."""
-    found = np.zeros((len(durations), len(sides), *wanted.shape))
+    found, wanted, least = asked.room(len(durations)), asked.wanted, asked.least
     valid = are_durations(durations)
     h = np.where(valid[:, None], durations, 1.0)
     times = np.concatenate([np.zeros((len(h), 1)), np.cumsum(h, axis=1)], axis=1)
@@ -361,9 +338,9 @@ def clamped_reach(
         valid[at] = regular
         for i in np.flatnonzero(wanted[own].any(axis=0)).tolist():
             part = derived(a, least + i) / widths[:, :, None] ** (least + i)
-            for side, sign in enumerate(sides):
+            for side, sign in enumerate(asked.sides):
                 found[at[regular, None], side, own, i] = tops(part, sign)
-    return masked(found, wanted, valid)
+    return masked(found, asked, valid)
 
 
 def _polynomials(

@@ -24,14 +24,7 @@ def compiler(*sources: Path) -> Callable[[Function], Function]:
     old callee from another file. Functions that call each other are compiled by one decorator, and
     the hash of all their files stands in their names.
 
-    Parameters
-    ----------
-    *sources : Path
-        Every file with functions that this decorator compiles.
-
-    Returns
-    -------
-    callable
+    The sources are every file with functions that this decorator compiles.
     """
     import numba
 

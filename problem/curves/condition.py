@@ -102,10 +102,7 @@ class Conditions:
     def matrix(self, durations: NDArray[Any]) -> NDArray[Any]:
         """Entries of all rows, shape (conditions, widest), over the durations' kind of number.
 
-        Parameters
-        ----------
-        durations : ndarray, shape (segments,)
-            Floats of any precision, or objects: fractions, symbols.
+        They may be floats of any precision, or objects: fractions, symbols.
         """
         values = self.entries[1].astype(durations.dtype)
         i, slot = self.links
@@ -230,19 +227,8 @@ def conditions_of(
 ) -> Conditions:
     """The conditions of a declaration, ordered by break: left values, right values, matches.
 
-    Breaks that state the same share one template, so that long declarations take no loop over
-    conditions.
-
-    Parameters
-    ----------
-    given : sequence of frozenset of int, one per break
-        Orders whose values are given there; 0 is the position.
-    continuity : sequence of int, one per interior break
-    degrees : sequence of int, one per segment
-
-    Returns
-    -------
-    Conditions
+    At each break the orders are given whose values are prescribed there; 0 is the position. Breaks
+    that state the same share one template, so that long declarations take no loop over conditions.
     """
     last = len(given) - 1
     sets = {orders: i for i, orders in enumerate(dict.fromkeys(given))}

@@ -115,14 +115,7 @@ def quintic_spline(
 ) -> Interpolant:
     """C4 quintic spline; velocity and acceleration are 0 at both ends unless others are given.
 
-    Parameters
-    ----------
-    segments : int
-        Those at virtual breaks included.
-    ends, finish : tuple of (order, value)
-        As `cubic_spline` takes them.
-    virtual : tuple of int
-        As `piecewise` takes them.
+    Arguments are those of `cubic_spline`.
     """
     return piecewise((5,) * segments, 4, ends, "C4 quintic spline", finish, virtual)
 
@@ -135,14 +128,7 @@ def septic_spline(
 ) -> Interpolant:
     """C6 spline of degree 7; v = a = j = 0 at both ends unless others are given.
 
-    Parameters
-    ----------
-    segments : int
-        Those at virtual breaks included.
-    ends, finish : tuple of (order, value)
-        As `cubic_spline` takes them.
-    virtual : tuple of int
-        As `piecewise` takes them.
+    Arguments are those of `cubic_spline`.
     """
     return piecewise((7,) * segments, 6, ends, "C6 septic spline", finish, virtual)
 

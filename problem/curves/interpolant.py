@@ -8,13 +8,13 @@ from functools import cached_property, partial
 from itertools import product
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..arrays import Array
 from ..errors import SingularError, TrajgapError
 from .adjoint import Adjoint, places_of
 from .condition import ConditionKind, Conditions, Layout, conditions_of, counts_in_words
 from .kind import (
+    Asked,
     Curve,
     Derivatives,
     Enclosed,
@@ -24,7 +24,6 @@ from .kind import (
 )
 from .peak import Extremum, PeakGradients
 from .polynomials import MAX_COEFFICIENTS
-from .population import batch_coefficients, batch_reach
 from .refined import refined_coefficients
 from .system import DENSE_UNKNOWNS, system
 from .trajectory import Trajectory
@@ -242,23 +241,14 @@ class Interpolant(Curve):
         values[(layout.orders == 0) & (layout.kinds != ConditionKind.MATCH)] -= waypoints[0]
         return values
 
-    def batch_reach(
-        self,
-        values: Array,
-        durations: Array,
-        wanted: NDArray[np.bool_],
-        sides: tuple[float, ...],
-        least: int = 1,
-    ) -> Array:
-        """By the compiled kernel, on several threads where that pays."""
-        return batch_reach(self.layout, values, as_batch(self, durations), wanted, sides, least)
+    def batch_reach(self, values: Array, durations: Array, asked: Asked) -> Array:
+        """By the compiled kernel."""
+        from .kernel import reach_of
+
+        return reach_of(self.layout, values, as_batch(self, durations), asked)
 
     def value_gradients(
-        self,
-        waypoints: Array,
-        durations: Array,
-        points: list[Extremum],
-        nodal: Array | None = None,
+        self, waypoints: Array, durations: Array, points: list[Extremum], nodal: Array | None = None
     ) -> PeakGradients:
         """Gradients by implicit differentiation of the linear system."""
         return self.adjoint(waypoints, durations, nodal).gradients(places_of(points))
@@ -403,17 +393,6 @@ def right_hand_sides(interpolant: Interpolant, waypoints: Array, nodal: Array | 
         rows = plan.nodal >= 0
         values[rows] = nodal[plan.nodal[rows]]
     return values
-
-
-def coefficients_of_many(
-    interpolant: Interpolant, waypoints: Array, durations: Array, nodal: Array | None = None
-) -> Array:
-    """Scaled coefficients of many duration vectors, shape (vectors, segments, 10, joints).
-
-    Not finite where the system is singular.
-    """
-    values = right_hand_sides(interpolant, waypoints, nodal)
-    return batch_coefficients(interpolant.layout, values, durations)
 
 
 def _unit_matrix(conditions: Conditions) -> Array:

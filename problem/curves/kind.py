@@ -20,8 +20,6 @@ _LONGEST = 1e30
 """Durations, s, beyond which, or below whose reciprocal, ninth powers leave float64's range."""
 STEP = 1e-30
 """Complex step of gradients, s: its square is lost in any double, so nothing is truncated."""
-_SIDES = (-1.0, 1.0)
-"""Below 0, and above."""
 Derivatives = tuple[tuple[int, float | tuple[float, ...]], ...]
 """Derivatives ``(order, value)`` prescribed at one break, rad/sᵒʳᵈᵉʳ: one value for all joints, or
 one for each where they differ."""
@@ -67,8 +65,6 @@ class Shape:
     degree : int
     scaled, error : ndarray, shape (pieces, 10, joints)
         Ascending coefficients in the piece's own 0..1, and a bound on their error.
-    by_waypoint : ndarray, shape (joints, pieces, 10, way-points)
-        Their derivatives by the joint's way-points.
     """
 
     segment: NDArray[np.int64]
@@ -76,7 +72,30 @@ class Shape:
     degree: int
     scaled: Array
     error: Array
-    by_waypoint: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Asked:
+    """Which derivatives a batch of duration vectors is asked for.
+
+    Attributes
+    ----------
+    wanted : ndarray of bool, shape (joints, orders)
+        What is needed, of order ``least`` first; the others are returned as 0.
+    sides : tuple of float
+        0 for the largest size; 1 for the furthest value above 0, −1 for that below, as sizes, and 0
+        where there is none.
+    least : int
+        0 for positions, counted from the first way-point.
+    """
+
+    wanted: NDArray[np.bool_]
+    sides: tuple[float, ...] = (0.0,)
+    least: int = 1
+
+    def room(self, vectors: int) -> Array:
+        """Zeros for the answers, shape (batch, sides, joints, orders)."""
+        return np.zeros((vectors, len(self.sides), *self.wanted.shape))
 
 
 class Curve(ABC):
@@ -150,14 +169,7 @@ class Curve(ABC):
         """What `batch_reach` needs to know of the way-points; its last axis is the joint."""
 
     @abstractmethod
-    def batch_reach(
-        self,
-        values: Array,
-        durations: Array,
-        wanted: NDArray[np.bool_],
-        sides: tuple[float, ...],
-        least: int = 1,
-    ) -> Array:
+    def batch_reach(self, values: Array, durations: Array, asked: Asked) -> Array:
         """How far derivatives go, for all t, for a batch of duration vectors.
 
         Parameters
@@ -166,23 +178,13 @@ class Curve(ABC):
             From `motion_values`.
         durations : ndarray, shape (batch, segments)
             s; infinite for vectors that define no curve.
-        wanted : ndarray of bool, shape (joints, orders)
-            What is needed, of order ``least`` first; the others are returned as 0.
-        sides : tuple of float
-            0 for the largest size; 1 for the furthest value above 0, −1 for that below, as sizes,
-            and 0 where there is none.
-        least : int
-            0 for positions, counted from the first way-point.
+        asked : Asked
 
         Returns
         -------
         ndarray, shape (batch, sides, joints, orders)
             rad/sᵒʳᵈᵉʳ.
         """
-
-    def batch_peaks(self, values: Array, durations: Array, wanted: NDArray[np.bool_]) -> Array:
-        """True peaks of |v|, |a|, |j|, as `batch_reach`; shape (batch, joints, 3)."""
-        return np.asarray(self.batch_reach(values, durations, wanted, (0.0,))[:, 0])
 
     def batch_sides(
         self,
@@ -209,44 +211,31 @@ class Curve(ABC):
             Sizes, rad/s, rad/s², rad/s³: of the furthest value below 0, and above; 0 for none.
         """
         values = self.motion_values(waypoints, nodal)
-        either = np.logical_or(*wanted)
-        found = self.batch_reach(values, durations, either, _SIDES).swapaxes(0, 1)
+        asked = Asked(np.logical_or(*wanted), (-1.0, 1.0))
+        found = self.batch_reach(values, durations, asked).swapaxes(0, 1)
         found[~np.broadcast_to(wanted[:, None], found.shape) & np.isfinite(found)] = 0.0
         return found
 
-    def batch_ranges(self, values: Array, durations: Array, wanted: NDArray[np.bool_]) -> Array:
-        """Least and largest positions.
-
-        Parameters
-        ----------
-        values : ndarray
-            From `motion_values`.
-        durations : ndarray, shape (batch, segments)
-            s.
-        wanted : ndarray of bool, shape (joints,)
-            Which joints are asked for; the others' ranges are returned as 0.
-
-        Returns
-        -------
-        ndarray, shape (batch, joints, 2)
-            rad, counted from the first way-point, which is 0 and among them; −inf and inf for
-            vectors that define no curve.
-        """
-        reach = self.batch_reach(values, durations, wanted[:, None], _SIDES, least=0)[..., 0]
-        return np.asarray(reach.swapaxes(1, 2) * _SIDES)
-
-    @abstractmethod
     def value_gradients(
-        self,
-        waypoints: Array,
-        durations: Array,
-        points: list[Extremum],
-        nodal: Array | None = None,
+        self, waypoints: Array, durations: Array, points: list[Extremum], nodal: Array | None = None
     ) -> PeakGradients:
         """Gradients of the values at fixed places ``s`` of pieces; their own motion is left out.
 
-        At an extremum it does not contribute (envelope theorem).
+        At an extremum it does not contribute (envelope theorem). Values are linear in the
+        way-points: those of the curves through unit ones are the gradients.
         """
+        count, joints = waypoints.shape
+        unit = self.fixed_by(waypoints).fitted(np.tile(np.eye(count), joints), durations)
+        by_waypoint = np.empty((len(points), count))
+        for i, e in enumerate(points):
+            own = slice(count * e.joint, count * (e.joint + 1))
+            by_waypoint[i] = unit.values(e.segment, own, e.order, np.array(e.s))
+        by_duration = self.by_durations(waypoints, durations, points)
+        return PeakGradients(by_duration, by_waypoint, np.empty((len(points), 0)))
+
+    def by_durations(self, waypoints: Array, durations: Array, points: list[Extremum]) -> Array:
+        """The gradients by durations, shape (points, segments): `value_gradients` takes them."""
+        raise NotImplementedError
 
     def segment_of(self, durations: Array, point: Extremum) -> int:
         """Segment in which an extremum of a piece lies, from 0: the piece, unless knots differ."""
@@ -363,7 +352,7 @@ def are_durations(h: Array) -> NDArray[np.bool_]:
     return np.asarray((np.isfinite(h) & (h > 0)).all(axis=1))
 
 
-def masked(reach: Array, wanted: NDArray[np.bool_], valid: NDArray[np.bool_]) -> Array:
+def masked(reach: Array, asked: Asked, valid: NDArray[np.bool_]) -> Array:
     """What `Curve.batch_reach` returns, from the numbers that were found, in place.
 
     Nothing lies on a side of 0 that no value is on; what is no number, or of vectors that define no
@@ -371,7 +360,7 @@ def masked(reach: Array, wanted: NDArray[np.bool_], valid: NDArray[np.bool_]) ->
     """
     np.maximum(reach, 0.0, out=reach)
     reach[np.isnan(reach)] = np.inf
-    reach[:, :, ~wanted] = 0.0
+    reach[:, :, ~asked.wanted] = 0.0
     reach[~valid] = np.inf
     return reach
 

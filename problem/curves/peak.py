@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array, over_rows
-from .polynomials import LOOSE, bernstein, derivative_rows
+from .polynomials import LOOSE, bernstein
 from .trajectory import Trajectory
 
 
@@ -58,12 +58,6 @@ class PeakGradients:
     nodal: Array
 
 
-def rows_at(points: list[Extremum]) -> Array:
-    """Weights of ten coefficients in derivatives by s at some places, shape (places, 10)."""
-    orders = np.array([e.order for e in points], dtype=np.int64)
-    return derivative_rows(np.array([e.s for e in points]), orders)
-
-
 def extrema(trajectory: Trajectory, joint: int, order: int) -> list[Extremum]:
     """Ends and interior turning points of one derivative of one joint, in order of time.
 
@@ -80,32 +74,12 @@ def extrema(trajectory: Trajectory, joint: int, order: int) -> list[Extremum]:
     list of Extremum
         The largest absolute value over all t is among them.
     """
-    pieces, places, values = near_extrema(trajectory, joint, order, np.inf, -np.inf)
-    times = trajectory.times(pieces, places).tolist()
-    rows = zip(pieces.tolist(), places.tolist(), times, values.tolist(), strict=True)
-    return [Extremum(joint, k, order, s, time, value) for k, s, time, value in rows]
-
-
-def near_extrema(
-    trajectory: Trajectory, joint: int, order: int, low: float, high: float
-) -> tuple[NDArray[np.int64], Array, Array]:
-    """Pieces, places and values of the extrema that lie at most at ``low`` or at least at ``high``.
-
-    Parameters
-    ----------
-    trajectory : Trajectory
-    joint, order : int
-    low, high : float
-        rad/sᵒʳᵈᵉʳ; what is not a number lies beyond both.
-
-    Returns
-    -------
-    pieces, places, values : ndarray, shape (extrema,)
-        In order of time.
-    """
     places, values = (found[:, :, joint].T for found in trajectory.turns(order))
-    wanted = ~np.isnan(places) & ~((values > low) & (values < high))
-    return np.nonzero(wanted)[0], places[wanted], values[wanted]
+    known = ~np.isnan(places)
+    pieces, s = np.nonzero(known)[0], places[known]
+    columns = pieces, s, trajectory.times(pieces, s), values[known]
+    rows = zip(*(column.tolist() for column in columns), strict=True)
+    return [Extremum(joint, k, order, s, time, value) for k, s, time, value in rows]
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,19 +114,9 @@ class Furthest:
     def largest(self, trajectory: Trajectory, joint: int, errors: Array) -> tuple[Extremum, float]:
         """The largest size of a joint, the first of equal ones, and a bound on its error.
 
-        Parameters
-        ----------
-        trajectory : Trajectory
-        joint : int
-        errors : ndarray, shape (pieces, joints)
-            As `furthest` has got them.
-
-        Returns
-        -------
-        Extremum, float
-            The true peak is at least its own extremum less that one's error, and at most the
-            largest sum of an extremum and its error: a short segment, whose error is large but
-            whose values are small, does not blur the peak of another.
+        With the errors that `furthest` has got, the true peak is at least its own extremum less
+        that one's error, and at most the largest sum of an extremum and its error: a short segment,
+        whose error is large but whose values are small, does not blur the peak of another.
         """
         sizes = np.abs(self.values[:, joint])
         where = [(self.pieces[side, joint], self.places[side, joint]) for side in (0, 1)]

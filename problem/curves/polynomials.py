@@ -21,6 +21,8 @@ PERM = np.array(
 LOOSE = 1e-12
 """Share of a polynomial's terms that is added to a bound: far above the rounding of ten of them, so
 that what is left out by it would not have changed one bit."""
+Clock = tuple[Array, Array, int, Array]
+"""Of derivatives N_r/t′²ʳ⁻¹: N_{r+1}, t′, r, and the least t′ of each piece."""
 _SETTLED = 2.0**-52
 """Step after which a root in the unit interval is known to the last bit: the spacing at 1."""
 
@@ -48,6 +50,11 @@ def valued(a: Numbers, s: float | Array) -> Numbers:
     return np.asarray(value)
 
 
+def in_time(numerator: Numbers, speed: Numbers, order: int, places: float | Array) -> Numbers:
+    """Derivative in time, N_r/t′²ʳ⁻¹, at places; powers lead in both, then places do."""
+    return np.asarray(valued(numerator, places) / valued(speed, places) ** (2 * order - 1))
+
+
 def bernstein(a: Array) -> Array:
     """Bernstein coefficients on [0, 1]: the values lie between the least and the largest of them.
 
@@ -58,35 +65,36 @@ def bernstein(a: Array) -> Array:
     return np.tensordot(np.array(share), a, axes=1)
 
 
-def tops(a: Array, side: float) -> Array:
+def tops(a: Array, side: float, clock: Clock | None = None) -> Array:
     """Largest values on [0, 1] over several pieces, found where bounds leave them open.
 
-    Parameters
-    ----------
-    a : ndarray, shape (powers, batch, pieces, joints)
-        Ascending coefficients.
-    side : float
-        0 for sizes; 1 for values above 0, −1 for those below, as sizes.
-
-    Returns
-    -------
-    ndarray, shape (batch, joints)
+    From ascending coefficients, shape (powers, batch, pieces, joints), for each vector of the batch
+    and joint; a side is one of `Asked.sides`. With a clock, of derivatives in time N_r/t′²ʳ⁻¹.
     """
 
     def sized(value: Array) -> Array:
         return np.abs(value) if side == 0.0 else side * value
 
-    ends = sized(np.stack([a[0], a.sum(axis=0)])).max(axis=0)
-    found = np.asarray(ends.max(axis=1))
-    if len(a) > 2:
-        bound = sized(bernstein(a)).max(axis=0) + LOOSE * np.abs(a).sum(axis=0)
-        open_ = ~(bound < found[:, None])
-        part = a[:, open_]
-        places = roots_in_unit(derived(part, 1))
-        values = np.where(np.isnan(places), -np.inf, sized(valued(part[:, None], places)))
-        vector, _, joint = np.nonzero(open_)
-        np.maximum.at(found, (vector, joint), values.max(axis=0))
-    return found
+    if clock is None:
+        turning, least = derived(a, 1), np.array(1.0)
+        found = sized(np.stack([a[0], a.sum(axis=0)])).max(axis=(0, 2))
+    else:
+        turning, speed, order, slowest = clock
+        shape, least = turning.shape[1:], slowest ** (2 * order - 1)
+        a, speed = (np.broadcast_to(of, (len(of), *shape)) for of in (a, speed))
+        edges = np.stack([np.zeros(shape), np.ones(shape)])
+        found = sized(in_time(a, speed, order, edges)).max(axis=(0, 2))
+    bound = sized(bernstein(a)).max(axis=0) + LOOSE * np.abs(a).sum(axis=0)
+    open_ = ~(bound < found[:, None] * least) | ~(found[:, None] >= 0.0)
+    places, part = roots_in_unit(turning[:, open_]), a[:, open_]
+    if clock is None:
+        values = valued(part, places)
+    else:
+        values = in_time(part, speed[:, open_], order, places)
+    inner = np.where(np.isnan(places), -np.inf, sized(values))
+    vector, _, joint = np.nonzero(open_)
+    np.maximum.at(found, (vector, joint), inner.max(axis=0, initial=-np.inf))
+    return np.asarray(found)
 
 
 def roots_in_unit(a: Array) -> Array:

@@ -40,18 +40,8 @@ def refined_coefficients(
     below 1 and repeated use of the inequality ends in |e| ≤ error. That holds for any B. An image
     of a bound is a bound itself, and the closer one. Long systems are bounded by `blocks`.
 
-    Parameters
-    ----------
-    layout : Layout
-    values : ndarray, shape (rows, joints)
-        What the conditions give.
-    durations : ndarray, shape (segments,)
-        s.
-
-    Returns
-    -------
-    coefficients, error : ndarray, shape (segments, 10, joints)
-        Scaled coefficients and a bound on their absolute error.
+    Values are those of the conditions, (rows, joints); both results have shape (segments, powers,
+    joints).
 
     Raises
     ------
@@ -131,11 +121,7 @@ def _excess(rows: System, values: Array, flat: NDArray[np.floating], terms: int)
 def contained(approximate: NDArray[np.floating], matrix: Array, excess: Array) -> Array | None:
     """An error that contains its own image by any approximate inverse of a matrix, or None.
 
-    Parameters
-    ----------
-    approximate, matrix : ndarray, shape (size, size)
-    excess : ndarray, shape (size, joints)
-        Bound on the residual.
+    The excess bounds the residual, shape (size, joints).
     """
     size = np.finfo(np.float64).eps * (len(matrix) + 2)
     # The rounding of the product, and of A's entries, is part of the defect |BA − I|.

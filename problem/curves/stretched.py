@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ..arrays import Array
 from ..errors import TrajgapError
 from ..limits import QUANTITIES
 from .kind import (
+    Asked,
     Curve,
     Enclosed,
     Shape,
@@ -18,18 +19,13 @@ from .kind import (
     masked,
     value_errors,
 )
-from .peak import Extremum, PeakGradients, rows_at
+from .peak import Extremum
 from .polynomials import derived, tops
 from .trajectory import Trajectory
 
 
 def shape_of(curve: Curve, waypoints: Array) -> Shape:
-    """`Curve.shape`, refused where segments are not stretched.
-
-    Raises
-    ------
-    TrajgapError
-    """
+    """`Curve.shape`, refused where segments are not stretched."""
     form = curve.shape(waypoints)
     if form is None:
         raise TrajgapError(
@@ -97,43 +93,27 @@ class StretchedCurve(Curve):
         """How far each segment goes when its duration is 1 s, which is all that a batch needs."""
         return _segment_sides(self, waypoints)
 
-    def batch_reach(
-        self,
-        values: Array,
-        durations: Array,
-        wanted: NDArray[np.bool_],
-        sides: tuple[float, ...],
-        least: int = 1,
-    ) -> Array:
+    def batch_reach(self, values: Array, durations: Array, asked: Asked) -> Array:
         """By one division a segment."""
-        h = as_batch(self, durations)
+        h, least, sides = as_batch(self, durations), asked.least, asked.sides
         valid = are_durations(h)
         rate = 1.0 / np.where(valid[:, None], h, 1.0)
-        found = np.zeros((len(h), len(sides), *wanted.shape))
+        found = asked.room(len(h))
         own = {-1.0: values[:, 0], 1.0: values[:, 1], 0.0: values.max(axis=1)}
         with np.errstate(over="ignore", invalid="ignore"):
             for k in range(self.segments):
-                for i in range(wanted.shape[1]):
+                for i in range(asked.wanted.shape[1]):
                     scale = rate[:, k, None] ** (least + i)
                     for side, sign in enumerate(sides):
                         top = scale * own[sign][k, least + i]
                         np.fmax(found[:, side, :, i], top, out=found[:, side, :, i])
-        return masked(found, wanted, valid)
+        return masked(found, asked, valid)
 
-    def value_gradients(
-        self,
-        waypoints: Array,
-        durations: Array,
-        points: list[Extremum],
-        nodal: Array | None = None,
-    ) -> PeakGradients:
-        """Gradients of D/hʳ, which only the segment's own duration h enters."""
+    def by_durations(self, waypoints: Array, durations: Array, points: list[Extremum]) -> Array:
+        """Of D/hʳ, which only the segment's own duration h enters."""
         form = shape_of(self, waypoints)
-        by_duration = np.zeros((len(points), self.segments))
-        by_waypoint = np.empty((len(points), waypoints.shape[0]))
-        for i, (e, row) in enumerate(zip(points, rows_at(points), strict=True)):
+        found = np.zeros((len(points), self.segments))
+        for i, e in enumerate(points):
             k = form.segment[e.segment]
-            scale = (durations[k] * form.share[e.segment]) ** e.order
-            by_duration[i, k] = -e.order * e.value / durations[k]
-            by_waypoint[i] = row / scale @ form.by_waypoint[e.joint, e.segment]
-        return PeakGradients(by_duration, by_waypoint, np.empty((len(points), 0)))
+            found[i, k] = -e.order * e.value / durations[k]
+        return found

@@ -11,14 +11,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import Array
 from ..errors import CurveError, TrajgapError
-from .kind import Enclosed, are_durations
+from .kind import Asked, Enclosed, are_durations
 from .peak import Extremum
 from .polynomials import (
-    LOOSE,
     MAX_COEFFICIENTS,
     Numbers,
-    bernstein,
     derived,
+    in_time,
     roots_in_unit,
     tops,
     valued,
@@ -62,11 +61,6 @@ def numerators(q: Numbers, t: Numbers, highest: int, sign: int = -1) -> list[Num
         # The leading terms of q″t′ and q′t″ cancel for two cubics.
         found.append(following[:3] if r == 1 and sign < 0 else following)
     return found
-
-
-def _in_time(numerator: Numbers, speed: Numbers, order: int, places: float | Array) -> Numbers:
-    """Derivative in time, N_r/t′²ʳ⁻¹, at places; powers lead in both, then places do."""
-    return np.asarray(valued(numerator, places) / valued(speed, places) ** (2 * order - 1))
 
 
 def _least_speed(speed: Array) -> tuple[Array, Array]:
@@ -122,30 +116,19 @@ class ClockedTrajectory(Trajectory):
     def __call__(self, time: ArrayLike, order: int = 0) -> Array:
         """Derivative ``order`` in time at ``time`` (s), by inverting t(e)."""
         t = np.asarray(time, dtype=np.float64)
-        flat = t.ravel()
         last = len(self.clock) - 1
-        piece = np.clip(np.searchsorted(self.breaks, flat, side="right") - 1, 0, last)
-        values = np.empty((flat.size, self.joints))
-        for i, (k, target) in enumerate(zip(piece, flat, strict=True)):
-            e = np.array(self.place(int(k), float(target)))
-            values[i] = [self.values(int(k), j, order, e) for j in range(self.joints)]
-        return values.reshape(*t.shape, self.joints)
-
-    def place(self, piece: int, time: float) -> float:
-        """Parameter of the piece at which a time is reached; Newton steps within bisection."""
-        a = self.clock[piece].copy()
-        a[0] -= time
-        slope = derived(a, 1)
-        low, high, e = 0.0, 1.0, 0.5
-        for _ in range(100):
-            value = float(valued(a, e))
-            low, high = (e, high) if value < 0 else (low, e)
-            step = e - value / float(valued(slope, e))
-            step = step if low <= step <= high else 0.5 * (low + high)
-            if abs(step - e) <= 1e-16:
-                break
-            e = step
-        return e
+        piece = np.clip(np.searchsorted(self.breaks, t.ravel(), side="right") - 1, 0, last)
+        level = self.clock[piece].T
+        level[0] -= t.ravel()
+        # One root, as time grows; none at an end, nor beyond it.
+        found = np.fmax.reduce(roots_in_unit(level), axis=0)
+        places = np.where(np.isnan(found), level[0] < 0.0, found)
+        every = slice(None)
+        values = [
+            self.values(k, every, order, e)
+            for k, e in zip(piece.tolist(), places[:, None], strict=True)
+        ]
+        return np.array(values).reshape(*t.shape, self.joints)
 
     def turns(self, order: int, pieces: NDArray[np.int64] | None = None) -> tuple[Array, Array]:
         """As `Trajectory.turns`, of derivatives that are no polynomials."""
@@ -156,9 +139,9 @@ class ClockedTrajectory(Trajectory):
         edge = np.zeros((1, *inner.shape[1:]))
         places = np.concatenate([edge, inner, edge + 1.0])
         speed = derived(self._time[:, own], 1)
-        return places, _in_time(self.numerators[order - 1][:, own], speed, order, places)
+        return places, in_time(self.numerators[order - 1][:, own], speed, order, places)
 
-    def derivative(self, segment: int, joint: int, order: int) -> Array:
+    def derivative(self, segment: int, joint: int | slice, order: int) -> Array:
         """Refuse: a derivative in time is no polynomial.
 
         Raises
@@ -177,16 +160,16 @@ class ClockedTrajectory(Trajectory):
         return Trajectory(even, self.scaled, self.degrees)
 
     @property
-    def polynomial_in_time(self) -> bool:
+    def polynomialin_time(self) -> bool:
         """Never: time is not linear in the parameter."""
         return False
 
-    def values(self, piece: int, joint: int, order: int, places: Array) -> Array:
+    def values(self, piece: int, joint: int | slice, order: int, places: Array) -> Array:
         """Derivative in time, up to order 4, at places of a piece."""
         if order == 0:
             return super().values(piece, joint, 0, places)
         speed = derived(self.clock[piece], 1)
-        return _in_time(self.numerators[order - 1][:, piece, joint], speed, order, places)
+        return in_time(self.numerators[order - 1][:, piece, joint], speed, order, places)
 
     def times(self, pieces: int | NDArray[np.int64], places: Array) -> Array:
         """As `Trajectory.times`, by the clock."""
@@ -207,46 +190,16 @@ class ClockedTrajectory(Trajectory):
         q, speed = self.derivatives(0), derived(self._time, 1)
         edges = np.stack([np.zeros(q.shape[1:]), np.ones(q.shape[1:])])
         terms = numerators(np.abs(q), np.abs(self._time), order, 1)[-1]
-        values = _in_time(self.numerators[order - 1], speed, order, edges)
-        sizes = _in_time(terms, speed, order, edges)
+        values = in_time(self.numerators[order - 1], speed, order, edges)
+        sizes = in_time(terms, speed, order, edges)
         return values[1, :-1], values[0, 1:], sizes[1, :-1] + sizes[0, 1:]
-
-
-def _checked_clock(clock: Array) -> None:
-    """Refuse a clock that does not run forwards everywhere.
-
-    Raises
-    ------
-    CurveError
-    """
-    values, places = _least_speed(derived(clock.T, 1))
-    k = int(values.argmin())
-    value, e = float(values[k]), float(places[k])
-    if not value > 0:
-        raise CurveError(
-            f"durations: time would not increase along the curve, dt/de = {value:.6g} s at "
-            f"e = {e:.4g} of segment {k + 1}; make neighbouring durations less unequal",
-            k,
-            value,
-        )
-
-
-def _trajectory(scaled: Array, clock: Array) -> ClockedTrajectory:
-    breaks = np.append(clock[:, 0], clock[-1].sum())
-    return ClockedTrajectory(np.diff(breaks), scaled, (3,) * len(clock), clock)
 
 
 def combined(matrix: Numbers, numbers: Array) -> tuple[Array, Array]:
     """Combinations in extended precision of way-points, or durations, and a bound on their error.
 
-    Parameters
-    ----------
-    matrix : ndarray of longdouble, shape (pieces, 4, numbers)
-    numbers : ndarray, shape (numbers, joints)
-
-    Returns
-    -------
-    scaled, error : ndarray, shape (pieces, 10, joints)
+    The matrix has shape (pieces, 4, numbers), the numbers (numbers, joints), both results
+    (pieces, 10, joints).
     """
     wide = numbers.astype(np.longdouble)
     tiny = np.finfo(np.longdouble).eps * (len(numbers) + 5)
@@ -260,11 +213,7 @@ def combined(matrix: Numbers, numbers: Array) -> tuple[Array, Array]:
 def enclosed_with_clock(q: Numbers, t: Numbers, waypoints: Array, durations: Array) -> Enclosed:
     """Trajectory of q(e) and t(e), with a bound on the error of every extremum.
 
-    Parameters
-    ----------
-    q, t : ndarray of longdouble, shape (pieces, 4, way-points), (pieces, 4, segments)
-        Coefficients in e as combinations of the way-points, and of the durations.
-    waypoints, durations : ndarray
+    Both are combinations, coefficients in e of way-points and of durations, in extended precision.
 
     Raises
     ------
@@ -273,8 +222,17 @@ def enclosed_with_clock(q: Numbers, t: Numbers, waypoints: Array, durations: Arr
     """
     scaled, error = combined(q, waypoints)
     clock, clock_error = (one[:, :4, 0] for one in combined(t, durations[:, None]))
-    _checked_clock(clock)
-    found = _trajectory(scaled, clock)
+    speeds, places = _least_speed(derived(clock.T, 1))
+    k = int(speeds.argmin())
+    if not speeds[k] > 0:
+        raise CurveError(
+            f"durations: time would not increase along the curve, dt/de = {speeds[k]:.6g} s at "
+            f"e = {places[k]:.4g} of segment {k + 1}; make neighbouring durations less unequal",
+            k,
+            float(speeds[k]),
+        )
+    lengths = np.diff(np.append(clock[:, 0], clock[-1].sum()))
+    found = ClockedTrajectory(lengths, scaled, (3,) * len(clock), clock)
     return Enclosed(found, _errors(found, error, clock_error))
 
 
@@ -308,23 +266,14 @@ def value_at(q: Numbers, t: Numbers, e: Extremum) -> Numbers:
     """Derivatives at the place of an extremum, for coefficients along the first axis."""
     if e.order == 0:
         return np.asarray(valued(q, e.s))
-    return _in_time(numerators(q, t, e.order)[-1], derived(t, 1), e.order, e.s)
+    return in_time(numerators(q, t, e.order)[-1], derived(t, 1), e.order, e.s)
 
 
 def runs_forwards(nodes: Array, durations: Array) -> tuple[Array, NDArray[np.bool_]]:
     """Clocks of many duration vectors, and which of them run forwards everywhere.
 
-    Parameters
-    ----------
-    nodes : ndarray, shape (pieces, 4, segments)
-        Coefficients in e of t, as combinations of the durations.
-    durations : ndarray, shape (batch, segments)
-        s.
-
-    Returns
-    -------
-    clocks : ndarray, shape (4, batch, pieces)
-    valid : ndarray of bool, shape (batch,)
+    From coefficients in e of t, (pieces, 4, segments), and durations (batch, segments): clocks of
+    shape (4, batch, pieces).
     """
     valid = are_durations(durations)
     h = np.where(valid[:, None], durations, 1.0)
@@ -333,60 +282,23 @@ def runs_forwards(nodes: Array, durations: Array) -> tuple[Array, NDArray[np.boo
     return clocks, np.asarray(valid & (least > 0.0))
 
 
-def clocked_reach(
-    q: Array, clocks: Array, wanted: NDArray[np.bool_], sides: tuple[float, ...], least: int
-) -> Array:
+def clocked_reach(q: Array, clocks: Array, asked: Asked) -> Array:
     """How far derivatives in time go under many clocks that run forwards.
 
     On a piece Bernstein coefficients bound N_r, its least value t′; where that stays below what
     another piece has at one of its ends it is not looked at further.
 
-    Parameters
-    ----------
-    q : ndarray, shape (pieces, 4, joints)
-        Coefficients of q(e).
-    clocks : ndarray, shape (4, batch, pieces)
-        Of t(e).
-    wanted, sides, least
-        As `Curve.batch_reach` takes them.
-
-    Returns
-    -------
-    ndarray, shape (batch, sides, joints, orders)
+    Coefficients q have shape (pieces, 4, joints), clocks (4, batch, pieces); the answer is that of
+    `Curve.batch_reach`.
     """
-    found = np.zeros((clocks.shape[1], len(sides), *wanted.shape))
-    orders = (np.flatnonzero(wanted.any(axis=0)) + least).tolist()
+    found = asked.room(clocks.shape[1])
+    orders = (np.flatnonzero(asked.wanted.any(axis=0)) + asked.least).tolist()
     a, t = q.transpose(1, 0, 2)[:, None], clocks[..., None]
     speed = derived(t, 1)
     slowest = _least_speed(speed)[0]
-    known = numerators(a, t, max(orders) + 1) if max(orders) else []
+    known = [a, *numerators(a, t, max(orders) + 1)]
     for r in orders:
-        for side, sign in enumerate(sides):
-            if r == 0:
-                top = tops(a, sign)
-            else:
-                top = _tops_in_time(known[r - 1 : r + 1], speed, slowest ** (2 * r - 1), r, sign)
-            found[:, side, :, r - least] = top
+        clock = (known[r + 1], speed, r, slowest) if r else None
+        for side, sign in enumerate(asked.sides):
+            found[:, side, :, r - asked.least] = tops(known[r], sign, clock)
     return found
-
-
-def _tops_in_time(
-    known: list[Numbers], speed: Array, slowest: Array, order: int, side: float
-) -> Array:
-    """`tops` of N_r/t′²ʳ⁻¹, from N_r, N_{r+1} and the least denominators."""
-
-    def sized(value: Array) -> Array:
-        return np.abs(value) if side == 0.0 else side * value
-
-    shape = known[1].shape[1:]
-    a = np.asarray(np.broadcast_to(known[0], (len(known[0]), *shape)), dtype=np.float64)
-    edges = np.stack([np.zeros(shape), np.ones(shape)])
-    found = sized(_in_time(a, speed, order, edges)).max(axis=(0, 2))
-    bound = sized(bernstein(a)).max(axis=0) + LOOSE * np.abs(a).sum(axis=0)
-    open_ = ~(bound < (found[:, None] * slowest)) | ~(found[:, None] >= 0.0)
-    places = roots_in_unit(known[1][:, open_])
-    rate = np.broadcast_to(speed, (3, *shape))[:, open_]
-    inner = np.where(np.isnan(places), -np.inf, sized(_in_time(a[:, open_], rate, order, places)))
-    vector, _, joint = np.nonzero(open_)
-    np.maximum.at(found, (vector, joint), inner.max(axis=0, initial=-np.inf))
-    return np.asarray(found)

@@ -106,7 +106,7 @@ class Trajectory:
             self._known[order].setflags(write=False)
         return self._known[order]
 
-    def derivative(self, segment: int, joint: int, order: int) -> Array:
+    def derivative(self, segment: int, joint: int | slice, order: int) -> Array:
         """Ascending coefficients in s of a time derivative on one piece; not to be written to."""
         size = max(1, self.degrees[segment] + 1 - order)
         return self.derivatives(order)[:size, segment, joint]
@@ -143,8 +143,8 @@ class Trajectory:
             self._turned[order] = found
         return found
 
-    def values(self, piece: int, joint: int, order: int, places: Array) -> Array:
-        """Derivative in time at places, 0..1, of a piece."""
+    def values(self, piece: int, joint: int | slice, order: int, places: Array) -> Array:
+        """Derivative in time at places, 0..1, of a piece; of several joints at one place."""
         return valued(self.derivative(piece, joint, order), places)
 
     def times(self, pieces: int | NDArray[np.int64], places: Array) -> Array:

@@ -41,19 +41,8 @@ _NOUGHT = 1e-30
 def tridiagonal_fit(ends: tuple[Derivatives, Derivatives], q: Array, h: Array) -> Enclosed | None:
     """A C2 cubic spline in float64 with a bound on its error.
 
-    Parameters
-    ----------
-    ends : tuple
-        ``((order, value),)`` at the start and at the finish, of order 1 or 2, rad/sᵒʳᵈᵉʳ.
-    q : ndarray, shape (segments + 1, joints)
-        Way-points, rad.
-    h : ndarray, shape (segments,)
-        Durations, s.
-
-    Returns
-    -------
-    Enclosed or None
-        None of one segment, of durations beyond the analysis, and where numbers overflow.
+    The ends give one derivative each, of order 1 or 2; None of one segment, of durations beyond the
+    analysis, and where numbers overflow.
     """
     from scipy.linalg.lapack import dptsv  # a quarter of a second, and few need it
 

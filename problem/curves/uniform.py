@@ -12,9 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import Array
 from ..errors import TrajgapError
-from .kind import STEP, Curve, Enclosed, Shape, Timing, as_batch, masked
-from .peak import Extremum, PeakGradients
-from .polynomials import MAX_COEFFICIENTS
+from .kind import STEP, Asked, Curve, Enclosed, Shape, Timing, as_batch, masked
+from .peak import Extremum
 from .stretched import StretchedCurve
 from .timed import clocked_reach, combined, enclosed_with_clock, runs_forwards, value_at
 
@@ -57,16 +56,7 @@ def vertex_matrix(waypoints: int, natural: bool = False) -> tuple[tuple[Fraction
 def shape_matrix(waypoints: int, natural: bool = False) -> NDArray[np.longdouble]:
     """Coefficients in e of each segment as combinations of the way-points.
 
-    Parameters
-    ----------
-    waypoints : int
-    natural : bool
-        As in `vertex_matrix`.
-
-    Returns
-    -------
-    ndarray of longdouble, shape (segments, 4, way-points)
-        Exact rational numbers, rounded once.
+    Shape (segments, 4, way-points): exact rational numbers, rounded once.
     """
     v = np.array(vertex_matrix(waypoints, natural))
     # The four basis functions of (1) in powers of e.
@@ -83,15 +73,7 @@ def shape_matrix(waypoints: int, natural: bool = False) -> NDArray[np.longdouble
 def clock_matrix(waypoints: int, natural: bool = False) -> NDArray[np.longdouble]:
     """Coefficients in e of t on each segment as combinations of the durations.
 
-    Parameters
-    ----------
-    waypoints : int
-    natural : bool
-        As in `vertex_matrix`, for the time nodes.
-
-    Returns
-    -------
-    ndarray of longdouble, shape (segments, 4, segments)
+    Shape (segments, 4, segments); the nodes of time are those of `shape_matrix`.
     """
     nodes = shape_matrix(waypoints, natural)
     # Node i is the sum of the durations before it.
@@ -127,11 +109,6 @@ class UniformBSpline(Curve):
     ----------
     waypoints : int
         Number of way-points, at least 2.
-
-    Raises
-    ------
-    TrajgapError
-        If there are fewer than two way-points.
     """
 
     waypoints: int
@@ -164,18 +141,8 @@ class StretchedUniformBSpline(UniformBSpline, StretchedCurve):
     def shape(self, waypoints: Array) -> Shape:
         """One cubic a segment, from exact rational numbers."""
         matrix = shape_matrix(self.waypoints)
-        n, joints = self.segments, waypoints.shape[1]
-        scaled, error = combined(matrix, waypoints)
-        by_waypoint = np.zeros((n, MAX_COEFFICIENTS, self.waypoints))
-        by_waypoint[:, :4] = matrix
-        return Shape(
-            segment=np.arange(n),
-            share=np.ones(n),
-            degree=3,
-            scaled=scaled,
-            error=error,
-            by_waypoint=np.broadcast_to(by_waypoint, (joints, *by_waypoint.shape)),
-        )
+        pieces = np.arange(self.segments)
+        return Shape(pieces, np.ones(pieces.size), 3, *combined(matrix, waypoints))
 
 
 @dataclass(frozen=True)
@@ -220,42 +187,24 @@ class TimedUniformBSpline(UniformBSpline):
         matrix = shape_matrix(self.waypoints)
         return np.asarray(matrix @ (waypoints - waypoints[0]), dtype=np.float64)
 
-    def batch_reach(
-        self,
-        values: Array,
-        durations: Array,
-        wanted: NDArray[np.bool_],
-        sides: tuple[float, ...],
-        least: int = 1,
-    ) -> Array:
+    def batch_reach(self, values: Array, durations: Array, asked: Asked) -> Array:
         """Of all pieces at once."""
         nodes = self.clock.astype(np.float64)
         clocks, valid = runs_forwards(nodes, as_batch(self, durations))
-        found = np.zeros((valid.size, len(sides), *wanted.shape))
-        if wanted.any():
-            found[valid] = clocked_reach(values, clocks[:, valid], wanted, sides, least)
-        return masked(found, wanted, valid)
+        found = asked.room(valid.size)
+        if asked.wanted.any():
+            found[valid] = clocked_reach(values, clocks[:, valid], asked)
+        return masked(found, asked, valid)
 
-    def value_gradients(
-        self,
-        waypoints: Array,
-        durations: Array,
-        points: list[Extremum],
-        nodal: Array | None = None,
-    ) -> PeakGradients:
-        """By complex steps: every number is a rational function of durations and way-points."""
-        matrix = shape_matrix(self.waypoints).astype(np.float64)
+    def by_durations(self, waypoints: Array, durations: Array, points: list[Extremum]) -> Array:
+        """By complex steps: every number is a rational function of the durations."""
+        scaled = shape_matrix(self.waypoints).astype(np.float64) @ waypoints
         nodes = self.clock.astype(np.float64)
-        scaled, clock = matrix @ waypoints, nodes @ durations
-        by_duration = np.empty((len(points), self.segments))
-        by_waypoint = np.empty((len(points), self.waypoints))
+        clock, found = nodes @ durations, np.empty((len(points), self.segments))
         for i, e in enumerate(points):
-            q, t = scaled[e.segment, :, e.joint, None], clock[e.segment, :, None]
-            steps = t + 1j * STEP * nodes[e.segment]
-            by_duration[i] = value_at(q, steps, e).imag / STEP
-            # The numerators are linear in q.
-            by_waypoint[i] = value_at(matrix[e.segment], t, e)
-        return PeakGradients(by_duration, by_waypoint, np.empty((len(points), 0)))
+            steps = clock[e.segment, :, None] + 1j * STEP * nodes[e.segment]
+            found[i] = value_at(scaled[e.segment, :, e.joint, None], steps, e).imag / STEP
+        return found
 
 
 def uniform_cubic_b_spline(

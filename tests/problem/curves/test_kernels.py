@@ -19,15 +19,9 @@ from trajgap.problem import (
     check,
     cubic_spline,
     evaluate,
-    fit,
     uniform_cubic_b_spline,
 )
-from trajgap.problem.curves import (
-    PERM,
-    coefficients_of_many,
-    kernel,
-    population,
-)
+from trajgap.problem.curves import PERM, Asked, kernel
 
 JOINTS = 3
 CURVES: dict[str, Curve] = {
@@ -60,32 +54,20 @@ def test_no_vector_looks_at_another(name: str, monkeypatch: pytest.MonkeyPatch) 
     values = curve.motion_values(q, free if name in FREE else None)
     wanted = np.ones((JOINTS, 4), dtype=bool)
     wanted[2, 1] = False
-    asked = (wanted, (0.0, -1.0, 1.0), 0)
-    found = curve.batch_reach(values, h, *asked)
+    asked = Asked(wanted, (0.0, -1.0, 1.0), 0)
+    found = curve.batch_reach(values, h, asked)
     assert np.isfinite(found).any()
     assert np.isinf(found[:4]).all()
     finite = found[np.isfinite(found).all(axis=(1, 2, 3))]
     assert finite.any()
     assert not finite[..., 2, 1].any()
-    alone = [curve.batch_reach(values, one[None], *asked)[0] for one in h]
+    alone = [curve.batch_reach(values, one[None], asked)[0] for one in h]
     np.testing.assert_array_equal(found, alone)
-    np.testing.assert_array_equal(curve.batch_reach(values, h[::-1].copy(), *asked), found[::-1])
+    np.testing.assert_array_equal(curve.batch_reach(values, h[::-1].copy(), asked), found[::-1])
     # Sizes are those of the larger side.
     np.testing.assert_array_equal(found[:, 0], found[:, 1:].max(axis=1))
-    monkeypatch.setattr(population, "_PART", 20)
-    np.testing.assert_array_equal(curve.batch_reach(values, h, *asked), found)
-
-
-@pytest.mark.parametrize("name", [*DECLARATIONS, *FREE])
-def test_many_fits_are_those_of_one(name: str) -> None:
-    curve = CURVES[name]
-    q, _, free = drawn(curve, 4)
-    h = np.exp(np.random.default_rng(1).normal(size=(20, curve.segments)))
-    nodal = free if name in FREE else None
-    found = coefficients_of_many(curve, q, h, nodal)
-    one_by_one = np.array([fit(curve, q, one, nodal).scaled for one in h])
-    sizes = np.abs(one_by_one).max(axis=(1, 2, 3), keepdims=True)
-    np.testing.assert_allclose(found / sizes, one_by_one / sizes, atol=1e-11)
+    monkeypatch.setattr(kernel, "PART", 20)
+    np.testing.assert_array_equal(curve.batch_reach(values, h, asked), found)
 
 
 # --- what may not be written into -----------------------------------------------------------------

@@ -42,13 +42,8 @@ class Chords(StretchedCurve):
         n, joints = self.segments, waypoints.shape[1]
         scaled = np.zeros((n, MAX_COEFFICIENTS, joints))
         scaled[:, 0], scaled[:, 1] = waypoints[:-1], np.diff(waypoints, axis=0)
-        each = np.zeros((n, MAX_COEFFICIENTS, n + 1))
-        for k in range(n):
-            each[k, 0, k] = 1.0
-            each[k, 1, [k, k + 1]] = -1.0, 1.0
         error = np.finfo(float).eps * np.abs(scaled)
-        by_waypoint = np.broadcast_to(each, (joints, *each.shape))
-        return Shape(np.arange(n), np.ones(n), 1, scaled, error, by_waypoint)
+        return Shape(np.arange(n), np.ones(n), 1, scaled, error)
 
 
 def test_a_new_kind_is_checked_searched_and_solved() -> None:

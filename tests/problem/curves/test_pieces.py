@@ -14,7 +14,7 @@ from trajgap.problem import (
     fit,
     rest_to_rest,
 )
-from trajgap.problem.curves import Trajectory, furthest, near_extrema, peak
+from trajgap.problem.curves import Trajectory, furthest, peak
 
 NAMES = ("3-5-3", "cubic", "quintic", "rest 7", "4-2-3", "lines", "uneven")
 
@@ -45,21 +45,6 @@ def test_the_furthest_are_the_largest_of_all_extrema(name: str) -> None:
             assert top == max(points, key=lambda e: abs(e.value))
             own = errors[top.segment, j]
             assert bound == max(own, max(abs(v) + e for v, e in near) - abs(top.value))
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_near_extrema_are_those_beyond_the_two_values(name: str) -> None:
-    problem, h = sample_problem(DECLARATIONS[name], 12)
-    curve = fit(problem.curve, problem.waypoints, h)
-    for r in range(4):
-        points = extrema(curve, 1, r)
-        high = float(np.quantile([e.value for e in points], 0.7))
-        low = float(np.quantile([e.value for e in points], 0.2))
-        pieces, places, values = near_extrema(curve, 1, r, low, high)
-        wanted = [(e.segment, e.s, e.value) for e in points if e.value <= low or e.value >= high]
-        assert list(zip(pieces.tolist(), places.tolist(), strict=True)) == [w[:2] for w in wanted]
-        np.testing.assert_allclose(values, [w[2] for w in wanted], rtol=1e-14)
-        assert near_extrema(curve, 1, r, -np.inf, -np.inf)[0].size == len(points)
 
 
 def test_steps_are_those_of_the_pieces_on_both_sides() -> None:

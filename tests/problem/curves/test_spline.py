@@ -23,7 +23,7 @@ from trajgap.problem import (
     septic_spline,
     three_five_three,
 )
-from trajgap.problem.curves import places_of, refined, right_hand_sides, system
+from trajgap.problem.curves import Asked, places_of, refined, right_hand_sides, system
 from trajgap.problem.curves.system import Factors, System, factorise
 
 STEPS = (0.7, 0.5, 1.4, 0.3, 1.5, 0.7, 1.6)
@@ -184,7 +184,8 @@ def test_singular_durations_never_give_a_quiet_answer() -> None:
     q = waypoints(3)
     assert np.isfinite(coefficients(interpolant, q, np.array([1.0, 1.0]))).all()
     values = interpolant.motion_values(q)
-    peaks = interpolant.batch_peaks(values, np.array([[2.0, 3.0]]), np.ones((3, 3), bool))
+    asked = Asked(np.ones((3, 3), bool))
+    peaks = interpolant.batch_reach(values, np.array([[2.0, 3.0]]), asked)
     assert (peaks > 1e9).all()
     try:
         found = coefficients(interpolant, q, np.array([2.0, 3.0]))
@@ -216,7 +217,8 @@ def test_motion_values_count_from_the_first_waypoint() -> None:
     )
     h = np.array([[0.4, 0.9, 1.3, 0.2, 0.8]])
     still = np.full((4, 1), 61.7)
-    peaks = interpolant.batch_peaks(interpolant.motion_values(still), h, np.ones((1, 3), bool))
+    values, asked = interpolant.motion_values(still), Asked(np.ones((1, 3), bool))
+    peaks = interpolant.batch_reach(values, h, asked)
     assert not peaks.any()
 
 
