@@ -62,8 +62,6 @@ class Case:
 
     Parameters
     ----------
-    document : CaseFile
-        The file's content, validated.
     file : str
         What it was loaded from, for messages.
     sha256 : str or None
@@ -196,10 +194,6 @@ class Case:
         flipped : tuple of int
             Rows whose twist is taken with the other sign.
 
-        Returns
-        -------
-        Chain or None
-
         Raises
         ------
         CaseError
@@ -277,10 +271,6 @@ class Case:
         coupling : Coupling or str, optional
             "shared" or "per-joint" instead of what the file says.
 
-        Returns
-        -------
-        Problem
-
         Raises
         ------
         CaseError
@@ -305,7 +295,6 @@ class Case:
 
         Parameters
         ----------
-        digits : Digits
         problem_id, reading_id : str, optional
             As in `problem`.
 
@@ -355,10 +344,6 @@ class Case:
         reading_id : str, optional
             Under which reading; the default one if not given.
 
-        Returns
-        -------
-        DurationBox
-
         Raises
         ------
         CaseError
@@ -397,10 +382,6 @@ class Case:
             As in `problem`.
         joint : str, optional
             Label of its joint, needed where units differ.
-
-        Returns
-        -------
-        Measured
 
         Raises
         ------

@@ -34,9 +34,6 @@ def check_claims(
 
     Parameters
     ----------
-    document : CaseFile
-    faults : Faults
-        Takes what is wrong.
     statements_of : callable
         The problems of a claim under every reading, that under the default one first.
     """
@@ -114,10 +111,6 @@ def _check_claim(
 def named_places(statement: Statement) -> dict[str, int | None]:
     """What a place of a motion may be called, with the number of its way-point, from 0.
 
-    Parameters
-    ----------
-    statement : Statement
-
     Returns
     -------
     dict of str to int or None
@@ -137,11 +130,6 @@ def motions_of(claims: Iterable[AnyClaim], value: MotionValueClaim) -> list[AnyC
     ----------
     claims : iterable of AnyClaim
         Of the file.
-    value : MotionValueClaim
-
-    Returns
-    -------
-    list of AnyClaim
     """
     motions = [c for c in claims if isinstance(c, DurationsClaim | MaximumClaim)]
     if value.of is not None:
@@ -163,11 +151,6 @@ def profile_of(claims: Iterable[AnyClaim], value: AnyClaim) -> TotalTimeClaim | 
     ----------
     claims : iterable of AnyClaim
         Of the file.
-    value : AnyClaim
-
-    Returns
-    -------
-    TotalTimeClaim or PhasesClaim or None
     """
     if not isinstance(value, PeakClaim | ValueClaim) or value.of is None:
         return None

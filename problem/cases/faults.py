@@ -41,13 +41,7 @@ _EXPECTED = {
 
 
 class Faults:
-    """Faults of one file, gathered so that one refusal tells all of them.
-
-    Parameters
-    ----------
-    file : str
-        Name for error messages.
-    """
+    """Faults of one file, gathered so that one refusal tells all of them."""
 
     def __init__(self, file: str) -> None:
         self.file = file

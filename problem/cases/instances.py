@@ -74,8 +74,6 @@ def instance_waypoints(
 
     Parameters
     ----------
-    block : InstancesBlock
-    chain : Chain
     labels : tuple of str
         Joints of the chain to keep, in order.
     waypoints : int

@@ -18,7 +18,6 @@ def check_kinds(statement: Statement, chain: Chain | None) -> None:
 
     Parameters
     ----------
-    statement : Statement
     chain : Chain or None
         The robot's chain, if it has one.
 
@@ -49,9 +48,6 @@ def check_clues(document: CaseFile, faults: Faults, statements: Sequence[Stateme
 
     Parameters
     ----------
-    document : CaseFile
-    faults : Faults
-        Takes what is wrong.
     statements : sequence of Statement
         Every problem under every reading.
     """

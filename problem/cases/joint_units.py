@@ -40,7 +40,6 @@ def with_unit(numbers: Sequence[str], units: UnitOrEach) -> list[str]:
 
     Parameters
     ----------
-    numbers : sequence of str
     units : str, tuple of str or None
         One for all of them, or one for each.
     """
@@ -60,8 +59,6 @@ def check_units(units: Units, labels: Sequence[str], faults: Faults, selected: s
         Under one reading.
     labels : sequence of str
         Of the robot's joints.
-    faults : Faults
-        Takes what is wrong.
     selected : str
         Names problem and reading, for messages.
     """

@@ -26,7 +26,6 @@ def on_line(
         With a line.
     unit : str
         Of its angles.
-    chain : Chain
     file, selected : str
         Name of the file, and problem and reading in words, for messages.
 

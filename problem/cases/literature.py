@@ -144,10 +144,6 @@ def meant_by(name: str, families: Iterable[str]) -> Meant | None:
         As a case file or the literature has it.
     families : iterable of str
         Families of case files.
-
-    Returns
-    -------
-    Meant or None
     """
     if name in families:
         return _completed(name, {})
@@ -176,10 +172,6 @@ def unknown(name: str, families: Iterable[str]) -> str:
         For which `meant_by` knows no curve.
     families : iterable of str
         Families of case files.
-
-    Returns
-    -------
-    str
     """
     known = (*families, *LITERATURE)
     every = f"{', '.join(known)}, or degrees such as 4-3-3-4"

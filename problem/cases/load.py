@@ -30,10 +30,6 @@ def load_case(source: str | Path) -> Case:
     source : str or Path
         Id of a published case, ``suite:NAME`` of an instance of the suite, or path of a TOML file.
 
-    Returns
-    -------
-    Case
-
     Raises
     ------
     CaseError
@@ -51,17 +47,6 @@ def parse_case(text: str, file: str) -> Case:
     ----------
     text : str
         TOML.
-    file : str
-        Name for error messages.
-
-    Returns
-    -------
-    Case
-
-    Raises
-    ------
-    CaseError
-        As `load_case`.
     """
     return check_case(parse_toml(text, file), file)
 
@@ -73,17 +58,6 @@ def check_case(raw: dict[str, Any], file: str) -> Case:
     ----------
     raw : dict
         Parsed TOML, numbers with a point as Decimal.
-    file : str
-        Name for error messages.
-
-    Returns
-    -------
-    Case
-
-    Raises
-    ------
-    CaseError
-        As `load_case`.
     """
     check_format(raw, file)
     check_values(raw, file)

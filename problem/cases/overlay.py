@@ -26,17 +26,8 @@ def overlaid(
 
     Parameters
     ----------
-    document : CaseFile
-    file : str
-        Name for error messages.
-    problem : ProblemBlock
-    reading : Reading
     drawn : callable
         From way-points that are a line, their unit or units, and words for messages to rows.
-
-    Returns
-    -------
-    Statement
 
     Raises
     ------

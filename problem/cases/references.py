@@ -44,12 +44,6 @@ _OF_ONE_PROBLEM = (
 def check_references(document: CaseFile, faults: Faults) -> None:
     """Check that ids are unique and references resolve.
 
-    Parameters
-    ----------
-    document : CaseFile
-    faults : Faults
-        Takes what is wrong.
-
     Raises
     ------
     CaseError
@@ -236,9 +230,6 @@ def check_kinematics(document: CaseFile, faults: Faults, chain: Chain | None) ->
 
     Parameters
     ----------
-    document : CaseFile
-    faults : Faults
-        Takes what is wrong.
     chain : Chain or None
         The robot's chain, if it has one.
     """

@@ -26,10 +26,6 @@ def load_robot(source: str | Path, convention: Convention | None = None) -> Chai
     convention : Convention, optional
         "standard" or "modified", instead of the one that the file states.
 
-    Returns
-    -------
-    Chain
-
     Raises
     ------
     CaseError
@@ -55,10 +51,6 @@ def robot_file(source: str | Path) -> RobotFile:
     source : str or Path
         As for `load_robot`.
 
-    Returns
-    -------
-    RobotFile
-
     Raises
     ------
     CaseError
@@ -74,12 +66,6 @@ def parse_robot(text: str, file: str) -> RobotFile:
     ----------
     text : str
         TOML.
-    file : str
-        Name for error messages.
-
-    Returns
-    -------
-    RobotFile
 
     Raises
     ------

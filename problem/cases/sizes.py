@@ -27,12 +27,6 @@ def check_values(raw: dict[str, Any], file: str) -> None:
     ----------
     raw : dict
         Parsed TOML.
-    file : str
-        Name for error messages.
-
-    Raises
-    ------
-    CaseError
     """
     for name in LISTS:
         entries = raw.get(name)
@@ -51,18 +45,7 @@ def check_values(raw: dict[str, Any], file: str) -> None:
 
 
 def check_sizes(document: CaseFile, file: str) -> None:
-    """Check how much a file poses, before any of it is built.
-
-    Parameters
-    ----------
-    document : CaseFile
-    file : str
-        Name for error messages.
-
-    Raises
-    ------
-    CaseError
-    """
+    """Check how much a file poses, before any of it is built."""
     problems, readings = len(document.problems) or 1, len(document.readings) or 1
     pairs = problems * readings
     if pairs > _MOST_PAIRS:

@@ -76,7 +76,6 @@ class Statement:
 
         Parameters
         ----------
-        quantity : str
         joint : int, optional
             Position in the robot's list; without it that of all joints that take part, None also
             where they differ.
@@ -93,8 +92,6 @@ class Statement:
 
         Parameters
         ----------
-        number : Printed
-        quantity : str
         field : str
             Where the number stands in the file, for messages.
         joint : int, optional

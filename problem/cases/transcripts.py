@@ -58,7 +58,6 @@ def compare_transcriptions(first: Case, second: Case, words: bool = False) -> li
 
     Parameters
     ----------
-    first, second : Case
     words : bool
         Whether titles, notes and places count too, which each transcriber words otherwise.
 

@@ -30,7 +30,6 @@ class WaypointTable:
 
     Attributes
     ----------
-    joints : tuple of str
     labels : tuple of str
         A name for each way-point.
     rows : tuple of tuple of str

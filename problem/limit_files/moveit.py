@@ -38,10 +38,6 @@ def read_moveit(path: Path) -> StatedLimits:
         there is no limit; one that is missing is taken from what stands beside it. The default
         scaling factors of planners are no limits and are left aside.
 
-    Returns
-    -------
-    StatedLimits
-
     Raises
     ------
     CaseError

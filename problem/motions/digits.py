@@ -53,10 +53,8 @@ def digits_of_text(text: str, separator: str | None, columns: int) -> Digits:
 
     Parameters
     ----------
-    text : str
     separator : str or None
         Between cells; None for blanks.
-    columns : int
     """
     rows = (line.partition("#")[0].split(separator) for line in _spread(text))
     return _most((row for row in rows if len(row) == columns), columns)

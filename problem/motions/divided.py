@@ -39,7 +39,6 @@ def divided_extremes(
     times : ndarray, shape (samples,)
         s, increasing; more than ``order * stride`` of them.
     values : ndarray, shape (samples, joints)
-    order, stride : int
     noise : ndarray, shape (joints,)
         What the values of each joint may be off by.
     clock : float

@@ -69,7 +69,6 @@ class MotionJump:
 
     Attributes
     ----------
-    joint, quantity : str
     time : float
         s.
     size : float
@@ -91,14 +90,12 @@ class MotionCheck:
 
     Attributes
     ----------
-    verdict : Verdict
     limits : Verdict
         About the limits alone, jumps apart.
     worst : MotionPeak or None
         Largest ratio; None if nothing is limited.
     peaks : tuple of MotionPeak
         One for each limited quantity of each joint.
-    jumps : tuple of MotionJump
     total_time : float
         s.
     stretch : float
@@ -110,10 +107,8 @@ class MotionCheck:
         No motion between the same standstills is shorter.
     concluded, open : tuple of str
         What follows from the file, and what does not.
-    tolerance : float
     not_judged : tuple of (str, str)
         Joint and quantity wherever no limit is stated: the verdict is silent about them.
-    joints : tuple of str
     """
 
     verdict: Verdict
@@ -167,15 +162,10 @@ def check_motion(
 
     Parameters
     ----------
-    motion : Motion
     limits : JointLimits
         For the same joints in the same order.
     tolerance : float
         Relative excess over a limit that still counts as keeping it.
-
-    Returns
-    -------
-    MotionCheck
     """
     check_same_joints(motion.joints, limits)
     peaks, standing = _peaks(motion, limits)
@@ -251,12 +241,7 @@ def blurred(peaks: Sequence[MotionPeak], tolerance: float) -> list[str]:
 
 
 def check_same_joints(joints: Sequence[str], limits: JointLimits) -> None:
-    """Refuse limits of other joints than those of the motion, or in another order.
-
-    Raises
-    ------
-    TrajgapError
-    """
+    """Refuse limits of other joints than those of the motion, or in another order."""
     if tuple(joints) != tuple(limits.joints):
         raise TrajgapError(
             f"limits: given for joints {', '.join(limits.joints)}, the motion has "

@@ -114,11 +114,6 @@ class Motion:
             rad over s.
         joints : sequence of str, optional
             Labels; "1", "2", ... by default.
-        between : str, optional
-
-        Returns
-        -------
-        Motion
 
         Raises
         ------
@@ -220,12 +215,7 @@ def clock_error(times: Array) -> Array:
 
 
 def check_joints(labels: Sequence[str], count: int) -> None:
-    """Refuse labels that do not fit their joints, and more joints than any arm has.
-
-    Raises
-    ------
-    TrajgapError
-    """
+    """Refuse labels that do not fit their joints, and more joints than any arm has."""
     if not 1 <= count <= MOST_JOINTS:
         raise TrajgapError(f"joints: {count} of them; give 1 to {MOST_JOINTS}")
     if len(labels) != count:
@@ -236,12 +226,7 @@ def check_joints(labels: Sequence[str], count: int) -> None:
 
 
 def check_times(times: Array, field: str) -> None:
-    """Refuse times that do not increase, or whose steps are too short for float64.
-
-    Raises
-    ------
-    TrajgapError
-    """
+    """Refuse times that do not increase, or whose steps are too short for float64."""
     if times.size < 2:
         raise TrajgapError(f"{field}: {times.size} of them; a motion needs 2 or more")
     bad = ~np.isfinite(times)

@@ -32,12 +32,7 @@ def read_json(path: Path) -> Any:
 
 
 def parse_json(data: bytes, name: str) -> Any:
-    """Parse JSON; NaN, infinities and keys that occur twice are refused.
-
-    Raises
-    ------
-    CaseError
-    """
+    """Parse JSON; NaN, infinities and keys that occur twice are refused."""
 
     def refuse(word: str) -> float:
         raise CaseError(name, "", f"holds {word}; give finite numbers")

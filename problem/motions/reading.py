@@ -77,10 +77,6 @@ class ForeignFile:
         ----------
         factor : float
             What every duration is multiplied by.
-
-        Returns
-        -------
-        ForeignFile
         """
         return replace(self, content=self.content.slowed(factor))
 
@@ -128,10 +124,6 @@ def read_motion(
         Of a rosbag with several trajectories.
     time_noise : float, optional
         What times may be off by, s; without it their digits say so.
-
-    Returns
-    -------
-    ForeignFile
 
     Raises
     ------

@@ -57,16 +57,10 @@ def samples_of_message(
         ``joint_names`` and ``points``; a point has ``positions`` and ``time_from_start`` (``sec``
         and ``nanosec``, in ROS 1 ``secs`` and ``nsecs``; a number of seconds too), and may have
         ``velocities`` and ``accelerations``.
-    name : str
-        The file, for messages.
     noise : float or ndarray
         See `Samples`.
     text : bool
         Whether the message was written as text, so that its digits say what was rounded.
-
-    Returns
-    -------
-    Samples
 
     Raises
     ------

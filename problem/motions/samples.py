@@ -41,7 +41,6 @@ class Samples:
 
     Attributes
     ----------
-    joints : tuple of str
     time : ndarray, shape (rows,)
         s, ascending.
     position : ndarray, shape (rows, joints)

@@ -55,10 +55,6 @@ def read_csv(path: Path, joints: Sequence[str] = (), noise: float | Array = 0.0)
     noise : float or ndarray
         See `Samples`.
 
-    Returns
-    -------
-    Samples
-
     Raises
     ------
     CaseError
@@ -79,12 +75,7 @@ def read_csv(path: Path, joints: Sequence[str] = (), noise: float | Array = 0.0)
 def parse_csv(
     text: str, name: str, joints: Sequence[str] = (), noise: float | Array = 0.0
 ) -> Samples:
-    """`read_csv` of a text; ``name`` is for messages.
-
-    Raises
-    ------
-    CaseError
-    """
+    """`read_csv` of a text; ``name`` is for messages."""
     first = next((x for x in _lines(text[:100_000]) if x), "")
     if not first:
         raise CaseError(name, "", "holds no rows; give one row per sample")
@@ -109,12 +100,7 @@ def _is_number(word: str) -> bool:
 
 
 def check_size(name: str, rows: int, columns: int) -> None:
-    """Refuse tables that are too large to be read.
-
-    Raises
-    ------
-    CaseError
-    """
+    """Refuse tables that are too large to be read."""
     if rows * columns > 4 * MOST_VALUES or columns > 3 * MOST_JOINTS + 1:
         raise CaseError(
             name, "", f"{rows} rows of {columns} columns are more than is read; keep fewer"
@@ -182,10 +168,6 @@ def samples_of_columns(
 
     ``digits`` are those of its columns where it is text; ``halves`` is what the type of each column
     rounds off where it has types.
-
-    Raises
-    ------
-    CaseError
     """
     if table.shape[1] < 2:
         raise CaseError(name, "", "has one column; give time and a position per joint")
@@ -235,12 +217,7 @@ def _check_seconds(name: str, times: Array) -> None:
 
 
 def column_meaning(name: str, header: Sequence[str]) -> tuple[int, dict[tuple[str, int], int]]:
-    """Column of times, and of each joint and order.
-
-    Raises
-    ------
-    CaseError
-    """
+    """Column of times, and of each joint and order."""
     times = [k for k, one in enumerate(header) if _TIME.fullmatch(one.strip().lower())]
     if len(times) != 1:
         columns_are = "no column is" if not times else "several columns are"

@@ -101,14 +101,6 @@ def not_a_knot_spline(samples: Samples) -> Motion:
     duration changes beside it. The outer two pieces at either end are one cubic, and so have one
     jerk.
 
-    Parameters
-    ----------
-    samples : Samples
-
-    Returns
-    -------
-    Motion
-
     Raises
     ------
     TrajgapError

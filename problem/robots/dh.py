@@ -164,7 +164,6 @@ class DhTable(Strict):
 
         Parameters
         ----------
-        name : str
         labels : tuple of str
             Joint labels where the table has none.
         convention : Convention, optional

@@ -49,10 +49,6 @@ def load_instance(name: str) -> BenchmarkInstance:
     name : str
         With or without ``suite:`` before it.
 
-    Returns
-    -------
-    BenchmarkInstance
-
     Raises
     ------
     TrajgapError
