@@ -20,8 +20,8 @@ from ..units import CHOICES, Measured, Quantity, is_linear, to_si
 from .declaration import InterpolantBlock, Values, declare
 from .digits import Digits, end, turned
 from .faults import Faults
-from .joint_units import linear_joints, unit_of
-from .schema import Durations, LimitsBlock, Units, Waypoints
+from .joint_units import Units, linear_joints, unit_of
+from .schema import Durations, LimitsBlock, Waypoints
 
 Data = tuple[Curve, Limits, Array, Array]
 """Curve, limits, and bounds on the durations."""
