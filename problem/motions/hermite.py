@@ -10,11 +10,9 @@ from numpy.typing import NDArray
 
 from ..arrays import Array
 from ..curves import PERM
-from .motion import Motion
+from .motion import EPS, Motion
 from .samples import Samples
 
-_EPS = 2.0**-52
-"""Spacing of float64 at 1."""
 _UP = 1.0 + 1e-12
 """Covers the rounding of a bound's own sums, products and powers."""
 _BASIS = {
@@ -78,7 +76,7 @@ def hermite(samples: Samples, degree: NDArray[np.int64], between: str) -> Motion
     error = np.empty((pairs, 4, count))
     h = np.diff(time)
     clock = samples.time_error
-    off = clock[1:] + clock[:-1] + _EPS * h
+    off = clock[1:] + clock[:-1] + EPS * h
     for d in sorted({int(x) for x in degree}):
         # A slice where all pairs are alike: nothing is copied.
         at: Any = slice(None) if (degree == d).all() else degree == d
@@ -118,7 +116,7 @@ def _fill(
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
         for r in range(4):
             # Seven roundings of each coefficient, from products, powers and sums.
-            bound = 7 * _EPS * PERM[: degree + 1, r].sum() * sizes / h**r
+            bound = 7 * EPS * PERM[: degree + 1, r].sum() * sizes / h**r
             for order, one in enumerate(doubt):
                 if not reach[r, order]:
                     continue

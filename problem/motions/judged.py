@@ -15,7 +15,7 @@ from ..errors import TrajgapError
 from ..limits import half_range
 from .floor import Floor, least_time
 from .joint_limits import BRAKING, ORDERS, JointLimits, unstated_words
-from .motion import Motion, derivative_terms
+from .motion import EPS, Motion, derivative_terms
 from .one_sided import one_sided_extreme
 
 MOTION_TOLERANCE = 1e-6
@@ -28,8 +28,6 @@ _ROUNDING = 32 * 2.0**-52
 """Relative to a polynomial's absolute terms: Horner's rounding of ten coefficients is 20 · 2⁻⁵³."""
 _BLURRED = "What rounding may change is as large as what is left to a limit."
 """Why a motion is not decided whose numbers are taken exactly."""
-_EPS = 2.0**-52
-"""Spacing of float64 at 1."""
 
 
 @dataclass(frozen=True)
@@ -413,7 +411,7 @@ def _jumps(motion: Motion) -> tuple[tuple[MotionJump, ...], list[tuple[str, str]
         start, end = motion.at_ends(r)
         shown = (motion.durations**-r)[:, None]
         # A jump that the digits of the positions explain is none.
-        digits = _JUMP * terms[:, r] + 64 * _EPS * whole * shown
+        digits = _JUMP * terms[:, r] + 64 * EPS * whole * shown
         size = start[1:] - end[:-1]
         noise = motion.error[1:, r] + motion.error[:-1, r]
         jumps = np.abs(size) > digits[1:] + digits[:-1] + noise

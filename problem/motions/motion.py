@@ -24,7 +24,7 @@ LARGEST = 1e100
 """Size of a position, derivative, coefficient or limit, rad and s; a limit above 0 is at least its
 inverse. Divided by the cube of the shortest step, 1e-30 s, and by a limit, it is still within
 float64, which would overflow to inf and NaN."""
-_EPS = 2.0**-52
+EPS = 2.0**-52
 """Spacing of float64 at 1."""
 
 
@@ -211,7 +211,7 @@ def numbered(count: int) -> tuple[str, ...]:
 def clock_error(times: Array) -> Array:
     """Relative error of the steps between times that were rounded to float64."""
     sizes = np.abs(times[1:]) + np.abs(times[:-1])
-    return np.asarray(_EPS * (1.0 + sizes / np.diff(times)), dtype=np.float64)
+    return np.asarray(EPS * (1.0 + sizes / np.diff(times)), dtype=np.float64)
 
 
 def check_joints(labels: Sequence[str], count: int) -> None:
