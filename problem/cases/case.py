@@ -212,13 +212,7 @@ class Case:
         return self.dh.chain(self.robot.name, labels, convention, flipped)
 
     def claim(self, claim_id: str) -> AnyClaim:
-        """Look a claim up by its id.
-
-        Raises
-        ------
-        CaseError
-            If there is no such claim.
-        """
+        """Look a claim up by its id."""
         for claim in self.claims:
             if claim.id == claim_id:
                 return claim
@@ -339,8 +333,6 @@ class Case:
 
         Parameters
         ----------
-        claim : Claim
-            A claim of this case that states durations.
         reading_id : str, optional
             Under which reading; the default one if not given.
 

@@ -124,13 +124,7 @@ def named_places(statement: Statement) -> dict[str, int | None]:
 
 
 def motions_of(claims: Iterable[AnyClaim], value: MotionValueClaim) -> list[AnyClaim]:
-    """The claims of durations whose motion a number may describe: the one named, or all that fit.
-
-    Parameters
-    ----------
-    claims : iterable of AnyClaim
-        Of the file.
-    """
+    """Claims of durations whose motion a number may describe: the one named, or all that fit."""
     motions = [c for c in claims if isinstance(c, DurationsClaim | MaximumClaim)]
     if value.of is not None:
         return [c for c in motions if c.id == value.of]
@@ -145,13 +139,7 @@ def motions_of(claims: Iterable[AnyClaim], value: MotionValueClaim) -> list[AnyC
 
 
 def profile_of(claims: Iterable[AnyClaim], value: AnyClaim) -> TotalTimeClaim | PhasesClaim | None:
-    """The claim of a profile whose peak or value a claim states; None if it states neither.
-
-    Parameters
-    ----------
-    claims : iterable of AnyClaim
-        Of the file.
-    """
+    """The claim of a profile whose peak or value a claim states; None if it states neither."""
     if not isinstance(value, PeakClaim | ValueClaim) or value.of is None:
         return None
     for claim in claims:

@@ -317,8 +317,6 @@ def declare(block: InterpolantBlock, count: int, ends: Ends) -> Curve:
 
     Parameters
     ----------
-    count : int
-        Number of way-points.
     ends : tuple
         Derivatives ``(order, value)`` prescribed at the start and at the finish, rad/sᵒʳᵈᵉʳ, where
         the family leaves them open.

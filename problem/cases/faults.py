@@ -76,11 +76,6 @@ def refusal(file: str, faults: Sequence[tuple[str, str]]) -> CaseError:
 def all_faults(error: ValidationError) -> list[tuple[str, str]]:
     """Field path and reason of every fault, the one to fix first in front.
 
-    Parameters
-    ----------
-    error : ValidationError
-        What pydantic found.
-
     Returns
     -------
     list of (str, str)

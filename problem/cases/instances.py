@@ -76,8 +76,6 @@ def instance_waypoints(
     ----------
     labels : tuple of str
         Joints of the chain to keep, in order.
-    waypoints : int
-        Way-points of each instance.
 
     Returns
     -------

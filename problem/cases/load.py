@@ -41,13 +41,7 @@ def load_case(source: str | Path) -> Case:
 
 
 def parse_case(text: str, file: str) -> Case:
-    """Read the text of a case file.
-
-    Parameters
-    ----------
-    text : str
-        TOML.
-    """
+    """Read the text of a case file."""
     return check_case(parse_toml(text, file), file)
 
 

@@ -409,13 +409,7 @@ class CaseFile(ProblemData):
 
 
 def case_schema() -> dict[str, Any]:
-    """JSON Schema of a case file, for editors.
-
-    Returns
-    -------
-    dict
-        JSON Schema, draft 2020-12.
-    """
+    """JSON Schema of a case file, for editors."""
     schema = CaseFile.model_json_schema()
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",

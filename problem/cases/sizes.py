@@ -21,13 +21,7 @@ _MOST_INSTANCES = 10_000
 
 
 def check_values(raw: dict[str, Any], file: str) -> None:
-    """Check how many values a file holds, before any of them is read.
-
-    Parameters
-    ----------
-    raw : dict
-        Parsed TOML.
-    """
+    """Check how many values a file holds, before any of them is read."""
     for name in LISTS:
         entries = raw.get(name)
         if isinstance(entries, list) and len(entries) > MOST_ENTRIES:

@@ -67,8 +67,6 @@ def hermite(samples: Samples, degree: NDArray[np.int64], between: str) -> Motion
     ----------
     degree : ndarray of int, shape (rows − 1,)
         1, 3 or 5 for each pair of rows.
-    between : str
-        In words.
     """
     time, q = samples.time, samples.position
     pairs, count = q.shape[0] - 1, q.shape[1]

@@ -34,8 +34,6 @@ class Motion:
 
     Attributes
     ----------
-    joints : tuple of str
-        Joint labels.
     breaks : ndarray, shape (pieces + 1,)
         Times at which the pieces meet, s, ascending.
     scaled : ndarray, shape (pieces, powers, joints)

@@ -28,11 +28,6 @@ def motion_of_json(found: Any, name: str, factors: Array | float = 1.0) -> Motio
         scipy's arrays ``x`` and ``c``, by power, piece and joint.
     factors : float or ndarray, shape (joints,)
         What a number of the file is in rad.
-
-    Raises
-    ------
-    CaseError
-        If it is no such file.
     """
     from scipy.interpolate import PPoly
 

@@ -49,11 +49,6 @@ class CartesianLine:
         """Largest distance of the end from the line on a joint trajectory, m.
 
         Sampled, not proved: a picture of how many points the line needs, no verdict.
-
-        Parameters
-        ----------
-        trajectory : Trajectory
-            Through `waypoints`.
         """
         t = np.linspace(0.0, trajectory.breaks[-1], samples)
         ends = forward_kinematics(self.chain, trajectory(t))[:, :3, 3]

@@ -84,8 +84,6 @@ def sample_workspace(chain: Chain, count: int, seed: int) -> Workspace:
 
     Parameters
     ----------
-    count : int
-        Number of samples.
     seed : int
         Of a PCG64 generator; the first samples do not depend on ``count``.
 

@@ -48,11 +48,6 @@ def load_instance(name: str) -> BenchmarkInstance:
     ----------
     name : str
         With or without ``suite:`` before it.
-
-    Raises
-    ------
-    TrajgapError
-        If the suite has no such instance.
     """
     wanted = name.removeprefix(SUITE_PREFIX)
     found = {one.name: one for one in list_instances()}
