@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import dropwhile
 from math import cbrt, copysign, inf, isfinite, sqrt
 from typing import NamedTuple
 
@@ -188,13 +189,12 @@ def shortest_s_curve(start: AxisState, finish: AxisState, sizes: Sizes) -> AxisP
     start, finish : AxisState
     sizes : Sizes
         Finite jerk. A start outside the limits of velocity or acceleration, or on the way out of
-        them, is braked into them first.
+        them, is braked into them first, as far as it does not leave them on the other side.
 
     Returns
     -------
     AxisProfile or None
-        None if none was found: no motion keeps the limits, or one would leave them on the other
-        side while it is braked into them.
+        None if no motion keeps the limits.
     """
     way = finish.position - start.position
     unit = max(
@@ -249,21 +249,24 @@ def _braked(first: AxisState, top: float, most: float) -> AxisProfile:
     for sign in (1.0, -1.0):
         acceleration = sign * first.acceleration
         if acceleration > most + _BRAKED:
-            back = AxisProfile(first, (Phase(acceleration - most, first.acceleration, -sign),))
-            return back.then(_braked(back.at(inf), top, most))
+            eased = AxisProfile(first, (Phase(acceleration - most, first.acceleration, -sign),))
+            return eased.then(_braked(eased.at(inf), top, most))
     for sign in (1.0, -1.0):
         velocity, acceleration = sign * first.velocity, sign * first.acceleration
         # An acceleration that goes to 0 changes the velocity by half its square.
-        ahead = velocity + max(acceleration, 0.0) * acceleration / 2.0
-        if max(velocity, ahead) > top + _BRAKED:
-            # It falls until v + a t − t²/2 = top, or stays where it is at its own limit.
-            until = acceleration + sqrt(max(0.0, acceleration**2 + 2.0 * (velocity - top)))
+        ahead = velocity + abs(acceleration) * acceleration / 2.0
+        if max(velocity, ahead) > top + _BRAKED and ahead > -top - _BRAKED:
+            # It falls until v + a t − t²/2 = top, or stays where it is at its own limit; but not
+            # so far that it would pass −top before it is 0 again.
+            within = sqrt(max(0.0, acceleration**2 + 2.0 * (velocity - top)))
+            back = sqrt(max(0.0, acceleration**2 / 2.0 + velocity + top))
+            until = acceleration + min(within, back)
             fall = min(until, acceleration + most)
             left = velocity + fall * (acceleration - fall / 2.0) - top
-            held = left / most if fall < until else 0.0
+            held = min(left, left + 2.0 * top - most**2 / 2.0) / most if fall < until else 0.0
             phases = (
                 Phase(fall, first.acceleration, -sign),
-                Phase(held, first.acceleration - sign * fall),
+                Phase(max(0.0, held), first.acceleration - sign * fall),
             )
             return AxisProfile(first, phases)
     return AxisProfile(first, ())
@@ -371,13 +374,16 @@ def _roots(coefficients: Sequence[float]) -> Iterator[float]:
 
 
 def _keeps(profile: AxisProfile, finish: AxisState, top: float, most: float) -> bool:
-    """Whether a motion reaches the last state within the limits, to `_CLOSE`."""
+    """Whether a motion reaches the last state within the limits, to `_CLOSE`.
+
+    A velocity that starts above its limit may be so until it is first within.
+    """
     if any(phase.time < -_CLOSE for phase in profile.phases):
         return False
     corners = profile.corners
     missed = np.abs(np.subtract(corners[-1], finish)).max()
     return bool(
         missed <= _CLOSE
-        and all(abs(one.velocity) <= top + _CLOSE for one in corners)
+        and not any(dropwhile(bool, (abs(one.velocity) > top + _CLOSE for one in corners)))
         and all(abs(one.acceleration) <= most + _CLOSE for one in corners)
     )

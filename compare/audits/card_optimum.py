@@ -30,7 +30,7 @@ from .digit_ranges import all_exact, optimum_range
 from .fixed_ratios import at_ratios, off_ratios, planned_apart
 from .own_result import bare_totals, own_result
 from .printed_row import PrintedRow
-from .profile_motions import profile_called
+from .profile_motions import above_shortest, profile_called
 from .stated import other_objective, printed_total, prints_durations
 from .stated_totals import contradicts_its_parts, other_totals
 from .study import Study
@@ -40,6 +40,8 @@ _FEW = 2
 """Totals that are each set beside their optimum; more are counted."""
 _MANY_TIMES = 10.0
 """Distance beyond which a multiple says more than a percentage."""
+_LONGER = 1e-4
+"""Share above the shortest total from which it is said: a hundredth of a percent, as the claims."""
 _OBJECTIVE_WORDS = 8
 """Words of an objective that the card repeats; a longer one is left to the claims."""
 _PLURALS = {"proven optimum": "proven optima", "best known total": "best known totals"}
@@ -59,16 +61,10 @@ def optimum_line(
 
     Parameters
     ----------
-    study : Study
-    waterfalls : sequence of Waterfall
     words : mapping of str to Judgement
         Of each claim, by its id.
     before : bool
         Whether the line before has said that way-points are in doubt.
-
-    Returns
-    -------
-    str
     """
     if not study.has_problems:
         return "No optimum can be computed."
@@ -130,12 +126,24 @@ def _without_totals(study: Study, words: Mapping[str, Judgement]) -> str:
     judged = [c for c in timed if isinstance(c, ProfiledClaim) and c.profile is not None]
     if judged:
         profiles = [*dict.fromkeys(str(c.profile) for c in judged)]
-        return _beside_profiles([words[c.id].verdict for c in judged], profiles)
+        found = _beside_profiles([words[c.id].verdict for c in judged], profiles)
+        return found + _above_shortest(study, judged)
     curves = dict.fromkeys(c.other_curve for c in timed if c.other_curve is not None)
     if curves:
         named = ", ".join(curves)
         return f"Printed times are of another curve ({named}): no optimum stands beside them."
     return "No printed total stands beside an optimum."
+
+
+def _above_shortest(study: Study, claims: Sequence[ProfiledClaim]) -> str:
+    """How far totals of an algorithm that is not always the shortest are above that one."""
+    main = [pair for pair in study.pairs if pair.reading == study.main_reading]
+    rows = [PrintedRow(study, c, p) for c in claims for p in main if c.problem in (None, p.problem)]
+    above = {row.problem: above_shortest(row) for row in rows}
+    longer = [f"{100 * more:.2g} %" for more in above.values() if more > _LONGER]
+    if len(longer) > 1:
+        return f" Totals of the algorithm are {' and '.join(longer)} above the shortest profiles."
+    return f" A total of the algorithm is {longer[0]} above the shortest profile." if longer else ""
 
 
 def _beside_profiles(verdicts: Sequence[ClaimVerdict], profiles: Sequence[str]) -> str:

@@ -349,3 +349,14 @@ def motions(row: PrintedRow[ProfiledClaim], profile: str) -> list[ProfileMotion 
         return found
 
     return row.once("profile", compute, profile)
+
+
+def above_shortest(row: PrintedRow[ProfiledClaim]) -> float:
+    """Share by which an algorithm's total is above the shortest s-curve's; 0 of other profiles."""
+    profile = str(row.claim.profile)
+    if profile not in SHORTEST or profile not in NOT_SHORTEST:
+        return 0.0
+    own, best = (motions(row, name) for name in (profile, "s-curve"))
+    if not (own and best and own[0] and best[0]):
+        return 0.0
+    return own[0].total_time / best[0].total_time - 1.0

@@ -62,8 +62,6 @@ class Case:
 
     Parameters
     ----------
-    document : CaseFile
-        The file's content, validated.
     file : str
         What it was loaded from, for messages.
     sha256 : str or None
@@ -196,10 +194,6 @@ class Case:
         flipped : tuple of int
             Rows whose twist is taken with the other sign.
 
-        Returns
-        -------
-        Chain or None
-
         Raises
         ------
         CaseError
@@ -218,13 +212,7 @@ class Case:
         return self.dh.chain(self.robot.name, labels, convention, flipped)
 
     def claim(self, claim_id: str) -> AnyClaim:
-        """Look a claim up by its id.
-
-        Raises
-        ------
-        CaseError
-            If there is no such claim.
-        """
+        """Look a claim up by its id."""
         for claim in self.claims:
             if claim.id == claim_id:
                 return claim
@@ -277,10 +265,6 @@ class Case:
         coupling : Coupling or str, optional
             "shared" or "per-joint" instead of what the file says.
 
-        Returns
-        -------
-        Problem
-
         Raises
         ------
         CaseError
@@ -305,7 +289,6 @@ class Case:
 
         Parameters
         ----------
-        digits : Digits
         problem_id, reading_id : str, optional
             As in `problem`.
 
@@ -350,14 +333,8 @@ class Case:
 
         Parameters
         ----------
-        claim : Claim
-            A claim of this case that states durations.
         reading_id : str, optional
             Under which reading; the default one if not given.
-
-        Returns
-        -------
-        DurationBox
 
         Raises
         ------
@@ -397,10 +374,6 @@ class Case:
             As in `problem`.
         joint : str, optional
             Label of its joint, needed where units differ.
-
-        Returns
-        -------
-        Measured
 
         Raises
         ------

@@ -34,9 +34,6 @@ def check_claims(
 
     Parameters
     ----------
-    document : CaseFile
-    faults : Faults
-        Takes what is wrong.
     statements_of : callable
         The problems of a claim under every reading, that under the default one first.
     """
@@ -114,10 +111,6 @@ def _check_claim(
 def named_places(statement: Statement) -> dict[str, int | None]:
     """What a place of a motion may be called, with the number of its way-point, from 0.
 
-    Parameters
-    ----------
-    statement : Statement
-
     Returns
     -------
     dict of str to int or None
@@ -131,18 +124,7 @@ def named_places(statement: Statement) -> dict[str, int | None]:
 
 
 def motions_of(claims: Iterable[AnyClaim], value: MotionValueClaim) -> list[AnyClaim]:
-    """The claims of durations whose motion a number may describe: the one named, or all that fit.
-
-    Parameters
-    ----------
-    claims : iterable of AnyClaim
-        Of the file.
-    value : MotionValueClaim
-
-    Returns
-    -------
-    list of AnyClaim
-    """
+    """Claims of durations whose motion a number may describe: the one named, or all that fit."""
     motions = [c for c in claims if isinstance(c, DurationsClaim | MaximumClaim)]
     if value.of is not None:
         return [c for c in motions if c.id == value.of]
@@ -157,18 +139,7 @@ def motions_of(claims: Iterable[AnyClaim], value: MotionValueClaim) -> list[AnyC
 
 
 def profile_of(claims: Iterable[AnyClaim], value: AnyClaim) -> TotalTimeClaim | PhasesClaim | None:
-    """The claim of a profile whose peak or value a claim states; None if it states neither.
-
-    Parameters
-    ----------
-    claims : iterable of AnyClaim
-        Of the file.
-    value : AnyClaim
-
-    Returns
-    -------
-    TotalTimeClaim or PhasesClaim or None
-    """
+    """The claim of a profile whose peak or value a claim states; None if it states neither."""
     if not isinstance(value, PeakClaim | ValueClaim) or value.of is None:
         return None
     for claim in claims:

@@ -32,7 +32,6 @@ class Shipped:
 
     Attributes
     ----------
-    package : str
     kind : str
         What one of them is, for messages.
     prefix : str
@@ -103,12 +102,7 @@ def case_files(source: str | Path) -> Shipped:
 
 
 def check_format(raw: Mapping[str, Any], file: str) -> None:
-    """Refuse a file of another version of its format.
-
-    Raises
-    ------
-    CaseError
-    """
+    """Refuse a file of another version of its format."""
     version = raw.get("format")
     if version is None:
         raise CaseError(file, "format", f"is missing; add `format = {FORMAT}`")

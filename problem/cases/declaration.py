@@ -317,16 +317,9 @@ def declare(block: InterpolantBlock, count: int, ends: Ends) -> Curve:
 
     Parameters
     ----------
-    block : InterpolantBlock
-    count : int
-        Number of way-points.
     ends : tuple
         Derivatives ``(order, value)`` prescribed at the start and at the finish, rad/sᵒʳᵈᵉʳ, where
         the family leaves them open.
-
-    Returns
-    -------
-    Curve
 
     Raises
     ------

@@ -41,13 +41,7 @@ _EXPECTED = {
 
 
 class Faults:
-    """Faults of one file, gathered so that one refusal tells all of them.
-
-    Parameters
-    ----------
-    file : str
-        Name for error messages.
-    """
+    """Faults of one file, gathered so that one refusal tells all of them."""
 
     def __init__(self, file: str) -> None:
         self.file = file
@@ -81,11 +75,6 @@ def refusal(file: str, faults: Sequence[tuple[str, str]]) -> CaseError:
 
 def all_faults(error: ValidationError) -> list[tuple[str, str]]:
     """Field path and reason of every fault, the one to fix first in front.
-
-    Parameters
-    ----------
-    error : ValidationError
-        What pydantic found.
 
     Returns
     -------

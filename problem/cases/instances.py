@@ -74,12 +74,8 @@ def instance_waypoints(
 
     Parameters
     ----------
-    block : InstancesBlock
-    chain : Chain
     labels : tuple of str
         Joints of the chain to keep, in order.
-    waypoints : int
-        Way-points of each instance.
 
     Returns
     -------

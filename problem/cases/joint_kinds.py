@@ -14,19 +14,7 @@ from .statement import Statement
 
 
 def check_kinds(statement: Statement, chain: Chain | None) -> None:
-    """Check that units say of each joint what the robot's table says: that it turns or slides.
-
-    Parameters
-    ----------
-    statement : Statement
-    chain : Chain or None
-        The robot's chain, if it has one.
-
-    Raises
-    ------
-    CaseError
-        If they differ.
-    """
+    """Check that units say of each joint what the robot's table says: that it turns or slides."""
     if chain is None:
         return
     for joint, label in enumerate(statement.labels):
@@ -45,16 +33,7 @@ def check_kinds(statement: Statement, chain: Chain | None) -> None:
 
 
 def check_clues(document: CaseFile, faults: Faults, statements: Sequence[Statement]) -> None:
-    """Check that the unit of each clue fits the joints that it is about.
-
-    Parameters
-    ----------
-    document : CaseFile
-    faults : Faults
-        Takes what is wrong.
-    statements : sequence of Statement
-        Every problem under every reading.
-    """
+    """Check that the unit of each clue fits the joints that it is about."""
     kinds = dict.fromkeys(statement.linear for statement in statements)
     for index, clue in enumerate(document.clues):
         for linear in kinds:

@@ -3,17 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING
 
+from ..fields import (
+    AccelerationUnits,
+    JerkUnits,
+    PositionUnits,
+    Strict,
+    TimeUnit,
+    UnitOrEach,
+    VelocityUnits,
+)
 from ..units import CHOICES, is_linear
-from .faults import Faults
-
-if TYPE_CHECKING:
-    from ..fields import UnitOrEach
-    from .schema import Units
 
 OF_JOINTS = tuple(name for name in CHOICES if name != "time")
 """Quantities that each joint may have in a unit of its own."""
+
+
+class Units(Strict):
+    """The units that the numbers of the file are printed in: one, or one for each robot joint."""
+
+    position: PositionUnits = None
+    velocity: VelocityUnits = None
+    acceleration: AccelerationUnits = None
+    jerk: JerkUnits = None
+    time: TimeUnit = None
 
 
 def unit_of(units: UnitOrEach, joint: int) -> str | None:
@@ -40,7 +53,6 @@ def with_unit(numbers: Sequence[str], units: UnitOrEach) -> list[str]:
 
     Parameters
     ----------
-    numbers : sequence of str
     units : str, tuple of str or None
         One for all of them, or one for each.
     """
@@ -49,43 +61,3 @@ def with_unit(numbers: Sequence[str], units: UnitOrEach) -> list[str]:
         return [f"{number} {unit}" for number, unit in zip(numbers, each, strict=True)]
     unit = next(iter(each), None)
     return [*numbers[:-1], f"{numbers[-1]} {unit}" if unit else numbers[-1]]
-
-
-def check_units(units: Units, labels: Sequence[str], faults: Faults, selected: str) -> None:
-    """Check that lists have one unit per joint, and that no joint is an angle and a length at once.
-
-    Parameters
-    ----------
-    units : Units
-        Under one reading.
-    labels : sequence of str
-        Of the robot's joints.
-    faults : Faults
-        Takes what is wrong.
-    selected : str
-        Names problem and reading, for messages.
-    """
-    before = len(faults.found)
-    for quantity in OF_JOINTS:
-        each = getattr(units, quantity)
-        if isinstance(each, tuple) and len(each) != len(labels):
-            faults.add(
-                f"units.{quantity}",
-                f"{len(each)} units for {len(labels)} joints; give one for all, or one each"
-                + selected,
-            )
-    if len(faults.found) > before:
-        return
-    for joint, label in enumerate(labels):
-        (first, own), *others = [*units_of(units, joint)] or [("", "")]
-        for quantity, unit in others:
-            if is_linear(unit) != is_linear(own):
-                which = f"[{joint}]" if isinstance(getattr(units, quantity), tuple) else ""
-                fix = "give both as an angle or both as a length"
-                if not which and len(labels) > 1:
-                    fix = f"list one unit per joint in units.{quantity}"
-                faults.add(
-                    f"units.{quantity}{which}",
-                    f"joint {label!r} has {unit!r} here and {own!r} in units.{first}; {fix}"
-                    + selected,
-                )

@@ -81,11 +81,6 @@ _DERIVATIVES = {1: "velocity", 2: "acceleration", 3: "jerk"}
 def reading_labels(document: CaseFile, readings: Sequence[Reading]) -> dict[str, str]:
     """The meaning of each reading, in words: its `label`, else in what it differs from the others.
 
-    Parameters
-    ----------
-    document : CaseFile
-    readings : sequence of Reading
-
     Returns
     -------
     dict of str to str

@@ -22,11 +22,6 @@ def on_line(
 
     Parameters
     ----------
-    waypoints : Waypoints
-        With a line.
-    unit : str
-        Of its angles.
-    chain : Chain
     file, selected : str
         Name of the file, and problem and reading in words, for messages.
 

@@ -117,10 +117,6 @@ class Meant:
 
     Attributes
     ----------
-    family : str
-        Name of the family.
-    keys : mapping
-        Further keys of the block.
     note : str
         What whoever fills in the file should know; may be empty.
     """
@@ -136,19 +132,7 @@ class Meant:
 
 
 def meant_by(name: str, families: Iterable[str]) -> Meant | None:
-    """The curve that a name means, if it is known and means one.
-
-    Parameters
-    ----------
-    name : str
-        As a case file or the literature has it.
-    families : iterable of str
-        Families of case files.
-
-    Returns
-    -------
-    Meant or None
-    """
+    """The curve that a name means, if it is known and means one."""
     if name in families:
         return _completed(name, {})
     degrees = _degrees(name)
@@ -168,19 +152,7 @@ def _completed(family: str, keys: Mapping[str, object]) -> Meant:
 
 
 def unknown(name: str, families: Iterable[str]) -> str:
-    """That a name is not known, and which ones are: the nearest only where every word is theirs.
-
-    Parameters
-    ----------
-    name : str
-        For which `meant_by` knows no curve.
-    families : iterable of str
-        Families of case files.
-
-    Returns
-    -------
-    str
-    """
+    """That a name is not known, and which ones are: the nearest only where every word is theirs."""
     known = (*families, *LITERATURE)
     every = f"{', '.join(known)}, or degrees such as 4-3-3-4"
     words = _words(name)

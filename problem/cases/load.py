@@ -30,10 +30,6 @@ def load_case(source: str | Path) -> Case:
     source : str or Path
         Id of a published case, ``suite:NAME`` of an instance of the suite, or path of a TOML file.
 
-    Returns
-    -------
-    Case
-
     Raises
     ------
     CaseError
@@ -45,24 +41,7 @@ def load_case(source: str | Path) -> Case:
 
 
 def parse_case(text: str, file: str) -> Case:
-    """Read the text of a case file.
-
-    Parameters
-    ----------
-    text : str
-        TOML.
-    file : str
-        Name for error messages.
-
-    Returns
-    -------
-    Case
-
-    Raises
-    ------
-    CaseError
-        As `load_case`.
-    """
+    """Read the text of a case file."""
     return check_case(parse_toml(text, file), file)
 
 
@@ -73,17 +52,6 @@ def check_case(raw: dict[str, Any], file: str) -> Case:
     ----------
     raw : dict
         Parsed TOML, numbers with a point as Decimal.
-    file : str
-        Name for error messages.
-
-    Returns
-    -------
-    Case
-
-    Raises
-    ------
-    CaseError
-        As `load_case`.
     """
     check_format(raw, file)
     check_values(raw, file)

@@ -15,10 +15,6 @@ _ORDERS: tuple[Quantity, ...] = ("velocity", "acceleration")
 def end_states(statement: Statement) -> Array:
     """Velocity and acceleration at the start and at the finish as the interpolant prescribes them.
 
-    Parameters
-    ----------
-    statement : Statement
-
     Returns
     -------
     ndarray, shape (2, joints, 2, 3)

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import TypeVar
 
 from ..fields import Strict, UnitOrEach
 from ..problem import Coupling
+from ..units import is_linear
 from .faults import Faults
-from .joint_units import check_units
+from .joint_units import OF_JOINTS, Units, units_of
 from .schema import CaseFile, Override, ProblemBlock, Reading, Waypoints
 from .statement import Statement
 
@@ -26,17 +27,8 @@ def overlaid(
 
     Parameters
     ----------
-    document : CaseFile
-    file : str
-        Name for error messages.
-    problem : ProblemBlock
-    reading : Reading
     drawn : callable
         From way-points that are a line, their unit or units, and words for messages to rows.
-
-    Returns
-    -------
-    Statement
 
     Raises
     ------
@@ -69,7 +61,7 @@ def overlaid(
             why = f"joint {label!r} is unknown; robot.joints lists {', '.join(labels)}"
             faults.add("joints", why + selected)
     units = _merged(document.units, *(layer.units for layer in layers))
-    check_units(units, labels, faults, selected)
+    _check_units(units, labels, faults, selected)
     faults.refuse()
     assert waypoints is not None
     assert interpolant is not None
@@ -98,3 +90,31 @@ def _merged(base: Block, *changes: Block) -> Block:
             update={key: getattr(change, key) for key in change.model_fields_set}
         )
     return base
+
+
+def _check_units(units: Units, labels: Sequence[str], faults: Faults, selected: str) -> None:
+    """Check that lists have one unit per joint, and no joint is an angle and a length at once."""
+    before = len(faults.found)
+    for quantity in OF_JOINTS:
+        each = getattr(units, quantity)
+        if isinstance(each, tuple) and len(each) != len(labels):
+            faults.add(
+                f"units.{quantity}",
+                f"{len(each)} units for {len(labels)} joints; give one for all, or one each"
+                + selected,
+            )
+    if len(faults.found) > before:
+        return
+    for joint, label in enumerate(labels):
+        (first, own), *others = [*units_of(units, joint)] or [("", "")]
+        for quantity, unit in others:
+            if is_linear(unit) != is_linear(own):
+                which = f"[{joint}]" if isinstance(getattr(units, quantity), tuple) else ""
+                fix = "give both as an angle or both as a length"
+                if not which and len(labels) > 1:
+                    fix = f"list one unit per joint in units.{quantity}"
+                faults.add(
+                    f"units.{quantity}{which}",
+                    f"joint {label!r} has {unit!r} here and {own!r} in units.{first}; {fix}"
+                    + selected,
+                )

@@ -44,12 +44,6 @@ _OF_ONE_PROBLEM = (
 def check_references(document: CaseFile, faults: Faults) -> None:
     """Check that ids are unique and references resolve.
 
-    Parameters
-    ----------
-    document : CaseFile
-    faults : Faults
-        Takes what is wrong.
-
     Raises
     ------
     CaseError
@@ -232,16 +226,7 @@ def _check_instances(document: CaseFile, faults: Faults, block: InstancesBlock, 
 
 
 def check_kinematics(document: CaseFile, faults: Faults, chain: Chain | None) -> None:
-    """Check that joints and positions of the end fit the robot and its way-points.
-
-    Parameters
-    ----------
-    document : CaseFile
-    faults : Faults
-        Takes what is wrong.
-    chain : Chain or None
-        The robot's chain, if it has one.
-    """
+    """Check that joints and positions of the end fit the robot and its way-points."""
     labels = document.robot.joints if chain is None else chain.labels
     for index, label in enumerate(document.robot.joints):
         if label not in labels:

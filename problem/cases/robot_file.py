@@ -26,10 +26,6 @@ def load_robot(source: str | Path, convention: Convention | None = None) -> Chai
     convention : Convention, optional
         "standard" or "modified", instead of the one that the file states.
 
-    Returns
-    -------
-    Chain
-
     Raises
     ------
     CaseError
@@ -48,44 +44,12 @@ def load_robot(source: str | Path, convention: Convention | None = None) -> Chai
 
 
 def robot_file(source: str | Path) -> RobotFile:
-    """Load a robot file with its source and its printed table.
-
-    Parameters
-    ----------
-    source : str or Path
-        As for `load_robot`.
-
-    Returns
-    -------
-    RobotFile
-
-    Raises
-    ------
-    CaseError
-        As `load_robot`.
-    """
+    """Load a robot file with its source and its printed table."""
     return _parsed(ROBOTS.text(source), str(source))
 
 
 def parse_robot(text: str, file: str) -> RobotFile:
-    """Read the text of a robot file.
-
-    Parameters
-    ----------
-    text : str
-        TOML.
-    file : str
-        Name for error messages.
-
-    Returns
-    -------
-    RobotFile
-
-    Raises
-    ------
-    CaseError
-        As `load_robot`.
-    """
+    """Read the text of a robot file."""
     raw = parse_toml(text, file)
     check_format(raw, file)
     return validated(RobotFile, raw, file)

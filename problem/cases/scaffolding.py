@@ -5,19 +5,25 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from importlib.resources import files
 from pathlib import Path
-from typing import cast
+from typing import TYPE_CHECKING, Any, cast
 
 from ..errors import CaseError, TrajgapError
 from ..printed import MINUS_SIGNS, Printed
 from ..textfile import read_text
 from ..units import CHOICES, Quantity, check_unit
-from .claim_blocks import claim_blocks
 from .declaration import FAMILIES
 from .faults import Faults
 from .literature import meant_by, unknown
 from .load import parse_case
-from .waypoint_table import add_digits, read_waypoint_table
+from .waypoint_table import WaypointTable, add_digits, read_waypoint_table
+
+if TYPE_CHECKING:
+    from jinja2 import Template
+
+_DERIVATIVES = ("acceleration", "velocity", "jerk")
+"""Derivatives of which peaks are printed, the most usual first."""
 
 _ROUND = 5
 """Degrees of which angles that are settings are multiples: what is rounded to whole degrees seldom
@@ -106,10 +112,23 @@ def scaffold(
 
     def text(segments: int) -> str:
         printed = next(iter(claimed["total"]), None)
-        claims = claim_blocks(claimed["durations"], printed, where, segments, checked, joints[0])
-        angles = _angles(found.rows, checked["position"])
-        labels = found.labels
-        return _text(identity, path.name, joints, labels, angles, checked, given, curve, claims)
+        return _template().render(
+            identity=_quoted(identity),
+            note=_quoted(f"way-points from {path.name}"),
+            joints=[_quoted(joint) for joint in joints],
+            units=_unit_lines(checked),
+            labels=[_quoted(label) for label in found.labels],
+            **_angles(found, checked["position"]),
+            limits=_limit_lines(given),
+            families=FAMILIES,
+            curve=curve,
+            durations=json.dumps(claimed["durations"]) if claimed["durations"] else None,
+            coarse=_coarse(claimed["durations"]),
+            total=printed and json.dumps(printed),
+            where=where and json.dumps(where, ensure_ascii=False),
+            segments=segments,
+            derivative=next((one for one in _DERIVATIVES if one in checked), None),
+        )
 
     try:
         segments = parse_case(text(len(found.rows) - 1), name).problem().segments
@@ -221,117 +240,72 @@ def _quoted(text: str) -> str:
     return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
-def _text(
-    identity: str,
-    file: str,
-    joints: Sequence[str],
-    labels: Sequence[str],
-    angles: Sequence[Sequence[str]],
-    units: Mapping[str, str | tuple[str, ...]],
-    limits: Mapping[str, Sequence[str]],
-    curve: Sequence[str],
-    claims: Sequence[str],
-) -> str:
-    rows = [f"  [{', '.join(row)}],  # {_comment(labels[k])}" for k, row in enumerate(angles)]
-    unit_lines = [
-        f"{key} = {_unit_text(units[key])}" if key in units else f'# {key} = "{choices[0]}"'
-        for key, choices in CHOICES.items()
-    ]
-    limit_lines = [
-        f"{key} = {_numbers(limits[key])}" if key in limits else f"# {key} = inf"
-        for key in ("velocity", "acceleration", "jerk")
-    ]
-    parts = [
-        "# A number in quotes is taken as rounded to its digits.",
-        "# A bare number is exact.",
-        "# Take the first mark off each line of what the paper prints, and fill in empty quotes.",
-        "",
-        "format = 1",
-        f"id = {_quoted(identity)}",
-        f"title = {_quoted(identity)}",
-        'coupling = "shared"  # or "per-joint": each joint by itself, longest per segment',
-        '# objective = ""  # what is minimised, if not time alone: "time and jerk, weighted"',
-        "",
-        "[source]",
-        f"note = {_quoted(f'way-points from {file}')}",
-        '# authors = ""',
-        '# title = ""',
-        "# year = 0",
-        '# doi = ""',
-        "",
-        "[robot]",
-        'name = "robot"',
-        f"joints = [{', '.join(map(_quoted, joints))}]",
-        "",
-        "[units]  # one for all joints, or a list with one per joint",
-        *unit_lines,
-        "",
-        "[waypoints]",
-        '# where = ""  # such as Table 1',
-        *_rounding(angles, units["position"]),
-        f"labels = [{', '.join(map(_quoted, labels))}]",
-        "waypoint_rows = [",
-        *rows,
-        "]",
-        "",
-        "[limits]  # one for all joints, or a list with one per joint; absent means none",
-        *limit_lines,
-        "",
-        f"[interpolant]  # {', '.join(FAMILIES)}",
-        *curve,
-        "",
-        "[durations]",
-        "lower = 0  # 0 means positive",
-        '# ratios = "equal"  # or "chord", or one per segment: only the total is chosen',
-        "",
-        *claims,
-        "## What the paper leaves open, and what was chosen.",
-        "# [[assumptions]]",
-        '# id = "open"',
-        '# text = ""',
-        '# choice = ""',
-        "",
-    ]
-    return "\n".join(parts)
+def _template() -> Template:
+    """The text of a case file, with the claims that are given, and every other kind to fill in."""
+    from jinja2 import Environment, StrictUndefined
+
+    environment = Environment(
+        trim_blocks=True, keep_trailing_newline=True, undefined=StrictUndefined, autoescape=False
+    )
+    text = files(__package__ or "").joinpath("new_case.jinja").read_text(encoding="utf-8")
+    return environment.from_string(text)
 
 
-def _unit_text(unit: str | tuple[str, ...]) -> str:
-    return _quoted(unit) if isinstance(unit, str) else f"[{', '.join(map(_quoted, unit))}]"
+def _unit_lines(units: Mapping[str, str | tuple[str, ...]]) -> list[str]:
+    lines = []
+    for key, choices in CHOICES.items():
+        unit = units.get(key)
+        if isinstance(unit, tuple):
+            lines.append(f"{key} = [{', '.join(map(_quoted, unit))}]")
+        else:
+            lines.append(
+                f'# {key} = "{choices[0]}"' if unit is None else f"{key} = {_quoted(unit)}"
+            )
+    return lines
 
 
-def _angles(rows: Sequence[Sequence[str]], unit: str | tuple[str, ...]) -> list[list[str]]:
-    """Angles as a case file writes them: settings bare, what may be rounded in quotes."""
-    whole = {cell: int(cell.translate(MINUS_SIGNS)) for row in rows for cell in row if _whole(cell)}
+def _limit_lines(limits: Mapping[str, Sequence[str]]) -> list[str]:
+    lines = []
+    for key in ("velocity", "acceleration", "jerk"):
+        each = [str(Printed(text).decimal) for text in limits.get(key, ())]
+        shown = each[0] if len(each) == 1 else f"[{', '.join(each)}]"
+        lines.append(f"{key} = {shown}" if each else f"# {key} = inf")
+    return lines
+
+
+def _angles(table: WaypointTable, unit: str | tuple[str, ...]) -> dict[str, Any]:
+    """Angles as a case file writes them, settings bare, what may be rounded in quotes.
+
+    Beside the rows a remark on whole numbers: how they are taken, and how to say otherwise.
+    """
+    cells = [cell for row in table.rows for cell in row]
+    whole = {cell: int(cell.translate(MINUS_SIGNS)) for cell in cells if _whole(cell)}
     exact = unit == "rad" or all(number % _ROUND == 0 for number in whole.values())
-    return [
-        [str(whole[cell]) if exact and cell in whole else _quoted(cell) for cell in row]
-        for row in rows
-    ]
+    rows = []
+    for label, row in zip(table.labels, table.rows, strict=True):
+        shown = [str(whole[cell]) if exact and cell in whole else _quoted(cell) for cell in row]
+        rows.append(f"[{', '.join(shown)}],  # {_comment(label)}")
+    remark = ""
+    if whole and exact:
+        remark = "Whole numbers are settings and meant exactly; quote those that the paper rounds."
+    elif whole:
+        at = next(k for k, cell in enumerate(cells) if cell in whole)
+        own = unit if isinstance(unit, str) else unit[at % len(table.joints)]
+        low, high = whole[cells[at]] - 0.5, whole[cells[at]] + 0.5
+        remark = f"{_quoted(cells[at])} may be {low:g} to {high:g} {own}; no quotes: exact"
+    return {"rows": rows, "rounding": remark}
 
 
-def _rounding(angles: Sequence[Sequence[str]], unit: str | tuple[str, ...]) -> list[str]:
-    """A remark on whole numbers of a table: how they are taken, and how to say otherwise."""
-    cells = [cell for row in angles for cell in row]
-    if any(_whole(cell) for cell in cells):
-        return [
-            "# Whole numbers are settings and meant exactly; quote those that the paper rounds."
-        ]
-    at = next((i for i, c in enumerate(cells) if _whole(json.loads(c))), None)
-    if at is None:
-        return []
-    rounded = cells[at]
-    own = unit if isinstance(unit, str) else unit[at % len(angles[0])]
-    number = int(json.loads(rounded).translate(MINUS_SIGNS))
-    return [f"# {rounded} may be {number - 0.5:g} to {number + 0.5:g} {own}; no quotes: exact"]
+def _coarse(durations: Sequence[str]) -> str:
+    """A remark on durations without decimals, which may be meant exactly."""
+    whole = next((one for one in durations if re.fullmatch("[0-9]+", one)), None)
+    if whole is None:
+        return ""
+    return f'  # "{whole}" may be {int(whole) - 0.5:g} to {int(whole) + 0.5:g}; no quotes: exact'
 
 
 def _whole(text: str) -> bool:
     return re.fullmatch("[+-]?[0-9]+", text.translate(MINUS_SIGNS)) is not None
-
-
-def _numbers(texts: Sequence[str]) -> str:
-    each = [str(Printed(text).decimal) for text in texts]
-    return each[0] if len(each) == 1 else f"[{', '.join(each)}]"
 
 
 def _comment(label: str) -> str:

@@ -12,9 +12,7 @@ from ..errors import TrajgapError
 from ..fields import (
     MOST_POSES,
     MOST_WAYPOINTS,
-    AccelerationUnits,
     Id,
-    JerkUnits,
     JointLabels,
     Label,
     Number,
@@ -23,13 +21,10 @@ from ..fields import (
     OneOrEachSized,
     OneOrEachUpper,
     OneOrEachUpperPosition,
-    PositionUnits,
     PrintedRows,
     Ratios,
     Strict,
     Text,
-    TimeUnit,
-    VelocityUnits,
     describe,
     fault,
 )
@@ -41,6 +36,7 @@ from .claim import AnyClaim
 from .clue import AnyClue
 from .declaration import InterpolantBlock
 from .instances import InstancesBlock
+from .joint_units import Units
 
 LISTS = (
     "problems",
@@ -100,16 +96,6 @@ class RobotFile(Strict):
     name: Text
     source: Source
     dh: DhTable
-
-
-class Units(Strict):
-    """The units that the numbers of the file are printed in: one, or one for each robot joint."""
-
-    position: PositionUnits = None
-    velocity: VelocityUnits = None
-    acceleration: AccelerationUnits = None
-    jerk: JerkUnits = None
-    time: TimeUnit = None
 
 
 class StraightLine(Strict):
@@ -423,13 +409,7 @@ class CaseFile(ProblemData):
 
 
 def case_schema() -> dict[str, Any]:
-    """JSON Schema of a case file, for editors.
-
-    Returns
-    -------
-    dict
-        JSON Schema, draft 2020-12.
-    """
+    """JSON Schema of a case file, for editors."""
     schema = CaseFile.model_json_schema()
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",

@@ -21,19 +21,7 @@ _MOST_INSTANCES = 10_000
 
 
 def check_values(raw: dict[str, Any], file: str) -> None:
-    """Check how many values a file holds, before any of them is read.
-
-    Parameters
-    ----------
-    raw : dict
-        Parsed TOML.
-    file : str
-        Name for error messages.
-
-    Raises
-    ------
-    CaseError
-    """
+    """Check how many values a file holds, before any of them is read."""
     for name in LISTS:
         entries = raw.get(name)
         if isinstance(entries, list) and len(entries) > MOST_ENTRIES:
@@ -51,18 +39,7 @@ def check_values(raw: dict[str, Any], file: str) -> None:
 
 
 def check_sizes(document: CaseFile, file: str) -> None:
-    """Check how much a file poses, before any of it is built.
-
-    Parameters
-    ----------
-    document : CaseFile
-    file : str
-        Name for error messages.
-
-    Raises
-    ------
-    CaseError
-    """
+    """Check how much a file poses, before any of it is built."""
     problems, readings = len(document.problems) or 1, len(document.readings) or 1
     pairs = problems * readings
     if pairs > _MOST_PAIRS:

@@ -20,8 +20,8 @@ from ..units import CHOICES, Measured, Quantity, is_linear, to_si
 from .declaration import InterpolantBlock, Values, declare
 from .digits import Digits, end, turned
 from .faults import Faults
-from .joint_units import linear_joints, unit_of
-from .schema import Durations, LimitsBlock, Units, Waypoints
+from .joint_units import Units, linear_joints, unit_of
+from .schema import Durations, LimitsBlock, Waypoints
 
 Data = tuple[Curve, Limits, Array, Array]
 """Curve, limits, and bounds on the durations."""
@@ -76,7 +76,6 @@ class Statement:
 
         Parameters
         ----------
-        quantity : str
         joint : int, optional
             Position in the robot's list; without it that of all joints that take part, None also
             where they differ.
@@ -93,8 +92,6 @@ class Statement:
 
         Parameters
         ----------
-        number : Printed
-        quantity : str
         field : str
             Where the number stands in the file, for messages.
         joint : int, optional
@@ -188,13 +185,7 @@ class Statement:
         return bool(self.waypoints.points)
 
     def check(self) -> None:
-        """Check that a problem can be made, and list all that is in the way at once.
-
-        Raises
-        ------
-        CaseError
-            If anything in it is wrong.
-        """
+        """Check that a problem can be made, and list all that is in the way at once."""
         faults = Faults(self.file)
         with faults.noted():
             if self.complete:
@@ -325,11 +316,6 @@ class Statement:
         ----------
         waypoints : ndarray, shape (way-points, joints of the robot)
             rad; as many way-points as the file states.
-
-        Raises
-        ------
-        CaseError
-            If the numbers don't fit together.
         """
         return self._at(self.data(), waypoints[:, list(self.joints)])
 
@@ -356,18 +342,7 @@ class Statement:
             raise self.fail("", str(error)) from None
 
     def data(self, digits: Digits = Digits.PRINTED) -> Data:
-        """All but the way-points: curve, limits, and bounds on the durations, rad and s.
-
-        Parameters
-        ----------
-        digits : Digits
-            Which values limits and bounds take.
-
-        Raises
-        ------
-        CaseError
-            If the numbers don't fit together.
-        """
+        """All but the way-points: curve, limits, and bounds on the durations, rad and s."""
         curve = self.curve()
         segments = curve.segments
         durations = self._each("durations", "lower", "time", segments, "segment", 0.0)

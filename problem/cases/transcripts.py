@@ -58,14 +58,8 @@ def compare_transcriptions(first: Case, second: Case, words: bool = False) -> li
 
     Parameters
     ----------
-    first, second : Case
     words : bool
         Whether titles, notes and places count too, which each transcriber words otherwise.
-
-    Returns
-    -------
-    list of Difference
-        Empty if the two agree.
     """
     one, two = (_held(case) for case in (first, second))
     return list(_differences("", one, two, words))

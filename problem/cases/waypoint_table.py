@@ -30,9 +30,6 @@ class WaypointTable:
 
     Attributes
     ----------
-    joints : tuple of str
-    labels : tuple of str
-        A name for each way-point.
     rows : tuple of tuple of str
         Digits, (way-point, joint).
     counted : bool
@@ -50,8 +47,6 @@ def read_waypoint_table(faults: Faults, text: str) -> WaypointTable:
 
     Parameters
     ----------
-    faults : Faults
-        Of the table's file.
     text : str
         Cells with commas, semicolons, tabs or spaces between.
 

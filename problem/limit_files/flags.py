@@ -22,13 +22,8 @@ def limits_of_flags(
     given : mapping
         Quantity to text: ``6``, ``6,8,inf``, or ``-1:2`` for a range; of positions a range, or a
         number that stands for both sides. None where there is no flag.
-    joints : sequence of str
     factors : ndarray, shape (joints,)
         What a number is in rad.
-
-    Returns
-    -------
-    StatedLimits
 
     Raises
     ------

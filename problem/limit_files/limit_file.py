@@ -10,11 +10,5 @@ from .urdf import read_urdf
 
 
 def read_limits(path: Path) -> StatedLimits:
-    """Read a URDF (``.urdf``, ``.xml``), or MoveIt's joint_limits.yaml.
-
-    Raises
-    ------
-    CaseError
-        If it is neither.
-    """
+    """Read a URDF (``.urdf``, ``.xml``), or MoveIt's joint_limits.yaml."""
     return (read_urdf if path.suffix.lower() in (".urdf", ".xml") else read_moveit)(path)

@@ -37,15 +37,6 @@ def read_moveit(path: Path) -> StatedLimits:
         ``min_position`` and ``max_position``; rad, or m. A ``has_...`` that is false says that
         there is no limit; one that is missing is taken from what stands beside it. The default
         scaling factors of planners are no limits and are left aside.
-
-    Returns
-    -------
-    StatedLimits
-
-    Raises
-    ------
-    CaseError
-        If it is no such file.
     """
     name = str(path)
     documents = read_yaml(path)

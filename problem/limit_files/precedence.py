@@ -60,13 +60,8 @@ def merge(joints: Sequence[str], sources: Sequence[StatedLimits]) -> JointLimits
 
     Parameters
     ----------
-    joints : sequence of str
     sources : sequence of StatedLimits
         In order of precedence.
-
-    Returns
-    -------
-    JointLimits
 
     Raises
     ------

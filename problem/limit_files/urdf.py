@@ -32,10 +32,6 @@ def read_urdf(path: Path) -> StatedLimits:
         continuous joint with limits is stated to have no range. Fixed, floating and planar joints
         and those that mimic another are left aside.
 
-    Returns
-    -------
-    StatedLimits
-
     Raises
     ------
     CaseError

@@ -42,7 +42,6 @@ def check_samples(
 
     Parameters
     ----------
-    samples : Samples
     limits : JointLimits
         For the same joints in the same order.
     tolerance : float

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -53,10 +53,8 @@ def digits_of_text(text: str, separator: str | None, columns: int) -> Digits:
 
     Parameters
     ----------
-    text : str
     separator : str or None
         Between cells; None for blanks.
-    columns : int
     """
     rows = (line.partition("#")[0].split(separator) for line in _spread(text))
     return _most((row for row in rows if len(row) == columns), columns)
@@ -136,26 +134,3 @@ def _half_unit(places: int, significant: int, largest: float) -> float:
     if significant and 0.0 < largest < math.inf:
         last = max(last, math.floor(math.log10(largest)) - significant + 1)
     return 0.5 * 10.0 ** min(max(last, -320), 300) * _ROUNDED_UP
-
-
-def rounding_of(
-    time: Array, orders: Sequence[Array | None], digits: Sequence[Digits | None]
-) -> HalfUnits:
-    """The rounding of samples.
-
-    Parameters
-    ----------
-    time : ndarray, shape (rows,)
-    orders : sequence of ndarray, shape (rows, joints), or None
-        Positions, velocities, accelerations; NaN where a row has none.
-    digits : sequence of ndarray or None
-        Of the times, shape (1, 2), then of each of the orders.
-    """
-    of_time, *of_orders = digits
-    joints = next(one.shape[1] for one in orders if one is not None)
-    values = np.zeros((3, joints))
-    for order, (one, shown) in enumerate(zip(orders, of_orders, strict=True)):
-        if one is not None and shown is not None:
-            values[order] = half_units(one, shown)
-    clock = 0.0 if of_time is None else float(half_units(time[:, None], of_time)[0])
-    return HalfUnits(clock, values)

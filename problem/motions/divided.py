@@ -5,12 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import Array
+from .motion import EPS
 
-_EPS = 2.0**-52
-"""Spacing of float64 at 1."""
 _TOGETHER = 1 << 14
 """Windows that are looked at together: a dozen arrays of that length stay in a core's own cache."""
-_UP = 1.0 + 16 * _EPS
+_UP = 1.0 + 16 * EPS
 """Covers the rounding of a bound's own sums and quotients."""
 
 
@@ -39,7 +38,6 @@ def divided_extremes(
     times : ndarray, shape (samples,)
         s, increasing; more than ``order * stride`` of them.
     values : ndarray, shape (samples, joints)
-    order, stride : int
     noise : ndarray, shape (joints,)
         What the values of each joint may be off by.
     clock : float
@@ -84,14 +82,14 @@ Span = tuple[Array, Array, Array]
 
 def _spans(times: list[Array], clock: float) -> list[list[Span]]:
     """For each level of the divided differences the times that they are divided by."""
-    off = [clock + _EPS * np.abs(t) for t in times]
+    off = [clock + EPS * np.abs(t) for t in times]
     levels = []
     for level in range(1, len(times)):
         spans = []
         for m in range(len(times) - level):
             span = times[m + level] - times[m]
             # A product and a quotient round the difference too, by less than this.
-            error = off[m] + off[m + level] + 4 * _EPS * span
+            error = off[m] + off[m + level] + 4 * EPS * span
             least = span - error
             # Where the order of two samples is not known nothing is bounded.
             spans.append((span, error, np.where(least > 0.0, least, 0.0)))
@@ -102,7 +100,7 @@ def _spans(times: list[Array], clock: float) -> list[list[Span]]:
 def _differences(values: list[Array], spans: list[list[Span]], noise: float) -> tuple[Array, Array]:
     """Divided differences of one joint times the factorial of their order, and their errors."""
     found = values
-    errors = [noise + _EPS * np.abs(one) for one in values]
+    errors = [noise + EPS * np.abs(one) for one in values]
     factorial = 1.0
     for level, spans_here in enumerate(spans, 1):
         factorial *= level

@@ -102,16 +102,10 @@ def least_time(
 
     Parameters
     ----------
-    motion : Motion
     limits : JointLimits
         Of two sides the larger one counts, which can only lower the floor.
     standing : ndarray, shape (joints,)
         Speed below which each joint stands, rad/s.
-
-    Returns
-    -------
-    Floor or None
-    str or None
     """
     starts, ends = motion.at_ends(1)
     speed = np.vstack([np.abs(starts), np.abs(ends[-1:])])

@@ -30,10 +30,6 @@ def as_motion(given: Any, joints: Sequence[str] = ()) -> Motion:
     joints : sequence of str, optional
         Labels; "1", "2", ... by default.
 
-    Returns
-    -------
-    Motion
-
     Raises
     ------
     TrajgapError

@@ -10,11 +10,9 @@ from numpy.typing import NDArray
 
 from ..arrays import Array
 from ..curves import PERM
-from .motion import Motion
+from .motion import EPS, Motion
 from .samples import Samples
 
-_EPS = 2.0**-52
-"""Spacing of float64 at 1."""
 _UP = 1.0 + 1e-12
 """Covers the rounding of a bound's own sums, products and powers."""
 _BASIS = {
@@ -67,15 +65,8 @@ def hermite(samples: Samples, degree: NDArray[np.int64], between: str) -> Motion
 
     Parameters
     ----------
-    samples : Samples
     degree : ndarray of int, shape (rows − 1,)
         1, 3 or 5 for each pair of rows.
-    between : str
-        In words.
-
-    Returns
-    -------
-    Motion
     """
     time, q = samples.time, samples.position
     pairs, count = q.shape[0] - 1, q.shape[1]
@@ -83,7 +74,7 @@ def hermite(samples: Samples, degree: NDArray[np.int64], between: str) -> Motion
     error = np.empty((pairs, 4, count))
     h = np.diff(time)
     clock = samples.time_error
-    off = clock[1:] + clock[:-1] + _EPS * h
+    off = clock[1:] + clock[:-1] + EPS * h
     for d in sorted({int(x) for x in degree}):
         # A slice where all pairs are alike: nothing is copied.
         at: Any = slice(None) if (degree == d).all() else degree == d
@@ -123,7 +114,7 @@ def _fill(
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
         for r in range(4):
             # Seven roundings of each coefficient, from products, powers and sums.
-            bound = 7 * _EPS * PERM[: degree + 1, r].sum() * sizes / h**r
+            bound = 7 * EPS * PERM[: degree + 1, r].sum() * sizes / h**r
             for order, one in enumerate(doubt):
                 if not reach[r, order]:
                     continue

@@ -17,7 +17,6 @@ def interpolated(samples: Samples, how: Interpolation) -> Motion:
 
     Parameters
     ----------
-    samples : Samples
     how : Interpolation
         Any but ``none``.
 

@@ -27,7 +27,6 @@ class JointLimits:
 
     Attributes
     ----------
-    joints : tuple of str
     lower, upper : ndarray, shape (joints, 4)
         Range of derivative 0 to 3, rad, s; infinite where there is none.
     deceleration : ndarray, shape (joints,)
@@ -192,12 +191,7 @@ def _listed(words: Sequence[str]) -> str:
 
 
 def check_range(low: float, high: float, quantity: str, joint: str) -> None:
-    """Refuse a range that no motion can keep.
-
-    Raises
-    ------
-    TrajgapError
-    """
+    """Refuse a range that no motion can keep."""
     name = f"{quantity} of joint {joint}"
     if np.isnan(low) or np.isnan(high):
         raise TrajgapError(f"{name}: is NaN; leave it out where there is no limit")

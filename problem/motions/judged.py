@@ -15,7 +15,7 @@ from ..errors import TrajgapError
 from ..limits import half_range
 from .floor import Floor, least_time
 from .joint_limits import BRAKING, ORDERS, JointLimits, unstated_words
-from .motion import Motion, derivative_terms
+from .motion import EPS, Motion, derivative_terms
 from .one_sided import one_sided_extreme
 
 MOTION_TOLERANCE = 1e-6
@@ -28,8 +28,6 @@ _ROUNDING = 32 * 2.0**-52
 """Relative to a polynomial's absolute terms: Horner's rounding of ten coefficients is 20 · 2⁻⁵³."""
 _BLURRED = "What rounding may change is as large as what is left to a limit."
 """Why a motion is not decided whose numbers are taken exactly."""
-_EPS = 2.0**-52
-"""Spacing of float64 at 1."""
 
 
 @dataclass(frozen=True)
@@ -69,7 +67,6 @@ class MotionJump:
 
     Attributes
     ----------
-    joint, quantity : str
     time : float
         s.
     size : float
@@ -91,14 +88,12 @@ class MotionCheck:
 
     Attributes
     ----------
-    verdict : Verdict
     limits : Verdict
         About the limits alone, jumps apart.
     worst : MotionPeak or None
         Largest ratio; None if nothing is limited.
     peaks : tuple of MotionPeak
         One for each limited quantity of each joint.
-    jumps : tuple of MotionJump
     total_time : float
         s.
     stretch : float
@@ -110,10 +105,8 @@ class MotionCheck:
         No motion between the same standstills is shorter.
     concluded, open : tuple of str
         What follows from the file, and what does not.
-    tolerance : float
     not_judged : tuple of (str, str)
         Joint and quantity wherever no limit is stated: the verdict is silent about them.
-    joints : tuple of str
     """
 
     verdict: Verdict
@@ -167,15 +160,10 @@ def check_motion(
 
     Parameters
     ----------
-    motion : Motion
     limits : JointLimits
         For the same joints in the same order.
     tolerance : float
         Relative excess over a limit that still counts as keeping it.
-
-    Returns
-    -------
-    MotionCheck
     """
     check_same_joints(motion.joints, limits)
     peaks, standing = _peaks(motion, limits)
@@ -251,12 +239,7 @@ def blurred(peaks: Sequence[MotionPeak], tolerance: float) -> list[str]:
 
 
 def check_same_joints(joints: Sequence[str], limits: JointLimits) -> None:
-    """Refuse limits of other joints than those of the motion, or in another order.
-
-    Raises
-    ------
-    TrajgapError
-    """
+    """Refuse limits of other joints than those of the motion, or in another order."""
     if tuple(joints) != tuple(limits.joints):
         raise TrajgapError(
             f"limits: given for joints {', '.join(limits.joints)}, the motion has "
@@ -428,7 +411,7 @@ def _jumps(motion: Motion) -> tuple[tuple[MotionJump, ...], list[tuple[str, str]
         start, end = motion.at_ends(r)
         shown = (motion.durations**-r)[:, None]
         # A jump that the digits of the positions explain is none.
-        digits = _JUMP * terms[:, r] + 64 * _EPS * whole * shown
+        digits = _JUMP * terms[:, r] + 64 * EPS * whole * shown
         size = start[1:] - end[:-1]
         noise = motion.error[1:, r] + motion.error[:-1, r]
         jumps = np.abs(size) > digits[1:] + digits[:-1] + noise

@@ -24,7 +24,7 @@ LARGEST = 1e100
 """Size of a position, derivative, coefficient or limit, rad and s; a limit above 0 is at least its
 inverse. Divided by the cube of the shortest step, 1e-30 s, and by a limit, it is still within
 float64, which would overflow to inf and NaN."""
-_EPS = 2.0**-52
+EPS = 2.0**-52
 """Spacing of float64 at 1."""
 
 
@@ -34,8 +34,6 @@ class Motion:
 
     Attributes
     ----------
-    joints : tuple of str
-        Joint labels.
     breaks : ndarray, shape (pieces + 1,)
         Times at which the pieces meet, s, ascending.
     scaled : ndarray, shape (pieces, powers, joints)
@@ -114,11 +112,6 @@ class Motion:
             rad over s.
         joints : sequence of str, optional
             Labels; "1", "2", ... by default.
-        between : str, optional
-
-        Returns
-        -------
-        Motion
 
         Raises
         ------
@@ -216,16 +209,11 @@ def numbered(count: int) -> tuple[str, ...]:
 def clock_error(times: Array) -> Array:
     """Relative error of the steps between times that were rounded to float64."""
     sizes = np.abs(times[1:]) + np.abs(times[:-1])
-    return np.asarray(_EPS * (1.0 + sizes / np.diff(times)), dtype=np.float64)
+    return np.asarray(EPS * (1.0 + sizes / np.diff(times)), dtype=np.float64)
 
 
 def check_joints(labels: Sequence[str], count: int) -> None:
-    """Refuse labels that do not fit their joints, and more joints than any arm has.
-
-    Raises
-    ------
-    TrajgapError
-    """
+    """Refuse labels that do not fit their joints, and more joints than any arm has."""
     if not 1 <= count <= MOST_JOINTS:
         raise TrajgapError(f"joints: {count} of them; give 1 to {MOST_JOINTS}")
     if len(labels) != count:
@@ -236,12 +224,7 @@ def check_joints(labels: Sequence[str], count: int) -> None:
 
 
 def check_times(times: Array, field: str) -> None:
-    """Refuse times that do not increase, or whose steps are too short for float64.
-
-    Raises
-    ------
-    TrajgapError
-    """
+    """Refuse times that do not increase, or whose steps are too short for float64."""
     if times.size < 2:
         raise TrajgapError(f"{field}: {times.size} of them; a motion needs 2 or more")
     bad = ~np.isfinite(times)

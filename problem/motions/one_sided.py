@@ -21,7 +21,6 @@ class OneSided:
 
     Attributes
     ----------
-    piece : int
     s, value : float
         Where on the piece, and what stands there, signed.
     sure : float
@@ -49,17 +48,10 @@ def one_sided_extreme(
 
     Parameters
     ----------
-    trajectory : Trajectory
     errors : ndarray, shape (pieces, orders, joints)
         Bound on what each derivative is off by, its rounding included.
-    joint : int
-    sign : float
     rest : float
         rad/s.
-
-    Returns
-    -------
-    OneSided
     """
     v, a = (trajectory.derivatives(r)[:, :, joint] for r in (1, 2))
     blur, err = errors[:, 1, joint], errors[:, 2, joint]

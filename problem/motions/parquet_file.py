@@ -23,7 +23,7 @@ _NO_UNIT = ("t", "time", "times", "timestamp")
 """Names of the column of times that say no unit, lower case; the others say seconds."""
 
 
-def read_parquet(path: Path, joints: Sequence[str] = (), noise: float | Array = 0.0) -> Samples:
+def read_parquet(path: Path, joints: Sequence[str] = ()) -> Samples:
     """Read samples from a Parquet file; columns are named as in `read_csv`.
 
     Times are seconds where they are decimal numbers. Durations are converted by their unit;
@@ -51,11 +51,11 @@ def read_parquet(path: Path, joints: Sequence[str] = (), noise: float | Array = 
         check_size(name, rows, len(names))
         if not names or rows == 0:
             raise CaseError(name, "", "holds no rows; give one row per sample")
-        table = file.read()
+        rows_read = file.read()
         time, _ = column_meaning(name, names)
         read = [
             (_times if k == time else _numbers)(name, names[k], column)
-            for k, column in enumerate(table.itercolumns())
+            for k, column in enumerate(rows_read.itercolumns())
         ]
         columns, halves = zip(*read, strict=True)
     except CaseError:
@@ -63,9 +63,8 @@ def read_parquet(path: Path, joints: Sequence[str] = (), noise: float | Array = 
     except (lib.ArrowException, OSError, ValueError, TypeError, MemoryError) as error:
         reason = str(error).splitlines()[0] if str(error) else type(error).__name__
         raise CaseError(name, "", f"no Parquet table ({reason}); export it again") from None
-    return samples_of_columns(
-        name, np.column_stack(columns), names, joints, noise, halves=np.array(halves)
-    )
+    table, known = np.column_stack(columns), np.array(halves)
+    return samples_of_columns(name, table, names, joints, lambda at: known[at])
 
 
 def _numbers(name: str, label: str, column: Any) -> tuple[Array, float]:

@@ -20,24 +20,13 @@ _DEEPEST = 40
 
 
 def read_json(path: Path) -> Any:
-    """Read a JSON file of finite numbers.
-
-    Raises
-    ------
-    CaseError
-        If it is none.
-    """
+    """Read a JSON file of finite numbers."""
     name = str(path)
     return parse_json(read_regular(path, LARGEST_TEXT, "keep fewer samples"), name)
 
 
 def parse_json(data: bytes, name: str) -> Any:
-    """Parse JSON; NaN, infinities and keys that occur twice are refused.
-
-    Raises
-    ------
-    CaseError
-    """
+    """Parse JSON; NaN, infinities and keys that occur twice are refused."""
 
     def refuse(word: str) -> float:
         raise CaseError(name, "", f"holds {word}; give finite numbers")
@@ -67,11 +56,6 @@ def read_yaml(path: Path) -> list[Any]:
 
     What YAML 1.1 reads in a way that nobody expects of a number is refused: ``010`` (octal),
     ``1:30`` (to base 60), ``1.0e+400`` (infinite); and keys that occur twice.
-
-    Raises
-    ------
-    CaseError
-        If it is none.
     """
     name = str(path)
     data = read_regular(path, LARGEST_YAML, "give JSON, or keep fewer samples")

@@ -26,19 +26,8 @@ def motion_of_json(found: Any, name: str, factors: Array | float = 1.0) -> Motio
         ``{"breaks": [t0, ..., tn], "coefficients": [[[...], ...], ...], "joints": [...]}``:
         coefficients by piece, then by power of t − t_k **descending**, then by joint; or, as
         scipy's arrays ``x`` and ``c``, by power, piece and joint.
-    name : str
-        The file, for messages.
     factors : float or ndarray, shape (joints,)
         What a number of the file is in rad.
-
-    Returns
-    -------
-    Motion
-
-    Raises
-    ------
-    CaseError
-        If it is no such file.
     """
     from scipy.interpolate import PPoly
 

@@ -41,8 +41,6 @@ class ForeignFile:
 
     Attributes
     ----------
-    format : str
-        In words.
     content : Samples or Motion
         rad (m), s.
     units : tuple of str
@@ -72,15 +70,6 @@ class ForeignFile:
         """The same way, taken so many times slower from its start.
 
         The numbers of the slower motion are meant exactly: no digit of it was rounded off.
-
-        Parameters
-        ----------
-        factor : float
-            What every duration is multiplied by.
-
-        Returns
-        -------
-        ForeignFile
         """
         return replace(self, content=self.content.slowed(factor))
 
@@ -128,15 +117,6 @@ def read_motion(
         Of a rosbag with several trajectories.
     time_noise : float, optional
         What times may be off by, s; without it their digits say so.
-
-    Returns
-    -------
-    ForeignFile
-
-    Raises
-    ------
-    CaseError
-        If it cannot be read as a motion.
     """
     name, ending = str(path), path.suffix.lower()
     stated = Stated(noise, time_noise)

@@ -11,7 +11,7 @@ import numpy as np
 from ..arrays import Array
 from ..errors import CaseError, TrajgapError
 from ..fields import MOST_JOINTS, spelt_like
-from .digits import Digits, HalfUnits, digits_of_values, rounding_of
+from .digits import HalfUnits, digits_of_values, half_units
 from .motion import MOST_VALUES
 from .samples import Samples
 
@@ -46,9 +46,7 @@ def trajectories(found: Any, depth: int = 6) -> Iterator[Mapping[str, Any]]:
             yield from trajectories(one, depth - 1)
 
 
-def samples_of_message(
-    message: Mapping[str, Any], name: str, noise: float | Array = 0.0, text: bool = True
-) -> Samples:
+def samples_of_message(message: Mapping[str, Any], name: str, text: bool = True) -> Samples:
     """Samples of a JointTrajectory, derivatives where points have them.
 
     Parameters
@@ -57,16 +55,8 @@ def samples_of_message(
         ``joint_names`` and ``points``; a point has ``positions`` and ``time_from_start`` (``sec``
         and ``nanosec``, in ROS 1 ``secs`` and ``nsecs``; a number of seconds too), and may have
         ``velocities`` and ``accelerations``.
-    name : str
-        The file, for messages.
-    noise : float or ndarray
-        See `Samples`.
     text : bool
         Whether the message was written as text, so that its digits say what was rounded.
-
-    Returns
-    -------
-    Samples
 
     Raises
     ------
@@ -97,36 +87,30 @@ def samples_of_message(
             given = point.get(key)
             if given is None or (isinstance(given, list) and not given):
                 if order == 0:
-                    raise CaseError(
-                        name,
-                        f"{field}.positions",
-                        "is empty; give positions",
-                    )
+                    raise CaseError(name, f"{field}.positions", "is empty; give positions")
                 continue
             if not isinstance(given, list) or len(given) != len(joints):
                 count = len(given) if isinstance(given, list) else 1
-                raise CaseError(
-                    name,
-                    f"{field}.{key}",
-                    f"{count} for {len(joints)} joints; give one each",
-                )
+                why = f"{count} for {len(joints)} joints; give one each"
+                raise CaseError(name, f"{field}.{key}", why)
             for j, value in enumerate(given):
                 values[order, k, j] = _number(value, name, f"{field}.{key}[{j}]")
     try:
-        rounding = _rounding(times, values, text)
         q, v, a = values
-        return Samples(tuple(joints), times, q, v, a, noise, rounding=rounding)
+        rounding = _rounding(times, values, text)
+        return Samples(tuple(joints), times, q, v, a, rounding=rounding)
     except TrajgapError as error:
         raise CaseError(name, "points", str(error)) from None
 
 
 def _rounding(times: Array, values: Array, text: bool) -> HalfUnits:
     """Whole nanoseconds, and the digits of numbers that were written as text."""
-    nanoseconds = np.array([[_PLACES, 0]])
-    shown: list[Digits | None] = [
-        digits_of_values(one) if text and not np.isnan(one).all() else None for one in values
-    ]
-    return rounding_of(times, list(values), [nanoseconds, *shown])
+    rounded = np.zeros(values[:, 0].shape)
+    for order, one in enumerate(values):
+        if text and not np.isnan(one).all():
+            rounded[order] = half_units(one, digits_of_values(one))
+    nanoseconds = half_units(times[:, None], np.array([[_PLACES, 0]]))
+    return HalfUnits(float(nanoseconds[0]), rounded)
 
 
 def _number(value: Any, name: str, field: str) -> float:
@@ -166,18 +150,12 @@ def message_of_samples(samples: Samples) -> dict[str, Any]:
     """A JointTrajectory of ROS 2 as plain values, rad and s."""
     rows = []
     for k, time in enumerate(samples.time):
-        nanoseconds = round(float(time) * 1e9)
-        row: dict[str, Any] = {"positions": samples.position[k].tolist()}
-        for key, given in (
-            ("velocities", samples.velocity),
-            ("accelerations", samples.acceleration),
-        ):
+        row: dict[str, Any] = {}
+        for order, key in enumerate(_DERIVATIVES):
+            given = samples.given(order)
             row[key] = [] if given is None or np.isnan(given[k]).any() else given[k].tolist()
-        row["effort"] = []
-        row["time_from_start"] = {
-            "sec": nanoseconds // 10**9,
-            "nanosec": nanoseconds % 10**9,
-        }
+        seconds, part = divmod(round(float(time) * 1e9), 10**9)
+        row |= {"effort": [], "time_from_start": {"sec": seconds, "nanosec": part}}
         rows.append(row)
     return {
         "header": {"stamp": {"sec": 0, "nanosec": 0}, "frame_id": ""},

@@ -28,10 +28,6 @@ def read_rosbag(path: Path, topic: str | None = None) -> Samples:
     topic : str, optional
         Needed if the bag holds more than one trajectory.
 
-    Returns
-    -------
-    Samples
-
     Raises
     ------
     CaseError

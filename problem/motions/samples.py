@@ -11,10 +11,7 @@ from numpy.typing import NDArray
 from ..arrays import Array
 from ..errors import TrajgapError
 from .digits import HalfUnits
-from .motion import LARGEST, MOST_VALUES, check_joints, check_times, numbered
-
-_EPS = 2.0**-52
-"""Spacing of float64 at 1."""
+from .motion import EPS, LARGEST, MOST_VALUES, check_joints, check_times, numbered
 
 
 class Interpolation(StrEnum):
@@ -41,7 +38,6 @@ class Samples:
 
     Attributes
     ----------
-    joints : tuple of str
     time : ndarray, shape (rows,)
         s, ascending.
     position : ndarray, shape (rows, joints)
@@ -139,13 +135,13 @@ class Samples:
     @property
     def time_error(self) -> Array:
         """The same with the rounding of each time to float64, shape (rows,)."""
-        return np.asarray(self.clock + _EPS * np.abs(self.time))
+        return np.asarray(self.clock + EPS * np.abs(self.time))
 
     def error(self, order: int) -> Array:
         """What stated values may be off by, rounding to float64 included, (rows, joints)."""
         given = self.given(order)
         assert given is not None
-        return np.asarray(self.doubt(order) + _EPS * np.abs(given))
+        return np.asarray(self.doubt(order) + EPS * np.abs(given))
 
     def doubt(self, order: int) -> Array:
         """What the values of derivative ``order`` may be off by, shape (joints,)."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 import re
 import warnings
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +14,7 @@ from ..arrays import Array
 from ..errors import CaseError, TrajgapError
 from ..fields import MOST_JOINTS
 from ..files import read_regular
-from .digits import Digits, HalfUnits, digits_of_text, rounding_of
+from .digits import HalfUnits, digits_of_text, half_units
 from .motion import MOST_VALUES, numbered
 from .samples import Samples
 
@@ -41,7 +41,7 @@ _GAP = r"[ ._:/-]"
 """What stands between a joint's name and such a word."""
 
 
-def read_csv(path: Path, joints: Sequence[str] = (), noise: float | Array = 0.0) -> Samples:
+def read_csv(path: Path, joints: Sequence[str] = ()) -> Samples:
     """Read samples from a text table.
 
     Parameters
@@ -52,12 +52,6 @@ def read_csv(path: Path, joints: Sequence[str] = (), noise: float | Array = 0.0)
         all others are positions. Commas, semicolons, tabs or blanks separate; # begins a comment.
     joints : sequence of str, optional
         Names of the joints, where the header gives none.
-    noise : float or ndarray
-        See `Samples`.
-
-    Returns
-    -------
-    Samples
 
     Raises
     ------
@@ -73,18 +67,11 @@ def read_csv(path: Path, joints: Sequence[str] = (), noise: float | Array = 0.0)
     except UnicodeDecodeError as error:
         line = data[: error.start].count(b"\n") + 1
         raise CaseError(name, f"line {line}", "is not UTF-8 text; save the file as UTF-8") from None
-    return parse_csv(text, name, joints, noise)
+    return parse_csv(text, name, joints)
 
 
-def parse_csv(
-    text: str, name: str, joints: Sequence[str] = (), noise: float | Array = 0.0
-) -> Samples:
-    """`read_csv` of a text; ``name`` is for messages.
-
-    Raises
-    ------
-    CaseError
-    """
+def parse_csv(text: str, name: str, joints: Sequence[str] = ()) -> Samples:
+    """`read_csv` of a text; ``name`` is for messages."""
     first = next((x for x in _lines(text[:100_000]) if x), "")
     if not first:
         raise CaseError(name, "", "holds no rows; give one row per sample")
@@ -93,7 +80,11 @@ def parse_csv(
     header = not all(_is_number(x) for x in cells)
     table = _numbers(text, name, separator, skip=header, columns=len(cells))
     digits = digits_of_text(text, separator, len(cells))
-    return samples_of_columns(name, table, cells if header else (), joints, noise, digits)
+
+    def half(at: list[int]) -> Array:
+        return half_units(table[:, at], digits[at])
+
+    return samples_of_columns(name, table, cells if header else (), joints, half)
 
 
 def _lines(text: str) -> list[str]:
@@ -109,12 +100,7 @@ def _is_number(word: str) -> bool:
 
 
 def check_size(name: str, rows: int, columns: int) -> None:
-    """Refuse tables that are too large to be read.
-
-    Raises
-    ------
-    CaseError
-    """
+    """Refuse tables that are too large to be read."""
     if rows * columns > 4 * MOST_VALUES or columns > 3 * MOST_JOINTS + 1:
         raise CaseError(
             name, "", f"{rows} rows of {columns} columns are more than is read; keep fewer"
@@ -174,56 +160,45 @@ def samples_of_columns(
     table: Array,
     header: Sequence[str],
     joints: Sequence[str],
-    noise: float | Array,
-    digits: Digits | None = None,
-    halves: Array | None = None,
+    half: Callable[[list[int]], Array],
 ) -> Samples:
     """Samples of a table of numbers, times in s; without a header time comes first.
 
-    ``digits`` are those of its columns where it is text; ``halves`` is what the type of each column
-    rounds off where it has types.
-
-    Raises
-    ------
-    CaseError
+    ``half`` gives what the numbers of columns of one kind may be off by.
     """
     if table.shape[1] < 2:
         raise CaseError(name, "", "has one column; give time and a position per joint")
-    try:
-        if not header:
-            _check_seconds(name, table[:, 0])
-            labels = tuple(joints) or numbered(table.shape[1] - 1)
-            rounding = HalfUnits()
-            if digits is not None:
-                rounding = rounding_of(table[:, 0], [table[:, 1:]], [digits[:1], digits[1:]])
-            return Samples(labels, table[:, 0], table[:, 1:], noise=noise, rounding=rounding)
+    if header:
         time, columns = column_meaning(name, header)
-        _check_seconds(name, table[:, time])
         labels = tuple(dict.fromkeys(joint for joint, _ in columns))
-        parts: list[Array | None] = []
-        shown: list[Digits | None] = [None if digits is None else digits[[time]]]
-        rounded = np.zeros((3, len(labels)))
-        for order in range(3):
-            places = [columns.get((joint, order)) for joint in labels]
-            missing = [one for one, k in zip(labels, places, strict=True) if k is None]
-            if missing and (order == 0 or len(missing) < len(labels)):
-                word = ("position", "velocity", "acceleration")[order]
-                raise CaseError(
-                    name, "line 1", f"no {word} of joint {missing[0]}; give it for every joint"
-                )
-            at = [k for k in places if k is not None]
-            parts.append(None if missing else table[:, at])
-            shown.append(None if missing or digits is None else digits[at])
-            if halves is not None and not missing:
-                rounded[order] = halves[at]
-        assert parts[0] is not None
-        named = tuple(joints) or labels
-        rounding = rounding_of(table[:, time], parts, shown)
-        if halves is not None:
-            rounding = HalfUnits(float(halves[time]), rounded)
-        return Samples(named, table[:, time], parts[0], parts[1], parts[2], noise, 0.0, rounding)
-    except CaseError:
-        raise
+    else:
+        labels = numbered(table.shape[1] - 1)
+        time, columns = 0, {(joint, 0): k for k, joint in enumerate(labels, 1)}
+    _check_seconds(name, table[:, time])
+    parts: list[Array | None] = []
+    rounded = np.zeros((3, len(labels)))
+    for order, word in enumerate(("position", "velocity", "acceleration")):
+        missing = [joint for joint in labels if (joint, order) not in columns]
+        if missing and (order == 0 or len(missing) < len(labels)):
+            raise CaseError(
+                name, "line 1", f"no {word} of joint {missing[0]}; give it for every joint"
+            )
+        at = [columns[joint, order] for joint in labels if not missing]
+        parts.append(table[:, at] if at else None)
+        if at:
+            rounded[order] = half(at)
+    rounding = HalfUnits(float(half([time])[0]), rounded)
+    position, velocity, acceleration = parts
+    assert position is not None
+    try:
+        return Samples(
+            tuple(joints) or labels,
+            table[:, time],
+            position,
+            velocity,
+            acceleration,
+            rounding=rounding,
+        )
     except TrajgapError as error:
         raise CaseError(name, "", str(error)) from None
 
@@ -235,12 +210,7 @@ def _check_seconds(name: str, times: Array) -> None:
 
 
 def column_meaning(name: str, header: Sequence[str]) -> tuple[int, dict[tuple[str, int], int]]:
-    """Column of times, and of each joint and order.
-
-    Raises
-    ------
-    CaseError
-    """
+    """Column of times, and of each joint and order."""
     times = [k for k, one in enumerate(header) if _TIME.fullmatch(one.strip().lower())]
     if len(times) != 1:
         columns_are = "no column is" if not times else "several columns are"

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ..arrays import Array
 from ..errors import TrajgapError
-from .motion import Motion, derivative_terms
+from .motion import EPS, Motion, derivative_terms
 from .samples import Samples
 
 _FINE = np.longdouble
@@ -18,8 +18,6 @@ _TINY = float(np.finfo(_FINE).eps)
 """Spacing of that type at 1."""
 _Numbers = NDArray[np.floating]
 """Float64 or that type."""
-_EPS = 2.0**-52
-"""Spacing of float64 at 1."""
 _UP = 1.0 + 1e-9
 """Covers the rounding of bounds."""
 _SLACK = 1.001
@@ -101,14 +99,6 @@ def not_a_knot_spline(samples: Samples) -> Motion:
     duration changes beside it. The outer two pieces at either end are one cubic, and so have one
     jerk.
 
-    Parameters
-    ----------
-    samples : Samples
-
-    Returns
-    -------
-    Motion
-
     Raises
     ------
     TrajgapError
@@ -161,7 +151,7 @@ def _times(time: Array, doubt: Array) -> _Times:
         beside[1 - one][end] = 0.0
         lacking[end] = ratio_off[end]
     # Entries are rounded to float64: outwards.
-    narrow = 8 * _EPS
+    narrow = 8 * EPS
     own_least = (1 - narrow) * own.astype(np.float64) - lacking
     bound = _Rows(-(1 + narrow) * beside[0], own_least, -(1 + narrow) * beside[1])
     dominates = bound.own + bound.left + bound.right > narrow * bound.own
@@ -235,7 +225,7 @@ def _fill(clock: _Times, q: Array, doubt: Array, scaled: Array, error: Array) ->
     rounded = 16 * _TINY * (np.abs(fine[:-1]) + np.abs(step) + h * h * size)
     terms = derivative_terms(scaled[:, :, None], h.astype(np.float64))[:, :, 0]
     for r in range(4):
-        error[:, r] = _UP * (error[:, r] + 4 * _EPS * terms[:, r] + 12 * rounded / h**r)
+        error[:, r] = _UP * (error[:, r] + 4 * EPS * terms[:, r] + 12 * rounded / h**r)
 
 
 def _bounded(bound: _Rows | None, excess: Array) -> Array:
@@ -245,5 +235,5 @@ def _bounded(bound: _Rows | None, excess: Array) -> Array:
         return nothing
     found = bound.solve(_SLACK * excess + 1e-300)
     sizes = _Rows(-bound.left, bound.own, -bound.right).times(np.abs(found))
-    kept = bound.times(found) - 8 * _EPS * sizes >= excess
+    kept = bound.times(found) - 8 * EPS * sizes >= excess
     return found if bool(kept.all() and (found >= 0).all()) else nothing

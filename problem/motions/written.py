@@ -56,7 +56,6 @@ def sampled(
 
     Parameters
     ----------
-    motion : Trajectory or Motion
     step : float
         Between rows, s; the last row is the end, however near.
     joints : tuple of str, optional
@@ -66,10 +65,6 @@ def sampled(
         motion of degree 5 or less back exactly.
     whole_nanoseconds : bool
         Whether times are rounded to those, as messages of ROS have them.
-
-    Returns
-    -------
-    Samples
 
     Raises
     ------
@@ -119,13 +114,8 @@ def csv_text(samples: Samples, units: Array | float = 1.0) -> str:
 
     Parameters
     ----------
-    samples : Samples
     units : float or ndarray, shape (joints,)
         What 1 of the written positions is, in rad or m; times are in s.
-
-    Returns
-    -------
-    str
 
     Raises
     ------
@@ -157,18 +147,12 @@ def motion_text(
 
     Parameters
     ----------
-    motion : Trajectory or Motion
     form : MotionForm
         CSV has uniform rows, ROS has the breaks as points too, polynomials need no step.
     step : float
         s.
-    joints : tuple of str, optional
     linear : tuple of bool, optional
         Whether each joint slides, so that polynomials state its positions in m; none by default.
-
-    Returns
-    -------
-    str
 
     Raises
     ------
@@ -186,19 +170,7 @@ def motion_text(
 
 
 def read_back(text: str, form: MotionForm, name: str) -> Motion:
-    """The motion that a reader makes of a written file: samples by quintic Hermite polynomials.
-
-    Parameters
-    ----------
-    text : str
-    form : MotionForm
-    name : str
-        The file, for messages.
-
-    Returns
-    -------
-    Motion
-    """
+    """The motion that a reader makes of a written file: samples by quintic Hermite polynomials."""
     if form is MotionForm.PPOLY:
         return motion_of_json(parse_json(text.encode(), name), name)
     if form is MotionForm.ROS:

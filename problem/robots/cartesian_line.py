@@ -25,7 +25,6 @@ class CartesianLine:
 
     Attributes
     ----------
-    chain : Chain
     waypoints : ndarray, shape (points, joints)
         rad (m where a joint slides); between them a curve leaves the line, see `deviation`.
     poses : ndarray, shape (points, 4, 4)
@@ -50,12 +49,6 @@ class CartesianLine:
         """Largest distance of the end from the line on a joint trajectory, m.
 
         Sampled, not proved: a picture of how many points the line needs, no verdict.
-
-        Parameters
-        ----------
-        trajectory : Trajectory
-            Through `waypoints`.
-        samples : int
         """
         t = np.linspace(0.0, trajectory.breaks[-1], samples)
         ends = forward_kinematics(self.chain, trajectory(t))[:, :3, 3]
@@ -88,7 +81,6 @@ def ctraj(
 
     Parameters
     ----------
-    chain : Chain
     first, last : array_like, shape (4, 4)
         Poses of the end in the base, m.
     points : int
@@ -99,10 +91,6 @@ def ctraj(
         Of the inverse kinematics' starts.
     largest_step : float
         Joint motion between neighbours above which the branch is taken to have changed, rad.
-
-    Returns
-    -------
-    CartesianLine
 
     Raises
     ------

@@ -37,7 +37,6 @@ class Chain:
 
     Parameters
     ----------
-    convention : Convention
     a, alpha, d : array_like, shape (joints,)
         Link lengths in m, twists in rad, offsets in m. In the modified convention row i holds
         a and α of the link before, as its tables print them.
@@ -49,7 +48,6 @@ class Chain:
         Bounds of the variables, rad or m; none by default.
     labels : sequence of str, optional
         Joint labels; "1", "2", ... by default.
-    name : str
 
     Raises
     ------
@@ -220,7 +218,6 @@ def link_frames(chain: Chain, q: ArrayLike) -> Array:
 
     Parameters
     ----------
-    chain : Chain
     q : array_like, shape (..., joints)
         Joint variables, rad (m where a joint slides).
 
@@ -242,7 +239,6 @@ def forward_kinematics(chain: Chain, q: ArrayLike) -> Array:
 
     Parameters
     ----------
-    chain : Chain
     q : array_like, shape (..., joints)
         Joint variables, rad (m where a joint slides); bounds are not looked at.
 
@@ -296,7 +292,6 @@ def geometric_jacobian(chain: Chain, q: ArrayLike) -> Array:
 
     Parameters
     ----------
-    chain : Chain
     q : array_like, shape (..., joints)
         Joint variables, rad (m where a joint slides).
 

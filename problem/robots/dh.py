@@ -50,13 +50,7 @@ class PiMultiple:
 
 
 def read_angle(raw: object) -> Printed | PiMultiple:
-    """Read a printed or exact number, or a multiple of π.
-
-    Raises
-    ------
-    TrajgapError
-        If it is neither.
-    """
+    """Read a printed or exact number, or a multiple of π."""
     if isinstance(raw, PiMultiple):
         return raw
     text = raw.strip().translate(_MINUS_SIGNS) if isinstance(raw, str) else ""
@@ -164,18 +158,12 @@ class DhTable(Strict):
 
         Parameters
         ----------
-        name : str
         labels : tuple of str
             Joint labels where the table has none.
         convention : Convention, optional
             Instead of the stated one.
         flipped : tuple of int
             Rows whose α is taken with the other sign.
-
-        Returns
-        -------
-        Chain
-            In rad and m.
         """
         signs = np.ones(len(self.d))
         signs[list(flipped)] = -1.0

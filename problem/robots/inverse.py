@@ -46,7 +46,6 @@ class IkSolution:
 
     Attributes
     ----------
-    status : IkStatus
     joints : ndarray, shape (joints,)
         Joint variables, rad (m where a joint slides), within the bounds; where nothing was
         solved, the values with the smallest residual.
@@ -93,7 +92,6 @@ def inverse_kinematics(
 
     Parameters
     ----------
-    chain : Chain
     target : array_like, shape (4, 4) or (3,)
         Pose or position of the end in the base, m.
     seed : int or numpy.random.Generator
@@ -111,10 +109,6 @@ def inverse_kinematics(
         Largest norm of the residual, m and rad.
     iterations : int
         Most steps per start.
-
-    Returns
-    -------
-    IkSolution
 
     Raises
     ------

@@ -51,7 +51,6 @@ def proximity(
 
     Parameters
     ----------
-    chain : Chain
     point : array_like, shape (3,)
         Position in the base, m.
     held : array_like, shape (joints,)
@@ -63,10 +62,6 @@ def proximity(
     tolerance : float, optional
         Wanted difference of the bounds, m; a ten-thousandth of the reach by default. With many
         free joints the search may stop before.
-
-    Returns
-    -------
-    Proximity
 
     Raises
     ------

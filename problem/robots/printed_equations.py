@@ -71,7 +71,6 @@ class EquationCheck:
 
     Attributes
     ----------
-    text : str
     share : float
         Share of the samples at which both sides agree, with either sign of "pm".
     largest : float
@@ -102,12 +101,6 @@ def check_equation(chain: Chain, text: str, samples: int = SAMPLES, seed: int = 
         rotation; ``T1`` the transform of a link, ``T`` that of the end; ``pi``; ``pm`` for ±.
         Between them ``+ - * / ** @``, and sqrt, sin, cos, tan, acos, atan2, inv. An angle that
         stands alone on the left is compared modulo whole turns.
-    samples : int
-    seed : int
-
-    Returns
-    -------
-    EquationCheck
 
     Raises
     ------

@@ -37,8 +37,6 @@ class Workspace:
 
     Attributes
     ----------
-    chain : Chain
-    seed : int
     joints : ndarray, shape (samples, joints)
         Uniform within `Chain.span`, rad (m where a joint slides).
     points : ndarray, shape (samples, 3)
@@ -86,15 +84,8 @@ def sample_workspace(chain: Chain, count: int, seed: int) -> Workspace:
 
     Parameters
     ----------
-    chain : Chain
-    count : int
-        Number of samples.
     seed : int
         Of a PCG64 generator; the first samples do not depend on ``count``.
-
-    Returns
-    -------
-    Workspace
 
     Raises
     ------
@@ -130,15 +121,12 @@ def waypoint_sequences(
 
     Parameters
     ----------
-    workspace : Workspace
     step : float
         rad or m, see `StepKind`.
     count : int
         Number of sequences; the first ones do not depend on it.
-    seed : int
     waypoints : int
         Way-points of each sequence, at least 2.
-    kind : StepKind
     orientation : bool
         With `StepKind.END`, take the sampled orientation too. Without it the orientation is left
         free, and a joint that does not move the end's position keeps its value.

@@ -66,16 +66,7 @@ def peaks(one, h):  # largest |velocity|, |acceleration|, |jerk| over their limi
 
 
 def plain_text(instance: BenchmarkInstance) -> str:
-    """An instance as TOML, in the unit of angle of its case file, every number exact.
-
-    Parameters
-    ----------
-    instance : BenchmarkInstance
-
-    Returns
-    -------
-    str
-    """
+    """An instance as TOML, in the unit of angle of its case file, every number exact."""
     file = files("trajgap.problem.suite.cases").joinpath(f"{instance.name}.toml")
     raw = tomllib.loads(file.read_text(encoding="utf-8"))
     # The suite holds declared piecewise polynomials alone.

@@ -48,15 +48,6 @@ def load_instance(name: str) -> BenchmarkInstance:
     ----------
     name : str
         With or without ``suite:`` before it.
-
-    Returns
-    -------
-    BenchmarkInstance
-
-    Raises
-    ------
-    TrajgapError
-        If the suite has no such instance.
     """
     wanted = name.removeprefix(SUITE_PREFIX)
     found = {one.name: one for one in list_instances()}

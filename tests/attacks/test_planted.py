@@ -17,7 +17,6 @@ import trajgap.problem
 from trajgap.compare.cli import app
 from trajgap.nlp.optimum import Status
 from trajgap.problem import Verdict
-from trajgap.problem.motions import HalfUnits
 
 from attacks import faults
 from attacks.attack import Broken
@@ -112,7 +111,8 @@ PLANTED: dict[tuple[str, str, int], dict[str, Any]] = {
         "trajgap.problem.check": peaks_are(lambda p: replace(p, value=0.999 * p.value))
     },
     ("verdicts on motions", "digits say nothing", 200): {
-        f"{MOTIONS}{reader}.rounding_of": lambda *_: HalfUnits() for reader in ("tables", "ros")
+        f"{MOTIONS}{reader}.half_units": lambda values, _: 0.0 * values[0]
+        for reader in ("tables", "ros")
     },
     ("readings", "sides are one size", 20): {
         "trajgap.problem.parse_case": read(lambda one: replace(one, limits=one.limits.hull))

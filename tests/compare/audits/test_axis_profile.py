@@ -54,22 +54,17 @@ def arrives(profile: AxisProfile, finish: AxisState) -> bool:
 
 @pytest.mark.parametrize("count", [2000, pytest.param(100_000, marks=pytest.mark.slow)])
 def test_s_curves_between_random_states_take_ruckigs_time(count: int) -> None:
-    """Starts from which a limit is exceeded on both sides have no profile here."""
     rng = np.random.default_rng(31)
     compared = 0
     for k in range(count):
         start, finish, sizes = drawn(rng, k)
         truth, found = by_ruckig(start, finish, sizes), shortest_s_curve(start, finish, sizes)
-        if truth is None:
-            assert found is None
-        elif found is not None:
+        assert (truth is None) == (found is None), (k, start, finish)
+        if found is not None:
             compared += 1
             assert found.total_time == pytest.approx(truth, rel=1e-7, abs=1e-7), (k, start, finish)
             assert arrives(found, finish)
-        else:
-            change = start.acceleration**2 / (2.0 * sizes.jerk)
-            assert abs(start.velocity) + change > sizes.velocity
-    assert compared > count // 3
+    assert compared > count // 2
 
 
 def test_trapezoids_take_ruckigs_time_and_reversed_swap_both_limits() -> None:
