@@ -54,13 +54,7 @@ class Phase(NamedTuple):
 
 @dataclass(frozen=True)
 class AxisProfile:
-    """A motion of one axis in phases of constant jerk.
-
-    Attributes
-    ----------
-    start : AxisState
-    phases : tuple of Phase
-    """
+    """A motion of one axis in phases of constant jerk."""
 
     start: AxisState
     phases: tuple[Phase, ...]
@@ -120,7 +114,6 @@ def shortest_trapezoid(start: AxisState, finish: AxisState, sizes: Sizes) -> Axi
 
     Parameters
     ----------
-    start, finish : AxisState
     sizes : Sizes
         A start above the velocity limit is braked into it first.
 
@@ -185,7 +178,6 @@ def shortest_s_curve(start: AxisState, finish: AxisState, sizes: Sizes) -> AxisP
 
     Parameters
     ----------
-    start, finish : AxisState
     sizes : Sizes
         Finite jerk. A start outside the limits of velocity or acceleration, or on the way out of
         them, is braked into them first.

@@ -38,11 +38,8 @@ def verdict_card(
 
     Parameters
     ----------
-    study : Study
-    judgements : iterable of Judgement
     causes : sequence of Cause
         The gravest first.
-    waterfalls : sequence of Waterfall
     runs : sequence of Reached
         Of the paper's algorithms, its own way of searching first.
 

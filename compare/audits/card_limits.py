@@ -46,7 +46,6 @@ def limits_line(study: Study, words: Mapping[str, Judgement]) -> tuple[str, set[
 
     Parameters
     ----------
-    study : Study
     words : mapping of str to Judgement
         Of each claim, by its id.
 

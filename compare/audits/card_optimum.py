@@ -59,16 +59,10 @@ def optimum_line(
 
     Parameters
     ----------
-    study : Study
-    waterfalls : sequence of Waterfall
     words : mapping of str to Judgement
         Of each claim, by its id.
     before : bool
         Whether the line before has said that way-points are in doubt.
-
-    Returns
-    -------
-    str
     """
     if not study.has_problems:
         return "No optimum can be computed."

@@ -48,7 +48,6 @@ def find_causes(
 
     Parameters
     ----------
-    study : Study
     findings : iterable of Finding
         With their final severities.
     explained : callable

@@ -63,7 +63,6 @@ class ChosenCase:
 
     Parameters
     ----------
-    case : Case
     seeds : int
         Seeds of each replay, 0 to seeds − 1.
     workers : int or None

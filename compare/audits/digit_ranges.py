@@ -35,14 +35,6 @@ class OptimumRange:
 def optimum_range(row: PrintedRow[Claim]) -> OptimumRange:
     """Bounds on the optimum of a claim's problem, whatever its digits stand for.
 
-    Parameters
-    ----------
-    row : PrintedRow
-
-    Returns
-    -------
-    OptimumRange
-
     Notes
     -----
     Upper: the durations found, stretched until they keep the tightest limits at every way-point of

@@ -36,8 +36,6 @@ def advise(
 
     Parameters
     ----------
-    study : Study
-    causes : sequence of Cause
     judgements : sequence of Judgement
         Of the same audit.
     edits : sequence of Edit

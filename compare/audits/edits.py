@@ -20,7 +20,6 @@ def edited(case: Case, edits: Iterable[Edit]) -> Case:
 
     Parameters
     ----------
-    case : Case
     edits : iterable of Edit
         Of one audit, all or some of them.
 

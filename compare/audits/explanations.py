@@ -205,7 +205,6 @@ def explained(
 
     Parameters
     ----------
-    study : Study
     groups : sequence of RuleGroup
         What judges a case with a change made.
     root : str
@@ -284,7 +283,6 @@ def _by_slips(trial: _Trial, under: str, default: bool) -> list[Explanation]:
 
     Parameters
     ----------
-    trial : _Trial
     under : str
         The reading, as the end of a sentence; empty where there is one alone.
     default : bool

@@ -51,13 +51,6 @@ def off_ratios(row: PrintedRow[Claim]) -> str | None:
     They are in the ratios that it fixes if some durations and ratios agree, of all whose digits
     were rounded or cut off to those printed.
 
-    Parameters
-    ----------
-    row : PrintedRow
-
-    Returns
-    -------
-    str or None
     """
     problem = row.study.problem(row.pair)
     if problem.shares is None or not row.study.case.printed_durations(row.claim):
@@ -84,15 +77,10 @@ def of_other_ratios(row: PrintedRow[Claim], shown: str, other: str) -> Finding:
 
     Parameters
     ----------
-    row : PrintedRow
     shown : str
         The printed total.
     other : str
         From `off_ratios`.
-
-    Returns
-    -------
-    Finding
     """
     return Finding(
         rule="TG302",

@@ -43,18 +43,12 @@ def judge(
 
     Parameters
     ----------
-    claim : str
-    findings : iterable of Finding
     admissible : sequence of str
         Every reading of the case.
     computed : sequence of str, optional
         The readings that were computed, of which the verdict speaks; all by default.
     named : Named, optional
         What the readings are called; by their ids if left out.
-
-    Returns
-    -------
-    Judgement
     """
     about = [f for f in findings if f.claim == claim]
     own = [f for f in about if f.decides]
@@ -112,7 +106,6 @@ def rested(case: Case, judgements: Iterable[Judgement]) -> tuple[Judgement, ...]
 
     Parameters
     ----------
-    case : Case
     judgements : iterable of Judgement
         One for each claim.
 
@@ -174,7 +167,6 @@ def weigh(
 
     Parameters
     ----------
-    findings : iterable of Finding
     judgements : iterable of Judgement
         Of the claims.
     admissible : sequence of str

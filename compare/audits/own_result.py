@@ -26,11 +26,6 @@ def own_results(case: Case, times: Sequence[_Time]) -> list[_Time]:
     where others name none, before all of them those that are said to keep the limits. Several
     joints or problems have a row each.
 
-    Parameters
-    ----------
-    case : Case
-    times : sequence of TimeClaim
-
     Returns
     -------
     list of TimeClaim

@@ -129,7 +129,6 @@ def by_blend_times(
         s.
     blends : RoundingBox, shape (way-points,)
         s.
-    ends : EndBlends
 
     Returns
     -------

@@ -20,10 +20,6 @@ def implausible(study: Study) -> dict[str, str]:
     A shortest motion just reaches a limit. A reading that leaves it a tenth of the limits, or ten
     times them, is admissible still: it is only named as what it is.
 
-    Parameters
-    ----------
-    study : Study
-
     Returns
     -------
     dict of str to str

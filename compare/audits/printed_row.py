@@ -50,7 +50,6 @@ class PrintedRow(Generic[C]):
 
     Attributes
     ----------
-    study : Study
     claim : Claim
         With durations or a total where a motion or a time is asked for.
     pair : Pair

@@ -65,11 +65,6 @@ class ProfileQuestion:
     def laws(self, profile: str, straight: bool) -> tuple[AxisProfile, ...] | None:
         """The motion of each segment: of the one joint, or of all on a straight line from 0 to 1.
 
-        Parameters
-        ----------
-        profile : str
-        straight : bool
-
         Returns
         -------
         tuple of AxisProfile or None
@@ -149,7 +144,6 @@ class ProfileMotion:
         ----------
         time : float
             s from the start.
-        joint : int
 
         Returns
         -------
@@ -201,7 +195,6 @@ class NumberRange:
 
     Attributes
     ----------
-    plain : float
     others : ndarray
         In order.
     """
@@ -278,10 +271,6 @@ def profiled_limits(row: PrintedRow[ProfiledClaim], digits: Digits) -> Array:
 def questions(row: PrintedRow[ProfiledClaim]) -> list[ProfileQuestion] | None:
     """The printed numbers first, then every combination of ends of what their digits leave.
 
-    Parameters
-    ----------
-    row : PrintedRow
-
     Returns
     -------
     list of ProfileQuestion or None
@@ -326,7 +315,6 @@ def motions(row: PrintedRow[ProfiledClaim], profile: str) -> list[ProfileMotion 
 
     Parameters
     ----------
-    row : PrintedRow
     profile : str
         A key of `SHORTEST`.
 

@@ -49,15 +49,10 @@ def readings_summary(
 
     Parameters
     ----------
-    study : Study
     waterfalls : iterable of Waterfall
         They name the printed answer of each problem.
     judgements : iterable of Judgement
         Of the claims, over all admissible readings.
-
-    Returns
-    -------
-    ReadingsSummary or None
     """
     admissible = tuple(reading.id for reading in study.case.readings)
     if len(admissible) < 2:

@@ -18,7 +18,6 @@ class Reworded(Study):
     ----------
     case : Case
         The original's, with other claims, readings or algorithms.
-    original : Study
     certify_seconds : float or None
         As in `Study`.
     """

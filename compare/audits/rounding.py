@@ -108,7 +108,6 @@ class RoundingVerdict:
 
     Attributes
     ----------
-    verdict : Rounding
     worst_at_print : float
         Largest ratio of a peak to its limit at the printed point; 0 if nothing is limited.
     exhibit : Point, Place or None
@@ -151,10 +150,6 @@ def judge_rounding(
     loose_ends : bool
         Whether derivatives at the ends are printed numbers. No proof covers what rounds to them,
         so that nothing is said to break then.
-
-    Returns
-    -------
-    RoundingVerdict
 
     Raises
     ------

@@ -75,17 +75,7 @@ def _answer(claim: AnyClaim) -> StatedAnswer | None:
 
 
 def other_objective(case: Case, claim: AnyClaim | TimeClaim) -> str | None:
-    """What was minimised for a printed time; None if that is time alone, or nothing else is said.
-
-    Parameters
-    ----------
-    case : Case
-    claim : AnyClaim
-
-    Returns
-    -------
-    str or None
-    """
+    """What was minimised for a printed time; None if it was time alone, or if nothing is said."""
     if not isinstance(claim, TimeClaim):
         return None
     said = claim.objective or case.document.objective
@@ -226,11 +216,6 @@ _STATEMENTS = {
 
 def sentence_of(case: Case, claim: AnyClaim) -> str:
     """One sentence for a claim, from what it prints.
-
-    Parameters
-    ----------
-    case : Case
-    claim : AnyClaim
 
     Returns
     -------

@@ -17,10 +17,6 @@ from .stated import own_total, place, printed_total, prints_durations
 def other_totals(row: PrintedRow[Claim]) -> list[TotalTimeClaim]:
     """Totals that other claims state of a row and that no value of its own digits rounds to.
 
-    Parameters
-    ----------
-    row : PrintedRow
-
     Returns
     -------
     list of TotalTimeClaim

@@ -42,11 +42,6 @@ def readings_of(study: ChosenCase, block: InstancesBlock) -> tuple[str, ...]:
 def printed_reduction(study: ChosenCase, block: InstancesBlock) -> tuple[float, float] | None:
     """Smallest and largest reduction that the printed digits allow, as shares of the slower total.
 
-    Parameters
-    ----------
-    study : ChosenCase
-    block : InstancesBlock
-
     Returns
     -------
     tuple of float or None
@@ -95,13 +90,8 @@ def examined(study: ChosenCase, block: InstancesBlock) -> InstancesResult:
 
     Parameters
     ----------
-    study : ChosenCase
     block : InstancesBlock
         For which `readings_of` names some reading.
-
-    Returns
-    -------
-    InstancesResult
 
     Raises
     ------

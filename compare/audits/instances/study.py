@@ -47,7 +47,6 @@ def examine(
 
     Parameters
     ----------
-    tasks : iterable of Task
     workers : int
         Processes; the same bits for any number of them.
     progress : callable, optional

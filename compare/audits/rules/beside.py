@@ -68,7 +68,6 @@ class Beside:
 
     Attributes
     ----------
-    printed : Printed
     rounded, wide : tuple of float
         Ends of what the digits stand for, if they were rounded, and if they may be cut off.
     exact : float
@@ -209,7 +208,6 @@ def nearest_number(
 
     Parameters
     ----------
-    printed : Printed
     unit : str
         Of the paper, as a sentence writes it.
     joint : str or None
@@ -222,10 +220,6 @@ def nearest_number(
         Of durations, shape (segments,), and of way-points, shape (way-points, joints).
     spread : float
         Further change that rounding allows, in the unit of the paper.
-
-    Returns
-    -------
-    Beside
     """
     durations, waypoints = boxes
     at_print = meant(waypoints.value, durations.value)
@@ -299,7 +293,6 @@ class Look(NamedTuple):
 
     Attributes
     ----------
-    value : float
     down, up : ndarray
         What it would change by if one printed number went to the lower or the upper end of its
         range while the others stay, the durations first, then the way-points row by row; not a

@@ -55,10 +55,6 @@ width holds."""
 def reading_clues(study: Study) -> tuple[ReadingClue, ...]:
     """Every clue of a case under every reading with a problem.
 
-    Parameters
-    ----------
-    study : Study
-
     Returns
     -------
     tuple of ReadingClue
@@ -203,16 +199,7 @@ def _statement(study: Study, reading: str) -> Statement:
 
 
 def held_otherwise(row: PrintedRow[AnyClaim]) -> HeldOtherwise | Why:
-    """The largest ratio to a limit if the limits were held otherwise than for all t.
-
-    Parameters
-    ----------
-    row : PrintedRow
-
-    Returns
-    -------
-    HeldOtherwise or Why
-    """
+    """The largest ratio to a limit if the limits were held otherwise than for all t."""
     worst = row.check.worst
     if worst is None or worst.quantity in ("curve", "duration"):
         return Why("the printed durations define no motion whose limits are held")

@@ -125,13 +125,8 @@ def meets(degree: int, start: Sequence[int], end: Sequence[int]) -> bool:
 
     Parameters
     ----------
-    degree : int
     start, end : sequence of int
         Orders of the derivatives that vanish at 0 and at 1.
-
-    Returns
-    -------
-    bool
     """
     rows = [[_slope(power, 0, 0) for power in range(degree + 1)] + [Fraction(0)]]
     rows.append([_slope(power, 0, 1) for power in range(degree + 1)] + [Fraction(1)])

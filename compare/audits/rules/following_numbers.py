@@ -69,11 +69,6 @@ def _plain(claim: AnyClaim) -> Printed | None:
 def recomputed(study: Study, claim: AnyClaim) -> dict[str, tuple[str, ...]]:
     """Numbers of a claim as they follow from what the claims print that it rests on.
 
-    Parameters
-    ----------
-    study : Study
-    claim : AnyClaim
-
     Returns
     -------
     dict of str to tuple of str

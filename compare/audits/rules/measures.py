@@ -57,7 +57,6 @@ def measured(trajectory: Trajectory, order: int, measure: str) -> MotionMeasure:
 
     Parameters
     ----------
-    trajectory : Trajectory
     order : int
         1 for velocity, 2 for acceleration, 3 for jerk.
     measure : str

@@ -47,7 +47,6 @@ class MotionNumbers(Generic[_Value]):
 
     Attributes
     ----------
-    rule : str
     kind : type
         The claims that print such numbers.
     beside : callable

@@ -57,7 +57,6 @@ def farthest(row: PrintedRow[AnyClaim], top: Extremum, alone: bool, share: float
 
     Parameters
     ----------
-    row : PrintedRow
     top : Extremum
         The peak at the printed numbers.
     alone : bool
@@ -109,7 +108,6 @@ def beside(
 
     Parameters
     ----------
-    row : PrintedRow
     claim : PeakClaim
         Says which derivative.
     printed : Printed
@@ -201,13 +199,8 @@ def largest_norm(row: PrintedRow[Claim], order: int) -> Norm:
 
     Parameters
     ----------
-    row : PrintedRow
     order : int
         1 for velocity, 2 for acceleration, 3 for jerk.
-
-    Returns
-    -------
-    Norm
     """
     motion = row.motion
     top, piece, s = max(_norm_top(motion, k, order) for k in range(len(motion.durations)))

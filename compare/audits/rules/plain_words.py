@@ -18,7 +18,6 @@ class Explained:
         What the rule compares, and how.
     concludes : str
         What it may say of a claim, and what it never says.
-    example : str
     """
 
     asks: str

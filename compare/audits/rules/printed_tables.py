@@ -47,17 +47,7 @@ def _alike(case: Case) -> Iterator[tuple[Table, Table]]:
 
 
 def doubted(study: Study, claims: Iterable[AnyClaim]) -> tuple[str, ...]:
-    """Roots of the tables alike that print one of the claims.
-
-    Parameters
-    ----------
-    study : Study
-    claims : iterable of AnyClaim
-
-    Returns
-    -------
-    tuple of str
-    """
+    """Roots of the tables alike that print one of the claims."""
     tables = {claim.table for claim in claims} - {None}
     return tuple(
         f"{TABLES} {first.id} {second.id}"
@@ -67,17 +57,7 @@ def doubted(study: Study, claims: Iterable[AnyClaim]) -> tuple[str, ...]:
 
 
 def contradicted(study: Study, claims: Iterable[AnyClaim]) -> bool:
-    """Whether a table that prints one of the claims equals another that is said to differ.
-
-    Parameters
-    ----------
-    study : Study
-    claims : iterable of AnyClaim
-
-    Returns
-    -------
-    bool
-    """
+    """Whether a table that prints one of the claims equals another that is said to differ."""
     tables = {claim.table for claim in claims} - {None}
     return any(
         tables & {first.id, second.id} and _apart(study.case, first, second)
@@ -246,7 +226,6 @@ def total_allowed(study: Study, claim: AnyClaim) -> Interval:
 
     Parameters
     ----------
-    study : Study
     claim : AnyClaim
         States a total, or durations.
 

@@ -21,10 +21,8 @@ class Vertex:
 
     Attributes
     ----------
-    joint : str
     index : int
         From 0, as the paper counts.
-    printed : Printed
     allowed : Interval
         Of the vertex on the uniform cubic B-spline, for every way-point that rounds to its digits.
     allowed_cut : Interval
