@@ -278,7 +278,7 @@ def audit_case(study: Study) -> CaseAudit:
     """
     groups = [group for group in GROUPS if study.has_problems or group.without_waypoints]
     found = [finding for group in groups for finding in _judged(group.judge, study)]
-    found = [f for at, f in enumerate(found) if f.rule != NOT_COMPUTED.id or f not in found[:at]]
+    found = [f for at, f in enumerate(found) if f.rule != NOT_COMPUTED or f not in found[:at]]
     scoped = _with_scopes(found, study)
     by_rule = sorted(scoped, key=_weight)
     admissible = [reading.id for reading in study.case.readings]
@@ -309,7 +309,7 @@ def _judged(group: _Group, study: Study) -> Iterator[Finding]:
         claims = [(one, _alone(group, study, one)) for one in study.claims]
         for _, found in claims:
             yield from found
-        if not any(f.rule == NOT_COMPUTED.id for _, found in claims for f in found):
+        if not any(f.rule == NOT_COMPUTED for _, found in claims for f in found):
             yield _not_computed(error)
 
 
@@ -335,7 +335,7 @@ def _under(group: _Group, row: PrintedRow[AnyClaim]) -> Iterator[Finding]:
 
 def _not_computed(error: TrajgapError, row: PrintedRow[AnyClaim] | None = None) -> Finding:
     return Finding(
-        rule=NOT_COMPUTED.id,
+        rule=NOT_COMPUTED,
         basis=Basis.CHECK,
         claim=None if row is None else row.claim.id,
         problem=None if row is None else row.problem,

@@ -5,10 +5,9 @@ from .kept_limits import meant_to_keep, said_to_keep
 from .linear_blends import blended, judge_row
 from .on_instances import HANDLED, attributed, placed
 from .peaks import box_reach, largest
-from .plain_words import EXPLAINED, Explained
 from .printed_vertices import Vertex, has_vertices, vertices
-from .registry import GROUPS, NOT_COMPUTED, RULES
-from .rule_group import RuleGroup
+from .registry import EXPLAINED, GROUPS, NOT_COMPUTED, RULES
+from .rule_group import Explained, RuleGroup
 
 __all__ = [
     "EXPLAINED",

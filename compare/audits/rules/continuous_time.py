@@ -24,6 +24,7 @@ from .judged_rows import JudgedRow, broken, judged_row, ratio_at_print
 from .kept_limits import UNSAID, meant_to_keep, said_of, said_to_keep
 from .linear_blends import BLENDS, blended, judge_row
 from .peaks import JUMPING, box_reach, jump_size, jump_unit, largest, largest_of_each_kind
+from .rule_group import INFORMS, Explained, rule_group
 
 _ELSEWHERE = "elsewhere"
 """Kind of what is said of durations that are not of the problem's curve."""
@@ -31,6 +32,40 @@ _NARROW = 0.01
 """Share of a limit above which rounding blurs a peak too much to call the limit reached."""
 
 
+@rule_group(
+    TG201=Explained(
+        "Printed durations keep the limits for all t, over the rounding box",
+        "Do the printed durations keep the printed limits at every instant? The motion is "
+        "built again from the printed durations and way-points, and its extrema are exact.",
+        "Supported if the limits are kept by the printed numbers, or by some values that "
+        "round to them. Refuted only if a limit is broken however the digits were rounded, and "
+        "however they were cut off.",
+        "A velocity of 2.0004 rad/s against a limit of 2 rad/s is no fault if durations "
+        "printed with two decimals explain it; 2.6 rad/s is one.",
+    ),
+    TG202=Explained(
+        "Position, velocity and acceleration are continuous",
+        "Are position, velocity and acceleration continuous, as the paper says?",
+        "Supported if the motion built from the printed numbers is continuous under the "
+        "reading, inconsistent if it jumps. Limits are judged apart from jumps.",
+        "Cubic segments that are stretched one by one have equal slopes only if equal "
+        "durations follow each other; else the velocity jumps at the via-points.",
+    ),
+    TG204=Explained(
+        "The limits are used up by the printed durations",
+        "Which limits do the printed durations use up? The shortest motion reaches at least one.",
+        INFORMS + " A motion that reaches no limit could be shorter.",
+        "The largest velocity is 62 % of its limit and the largest acceleration 71 %: all "
+        "durations could be shortened alike.",
+    ),
+    TG206=Explained(
+        "Acceleration jumps where it is said to",
+        "Does the acceleration jump where the paper says that a method makes it jump?",
+        "Supported if it does. A reading under which it does not speaks against that reading.",
+        "“The acceleration of the 3-5-3 curve changes suddenly at the via-points” is set "
+        "beside the accelerations on both sides of each via-point.",
+    ),
+)
 def judge_motions(study: Study) -> Iterator[Finding]:
     """Findings of TG201, TG202, TG204 and TG206."""
     for claim in study.claims:
@@ -46,6 +81,7 @@ def judge_motions(study: Study) -> Iterator[Finding]:
             yield from _said_to_jump(study, claim)
 
 
+@rule_group()  # it finds what TG201 finds
 def judge_bare_totals(study: Study) -> Iterator[Finding]:
     """Refute totals that no motion within the limits takes, and that a statement says one does."""
     for claim in study.claims:

@@ -47,6 +47,7 @@ from ..stated import called, called_under, other_objective
 from ..stated_totals import contradicting_lows, is_sum, rounded_up_low, total_excludes, what_agrees
 from ..study import Study
 from .judged_rows import broken
+from .rule_group import INFORMS, Explained, rule_group
 
 _BELOW = "All of it is below the best known total: a misprint or a better optimum may explain it."
 """What is said of a printed total below a best known one."""
@@ -57,6 +58,24 @@ _BELOW_BOUND = (
 """What is said of a printed total below a proved bound."""
 
 
+@rule_group(
+    TG302=Explained(
+        "A printed total beside the optimum of its own formulation",
+        "How far is a printed total from the optimum of the paper's own problem: its curve, "
+        "its way-points, its limits?",
+        "A distance alone supports and refutes nothing. “Optimal” is refuted by a shorter "
+        "motion that keeps the limits however the digits were rounded.",
+        "3.172 s is printed for joint 3, whose proven optimum is 3.126 s: 1.5 % above it.",
+    ),
+    TG303=Explained(
+        "A printed total beside the optimum with shared durations",
+        "The same distance where all joints pass each way-point together, though the paper "
+        "times each joint by itself.",
+        INFORMS,
+        "Each joint is optimised by itself, and each segment then takes the longest of their "
+        "durations: 3.53 s. Optimised together, the joints need 3.30 s.",
+    ),
+)
 def judge_distances(study: Study) -> Iterator[Finding]:
     """Findings of TG302 and TG303."""
     for claim in study.claims:

@@ -16,6 +16,7 @@ from ..printed_row import PrintedRow
 from ..rounding import RoundingBox
 from ..study import Study
 from .kept_limits import UNSAID, meant_to_keep, said_of
+from .rule_group import Explained, rule_group
 
 BLENDS = "blends"
 """Root of what follows from a row that breaks a limit."""
@@ -33,6 +34,18 @@ class _Found:
     worst: str
 
 
+@rule_group(
+    TG210=Explained(
+        "Linear segments with parabolic blends keep the limits",
+        "Do linear segments with parabolic blends keep the limits with the printed durations and "
+        "blends?",
+        "Refuted if a speed or an acceleration exceeds its limit, or blends overlap, however the "
+        "digits were rounded and wherever the end blends lie. No optimum stands "
+        "beside such a motion: it does not pass its via-points.",
+        "Durations of 2, 1 and 3 s and blends of 0.4 s turn joint 1 from 12.5 to -10 °/s at the "
+        "first via-point, which takes 56 °/s². The limit is 50 °/s².",
+    ),
+)
 def judge_blends(study: Study) -> Iterator[Finding]:
     """Findings of TG210."""
     for claim in study.claims:

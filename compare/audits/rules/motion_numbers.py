@@ -23,6 +23,7 @@ from ..study import Study
 from .beside import Beside
 from .measures import measure_beside, measure_described
 from .peaks import beside, peak_described
+from .rule_group import Explained, rule_group
 from .values import value_beside, value_described
 
 _Value = TypeVar("_Value", PeakClaim, MeasureClaim, ValueClaim)
@@ -118,27 +119,63 @@ def _word(one: Beside) -> str:
     return str(one.kind) if one.linear is not None else "fits" if one.fits else "off"
 
 
-judge_peaks = MotionNumbers(
-    "TG203",
-    PeakClaim,
-    beside,
-    peak_described,
-    "No durations are printed whose motion could have this peak.",
-).judge
+judge_peaks = rule_group(
+    TG203=Explained(
+        "Printed peaks are those of the printed durations",
+        "Is a printed peak that of the motion it describes?",
+        "Supported within rounding, with digits cut off, or slightly below, as sampling gives "
+        "it; one number for all joints may be the largest of them or their largest norm. "
+        "Inconsistent if none of these explains it. A factor between two units is named.",
+        "The exact peak is 21.351 rad/s². Printed 21.35 is rounding, 21.34 is sampling, and "
+        "1223 is the same number in degrees.",
+    ),
+)(
+    MotionNumbers(
+        "TG203",
+        PeakClaim,
+        beside,
+        peak_described,
+        "No durations are printed whose motion could have this peak.",
+    ).judge
+)
 """Findings of TG203."""
-judge_measures = MotionNumbers(
-    "TG208",
-    MeasureClaim,
-    measure_beside,
-    measure_described,
-    "Without durations, this cannot be computed.",
-).judge
+judge_measures = rule_group(
+    TG208=Explained(
+        "Printed means and integrals are those of the printed durations",
+        "Is a printed mean, root mean square or integral of velocity, acceleration or jerk that of "
+        "the motion it describes?",
+        "Supported within rounding, with digits cut off, or as 50 samples or more give it; one "
+        "number for all joints may be of their norm, of the largest joint, or their mean. "
+        "Inconsistent if none of these explains it.",
+        "The root mean square of jerk is 5.1920 rad/s³, and 1000 samples give the printed 5.1908.",
+    ),
+)(
+    MotionNumbers(
+        "TG208",
+        MeasureClaim,
+        measure_beside,
+        measure_described,
+        "Without durations, this cannot be computed.",
+    ).judge
+)
 """Findings of TG208."""
-judge_values = MotionNumbers(
-    "TG211",
-    ValueClaim,
-    value_beside,
-    value_described,
-    "Without durations, this cannot be computed.",
-).judge
+judge_values = rule_group(
+    TG211=Explained(
+        "Printed values at one place are those of the printed durations",
+        "Is a printed position or derivative at a way-point, at an instant or at its largest that "
+        "of the printed durations?",
+        "Inconsistent if it differs by more than the printed digits allow. Where a derivative "
+        "jumps, either side may be meant; of a largest or smallest value, samples too.",
+        "At the second way-point a table prints -175.7 °/s. The spline through the way-points in "
+        "the printed times passes it at -175.71 °/s.",
+    ),
+)(
+    MotionNumbers(
+        "TG211",
+        ValueClaim,
+        value_beside,
+        value_described,
+        "Without durations, this cannot be computed.",
+    ).judge
+)
 """Findings of TG211."""

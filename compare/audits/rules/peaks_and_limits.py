@@ -12,11 +12,22 @@ from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..printed_row import PrintedRow, printed_rows
 from ..stated import place
 from ..study import Study
+from .rule_group import Explained, rule_group
 
 _ROUNDING = 1.0 + 1e-9
 """Factor by which a peak exceeds its limit at least: far above the rounding of units to floats."""
 
 
+@rule_group(
+    TG209=Explained(
+        "Printed peaks lie within the limits that they keep",
+        "Does a printed peak lie above the limit that its motion is said to keep?",
+        "Inconsistent if no value that the digits of peak and limit stand for, rounded, raised or "
+        "cut off, lies within. A number for several joints at once may be a norm and is left out.",
+        "A table prints 3.665 rad/s² for the acceleration of joint 2, another the limit 3.6, and "
+        "the abstract says that no limit is exceeded.",
+    ),
+)
 def judge_peak_limits(study: Study) -> Iterator[Finding]:
     """Findings of TG209."""
     for claim in study.claims:

@@ -15,6 +15,7 @@ from ...documents import Basis, ClaimVerdict, Finding, Severity, ranged
 from ..roots import SUM
 from ..rounding import hull
 from ..study import Study
+from .rule_group import ON_DIGITS, Explained, rule_group
 
 _FEWEST = 4
 """Numbers that a table needs before two tables alike are worth a word."""
@@ -22,6 +23,42 @@ _SIGNIFICANT = 4
 """Digits that a number needs before its repetition is worth a word."""
 
 
+@rule_group(
+    TG101=Explained(
+        "A printed total is the sum of its printed parts",
+        "Do the printed durations of the segments add up to the printed total? Every printed "
+        "number is taken as rounded to its digits.",
+        "Supported if some values that round to the digits add up; refuted, with severity error, "
+        "if none do. " + ON_DIGITS,
+        "The durations 1.20, 0.85 and 1.10 s add up to between 3.135 and 3.165 s. A printed "
+        "total of 3.15 s is supported, 3.51 s is refuted, and the report says that two "
+        "exchanged digits would explain it.",
+    ),
+    TG102=Explained(
+        "Printed longest durations are the longest of the printed rows",
+        "Where the joints share the longest duration of each segment, are these printed "
+        "durations the longest in the rows of the joints?",
+        "Supported if they are, refuted if they are not, with each segment that differs.",
+        "Joint 1 prints 0.90 and 1.30 s, joint 2 prints 1.10 and 1.20 s. The longest are 1.10 "
+        "and 1.30 s; 1.10 and 1.20 s would be refuted.",
+    ),
+    TG106=Explained(
+        "Unrelated columns do not repeat each other's digits",
+        "Do way-points repeat the digits of a column of another kind, such as lengths of links?",
+        "A warning: the digits alone do not tell which column, if either, is wrong. No "
+        "claim is judged by it.",
+        "Three of four angles of joint 2 print the digits of the link offsets: 0.4318, "
+        "0.1501, 0.4331.",
+    ),
+    TG109=Explained(
+        "As many durations are printed as there are segments",
+        "Are as many durations printed as the curve has segments?",
+        "A warning if not: no motion can be built from them. A slip in the case file looks "
+        "the same, so that is to be ruled out first.",
+        "Five way-points make four segments, and the table prints three durations.",
+    ),
+    without_waypoints=True,
+)
 def judge_digits(study: Study) -> Iterator[Finding]:
     """Findings of TG101, TG102, TG106 and TG109."""
     yield from _sums(study)

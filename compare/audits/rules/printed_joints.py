@@ -11,8 +11,31 @@ from ....problem import Printed
 from ....problem.cases import Cartesian, Statement, StatementClaim
 from ...documents import Basis, ClaimVerdict, Finding
 from ..study import Study
+from .rule_group import Explained, rule_group
 
 
+@rule_group(
+    TG110=Explained(
+        "A joint that is said to vary most does, among the printed joints",
+        "Does a joint go through the range that the text speaks of? Its largest and smallest "
+        "printed angles are set beside those of the other printed joints.",
+        "Where the joint is said to vary most: supported if all joints are printed and no range "
+        "is larger; inconsistent, with a warning, if one is larger however the digits were "
+        "rounded. Where it is only said to vary much, nothing is decided: no text "
+        "says how much that is.",
+        "Joint 3 is said to vary most. Its printed angles lie within 0.6 rad, those of joint 1 "
+        "within 4.6 rad.",
+    ),
+    TG602=Explained(
+        "A position that is said to lie above another does",
+        "Does a position that is said to lie above another do so?",
+        "Supported if the two agree in the plane within rounding and the first is higher. "
+        "Otherwise not checkable, with both distances: signs are easily lost in print and in "
+        "extracted text.",
+        "“Above the table” stands 0.30 m beside the table; with another sign of y it would be 0 m.",
+    ),
+    without_waypoints=True,
+)
 def judge_joints(study: Study) -> Iterator[Finding]:
     """Findings of TG110 and TG602."""
     for claim in study.claims:

@@ -22,6 +22,7 @@ from ..rounding import hull
 from ..stated import printed_total
 from ..study import Study
 from .printed_digits import end_blends, meet
+from .rule_group import Explained, rule_group
 
 _Timed = DurationsClaim | MaximumClaim | TotalTimeClaim
 """Claims that state a total, or durations of which it is the sum."""
@@ -29,6 +30,26 @@ _FEWEST = 4
 """Numbers that a table needs before two tables alike are worth a word."""
 
 
+@rule_group(
+    TG104=Explained(
+        "Tables under different names print different digits",
+        "Do two tables of different algorithms print the same numbers, digit by digit?",
+        "Inconsistent, with severity error, if something else in the paper says that the two "
+        "results differ; otherwise information. Two algorithms that both find the optimum "
+        "print the same, and the report says so where that explains it.",
+        "Table 2 (standard algorithm) and Table 3 (improved algorithm) agree in all 28 "
+        "numbers, yet the abstract says that the improved one is 10 % faster.",
+    ),
+    TG105=Explained(
+        "Two places that print the same total agree",
+        "Where one total is printed in two places, do the two agree?",
+        "Inconsistent if no value rounds to both; neither place is taken to be the right one. "
+        "Totals that the file keeps apart, by method, curve, table or improvement, are not "
+        "compared.",
+        "The abstract prints 3.9 s and the table 3.52 s for the same motion.",
+    ),
+    without_waypoints=True,
+)
 def judge_tables(study: Study) -> Iterator[Finding]:
     """Findings of TG104 and TG105."""
     yield from _tables_alike(study)

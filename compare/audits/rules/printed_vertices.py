@@ -13,6 +13,7 @@ from ...documents import Basis, ClaimVerdict, Finding, Severity, ranged
 from ..rounding import hull
 from ..study import Study
 from .printed_digits import meet
+from .rule_group import Explained, rule_group
 
 
 @dataclass(frozen=True)
@@ -51,6 +52,16 @@ class Vertex:
         return meet(hull(self.printed), self.allowed_cut)
 
 
+@rule_group(
+    TG205=Explained(
+        "Printed control vertices follow from the printed way-points",
+        "Do printed control vertices follow from the printed way-points?",
+        "Supported if each lies within what the rounding of the way-points allows, else refuted; "
+        "not checkable on another curve than the uniform cubic B-spline.",
+        "The vertex computed from the way-points lies between 0.4317 and 0.4319; 0.4318 is "
+        "supported and 0.4381 refuted.",
+    ),
+)
 def judge_vertices(study: Study) -> Iterator[Finding]:
     """Set every printed control vertex beside the way-points of its problem.
 

@@ -37,6 +37,7 @@ from ..profile_motions import (
 from ..rest_profile import PROFILES, shortest, shortest_straight
 from ..stated import place_of_value
 from ..study import Study
+from .rule_group import Explained, rule_group
 
 _SLACK = 1e-12
 """Relative margin that outweighs the few roundings of a closed form in floats."""
@@ -88,6 +89,17 @@ class _Asked:
         return profile_called([self.profile])
 
 
+@rule_group(
+    TG304=Explained(
+        "What is printed of a profile beside the profile that the limits allow",
+        "Is the printed total of a trapezoidal, S-curve or other profile the shortest that the "
+        "limits allow between the states at its ends? Are phases, peaks and values its own?",
+        "Supported within rounding, else inconsistent: the paper may have meant another profile. "
+        "Not checkable where the shortest total jumps within the rounding, and for several joints "
+        "between moving ends.",
+        "140° within 150 °/s, 70 °/s² and 70 °/s³ take 4 s with a jerk that is constant in phases.",
+    ),
+)
 def judge_profiles(study: Study) -> Iterator[Finding]:
     """Findings of TG304."""
     for claim in study.claims:

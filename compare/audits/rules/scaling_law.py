@@ -15,8 +15,21 @@ from ..printed_row import rows_under
 from ..roots import OPTIMAL
 from ..stated import called_under, other_objective
 from ..study import Study
+from .rule_group import Explained, rule_group
 
 
+@rule_group(
+    TG301=Explained(
+        "Totals of one path under two velocity limits obey the scaling law",
+        "One path is timed under two velocity limits, and nothing else is limited. Then "
+        "the shortest time multiplied by the limit is constant, with no solver needed. Do the two "
+        "printed totals obey that?",
+        "Where both are called optimal and one is longer than the law allows, refuted. The "
+        "rounding of way-points, limits and durations is allowed for.",
+        "At 80 °/s the total is 1.87 s. At 110 °/s the same motion, run faster, takes 1.36 s. "
+        "A printed optimum of 1.60 s at 110 °/s is not the shortest.",
+    ),
+)
 def judge_scaling(study: Study) -> Iterator[Finding]:
     """Stretch one claim's durations to another's limits: a feasible total the other can meet."""
     claims = [c for c in study.claims if isinstance(c, DurationsClaim | MaximumClaim)]
