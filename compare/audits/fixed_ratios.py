@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from ...nlp import Evidence
@@ -13,14 +11,11 @@ from ..documents import Basis, Finding
 from .printed_row import PrintedRow
 from .rounding import RoundingBox
 
-if TYPE_CHECKING:
-    pass
-
 BELOW_AT_RATIOS = (
     "The whole printed interval lies below it: other ratios of the durations, other limits, "
     "another reading or other digits explain that."
 )
-"""What is said of a printed total below the shortest one at fixed ratios: it accuses nobody."""
+"""What is said of a printed total below the shortest one at fixed ratios; it is no accusation."""
 _SLACK = 1e-9
 """Relative difference of two totals that rounding of float64 explains, with room to spare."""
 
@@ -109,11 +104,7 @@ def _ratio_box(row: PrintedRow[Claim]) -> tuple[Array, Array]:
     if given == "equal":
         assert problem.shares is not None
         return problem.shares, problem.shares
-    points = row.waypoint_box(problem).or_cut_off()
-    step_low = points.lower[1:] - points.upper[:-1]
-    step_high = points.upper[1:] - points.lower[:-1]
-    near = np.maximum(np.maximum(step_low, -step_high), 0.0)
-    far = np.maximum(np.abs(step_low), np.abs(step_high))
+    near, far = row.waypoint_box(problem).or_cut_off().steps
     return np.hypot.reduce(near, axis=1), np.hypot.reduce(far, axis=1)
 
 

@@ -12,21 +12,10 @@ import numpy as np
 
 from ...problem import Array, CaseError, Printed, Quantity
 from ...problem.cases import Digits, ProfiledClaim, end, end_states
-from .axis_profile import AxisProfile, AxisState, Sizes, shortest_s_curve, shortest_trapezoid
-from .double_s import double_s
+from .axis_profile import AxisProfile, AxisState, Sizes
+from .named_profiles import SHORTEST
 from .printed_row import PrintedRow
 
-SHORTEST: dict[str, Callable[[AxisState, AxisState, Sizes], AxisProfile | None]] = {
-    "trapezoidal": shortest_trapezoid,
-    "s-curve": shortest_s_curve,
-    "biagiotti-melchiorri": double_s,
-}
-"""The motion of one axis between two states by the name of its profile."""
-NOT_SHORTEST = {
-    "biagiotti-melchiorri": "{} of Biagiotti and Melchiorri's algorithm",
-    "fourth-order": "fourth-order {}",
-}
-"""Profiles than which a motion within the same limits may be shorter, as sentences call them."""
 _MOST_OPEN = 10
 """Printed numbers whose both ends are combined: 1024 profiles take a few seconds."""
 _AWAY = 1e-12
@@ -35,14 +24,6 @@ exact number, rounding alone must not choose the side."""
 _JUMP = 0.01
 """Share of the shortest total by which totals of one rounding box must differ to be called a jump:
 ordinary digits change them by far less."""
-
-
-def profile_called(profiles: Sequence[str], noun: str = "profile") -> str:
-    """What a sentence calls some profiles, after "the"; the noun may be plural."""
-    shortest = [one for one in profiles if one not in NOT_SHORTEST]
-    said = [f"shortest {' or '.join(shortest)} {noun}"] if shortest else []
-    others = [NOT_SHORTEST[one].format(noun) for one in profiles if one in NOT_SHORTEST]
-    return " or ".join(said + others)
 
 
 @dataclass(frozen=True)

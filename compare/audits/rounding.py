@@ -93,6 +93,13 @@ class RoundingBox:
         upper = np.where(self.value < 0, self.upper, self.value + up * _CUT_SLACK)
         return RoundingBox(self.value, np.minimum(lower, self.lower), np.maximum(upper, self.upper))
 
+    @property
+    def steps(self) -> tuple[Array, Array]:
+        """Least and largest size of each step from one row to the next."""
+        low, high = self.lower[1:] - self.upper[:-1], self.upper[1:] - self.lower[:-1]
+        near = np.maximum(np.maximum(low, -high), 0.0)
+        return near, np.maximum(np.abs(low), np.abs(high))
+
 
 @dataclass(frozen=True, eq=False)
 class Point:

@@ -90,10 +90,7 @@ def _least_durations(problem: Problem, waypoints: RoundingBox) -> Array:
     breaks = problem.curve.waypoint_breaks
     most = problem.limits.widest[:, 0]
     speed = np.where(most > 0.0, most, np.inf)
-    for w in range(len(breaks) - 1):
-        if breaks[w + 1] - breaks[w] != 1:
-            continue
-        up = waypoints.lower[w + 1] - waypoints.upper[w]
-        down = waypoints.lower[w] - waypoints.upper[w + 1]
-        least[breaks[w]] = float((np.maximum(np.maximum(up, down), 0.0) / speed).max())
+    for w, ways in enumerate(waypoints.steps[0]):
+        if breaks[w + 1] - breaks[w] == 1:
+            least[breaks[w]] = float((ways / speed).max())
     return least

@@ -24,17 +24,9 @@ from ....problem.cases import (
     profile_of,
 )
 from ...documents import Basis, ClaimVerdict, Finding
+from ..named_profiles import NOT_SHORTEST, RESTING, SHORTEST, profile_called, resting_total
 from ..printed_row import PrintedRow
-from ..profile_motions import (
-    NOT_SHORTEST,
-    SHORTEST,
-    NumberRange,
-    ProfileMotion,
-    motions,
-    profile_called,
-    profiled_limits,
-)
-from ..rest_profile import PROFILES, shortest, shortest_straight
+from ..profile_motions import NumberRange, ProfileMotion, motions, profiled_limits
 from ..stated import place_of_value
 from ..study import Study
 from .rule_group import Explained, rule_group
@@ -149,14 +141,14 @@ def _not_computed(asked: _Asked) -> str | None:
             "The case file gives derivatives other than 0 at the ends of the motion; the "
             f"{profile} profile is computed {which} only."
         )
-    total = isinstance(asked.claim, TotalTimeClaim) and profile in PROFILES
+    total = isinstance(asked.claim, TotalTimeClaim) and profile in RESTING
     if total and asked.resting:
         return None
     if profile not in SHORTEST:
         return f"Phases and values of the {profile} profile are not computed."
     if several and asked.row.claim.path is None:
         return "Several joints, each by itself, have no one profile."
-    if profile not in PROFILES and end_states(asked.row.statement)[:, :, 1].any():
+    if profile not in RESTING and end_states(asked.row.statement)[:, :, 1].any():
         return "The algorithm of Biagiotti and Melchiorri has no acceleration at its ends."
     every = motions(asked.row, profile)
     if every is None:
@@ -188,7 +180,7 @@ def _total_beside(asked: _Asked) -> Finding:
     notes: tuple[str, ...] = ()
     verdict, kind, said = ClaimVerdict.SUPPORTED, "fits", "which fits"
     # The closed forms grow with the way and fall with the limits: two of them enclose all others.
-    enclosed = asked.resting and asked.profile in PROFILES
+    enclosed = asked.resting and asked.profile in RESTING
     if enclosed:
         how = f"from rest to rest, {_PATHS[straight]},"
         plain, fits = _fitted(asked, number, straight)
@@ -259,7 +251,7 @@ def _notes(asked: _Asked, totals: NumberRange) -> tuple[str, ...]:
             "The start lies outside the limits: the profile brakes into them at once, and is the "
             "shortest from there."
         )
-    if asked.profile not in PROFILES:
+    if asked.profile not in RESTING:
         best = asked.range(lambda motion: [motion.total_time], "s-curve")
         more = 100 * (totals.plain / best.plain - 1)
         beside = f"; the algorithm's is {more:.2f} % longer" if more >= 0.01 else " too"
@@ -269,29 +261,21 @@ def _notes(asked: _Asked, totals: NumberRange) -> tuple[str, ...]:
 
 def _fitted(asked: _Asked, number: Measured, straight: bool) -> tuple[float, bool]:
     """The shortest total at the printed numbers, and whether the printed one fits its interval."""
-    total, profile, row = (shortest_straight if straight else shortest), asked.profile, asked.row
+    row = asked.row
     problem = row.posed()
-    ways = np.abs(np.diff(problem.waypoints, axis=0))
-    plain = total(profile, ways, profiled_limits(row, Digits.PRINTED))
-    least, most = _ways(row, problem)
-    loose = profiled_limits(row, Digits.LOOSEST_CUT)
-    low = total(profile, least, loose) * (1.0 - _SLACK)
+
+    def total(ways: Array, digits: Digits) -> float:
+        return resting_total(asked.profile, ways, profiled_limits(row, digits), straight)
+
+    plain = total(np.abs(np.diff(problem.waypoints, axis=0)), Digits.PRINTED)
+    least, most = row.waypoint_box(problem).or_cut_off().steps
+    low = total(least, Digits.LOOSEST_CUT) * (1.0 - _SLACK)
     try:
-        tight = profiled_limits(row, Digits.TIGHTEST)
-        high = total(profile, most, tight) * (1.0 + _SLACK)
+        high = total(most, Digits.TIGHTEST) * (1.0 + _SLACK)
     except CaseError:
         high = inf
     cut = number.cut_off()
     return plain, cut.lower <= high and low <= cut.upper
-
-
-def _ways(row: PrintedRow[_Profiled], problem: Problem) -> tuple[Array, Array]:
-    """Least and most that each joint moves in each segment, digits rounded or cut off."""
-    box = row.waypoint_box(problem).or_cut_off()
-    low, high = box.lower[1:] - box.upper[:-1], box.upper[1:] - box.lower[:-1]
-    most = np.maximum(np.abs(low), np.abs(high))
-    least = np.where((low <= 0) & (high >= 0), 0.0, np.minimum(np.abs(low), np.abs(high)))
-    return least, most
 
 
 def _phases_beside(asked: _Asked) -> Finding:
