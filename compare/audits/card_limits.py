@@ -24,11 +24,10 @@ from ..documents import (
     noted,
     quoted,
 )
-from .own_result import own_results
-from .plausibility import implausible
+from .digit_ranges import implausible
 from .printed_row import printed_rows
 from .rules import blended, judge_row, meant_to_keep, said_to_keep
-from .stated import place, prints_durations
+from .stated import own_results, place, prints_durations
 from .study import Study
 
 _FEW = 2

@@ -35,12 +35,12 @@ from ..documents import (
 from .card import verdict_card
 from .causes import find_causes, with_caveats
 from .chosen_case import SEEDS
+from .digit_ranges import implausible
 from .draft import advise
 from .explanations import explained
 from .instances import examinable, examined, examined_entry
 from .judging import judge, rested, weigh
 from .paper_runs import reached
-from .plausibility import implausible
 from .printed_row import PrintedRow, printed_rows
 from .provenance import provenance
 from .readings import readings_summary

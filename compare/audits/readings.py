@@ -31,8 +31,8 @@ from ..documents import (
 )
 from ..gaps import gap, reference_of
 from .chosen_case import Pair
+from .digit_ranges import implausible
 from .fixed_ratios import off_ratios
-from .plausibility import implausible
 from .printed_row import PrintedRow
 from .rules import held_otherwise, reading_clues
 from .stated import other_objective

@@ -23,9 +23,8 @@ from ...problem.cases import (
     motions_of,
 )
 from ..documents import ClaimVerdict, Edit, Finding, Judgement, Severity
-from .edits import CLAIM, READINGS, edited, printed_under
 from .printed_row import PrintedRow, rows_under
-from .reworded import Reworded
+from .reworded import CLAIM, READINGS, Reworded, edited, printed_under
 from .rules import in_digits, recomputed, repeated_total, summed
 from .study import Study
 

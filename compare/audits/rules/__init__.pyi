@@ -1,7 +1,7 @@
 from .clues import held_otherwise, reading_clues
 from .condition_count import count_conditions
 from .following_numbers import in_digits, recomputed, repeated_total, summed
-from .kept_limits import meant_to_keep, said_to_keep
+from .judged_rows import meant_to_keep, said_to_keep
 from .linear_blends import blended, judge_row
 from .on_instances import HANDLED, attributed, placed
 from .peaks import box_reach, largest

@@ -20,8 +20,16 @@ from ..printed_row import PrintedRow, left_out, printed_rows, rows_under
 from ..roots import LIMITS
 from ..stated import all_called, called_under
 from ..study import Study
-from .judged_rows import JudgedRow, broken, judged_row, ratio_at_print
-from .kept_limits import UNSAID, meant_to_keep, said_of, said_to_keep
+from .judged_rows import (
+    UNSAID,
+    JudgedRow,
+    broken,
+    judged_row,
+    meant_to_keep,
+    ratio_at_print,
+    said_of,
+    said_to_keep,
+)
 from .linear_blends import BLENDS, blended, judge_row
 from .peaks import JUMPING, box_reach, jump_size, jump_unit, largest, largest_of_each_kind
 from .rule_group import INFORMS, Explained, rule_group

@@ -25,11 +25,10 @@ from ...documents import Severity
 from ..printed_row import PrintedRow, printed_rows
 from ..stated import allowed_bases, printed_total
 from ..study import Study
-from .measures import measure_beside
+from .motion_numbers import measure_beside, value_beside
 from .peaks import beside
 from .printed_tables import printed_alike
 from .printed_vertices import has_vertices
-from .values import value_beside
 
 
 def in_digits(value: Fraction | Decimal | float, like: Printed, rounding: str = "") -> str:

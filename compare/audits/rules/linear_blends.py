@@ -27,7 +27,7 @@ from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..printed_row import PrintedRow
 from ..rounding import RoundingBox
 from ..study import Study
-from .kept_limits import UNSAID, meant_to_keep, said_of
+from .judged_rows import UNSAID, meant_to_keep, said_of
 from .rule_group import Explained, rule_group
 
 BLENDS = "blends"

@@ -15,11 +15,10 @@ from .motion_numbers import judge_measures, judge_peaks, judge_values
 from .on_instances import judge_instances
 from .open_points import list_open_points
 from .other_places import judge_places
-from .peaks_and_limits import judge_peak_limits
+from .peaks import judge_peak_limits
 from .printed_chain import judge_kinematics
 from .printed_digits import judge_digits
-from .printed_equations import judge_equations
-from .printed_joints import judge_joints
+from .printed_joints import judge_equations, judge_joints
 from .printed_tables import judge_tables
 from .printed_vertices import judge_vertices
 from .profiles import judge_profiles

@@ -19,7 +19,7 @@ from support.made_up import (
 from support.papers.apart import apart
 from support.papers.claims import draw
 from trajgap.compare.audits import printed_rows
-from trajgap.compare.audits.rules.kept_limits import said_to_keep
+from trajgap.compare.audits.rules.judged_rows import said_to_keep
 from trajgap.compare.documents import Basis, ClaimVerdict, Finding, Scope, Severity
 from trajgap.nlp import Evidence, Status
 
