@@ -1,4 +1,4 @@
-from .card import plainly
+from .card_errors import plainly
 from .case_audit import AuditReport, CaseAudit, audit
 from .chosen_case import Pair
 from .fixed_ratios import at_ratios, planned_apart

@@ -25,9 +25,10 @@ from ..documents import (
     quoted,
 )
 from .digit_ranges import implausible
+from .own_result import meant_to_keep, own_results, said_to_keep
 from .printed_row import printed_rows
-from .rules import blended, judge_row, meant_to_keep, said_to_keep
-from .stated import own_results, place, prints_durations
+from .rules import blended, judge_row
+from .stated import place, prints_durations
 from .study import Study
 
 _FEW = 2
@@ -62,7 +63,7 @@ def limits_line(study: Study, words: Mapping[str, Judgement]) -> tuple[str, set[
         for c in case.claims
         if isinstance(c, StatementClaim) and c.checks == "within_limits" and c.id in words
     ]
-    meant = [c for c in case.claims if isinstance(c, _Row) and meant_to_keep(study, c)]
+    meant = [c for c in case.claims if isinstance(c, _Row) and meant_to_keep(case, c)]
     elsewhere = [c for c in meant if c.other_curve is not None and not blended(c)]
     rows = [c for c in meant if c not in elsewhere and c.id in words]
     timed = [c for c in case.claims if isinstance(c, TimeClaim) and c.other_curve is None]
@@ -219,6 +220,6 @@ def _broken(study: Study, own: Sequence[_Row], held: _Held) -> str:
     whose = _whose(study, wrong, held)
     if len(wrong) < len(own) and not _places(wrong):
         whose = f"{len(wrong)} of {len(own)} printed sets of durations"
-    if any(said_to_keep(study, c) for c in wrong):
+    if any(said_to_keep(study.case, c) for c in wrong):
         return f"{whose} break a limit {every}"
     return f"{whose} break a limit {every}; nothing printed says that they keep it"

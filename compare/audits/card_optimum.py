@@ -29,8 +29,9 @@ from .chosen_case import Pair
 from .digit_ranges import all_exact, optimum_range
 from .fixed_ratios import at_ratios, off_ratios, planned_apart
 from .named_profiles import profile_called
+from .own_result import bare_totals, own_result
 from .printed_row import PrintedRow
-from .stated import bare_totals, other_objective, own_result, printed_total, prints_durations
+from .stated import other_objective, printed_total, prints_durations
 from .stated_totals import contradicts_its_parts, other_totals
 from .study import Study
 from .waterfall import stands_in

@@ -33,8 +33,9 @@ from ..documents import (
 from .chosen_case import Pair
 from .digit_ranges import optimum_range
 from .fixed_ratios import off_ratios, planned_apart
+from .own_result import bare_totals, own_result
 from .printed_row import PrintedRow
-from .stated import bare_totals, other_objective, own_result
+from .stated import other_objective
 from .study import Study
 
 _ROUNDING = 1e-12

@@ -1,7 +1,6 @@
 from .clues import held_otherwise, reading_clues
 from .condition_count import count_conditions
 from .following_numbers import in_digits, recomputed, repeated_total, summed
-from .judged_rows import meant_to_keep, said_to_keep
 from .linear_blends import blended, judge_row
 from .on_instances import HANDLED, attributed, placed
 from .peaks import box_reach, largest
@@ -27,12 +26,10 @@ __all__ = [
     "in_digits",
     "judge_row",
     "largest",
-    "meant_to_keep",
     "placed",
     "reading_clues",
     "recomputed",
     "repeated_total",
-    "said_to_keep",
     "summed",
     "vertices",
 ]

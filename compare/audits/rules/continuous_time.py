@@ -16,20 +16,12 @@ from ....problem.cases import (
 )
 from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..digit_ranges import below_certified
+from ..own_result import UNSAID, meant_to_keep, said_of, said_to_keep
 from ..printed_row import PrintedRow, left_out, printed_rows, rows_under
 from ..roots import LIMITS
 from ..stated import all_called, called_under
 from ..study import Study
-from .judged_rows import (
-    UNSAID,
-    JudgedRow,
-    broken,
-    judged_row,
-    meant_to_keep,
-    ratio_at_print,
-    said_of,
-    said_to_keep,
-)
+from .judged_rows import JudgedRow, broken, judged_row, ratio_at_print
 from .linear_blends import BLENDS, blended, judge_row
 from .peaks import JUMPING, box_reach, jump_size, jump_unit, largest, largest_of_each_kind
 from .rule_group import INFORMS, Explained, rule_group
@@ -93,7 +85,7 @@ def judge_motions(study: Study) -> Iterator[Finding]:
 def judge_bare_totals(study: Study) -> Iterator[Finding]:
     """Refute totals that no motion within the limits takes, and that a statement says one does."""
     for claim in study.claims:
-        if not (isinstance(claim, TotalTimeClaim) and said_to_keep(study, claim)):
+        if not (isinstance(claim, TotalTimeClaim) and said_to_keep(study.case, claim)):
             continue
         for row in printed_rows(study, claim):
             proof = broken(row) or below_certified(row)
@@ -113,10 +105,10 @@ def judge_bare_totals(study: Study) -> Iterator[Finding]:
 
 
 def _limits(study: Study, claim: AnyClaim) -> Iterator[Finding]:
-    unsaid = "" if said_to_keep(study, claim) else UNSAID
+    unsaid = "" if said_to_keep(study.case, claim) else UNSAID
     for row in printed_rows(study, claim):
         judged = judged_row(row)
-        verdict, severity = said_of(study, claim, judged.verdict, judged.severity)
+        verdict, severity = said_of(study.case, claim, judged.verdict, judged.severity)
         yield Finding(
             rule="TG201",
             severity=severity,
@@ -132,7 +124,7 @@ def _limits(study: Study, claim: AnyClaim) -> Iterator[Finding]:
                 *judged.sentences,
                 "" if verdict is ClaimVerdict.SUPPORTED else unsaid,
             ),
-            decides=meant_to_keep(study, claim),
+            decides=meant_to_keep(study.case, claim),
             root=f"{LIMITS} {claim.id}" if judged.verdict is ClaimVerdict.REFUTED else "",
         )
 

@@ -24,10 +24,10 @@ import numpy as np
 from ....problem import Array, CaseError, Measured, Printed, Problem
 from ....problem.cases import AnyClaim, Claim, Digits, DurationsClaim
 from ...documents import Basis, ClaimVerdict, Finding, Severity
+from ..own_result import UNSAID, meant_to_keep, said_of
 from ..printed_row import PrintedRow
 from ..rounding import RoundingBox
 from ..study import Study
-from .judged_rows import UNSAID, meant_to_keep, said_of
 from .rule_group import Explained, rule_group
 
 BLENDS = "blends"
@@ -134,7 +134,7 @@ def _beside(row: PrintedRow[DurationsClaim]) -> Finding:
                 "keep the limits with these durations."
             )
     found_verdict = verdict
-    verdict, severity = said_of(study, claim, verdict, severity)
+    verdict, severity = said_of(study.case, claim, verdict, severity)
     return Finding(
         rule="TG210",
         severity=severity,
@@ -147,7 +147,7 @@ def _beside(row: PrintedRow[DurationsClaim]) -> Finding:
         computed=computed,
         kind=str(found_verdict),
         sentences=(message, at_print, passes, UNSAID if verdict is not found_verdict else ""),
-        decides=meant_to_keep(study, claim),
+        decides=meant_to_keep(study.case, claim),
         root=f"{BLENDS} {claim.id}" if verdict is ClaimVerdict.REFUTED else "",
     )
 

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 from support.findings import audited_text, finding, said_of, study_of, verdicts
 from support.made_up import claim, entry, one_joint, paper, peak, row, sentence
-from trajgap.compare.audits.card import plainly
+from trajgap.compare.audits.card_errors import plainly
 from trajgap.compare.audits.rules.condition_count import meets
 from trajgap.compare.documents import ClaimVerdict, Severity
 

@@ -10,7 +10,7 @@ import pytest
 from support.findings import audited_text, finding, said_of, study_of
 from support.made_up import algorithms, claim, entry, gain, one_joint, paper, row, sentence, total
 from trajgap.compare.audits import printed_row as row_module
-from trajgap.compare.audits.card import plainly
+from trajgap.compare.audits.card_errors import plainly
 from trajgap.compare.audits.case_audit import audit_case
 from trajgap.compare.audits.rounding import RoundingBox
 from trajgap.compare.audits.rules.printed_digits import span
