@@ -25,7 +25,6 @@ from ..documents import (
     count_words,
     ranged,
 )
-from .chosen_case import Pair
 from .digit_ranges import all_exact, optimum_range
 from .fixed_ratios import at_ratios, off_ratios, planned_apart
 from .named_profiles import profile_called
@@ -33,7 +32,7 @@ from .own_result import bare_totals, own_result
 from .printed_row import PrintedRow
 from .stated import other_objective, printed_total, prints_durations
 from .stated_totals import contradicts_its_parts, other_totals
-from .study import Study
+from .study import Pair, Study
 from .waterfall import stands_in
 
 _FEW = 2

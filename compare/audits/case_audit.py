@@ -34,7 +34,6 @@ from ..documents import (
 )
 from .card import verdict_card
 from .causes import find_causes, with_caveats
-from .chosen_case import SEEDS
 from .digit_ranges import implausible
 from .draft import advise
 from .explanations import explained
@@ -47,7 +46,7 @@ from .readings import readings_summary
 from .revision import revise
 from .rules import GROUPS, NOT_COMPUTED
 from .stated import stated_claims, stated_source
-from .study import Study
+from .study import SEEDS, Study
 from .waterfall import waterfalls
 
 _Group = Callable[[Study], Iterator[Finding]]

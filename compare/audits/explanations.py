@@ -32,13 +32,12 @@ from ..documents import (
     quoted,
 )
 from .changed_motions import changes_of_motion
-from .chosen_case import Pair
 from .printed_row import PrintedRow
 from .roots import LIMITS, TABLES
 from .rules import RuleGroup, count_conditions, held_otherwise
 from .slips import Slip, durations, misprints, of_rows, totals, values
 from .stated import place, prints_durations
-from .study import Study
+from .study import Pair, Study
 
 _OF_MOTIONS = {"TG201", "TG203", "TG208", "TG211"}
 """Rules that rebuild motions from printed durations."""

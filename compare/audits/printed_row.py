@@ -34,10 +34,9 @@ from ...problem.cases import (
     Statement,
 )
 from ..documents import UNITS, Keeping, Rounding, noted, si_unit
-from .chosen_case import Pair, Total
 from .rounding import RoundingBox, RoundingVerdict, judge_rounding
 from .stated import in_words, in_words_among, own_total, place, prints_durations
-from .study import Study
+from .study import Pair, Study, Total
 from .total_bound import BOXES, excludes_total
 
 C = TypeVar("C", bound=Claim, covariant=True)

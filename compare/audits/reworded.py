@@ -12,8 +12,7 @@ from ...nlp import PerJointSolution, Solution, printed_problem_or_none
 from ...problem import Case, Printed
 from ...problem.cases import AnyClaim
 from ..documents import Edit
-from .chosen_case import ChosenCase, Pair, Replays
-from .study import Study
+from .study import Pair, Replays, Study
 
 CLAIM, READINGS = "claim", "readings"
 """Keys of edits that are no key of a claim: it is left out, or the text says what is meant."""
@@ -127,7 +126,7 @@ class Reworded(Study):
         )
 
     @property
-    def drawing(self) -> ChosenCase:
+    def drawing(self) -> Study:
         """The original, where all problems and algorithms are the same."""
         same = self.pairs == self.original.pairs and self._replays_alike(*self.pairs)
         return self.original if same else self

@@ -30,13 +30,12 @@ from ..documents import (
     enumerated,
     known,
 )
-from .chosen_case import Pair
 from .digit_ranges import optimum_range
 from .fixed_ratios import off_ratios, planned_apart
 from .own_result import bare_totals, own_result
 from .printed_row import PrintedRow
 from .stated import other_objective
-from .study import Study
+from .study import Pair, Study
 
 _ROUNDING = 1e-12
 """Relative difference of an infimum and its bound that float rounding alone explains."""

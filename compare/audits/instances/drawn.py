@@ -27,7 +27,7 @@ from ....problem import (
 from ....problem.cases import Claim, ImprovementClaim, InstancesBlock, instance_waypoints
 from ...documents import Procedure
 from ...gaps import SETTLED, settled_at
-from ..chosen_case import ChosenCase
+from ..study import Study
 from .result import InstancesResult, Optimum, Sample
 
 STARTS = 2
@@ -191,23 +191,23 @@ def _ended(solution: Solution) -> Optimum:
     return Optimum(total, solution.evidence, words)
 
 
-def _claimed(study: ChosenCase, block: InstancesBlock) -> ImprovementClaim:
+def _claimed(study: Study, block: InstancesBlock) -> ImprovementClaim:
     return cast(ImprovementClaim, study.case.claim(block.claim))
 
 
-def _sides(study: ChosenCase, block: InstancesBlock) -> tuple[Claim, Claim]:
+def _sides(study: Study, block: InstancesBlock) -> tuple[Claim, Claim]:
     claim = _claimed(study, block)
     return study.case.claim(claim.slower), study.case.claim(claim.faster)
 
 
-def _procedure(study: ChosenCase, side: Claim) -> Procedure:
+def _procedure(study: Study, side: Claim) -> Procedure:
     # A case file names both; the problem may be its only one.
     return Procedure(
         problem=side.problem or study.case.problems[0].id, algorithm=cast(str, side.algorithm)
     )
 
 
-def readings_of(study: ChosenCase, block: InstancesBlock) -> tuple[str, ...]:
+def readings_of(study: Study, block: InstancesBlock) -> tuple[str, ...]:
     """Selected readings of a design; none if an algorithm is not implemented."""
     sides = [_procedure(study, side) for side in _sides(study, block)]
     if any(study.algorithm(side.algorithm) is None for side in sides):
@@ -216,7 +216,7 @@ def readings_of(study: ChosenCase, block: InstancesBlock) -> tuple[str, ...]:
     return tuple(r for r in wanted if all((side.problem, r) in study.selected for side in sides))
 
 
-def printed_reduction(study: ChosenCase, block: InstancesBlock) -> tuple[float, float] | None:
+def printed_reduction(study: Study, block: InstancesBlock) -> tuple[float, float] | None:
     """Smallest and largest reduction that the printed digits allow, as shares of the slower total.
 
     Returns
@@ -235,14 +235,12 @@ def printed_reduction(study: ChosenCase, block: InstancesBlock) -> tuple[float, 
     return 1 - fast_high / slow_low, 1 - fast_low / slow_high
 
 
-def _printed_totals(
-    study: ChosenCase, block: InstancesBlock, rid: str
-) -> tuple[str | None, str | None]:
+def _printed_totals(study: Study, block: InstancesBlock, rid: str) -> tuple[str | None, str | None]:
     slow, fast = (study.claim_total(side, rid) for side in _sides(study, block))
     return slow and slow[0], fast and fast[0]
 
 
-def examinable(study: ChosenCase) -> tuple[InstancesBlock, ...]:
+def examinable(study: Study) -> tuple[InstancesBlock, ...]:
     """Designs of instances of which both problems and some reading are selected.
 
     All of it is implemented, and can be replayed.
@@ -251,7 +249,7 @@ def examinable(study: ChosenCase) -> tuple[InstancesBlock, ...]:
     return tuple(block for block in declared if unexamined(study, block) is None)
 
 
-def unexamined(study: ChosenCase, block: InstancesBlock) -> str | None:
+def unexamined(study: Study, block: InstancesBlock) -> str | None:
     """Why the two procedures of a design cannot be run on its instances; None if they can."""
     try:
         examined(study, block)
@@ -262,7 +260,7 @@ def unexamined(study: ChosenCase, block: InstancesBlock) -> str | None:
     return None
 
 
-def examined(study: ChosenCase, block: InstancesBlock) -> InstancesResult:
+def examined(study: Study, block: InstancesBlock) -> InstancesResult:
     """What the two procedures of an improvement do on instances that are drawn for it, once.
 
     Parameters
@@ -279,7 +277,7 @@ def examined(study: ChosenCase, block: InstancesBlock) -> InstancesResult:
     return own.once(("instances", block.id), lambda: _examined(own, block))
 
 
-def _examined(study: ChosenCase, block: InstancesBlock) -> InstancesResult:
+def _examined(study: Study, block: InstancesBlock) -> InstancesResult:
     """Draw instances, make their problems under their readings, and examine them."""
     what = f"instances {block.id}"
     study.progress(what)

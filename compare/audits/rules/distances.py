@@ -31,7 +31,6 @@ from ...documents import (
     ranged,
 )
 from ...gaps import gap, reference_of
-from ..chosen_case import Total
 from ..digit_ranges import below_certified
 from ..fixed_ratios import (
     BELOW_AT_RATIOS,
@@ -45,7 +44,7 @@ from ..printed_row import PrintedRow, left_out, printed_rows, rows_under
 from ..roots import LIMITS, OPTIMAL
 from ..stated import called, called_under, other_objective
 from ..stated_totals import contradicting_lows, is_sum, rounded_up_low, total_excludes, what_agrees
-from ..study import Study
+from ..study import Study, Total
 from .judged_rows import broken
 from .rule_group import INFORMS, Explained, rule_group
 
