@@ -77,12 +77,9 @@ def of_other_ratios(row: PrintedRow[Claim], shown: str, other: str) -> Finding:
     other : str
         From `off_ratios`.
     """
-    return Finding(
-        rule="TG302",
+    return row.finding(
+        "TG302",
         basis=Basis.DIGITS,
-        claim=row.claim.id,
-        problem=row.problem,
-        reading=row.reading,
         printed=shown,
         kind="other ratios",
         sentences=(

@@ -90,13 +90,10 @@ def judge_bare_totals(study: Study) -> Iterator[Finding]:
         for row in printed_rows(study, claim):
             proof = broken(row) or below_certified(row)
             if proof is not None:
-                yield Finding(
-                    rule="TG201",
+                yield row.finding(
+                    "TG201",
                     verdict=ClaimVerdict.REFUTED,
                     basis=Basis.ENCLOSURE,
-                    claim=claim.id,
-                    problem=row.problem,
-                    reading=row.reading,
                     printed=f"{claim.value} {study.time_unit}",
                     sentences=proof,
                     kind="total excluded",
@@ -109,14 +106,11 @@ def _limits(study: Study, claim: AnyClaim) -> Iterator[Finding]:
     for row in printed_rows(study, claim):
         judged = judged_row(row)
         verdict, severity = said_of(study.case, claim, judged.verdict, judged.severity)
-        yield Finding(
-            rule="TG201",
+        yield row.finding(
+            "TG201",
             severity=severity,
             verdict=verdict,
             basis=Basis.ENCLOSURE,
-            claim=claim.id,
-            problem=row.problem,
-            reading=row.reading,
             printed=study.durations_digits(claim),
             computed=ratio_at_print(row),
             kind=judged.kind,
@@ -142,12 +136,9 @@ def _jumps(study: Study, claim: AnyClaim) -> Iterator[Finding]:
             f"in joint {top.joint} at t = {top.time:.6g} s by {size}"
             for (_, top), size in zip(tops, sizes, strict=True)
         )
-        yield Finding(
-            rule="TG202",
+        yield row.finding(
+            "TG202",
             basis=Basis.CHECK,
-            claim=claim.id,
-            problem=row.problem,
-            reading=row.reading,
             printed=study.durations_digits(claim),
             computed=f"{len(velocity)} jumps of velocity, up to {' and '.join(sizes)}",
             kind="velocity jumps",
@@ -356,13 +347,10 @@ def _used_up(study: Study, claim: AnyClaim) -> Iterator[Finding]:
                         f"at its limit {bound:.6g} {row.unit(quantity, label)}"
                     )
         if tight:
-            yield Finding(
-                rule="TG204",
+            yield row.finding(
+                "TG204",
                 verdict=ClaimVerdict.SUPPORTED,
                 basis=Basis.CHECK,
-                claim=claim.id,
-                problem=row.problem,
-                reading=row.reading,
                 printed=study.durations_digits(claim),
                 computed="; ".join(tight),
                 kind="reached",

@@ -147,15 +147,12 @@ def _distance(
             severity = Severity.INFO if before else Severity.WARNING
             said.append(_BELOW if isinstance(reference.lower, Why) else _BELOW_BOUND)
     agrees = kept and interval[0] <= solution.best <= interval[1]
-    return Finding(
-        rule="TG303" if shared else "TG302",
+    return row.finding(
+        "TG303" if shared else "TG302",
         severity=severity,
         verdict=ClaimVerdict.SUPPORTED if agrees else ClaimVerdict.NOT_CHECKABLE,
         evidence=solution.evidence,
         basis=Basis.OPTIMUM,
-        claim=claim.id,
-        problem=row.problem,
-        reading=row.reading,
         printed=shown,
         computed=f"{reference.upper:.6f} s",
         gap=distance,
@@ -238,14 +235,11 @@ def _beside_procedure(row: PrintedRow[AnyClaim], total: Total) -> Iterator[Findi
         + (f" (free rescaling of that motion: {tight:.4f} s)" if tight is not None else "")
         + f"; printed is {shown}, {'inside' if inside else 'outside'} that range."
     )
-    yield Finding(
-        rule="TG302",
+    yield row.finding(
+        "TG302",
         verdict=ClaimVerdict.SUPPORTED if inside else ClaimVerdict.NOT_CHECKABLE,
         evidence=answer.evidence,
         basis=Basis.OPTIMUM,
-        claim=row.claim.id,
-        problem=row.problem,
-        reading=row.reading,
         printed=shown,
         computed=f"{ranged(wide.lowest, wide.highest, '.6f')} s",
         kind="joint by joint",

@@ -135,14 +135,11 @@ def _beside(row: PrintedRow[DurationsClaim]) -> Finding:
             )
     found_verdict = verdict
     verdict, severity = said_of(study.case, claim, verdict, severity)
-    return Finding(
-        rule="TG210",
+    return row.finding(
+        "TG210",
         severity=severity,
         verdict=verdict,
         basis=Basis.ENCLOSURE,
-        claim=claim.id,
-        problem=row.problem,
-        reading=row.reading,
         printed=study.durations_digits(claim),
         computed=computed,
         kind=str(found_verdict),

@@ -326,13 +326,11 @@ class MotionNumbers(Generic[_Value]):
         said = [self.described(row, claim, one) for one in wrong or found]
         verdict, note = _misfit(row) if wrong else _FITTING
         clash = verdict is ClaimVerdict.INCONSISTENT
-        return Finding(
-            rule=self.rule,
+        return row.finding(
+            self.rule,
             verdict=verdict,
             basis=Basis.CHECK if all(one.met for one in found) else Basis.COMPUTED,
             claim=claim.id,
-            problem=row.problem,
-            reading=row.reading,
             printed=", ".join(map(str, claim.printed)),
             computed="; ".join(one.around for one in found),
             kind=", ".join(_word(one) for one in wrong or found),

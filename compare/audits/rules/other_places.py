@@ -75,11 +75,11 @@ def _peaks_elsewhere(study: Study, claim: PeakClaim, own: AnyClaim) -> Iterator[
                     f"and {100 * distance:.2g} % from that of {called(motion)}{whose}"
                 )
         if said:
-            yield _informing(
+            yield row.finding(
+                "TG108",
+                decides=False,
                 basis=Basis.CHECK,
                 claim=claim.id,
-                problem=row.problem,
-                reading=row.reading,
                 printed=", ".join(map(str, claim.printed)),
                 kind="peaks",
                 sentences=(
@@ -105,11 +105,10 @@ def _row_elsewhere(study: Study, claim: DurationsClaim) -> Iterator[Finding]:
             if label != claim.joint
         )
         if best <= _CLOSE:
-            yield _informing(
+            yield row.finding(
+                "TG108",
+                decides=False,
                 basis=Basis.CHECK,
-                claim=claim.id,
-                problem=row.problem,
-                reading=row.reading,
                 kind="rows",
                 sentences=(
                     f"The durations printed for joint {claim.joint} ({called(claim)}) would have "

@@ -343,14 +343,12 @@ def _beyond(study: Study, claim: StatementClaim, peak: PeakClaim) -> Iterator[Fi
         for row in printed_rows(study, motion):
             said = _above(row, peak)
             if said:
-                yield Finding(
-                    rule="TG209",
+                yield row.finding(
+                    "TG209",
                     severity=Severity.ERROR,
                     verdict=ClaimVerdict.INCONSISTENT,
                     basis=Basis.DIGITS,
                     claim=claim.id,
-                    problem=row.problem,
-                    reading=row.reading,
                     printed=", ".join(map(str, peak.printed)),
                     kind="beyond",
                     sentences=(f"{place(peak)} prints {'; '.join(said)}.",),

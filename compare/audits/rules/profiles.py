@@ -115,12 +115,10 @@ def judge_profiles(study: Study) -> Iterator[Finding]:
 
 
 def _unknown(asked: _Asked, why: str) -> Finding:
-    return Finding(
-        rule="TG304",
+    return asked.row.finding(
+        "TG304",
         basis=Basis.CHECK,
         claim=asked.claim.id,
-        problem=asked.row.problem,
-        reading=asked.row.reading,
         kind="other profile",
         sentences=(why,),
     )
@@ -225,13 +223,11 @@ def _found(
     asked: _Asked, verdict: ClaimVerdict, kind: str, enclosed: bool = False, **facts: Any
 ) -> Finding:
     """A finding that speaks of all that rounds to the digits: enclosed, or tried at their ends."""
-    return Finding(
-        rule="TG304",
+    return asked.row.finding(
+        "TG304",
         verdict=verdict,
         basis=Basis.CHECK if enclosed else Basis.COMPUTED,
         claim=asked.claim.id,
-        problem=asked.row.problem,
-        reading=asked.row.reading,
         kind=kind,
         **facts,
     )
