@@ -30,6 +30,7 @@ from .fixed_ratios import at_ratios, off_ratios, planned_apart
 from .named_profiles import profile_called
 from .own_result import bare_totals, own_result
 from .printed_row import PrintedRow
+from .rounding import meet
 from .stated import other_objective, printed_total, prints_durations
 from .stated_totals import contradicts_its_parts, other_totals
 from .study import Pair, Study
@@ -383,7 +384,7 @@ def _joint_by_joint(row: PrintedRow[TimeClaim], seconds: float) -> str | None:
     own = "obtained by optimising each joint separately" + ("" if proven else " (best known)")
     span = f"{ranged(wide.lowest, wide.highest, '.4f')} s"
     low, high = total.interval
-    if low <= wide.highest and high >= wide.lowest:
+    if meet((low, high), (wide.lowest, wide.highest)):
         return f"agrees with {span}, {own}"
     longer = seconds > wide.highest
     shares = sorted(abs(seconds / one - 1) for one in (wide.highest, wide.lowest))

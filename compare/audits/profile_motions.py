@@ -15,6 +15,7 @@ from ...problem.cases import Digits, ProfiledClaim, end, end_states
 from .axis_profile import AxisProfile, AxisState, Sizes
 from .named_profiles import SHORTEST
 from .printed_row import PrintedRow
+from .rounding import meet
 
 _MOST_OPEN = 10
 """Printed numbers whose both ends are combined: 1024 profiles take a few seconds."""
@@ -213,13 +214,13 @@ class NumberRange:
         for part in parts:
             # As much again, since corners need not be the extremes of a curved function.
             width = float(part[-1] - part[0]) + 1e-9 * float(np.abs(part).max())
-            if lower <= part[-1] + width and part[0] - width <= upper:
+            if meet((lower, upper), (part[0] - width, part[-1] + width)):
                 return True
         return False
 
     def spans(self, lower: float, upper: float) -> bool:
         """Whether a printed interval lies among the values, where they jump over it."""
-        return bool(lower <= self.others[-1] and self.others[0] <= upper)
+        return meet((lower, upper), (self.others[0], self.others[-1]))
 
 
 def profiled_limits(row: PrintedRow[ProfiledClaim], digits: Digits) -> Array:

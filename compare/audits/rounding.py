@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from enum import StrEnum
+from fractions import Fraction
 
 import numpy as np
 
@@ -38,10 +40,47 @@ _CUT_SLACK = 1.0 + 1e-9
 """Factor by which a whole unit of the last digit is widened, far above its rounding to floats."""
 
 
+class Agreement(StrEnum):
+    """How a printed number agrees with what others allow it to be, the most charitable first."""
+
+    ROUNDING = "rounding"
+    CUT_OFF = "cut off"
+    MIXED = "some rounded, others cut off"
+    RAISED = "rounded up"
+    RAISED_PARTS = "parts rounded up"
+    SAMPLING = "sampling"
+    NORM = "norm over the joints"
+    ROOT = "root left out"
+    UNIT = "other unit"
+    OFF = "off"
+
+
+Ends = tuple[Fraction | float, Fraction | float]
+"""The lower and the upper end of an interval, both inside; an `Interval` is one."""
+
+
+def meet(a: Ends, b: Ends) -> bool:
+    """Whether two intervals have a number in common."""
+    return bool(a[0] <= b[1] and b[0] <= a[1])
+
+
+def agreement(*tried: tuple[Agreement, Ends, Ends]) -> Agreement:
+    """The first explanation under which what digits stand for meets what is computed.
+
+    Every rule that sets a printed number beside a computed one asks this: each explanation comes
+    with the ends of the printed number and of the computed one, the most charitable first.
+    """
+    return next((kind for kind, own, computed in tried if meet(own, computed)), Agreement.OFF)
+
+
+def either(a: Interval, b: Interval) -> Interval:
+    """The least interval that holds two."""
+    return Interval(min(a.lower, b.lower), max(a.upper, b.upper))
+
+
 def hull(number: Printed) -> Interval:
     """Every value whose digits, rounded or cut off, are the printed ones."""
-    a, b = number.interval, number.truncated
-    return Interval(min(a.lower, b.lower), max(a.upper, b.upper))
+    return either(number.interval, number.truncated)
 
 
 @dataclass(frozen=True, eq=False)

@@ -42,6 +42,7 @@ from ..fixed_ratios import (
 )
 from ..printed_row import PrintedRow, left_out, printed_rows, rows_under
 from ..roots import LIMITS, OPTIMAL
+from ..rounding import meet
 from ..stated import called, called_under, other_objective
 from ..stated_totals import contradicting_lows, is_sum, rounded_up_low, total_excludes, what_agrees
 from ..study import Study, Total
@@ -226,7 +227,7 @@ def _beside_procedure(row: PrintedRow[AnyClaim], total: Total) -> Iterator[Findi
         return
     wide = answer.ranges[0]
     shown, (low, high) = total
-    inside = low <= wide.highest and high >= wide.lowest
+    inside = meet((low, high), (wide.lowest, wide.highest))
     tight = answer.check.tight_time
     message = (
         f"Each joint at its own {answer.joint_evidence} optimum, then the longest per segment, "

@@ -12,10 +12,10 @@ from ....problem.cases import (
     MaximumClaim,
 )
 from ...documents import Basis, ClaimVerdict, Finding, Severity
-from ..rounding import hull
+from ..rounding import hull, meet
 from ..stated import allowed_bases, printed_total
 from ..study import Study
-from .printed_digits import compared, meet, shown, span
+from .printed_digits import compared, shown, span
 from .printed_tables import contradicted, doubted, total_allowed
 from .rule_group import ON_DIGITS, Explained, rule_group
 

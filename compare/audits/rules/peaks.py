@@ -21,10 +21,10 @@ from ....problem import (
 from ....problem.cases import AnyClaim, Claim, Digits, PeakClaim, StatementClaim, motions_of
 from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..printed_row import PrintedRow, printed_rows
-from ..rounding import RoundingBox
+from ..rounding import Agreement, RoundingBox
 from ..stated import place
 from ..study import Study
-from .beside import UNEXPLAINED, Beside, Class, Look, largest_change
+from .beside import UNEXPLAINED, Beside, Look, largest_change
 from .rule_group import Explained, rule_group
 
 _SAMPLES = 50
@@ -269,13 +269,13 @@ def peak_described(row: PrintedRow[AnyClaim], claim: PeakClaim, one: Beside) -> 
     return (
         said
         + {
-            Class.ROUNDING: f", equal within the rounding of the printed digits{room}",
-            Class.CUT_OFF: f" ({away}), as digits that are cut off instead of rounded give it",
-            Class.SAMPLING: f" ({away}), slightly below it, as sampling the motion gives it",
-            Class.NORM: f" ({away}), {norm}",
-            Class.UNIT: f" ({away}); their ratio is near {one.factor}",
-            Class.ROOT: f" ({away}); a factor √{one.root} may have been lost in print",
-            Class.OFF: f" ({away}), {UNEXPLAINED}",
+            Agreement.ROUNDING: f", equal within the rounding of the printed digits{room}",
+            Agreement.CUT_OFF: f" ({away}), as digits that are cut off instead of rounded give it",
+            Agreement.SAMPLING: f" ({away}), slightly below it, as sampling the motion gives it",
+            Agreement.NORM: f" ({away}), {norm}",
+            Agreement.UNIT: f" ({away}); their ratio is near {one.factor}",
+            Agreement.ROOT: f" ({away}); a factor √{one.root} may have been lost in print",
+            Agreement.OFF: f" ({away}), {UNEXPLAINED}",
         }[one.kind]
     )
 
@@ -284,8 +284,8 @@ def _of_norm(one: Beside) -> str:
     """How a printed peak that is not that of a joint is the norm over the joints."""
     norm = f"the largest norm over the joints, {one.around}"
     return {
-        Class.CUT_OFF: f"as {norm}, cut off instead of rounded gives it",
-        Class.SAMPLING: f"slightly below {norm}, as sampling the motion gives it",
+        Agreement.CUT_OFF: f"as {norm}, cut off instead of rounded gives it",
+        Agreement.SAMPLING: f"slightly below {norm}, as sampling the motion gives it",
     }.get(one.kind, f"equal to {norm}, within rounding")
 
 

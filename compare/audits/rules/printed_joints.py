@@ -11,6 +11,7 @@ from ....problem import Printed
 from ....problem.cases import Cartesian, Statement, StatementClaim
 from ....problem.robots import Chain, Equation, EquationCheck, check_equation
 from ...documents import Basis, ClaimVerdict, Finding
+from ..rounding import meet
 from ..study import Study
 from .rule_group import Explained, rule_group
 
@@ -158,10 +159,7 @@ def _finding(
 
 def _meets(one: Cartesian, other: Cartesian) -> bool:
     pairs = zip(one.values[:2], other.values[:2], strict=True)
-    return all(
-        a.interval.lower <= b.interval.upper and b.interval.lower <= a.interval.upper
-        for a, b in pairs
-    )
+    return all(meet(a.interval, b.interval) for a, b in pairs)
 
 
 def _beside(

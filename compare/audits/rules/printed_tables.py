@@ -18,10 +18,10 @@ from ....problem.cases import (
 from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..printed_row import PrintedRow, rows_under
 from ..roots import TABLES
-from ..rounding import hull
+from ..rounding import hull, meet
 from ..stated import printed_total
 from ..study import Study
-from .printed_digits import end_blends, meet
+from .printed_digits import end_blends
 from .rule_group import Explained, rule_group
 
 _Timed = DurationsClaim | MaximumClaim | TotalTimeClaim

@@ -10,9 +10,8 @@ from ....problem import Interval, Printed, shown_bound
 from ....problem.cases import ControlVerticesClaim, Statement
 from ....problem.curves import vertex_matrix
 from ...documents import Basis, ClaimVerdict, Finding, Severity, ranged
-from ..rounding import hull
+from ..rounding import Agreement, agreement, hull
 from ..study import Study
-from .printed_digits import meet
 from .rule_group import Explained, rule_group
 
 
@@ -42,14 +41,17 @@ class Vertex:
         return (self.allowed.upper - self.allowed.lower) / 2 + self.printed.unit / 2
 
     @property
-    def inside(self) -> bool:
-        """Whether some way-points that round to the digits give a vertex that rounds to its own."""
-        return meet(self.printed.interval, self.allowed)
+    def agreement(self) -> Agreement:
+        """How it agrees with some way-points, whether their digits are rounded or cut off."""
+        return agreement(
+            (Agreement.ROUNDING, self.printed.interval, self.allowed),
+            (Agreement.CUT_OFF, hull(self.printed), self.allowed_cut),
+        )
 
     @property
-    def inside_cut(self) -> bool:
-        """The same, wherever digits are rounded or cut off."""
-        return meet(hull(self.printed), self.allowed_cut)
+    def inside(self) -> bool:
+        """Whether some way-points that round to the digits give a vertex that rounds to its own."""
+        return self.agreement is Agreement.ROUNDING
 
 
 @rule_group(
@@ -129,7 +131,7 @@ def _combined(weights: Sequence[Fraction], intervals: Sequence[Interval]) -> Int
 def _judged(claim: ControlVerticesClaim, found: tuple[Vertex, ...], apart: bool) -> Finding:
     """The finding; joints whose units lie ``apart`` have no widest interval in common."""
     outside = [v for v in found if not v.inside]
-    beyond = [v for v in outside if not v.inside_cut]
+    beyond = [v for v in outside if v.agreement is Agreement.OFF]
     most = shown_bound(float(max(v.width for v in found)), "upper", digits=2)
     widest = f", at most {most} either side of the value"
     widest = "" if apart else widest + " computed from the digits"

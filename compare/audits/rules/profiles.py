@@ -27,6 +27,7 @@ from ...documents import Basis, ClaimVerdict, Finding
 from ..named_profiles import NOT_SHORTEST, RESTING, SHORTEST, profile_called, resting_total
 from ..printed_row import PrintedRow
 from ..profile_motions import NumberRange, ProfileMotion, motions, profiled_limits
+from ..rounding import meet
 from ..stated import place_of_value
 from ..study import Study
 from .rule_group import Explained, rule_group
@@ -271,7 +272,7 @@ def _fitted(asked: _Asked, number: Measured, straight: bool) -> tuple[float, boo
     except CaseError:
         high = inf
     cut = number.cut_off()
-    return plain, cut.lower <= high and low <= cut.upper
+    return plain, meet((cut.lower, cut.upper), (low, high))
 
 
 def _phases_beside(asked: _Asked) -> Finding:
