@@ -10,11 +10,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import Polynomial
 
+from .rounding import FEW_ROUNDINGS
+
 _CLOSE = 1e-9
 """How far a profile may miss the goal, and a phase may be negative, where all sizes are about 1:
 well above the rounding of a quartic's roots, well below any printed digit."""
-_BRAKED = 1e-12
-"""How far above its limit a scaled velocity may be by rounding alone."""
 
 
 class AxisState(NamedTuple):
@@ -232,22 +232,22 @@ def _can_end(last: AxisState, top: float, most: float) -> bool:
     """Whether a state within the limits can be reached from within them."""
     # An acceleration at the end began at 0 with a velocity nearer to the other limit.
     earlier = last.velocity - copysign(last.acceleration**2 / 2.0, last.acceleration)
-    within = max(abs(last.velocity), abs(earlier)) <= top + _BRAKED
-    return within and abs(last.acceleration) <= most + _BRAKED
+    within = max(abs(last.velocity), abs(earlier)) <= top + FEW_ROUNDINGS
+    return within and abs(last.acceleration) <= most + FEW_ROUNDINGS
 
 
 def _braked(first: AxisState, top: float, most: float) -> AxisProfile:
     """What comes before the first state within the limits and not on the way out, jerk 1."""
     for sign in (1.0, -1.0):
         acceleration = sign * first.acceleration
-        if acceleration > most + _BRAKED:
+        if acceleration > most + FEW_ROUNDINGS:
             back = AxisProfile(first, (Phase(acceleration - most, first.acceleration, -sign),))
             return back.then(_braked(back.at(inf), top, most))
     for sign in (1.0, -1.0):
         velocity, acceleration = sign * first.velocity, sign * first.acceleration
         # An acceleration that goes to 0 changes the velocity by half its square.
         ahead = velocity + max(acceleration, 0.0) * acceleration / 2.0
-        if max(velocity, ahead) > top + _BRAKED:
+        if max(velocity, ahead) > top + FEW_ROUNDINGS:
             # It falls until v + a t − t²/2 = top, or stays where it is at its own limit.
             until = acceleration + sqrt(max(0.0, acceleration**2 + 2.0 * (velocity - top)))
             fall = min(until, acceleration + most)

@@ -31,8 +31,8 @@ from .rules import blended, judge_row
 from .stated import place, prints_durations
 from .study import Study
 
-_FEW = 2
-"""Readings or places that a sentence names; more are counted."""
+FEW = 2
+"""Readings, places or totals that a sentence names; more are counted."""
 _TELLING = 1.01
 """Ratio to a limit at the printed digits from which on a card gives it: below, digits end there."""
 _Row = DurationsClaim | MaximumClaim
@@ -105,7 +105,7 @@ def limits_line(study: Study, words: Mapping[str, Judgement]) -> tuple[str, set[
 def _places(rows: Sequence[AnyClaim]) -> str:
     """Where few rows stand; empty where they stand in more places."""
     found = list(dict.fromkeys(map(place, rows)))
-    return " and ".join(found) if 0 < len(found) <= _FEW else ""
+    return " and ".join(found) if 0 < len(found) <= FEW else ""
 
 
 def _whose(study: Study, own: Sequence[_Row], held: _Held) -> str:
@@ -157,7 +157,7 @@ def _differing(study: Study, found: Mapping[str, set[ClaimVerdict]], where: str)
         groups["broken" if broken else "kept" if kept else open_].append(reading)
     far = implausible(study)
     said = {word: own for word, own in groups.items() if own}
-    if len(found) > _FEW:
+    if len(found) > FEW:
         (first, own), *others = said.items()
         shares = [f"{first} under {among(own, len(found), far)}"]
         shares += [

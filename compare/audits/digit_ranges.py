@@ -12,13 +12,9 @@ from ...nlp.optimum import apart
 from ...problem import Array, Problem, as_piecewise, shown_bound
 from ...problem.cases import Claim, Digits, DurationsClaim, MaximumClaim
 from .printed_row import PrintedRow, rows_under
-from .rounding import same_limits
+from .rounding import ROUNDING, same_limits
 from .stated import other_objective
 from .study import Study
-
-_ROUNDING = 1e-9
-"""Relative room for the rounding of float64, and for the tolerance that `check` grants: a bound may
-lie this much on the wrong side, and is moved by as much."""
 
 
 @dataclass(frozen=True)
@@ -57,7 +53,7 @@ def optimum_range(row: PrintedRow[Claim]) -> OptimumRange:
     slower = None if proved is None else _slow_down(row)
     if proved is None or slower is None:
         return OptimumRange(None, upper)
-    return OptimumRange(proved / slower * (1.0 - _ROUNDING), upper)
+    return OptimumRange(proved / slower * (1.0 - ROUNDING), upper)
 
 
 def all_exact(row: PrintedRow[Claim]) -> bool:

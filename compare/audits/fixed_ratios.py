@@ -9,15 +9,13 @@ from ...problem import Array, Coupling, Problem
 from ...problem.cases import Claim
 from ..documents import Basis, Finding
 from .printed_row import PrintedRow
-from .rounding import RoundingBox
+from .rounding import ROUNDING, RoundingBox
 
 BELOW_AT_RATIOS = (
     "The whole printed interval lies below it: other ratios of the durations, other limits, "
     "another reading or other digits explain that."
 )
 """What is said of a printed total below the shortest one at fixed ratios; it is no accusation."""
-_SLACK = 1e-9
-"""Relative difference of two totals that rounding of float64 explains, with room to spare."""
 
 
 def optimum_called(problem: Problem, evidence: Evidence) -> str:
@@ -58,7 +56,7 @@ def off_ratios(row: PrintedRow[Claim]) -> str | None:
     # A total c serves a segment if c·[low, high] meets its box; one c has to serve all.
     with np.errstate(divide="ignore"):
         least, most = float((least_h / high).max()), float((most_h / low).min())
-    if least <= most * (1.0 + _SLACK):
+    if least <= most * (1.0 + ROUNDING):
         return None
     own = printed.value / printed.value.sum()
     return (

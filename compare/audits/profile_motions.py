@@ -15,13 +15,10 @@ from ...problem.cases import Digits, ProfiledClaim, end, end_states
 from .axis_profile import AxisProfile, AxisState, Sizes
 from .named_profiles import SHORTEST
 from .printed_row import PrintedRow
-from .rounding import meet
+from .rounding import FEW_ROUNDINGS, ROUNDING, meet
 
 _MOST_OPEN = 10
 """Printed numbers whose both ends are combined: 1024 profiles take a few seconds."""
-_AWAY = 1e-12
-"""Share of the positions by which the goal is moved to either side: where the optimum jumps at an
-exact number, rounding alone must not choose the side."""
 _JUMP = 0.01
 """Share of the shortest total by which totals of one rounding box must differ to be called a jump:
 ordinary digits change them by far less."""
@@ -131,7 +128,7 @@ class ProfileMotion:
         -------
         ndarray, shape (2, 3)
         """
-        close = 1e-9 * self.total_time
+        close = ROUNDING * self.total_time
         return np.array([self._at(time - close, joint), self._at(time + close, joint)])
 
     def states(self, joint: int) -> Array:
@@ -213,7 +210,7 @@ class NumberRange:
             parts = [self.others[low], self.others[~low]]
         for part in parts:
             # As much again, since corners need not be the extremes of a curved function.
-            width = float(part[-1] - part[0]) + 1e-9 * float(np.abs(part).max())
+            width = float(part[-1] - part[0]) + ROUNDING * float(np.abs(part).max())
             if meet((lower, upper), (part[0] - width, part[-1] + width)):
                 return True
         return False
@@ -275,7 +272,8 @@ def questions(row: PrintedRow[ProfiledClaim]) -> list[ProfileQuestion] | None:
     if len(free) + len(moved) > _MOST_OPEN:
         return None
     found = [plain]
-    away = _AWAY * (np.abs(box.value).max() + np.abs(np.diff(box.value, axis=0)).max())
+    # Where the optimum jumps at an exact number, rounding alone must not choose the side.
+    away = FEW_ROUNDINGS * (np.abs(box.value).max() + np.abs(np.diff(box.value, axis=0)).max())
     for step in (-away, away):
         points = box.value.copy()
         points[-1] += step

@@ -36,8 +36,11 @@ _MOST_STEPS = 12
 """Linear programs of one descent; those that find a passing point need fewer than 5."""
 _MOST_ROWS = 300
 """Peaks that one linear program holds: more of them change its answer no further."""
-_CUT_SLACK = 1.0 + 1e-9
-"""Factor by which a whole unit of the last digit is widened, far above its rounding to floats."""
+ROUNDING = 1e-9
+"""Relative margin of every comparison of computed numbers: far above what float64 loses in solved
+systems and long sums, and what `check` tolerates; far below any printed digit."""
+FEW_ROUNDINGS = 1e-12
+"""The same where a few sums, products and quotients lie between two numbers."""
 
 
 class Agreement(StrEnum):
@@ -128,8 +131,8 @@ class RoundingBox:
     def or_cut_off(self) -> RoundingBox:
         """The box widened by the inputs whose further digits were cut off instead of rounded."""
         up, down = 2.0 * (self.upper - self.value), 2.0 * (self.value - self.lower)
-        lower = np.where(self.value > 0, self.lower, self.value - down * _CUT_SLACK)
-        upper = np.where(self.value < 0, self.upper, self.value + up * _CUT_SLACK)
+        lower = np.where(self.value > 0, self.lower, self.value - down * (1.0 + ROUNDING))
+        upper = np.where(self.value < 0, self.upper, self.value + up * (1.0 + ROUNDING))
         return RoundingBox(self.value, np.minimum(lower, self.lower), np.maximum(upper, self.upper))
 
     @property
@@ -324,7 +327,7 @@ def _search(
     angles = np.clip(waypoints.value, region.waypoint_low, region.waypoint_high)
     candidates = [start, region.high]
     if np.isfinite(at_print.stretch):
-        repaired = start * (at_print.stretch * (1.0 + 1e-12))
+        repaired = start * (at_print.stretch * (1.0 + FEW_ROUNDINGS))
         widest = start * (region.high / start).min()
         candidates[:0] = [np.clip(h, region.low, region.high) for h in (repaired, widest)]
     best: tuple[float, Point] | None = None

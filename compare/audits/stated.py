@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from ...problem import Case, Printed
+from ...problem import QUANTITIES, Case, Printed
 from ...problem.cases import (
     AnyClaim,
     Claim,
@@ -196,8 +196,8 @@ _PLURALS = {
     "jerk": "jerks",
 }
 """Derivatives of several joints."""
-_ORDERS = {1: "velocity", 2: "acceleration", 3: "jerk"}
-"""Derivatives by their order."""
+DERIVATIVES = ("position", *QUANTITIES)
+"""The position and its derivatives, by their order."""
 _STATEMENTS = {
     "within_limits": "the motion keeps its limits",
     "continuous": "velocity and acceleration are continuous",
@@ -249,7 +249,9 @@ def _said(case: Case, claim: AnyClaim) -> str:
         case ConvergenceClaim():
             return f"the search converges within {claim.iterations} iterations"
         case ConditionsClaim():
-            names = enumerated(_ORDERS.get(k, f"derivative {k}") for k in claim.orders)
+            names = enumerated(
+                DERIVATIVES[k] if k < len(DERIVATIVES) else f"derivative {k}" for k in claim.orders
+            )
             at = "both ends" if claim.rest_at == "ends" else "all way-points"
             verb = "is" if len(claim.orders) == 1 else "are"
             count = f": {claim.count} conditions" if claim.count is not None else ""

@@ -239,17 +239,15 @@ class Study:
 
     def unreplayed(self, algorithm_id: str, pair: Pair) -> str | None:
         """Why an algorithm is not replayed on a problem, as a sentence; None if it is."""
-        algorithm = self.algorithm(algorithm_id)
+        algorithm, name = self.algorithm(algorithm_id), capital(self.called(algorithm_id))
         if algorithm is None:
-            return (
-                f"{capital(self.called(algorithm_id))} is of a kind that is not implemented here."
-            )
+            return f"{name} is of a kind that is not implemented here."
         problem = self.problem(pair)
         try:
             # What judges the positions of every run says whether it can.
             DeathPenalty(problem, algorithm.penalty)
         except TrajgapError as error:
-            return f"{capital(self.called(algorithm_id))} is not replayed: {error}."
+            return f"{name} is not replayed: {error}."
         return None
 
     def runs(self, algorithm_id: str, pair: Pair) -> Replays:

@@ -6,12 +6,10 @@ import numpy as np
 
 from ...nlp.enclosure import Ball, bound_ratio
 from ...problem import TOLERANCE, Array, Problem
-from .rounding import RoundingBox
+from .rounding import FEW_ROUNDINGS, RoundingBox
 
 _MOST_SPLIT = 8
 """Segments above which splitting boxes of durations cannot come to an end in time."""
-_FLOAT_SLACK = 1e-12
-"""Relative margin that outweighs the few roundings of sums and quotients of floats."""
 BOXES = 1000
 """Boxes of durations that are looked at, each in milliseconds: some seconds at most, and what they
 decide does not depend on the machine."""
@@ -50,9 +48,9 @@ def excludes_total(
     q = RoundingBox.exact(problem.waypoints) if waypoints is None else waypoints
     ball = Ball.between(q.lower, q.upper)
     target = 1.0 + TOLERANCE
-    low = _least_durations(problem, q) / target * (1.0 - _FLOAT_SLACK)
-    low = np.maximum(low, problem.duration_lower / target * (1.0 - _FLOAT_SLACK))
-    total *= 1.0 + _FLOAT_SLACK
+    low = _least_durations(problem, q) / target * (1.0 - FEW_ROUNDINGS)
+    low = np.maximum(low, problem.duration_lower / target * (1.0 - FEW_ROUNDINGS))
+    total *= 1.0 + FEW_ROUNDINGS
     if low.sum() > total:
         return True
     # Where coefficients are free, durations alone have no ratios to bound.

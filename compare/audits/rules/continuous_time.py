@@ -19,11 +19,11 @@ from ..digit_ranges import below_certified
 from ..own_result import UNSAID, meant_to_keep, said_of, said_to_keep
 from ..printed_row import PrintedRow, left_out, printed_rows, rows_under
 from ..roots import LIMITS
-from ..stated import all_called, called_under
+from ..stated import DERIVATIVES, all_called, called_under
 from ..study import Study
 from .judged_rows import JudgedRow, broken, judged_row, ratio_at_print
 from .linear_blends import BLENDS, blended, judge_row
-from .peaks import JUMPING, box_reach, jump_size, jump_unit, largest, largest_of_each_kind
+from .peaks import box_reach, jump_size, jump_unit, largest, largest_of_each_kind
 from .rule_group import INFORMS, Explained, rule_group
 
 _ELSEWHERE = "elsewhere"
@@ -252,7 +252,7 @@ def _continuity(study: Study, claim: StatementClaim) -> Iterator[Finding]:
             )
         elif jumps:
             largest_ones = " and ".join(
-                f"in {JUMPING[top.order]} of joint {top.joint} at t = {top.time:.6g} s by "
+                f"in {DERIVATIVES[top.order]} of joint {top.joint} at t = {top.time:.6g} s by "
                 f"{jump_size(row, top):.6g} {jump_unit(row, top)}"
                 for row, top in largest_of_each_kind(jumps)
             )

@@ -26,15 +26,12 @@ from ....problem.cases import AnyClaim, Claim, Digits, DurationsClaim
 from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..own_result import UNSAID, meant_to_keep, said_of
 from ..printed_row import PrintedRow
-from ..rounding import RoundingBox
+from ..rounding import ROUNDING, RoundingBox
 from ..study import Study
 from .rule_group import Explained, rule_group
 
 BLENDS = "blends"
 """Root of what follows from a row that breaks a limit."""
-_SLACK = 1e-9
-"""Relative margin that a limit is exceeded by at least: far above the rounding of a few quotients
-to floats, far below what digits leave open."""
 
 
 _NO_SPEED = 1e300
@@ -156,11 +153,11 @@ def _judged(row: PrintedRow[DurationsClaim], problem: Problem, ends: EndBlends) 
     wide = _blended(row, problem, box, durations, ends, as_printed=False)
     plain = _blended(row, problem, box, durations, ends, as_printed=True)
     loose = row.posed(Digits.LOOSEST_CUT).limits.sides.max(axis=0)
-    most = loose[:, :2] * (1.0 + _SLACK)
+    most = loose[:, :2] * (1.0 + ROUNDING)
     breaks = (
         bool((wide.velocity.size.low > most[:, 0]).any())
         or bool((wide.acceleration.low > most[:, 1]).any())
-        or bool((wide.room.high < -_SLACK * durations.value[:, None]).any())
+        or bool((wide.room.high < -ROUNDING * durations.value[:, None]).any())
     )
     try:
         tight = row.posed(Digits.TIGHTEST).limits.sides.min(axis=0)

@@ -21,7 +21,8 @@ from ....problem.cases import (
 )
 from ...documents import Basis, ClaimVerdict, Finding
 from ..printed_row import PrintedRow, printed_rows
-from ..stated import called, place_of_value
+from ..rounding import ROUNDING
+from ..stated import DERIVATIVES, called, place_of_value
 from ..study import Study
 from .beside import SAMPLES, Beside, nearest_number
 from .peaks import beside, peak_described
@@ -172,12 +173,6 @@ def measure_described(row: PrintedRow[AnyClaim], claim: MeasureClaim, one: Besid
     return one.told(f"the {NAMES[claim.measure]} of {claim.derivative}{whose}")
 
 
-_ORDERS = {"position": 0, **{name: order for order, name in enumerate(QUANTITIES, 1)}}
-"""Order of each derivative."""
-_SAME = 1e-9
-"""Share of a value by which its two sides differ where it jumps: far above rounding."""
-
-
 def value_beside(
     row: PrintedRow[AnyClaim], claim: ValueClaim, printed: Printed, joint: str | None
 ) -> Beside | None:
@@ -187,7 +182,7 @@ def value_beside(
         joint = problem.joints[0]
     if joint not in problem.joints:
         return None
-    j, order = problem.joints.index(joint), _ORDERS[claim.derivative]
+    j, order = problem.joints.index(joint), DERIVATIVES.index(claim.derivative)
     unit = row.in_units(claim.derivative, 1.0, joint)
     statement = row.statement
     at = None if claim.place is None else named_places(statement)[claim.place]
@@ -206,7 +201,7 @@ def value_beside(
         return _near(trajectory, time, j, order)
 
     pair = sides(drawn, printed_durations)
-    jumps = pair is not None and abs(pair[0] - pair[1]) > _SAME * max(map(abs, pair))
+    jumps = pair is not None and abs(pair[0] - pair[1]) > ROUNDING * max(map(abs, pair))
 
     def meant(waypoints: Array, durations: Array) -> dict[str, float]:
         trajectory = fit(problem.curve, waypoints, durations)
@@ -237,7 +232,7 @@ def _near(motion: Trajectory, time: float, joint: int, order: int) -> tuple[floa
     """Values just before and just after an instant, alike where nothing jumps there."""
     breaks = motion.breaks
     time = min(max(time, float(breaks[0])), float(breaks[-1]))
-    close = 1e-9 * float(breaks[-1] - breaks[0])
+    close = ROUNDING * float(breaks[-1] - breaks[0])
     at = int(np.argmin(np.abs(breaks - time)))
     if abs(breaks[at] - time) > close:
         value = float(motion(np.array([time]), order)[0, joint])

@@ -21,14 +21,12 @@ from ....problem import (
 from ....problem.cases import AnyClaim, Claim, Digits, PeakClaim, StatementClaim, motions_of
 from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..printed_row import PrintedRow, printed_rows
-from ..rounding import Agreement, RoundingBox
-from ..stated import place
+from ..rounding import ROUNDING, Agreement, RoundingBox
+from ..stated import DERIVATIVES, place
 from ..study import Study
-from .beside import UNEXPLAINED, Beside, Look, largest_change
+from .beside import SAMPLES, UNEXPLAINED, Beside, Look, largest_change
 from .rule_group import Explained, rule_group
 
-_SAMPLES = 50
-"""Samples of a motion at the coarsest: fewer would show corners in a printed figure."""
 _PHASES = 8
 """Offsets at which those samples are tried: the worst of so many comes near the worst of all."""
 _WIDE = 0.05
@@ -38,8 +36,6 @@ _NORM_PLACES = 65
 polynomial in time: many for a curve that turns a few times."""
 _Jump = tuple[PrintedRow[Claim], Jump]
 """A jump with the row whose motion it is of."""
-JUMPING = ("position", "velocity", "acceleration")
-"""What jumps, by its order."""
 
 
 def box_reach(row: PrintedRow[Claim], point: Extremum) -> float:
@@ -172,11 +168,11 @@ def _samples(row: PrintedRow[AnyClaim], order: int) -> list[Array]:
     """Absolute values at evenly spaced times, for each offset that these may have."""
 
     def compute() -> list[Array]:
-        step = float(row.durations.value.sum()) / _SAMPLES
+        step = float(row.durations.value.sum()) / SAMPLES[0]
         offsets = np.arange(_PHASES)[:, None] / _PHASES
-        times = (np.arange(_SAMPLES) + offsets) * step
+        times = (np.arange(SAMPLES[0]) + offsets) * step
         found = np.abs(row.motion(times.ravel(), order))
-        return list(found.reshape(_PHASES, _SAMPLES, -1))
+        return list(found.reshape(_PHASES, SAMPLES[0], -1))
 
     return row.once("samples", compute, order)
 
@@ -305,16 +301,12 @@ def largest_of_each_kind(jumps: Sequence[_Jump]) -> list[_Jump]:
 
 def jump_size(row: PrintedRow[Claim], jump: Jump) -> float:
     """Size of a jump in the unit of its joint."""
-    return row.in_units(JUMPING[jump.order], jump.size, jump.joint)
+    return row.in_units(DERIVATIVES[jump.order], jump.size, jump.joint)
 
 
 def jump_unit(row: PrintedRow[Claim], jump: Jump) -> str:
     """The unit of a jump, as a sentence writes it."""
-    return row.unit(JUMPING[jump.order], jump.joint)
-
-
-_ROUNDING = 1.0 + 1e-9
-"""Factor by which a peak exceeds its limit at least: far above the rounding of units to floats."""
+    return row.unit(DERIVATIVES[jump.order], jump.joint)
 
 
 @rule_group(
@@ -375,7 +367,7 @@ def _above(row: PrintedRow[AnyClaim], peak: PeakClaim) -> list[str]:
         label = loosest.joints[j]
         measured = row.measured(number, peak.derivative, label)
         least = measured.value - (measured.upper - measured.lower)
-        if np.isfinite(limit) and least > limit * _ROUNDING:
+        if np.isfinite(limit) and least > limit * (1.0 + ROUNDING):
             shown = row.in_units(peak.derivative, limit, label)
             unit = row.unit(peak.derivative, label)
             found.append(

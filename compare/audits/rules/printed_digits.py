@@ -17,8 +17,6 @@ from ..rounding import Agreement, agreement, either, hull, meet
 from ..study import Study
 from .rule_group import ON_DIGITS, Explained, rule_group
 
-_FEWEST = 4
-"""Numbers that a table needs before two tables alike are worth a word."""
 _SIGNIFICANT = 4
 """Digits that a number needs before its repetition is worth a word."""
 

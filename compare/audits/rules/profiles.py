@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ....problem import QUANTITIES, Array, CaseError, Measured, Problem
+from ....problem import Array, CaseError, Measured, Problem
 from ....problem.cases import (
     AnyClaim,
     Digits,
@@ -27,15 +27,11 @@ from ...documents import Basis, ClaimVerdict, Finding
 from ..named_profiles import NOT_SHORTEST, RESTING, SHORTEST, profile_called, resting_total
 from ..printed_row import PrintedRow
 from ..profile_motions import NumberRange, ProfileMotion, motions, profiled_limits
-from ..rounding import meet
-from ..stated import place_of_value
+from ..rounding import FEW_ROUNDINGS, meet
+from ..stated import DERIVATIVES, place_of_value
 from ..study import Study
 from .rule_group import Explained, rule_group
 
-_SLACK = 1e-12
-"""Relative margin that outweighs the few roundings of a closed form in floats."""
-_ORDERS = {"position": 0, **{name: order for order, name in enumerate(QUANTITIES[:2], 1)}}
-"""Order of each derivative that a profile has everywhere."""
 _PATHS = {
     False: "each segment as long as its slowest joint needs",
     True: "all joints on a straight line in each segment",
@@ -162,7 +158,7 @@ def _out_of_range(problem: Problem, motion: ProfileMotion) -> str | None:
     for j, label in enumerate(problem.joints):
         places = motion.states(j)[:, 0]
         low, high = problem.limits.position_lower[j], problem.limits.position_upper[j]
-        room = _SLACK * max(map(abs, places))
+        room = FEW_ROUNDINGS * max(map(abs, places))
         if places.min() < low - room or places.max() > high + room:
             return (
                 f"The shortest profile leaves the position range of joint {label}, within which "
@@ -266,9 +262,9 @@ def _fitted(asked: _Asked, number: Measured, straight: bool) -> tuple[float, boo
 
     plain = total(np.abs(np.diff(problem.waypoints, axis=0)), Digits.PRINTED)
     least, most = row.waypoint_box(problem).or_cut_off().steps
-    low = total(least, Digits.LOOSEST_CUT) * (1.0 - _SLACK)
+    low = total(least, Digits.LOOSEST_CUT) * (1.0 - FEW_ROUNDINGS)
     try:
-        high = total(most, Digits.TIGHTEST) * (1.0 + _SLACK)
+        high = total(most, Digits.TIGHTEST) * (1.0 + FEW_ROUNDINGS)
     except CaseError:
         high = inf
     cut = number.cut_off()
@@ -317,7 +313,7 @@ def _numbers_beside(asked: _Asked) -> Finding:
     claim, row = asked.claim, asked.row
     assert isinstance(claim, PeakClaim | ValueClaim)
     joints = row.posed().joints
-    if claim.derivative not in _ORDERS:
+    if claim.derivative == "jerk":
         return _unknown(asked, "The jerk of a profile is not computed.")
     said, wrong, plain = [], False, []
     where = "" if isinstance(claim, PeakClaim) else place_of_value(row.study.case, claim)
@@ -365,7 +361,7 @@ def _of_motion(
 
     A peak is the largest of all ``joints``; a value is of one joint.
     """
-    order = _ORDERS[claim.derivative]
+    order = DERIVATIVES.index(claim.derivative)
     if isinstance(claim, PeakClaim):
         return [max(float(np.abs(motion.states(joint)[:, order]).max()) for joint in joints)]
     (joint,) = joints

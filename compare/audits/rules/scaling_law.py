@@ -13,6 +13,7 @@ from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..fixed_ratios import off_ratios
 from ..printed_row import rows_under
 from ..roots import OPTIMAL
+from ..rounding import FEW_ROUNDINGS, ROUNDING
 from ..stated import called_under, other_objective
 from ..study import Study
 from .rule_group import Explained, rule_group
@@ -78,7 +79,7 @@ def velocity_factor(one: Problem, other: Problem) -> float | None:
     if not finite.any() or (b.velocity[finite] == 0).any():
         return None
     factors = a.velocity[finite] / b.velocity[finite]
-    return float(factors[0]) if np.ptp(factors) <= 1e-12 * factors[0] else None
+    return float(factors[0]) if np.ptp(factors) <= FEW_ROUNDINGS * factors[0] else None
 
 
 def _same_ratios(one: Problem, other: Problem) -> bool:
@@ -115,7 +116,7 @@ def _stretched(
         return
     reachable = feasible * factor
     shown, (low, _) = total
-    if low <= reachable * (1 + 1e-9):
+    if low <= reachable * (1 + ROUNDING):
         return
     summed = float(durations.sum())
     exact = f"{summed * factor:.6g} s"
