@@ -112,15 +112,12 @@ def shortest_trapezoid(start: AxisState, finish: AxisState, sizes: Sizes) -> Axi
     v²/(2A) for positive v and v²/(2D) for others. It rises first if the way is longer than that
     of the direct change from the first velocity to the last.
 
+    It is None if no motion keeps the limits.
+
     Parameters
     ----------
     sizes : Sizes
         A start above the velocity limit is braked into it first.
-
-    Returns
-    -------
-    AxisProfile or None
-        None if no motion keeps the limits.
     """
     top = sizes.velocity
     if abs(finish.velocity) > top:
@@ -176,17 +173,14 @@ def shortest_s_curve(start: AxisState, finish: AxisState, sizes: Sizes) -> AxisP
     stays a while at p or m where that is at the limit. Every such motion is computed, and the
     shortest within the limits is the answer.
 
+    It is None if no motion was found: none keeps the limits, or one would leave them on the other
+    side while it is braked into them.
+
     Parameters
     ----------
     sizes : Sizes
         Finite jerk. A start outside the limits of velocity or acceleration, or on the way out of
         them, is braked into them first.
-
-    Returns
-    -------
-    AxisProfile or None
-        None if none was found: no motion keeps the limits, or one would leave them on the other
-        side while it is braked into them.
     """
     way = finish.position - start.position
     unit = max(

@@ -38,17 +38,14 @@ def verdict_card(
 ) -> VerdictCard:
     """The card of a case, from what its audit found.
 
+    It has at most `CARD_WORDS` words: errors that do not fit are counted.
+
     Parameters
     ----------
     causes : sequence of Cause
         The gravest first.
     runs : sequence of Reached
         Of the paper's algorithms, its own way of searching first.
-
-    Returns
-    -------
-    VerdictCard
-        Of at most `CARD_WORDS` words: errors that do not fit are counted.
     """
     words = {judgement.claim: judgement for judgement in judgements}
     limits, judged = limits_line(study, words)

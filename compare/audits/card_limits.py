@@ -44,15 +44,12 @@ _Held = Mapping[str, Mapping[str, ClaimVerdict]]
 def limits_line(study: Study, words: Mapping[str, Judgement]) -> tuple[str, set[str]]:
     """Whether the durations that a paper calls its result keep the limits.
 
+    The claims that the sentence speaks of come with it: other rows have sentences of their own.
+
     Parameters
     ----------
     words : mapping of str to Judgement
         Of each claim, by its id.
-
-    Returns
-    -------
-    (str, set of str)
-        The sentence, and the claims that it speaks of: other rows have sentences of their own.
     """
     case = study.case
     unknown = "Whether the limits are kept is not checkable"

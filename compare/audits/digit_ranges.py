@@ -140,10 +140,7 @@ def implausible(study: Study) -> dict[str, str]:
     A shortest motion just reaches a limit. A reading that leaves it a tenth of the limits, or ten
     times them, is admissible still: it is only named as what it is.
 
-    Returns
-    -------
-    dict of str to str
-        Why, by the reading's id; empty where readings do not differ so much.
+    Each reason stands under the reading's id; there is none where readings do not differ so much.
     """
     if len(study.readings) < 2 or not study.has_problems:
         return {}

@@ -202,6 +202,9 @@ def explained(
 ) -> tuple[Explanation, ...]:
     """Changes in print that the numbers allow and that would settle a finding.
 
+    Those that explain most with the fewest slips come first: several that tie, and one of each
+    other kind.
+
     Parameters
     ----------
     groups : sequence of RuleGroup
@@ -210,12 +213,6 @@ def explained(
         Of the cause.
     finding : Finding
         The first finding of the cause.
-
-    Returns
-    -------
-    tuple of Explanation
-        Those that explain most with the fewest slips first; several that tie, and one of
-        each other kind.
     """
     kind = root.split(" ")[0]
     if kind == TABLES:
@@ -280,19 +277,16 @@ def _at_the_ends(study: Study, claim: ConditionsClaim) -> Iterator[Explanation]:
 def _by_slips(trial: _Trial, under: str, default: bool) -> list[Explanation]:
     """Misprints with which a finding would not stand, those that explain most first.
 
+    First come those that explain as much as the best with as few slips, while they are few, then
+    the best of each other kind that settles as much. Where nothing settles the finding, it is what
+    would bring a motion nearer to its limits.
+
     Parameters
     ----------
     under : str
         The reading, as the end of a sentence; empty where there is one alone.
     default : bool
         Whether that is the default reading of several, which a card names so.
-
-    Returns
-    -------
-    list of Explanation
-        Those that explain as much as the best with as few slips, while they are few, then
-        the best of each other kind that settles as much. Where nothing settles the finding, what
-        would bring a motion nearer to its limits.
     """
     study, finding, claim, pair = trial.study, trial.finding, trial.claim, trial.pair
     if finding.rule not in _OF_MOTIONS | _OF_DIGITS:

@@ -29,17 +29,14 @@ _TRIALS = 10_000
 def double_s(start: AxisState, finish: AxisState, sizes: Sizes) -> AxisProfile | None:
     """The profile of the algorithm, which is not the shortest where it shrinks the acceleration.
 
+    It is None if the algorithm has no answer.
+
     Parameters
     ----------
     start, finish : AxisState
         Accelerations of 0, velocities within the limit.
     sizes : Sizes
         Finite.
-
-    Returns
-    -------
-    AxisProfile or None
-        None if the algorithm has no answer.
 
     Notes
     -----

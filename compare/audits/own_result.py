@@ -27,10 +27,7 @@ def own_results(case: Case, times: Sequence[_Time]) -> list[_Time]:
     where others name none, before all of them those that are said to keep the limits. Several
     joints or problems have a row each.
 
-    Returns
-    -------
-    list of TimeClaim
-        Empty of none.
+    There are none of no times.
     """
     answers = [c for c in times if c.state != "before"] or list(times)
     answers = [c for c in answers if c.objective is None or not other_objective(case, c)] or answers

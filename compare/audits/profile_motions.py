@@ -44,10 +44,7 @@ class ProfileQuestion:
     def laws(self, profile: str, straight: bool) -> tuple[AxisProfile, ...] | None:
         """The motion of each segment: of the one joint, or of all on a straight line from 0 to 1.
 
-        Returns
-        -------
-        tuple of AxisProfile or None
-            None if none was found that keeps the limits.
+        It is None if no motion was found that keeps the limits.
         """
         found = []
         last = len(self.points) - 2
@@ -223,11 +220,8 @@ class NumberRange:
 def profiled_limits(row: PrintedRow[ProfiledClaim], digits: Digits) -> Array:
     """Limits of the joints of a claim with the one that only its profile has.
 
-    Returns
-    -------
-    ndarray, shape (joints, 4)
-        Of velocity, acceleration and jerk; and of snap, or of deceleration, which is that of
-        acceleration where none is stated.
+    Columns are velocity, acceleration and jerk, and snap or deceleration, which is that of
+    acceleration where none is stated; shape (joints, 4).
     """
     problem, claim = row.posed(digits), row.claim
     limits = problem.limits.derivatives
@@ -250,10 +244,7 @@ def profiled_limits(row: PrintedRow[ProfiledClaim], digits: Digits) -> Array:
 def questions(row: PrintedRow[ProfiledClaim]) -> list[ProfileQuestion] | None:
     """The printed numbers first, then every combination of ends of what their digits leave.
 
-    Returns
-    -------
-    list of ProfileQuestion or None
-        None if too many numbers are printed digits.
+    It is None if too many numbers are printed digits.
     """
     problem = row.posed()
     box = row.waypoint_box(problem).or_cut_off()
@@ -293,16 +284,13 @@ def questions(row: PrintedRow[ProfiledClaim]) -> list[ProfileQuestion] | None:
 def motions(row: PrintedRow[ProfiledClaim], profile: str) -> list[ProfileMotion | None] | None:
     """The profile at each of `questions`, the printed numbers first.
 
+    None stands for numbers at which no profile was found that keeps the limits, and in place of
+    all if `questions` has no answer.
+
     Parameters
     ----------
     profile : str
         A key of `SHORTEST`.
-
-    Returns
-    -------
-    list of (ProfileMotion or None) or None
-        None for numbers at which none was found that keeps the limits, and in place of all if
-        `questions` has no answer.
     """
 
     def compute() -> list[ProfileMotion | None] | None:

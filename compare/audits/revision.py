@@ -48,6 +48,8 @@ _Numbers = ImprovementClaim | MotionValueClaim | ControlVerticesClaim
 def revise(study: Study, first: Audited, again: Callable[[Study], Audited]) -> tuple[Edit, ...]:
     """Edits after which an audit finds nothing but what no number mends.
 
+    Edits have the order of the claims and hold together: each was computed from the others.
+
     Parameters
     ----------
     study : Study
@@ -56,11 +58,6 @@ def revise(study: Study, first: Audited, again: Callable[[Study], Audited]) -> t
         Of its audit.
     again : callable
         Audits the edited draft.
-
-    Returns
-    -------
-    tuple of Edit
-        In the order of the claims. They hold together: each was computed from the others.
     """
     draft = _Draft(study)
     tried: Counter[str] = Counter()

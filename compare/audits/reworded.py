@@ -21,15 +21,12 @@ CLAIM, READINGS = "claim", "readings"
 def edited(case: Case, edits: Iterable[Edit]) -> Case:
     """The case as it reads after edits.
 
+    It counts as not read from a file.
+
     Parameters
     ----------
     edits : iterable of Edit
         Of one audit, all or some of them.
-
-    Returns
-    -------
-    Case
-        Not read from a file.
     """
     claims = {claim.id: claim for claim in case.claims}
     readings = case.document.readings

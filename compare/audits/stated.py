@@ -217,10 +217,7 @@ _STATEMENTS = {
 def sentence_of(case: Case, claim: AnyClaim) -> str:
     """One sentence for a claim, from what it prints.
 
-    Returns
-    -------
-    str
-        Such as "The largest velocity of joint 2 is 94.7 deg/s."
+    An example is "The largest velocity of joint 2 is 94.7 deg/s."
     """
     said = _said(case, claim)
     names = {one.id: one.name for one in case.algorithms}

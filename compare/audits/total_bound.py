@@ -23,6 +23,8 @@ def excludes_total(
 ) -> bool | None:
     """Prove that no durations of a total or less keep the limits, for all way-points of a box.
 
+    It is True if that is proved, False if nothing is said, None if it would take more boxes.
+
     Parameters
     ----------
     problem : Problem
@@ -33,11 +35,6 @@ def excludes_total(
         rad; those of the problem, exactly, by default.
     boxes : int
         Most boxes of durations that are looked at.
-
-    Returns
-    -------
-    bool or None
-        True if it is proved; False says nothing; None if it would take more boxes to say.
 
     Notes
     -----

@@ -59,17 +59,14 @@ def examine(
 ) -> tuple[Sample, ...]:
     """Solve every instance for both curves and run both procedures on it.
 
+    Samples have the order of the tasks, one for each of their readings.
+
     Parameters
     ----------
     workers : int
         Processes; the same bits for any number of them.
     progress : callable, optional
         Called with a few words after each instance.
-
-    Returns
-    -------
-    tuple of Sample
-        In the order of the tasks, one for each of their readings.
     """
     todo = list(tasks)
     workers = max(1, min(workers, len(todo)))
@@ -219,10 +216,7 @@ def readings_of(study: Study, block: InstancesBlock) -> tuple[str, ...]:
 def printed_reduction(study: Study, block: InstancesBlock) -> tuple[float, float] | None:
     """Smallest and largest reduction that the printed digits allow, as shares of the slower total.
 
-    Returns
-    -------
-    tuple of float or None
-        From the printed percentage, else from the two totals; None if neither is printed.
+    They follow from the printed percentage, else from the two totals, if either is printed.
     """
     claim = _claimed(study, block)
     if claim.percent is not None:

@@ -121,15 +121,12 @@ class Distribution:
 def distribution(reductions: Array) -> Distribution:
     """Quantiles of reductions.
 
+    All are nan if no pair has one.
+
     Parameters
     ----------
     reductions : ndarray, shape (pairs,)
         nan where a pair has none; nothing is clipped.
-
-    Returns
-    -------
-    Distribution
-        nan throughout if no pair has one.
     """
     known = reductions[np.isfinite(reductions)]
     if not known.size:

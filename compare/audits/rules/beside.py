@@ -164,17 +164,14 @@ class Beside:
 def _meant_by_ratio(ratio: float, linear: bool) -> str | None:
     """The factor between two units that a ratio is near, and what it would mean.
 
+    It is None where the ratio is near none.
+
     Parameters
     ----------
     ratio : float
         Positive.
     linear : bool
         Whether the numbers are those of a joint that slides.
-
-    Returns
-    -------
-    str or None
-        None where it is near none.
     """
     for factor, meaning in (_LENGTH_FACTORS if linear else _FACTORS).items():
         for one in (factor, 1 / factor):

@@ -50,10 +50,7 @@ _STEPS = 10
 def reading_clues(study: Study) -> tuple[ReadingClue, ...]:
     """Every clue of a case under every reading with a problem.
 
-    Returns
-    -------
-    tuple of ReadingClue
-        By clue, then by reading.
+    Their order is by clue, then by reading.
     """
     return tuple(
         found

@@ -68,10 +68,7 @@ def _plain(claim: AnyClaim) -> Printed | None:
 def recomputed(study: Study, claim: AnyClaim) -> dict[str, tuple[str, ...]]:
     """Numbers of a claim as they follow from what the claims print that it rests on.
 
-    Returns
-    -------
-    dict of str to tuple of str
-        Digits by the claim's key; empty where nothing follows.
+    Digits stand under the claim's key; there are none where nothing follows.
     """
     if isinstance(claim, DurationsClaim):
         return {} if claim.total is None else {"total": (summed(claim.durations, claim.total),)}

@@ -72,17 +72,14 @@ def measured(trajectory: Trajectory, order: int, measure: str) -> MotionMeasure:
     Of each joint it is exact up to float rounding where the pieces are polynomials in time, since
     they are split where the derivative changes its sign.
 
+    Units are rad or m, and s.
+
     Parameters
     ----------
     order : int
         1 for velocity, 2 for acceleration, 3 for jerk.
     measure : str
         A key of `NAMES`.
-
-    Returns
-    -------
-    MotionMeasure
-        rad or m, and s.
     """
     first, square, norm = np.zeros(trajectory.joints), np.zeros(trajectory.joints), 0.0
     for piece in range(len(trajectory.durations)):

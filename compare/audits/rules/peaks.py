@@ -55,6 +55,8 @@ def _reach(row: PrintedRow[Claim], points: list[Extremum], share: Array) -> floa
 def farthest(row: PrintedRow[AnyClaim], top: Extremum, alone: bool, share: float) -> float:
     """Largest change of a peak that is found in the rounding box.
 
+    It has the SI unit of the peak.
+
     Parameters
     ----------
     top : Extremum
@@ -63,11 +65,6 @@ def farthest(row: PrintedRow[AnyClaim], top: Extremum, alone: bool, share: float
         Whether it is that of its own joint, and not of all.
     share : float
         How wide the box is: 1 for rounded digits, 2 for digits that may be cut off.
-
-    Returns
-    -------
-    float
-        In the SI unit of the peak.
     """
     problem = row.posed()
     joints = [top.joint] if alone else range(len(problem.joints))
@@ -106,6 +103,8 @@ def beside(
 ) -> Beside | None:
     """A printed peak set beside the exact one of a motion.
 
+    It is None where the joint is not in that motion, or where the motion has no curve.
+
     Parameters
     ----------
     claim : PeakClaim
@@ -114,11 +113,6 @@ def beside(
         One of its numbers.
     joint : str or None
         Label of the joint; the largest over all joints if None.
-
-    Returns
-    -------
-    Beside or None
-        None where the joint is not in that motion, or it has no curve.
     """
     problem = row.posed()
     if not row.has_curve or (joint is not None and joint not in problem.joints):

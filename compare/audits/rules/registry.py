@@ -56,16 +56,17 @@ GROUPS = (
 NOT_COMPUTED = "TG502"
 """Stands in place of a finding that a group could not compute; the audit itself says it."""
 
-_NOT_COMPUTED = Explained(
-    "Not computed for this problem; the message says why",
-    "What could not be computed here, and why?",
-    "Not checkable, with the reason.",
-    "The solver found no motion within the limits, so that no distance can be given.",
-)
+_AUDIT = {
+    NOT_COMPUTED: Explained(
+        "Not computed for this problem; the message says why",
+        "What could not be computed here, and why?",
+        "Not checkable, with the reason.",
+        "The solver found no motion within the limits, so that no distance can be given.",
+    )
+}
+"""What no group finds."""
 
-EXPLAINED = dict(
-    sorted(chain({NOT_COMPUTED: _NOT_COMPUTED}.items(), *(group.rules.items() for group in GROUPS)))
-)
+EXPLAINED = dict(sorted(chain(_AUDIT.items(), *(group.rules.items() for group in GROUPS))))
 """Every rule by its id."""
 
 RULES = tuple(Rule(id_, one.title) for id_, one in EXPLAINED.items())
