@@ -24,17 +24,17 @@ from typing import Any
 
 import numpy as np
 from paper_comparisons import ABLATIONS, HANDLINGS, PAPERS, SEEDS, write_studies
-from trajgap.compare.audits.comparisons import (
+from trajgap.compare.audits.paper_runs import kept_runs
+from trajgap.compare.audits.replay_settings import LISTED, spread_settings
+from trajgap.compare.audits.rules.compared_before import (
     Ablated,
     Comparison,
     Designed,
     Listed,
     PairShown,
     all_comparisons,
+    comparison_words,
 )
-from trajgap.compare.audits.paper_runs import kept_runs
-from trajgap.compare.audits.replay_settings import LISTED, spread_settings
-from trajgap.compare.audits.rules.compared_before import comparison_words
 from trajgap.compare.documents import OWN_OPTIMA, SHARED_OPTIMUM
 from trajgap.compare.gaps import (
     Row,

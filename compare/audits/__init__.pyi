@@ -1,6 +1,5 @@
 from .card_errors import plainly
 from .case_audit import AuditReport, CaseAudit, audit
-from .chosen_case import Pair
 from .fixed_ratios import at_ratios, planned_apart
 from .paper_runs import searched_for
 from .printed_row import PrintedRow, printed_rows
@@ -9,7 +8,7 @@ from .readings import KEPT, answers, segments
 from .rounding import Point, RoundingBox, RoundingVerdict, judge_rounding
 from .rules import EXPLAINED, RULES
 from .stated import asked_as, claim_text, digits_of, in_words, place
-from .study import Study
+from .study import Pair, Study
 from .waterfall import routes, waterfalls
 
 __all__ = [

@@ -11,11 +11,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import Polynomial
 
+from .rounding import FEW_ROUNDINGS
+
 _CLOSE = 1e-9
 """How far a profile may miss the goal, and a phase may be negative, where all sizes are about 1:
 well above the rounding of a quartic's roots, well below any printed digit."""
-_BRAKED = 1e-12
-"""How far above its limit a scaled velocity may be by rounding alone."""
 
 
 class AxisState(NamedTuple):
@@ -55,13 +55,7 @@ class Phase(NamedTuple):
 
 @dataclass(frozen=True)
 class AxisProfile:
-    """A motion of one axis in phases of constant jerk.
-
-    Attributes
-    ----------
-    start : AxisState
-    phases : tuple of Phase
-    """
+    """A motion of one axis in phases of constant jerk."""
 
     start: AxisState
     phases: tuple[Phase, ...]
@@ -119,16 +113,12 @@ def shortest_trapezoid(start: AxisState, finish: AxisState, sizes: Sizes) -> Axi
     v²/(2A) for positive v and v²/(2D) for others. It rises first if the way is longer than that
     of the direct change from the first velocity to the last.
 
+    It is None if no motion keeps the limits.
+
     Parameters
     ----------
-    start, finish : AxisState
     sizes : Sizes
         A start above the velocity limit is braked into it first.
-
-    Returns
-    -------
-    AxisProfile or None
-        None if no motion keeps the limits.
     """
     top = sizes.velocity
     if abs(finish.velocity) > top:
@@ -186,7 +176,6 @@ def shortest_s_curve(start: AxisState, finish: AxisState, sizes: Sizes) -> AxisP
 
     Parameters
     ----------
-    start, finish : AxisState
     sizes : Sizes
         Finite jerk. A start outside the limits of velocity or acceleration, or on the way out of
         them, is braked into them first, as far as it does not leave them on the other side.
@@ -194,7 +183,8 @@ def shortest_s_curve(start: AxisState, finish: AxisState, sizes: Sizes) -> AxisP
     Returns
     -------
     AxisProfile or None
-        None if no motion keeps the limits.
+        None if no motion was found: none keeps the limits, or one would leave them on the other
+        side while it is braked into them.
     """
     way = finish.position - start.position
     unit = max(
@@ -240,22 +230,22 @@ def _can_end(last: AxisState, top: float, most: float) -> bool:
     """Whether a state within the limits can be reached from within them."""
     # An acceleration at the end began at 0 with a velocity nearer to the other limit.
     earlier = last.velocity - copysign(last.acceleration**2 / 2.0, last.acceleration)
-    within = max(abs(last.velocity), abs(earlier)) <= top + _BRAKED
-    return within and abs(last.acceleration) <= most + _BRAKED
+    within = max(abs(last.velocity), abs(earlier)) <= top + FEW_ROUNDINGS
+    return within and abs(last.acceleration) <= most + FEW_ROUNDINGS
 
 
 def _braked(first: AxisState, top: float, most: float) -> AxisProfile:
     """What comes before the first state within the limits and not on the way out, jerk 1."""
     for sign in (1.0, -1.0):
         acceleration = sign * first.acceleration
-        if acceleration > most + _BRAKED:
+        if acceleration > most + FEW_ROUNDINGS:
             eased = AxisProfile(first, (Phase(acceleration - most, first.acceleration, -sign),))
             return eased.then(_braked(eased.at(inf), top, most))
     for sign in (1.0, -1.0):
         velocity, acceleration = sign * first.velocity, sign * first.acceleration
         # An acceleration that goes to 0 changes the velocity by half its square.
         ahead = velocity + abs(acceleration) * acceleration / 2.0
-        if max(velocity, ahead) > top + _BRAKED and ahead > -top - _BRAKED:
+        if max(velocity, ahead) > top + FEW_ROUNDINGS and ahead > -top - FEW_ROUNDINGS:
             # It falls until v + a t − t²/2 = top, or stays where it is at its own limit; but not
             # so far that it would pass −top before it is 0 again.
             within = sqrt(max(0.0, acceleration**2 + 2.0 * (velocity - top)))

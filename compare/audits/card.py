@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 
-from ...problem.cases import ImprovementClaim
+from ...problem.cases import (
+    ImprovementClaim,
+)
 from ..documents import (
     CARD_WORDS,
     Cause,
@@ -23,7 +25,7 @@ from ..documents import (
 from .card_errors import plainly
 from .card_limits import limits_line
 from .card_optimum import on_doubted_points, optimum_line
-from .plausibility import implausible
+from .digit_ranges import implausible
 from .study import Study
 
 
@@ -36,20 +38,14 @@ def verdict_card(
 ) -> VerdictCard:
     """The card of a case, from what its audit found.
 
+    It has at most `CARD_WORDS` words: errors that do not fit are counted.
+
     Parameters
     ----------
-    study : Study
-    judgements : iterable of Judgement
     causes : sequence of Cause
         The gravest first.
-    waterfalls : sequence of Waterfall
     runs : sequence of Reached
         Of the paper's algorithms, its own way of searching first.
-
-    Returns
-    -------
-    VerdictCard
-        Of at most `CARD_WORDS` words: errors that do not fit are counted.
     """
     words = {judgement.claim: judgement for judgement in judgements}
     limits, judged = limits_line(study, words)

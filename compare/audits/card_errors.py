@@ -40,8 +40,6 @@ def plainly(
 
     Parameters
     ----------
-    case : Case
-    cause : Cause
     far : collection of str
         Readings that are implausible.
     also : sequence of Cause

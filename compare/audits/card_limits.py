@@ -24,15 +24,15 @@ from ..documents import (
     noted,
     quoted,
 )
-from .own_result import own_results
-from .plausibility import implausible
+from .digit_ranges import implausible
+from .own_result import meant_to_keep, own_results, said_to_keep
 from .printed_row import printed_rows
-from .rules import blended, judge_row, meant_to_keep, said_to_keep
+from .rules import blended, judge_row
 from .stated import place, prints_durations
 from .study import Study
 
-_FEW = 2
-"""Readings or places that a sentence names; more are counted."""
+FEW = 2
+"""Readings, places or totals that a sentence names; more are counted."""
 _TELLING = 1.01
 """Ratio to a limit at the printed digits from which on a card gives it: below, digits end there."""
 _Row = DurationsClaim | MaximumClaim
@@ -44,16 +44,12 @@ _Held = Mapping[str, Mapping[str, ClaimVerdict]]
 def limits_line(study: Study, words: Mapping[str, Judgement]) -> tuple[str, set[str]]:
     """Whether the durations that a paper calls its result keep the limits.
 
+    The claims that the sentence speaks of come with it: other rows have sentences of their own.
+
     Parameters
     ----------
-    study : Study
     words : mapping of str to Judgement
         Of each claim, by its id.
-
-    Returns
-    -------
-    (str, set of str)
-        The sentence, and the claims that it speaks of: other rows have sentences of their own.
     """
     case = study.case
     unknown = "Whether the limits are kept is not checkable"
@@ -64,7 +60,7 @@ def limits_line(study: Study, words: Mapping[str, Judgement]) -> tuple[str, set[
         for c in case.claims
         if isinstance(c, StatementClaim) and c.checks == "within_limits" and c.id in words
     ]
-    meant = [c for c in case.claims if isinstance(c, _Row) and meant_to_keep(study, c)]
+    meant = [c for c in case.claims if isinstance(c, _Row) and meant_to_keep(case, c)]
     elsewhere = [c for c in meant if c.other_curve is not None and not blended(c)]
     rows = [c for c in meant if c not in elsewhere and c.id in words]
     timed = [c for c in case.claims if isinstance(c, TimeClaim) and c.other_curve is None]
@@ -106,7 +102,7 @@ def limits_line(study: Study, words: Mapping[str, Judgement]) -> tuple[str, set[
 def _places(rows: Sequence[AnyClaim]) -> str:
     """Where few rows stand; empty where they stand in more places."""
     found = list(dict.fromkeys(map(place, rows)))
-    return " and ".join(found) if 0 < len(found) <= _FEW else ""
+    return " and ".join(found) if 0 < len(found) <= FEW else ""
 
 
 def _whose(study: Study, own: Sequence[_Row], held: _Held) -> str:
@@ -158,7 +154,7 @@ def _differing(study: Study, found: Mapping[str, set[ClaimVerdict]], where: str)
         groups["broken" if broken else "kept" if kept else open_].append(reading)
     far = implausible(study)
     said = {word: own for word, own in groups.items() if own}
-    if len(found) > _FEW:
+    if len(found) > FEW:
         (first, own), *others = said.items()
         shares = [f"{first} under {among(own, len(found), far)}"]
         shares += [
@@ -221,6 +217,6 @@ def _broken(study: Study, own: Sequence[_Row], held: _Held) -> str:
     whose = _whose(study, wrong, held)
     if len(wrong) < len(own) and not _places(wrong):
         whose = f"{len(wrong)} of {len(own)} printed sets of durations"
-    if any(said_to_keep(study, c) for c in wrong):
+    if any(said_to_keep(study.case, c) for c in wrong):
         return f"{whose} break a limit {every}"
     return f"{whose} break a limit {every}; nothing printed says that they keep it"

@@ -25,19 +25,19 @@ from ..documents import (
     count_words,
     ranged,
 )
-from .chosen_case import Pair
+from .card_limits import FEW
 from .digit_ranges import all_exact, optimum_range
 from .fixed_ratios import at_ratios, off_ratios, planned_apart
+from .named_profiles import profile_called
 from .own_result import bare_totals, own_result
 from .printed_row import PrintedRow
-from .profile_motions import above_shortest, profile_called
+from .profile_motions import above_shortest
+from .rounding import meet
 from .stated import other_objective, printed_total, prints_durations
 from .stated_totals import contradicts_its_parts, other_totals
-from .study import Study
+from .study import Pair, Study
 from .waterfall import stands_in
 
-_FEW = 2
-"""Totals that are each set beside their optimum; more are counted."""
 _MANY_TIMES = 10.0
 """Distance beyond which a multiple says more than a percentage."""
 _LONGER = 1e-4
@@ -87,18 +87,18 @@ def on_doubted_points(judgement: Judgement) -> bool:
 def _side_by_side(parts: Sequence[_Part]) -> str:
     """Printed totals beside their optima: what differs first, then how many agree."""
     above = [part for part in parts if isinstance(part, _Above)]
-    if len(parts) == len(above) == _FEW and len({part.name for part in above}) == 1:
+    if len(parts) == len(above) == FEW and len({part.name for part in above}) == 1:
         return _together(above)
     agreeing = [part for part in parts if isinstance(part, _Agrees)]
     unknown = [part for part in parts if isinstance(part, _Unknown)]
     others = [part for part in parts if part not in agreeing and part not in unknown]
     differing = list({str(part): part for part in others}.values())
-    *most, last = differing[:_FEW] or [""]
+    *most, last = differing[:FEW] or [""]
     # What may explain several distances is said once, of the last of them.
     said = [str(replace(one, may=False) if isinstance(one, _AtPrint) else one) for one in most]
     said += [str(last)] if differing else []
-    if len(differing) > _FEW:
-        said.append(f"{len(differing) - _FEW} more below")
+    if len(differing) > FEW:
+        said.append(f"{len(differing) - FEW} more below")
     said += [_agreement(agreeing, bool(others), len(parts))] if agreeing else []
     for why in dict.fromkeys(part.why for part in unknown):
         said.append(f"elsewhere {why}" if len(unknown) < len(parts) else why)
@@ -111,7 +111,7 @@ def _agreement(agreeing: Sequence[_Agrees], others: bool, parts: int) -> str:
         return str(agreeing[0])
     which = f"{len(agreeing)} {'more ' if others else ''}printed totals"
     if len(agreeing) == parts:
-        which = "both printed totals" if parts == _FEW else f"all {which}"
+        which = "both printed totals" if parts == FEW else f"all {which}"
     names = {_PLURALS[part.name] for part in agreeing}
     return f"{which} agree with their {names.pop() if len(names) == 1 else 'optima'}"
 
@@ -157,7 +157,7 @@ def _beside_profiles(verdicts: Sequence[ClaimVerdict], profiles: Sequence[str]) 
         return f"The printed time {'agrees' if agree else 'does not agree'} with the {own}."
     which = f"{agree} of {len(verdicts)}"
     if agree == len(verdicts):
-        which = "Both" if agree == _FEW else f"All {agree}"
+        which = "Both" if agree == FEW else f"All {agree}"
     left = len(verdicts) - agree - differ
     note = f"; {left} {'is' if left == 1 else 'are'} open" if left else ""
     return f"{which} printed times agree with their {profile_called(profiles, 'profiles')}{note}."
@@ -398,7 +398,7 @@ def _joint_by_joint(row: PrintedRow[TimeClaim], seconds: float) -> str | None:
     own = "obtained by optimising each joint separately" + ("" if proven else " (best known)")
     span = f"{ranged(wide.lowest, wide.highest, '.4f')} s"
     low, high = total.interval
-    if low <= wide.highest and high >= wide.lowest:
+    if meet((low, high), (wide.lowest, wide.highest)):
         return f"agrees with {span}, {own}"
     longer = seconds > wide.highest
     shares = sorted(abs(seconds / one - 1) for one in (wide.highest, wide.lowest))

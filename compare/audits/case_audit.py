@@ -34,20 +34,19 @@ from ..documents import (
 )
 from .card import verdict_card
 from .causes import find_causes, with_caveats
-from .chosen_case import SEEDS
+from .digit_ranges import implausible
 from .draft import advise
 from .explanations import explained
 from .instances import examinable, examined, examined_entry
 from .judging import judge, rested, weigh
 from .paper_runs import reached
-from .plausibility import implausible
 from .printed_row import PrintedRow, printed_rows
 from .provenance import provenance
 from .readings import readings_summary
 from .revision import revise
 from .rules import GROUPS, NOT_COMPUTED
 from .stated import stated_claims, stated_source
-from .study import Study
+from .study import SEEDS, Study
 from .waterfall import waterfalls
 
 _Group = Callable[[Study], Iterator[Finding]]
@@ -278,7 +277,7 @@ def audit_case(study: Study) -> CaseAudit:
     """
     groups = [group for group in GROUPS if study.has_problems or group.without_waypoints]
     found = [finding for group in groups for finding in _judged(group.judge, study)]
-    found = [f for at, f in enumerate(found) if f.rule != NOT_COMPUTED.id or f not in found[:at]]
+    found = [f for at, f in enumerate(found) if f.rule != NOT_COMPUTED or f not in found[:at]]
     scoped = _with_scopes(found, study)
     by_rule = sorted(scoped, key=_weight)
     admissible = [reading.id for reading in study.case.readings]
@@ -309,7 +308,7 @@ def _judged(group: _Group, study: Study) -> Iterator[Finding]:
         claims = [(one, _alone(group, study, one)) for one in study.claims]
         for _, found in claims:
             yield from found
-        if not any(f.rule == NOT_COMPUTED.id for _, found in claims for f in found):
+        if not any(f.rule == NOT_COMPUTED for _, found in claims for f in found):
             yield _not_computed(error)
 
 
@@ -335,7 +334,7 @@ def _under(group: _Group, row: PrintedRow[AnyClaim]) -> Iterator[Finding]:
 
 def _not_computed(error: TrajgapError, row: PrintedRow[AnyClaim] | None = None) -> Finding:
     return Finding(
-        rule=NOT_COMPUTED.id,
+        rule=NOT_COMPUTED,
         basis=Basis.CHECK,
         claim=None if row is None else row.claim.id,
         problem=None if row is None else row.problem,

@@ -46,18 +46,14 @@ def find_causes(
     Findings of one root are one cause, under however many readings; so are those that say the same
     of one claim. A finding that follows from the root of another is listed under it.
 
+    The gravest cause comes first.
+
     Parameters
     ----------
-    study : Study
     findings : iterable of Finding
         With their final severities.
     explained : callable
         From the root of a cause and its first finding to innocent explanations.
-
-    Returns
-    -------
-    tuple of Cause
-        The gravest first.
     """
     against = [f for f in findings if f.severity in _AGAINST]
     groups: dict[str, list[Finding]] = {}

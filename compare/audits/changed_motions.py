@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from typing import cast
 
 import numpy as np
 
-from ...problem import Array, Limits, Printed, Problem, Quantity, evaluate
+from ...problem import QUANTITIES, Array, Limits, Printed, Problem, Quantity, evaluate
 from ...problem.cases import (
     AnyClaim,
     Claim,
@@ -38,10 +39,6 @@ LIKELY = 1.5
 leading digit could always make a duration long enough, and such a change explains nothing."""
 _LEAST_GAIN = 0.9
 """Share of the excess that a change must leave at most to be called an improvement."""
-
-
-_DERIVATIVES: tuple[Quantity, ...] = ("velocity", "acceleration", "jerk")
-"""The limited derivatives, in order of differentiation."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,7 +113,7 @@ def _other_values(
     """Other printed peaks, where they are those of the motion as printed."""
     if not isinstance(claim, PeakClaim):
         return
-    order = _DERIVATIVES.index(claim.derivative)
+    order = QUANTITIES.index(claim.derivative)
     case = row.study.case
     labels = case.robot.joints if claim.values else (claim.joint,)
     for label, spot in zip(labels, values(case, claim), strict=True):
@@ -230,7 +227,7 @@ def _other_limits(
     row: PrintedRow[Claim], problem: Problem, printed: Array, joint: int, order: int
 ) -> Iterator[_Tried]:
     """Other limits of a quantity of a joint, or of all joints where one number holds for all."""
-    quantity, label = _DERIVATIVES[order], problem.joints[joint]
+    quantity, label = cast(Quantity, QUANTITIES[order]), problem.joints[joint]
     case, statement = row.study.case, row.statement
     at = case.robot.joints.index(label)
     slips, sizes = [], []
@@ -264,7 +261,7 @@ def _offs(row: PrintedRow[Claim], problem: Problem, peaks: Array, room: float) -
     for claim in case.claims:
         if not isinstance(claim, PeakClaim) or row.claim not in motions_of(case.claims, claim):
             continue
-        order = _DERIVATIVES.index(claim.derivative)
+        order = QUANTITIES.index(claim.derivative)
         labels = case.robot.joints if claim.values else (claim.joint,) * len(claim.printed)
         for label, number in zip(labels, claim.printed, strict=True):
             if label is not None and label not in problem.joints:

@@ -1,21 +1,20 @@
-"""Where an optimum lies for all that rounds to the digits of way-points and limits."""
+"""Where an optimum lies for all that its digits stand for; readings far from printed durations."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import exp, isfinite, log
 
 import numpy as np
 
 from ...nlp import Evidence, Status
 from ...nlp.optimum import apart
 from ...problem import Array, Problem, as_piecewise, shown_bound
-from ...problem.cases import Claim, Digits
-from .printed_row import PrintedRow
-from .rounding import same_limits
-
-_ROUNDING = 1e-9
-"""Relative room for the rounding of float64, and for the tolerance that `check` grants: a bound may
-lie this much on the wrong side, and is moved by as much."""
+from ...problem.cases import Claim, Digits, DurationsClaim, MaximumClaim
+from .printed_row import PrintedRow, rows_under
+from .rounding import ROUNDING, same_limits
+from .stated import other_objective
+from .study import Study
 
 
 @dataclass(frozen=True)
@@ -34,14 +33,6 @@ class OptimumRange:
 
 def optimum_range(row: PrintedRow[Claim]) -> OptimumRange:
     """Bounds on the optimum of a claim's problem, whatever its digits stand for.
-
-    Parameters
-    ----------
-    row : PrintedRow
-
-    Returns
-    -------
-    OptimumRange
 
     Notes
     -----
@@ -62,7 +53,7 @@ def optimum_range(row: PrintedRow[Claim]) -> OptimumRange:
     slower = None if proved is None else _slow_down(row)
     if proved is None or slower is None:
         return OptimumRange(None, upper)
-    return OptimumRange(proved / slower * (1.0 - _ROUNDING), upper)
+    return OptimumRange(proved / slower * (1.0 - ROUNDING), upper)
 
 
 def all_exact(row: PrintedRow[Claim]) -> bool:
@@ -136,3 +127,47 @@ def _farther(row: PrintedRow[Claim], problem: Problem) -> Array | None:
     with np.errstate(divide="ignore", invalid="ignore"):
         factors: Array = np.where(steps > 0, steps / least, 1.0).max(axis=0)
     return factors
+
+
+_FAR = 10.0
+"""Factor between printed durations and the limits from which a reading is called implausible: a
+tenth or ten times is more than bad planning, and less than any two units that are mixed up."""
+
+
+def implausible(study: Study) -> dict[str, str]:
+    """Readings under which printed durations lie far from the limits, though not under another.
+
+    A shortest motion just reaches a limit. A reading that leaves it a tenth of the limits, or ten
+    times them, is admissible still: it is only named as what it is.
+
+    Each reason stands under the reading's id; there is none where readings do not differ so much.
+    """
+    if len(study.readings) < 2 or not study.has_problems:
+        return {}
+    found = {rid: _stretch(study, rid) for rid in study.readings}
+    known = {rid: stretch for rid, stretch in found.items() if stretch is not None}
+    factors = {rid: exp(abs(log(stretch))) for rid, stretch in known.items()}
+    least = min(factors.values(), default=_FAR)
+    return {
+        rid: _why(known[rid], factor) for rid, factor in factors.items() if factor >= _FAR > least
+    }
+
+
+def _stretch(study: Study, reading: str) -> float | None:
+    """By what all printed durations times this keep the limits, and those of one claim just so."""
+    timed = [
+        claim
+        for claim in study.case.claims
+        if isinstance(claim, DurationsClaim | MaximumClaim)
+        if claim.state != "before" and other_objective(study.case, claim) is None
+    ]
+    checked = [row.check_or_none for row in rows_under(study, timed, reading)]
+    stretches = [found.stretch for found in checked if found is not None]
+    real = [one for one in stretches if isfinite(one) and one > 0]
+    return max(real, default=None)
+
+
+def _why(stretch: float, factor: float) -> str:
+    if stretch < 1:
+        return f"printed durations divided by {factor:.3g} would still keep every limit"
+    return f"printed durations keep the limits only if multiplied by {factor:.3g}"

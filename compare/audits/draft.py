@@ -8,7 +8,7 @@ from decimal import Decimal
 from ...problem.cases import AnyClaim, MaximumClaim, StatementClaim
 from ..documents import Advice, Cause, ClaimVerdict, Edit, Judgement, Severity, Urgency
 from .card_errors import plainly
-from .edits import CLAIM
+from .reworded import CLAIM
 from .stated import claim_text
 from .study import Study
 
@@ -34,21 +34,16 @@ def advise(
 ) -> tuple[Advice, ...]:
     """What an author can change before submitting, the gravest first.
 
+    There is one for each cause, for each claim whose answer depends on the reading, for each claim
+    that changes because others do, for each that cannot be checked, and for what is left open.
+    Every edit belongs to one of them at least.
+
     Parameters
     ----------
-    study : Study
-    causes : sequence of Cause
     judgements : sequence of Judgement
         Of the same audit.
     edits : sequence of Edit
         What to change in the draft, of all causes together.
-
-    Returns
-    -------
-    tuple of Advice
-        One for each cause, for each claim whose answer depends on the reading, for each claim that
-        changes because others do, for each that cannot be checked, and for what is left open.
-        Every edit belongs to one of them at least.
     """
     left = list(edits)
 

@@ -32,13 +32,12 @@ from ..documents import (
     quoted,
 )
 from .changed_motions import changes_of_motion
-from .chosen_case import Pair
 from .printed_row import PrintedRow
 from .roots import LIMITS, TABLES
 from .rules import RuleGroup, count_conditions, held_otherwise
 from .slips import Slip, durations, misprints, of_rows, totals, values
 from .stated import place, prints_durations
-from .study import Study
+from .study import Pair, Study
 
 _OF_MOTIONS = {"TG201", "TG203", "TG208", "TG211"}
 """Rules that rebuild motions from printed durations."""
@@ -203,21 +202,17 @@ def explained(
 ) -> tuple[Explanation, ...]:
     """Changes in print that the numbers allow and that would settle a finding.
 
+    Those that explain most with the fewest slips come first: several that tie, and one of each
+    other kind.
+
     Parameters
     ----------
-    study : Study
     groups : sequence of RuleGroup
         What judges a case with a change made.
     root : str
         Of the cause.
     finding : Finding
         The first finding of the cause.
-
-    Returns
-    -------
-    tuple of Explanation
-        Those that explain most with the fewest slips first; several that tie, and one of
-        each other kind.
     """
     kind = root.split(" ")[0]
     if kind == TABLES:
@@ -282,20 +277,16 @@ def _at_the_ends(study: Study, claim: ConditionsClaim) -> Iterator[Explanation]:
 def _by_slips(trial: _Trial, under: str, default: bool) -> list[Explanation]:
     """Misprints with which a finding would not stand, those that explain most first.
 
+    First come those that explain as much as the best with as few slips, while they are few, then
+    the best of each other kind that settles as much. Where nothing settles the finding, it is what
+    would bring a motion nearer to its limits.
+
     Parameters
     ----------
-    trial : _Trial
     under : str
         The reading, as the end of a sentence; empty where there is one alone.
     default : bool
         Whether that is the default reading of several, which a card names so.
-
-    Returns
-    -------
-    list of Explanation
-        Those that explain as much as the best with as few slips, while they are few, then
-        the best of each other kind that settles as much. Where nothing settles the finding, what
-        would bring a motion nearer to its limits.
     """
     study, finding, claim, pair = trial.study, trial.finding, trial.claim, trial.pair
     if finding.rule not in _OF_MOTIONS | _OF_DIGITS:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from ...nlp import Evidence
@@ -11,18 +9,13 @@ from ...problem import Array, Coupling, Problem
 from ...problem.cases import Claim
 from ..documents import Basis, Finding
 from .printed_row import PrintedRow
-from .rounding import RoundingBox
-
-if TYPE_CHECKING:
-    pass
+from .rounding import ROUNDING, RoundingBox
 
 BELOW_AT_RATIOS = (
     "The whole printed interval lies below it: other ratios of the durations, other limits, "
     "another reading or other digits explain that."
 )
-"""What is said of a printed total below the shortest one at fixed ratios: it accuses nobody."""
-_SLACK = 1e-9
-"""Relative difference of two totals that rounding of float64 explains, with room to spare."""
+"""What is said of a printed total below the shortest one at fixed ratios; it is no accusation."""
 
 
 def optimum_called(problem: Problem, evidence: Evidence) -> str:
@@ -51,13 +44,6 @@ def off_ratios(row: PrintedRow[Claim]) -> str | None:
     They are in the ratios that it fixes if some durations and ratios agree, of all whose digits
     were rounded or cut off to those printed.
 
-    Parameters
-    ----------
-    row : PrintedRow
-
-    Returns
-    -------
-    str or None
     """
     problem = row.study.problem(row.pair)
     if problem.shares is None or not row.study.case.printed_durations(row.claim):
@@ -70,7 +56,7 @@ def off_ratios(row: PrintedRow[Claim]) -> str | None:
     # A total c serves a segment if c·[low, high] meets its box; one c has to serve all.
     with np.errstate(divide="ignore"):
         least, most = float((least_h / high).max()), float((most_h / low).min())
-    if least <= most * (1.0 + _SLACK):
+    if least <= most * (1.0 + ROUNDING):
         return None
     own = printed.value / printed.value.sum()
     return (
@@ -84,22 +70,14 @@ def of_other_ratios(row: PrintedRow[Claim], shown: str, other: str) -> Finding:
 
     Parameters
     ----------
-    row : PrintedRow
     shown : str
         The printed total.
     other : str
         From `off_ratios`.
-
-    Returns
-    -------
-    Finding
     """
-    return Finding(
-        rule="TG302",
+    return row.finding(
+        "TG302",
         basis=Basis.DIGITS,
-        claim=row.claim.id,
-        problem=row.problem,
-        reading=row.reading,
         printed=shown,
         kind="other ratios",
         sentences=(
@@ -121,11 +99,7 @@ def _ratio_box(row: PrintedRow[Claim]) -> tuple[Array, Array]:
     if given == "equal":
         assert problem.shares is not None
         return problem.shares, problem.shares
-    points = row.waypoint_box(problem).or_cut_off()
-    step_low = points.lower[1:] - points.upper[:-1]
-    step_high = points.upper[1:] - points.lower[:-1]
-    near = np.maximum(np.maximum(step_low, -step_high), 0.0)
-    far = np.maximum(np.abs(step_low), np.abs(step_high))
+    near, far = row.waypoint_box(problem).or_cut_off().steps
     return np.hypot.reduce(near, axis=1), np.hypot.reduce(far, axis=1)
 
 

@@ -72,13 +72,8 @@ class Intervals:
 
         Parameters
         ----------
-        problem : ExactProblem
         called : str
             What is proved, in the words of progress lines and of what was left out.
-
-        Returns
-        -------
-        ProvedInterval or None
         """
         if problem not in self._found:
             self._found[problem] = self._sought(problem, called)

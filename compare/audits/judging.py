@@ -43,18 +43,12 @@ def judge(
 
     Parameters
     ----------
-    claim : str
-    findings : iterable of Finding
     admissible : sequence of str
         Every reading of the case.
     computed : sequence of str, optional
         The readings that were computed, of which the verdict speaks; all by default.
     named : Named, optional
         What the readings are called; by their ids if left out.
-
-    Returns
-    -------
-    Judgement
     """
     about = [f for f in findings if f.claim == claim]
     own = [f for f in about if f.decides]
@@ -110,16 +104,12 @@ def rested(case: Case, judgements: Iterable[Judgement]) -> tuple[Judgement, ...]
     A percentage follows from two printed totals; where one of them is refuted, so many per cent are
     those of no motion, and whether the true ones are as many cannot be said.
 
+    Their order stays.
+
     Parameters
     ----------
-    case : Case
     judgements : iterable of Judgement
         One for each claim.
-
-    Returns
-    -------
-    tuple of Judgement
-        In their order.
     """
     given = list(judgements)
     refuted = {one.claim for one in given if one.verdict is ClaimVerdict.REFUTED}
@@ -172,18 +162,14 @@ def weigh(
     What a proof says under one reading is an error only where every admissible reading is against
     the claim; otherwise it is a warning, for the reading may not be the one meant.
 
+    Their order stays.
+
     Parameters
     ----------
-    findings : iterable of Finding
     judgements : iterable of Judgement
         Of the claims.
     admissible : sequence of str
         Every reading of the case.
-
-    Returns
-    -------
-    tuple of Finding
-        In their order.
     """
     against = (ClaimVerdict.REFUTED, ClaimVerdict.INCONSISTENT)
     refuted = {

@@ -1,4 +1,4 @@
-"""Which of several printed times a paper calls its result, never by the order of the file alone."""
+"""Which printed times a paper calls its result, and which it says keep the limits."""
 
 from __future__ import annotations
 
@@ -6,7 +6,8 @@ from collections.abc import Iterable, Sequence
 from typing import TypeVar
 
 from ...problem import Case
-from ...problem.cases import ImprovementClaim, StatementClaim, TimeClaim, TotalTimeClaim
+from ...problem.cases import AnyClaim, ImprovementClaim, StatementClaim, TimeClaim, TotalTimeClaim
+from ..documents import ClaimVerdict, Severity
 from .stated import other_objective
 
 _Time = TypeVar("_Time", bound=TimeClaim)
@@ -26,15 +27,7 @@ def own_results(case: Case, times: Sequence[_Time]) -> list[_Time]:
     where others name none, before all of them those that are said to keep the limits. Several
     joints or problems have a row each.
 
-    Parameters
-    ----------
-    case : Case
-    times : sequence of TimeClaim
-
-    Returns
-    -------
-    list of TimeClaim
-        Empty of none.
+    There are none of no times.
     """
     answers = [c for c in times if c.state != "before"] or list(times)
     answers = [c for c in answers if c.objective is None or not other_objective(case, c)] or answers
@@ -71,3 +64,55 @@ def _meant(case: Case, ids: Iterable[str], answers: Sequence[_Time]) -> list[_Ti
     named = {c.id for c in found} | {c.of for c in found if isinstance(c, TotalTimeClaim)}
     by = {c.algorithm for c in found} - {None}
     return [c for c in answers if c.id in named or c.algorithm in by]
+
+
+UNSAID = "Nothing printed says that these durations keep the limits."
+"""What follows a broken limit where no word of the paper is contradicted by it."""
+
+
+def said_to_keep(case: Case, claim: AnyClaim) -> bool:
+    """Whether the paper says that these durations keep the limits.
+
+    It does where a statement about limits or optimality names them, or the total that is printed of
+    them. Nothing else does: a table of limits, a named algorithm or a row of a comparison says what
+    was asked, not that this row answers it.
+    """
+    totals = {c.id for c in case.claims if isinstance(c, TotalTimeClaim) and c.of == claim.id}
+    return any({claim.id, *totals}.intersection(c.of) for c in _statements(case))
+
+
+def meant_to_keep(case: Case, claim: AnyClaim) -> bool:
+    """Whether durations are meant as an answer within the limits, said or not.
+
+    They are if the paper says so, or an algorithm found them and they are not the state before an
+    optimisation. Where no statement names any durations, they are too, unless they are what an
+    improvement starts from.
+    """
+    if said_to_keep(case, claim):
+        return True
+    if isinstance(claim, TimeClaim) and claim.state == "before":
+        return False
+    improved = any(isinstance(c, ImprovementClaim) and c.slower == claim.id for c in case.claims)
+    return claim.algorithm is not None or not (_statements(case) or improved)
+
+
+def said_of(
+    case: Case, claim: AnyClaim, verdict: ClaimVerdict, severity: Severity
+) -> tuple[ClaimVerdict, Severity]:
+    """What a verdict on the limits means for the claim of the durations.
+
+    A broken limit refutes only what is said to keep it.
+    """
+    if said_to_keep(case, claim):
+        return verdict, severity
+    supported = verdict is ClaimVerdict.SUPPORTED and severity is Severity.INFO
+    if supported and meant_to_keep(case, claim):
+        return verdict, severity
+    return ClaimVerdict.NOT_CHECKABLE, Severity.INFO
+
+
+def _statements(case: Case) -> list[StatementClaim]:
+    """Statements about limits or optimality that name what they speak of."""
+    about = ("within_limits", "optimal")
+    found = [c for c in case.claims if isinstance(c, StatementClaim) and c.checks in about]
+    return [c for c in found if c.of]

@@ -13,9 +13,8 @@ from pydantic import BaseModel, ConfigDict, Field
 from ...nlp import problem_seal
 from ..documents import Gap, Reached, Reference, TargetReached, Why, known
 from ..gaps import canonical, gap, quantiles, reference_of, target_reached
-from .chosen_case import Pair
 from .fixed_ratios import planned_apart
-from .study import Study
+from .study import Pair, Study
 
 RUNS_FORMAT: Literal["trajgap-paper-runs-1"] = "trajgap-paper-runs-1"
 """Of the file of committed runs."""

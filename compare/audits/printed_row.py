@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
-from typing import Generic, TypeVar
+from typing import Any, Generic, TypeVar
 
 import numpy as np
 
@@ -33,11 +33,10 @@ from ...problem.cases import (
     DurationBox,
     Statement,
 )
-from ..documents import UNITS, Keeping, Rounding, noted, si_unit
-from .chosen_case import Pair, Total
+from ..documents import UNITS, Finding, Keeping, Rounding, noted, si_unit
 from .rounding import RoundingBox, RoundingVerdict, judge_rounding
 from .stated import in_words, in_words_among, own_total, place, prints_durations
-from .study import Study
+from .study import Pair, Study, Total
 from .total_bound import BOXES, excludes_total
 
 C = TypeVar("C", bound=Claim, covariant=True)
@@ -50,7 +49,6 @@ class PrintedRow(Generic[C]):
 
     Attributes
     ----------
-    study : Study
     claim : Claim
         With durations or a total where a motion or a time is asked for.
     pair : Pair
@@ -80,6 +78,11 @@ class PrintedRow(Generic[C]):
     def statement(self) -> Statement:
         """What the case states of the problem under the reading."""
         return self.study.case.statement(*self.pair)
+
+    def finding(self, rule: str, **facts: Any) -> Finding:
+        """What a rule finds on the claim under this problem and reading."""
+        about = {"claim": self.claim.id, "problem": self.problem, "reading": self.reading}
+        return Finding(rule=rule, **about | facts)
 
     def once(self, what: str, compute: Callable[[], T], *more: object) -> T:
         """What the study keeps of this row under a name, computed where nothing is."""

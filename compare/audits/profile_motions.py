@@ -12,37 +12,16 @@ import numpy as np
 
 from ...problem import Array, CaseError, Printed, Quantity
 from ...problem.cases import Digits, ProfiledClaim, end, end_states
-from .axis_profile import AxisProfile, AxisState, Sizes, shortest_s_curve, shortest_trapezoid
-from .double_s import double_s
+from .axis_profile import AxisProfile, AxisState, Sizes
+from .named_profiles import NOT_SHORTEST, SHORTEST
 from .printed_row import PrintedRow
+from .rounding import FEW_ROUNDINGS, ROUNDING, meet
 
-SHORTEST: dict[str, Callable[[AxisState, AxisState, Sizes], AxisProfile | None]] = {
-    "trapezoidal": shortest_trapezoid,
-    "s-curve": shortest_s_curve,
-    "biagiotti-melchiorri": double_s,
-}
-"""The motion of one axis between two states by the name of its profile."""
-NOT_SHORTEST = {
-    "biagiotti-melchiorri": "{} of Biagiotti and Melchiorri's algorithm",
-    "fourth-order": "fourth-order {}",
-}
-"""Profiles than which a motion within the same limits may be shorter, as sentences call them."""
 _MOST_OPEN = 10
 """Printed numbers whose both ends are combined: 1024 profiles take a few seconds."""
-_AWAY = 1e-12
-"""Share of the positions by which the goal is moved to either side: where the optimum jumps at an
-exact number, rounding alone must not choose the side."""
 _JUMP = 0.01
 """Share of the shortest total by which totals of one rounding box must differ to be called a jump:
 ordinary digits change them by far less."""
-
-
-def profile_called(profiles: Sequence[str], noun: str = "profile") -> str:
-    """What a sentence calls some profiles, after "the"; the noun may be plural."""
-    shortest = [one for one in profiles if one not in NOT_SHORTEST]
-    said = [f"shortest {' or '.join(shortest)} {noun}"] if shortest else []
-    others = [NOT_SHORTEST[one].format(noun) for one in profiles if one in NOT_SHORTEST]
-    return " or ".join(said + others)
 
 
 @dataclass(frozen=True)
@@ -65,15 +44,7 @@ class ProfileQuestion:
     def laws(self, profile: str, straight: bool) -> tuple[AxisProfile, ...] | None:
         """The motion of each segment: of the one joint, or of all on a straight line from 0 to 1.
 
-        Parameters
-        ----------
-        profile : str
-        straight : bool
-
-        Returns
-        -------
-        tuple of AxisProfile or None
-            None if none was found that keeps the limits.
+        It is None if no motion was found that keeps the limits.
         """
         found = []
         last = len(self.points) - 2
@@ -149,13 +120,12 @@ class ProfileMotion:
         ----------
         time : float
             s from the start.
-        joint : int
 
         Returns
         -------
         ndarray, shape (2, 3)
         """
-        close = 1e-9 * self.total_time
+        close = ROUNDING * self.total_time
         return np.array([self._at(time - close, joint), self._at(time + close, joint)])
 
     def states(self, joint: int) -> Array:
@@ -201,7 +171,6 @@ class NumberRange:
 
     Attributes
     ----------
-    plain : float
     others : ndarray
         In order.
     """
@@ -238,24 +207,21 @@ class NumberRange:
             parts = [self.others[low], self.others[~low]]
         for part in parts:
             # As much again, since corners need not be the extremes of a curved function.
-            width = float(part[-1] - part[0]) + 1e-9 * float(np.abs(part).max())
-            if lower <= part[-1] + width and part[0] - width <= upper:
+            width = float(part[-1] - part[0]) + ROUNDING * float(np.abs(part).max())
+            if meet((lower, upper), (part[0] - width, part[-1] + width)):
                 return True
         return False
 
     def spans(self, lower: float, upper: float) -> bool:
         """Whether a printed interval lies among the values, where they jump over it."""
-        return bool(lower <= self.others[-1] and self.others[0] <= upper)
+        return meet((lower, upper), (self.others[0], self.others[-1]))
 
 
 def profiled_limits(row: PrintedRow[ProfiledClaim], digits: Digits) -> Array:
     """Limits of the joints of a claim with the one that only its profile has.
 
-    Returns
-    -------
-    ndarray, shape (joints, 4)
-        Of velocity, acceleration and jerk; and of snap, or of deceleration, which is that of
-        acceleration where none is stated.
+    Columns are velocity, acceleration and jerk, and snap or deceleration, which is that of
+    acceleration where none is stated; shape (joints, 4).
     """
     problem, claim = row.posed(digits), row.claim
     limits = problem.limits.derivatives
@@ -278,14 +244,7 @@ def profiled_limits(row: PrintedRow[ProfiledClaim], digits: Digits) -> Array:
 def questions(row: PrintedRow[ProfiledClaim]) -> list[ProfileQuestion] | None:
     """The printed numbers first, then every combination of ends of what their digits leave.
 
-    Parameters
-    ----------
-    row : PrintedRow
-
-    Returns
-    -------
-    list of ProfileQuestion or None
-        None if too many numbers are printed digits.
+    It is None if too many numbers are printed digits.
     """
     problem = row.posed()
     box = row.waypoint_box(problem).or_cut_off()
@@ -304,7 +263,8 @@ def questions(row: PrintedRow[ProfiledClaim]) -> list[ProfileQuestion] | None:
     if len(free) + len(moved) > _MOST_OPEN:
         return None
     found = [plain]
-    away = _AWAY * (np.abs(box.value).max() + np.abs(np.diff(box.value, axis=0)).max())
+    # Where the optimum jumps at an exact number, rounding alone must not choose the side.
+    away = FEW_ROUNDINGS * (np.abs(box.value).max() + np.abs(np.diff(box.value, axis=0)).max())
     for step in (-away, away):
         points = box.value.copy()
         points[-1] += step
@@ -324,17 +284,13 @@ def questions(row: PrintedRow[ProfiledClaim]) -> list[ProfileQuestion] | None:
 def motions(row: PrintedRow[ProfiledClaim], profile: str) -> list[ProfileMotion | None] | None:
     """The profile at each of `questions`, the printed numbers first.
 
+    None stands for numbers at which no profile was found that keeps the limits, and in place of
+    all if `questions` has no answer.
+
     Parameters
     ----------
-    row : PrintedRow
     profile : str
         A key of `SHORTEST`.
-
-    Returns
-    -------
-    list of (ProfileMotion or None) or None
-        None for numbers at which none was found that keeps the limits, and in place of all if
-        `questions` has no answer.
     """
 
     def compute() -> list[ProfileMotion | None] | None:

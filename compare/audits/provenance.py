@@ -41,13 +41,8 @@ def provenance(study: Study, day: date | None = None) -> Provenance:
 
     Parameters
     ----------
-    study : Study
     day : date, optional
         Of the audit; `today` by default.
-
-    Returns
-    -------
-    Provenance
     """
     day = day or today()
     own = package_version("trajgap")
@@ -124,12 +119,7 @@ def _certificates(study: Study) -> Iterator[UsedCertificate]:
 
 
 def certificate_files(study: Study) -> Iterator[tuple[Path, Subject]]:
-    """Shipped certificates that an audit rests on, and the curves that each speaks about.
-
-    Parameters
-    ----------
-    study : Study
-    """
+    """Shipped certificates that an audit rests on, and the curves that each speaks about."""
     seen: set[Path] = set()
     for exact, subject in _questions(study):
         file = shipped_file(exact, subject)

@@ -30,13 +30,12 @@ from ..documents import (
     under,
 )
 from ..gaps import gap, reference_of
-from .chosen_case import Pair
+from .digit_ranges import implausible
 from .fixed_ratios import off_ratios
-from .plausibility import implausible
 from .printed_row import PrintedRow
 from .rules import held_otherwise, reading_clues
 from .stated import other_objective
-from .study import Study
+from .study import Pair, Study
 
 SAME = 1e-6
 """Relative difference below which two readings are called alike."""
@@ -49,15 +48,10 @@ def readings_summary(
 
     Parameters
     ----------
-    study : Study
     waterfalls : iterable of Waterfall
         They name the printed answer of each problem.
     judgements : iterable of Judgement
         Of the claims, over all admissible readings.
-
-    Returns
-    -------
-    ReadingsSummary or None
     """
     admissible = tuple(reading.id for reading in study.case.readings)
     if len(admissible) < 2:

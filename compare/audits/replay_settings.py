@@ -49,17 +49,14 @@ def spread_settings(
     Words and numbers are varied together, by a Latin hypercube with a fixed seed: the same
     settings for the same algorithm, whatever else is computed.
 
+    Each algorithm stands under what is set, in words; the listed choices come first.
+
     Parameters
     ----------
     algorithm : Algorithm
         Under the listed choices.
     printed : collection of str
         Names of the settings that the paper prints: these are held.
-
-    Returns
-    -------
-    dict
-        What is set, in words, to the algorithm under it; first the listed choices.
     """
     found: dict[str, Algorithm[Any]] = {LISTED: algorithm}
     open_: list[tuple[str, Any]] = []

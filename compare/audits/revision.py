@@ -23,9 +23,8 @@ from ...problem.cases import (
     motions_of,
 )
 from ..documents import ClaimVerdict, Edit, Finding, Judgement, Severity
-from .edits import CLAIM, READINGS, edited, printed_under
 from .printed_row import PrintedRow, rows_under
-from .reworded import Reworded
+from .reworded import CLAIM, READINGS, Reworded, edited, printed_under
 from .rules import in_digits, recomputed, repeated_total, summed
 from .study import Study
 
@@ -49,6 +48,8 @@ _Numbers = ImprovementClaim | MotionValueClaim | ControlVerticesClaim
 def revise(study: Study, first: Audited, again: Callable[[Study], Audited]) -> tuple[Edit, ...]:
     """Edits after which an audit finds nothing but what no number mends.
 
+    Edits have the order of the claims and hold together: each was computed from the others.
+
     Parameters
     ----------
     study : Study
@@ -57,11 +58,6 @@ def revise(study: Study, first: Audited, again: Callable[[Study], Audited]) -> t
         Of its audit.
     again : callable
         Audits the edited draft.
-
-    Returns
-    -------
-    tuple of Edit
-        In the order of the claims. They hold together: each was computed from the others.
     """
     draft = _Draft(study)
     tried: Counter[str] = Counter()

@@ -1,14 +1,71 @@
-"""A case whose claims read otherwise: what its problems alone decide is known from the original."""
+"""A draft with edits made, and a study of it that asks the original for what they leave alone."""
 
 from __future__ import annotations
 
 import pickle
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from itertools import islice
 from typing import Any
 
 from ...nlp import PerJointSolution, Solution, printed_problem_or_none
-from ...problem import Case
-from .chosen_case import ChosenCase, Pair, Replays
-from .study import Study
+from ...problem import Case, Printed
+from ...problem.cases import AnyClaim
+from ..documents import Edit
+from .study import Pair, Replays, Study
+
+CLAIM, READINGS = "claim", "readings"
+"""Keys of edits that are no key of a claim: it is left out, or the text says what is meant."""
+
+
+def edited(case: Case, edits: Iterable[Edit]) -> Case:
+    """The case as it reads after edits.
+
+    It counts as not read from a file.
+
+    Parameters
+    ----------
+    edits : iterable of Edit
+        Of one audit, all or some of them.
+    """
+    claims = {claim.id: claim for claim in case.claims}
+    readings = case.document.readings
+    for edit in edits:
+        if edit.claim is None:
+            readings = tuple(one for one in readings if one.id in edit.becomes)
+        elif edit.key == CLAIM:
+            claims.pop(edit.claim, None)
+        elif edit.claim in claims:
+            claim = claims[edit.claim]
+            value = _shaped(getattr(claim, edit.key), edit.becomes)
+            claims[edit.claim] = claim.model_copy(update={edit.key: value})
+    document = case.document.model_copy(
+        update={"claims": tuple(claims.values()), "readings": readings}
+    )
+    return replace(case, document=document, sha256=None)
+
+
+def printed_under(claim: AnyClaim, key: str) -> tuple[str, ...]:
+    """What a claim prints under a key, number by number; its words where it is meant as a whole."""
+    if key == CLAIM:
+        return (claim.text,) if claim.text else ()
+    return tuple(map(str, _flat(getattr(claim, key))))
+
+
+def _flat(value: Any) -> list[Any]:
+    if isinstance(value, Sequence) and not isinstance(value, str):
+        return [one for part in value for one in _flat(part)]
+    return [] if value is None else [value]
+
+
+def _shaped(before: Any, digits: Sequence[str]) -> Any:
+    """Digits in the shape of what stood there."""
+    numbers = iter([Printed(one) for one in digits])
+    if not isinstance(before, tuple):
+        return next(numbers)
+    if before and isinstance(before[0], tuple):
+        return tuple(tuple(islice(numbers, len(row))) for row in before)
+    return tuple(numbers)
 
 
 class Reworded(Study):
@@ -18,7 +75,6 @@ class Reworded(Study):
     ----------
     case : Case
         The original's, with other claims, readings or algorithms.
-    original : Study
     certify_seconds : float or None
         As in `Study`.
     """
@@ -67,7 +123,7 @@ class Reworded(Study):
         )
 
     @property
-    def drawing(self) -> ChosenCase:
+    def drawing(self) -> Study:
         """The original, where all problems and algorithms are the same."""
         same = self.pairs == self.original.pairs and self._replays_alike(*self.pairs)
         return self.original if same else self

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from enum import StrEnum
+from fractions import Fraction
 
 import numpy as np
 
@@ -34,14 +36,54 @@ _MOST_STEPS = 12
 """Linear programs of one descent; those that find a passing point need fewer than 5."""
 _MOST_ROWS = 300
 """Peaks that one linear program holds: more of them change its answer no further."""
-_CUT_SLACK = 1.0 + 1e-9
-"""Factor by which a whole unit of the last digit is widened, far above its rounding to floats."""
+ROUNDING = 1e-9
+"""Relative margin of every comparison of computed numbers: far above what float64 loses in solved
+systems and long sums, and what `check` tolerates; far below any printed digit."""
+FEW_ROUNDINGS = 1e-12
+"""The same where a few sums, products and quotients lie between two numbers."""
+
+
+class Agreement(StrEnum):
+    """How a printed number agrees with what others allow it to be, the most charitable first."""
+
+    ROUNDING = "rounding"
+    CUT_OFF = "cut off"
+    MIXED = "some rounded, others cut off"
+    RAISED = "rounded up"
+    RAISED_PARTS = "parts rounded up"
+    SAMPLING = "sampling"
+    NORM = "norm over the joints"
+    ROOT = "root left out"
+    UNIT = "other unit"
+    OFF = "off"
+
+
+Ends = tuple[Fraction | float, Fraction | float]
+"""The lower and the upper end of an interval, both inside; an `Interval` is one."""
+
+
+def meet(a: Ends, b: Ends) -> bool:
+    """Whether two intervals have a number in common."""
+    return bool(a[0] <= b[1] and b[0] <= a[1])
+
+
+def agreement(*tried: tuple[Agreement, Ends, Ends]) -> Agreement:
+    """The first explanation under which what digits stand for meets what is computed.
+
+    Every rule that sets a printed number beside a computed one asks this: each explanation comes
+    with the ends of the printed number and of the computed one, the most charitable first.
+    """
+    return next((kind for kind, own, computed in tried if meet(own, computed)), Agreement.OFF)
+
+
+def either(a: Interval, b: Interval) -> Interval:
+    """The least interval that holds two."""
+    return Interval(min(a.lower, b.lower), max(a.upper, b.upper))
 
 
 def hull(number: Printed) -> Interval:
     """Every value whose digits, rounded or cut off, are the printed ones."""
-    a, b = number.interval, number.truncated
-    return Interval(min(a.lower, b.lower), max(a.upper, b.upper))
+    return either(number.interval, number.truncated)
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,9 +131,16 @@ class RoundingBox:
     def or_cut_off(self) -> RoundingBox:
         """The box widened by the inputs whose further digits were cut off instead of rounded."""
         up, down = 2.0 * (self.upper - self.value), 2.0 * (self.value - self.lower)
-        lower = np.where(self.value > 0, self.lower, self.value - down * _CUT_SLACK)
-        upper = np.where(self.value < 0, self.upper, self.value + up * _CUT_SLACK)
+        lower = np.where(self.value > 0, self.lower, self.value - down * (1.0 + ROUNDING))
+        upper = np.where(self.value < 0, self.upper, self.value + up * (1.0 + ROUNDING))
         return RoundingBox(self.value, np.minimum(lower, self.lower), np.maximum(upper, self.upper))
+
+    @property
+    def steps(self) -> tuple[Array, Array]:
+        """Least and largest size of each step from one row to the next."""
+        low, high = self.lower[1:] - self.upper[:-1], self.upper[1:] - self.lower[:-1]
+        near = np.maximum(np.maximum(low, -high), 0.0)
+        return near, np.maximum(np.abs(low), np.abs(high))
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,7 +157,6 @@ class RoundingVerdict:
 
     Attributes
     ----------
-    verdict : Rounding
     worst_at_print : float
         Largest ratio of a peak to its limit at the printed point; 0 if nothing is limited.
     exhibit : Point, Place or None
@@ -151,10 +199,6 @@ def judge_rounding(
     loose_ends : bool
         Whether derivatives at the ends are printed numbers. No proof covers what rounds to them,
         so that nothing is said to break then.
-
-    Returns
-    -------
-    RoundingVerdict
 
     Raises
     ------
@@ -283,7 +327,7 @@ def _search(
     angles = np.clip(waypoints.value, region.waypoint_low, region.waypoint_high)
     candidates = [start, region.high]
     if np.isfinite(at_print.stretch):
-        repaired = start * (at_print.stretch * (1.0 + 1e-12))
+        repaired = start * (at_print.stretch * (1.0 + FEW_ROUNDINGS))
         widest = start * (region.high / start).min()
         candidates[:0] = [np.clip(h, region.low, region.high) for h in (repaired, widest)]
     best: tuple[float, Point] | None = None

@@ -83,13 +83,8 @@ def misprints(spot: Spot, signed: bool = False) -> Iterator[Slip]:
 
     Parameters
     ----------
-    spot : Spot
     signed : bool
         Whether the number may have a sign.
-
-    Yields
-    ------
-    Slip
     """
     was = spot.number
     for other in was.slips():

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from ...problem import Case, Printed
+from ...problem import QUANTITIES, Case, Printed
 from ...problem.cases import (
     AnyClaim,
     Claim,
@@ -75,17 +75,7 @@ def _answer(claim: AnyClaim) -> StatedAnswer | None:
 
 
 def other_objective(case: Case, claim: AnyClaim | TimeClaim) -> str | None:
-    """What was minimised for a printed time; None if that is time alone, or nothing else is said.
-
-    Parameters
-    ----------
-    case : Case
-    claim : AnyClaim
-
-    Returns
-    -------
-    str or None
-    """
+    """What was minimised for a printed time; None if it was time alone, or if nothing is said."""
     if not isinstance(claim, TimeClaim):
         return None
     said = claim.objective or case.document.objective
@@ -206,8 +196,8 @@ _PLURALS = {
     "jerk": "jerks",
 }
 """Derivatives of several joints."""
-_ORDERS = {1: "velocity", 2: "acceleration", 3: "jerk"}
-"""Derivatives by their order."""
+DERIVATIVES = ("position", *QUANTITIES)
+"""The position and its derivatives, by their order."""
 _STATEMENTS = {
     "within_limits": "the motion keeps its limits",
     "continuous": "velocity and acceleration are continuous",
@@ -227,15 +217,7 @@ _STATEMENTS = {
 def sentence_of(case: Case, claim: AnyClaim) -> str:
     """One sentence for a claim, from what it prints.
 
-    Parameters
-    ----------
-    case : Case
-    claim : AnyClaim
-
-    Returns
-    -------
-    str
-        Such as "The largest velocity of joint 2 is 94.7 deg/s."
+    An example is "The largest velocity of joint 2 is 94.7 deg/s."
     """
     said = _said(case, claim)
     names = {one.id: one.name for one in case.algorithms}
@@ -264,7 +246,9 @@ def _said(case: Case, claim: AnyClaim) -> str:
         case ConvergenceClaim():
             return f"the search converges within {claim.iterations} iterations"
         case ConditionsClaim():
-            names = enumerated(_ORDERS.get(k, f"derivative {k}") for k in claim.orders)
+            names = enumerated(
+                DERIVATIVES[k] if k < len(DERIVATIVES) else f"derivative {k}" for k in claim.orders
+            )
             at = "both ends" if claim.rest_at == "ends" else "all way-points"
             verb = "is" if len(claim.orders) == 1 else "are"
             count = f": {claim.count} conditions" if claim.count is not None else ""

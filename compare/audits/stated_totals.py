@@ -17,14 +17,7 @@ from .stated import own_total, place, printed_total, prints_durations
 def other_totals(row: PrintedRow[Claim]) -> list[TotalTimeClaim]:
     """Totals that other claims state of a row and that no value of its own digits rounds to.
 
-    Parameters
-    ----------
-    row : PrintedRow
-
-    Returns
-    -------
-    list of TotalTimeClaim
-        Of a row with durations alone. Digits may be rounded or cut off.
+    Only a row with durations has any. Digits may be rounded or cut off.
     """
     own = row.total
     if own is None or not prints_durations(row.claim):

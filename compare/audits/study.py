@@ -2,13 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import os
+from collections.abc import Callable, Sequence
+from copy import copy
 from dataclasses import replace
-from typing import cast
+from pathlib import Path
+from typing import Any, NamedTuple, Self, TypeVar, cast
 
 import numpy as np
 
-from ...heuristics import JointRuns
+from ...heuristics import (
+    KINDS,
+    Algorithm,
+    DeathPenalty,
+    JointRuns,
+    Run,
+    from_settings,
+    run_many,
+    run_many_per_joint,
+)
 from ...nlp import (
     ExactProblem,
     PerJointSolution,
@@ -19,33 +31,276 @@ from ...nlp import (
     solve_per_joint,
     with_interval,
 )
-from ...nlp.optimum import (
-    OPTIMUM_SLACK,
-    free_values,
-    longest_status,
-    solve,
-    with_other_route,
-)
+from ...nlp.optimum import OPTIMUM_SLACK, free_values, longest_status, solve, with_other_route
 from ...problem import (
     Array,
+    Case,
     Coupling,
     Interpolant,
+    Printed,
+    Problem,
     TrajgapError,
     as_piecewise,
     fit,
 )
-from ...problem.cases import (
-    Claim,
-    DurationsClaim,
-    TimeClaim,
-)
-from ..documents import noted
-from .chosen_case import ChosenCase, Pair, Replays
-from .stated import in_words, in_words_among
+from ...problem.cases import AnyClaim, Claim, DurationsClaim, MotionValueClaim, TimeClaim
+from ..documents import capital, noted
+from .intervals import Intervals
+from .replay_settings import LISTED, spread_settings
+from .stated import in_words, in_words_among, printed_total, prints_durations
+
+T = TypeVar("T")
+SEEDS = 100
+"""Seeds of a replay by default: independent runs enough for a probability to a few per cent."""
+Replays = tuple[Run, ...] | tuple[JointRuns, ...]
+"""Runs of one algorithm, one for each seed: of all joints, or of each joint by itself."""
+SPREAD_SEEDS = 3
+"""Seeds under each of the spread settings, of which there are sixteen: enough to see a median
+move across them."""
+WORTH_PROCESSES = 50_000
+"""Iterations of all seeds of a replay from which further processes pay: fewer take some seconds
+side by side, and each process takes two to import what it needs."""
 
 
-class Study(ChosenCase):
-    """Lazily computed, cached results of one case; the parameters are those of `ChosenCase`."""
+class Pair(NamedTuple):
+    """A problem of a case under a reading, by their ids."""
+
+    problem: str
+    reading: str
+
+
+class Total(NamedTuple):
+    """A total as printed, or else as summed from durations, and what its digits stand for, s."""
+
+    shown: str
+    interval: tuple[float, float]
+
+
+class Study:
+    """A case, the problems and readings that are looked at, and what was computed of them.
+
+    Optima, checks and replays are computed when they are asked for, each once. The options are
+    those of `audit`; seeds of a replay count from 0.
+    """
+
+    def __init__(
+        self,
+        case: Case,
+        seeds: int = SEEDS,
+        workers: int | None = 1,
+        problem: str | None = None,
+        reading: str | None = None,
+        progress: Callable[[str], None] | None = None,
+        certify_seconds: float | None = None,
+        certificates: Sequence[dict[str, Any]] = (),
+        certificates_folder: str | None = None,
+        cache: bool | Path = False,
+    ) -> None:
+        if seeds < 2:
+            raise TrajgapError(f"seeds: {seeds} show no spread; give 2 or more, 30 is customary")
+        self.case = case
+        self.claims: tuple[AnyClaim, ...] = tuple(case.claims)
+        self.seeds = seeds
+        self.workers = workers
+        self.selected = tuple(Pair(*one) for one in case.selections(problem, reading))
+        self.readings = tuple(dict.fromkeys(one.reading for one in self.selected))
+        self.pairs = tuple(one for one in self.selected if case.statement(*one).complete)
+        default = case.default_reading.id
+        self.main_reading = default if default in self.readings else self.readings[0]
+        self.chosen = {
+            "problem": problem,
+            "reading": reading,
+            "certificates": certificates_folder,
+        }
+        """What the study was kept to, and given beside; None where it was not."""
+        self._progress = progress or (lambda _: None)
+        self._kept: dict[tuple[Any, ...], Any] = {}
+        self.intervals = Intervals(certificates, certify_seconds, self._progress, cache)
+
+    def progress(self, doing: str) -> None:
+        """Say what is being done of the case, before anything that takes a while."""
+        self._progress(f"{self.case.id}: {doing}")
+
+    def once(self, key: tuple[Any, ...], compute: Callable[[], T]) -> T:
+        """What was kept under a key, computed where nothing is; errors are kept too."""
+        if key not in self._kept:
+            try:
+                self._kept[key] = compute()
+            except TrajgapError as error:
+                self._kept[key] = error
+        found = self._kept[key]
+        if isinstance(found, TrajgapError):
+            raise found
+        return cast(T, found)
+
+    def only(self, *claims: AnyClaim, pair: Pair | None = None) -> Self:
+        """The same study, asked about some claims alone, and about one problem and reading."""
+        view = copy(self)
+        view.claims = claims
+        if pair is not None:
+            view.selected = view.pairs = (pair,)
+            view.readings = (pair.reading,)
+        return view
+
+    @property
+    def drawing(self) -> Study:
+        """The study for whose problems and algorithms instances are drawn."""
+        return self
+
+    @property
+    def has_problems(self) -> bool:
+        """Whether way-points are printed, so that there are problems to solve."""
+        return bool(self.pairs)
+
+    @property
+    def problems(self) -> tuple[str, ...]:
+        """Ids of the problems that are complete, in order."""
+        return tuple(dict.fromkeys(one.problem for one in self.pairs))
+
+    @property
+    def main_pairs(self) -> tuple[Pair, ...]:
+        """Each of them under the main reading."""
+        return tuple(Pair(one, self.main_reading) for one in self.problems)
+
+    def problem(self, pair: Pair) -> Problem:
+        """Problem of the case, with its coupling."""
+        return self.once(("problem", pair), lambda: self.case.problem(*pair))
+
+    def limited(self, pair: Pair) -> bool:
+        """Whether a problem limits anything that moves."""
+        limits = self.problem(pair).limits
+        return limits.limits_position or bool(np.isfinite(limits.sides).any())
+
+    @property
+    def time_unit(self) -> str:
+        """The unit that times are printed in."""
+        return self.case.statement().units.time or "s"
+
+    def total_digits(self, claim: Claim) -> str:
+        """A total as printed, or else the sum of the printed durations, with its unit."""
+        printed = printed_total(claim)
+        summed = (number.decimal for number in self.case.printed_durations(claim))
+        return f"{sum(summed) if printed is None else printed} {self.time_unit}"
+
+    def printed_numbers(self, claim: MotionValueClaim) -> list[tuple[str | None, Printed]]:
+        """Each printed number of a claim of a derivative with the joint that it belongs to."""
+        if claim.values is None:
+            return [(claim.joint, number) for number in claim.printed]
+        return list(zip(self.case.robot.joints, claim.values, strict=True))
+
+    def durations_digits(self, claim: Claim) -> str:
+        """The printed durations with their unit."""
+        return f"{', '.join(map(str, self.case.printed_durations(claim)))} {self.time_unit}"
+
+    def claim_total(self, claim: Claim, reading: str) -> Total | None:
+        """A claim's total; None where it has none."""
+        shown = self.total_digits(claim)
+        printed = printed_total(claim)
+        total = None
+        if printed is not None:
+            total = self.case.measured(printed, "time", claim.problem, reading)
+        if not prints_durations(claim):
+            return None if total is None else Total(shown, (total.lower, total.upper))
+        box = self.case.claim_durations(claim, reading)
+        low, high = float(box.lower.sum()), float(box.upper.sum())
+        if total is None:
+            return Total(f"{shown} (sum of the printed durations)", (low, high))
+        both = max(low, total.lower), min(high, total.upper)
+        return Total(shown, both if both[0] <= both[1] else (total.lower, total.upper))
+
+    def algorithm(self, algorithm_id: str) -> Algorithm[Any] | None:
+        """The case's algorithm, or None if its kind is not implemented."""
+        block = next(a for a in self.case.algorithms if a.id == algorithm_id)
+        if block.kind is None or block.kind not in KINDS:
+            return None
+        try:
+            return from_settings(block.kind, block.parameters)
+        except TrajgapError as error:
+            why = str(error).removeprefix(f"{block.kind}: ")
+            raise TrajgapError(f"{self.case.file}: algorithms.{algorithm_id}: {why}") from None
+
+    @property
+    def not_replayed(self) -> tuple[str, ...]:
+        """Algorithms without an implementation here, each as one sentence with the nearest kind."""
+        found = []
+        for block in self.case.algorithms:
+            if block.kind is None:
+                found.append(f"{block.name}: the case file names no algorithm that trajgap has.")
+            elif block.kind not in KINDS:
+                try:
+                    from_settings(block.kind, {})
+                except TrajgapError as error:
+                    found.append(f"{block.name}: {error}")
+        return tuple(found)
+
+    def called(self, algorithm_id: str) -> str:
+        """An algorithm as a sentence calls it, by its name."""
+        return f"the {next(a.name for a in self.case.algorithms if a.id == algorithm_id)}"
+
+    def unreplayed(self, algorithm_id: str, pair: Pair) -> str | None:
+        """Why an algorithm is not replayed on a problem, as a sentence; None if it is."""
+        algorithm, name = self.algorithm(algorithm_id), capital(self.called(algorithm_id))
+        if algorithm is None:
+            return f"{name} is of a kind that is not implemented here."
+        problem = self.problem(pair)
+        try:
+            # What judges the positions of every run says whether it can.
+            DeathPenalty(problem, algorithm.penalty)
+        except TrajgapError as error:
+            return f"{name} is not replayed: {error}."
+        return None
+
+    def runs(self, algorithm_id: str, pair: Pair) -> Replays:
+        """Replays of an algorithm under the listed choices, one per seed; empty if there are none.
+
+        `unreplayed` says why.
+        """
+        algorithm = self.algorithm(algorithm_id)
+        if algorithm is None or self.unreplayed(algorithm_id, pair) is not None:
+            return ()
+        return self.once(
+            ("runs", algorithm_id, pair),
+            lambda: self._replay(algorithm, algorithm_id, pair, self.seeds),
+        )
+
+    def _replay(self, algorithm: Algorithm[Any], name: str, pair: Pair, seeds: int) -> Replays:
+        problem = self.problem(pair)
+        called = next((a.name for a in self.case.algorithms if a.id == name), name)
+        self.progress(f"{seeds} replays of {called}; {in_words(self.case, *pair)}")
+        workers = self.workers
+        if workers is None:
+            long = seeds * algorithm.iterations >= WORTH_PROCESSES
+            workers = (os.cpu_count() or 1) if long else 1
+        if problem.coupling is Coupling.PER_JOINT and len(problem.joints) > 1:
+            return run_many_per_joint(algorithm, problem, range(seeds), workers)
+        return run_many(algorithm, problem, range(seeds), workers)
+
+    def settings(self, algorithm_id: str) -> dict[str, Algorithm[Any]]:
+        """The algorithm as listed, and under settings spread over all that the paper leaves open.
+
+        `spread_settings` says how; empty where the algorithm's kind is not implemented.
+        """
+        algorithm = self.algorithm(algorithm_id)
+        if algorithm is None:
+            return {}
+        block = next(a for a in self.case.algorithms if a.id == algorithm_id)
+        return spread_settings(algorithm, block.settings)
+
+    def spread_runs(self, algorithm_id: str, pair: Pair) -> dict[str, Replays]:
+        """Replays under each of `settings`, fewer where it is not the listed one; as `runs`."""
+        if self.unreplayed(algorithm_id, pair) is not None:
+            return {}
+
+        def compute() -> dict[str, Replays]:
+            few = min(SPREAD_SEEDS, self.seeds)
+            return {
+                name: self.runs(algorithm_id, pair)
+                if name == LISTED
+                else self._replay(algorithm, f"{algorithm_id}, {name}", pair, few)
+                for name, algorithm in self.settings(algorithm_id).items()
+            }
+
+        return self.once(("spread", algorithm_id, pair), compute)
 
     def optimum(self, pair: Pair, joint: str | None = None) -> Solution:
         """Best known answer with shared durations, of all joints or of one; certified if proved."""
@@ -57,7 +312,7 @@ class Study(ChosenCase):
             index = None if joint is None else problem.joints.index(joint)
             one = problem if index is None else problem.joint(index)
             exact = printed_problem_or_none(self.case.statement(*pair), index)
-            interval = None if exact is None else self._proved(pair)(exact)
+            interval = None if exact is None else self._proved(pair, exact)
             lower = 0.0 if interval is None else float(interval.lower)
             try:
                 found = solve(one, known=self.known_motions(pair, joint), lower=lower)
@@ -115,16 +370,12 @@ class Study(ChosenCase):
 
         return self.once(("per joint", pair), compute)
 
-    def _proved(self, pair: Pair) -> Callable[[ExactProblem], ProvedInterval | None]:
-        """What gives the proved interval of a problem, or of some of its joints, and names it."""
-
-        def find(exact: ExactProblem) -> ProvedInterval | None:
-            apart = len(exact.joints) < len(self.problem(pair).joints)
-            which = f"joint {' '.join(exact.joints)}" if apart else ""
-            asked = noted("the optimum", which, in_words_among(self.case, *pair))
-            return self.intervals.interval(exact, asked)
-
-        return find
+    def _proved(self, pair: Pair, exact: ExactProblem) -> ProvedInterval | None:
+        """The proved interval of a problem, or of some of its joints, which it names."""
+        apart = len(exact.joints) < len(self.problem(pair).joints)
+        which = f"joint {' '.join(exact.joints)}" if apart else ""
+        asked = noted("the optimum", which, in_words_among(self.case, *pair))
+        return self.intervals.interval(exact, asked)
 
     def half_digits(self, pair: Pair) -> tuple[float, ...]:
         """Half a unit of the last printed place of the totals of single joints, s."""

@@ -6,12 +6,10 @@ import numpy as np
 
 from ...nlp.enclosure import Ball, bound_ratio
 from ...problem import TOLERANCE, Array, Problem
-from .rounding import RoundingBox
+from .rounding import FEW_ROUNDINGS, RoundingBox
 
 _MOST_SPLIT = 8
 """Segments above which splitting boxes of durations cannot come to an end in time."""
-_FLOAT_SLACK = 1e-12
-"""Relative margin that outweighs the few roundings of sums and quotients of floats."""
 BOXES = 1000
 """Boxes of durations that are looked at, each in milliseconds: some seconds at most, and what they
 decide does not depend on the machine."""
@@ -25,6 +23,8 @@ def excludes_total(
 ) -> bool | None:
     """Prove that no durations of a total or less keep the limits, for all way-points of a box.
 
+    It is True if that is proved, False if nothing is said, None if it would take more boxes.
+
     Parameters
     ----------
     problem : Problem
@@ -36,11 +36,6 @@ def excludes_total(
     boxes : int
         Most boxes of durations that are looked at.
 
-    Returns
-    -------
-    bool or None
-        True if it is proved; False says nothing; None if it would take more boxes to say.
-
     Notes
     -----
     Branch and bound over the durations: the mean speed between way-points bounds each of them
@@ -50,9 +45,9 @@ def excludes_total(
     q = RoundingBox.exact(problem.waypoints) if waypoints is None else waypoints
     ball = Ball.between(q.lower, q.upper)
     target = 1.0 + TOLERANCE
-    low = _least_durations(problem, q) / target * (1.0 - _FLOAT_SLACK)
-    low = np.maximum(low, problem.duration_lower / target * (1.0 - _FLOAT_SLACK))
-    total *= 1.0 + _FLOAT_SLACK
+    low = _least_durations(problem, q) / target * (1.0 - FEW_ROUNDINGS)
+    low = np.maximum(low, problem.duration_lower / target * (1.0 - FEW_ROUNDINGS))
+    total *= 1.0 + FEW_ROUNDINGS
     if low.sum() > total:
         return True
     # Where coefficients are free, durations alone have no ratios to bound.
@@ -90,10 +85,7 @@ def _least_durations(problem: Problem, waypoints: RoundingBox) -> Array:
     breaks = problem.curve.waypoint_breaks
     most = problem.limits.widest[:, 0]
     speed = np.where(most > 0.0, most, np.inf)
-    for w in range(len(breaks) - 1):
-        if breaks[w + 1] - breaks[w] != 1:
-            continue
-        up = waypoints.lower[w + 1] - waypoints.upper[w]
-        down = waypoints.lower[w] - waypoints.upper[w + 1]
-        least[breaks[w]] = float((np.maximum(np.maximum(up, down), 0.0) / speed).max())
+    for w, ways in enumerate(waypoints.steps[0]):
+        if breaks[w + 1] - breaks[w] == 1:
+            least[breaks[w]] = float((ways / speed).max())
     return least

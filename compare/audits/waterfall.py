@@ -30,16 +30,13 @@ from ..documents import (
     enumerated,
     known,
 )
-from .chosen_case import Pair
 from .digit_ranges import optimum_range
 from .fixed_ratios import off_ratios, planned_apart
 from .own_result import bare_totals, own_result
 from .printed_row import PrintedRow
+from .rounding import FEW_ROUNDINGS
 from .stated import other_objective
-from .study import Study
-
-_ROUNDING = 1e-12
-"""Relative difference of an infimum and its bound that float rounding alone explains."""
+from .study import Pair, Study
 
 
 def waterfalls(study: Study) -> tuple[Waterfall, ...]:
@@ -193,7 +190,7 @@ def _published(row: PrintedRow[AnyClaim]) -> list[Step]:
         note = f"stretched by {stretch:.6g}"
         return [printed, Step(name="feasible after repair", time=verdict.feasible_time, note=note)]
     # A total that is printed beside its parts may be another one, within their rounding.
-    if value is None or abs(verdict.total_time - value) <= _ROUNDING * value:
+    if value is None or abs(verdict.total_time - value) <= FEW_ROUNDINGS * value:
         return [printed]
     summed = Step(
         name="sum of the printed durations", time=verdict.total_time, note="no repair needed"
@@ -282,7 +279,7 @@ def _free(study: Study, pair: Pair) -> Step:
     exact = printed_problem_or_none(study.case.statement(*pair))
     bound = None if exact is None else study.intervals.any_curve(exact)
     # An infimum that is met to the last digit may round to either side of its bound.
-    if bound is None or not 0 < bound.lower <= answer.total_time * (1 + _ROUNDING):
+    if bound is None or not 0 < bound.lower <= answer.total_time * (1 + FEW_ROUNDINGS):
         return Step(name=name, time=answer.total_time, evidence=answer.evidence, note=note)
     low = down(bound.lower)
     least = shown_bound(bound.lower, "lower")

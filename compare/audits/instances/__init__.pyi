@@ -1,4 +1,4 @@
-from .drawn import examinable, examined, readings_of, unexamined
+from .drawn import STARTS, examinable, examined, readings_of, unexamined
 from .result import (
     MIDDLE,
     InstancesResult,
@@ -9,7 +9,6 @@ from .result import (
     percent_range,
     reproduced,
 )
-from .study import STARTS
 
 __all__ = [
     "MIDDLE",

@@ -1,36 +1,210 @@
-"""From a declared design to its instances, and their problems for both compared procedures."""
+"""A relative claim on instances: their problems, optima, and runs of the compared procedures."""
 
 from __future__ import annotations
 
 import os
+from collections.abc import Callable, Iterable
+from contextlib import ExitStack, closing
+from dataclasses import dataclass, replace
 from typing import Any, cast
 
-from ....heuristics import Algorithm
-from ....problem import CaseError, ProcessError, TrajgapError
+import numpy as np
+
+from ....heuristics import Algorithm, AskedRun, Run, compile_judge, in_processes, run_asked
+from ....nlp import Solution
+from ....nlp.optimum import solve
+from ....problem import (
+    TOLERANCE,
+    Array,
+    CaseError,
+    Coupling,
+    Problem,
+    ProcessError,
+    TrajgapError,
+    as_piecewise,
+    check,
+)
 from ....problem.cases import Claim, ImprovementClaim, InstancesBlock, instance_waypoints
 from ...documents import Procedure
-from ..chosen_case import ChosenCase
-from .result import InstancesResult
-from .study import Task, examine
+from ...gaps import SETTLED, settled_at
+from ..study import Study
+from .result import InstancesResult, Optimum, Sample
+
+STARTS = 2
+"""Starts of every solve, for there are hundreds; one where the segments are independent."""
+_ROUTES = 3
+"""The slower procedure, its algorithm on the faster one's curve, and the faster procedure."""
 
 
-def _claimed(study: ChosenCase, block: InstancesBlock) -> ImprovementClaim:
+@dataclass(frozen=True, eq=False)
+class Task:
+    """One instance: its way-points, with a problem for both procedures under every reading."""
+
+    step: float
+    index: int
+    waypoints: Array
+    readings: tuple[str, ...]
+    slower: tuple[Problem, ...]
+    faster: tuple[Problem, ...]
+    algorithms: tuple[Algorithm[Any], Algorithm[Any]]
+    """Of the slower and of the faster procedure."""
+    runs: int
+    objectives: tuple[str, ...]
+
+
+def examine(
+    tasks: Iterable[Task],
+    workers: int = 1,
+    progress: Callable[[str], None] | None = None,
+) -> tuple[Sample, ...]:
+    """Solve every instance for both curves and run both procedures on it.
+
+    Samples have the order of the tasks, one for each of their readings.
+
+    Parameters
+    ----------
+    workers : int
+        Processes; the same bits for any number of them.
+    progress : callable, optional
+        Called with a few words after each instance.
+    """
+    todo = list(tasks)
+    workers = max(1, min(workers, len(todo)))
+    found: list[Sample] = []
+    with ExitStack() as stack:
+        results: Iterable[tuple[Sample, ...]] = map(_of_task, todo)
+        if workers > 1:
+            for problem in (todo[0].slower[0], todo[0].faster[0]):
+                compile_judge(_fast_form(problem), todo[0].objectives[0])
+            results = stack.enter_context(closing(in_processes(_of_task, todo, workers)))
+        for done, samples in enumerate(results, start=1):
+            found += samples
+            if progress is not None:
+                progress(f"instance {done} of {len(todo)}")
+    return tuple(found)
+
+
+Kept = dict[tuple[object, ...], Any]
+"""What was computed already, by what tells one question from another."""
+
+
+def _of_task(task: Task) -> tuple[Sample, ...]:
+    kept: Kept = {}
+    by_slower, by_faster = task.algorithms
+    routes = []
+    for slow, fast in zip(task.slower, task.faster, strict=True):
+        one, other = _fast_form(slow), _fast_form(fast)
+        routes.append(((one, by_slower), (other, by_slower), (other, by_faster)))
+    asked = [
+        (problem, algorithm, objective)
+        for each in routes
+        for problem, algorithm in each
+        for objective in task.objectives
+    ]
+    _run_all(kept, asked, task.runs)
+    found = []
+    for reading, each in zip(task.readings, routes, strict=True):
+        totals = np.empty((len(task.objectives), _ROUTES, task.runs))
+        settled = np.empty(totals.shape, dtype=np.intp)
+        for at, objective in enumerate(task.objectives):
+            for r, (problem, algorithm) in enumerate(each):
+                for seed in range(task.runs):
+                    ran = kept[(*_key(problem), algorithm, seed, objective)]
+                    totals[at, r, seed], settled[at, r, seed] = ran
+        totals.setflags(write=False)
+        settled.setflags(write=False)
+        (one, _), (other, _), _ = each
+        found.append(
+            Sample(
+                reading=reading,
+                step=task.step,
+                index=task.index,
+                waypoints=task.waypoints,
+                slower=_optimum(kept, one),
+                faster=_optimum(kept, other),
+                totals=totals,
+                settled=settled,
+            )
+        )
+    return tuple(found)
+
+
+def _fast_form(problem: Problem) -> Problem:
+    """The problem with shared durations, its curve in the form that is evaluated fastest."""
+    curve = problem.curve.polynomial_form()
+    return replace(problem, curve=curve, coupling=Coupling.SHARED)
+
+
+def _key(problem: Problem) -> tuple[object, ...]:
+    """What tells one problem through the same way-points from another."""
+    limits = problem.limits
+    arrays = (
+        limits.sides if limits.uneven else limits.derivatives,
+        limits.position_lower,
+        limits.position_upper,
+        problem.duration_lower,
+        problem.duration_upper,
+        problem.waypoints,
+    )
+    return (problem.curve, *(array.tobytes() for array in arrays))
+
+
+def _run_all(kept: Kept, asked: Iterable[tuple[Problem, Algorithm[Any], str]], runs: int) -> None:
+    """Keep what every run gives, each once: all runs of an algorithm are moved side by side."""
+    todo: dict[Algorithm[Any], dict[tuple[object, ...], AskedRun]] = {}
+    for problem, algorithm, objective in asked:
+        for seed in range(runs):
+            key = (*_key(problem), algorithm, seed, objective)
+            # The first of equal problems stands for all, so that neighbours are judged together.
+            one = AskedRun(problem, seed, (), objective)
+            todo.setdefault(algorithm, {}).setdefault(key, one)
+    for algorithm, questions in todo.items():
+        ran = run_asked(algorithm, list(questions.values()))
+        for (key, question), done in zip(questions.items(), ran, strict=True):
+            kept[key] = _judged(question.problem, done)
+
+
+def _judged(problem: Problem, done: Run) -> tuple[float, int]:
+    """Total of one run, inf without an answer that keeps its limits, and when it settled."""
+    total = done.reported_time
+    if np.isfinite(total) and check(problem, done.durations).max_violation > TOLERANCE:
+        total = np.inf
+    return total, settled_at(done.trace, SETTLED * total)
+
+
+def _optimum(kept: Kept, problem: Problem) -> Optimum:
+    key = _key(problem)
+    if key not in kept:
+        polynomials = as_piecewise(problem.curve)
+        alone = polynomials is not None and set(polynomials.continuity) <= {0}
+        kept[key] = _ended(solve(problem, starts=1 if alone else STARTS))
+    known: Optimum = kept[key]
+    return known
+
+
+def _ended(solution: Solution) -> Optimum:
+    words = f"{solution.status}" + (f" ({solution.why})" if solution.why else "")
+    total = solution.total_time if solution.infimum is None else solution.infimum
+    return Optimum(total, solution.evidence, words)
+
+
+def _claimed(study: Study, block: InstancesBlock) -> ImprovementClaim:
     return cast(ImprovementClaim, study.case.claim(block.claim))
 
 
-def _sides(study: ChosenCase, block: InstancesBlock) -> tuple[Claim, Claim]:
+def _sides(study: Study, block: InstancesBlock) -> tuple[Claim, Claim]:
     claim = _claimed(study, block)
     return study.case.claim(claim.slower), study.case.claim(claim.faster)
 
 
-def _procedure(study: ChosenCase, side: Claim) -> Procedure:
+def _procedure(study: Study, side: Claim) -> Procedure:
     # A case file names both; the problem may be its only one.
     return Procedure(
         problem=side.problem or study.case.problems[0].id, algorithm=cast(str, side.algorithm)
     )
 
 
-def readings_of(study: ChosenCase, block: InstancesBlock) -> tuple[str, ...]:
+def readings_of(study: Study, block: InstancesBlock) -> tuple[str, ...]:
     """Selected readings of a design; none if an algorithm is not implemented."""
     sides = [_procedure(study, side) for side in _sides(study, block)]
     if any(study.algorithm(side.algorithm) is None for side in sides):
@@ -39,18 +213,10 @@ def readings_of(study: ChosenCase, block: InstancesBlock) -> tuple[str, ...]:
     return tuple(r for r in wanted if all((side.problem, r) in study.selected for side in sides))
 
 
-def printed_reduction(study: ChosenCase, block: InstancesBlock) -> tuple[float, float] | None:
+def printed_reduction(study: Study, block: InstancesBlock) -> tuple[float, float] | None:
     """Smallest and largest reduction that the printed digits allow, as shares of the slower total.
 
-    Parameters
-    ----------
-    study : ChosenCase
-    block : InstancesBlock
-
-    Returns
-    -------
-    tuple of float or None
-        From the printed percentage, else from the two totals; None if neither is printed.
+    They follow from the printed percentage, else from the two totals, if either is printed.
     """
     claim = _claimed(study, block)
     if claim.percent is not None:
@@ -63,14 +229,12 @@ def printed_reduction(study: ChosenCase, block: InstancesBlock) -> tuple[float, 
     return 1 - fast_high / slow_low, 1 - fast_low / slow_high
 
 
-def _printed_totals(
-    study: ChosenCase, block: InstancesBlock, rid: str
-) -> tuple[str | None, str | None]:
+def _printed_totals(study: Study, block: InstancesBlock, rid: str) -> tuple[str | None, str | None]:
     slow, fast = (study.claim_total(side, rid) for side in _sides(study, block))
     return slow and slow[0], fast and fast[0]
 
 
-def examinable(study: ChosenCase) -> tuple[InstancesBlock, ...]:
+def examinable(study: Study) -> tuple[InstancesBlock, ...]:
     """Designs of instances of which both problems and some reading are selected.
 
     All of it is implemented, and can be replayed.
@@ -79,7 +243,7 @@ def examinable(study: ChosenCase) -> tuple[InstancesBlock, ...]:
     return tuple(block for block in declared if unexamined(study, block) is None)
 
 
-def unexamined(study: ChosenCase, block: InstancesBlock) -> str | None:
+def unexamined(study: Study, block: InstancesBlock) -> str | None:
     """Why the two procedures of a design cannot be run on its instances; None if they can."""
     try:
         examined(study, block)
@@ -90,18 +254,13 @@ def unexamined(study: ChosenCase, block: InstancesBlock) -> str | None:
     return None
 
 
-def examined(study: ChosenCase, block: InstancesBlock) -> InstancesResult:
+def examined(study: Study, block: InstancesBlock) -> InstancesResult:
     """What the two procedures of an improvement do on instances that are drawn for it, once.
 
     Parameters
     ----------
-    study : ChosenCase
     block : InstancesBlock
         For which `readings_of` names some reading.
-
-    Returns
-    -------
-    InstancesResult
 
     Raises
     ------
@@ -112,7 +271,7 @@ def examined(study: ChosenCase, block: InstancesBlock) -> InstancesResult:
     return own.once(("instances", block.id), lambda: _examined(own, block))
 
 
-def _examined(study: ChosenCase, block: InstancesBlock) -> InstancesResult:
+def _examined(study: Study, block: InstancesBlock) -> InstancesResult:
     """Draw instances, make their problems under their readings, and examine them."""
     what = f"instances {block.id}"
     study.progress(what)

@@ -47,7 +47,6 @@ class Sample:
 
     Attributes
     ----------
-    reading : str
     step : float
         rad or m.
     index : int
@@ -77,7 +76,6 @@ class Sample:
 
         Parameters
         ----------
-        effect : Effect
         objective : int
             Position among the design's objectives; the optima have none.
 
@@ -123,15 +121,12 @@ class Distribution:
 def distribution(reductions: Array) -> Distribution:
     """Quantiles of reductions.
 
+    All are nan if no pair has one.
+
     Parameters
     ----------
     reductions : ndarray, shape (pairs,)
         nan where a pair has none; nothing is clipped.
-
-    Returns
-    -------
-    Distribution
-        nan throughout if no pair has one.
     """
     known = reductions[np.isfinite(reductions)]
     if not known.size:
@@ -148,12 +143,10 @@ class InstancesResult:
 
     Attributes
     ----------
-    block : InstancesBlock
     slower, faster : Procedure
         The one that is said to be slower, and the paper's.
     printed : tuple of float or None
         Smallest and largest reduction that the printed digits allow.
-    readings : tuple of str
     iterations : int
         Budget of the faster procedure's algorithm.
     samples : tuple of Sample
@@ -260,16 +253,7 @@ def percent_range(low: float, high: float, digits: int = 2) -> str:
 
 
 def examined_entry(result: InstancesResult) -> ExaminedInstances:
-    """Everything that was computed on the instances of one design.
-
-    Parameters
-    ----------
-    result : InstancesResult
-
-    Returns
-    -------
-    ExaminedInstances
-    """
+    """Everything that was computed on the instances of one design."""
     block = result.block
     low, high = result.printed or (None, None)
     absent = "no reduction is printed"

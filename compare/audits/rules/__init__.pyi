@@ -1,14 +1,12 @@
 from .clues import held_otherwise, reading_clues
 from .condition_count import count_conditions
 from .following_numbers import in_digits, recomputed, repeated_total, summed
-from .kept_limits import meant_to_keep, said_to_keep
 from .linear_blends import blended, judge_row
 from .on_instances import HANDLED, attributed, placed
 from .peaks import box_reach, largest
-from .plain_words import EXPLAINED, Explained
 from .printed_vertices import Vertex, has_vertices, vertices
-from .registry import GROUPS, NOT_COMPUTED, RULES
-from .rule_group import RuleGroup
+from .registry import EXPLAINED, GROUPS, NOT_COMPUTED, RULES
+from .rule_group import Explained, RuleGroup
 
 __all__ = [
     "EXPLAINED",
@@ -28,12 +26,10 @@ __all__ = [
     "in_digits",
     "judge_row",
     "largest",
-    "meant_to_keep",
     "placed",
     "reading_clues",
     "recomputed",
     "repeated_total",
-    "said_to_keep",
     "summed",
     "vertices",
 ]

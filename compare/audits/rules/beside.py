@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from enum import StrEnum
 from functools import cached_property
 from math import pi
 from typing import NamedTuple
@@ -12,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ....problem import Array, Printed, TrajgapError
-from ..rounding import RoundingBox, hull
+from ..rounding import Agreement, RoundingBox, agreement, hull, meet
 
 Meant = Callable[[Array, Array], dict[str, float]]
 """From way-points and durations to what a number may be, each in words."""
@@ -46,19 +45,7 @@ _NEAR_FACTOR = 0.01
 """Relative distance from such a ratio below which the unit is named as an explanation."""
 
 
-class Class(StrEnum):
-    """How a printed number lies beside that of the motion."""
-
-    ROUNDING = "rounding"
-    CUT_OFF = "cut off"
-    SAMPLING = "sampling"
-    NORM = "norm over the joints"
-    UNIT = "other unit"
-    ROOT = "root left out"
-    OFF = "off"
-
-
-FITS = (Class.ROUNDING, Class.CUT_OFF, Class.SAMPLING, Class.NORM)
+FITS = (Agreement.ROUNDING, Agreement.CUT_OFF, Agreement.SAMPLING, Agreement.NORM)
 """The classes that accuse of nothing."""
 
 
@@ -68,7 +55,6 @@ class Beside:
 
     Attributes
     ----------
-    printed : Printed
     rounded, wide : tuple of float
         Ends of what the digits stand for, if they were rounded, and if they may be cut off.
     exact : float
@@ -119,24 +105,23 @@ class Beside:
             return 0.0 if value == 0.0 else np.inf
         return (value - self.exact) / self.exact
 
-    def _meets(self, ends: tuple[float, float], low: float, high: float, factor: float = 1) -> bool:
-        return factor * ends[0] <= high and low <= factor * ends[1]
-
     @cached_property
-    def kind(self) -> Class:
+    def kind(self) -> Agreement:
         """How the two lie beside each other, the most charitable first."""
-        exact, reach, far = self.exact, self.reach, self.far
-        if self._meets(self.rounded, exact - reach, exact + reach):
-            return Class.ROUNDING
-        if self._meets(self.wide, exact - far, exact + far):
-            return Class.CUT_OFF
-        if self._meets(self.wide, self.sampled[0] - far, self.sampled[1] + far):
-            return Class.SAMPLING
+        exact, far = self.exact, self.far
+        around = exact - self.reach, exact + self.reach
+        found = agreement(
+            (Agreement.ROUNDING, self.rounded, around),
+            (Agreement.CUT_OFF, self.wide, (exact - far, exact + far)),
+            (Agreement.SAMPLING, self.wide, (self.sampled[0] - far, self.sampled[1] + far)),
+        )
+        if found is not Agreement.OFF:
+            return found
         if self.norm is not None and self.norm.fits:
-            return Class.NORM
+            return Agreement.NORM
         if self.root is not None:
-            return Class.ROOT
-        return Class.OFF if self.factor is None else Class.UNIT
+            return Agreement.ROOT
+        return Agreement.OFF if self.factor is None else Agreement.UNIT
 
     @property
     def fits(self) -> bool:
@@ -151,9 +136,9 @@ class Beside:
     def told(self, name: str) -> str:
         """A number of a motion by its name, with what is printed and how the two agree."""
         how = {
-            Class.ROUNDING: "equal within the rounding of the printed digits",
-            Class.CUT_OFF: "as digits that are cut off instead of rounded give it",
-            Class.SAMPLING: f"as {SAMPLES[0]} or more samples of the motion give it",
+            Agreement.ROUNDING: "equal within the rounding of the printed digits",
+            Agreement.CUT_OFF: "as digits that are cut off instead of rounded give it",
+            Agreement.SAMPLING: f"as {SAMPLES[0]} or more samples of the motion give it",
         }.get(self.kind, UNEXPLAINED)
         return f"{name} is {self.exact:.6g} {self.unit}, printed is {self.printed}, {how}"
 
@@ -162,8 +147,10 @@ class Beside:
         """Whose square root a printed peak lacks, if with it the two agree within rounding."""
         if self.linear is None:
             return None
-        low, high = self.exact - self.reach, self.exact + self.reach
-        return next((n for n in _ROOTS if self._meets(self.rounded, low, high, n**0.5)), None)
+        around = self.exact - self.reach, self.exact + self.reach
+        low, high = self.rounded
+        found = (n for n in _ROOTS if meet((n**0.5 * low, n**0.5 * high), around))
+        return next(found, None)
 
     @property
     def factor(self) -> str | None:
@@ -177,17 +164,14 @@ class Beside:
 def _meant_by_ratio(ratio: float, linear: bool) -> str | None:
     """The factor between two units that a ratio is near, and what it would mean.
 
+    It is None where the ratio is near none.
+
     Parameters
     ----------
     ratio : float
         Positive.
     linear : bool
         Whether the numbers are those of a joint that slides.
-
-    Returns
-    -------
-    str or None
-        None where it is near none.
     """
     for factor, meaning in (_LENGTH_FACTORS if linear else _FACTORS).items():
         for one in (factor, 1 / factor):
@@ -209,7 +193,6 @@ def nearest_number(
 
     Parameters
     ----------
-    printed : Printed
     unit : str
         Of the paper, as a sentence writes it.
     joint : str or None
@@ -222,10 +205,6 @@ def nearest_number(
         Of durations, shape (segments,), and of way-points, shape (way-points, joints).
     spread : float
         Further change that rounding allows, in the unit of the paper.
-
-    Returns
-    -------
-    Beside
     """
     durations, waypoints = boxes
     at_print = meant(waypoints.value, durations.value)
@@ -299,7 +278,6 @@ class Look(NamedTuple):
 
     Attributes
     ----------
-    value : float
     down, up : ndarray
         What it would change by if one printed number went to the lower or the upper end of its
         range while the others stay, the durations first, then the way-points row by row; not a

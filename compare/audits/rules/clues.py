@@ -33,6 +33,8 @@ from ....problem.cases import (
 )
 from ...documents import HeldOtherwise, ReadingClue, Speaks, Why
 from ..printed_row import PrintedRow, rows_under
+from ..rounding import FEW_ROUNDINGS
+from ..stated import DERIVATIVES
 from ..study import Study
 from .peaks import jump_size, jump_unit, largest, largest_of_each_kind
 
@@ -41,28 +43,14 @@ _FILLED = 0.1
 a plot scales its axes to its curves, and nobody buys a robot ten times too fast."""
 _SAME = 1e-3
 """Relative difference that rounding in a data sheet leaves: 3.1415 rad/s is 180 °/s."""
-_ORDERS = {"velocity": 1, "acceleration": 2, "jerk": 3}
-"""Orders of the derivatives that clues name."""
 _STEPS = 10
 """Steps a segment on which limits held at samples only are tried: a coarse figure's."""
-
-
-_TINY = 1e-12
-"""rad or m, and their derivatives: what rounding of float64 leaves of a value that a limit of no
-width holds."""
 
 
 def reading_clues(study: Study) -> tuple[ReadingClue, ...]:
     """Every clue of a case under every reading with a problem.
 
-    Parameters
-    ----------
-    study : Study
-
-    Returns
-    -------
-    tuple of ReadingClue
-        By clue, then by reading.
+    Their order is by clue, then by reading.
     """
     return tuple(
         found
@@ -110,7 +98,7 @@ def _on_axis(study: Study, clue: AxisClue, reading: str) -> _Said:
         problem = row.posed()
         tops += [
             abs(top.value)
-            for top in largest(row, _ORDERS[clue.quantity])
+            for top in largest(row, DERIVATIVES.index(clue.quantity))
             if clue.joint in (None, problem.joints[top.joint])
             and problem.linear[top.joint] == is_linear(clue.unit)
         ]
@@ -166,7 +154,7 @@ def _smooth(study: Study, clue: SmoothClue, reading: str) -> _Said:
     motions = _motions(study, clue.of, reading)
     if not motions:
         return None
-    order = _ORDERS[clue.quantity]
+    order = DERIVATIVES.index(clue.quantity)
     jumps = [(row, jump) for row in motions for jump in row.check.jumps if jump.order == order]
     if not jumps:
         return Speaks.FOR, f"{clue.quantity} does not jump"
@@ -203,16 +191,7 @@ def _statement(study: Study, reading: str) -> Statement:
 
 
 def held_otherwise(row: PrintedRow[AnyClaim]) -> HeldOtherwise | Why:
-    """The largest ratio to a limit if the limits were held otherwise than for all t.
-
-    Parameters
-    ----------
-    row : PrintedRow
-
-    Returns
-    -------
-    HeldOtherwise or Why
-    """
+    """The largest ratio to a limit if the limits were held otherwise than for all t."""
     worst = row.check.worst
     if worst is None or worst.quantity in ("curve", "duration"):
         return Why("the printed durations define no motion whose limits are held")
@@ -250,7 +229,7 @@ def _at_samples(problem: Problem, durations: Array, trajectory: Trajectory) -> f
                     continue
                 width = limit if order else half_range(low, high, limit)
                 over = most - limit
-                ratio = 1.0 + over / width if width > 0 else np.inf if over > _TINY else 0.0
+                ratio = 1.0 + over / width if width > 0 else np.inf if over > FEW_ROUNDINGS else 0.0
                 ratios.append(float(ratio))
     return max(ratios)
 

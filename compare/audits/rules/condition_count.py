@@ -15,12 +15,31 @@ from ..printed_row import PrintedRow, left_out, rows_under
 from ..stated import all_called, called_under, prints_durations
 from ..study import Study
 from .peaks import largest
+from .rule_group import Explained, rule_group
 
 _REST = 0.01
 """Share of a derivative's peak up to which its value at an end counts as 0: rounding of the printed
 digits moves it by less."""
 
 
+@rule_group(
+    TG107=Explained(
+        "The conditions stated fit the number of coefficients",
+        "Can the conditions that the paper states hold together? They are counted against the "
+        "coefficients of the polynomials, segment by segment.",
+        "Refuted if the printed count is another one, or if no polynomial of the stated "
+        "degree meets the conditions. More conditions than coefficients get a warning: they "
+        "can hold together only for special way-points.",
+        "A cubic has four coefficients. If position, velocity and acceleration are given at "
+        "both ends, six conditions meet four coefficients.",
+    ),
+    TG207=Explained(
+        "The motion is at rest where it is said to be",
+        "Is the motion at rest where the paper says so? The derivatives at both ends are computed.",
+        "Supported if they vanish, inconsistent if one does not.",
+        "“Starts and ends at rest” on a natural cubic spline that starts at 68 °/s.",
+    ),
+)
 def judge_counts(study: Study) -> Iterator[Finding]:
     """Findings of TG107 and TG207."""
     for claim in study.claims:
@@ -125,13 +144,8 @@ def meets(degree: int, start: Sequence[int], end: Sequence[int]) -> bool:
 
     Parameters
     ----------
-    degree : int
     start, end : sequence of int
         Orders of the derivatives that vanish at 0 and at 1.
-
-    Returns
-    -------
-    bool
     """
     rows = [[_slope(power, 0, 0) for power in range(degree + 1)] + [Fraction(0)]]
     rows.append([_slope(power, 0, 1) for power in range(degree + 1)] + [Fraction(1)])

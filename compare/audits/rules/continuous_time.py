@@ -16,14 +16,15 @@ from ....problem.cases import (
 )
 from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..digit_ranges import below_certified
+from ..own_result import UNSAID, meant_to_keep, said_of, said_to_keep
 from ..printed_row import PrintedRow, left_out, printed_rows, rows_under
 from ..roots import LIMITS
-from ..stated import all_called, called_under
+from ..stated import DERIVATIVES, all_called, called_under
 from ..study import Study
 from .judged_rows import JudgedRow, broken, judged_row, ratio_at_print
-from .kept_limits import UNSAID, meant_to_keep, said_of, said_to_keep
 from .linear_blends import BLENDS, blended, judge_row
-from .peaks import JUMPING, box_reach, jump_size, jump_unit, largest, largest_of_each_kind
+from .peaks import box_reach, jump_size, jump_unit, largest, largest_of_each_kind
+from .rule_group import INFORMS, Explained, rule_group
 
 _ELSEWHERE = "elsewhere"
 """Kind of what is said of durations that are not of the problem's curve."""
@@ -31,6 +32,40 @@ _NARROW = 0.01
 """Share of a limit above which rounding blurs a peak too much to call the limit reached."""
 
 
+@rule_group(
+    TG201=Explained(
+        "Printed durations keep the limits for all t, over the rounding box",
+        "Do the printed durations keep the printed limits at every instant? The motion is "
+        "built again from the printed durations and way-points, and its extrema are exact.",
+        "Supported if the limits are kept by the printed numbers, or by some values that "
+        "round to them. Refuted only if a limit is broken however the digits were rounded, and "
+        "however they were cut off.",
+        "A velocity of 2.0004 rad/s against a limit of 2 rad/s is no fault if durations "
+        "printed with two decimals explain it; 2.6 rad/s is one.",
+    ),
+    TG202=Explained(
+        "Position, velocity and acceleration are continuous",
+        "Are position, velocity and acceleration continuous, as the paper says?",
+        "Supported if the motion built from the printed numbers is continuous under the "
+        "reading, inconsistent if it jumps. Limits are judged apart from jumps.",
+        "Cubic segments that are stretched one by one have equal slopes only if equal "
+        "durations follow each other; else the velocity jumps at the via-points.",
+    ),
+    TG204=Explained(
+        "The limits are used up by the printed durations",
+        "Which limits do the printed durations use up? The shortest motion reaches at least one.",
+        INFORMS + " A motion that reaches no limit could be shorter.",
+        "The largest velocity is 62 % of its limit and the largest acceleration 71 %: all "
+        "durations could be shortened alike.",
+    ),
+    TG206=Explained(
+        "Acceleration jumps where it is said to",
+        "Does the acceleration jump where the paper says that a method makes it jump?",
+        "Supported if it does. A reading under which it does not speaks against that reading.",
+        "“The acceleration of the 3-5-3 curve changes suddenly at the via-points” is set "
+        "beside the accelerations on both sides of each via-point.",
+    ),
+)
 def judge_motions(study: Study) -> Iterator[Finding]:
     """Findings of TG201, TG202, TG204 and TG206."""
     for claim in study.claims:
@@ -46,21 +81,19 @@ def judge_motions(study: Study) -> Iterator[Finding]:
             yield from _said_to_jump(study, claim)
 
 
+@rule_group()  # it finds what TG201 finds
 def judge_bare_totals(study: Study) -> Iterator[Finding]:
     """Refute totals that no motion within the limits takes, and that a statement says one does."""
     for claim in study.claims:
-        if not (isinstance(claim, TotalTimeClaim) and said_to_keep(study, claim)):
+        if not (isinstance(claim, TotalTimeClaim) and said_to_keep(study.case, claim)):
             continue
         for row in printed_rows(study, claim):
             proof = broken(row) or below_certified(row)
             if proof is not None:
-                yield Finding(
-                    rule="TG201",
+                yield row.finding(
+                    "TG201",
                     verdict=ClaimVerdict.REFUTED,
                     basis=Basis.ENCLOSURE,
-                    claim=claim.id,
-                    problem=row.problem,
-                    reading=row.reading,
                     printed=f"{claim.value} {study.time_unit}",
                     sentences=proof,
                     kind="total excluded",
@@ -69,18 +102,15 @@ def judge_bare_totals(study: Study) -> Iterator[Finding]:
 
 
 def _limits(study: Study, claim: AnyClaim) -> Iterator[Finding]:
-    unsaid = "" if said_to_keep(study, claim) else UNSAID
+    unsaid = "" if said_to_keep(study.case, claim) else UNSAID
     for row in printed_rows(study, claim):
         judged = judged_row(row)
-        verdict, severity = said_of(study, claim, judged.verdict, judged.severity)
-        yield Finding(
-            rule="TG201",
+        verdict, severity = said_of(study.case, claim, judged.verdict, judged.severity)
+        yield row.finding(
+            "TG201",
             severity=severity,
             verdict=verdict,
             basis=Basis.ENCLOSURE,
-            claim=claim.id,
-            problem=row.problem,
-            reading=row.reading,
             printed=study.durations_digits(claim),
             computed=ratio_at_print(row),
             kind=judged.kind,
@@ -88,7 +118,7 @@ def _limits(study: Study, claim: AnyClaim) -> Iterator[Finding]:
                 *judged.sentences,
                 "" if verdict is ClaimVerdict.SUPPORTED else unsaid,
             ),
-            decides=meant_to_keep(study, claim),
+            decides=meant_to_keep(study.case, claim),
             root=f"{LIMITS} {claim.id}" if judged.verdict is ClaimVerdict.REFUTED else "",
         )
 
@@ -106,12 +136,9 @@ def _jumps(study: Study, claim: AnyClaim) -> Iterator[Finding]:
             f"in joint {top.joint} at t = {top.time:.6g} s by {size}"
             for (_, top), size in zip(tops, sizes, strict=True)
         )
-        yield Finding(
-            rule="TG202",
+        yield row.finding(
+            "TG202",
             basis=Basis.CHECK,
-            claim=claim.id,
-            problem=row.problem,
-            reading=row.reading,
             printed=study.durations_digits(claim),
             computed=f"{len(velocity)} jumps of velocity, up to {' and '.join(sizes)}",
             kind="velocity jumps",
@@ -225,7 +252,7 @@ def _continuity(study: Study, claim: StatementClaim) -> Iterator[Finding]:
             )
         elif jumps:
             largest_ones = " and ".join(
-                f"in {JUMPING[top.order]} of joint {top.joint} at t = {top.time:.6g} s by "
+                f"in {DERIVATIVES[top.order]} of joint {top.joint} at t = {top.time:.6g} s by "
                 f"{jump_size(row, top):.6g} {jump_unit(row, top)}"
                 for row, top in largest_of_each_kind(jumps)
             )
@@ -320,13 +347,10 @@ def _used_up(study: Study, claim: AnyClaim) -> Iterator[Finding]:
                         f"at its limit {bound:.6g} {row.unit(quantity, label)}"
                     )
         if tight:
-            yield Finding(
-                rule="TG204",
+            yield row.finding(
+                "TG204",
                 verdict=ClaimVerdict.SUPPORTED,
                 basis=Basis.CHECK,
-                claim=claim.id,
-                problem=row.problem,
-                reading=row.reading,
                 printed=study.durations_digits(claim),
                 computed="; ".join(tight),
                 kind="reached",

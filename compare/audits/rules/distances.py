@@ -31,7 +31,6 @@ from ...documents import (
     ranged,
 )
 from ...gaps import gap, reference_of
-from ..chosen_case import Total
 from ..digit_ranges import below_certified
 from ..fixed_ratios import (
     BELOW_AT_RATIOS,
@@ -43,10 +42,12 @@ from ..fixed_ratios import (
 )
 from ..printed_row import PrintedRow, left_out, printed_rows, rows_under
 from ..roots import LIMITS, OPTIMAL
+from ..rounding import meet
 from ..stated import called, called_under, other_objective
 from ..stated_totals import contradicting_lows, is_sum, rounded_up_low, total_excludes, what_agrees
-from ..study import Study
+from ..study import Study, Total
 from .judged_rows import broken
+from .rule_group import INFORMS, Explained, rule_group
 
 _BELOW = "All of it is below the best known total: a misprint or a better optimum may explain it."
 """What is said of a printed total below a best known one."""
@@ -57,6 +58,24 @@ _BELOW_BOUND = (
 """What is said of a printed total below a proved bound."""
 
 
+@rule_group(
+    TG302=Explained(
+        "A printed total beside the optimum of its own formulation",
+        "How far is a printed total from the optimum of the paper's own problem: its curve, "
+        "its way-points, its limits?",
+        "A distance alone supports and refutes nothing. “Optimal” is refuted by a shorter "
+        "motion that keeps the limits however the digits were rounded.",
+        "3.172 s is printed for joint 3, whose proven optimum is 3.126 s: 1.5 % above it.",
+    ),
+    TG303=Explained(
+        "A printed total beside the optimum with shared durations",
+        "The same distance where all joints pass each way-point together, though the paper "
+        "times each joint by itself.",
+        INFORMS,
+        "Each joint is optimised by itself, and each segment then takes the longest of their "
+        "durations: 3.53 s. Optimised together, the joints need 3.30 s.",
+    ),
+)
 def judge_distances(study: Study) -> Iterator[Finding]:
     """Findings of TG302 and TG303."""
     for claim in study.claims:
@@ -129,15 +148,12 @@ def _distance(
             severity = Severity.INFO if before else Severity.WARNING
             said.append(_BELOW if isinstance(reference.lower, Why) else _BELOW_BOUND)
     agrees = kept and interval[0] <= solution.best <= interval[1]
-    return Finding(
-        rule="TG303" if shared else "TG302",
+    return row.finding(
+        "TG303" if shared else "TG302",
         severity=severity,
         verdict=ClaimVerdict.SUPPORTED if agrees else ClaimVerdict.NOT_CHECKABLE,
         evidence=solution.evidence,
         basis=Basis.OPTIMUM,
-        claim=claim.id,
-        problem=row.problem,
-        reading=row.reading,
         printed=shown,
         computed=f"{reference.upper:.6f} s",
         gap=distance,
@@ -211,7 +227,7 @@ def _beside_procedure(row: PrintedRow[AnyClaim], total: Total) -> Iterator[Findi
         return
     wide = answer.ranges[0]
     shown, (low, high) = total
-    inside = low <= wide.highest and high >= wide.lowest
+    inside = meet((low, high), (wide.lowest, wide.highest))
     tight = answer.check.tight_time
     message = (
         f"Each joint at its own {answer.joint_evidence} optimum, then the longest per segment, "
@@ -220,14 +236,11 @@ def _beside_procedure(row: PrintedRow[AnyClaim], total: Total) -> Iterator[Findi
         + (f" (free rescaling of that motion: {tight:.4f} s)" if tight is not None else "")
         + f"; printed is {shown}, {'inside' if inside else 'outside'} that range."
     )
-    yield Finding(
-        rule="TG302",
+    yield row.finding(
+        "TG302",
         verdict=ClaimVerdict.SUPPORTED if inside else ClaimVerdict.NOT_CHECKABLE,
         evidence=answer.evidence,
         basis=Basis.OPTIMUM,
-        claim=row.claim.id,
-        problem=row.problem,
-        reading=row.reading,
         printed=shown,
         computed=f"{ranged(wide.lowest, wide.highest, '.6f')} s",
         kind="joint by joint",

@@ -25,11 +25,10 @@ from ...documents import Severity
 from ..printed_row import PrintedRow, printed_rows
 from ..stated import allowed_bases, printed_total
 from ..study import Study
-from .measures import measure_beside
+from .motion_numbers import measure_beside, value_beside
 from .peaks import beside
 from .printed_tables import printed_alike
 from .printed_vertices import has_vertices
-from .values import value_beside
 
 
 def in_digits(value: Fraction | Decimal | float, like: Printed, rounding: str = "") -> str:
@@ -69,15 +68,7 @@ def _plain(claim: AnyClaim) -> Printed | None:
 def recomputed(study: Study, claim: AnyClaim) -> dict[str, tuple[str, ...]]:
     """Numbers of a claim as they follow from what the claims print that it rests on.
 
-    Parameters
-    ----------
-    study : Study
-    claim : AnyClaim
-
-    Returns
-    -------
-    dict of str to tuple of str
-        Digits by the claim's key; empty where nothing follows.
+    Digits stand under the claim's key; there are none where nothing follows.
     """
     if isinstance(claim, DurationsClaim):
         return {} if claim.total is None else {"total": (summed(claim.durations, claim.total),)}

@@ -12,16 +12,30 @@ from ....problem.cases import (
     MaximumClaim,
 )
 from ...documents import Basis, ClaimVerdict, Finding, Severity
-from ..rounding import hull
+from ..rounding import hull, meet
 from ..stated import allowed_bases, printed_total
 from ..study import Study
-from .printed_digits import compared, meet, shown, span
+from .printed_digits import compared, shown, span
 from .printed_tables import contradicted, doubted, total_allowed
+from .rule_group import ON_DIGITS, Explained, rule_group
 
 _SHARE_OF = {"slower": "the longer total", "faster": "the shorter total"}
 """What a percentage may be a share of; of the longer total, if either fits."""
 
 
+@rule_group(
+    TG103=Explained(
+        "A printed improvement follows from the printed totals",
+        "Does a printed improvement follow from the two totals that it compares? A percentage "
+        "may be a share of either total unless the text says of which.",
+        "Supported if some values that round to the printed totals give it, else refuted; "
+        "inconsistent where two places print different totals. Where only the order of two "
+        "totals is claimed, a longer total that is called the better one is refuted. " + ON_DIGITS,
+        "From 4.00 s to 3.60 s the total falls by 9.8 to 10.2 % of the longer total, or by 11 "
+        "% of the shorter one. “10 %” and “11 %” are supported; “15 %” is refuted.",
+    ),
+    without_waypoints=True,
+)
 def judge_improvements(study: Study) -> Iterator[Finding]:
     """Findings of TG103."""
     for claim in study.claims:

@@ -6,7 +6,9 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Generic, TypeVar
 
-from ....problem import Printed
+import numpy as np
+
+from ....problem import QUANTITIES, Array, Curve, Printed, Trajectory, extrema, fit
 from ....problem.cases import (
     AnyClaim,
     Claim,
@@ -14,16 +16,238 @@ from ....problem.cases import (
     PeakClaim,
     ValueClaim,
     motions_of,
+    named_places,
     profile_of,
 )
 from ...documents import Basis, ClaimVerdict, Finding
 from ..printed_row import PrintedRow, printed_rows
-from ..stated import called
+from ..rounding import ROUNDING
+from ..stated import DERIVATIVES, called, place_of_value
 from ..study import Study
-from .beside import Beside
-from .measures import measure_beside, measure_described
+from .beside import SAMPLES, Beside, nearest_number
 from .peaks import beside, peak_described
-from .values import value_beside, value_described
+from .rule_group import Explained, rule_group
+
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(10)
+"""Gauss-Legendre on -1..1: exact up to degree 19, and squares of declared polynomials have 18."""
+_PARTS = 8
+"""Parts of each piece beside its zeros: norms, and curves that are no polynomial in time, are
+smooth enough there."""
+_POWERS = {"mean": (1, 0), "rms": (1, 0), "integral": (1, 1), "integral-square": (2, 1)}
+"""Powers of the derivative's unit and of time in each measure."""
+
+
+NAMES = {
+    "mean": "mean absolute value",
+    "rms": "root mean square",
+    "integral": "integral of the absolute value",
+    "integral-square": "integral of the square",
+}
+"""Each measure in words."""
+
+
+@dataclass(frozen=True)
+class MotionMeasure:
+    """A measure of each joint, and of their Euclidean norm."""
+
+    joints: Array
+    norm: float
+
+    def meant(self, joint: int | None) -> dict[str, float]:
+        """What one printed number may be, in words: that of a joint, or of the robot."""
+        if joint is not None:
+            return {"": float(self.joints[joint])}
+        if len(self.joints) == 1:
+            return {"": float(self.joints[0])}
+        return {
+            " of the norm over the joints": self.norm,
+            " of the largest joint": float(self.joints.max()),
+            " of the joints in the mean": float(self.joints.mean()),
+        }
+
+
+def measured(trajectory: Trajectory, order: int, measure: str) -> MotionMeasure:
+    """A mean or an integral of a derivative of a motion.
+
+    Of each joint it is exact up to float rounding where the pieces are polynomials in time, since
+    they are split where the derivative changes its sign.
+
+    Units are rad or m, and s.
+
+    Parameters
+    ----------
+    order : int
+        1 for velocity, 2 for acceleration, 3 for jerk.
+    measure : str
+        A key of `NAMES`.
+    """
+    first, square, norm = np.zeros(trajectory.joints), np.zeros(trajectory.joints), 0.0
+    for piece in range(len(trajectory.durations)):
+        places, shares = _nodes(trajectory, piece, order)
+        values = np.array(
+            [trajectory.values(piece, j, order, places) for j in range(trajectory.joints)]
+        )
+        first += np.abs(values) @ shares
+        square += values**2 @ shares
+        norm += float(np.linalg.norm(values, axis=0) @ shares)
+    total = float(trajectory.breaks[-1] - trajectory.breaks[0])
+    return _finished(first, square, norm, total, measure)
+
+
+def _finished(
+    first: Array, square: Array, norm: float, total: float, measure: str
+) -> MotionMeasure:
+    match measure:
+        case "mean":
+            return MotionMeasure(first / total, norm / total)
+        case "rms":
+            return MotionMeasure(np.sqrt(square / total), float(np.sqrt(square.sum() / total)))
+        case "integral":
+            return MotionMeasure(first, norm)
+    return MotionMeasure(square, float(square.sum()))
+
+
+def _nodes(trajectory: Trajectory, piece: int, order: int) -> tuple[Array, Array]:
+    """Places of a piece and the time that each stands for."""
+    cuts = [np.linspace(0.0, 1.0, _PARTS + 1)]
+    for joint in range(trajectory.joints):
+        level = np.trim_zeros(trajectory.level(piece, joint, order, 0.0), "b")
+        if level.size > 1:
+            cuts.append(np.polynomial.polynomial.polyroots(level).real)
+    ends = np.unique(np.clip(np.concatenate(cuts), 0.0, 1.0))
+    middle, half = (ends[1:] + ends[:-1]) / 2, (ends[1:] - ends[:-1]) / 2
+    places = (middle[:, None] + half[:, None] * _NODES).ravel()
+    # Time is a polynomial of degree 3 at most over a piece.
+    four = np.linspace(0.0, 1.0, 4)
+    clock = np.polynomial.Polynomial.fit(four, trajectory.times(piece, four), 3)
+    return places, (half[:, None] * _WEIGHTS).ravel() * clock.deriv()(places)
+
+
+def sampled(trajectory: Trajectory, order: int, measure: str) -> list[MotionMeasure]:
+    """The same from samples, as programs take it: one for each number of samples."""
+    start, end = trajectory.breaks[0], trajectory.breaks[-1]
+    found = []
+    for count in SAMPLES:
+        for whole in (True, False):
+            times = np.linspace(start, end, count, endpoint=whole)
+            values = trajectory(times, order)
+            total = float(end - start)
+            first, square = (x.mean(axis=0) * total for x in (np.abs(values), values**2))
+            norm = float(np.linalg.norm(values, axis=1).mean()) * total
+            found.append(_finished(first, square, norm, total, measure))
+    return found
+
+
+def measure_beside(
+    row: PrintedRow[AnyClaim], claim: MeasureClaim, printed: Printed, joint: str | None
+) -> Beside | None:
+    """A printed number beside the measure that it is nearest to, of those that it may be."""
+    problem = row.posed()
+    if joint is not None and joint not in problem.joints:
+        return None
+    order = QUANTITIES.index(claim.derivative) + 1
+    index = None if joint is None else problem.joints.index(joint)
+    own, by_time = _POWERS[claim.measure]
+    unit = row.in_units(claim.derivative, 1.0, joint) ** own
+    unit *= row.in_units("time", 1.0) ** by_time
+    shown = row.unit(claim.derivative, joint)
+    shown = shown if own == 1 else f"({shown})²"
+    shown += f"·{row.study.time_unit}" if by_time else ""
+
+    def meant(waypoints: Array, durations: Array) -> dict[str, float]:
+        trajectory = fit(problem.curve, waypoints, durations)
+        found = measured(trajectory, order, claim.measure).meant(index)
+        return {words: unit * value for words, value in found.items()}
+
+    coarse = sampled(row.motion, order, claim.measure)
+    samples = [{words: unit * x for words, x in one.meant(index).items()} for one in coarse]
+    return nearest_number(printed, shown, joint, meant, samples, row.boxes)
+
+
+def measure_described(row: PrintedRow[AnyClaim], claim: MeasureClaim, one: Beside) -> str:
+    """One printed measure beside that of the motion."""
+    whose = one.meaning if one.joint is None else f" of joint {one.joint}"
+    return one.told(f"the {NAMES[claim.measure]} of {claim.derivative}{whose}")
+
+
+def value_beside(
+    row: PrintedRow[AnyClaim], claim: ValueClaim, printed: Printed, joint: str | None
+) -> Beside | None:
+    """A printed number beside the value of one joint; where it jumps, on its nearer side."""
+    problem = row.posed()
+    if joint is None and len(problem.joints) == 1:
+        joint = problem.joints[0]
+    if joint not in problem.joints:
+        return None
+    j, order = problem.joints.index(joint), DERIVATIVES.index(claim.derivative)
+    unit = row.in_units(claim.derivative, 1.0, joint)
+    statement = row.statement
+    at = None if claim.place is None else named_places(statement)[claim.place]
+    spread, instant = 0.0, None
+    drawn, printed_durations = row.motion, row.durations.value
+    if claim.time is not None:
+        measured = row.measured(claim.time, "time")
+        instant = measured.value
+        ends = [_near(drawn, t, j, order) for t in (measured.lower, measured.upper, instant)]
+        spread = unit * max(abs(x - y) for x in ends[2] for end in ends[:2] for y in end)
+
+    def sides(trajectory: Trajectory, durations: Array) -> tuple[float, float] | None:
+        if instant is None and at is None:
+            return None
+        time = _time_of(problem.curve, durations, at) if instant is None else instant  # type: ignore[arg-type]
+        return _near(trajectory, time, j, order)
+
+    pair = sides(drawn, printed_durations)
+    jumps = pair is not None and abs(pair[0] - pair[1]) > ROUNDING * max(map(abs, pair))
+
+    def meant(waypoints: Array, durations: Array) -> dict[str, float]:
+        trajectory = fit(problem.curve, waypoints, durations)
+        near = sides(trajectory, durations)
+        if near is None:
+            found = [one.value for one in extrema(trajectory, j, order)]
+            return {"": unit * (max(found) if claim.place == "largest" else min(found))}
+        if not jumps:
+            return {"": unit * near[1]}
+        return {" just before it": unit * near[0], " just after it": unit * near[1]}
+
+    samples = []
+    if pair is None:
+        for count in SAMPLES:
+            values = drawn(np.linspace(drawn.breaks[0], drawn.breaks[-1], count), order)[:, j]
+            top = values.max() if claim.place == "largest" else values.min()
+            samples.append({"": unit * float(top)})
+    shown = row.unit(claim.derivative, joint)
+    return nearest_number(printed, shown, joint, meant, samples, row.boxes, spread)
+
+
+def _time_of(curve: Curve, durations: Array, waypoint: int) -> float:
+    """When a way-point is passed, s."""
+    return float(durations[: curve.waypoint_breaks[waypoint]].sum())
+
+
+def _near(motion: Trajectory, time: float, joint: int, order: int) -> tuple[float, float]:
+    """Values just before and just after an instant, alike where nothing jumps there."""
+    breaks = motion.breaks
+    time = min(max(time, float(breaks[0])), float(breaks[-1]))
+    close = ROUNDING * float(breaks[-1] - breaks[0])
+    at = int(np.argmin(np.abs(breaks - time)))
+    if abs(breaks[at] - time) > close:
+        value = float(motion(np.array([time]), order)[0, joint])
+        return value, value
+    pieces = len(breaks) - 1
+    before = motion.values(max(at - 1, 0), joint, order, np.array([1.0 if at > 0 else 0.0]))[0]
+    after = motion.values(
+        min(at, pieces - 1), joint, order, np.array([0.0 if at < pieces else 1.0])
+    )[0]
+    return float(before), float(after)
+
+
+def value_described(row: PrintedRow[AnyClaim], claim: ValueClaim, one: Beside) -> str:
+    """One printed value beside that of the motion."""
+    size = f"{claim.place} " if claim.place in ("largest", "smallest") else ""
+    where = place_of_value(row.study.case, claim)
+    return one.told(f"the {size}{claim.derivative} of joint {one.joint}{where}{one.meaning}")
+
 
 _Value = TypeVar("_Value", PeakClaim, MeasureClaim, ValueClaim)
 _FITTING = ClaimVerdict.SUPPORTED, ""
@@ -47,7 +271,6 @@ class MotionNumbers(Generic[_Value]):
 
     Attributes
     ----------
-    rule : str
     kind : type
         The claims that print such numbers.
     beside : callable
@@ -95,13 +318,11 @@ class MotionNumbers(Generic[_Value]):
         said = [self.described(row, claim, one) for one in wrong or found]
         verdict, note = _misfit(row) if wrong else _FITTING
         clash = verdict is ClaimVerdict.INCONSISTENT
-        return Finding(
-            rule=self.rule,
+        return row.finding(
+            self.rule,
             verdict=verdict,
             basis=Basis.CHECK if all(one.met for one in found) else Basis.COMPUTED,
             claim=claim.id,
-            problem=row.problem,
-            reading=row.reading,
             printed=", ".join(map(str, claim.printed)),
             computed="; ".join(one.around for one in found),
             kind=", ".join(_word(one) for one in wrong or found),
@@ -119,27 +340,63 @@ def _word(one: Beside) -> str:
     return str(one.kind) if one.linear is not None else "fits" if one.fits else "off"
 
 
-judge_peaks = MotionNumbers(
-    "TG203",
-    PeakClaim,
-    beside,
-    peak_described,
-    "No durations are printed whose motion could have this peak.",
-).judge
+judge_peaks = rule_group(
+    TG203=Explained(
+        "Printed peaks are those of the printed durations",
+        "Is a printed peak that of the motion it describes?",
+        "Supported within rounding, with digits cut off, or slightly below, as sampling gives "
+        "it; one number for all joints may be the largest of them or their largest norm. "
+        "Inconsistent if none of these explains it. A factor between two units is named.",
+        "The exact peak is 21.351 rad/s². Printed 21.35 is rounding, 21.34 is sampling, and "
+        "1223 is the same number in degrees.",
+    ),
+)(
+    MotionNumbers(
+        "TG203",
+        PeakClaim,
+        beside,
+        peak_described,
+        "No durations are printed whose motion could have this peak.",
+    ).judge
+)
 """Findings of TG203."""
-judge_measures = MotionNumbers(
-    "TG208",
-    MeasureClaim,
-    measure_beside,
-    measure_described,
-    "Without durations, this cannot be computed.",
-).judge
+judge_measures = rule_group(
+    TG208=Explained(
+        "Printed means and integrals are those of the printed durations",
+        "Is a printed mean, root mean square or integral of velocity, acceleration or jerk that of "
+        "the motion it describes?",
+        "Supported within rounding, with digits cut off, or as 50 samples or more give it; one "
+        "number for all joints may be of their norm, of the largest joint, or their mean. "
+        "Inconsistent if none of these explains it.",
+        "The root mean square of jerk is 5.1920 rad/s³, and 1000 samples give the printed 5.1908.",
+    ),
+)(
+    MotionNumbers(
+        "TG208",
+        MeasureClaim,
+        measure_beside,
+        measure_described,
+        "Without durations, this cannot be computed.",
+    ).judge
+)
 """Findings of TG208."""
-judge_values = MotionNumbers(
-    "TG211",
-    ValueClaim,
-    value_beside,
-    value_described,
-    "Without durations, this cannot be computed.",
-).judge
+judge_values = rule_group(
+    TG211=Explained(
+        "Printed values at one place are those of the printed durations",
+        "Is a printed position or derivative at a way-point, at an instant or at its largest that "
+        "of the printed durations?",
+        "Inconsistent if it differs by more than the printed digits allow. Where a derivative "
+        "jumps, either side may be meant; of a largest or smallest value, samples too.",
+        "At the second way-point a table prints -175.7 °/s. The spline through the way-points in "
+        "the printed times passes it at -175.71 °/s.",
+    ),
+)(
+    MotionNumbers(
+        "TG211",
+        ValueClaim,
+        value_beside,
+        value_described,
+        "Without durations, this cannot be computed.",
+    ).judge
+)
 """Findings of TG211."""

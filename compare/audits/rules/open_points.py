@@ -7,8 +7,18 @@ from collections.abc import Iterator
 from ....problem.cases import ImprovementClaim, StatementClaim
 from ...documents import Basis, Finding
 from ..study import Study
+from .rule_group import Explained, rule_group
 
 
+@rule_group(
+    TG501=Explained(
+        "Not checkable from the text",
+        "What does the text not carry that a claim would need?",
+        "Not checkable, with the reason.",
+        "Way-points are shown in a figure only.",
+    ),
+    without_waypoints=True,
+)
 def list_open_points(study: Study) -> Iterator[Finding]:
     """One finding per statement and per damaged passage, never more than "not checkable"."""
     for claim in study.claims:

@@ -16,6 +16,7 @@ from ..study import Study
 from .judged_rows import broken
 from .peaks import beside
 from .printed_tables import doubted
+from .rule_group import INFORMS, Explained, rule_group
 
 _FEWEST = 3
 """Durations that two rows need in common before equal digits are worth a word."""
@@ -26,6 +27,15 @@ _informing = partial(Finding, rule="TG108", decides=False)
 """Nothing here decides: a printer's slip is no fault of the numbers."""
 
 
+@rule_group(
+    TG108=Explained(
+        "Printed numbers fit their own row, column or table best",
+        "Would printed numbers fit another row, column or table better than their own?",
+        "Information, with both distances. It does not say that anything was exchanged. " + INFORMS,
+        "The peak printed for joint 2 lies 40 % from that of its motion and 0.1 % from that "
+        "of joint 3, and the other way round.",
+    ),
+)
 def judge_places(study: Study) -> Iterator[Finding]:
     """Findings of TG108, which inform and decide nothing."""
     for claim in study.claims:
@@ -65,11 +75,11 @@ def _peaks_elsewhere(study: Study, claim: PeakClaim, own: AnyClaim) -> Iterator[
                     f"and {100 * distance:.2g} % from that of {called(motion)}{whose}"
                 )
         if said:
-            yield _informing(
+            yield row.finding(
+                "TG108",
+                decides=False,
                 basis=Basis.CHECK,
                 claim=claim.id,
-                problem=row.problem,
-                reading=row.reading,
                 printed=", ".join(map(str, claim.printed)),
                 kind="peaks",
                 sentences=(
@@ -95,11 +105,10 @@ def _row_elsewhere(study: Study, claim: DurationsClaim) -> Iterator[Finding]:
             if label != claim.joint
         )
         if best <= _CLOSE:
-            yield _informing(
+            yield row.finding(
+                "TG108",
+                decides=False,
                 basis=Basis.CHECK,
-                claim=claim.id,
-                problem=row.problem,
-                reading=row.reading,
                 kind="rows",
                 sentences=(
                     f"The durations printed for joint {claim.joint} ({called(claim)}) would have "

@@ -1,4 +1,4 @@
-"""Peaks and jumps of a printed motion, and printed peaks beside them."""
+"""Peaks and jumps of a printed motion; printed peaks beside them, and TG209: beside limits."""
 
 from __future__ import annotations
 
@@ -18,13 +18,15 @@ from ....problem import (
     fit,
     peak_gradients,
 )
-from ....problem.cases import AnyClaim, Claim, PeakClaim
-from ..printed_row import PrintedRow
-from ..rounding import RoundingBox
-from .beside import UNEXPLAINED, Beside, Class, Look, largest_change
+from ....problem.cases import AnyClaim, Claim, Digits, PeakClaim, StatementClaim, motions_of
+from ...documents import Basis, ClaimVerdict, Finding, Severity
+from ..printed_row import PrintedRow, printed_rows
+from ..rounding import ROUNDING, Agreement, RoundingBox
+from ..stated import DERIVATIVES, place
+from ..study import Study
+from .beside import SAMPLES, UNEXPLAINED, Beside, Look, largest_change
+from .rule_group import Explained, rule_group
 
-_SAMPLES = 50
-"""Samples of a motion at the coarsest: fewer would show corners in a printed figure."""
 _PHASES = 8
 """Offsets at which those samples are tried: the worst of so many comes near the worst of all."""
 _WIDE = 0.05
@@ -34,8 +36,6 @@ _NORM_PLACES = 65
 polynomial in time: many for a curve that turns a few times."""
 _Jump = tuple[PrintedRow[Claim], Jump]
 """A jump with the row whose motion it is of."""
-JUMPING = ("position", "velocity", "acceleration")
-"""What jumps, by its order."""
 
 
 def box_reach(row: PrintedRow[Claim], point: Extremum) -> float:
@@ -55,20 +55,16 @@ def _reach(row: PrintedRow[Claim], points: list[Extremum], share: Array) -> floa
 def farthest(row: PrintedRow[AnyClaim], top: Extremum, alone: bool, share: float) -> float:
     """Largest change of a peak that is found in the rounding box.
 
+    It has the SI unit of the peak.
+
     Parameters
     ----------
-    row : PrintedRow
     top : Extremum
         The peak at the printed numbers.
     alone : bool
         Whether it is that of its own joint, and not of all.
     share : float
         How wide the box is: 1 for rounded digits, 2 for digits that may be cut off.
-
-    Returns
-    -------
-    float
-        In the SI unit of the peak.
     """
     problem = row.posed()
     joints = [top.joint] if alone else range(len(problem.joints))
@@ -107,20 +103,16 @@ def beside(
 ) -> Beside | None:
     """A printed peak set beside the exact one of a motion.
 
+    It is None where the joint is not in that motion, or where the motion has no curve.
+
     Parameters
     ----------
-    row : PrintedRow
     claim : PeakClaim
         Says which derivative.
     printed : Printed
         One of its numbers.
     joint : str or None
         Label of the joint; the largest over all joints if None.
-
-    Returns
-    -------
-    Beside or None
-        None where the joint is not in that motion, or it has no curve.
     """
     problem = row.posed()
     if not row.has_curve or (joint is not None and joint not in problem.joints):
@@ -170,11 +162,11 @@ def _samples(row: PrintedRow[AnyClaim], order: int) -> list[Array]:
     """Absolute values at evenly spaced times, for each offset that these may have."""
 
     def compute() -> list[Array]:
-        step = float(row.durations.value.sum()) / _SAMPLES
+        step = float(row.durations.value.sum()) / SAMPLES[0]
         offsets = np.arange(_PHASES)[:, None] / _PHASES
-        times = (np.arange(_SAMPLES) + offsets) * step
+        times = (np.arange(SAMPLES[0]) + offsets) * step
         found = np.abs(row.motion(times.ravel(), order))
-        return list(found.reshape(_PHASES, _SAMPLES, -1))
+        return list(found.reshape(_PHASES, SAMPLES[0], -1))
 
     return row.once("samples", compute, order)
 
@@ -201,13 +193,8 @@ def largest_norm(row: PrintedRow[Claim], order: int) -> Norm:
 
     Parameters
     ----------
-    row : PrintedRow
     order : int
         1 for velocity, 2 for acceleration, 3 for jerk.
-
-    Returns
-    -------
-    Norm
     """
     motion = row.motion
     top, piece, s = max(_norm_top(motion, k, order) for k in range(len(motion.durations)))
@@ -272,13 +259,13 @@ def peak_described(row: PrintedRow[AnyClaim], claim: PeakClaim, one: Beside) -> 
     return (
         said
         + {
-            Class.ROUNDING: f", equal within the rounding of the printed digits{room}",
-            Class.CUT_OFF: f" ({away}), as digits that are cut off instead of rounded give it",
-            Class.SAMPLING: f" ({away}), slightly below it, as sampling the motion gives it",
-            Class.NORM: f" ({away}), {norm}",
-            Class.UNIT: f" ({away}); their ratio is near {one.factor}",
-            Class.ROOT: f" ({away}); a factor √{one.root} may have been lost in print",
-            Class.OFF: f" ({away}), {UNEXPLAINED}",
+            Agreement.ROUNDING: f", equal within the rounding of the printed digits{room}",
+            Agreement.CUT_OFF: f" ({away}), as digits that are cut off instead of rounded give it",
+            Agreement.SAMPLING: f" ({away}), slightly below it, as sampling the motion gives it",
+            Agreement.NORM: f" ({away}), {norm}",
+            Agreement.UNIT: f" ({away}); their ratio is near {one.factor}",
+            Agreement.ROOT: f" ({away}); a factor √{one.root} may have been lost in print",
+            Agreement.OFF: f" ({away}), {UNEXPLAINED}",
         }[one.kind]
     )
 
@@ -287,8 +274,8 @@ def _of_norm(one: Beside) -> str:
     """How a printed peak that is not that of a joint is the norm over the joints."""
     norm = f"the largest norm over the joints, {one.around}"
     return {
-        Class.CUT_OFF: f"as {norm}, cut off instead of rounded gives it",
-        Class.SAMPLING: f"slightly below {norm}, as sampling the motion gives it",
+        Agreement.CUT_OFF: f"as {norm}, cut off instead of rounded gives it",
+        Agreement.SAMPLING: f"slightly below {norm}, as sampling the motion gives it",
     }.get(one.kind, f"equal to {norm}, within rounding")
 
 
@@ -308,9 +295,77 @@ def largest_of_each_kind(jumps: Sequence[_Jump]) -> list[_Jump]:
 
 def jump_size(row: PrintedRow[Claim], jump: Jump) -> float:
     """Size of a jump in the unit of its joint."""
-    return row.in_units(JUMPING[jump.order], jump.size, jump.joint)
+    return row.in_units(DERIVATIVES[jump.order], jump.size, jump.joint)
 
 
 def jump_unit(row: PrintedRow[Claim], jump: Jump) -> str:
     """The unit of a jump, as a sentence writes it."""
-    return row.unit(JUMPING[jump.order], jump.joint)
+    return row.unit(DERIVATIVES[jump.order], jump.joint)
+
+
+@rule_group(
+    TG209=Explained(
+        "Printed peaks lie within the limits that they keep",
+        "Does a printed peak lie above the limit that its motion is said to keep?",
+        "Inconsistent if no value that the digits of peak and limit stand for, rounded, raised or "
+        "cut off, lies within. A number for several joints at once may be a norm and is left out.",
+        "A table prints 3.665 rad/s² for the acceleration of joint 2, another the limit 3.6, and "
+        "the abstract says that no limit is exceeded.",
+    ),
+)
+def judge_peak_limits(study: Study) -> Iterator[Finding]:
+    """Findings of TG209."""
+    for claim in study.claims:
+        if isinstance(claim, StatementClaim) and claim.checks == "within_limits":
+            for peak in study.claims:
+                if isinstance(peak, PeakClaim):
+                    yield from _beyond(study, claim, peak)
+
+
+def _beyond(study: Study, claim: StatementClaim, peak: PeakClaim) -> Iterator[Finding]:
+    for motion in motions_of(study.case.claims, peak):
+        if claim.of and motion.id not in claim.of:
+            continue
+        for row in printed_rows(study, motion):
+            said = _above(row, peak)
+            if said:
+                yield row.finding(
+                    "TG209",
+                    severity=Severity.ERROR,
+                    verdict=ClaimVerdict.INCONSISTENT,
+                    basis=Basis.DIGITS,
+                    claim=claim.id,
+                    printed=", ".join(map(str, peak.printed)),
+                    kind="beyond",
+                    sentences=(f"{place(peak)} prints {'; '.join(said)}.",),
+                    root=f"peaks beyond limits {claim.id}",
+                    between=(claim.id, peak.id),
+                )
+
+
+def _above(row: PrintedRow[AnyClaim], peak: PeakClaim) -> list[str]:
+    """Printed peaks beyond their limits, whatever was rounded, raised or cut off in either.
+
+    A number for several joints at once may be the norm over them, which no limit bounds.
+    """
+    loosest = row.posed(Digits.LOOSEST_CUT)
+    order = QUANTITIES.index(peak.derivative)
+    found = []
+    for joint, number in row.study.printed_numbers(peak):
+        if joint is None and len(loosest.joints) > 1:
+            continue
+        j = 0 if joint is None else loosest.joints.index(joint) if joint in loosest.joints else None
+        if j is None:
+            continue
+        limit = float(loosest.limits.sides[:, j, order].max())
+        label = loosest.joints[j]
+        measured = row.measured(number, peak.derivative, label)
+        least = measured.value - (measured.upper - measured.lower)
+        if np.isfinite(limit) and least > limit * (1.0 + ROUNDING):
+            shown = row.in_units(peak.derivative, limit, label)
+            unit = row.unit(peak.derivative, label)
+            found.append(
+                f"{number} {unit} for the {peak.derivative} of joint {label}, whose "
+                f"limit is at most {shown:.6g} {unit}, however its digits are read"
+            )
+    return found

@@ -13,6 +13,7 @@ from ....problem.cases import Cartesian, Column, Statement, StatementClaim
 from ....problem.robots import Chain, Convention, DhTable, JointKind, Proximity, proximity
 from ...documents import Basis, ClaimVerdict, Finding, enumerated
 from ..study import Study
+from .rule_group import Explained, rule_group
 
 _NEGLIGIBLE = 1e-9
 """Distance that float arithmetic alone could leave, m."""
@@ -58,6 +59,18 @@ class _Match:
         return min(max(n.lower for n in near) for near in (self.near, *self.signed))
 
 
+@rule_group(
+    TG601=Explained(
+        "Joint and Cartesian way-points are consistent with the printed chain",
+        "Do printed joint angles and printed positions fit the printed table of the robot? "
+        "Positions are computed from the angles; where joints are not printed, any angle is "
+        "allowed.",
+        "Supported if they fit within rounding; inconsistent, with a warning, if no angles "
+        "reach a position. Where extracted text may have lost signs of the table, every sign "
+        "is tried.",
+        "Whatever joints 1 and 3 do, the end stays 0.78 m away from a printed position.",
+    ),
+)
 def judge_kinematics(study: Study) -> Iterator[Finding]:
     """Set the joint table against the printed positions, for every reading."""
     case, dh = study.case, study.case.dh

@@ -13,15 +13,50 @@ from ....problem.cases import (
 )
 from ...documents import Basis, ClaimVerdict, Finding, Severity, ranged
 from ..roots import SUM
-from ..rounding import hull
+from ..rounding import Agreement, agreement, either, hull, meet
 from ..study import Study
+from .rule_group import ON_DIGITS, Explained, rule_group
 
-_FEWEST = 4
-"""Numbers that a table needs before two tables alike are worth a word."""
 _SIGNIFICANT = 4
 """Digits that a number needs before its repetition is worth a word."""
 
 
+@rule_group(
+    TG101=Explained(
+        "A printed total is the sum of its printed parts",
+        "Do the printed durations of the segments add up to the printed total? Every printed "
+        "number is taken as rounded to its digits.",
+        "Supported if some values that round to the digits add up; refuted, with severity error, "
+        "if none do. " + ON_DIGITS,
+        "The durations 1.20, 0.85 and 1.10 s add up to between 3.135 and 3.165 s. A printed "
+        "total of 3.15 s is supported, 3.51 s is refuted, and the report says that two "
+        "exchanged digits would explain it.",
+    ),
+    TG102=Explained(
+        "Printed longest durations are the longest of the printed rows",
+        "Where the joints share the longest duration of each segment, are these printed "
+        "durations the longest in the rows of the joints?",
+        "Supported if they are, refuted if they are not, with each segment that differs.",
+        "Joint 1 prints 0.90 and 1.30 s, joint 2 prints 1.10 and 1.20 s. The longest are 1.10 "
+        "and 1.30 s; 1.10 and 1.20 s would be refuted.",
+    ),
+    TG106=Explained(
+        "Unrelated columns do not repeat each other's digits",
+        "Do way-points repeat the digits of a column of another kind, such as lengths of links?",
+        "A warning: the digits alone do not tell which column, if either, is wrong. No "
+        "claim is judged by it.",
+        "Three of four angles of joint 2 print the digits of the link offsets: 0.4318, "
+        "0.1501, 0.4331.",
+    ),
+    TG109=Explained(
+        "As many durations are printed as there are segments",
+        "Are as many durations printed as the curve has segments?",
+        "A warning if not: no motion can be built from them. A slip in the case file looks "
+        "the same, so that is to be ruled out first.",
+        "Five way-points make four segments, and the table prints three durations.",
+    ),
+    without_waypoints=True,
+)
 def judge_digits(study: Study) -> Iterator[Finding]:
     """Findings of TG101, TG102, TG106 and TG109."""
     yield from _sums(study)
@@ -30,22 +65,12 @@ def judge_digits(study: Study) -> Iterator[Finding]:
     yield from _repeated_digits(study)
 
 
-def meet(a: Interval, b: Interval) -> bool:
-    """Whether two intervals have a number in common."""
-    return a.lower <= b.upper and b.lower <= a.upper
-
-
 def _raised(number: Printed) -> Interval:
     """Every value that gives the printed digits if what is left over is rounded up, not off.
 
     Times are often printed so, for a longer motion keeps the limits too.
     """
     return Interval(number.fraction - number.unit, number.fraction)
-
-
-def _either(a: Interval, b: Interval) -> Interval:
-    """The least interval that holds two."""
-    return Interval(min(a.lower, b.lower), max(a.upper, b.upper))
 
 
 def _sum(parts: Sequence[Interval]) -> Interval:
@@ -61,6 +86,17 @@ def shown(x: Fraction | float, places: int = 6) -> str:
 def span(interval: Interval, places: int = 6) -> str:
     """Both ends of an interval, with so many significant digits; one number if they print alike."""
     return ranged(float(interval.lower), float(interval.upper), f".{places}g")
+
+
+_KINDS = {
+    Agreement.ROUNDING: "fits",
+    Agreement.CUT_OFF: "fits cut off",
+    Agreement.MIXED: "fits mixed",
+    Agreement.RAISED: "fits rounded up",
+    Agreement.RAISED_PARTS: "fits raised parts",
+    Agreement.OFF: "does not fit",
+}
+"""Kinds of findings on digits."""
 
 
 def compared(
@@ -85,44 +121,42 @@ def compared(
     ``raised`` is what they allow if each of them was rounded up, where that is usual.
     """
     digits, computed = f"{printed} {unit}", f"{span(rounded)} {unit}"
-    verdict, severity = ClaimVerdict.SUPPORTED, Severity.INFO
-    if meet(printed.interval, rounded):
-        kind = "fits"
+    whole = either(either(rounded, cut), mixed or rounded)
+    up = _raised(printed)
+    kind = agreement(
+        (Agreement.ROUNDING, printed.interval, rounded),
+        (Agreement.CUT_OFF, printed.truncated, cut),
+        (Agreement.MIXED, hull(printed), whole),
+        *([(Agreement.RAISED, up, whole)] if coarser else []),
+        *(
+            [(Agreement.RAISED_PARTS, one, raised) for one in (printed.interval, up)]
+            if raised
+            else []
+        ),
+    )
+    verdict, severity = ClaimVerdict.SUPPORTED, Severity.WARNING
+    if kind is Agreement.OFF:
+        verdict, severity = ClaimVerdict.REFUTED, Severity.ERROR
+        message = f"{what} allows {computed}; printed is {digits}, however it was rounded."
+    elif kind is not Agreement.ROUNDING:
+        if_only, allowed = {
+            Agreement.CUT_OFF: ("digits are cut off instead of rounded", cut),
+            Agreement.MIXED: ("some digits are rounded and others cut off", whole),
+            Agreement.RAISED: ("it was rounded up", whole),
+            Agreement.RAISED_PARTS: ("parts were rounded up", raised or whole),
+        }[kind]
+        message = (
+            f"{what} allows {computed} with rounded digits; printed is {digits}, which fits only "
+            f"if {if_only} ({span(allowed)} {unit})."
+        )
+    else:
+        severity = Severity.INFO
         message = f"{what} allows {computed}; printed is {digits}."
         if plain and plain != printed.text:
             message = (
                 f"{what} is {plain} {unit} digit by digit, and {computed} for all values that "
                 f"round to the digits; printed is {digits}, which rounding explains."
             )
-    elif meet(printed.truncated, cut):
-        severity, kind = Severity.WARNING, "fits cut off"
-        message = (
-            f"{what} allows {computed} with rounded digits; printed is {digits}, which fits only "
-            f"if digits are cut off instead of rounded ({span(cut)} {unit})."
-        )
-    elif meet(hull(printed), whole := _either(_either(rounded, cut), mixed or rounded)):
-        severity, kind = Severity.WARNING, "fits mixed"
-        message = (
-            f"{what} allows {computed} with rounded digits; printed is {digits}, which fits only "
-            f"if some digits are rounded and others cut off ({span(whole)} {unit})."
-        )
-    elif coarser and meet(_raised(printed), whole):
-        severity, kind = Severity.WARNING, "fits rounded up"
-        message = (
-            f"{what} allows {computed} with rounded digits; printed is {digits}, which fits only "
-            f"if it was rounded up ({span(whole)} {unit})."
-        )
-    elif raised is not None and any(
-        meet(own, raised) for own in (printed.interval, _raised(printed))
-    ):
-        severity, kind = Severity.WARNING, "fits raised parts"
-        message = (
-            f"{what} allows {computed} with rounded digits; printed is {digits}, which fits only "
-            f"if parts were rounded up ({span(raised)} {unit})."
-        )
-    else:
-        verdict, severity, kind = ClaimVerdict.REFUTED, Severity.ERROR, "does not fit"
-        message = f"{what} allows {computed}; printed is {digits}, however it was rounded."
     return Finding(
         rule=rule,
         severity=severity,
@@ -131,7 +165,7 @@ def compared(
         claim=claim.id,
         printed=digits,
         computed=computed,
-        kind=f"{kind} in {unit}",
+        kind=f"{_KINDS[kind]} in {unit}",
         sentences=(message,),
         root="" if verdict is ClaimVerdict.SUPPORTED else root,
     )

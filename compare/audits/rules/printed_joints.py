@@ -1,4 +1,4 @@
-"""TG110 and TG602: what is said of the printed joints and positions, by their digits alone."""
+"""TG110, TG602 and TG603: printed joints, positions and equations, without printed motions."""
 
 from __future__ import annotations
 
@@ -9,10 +9,35 @@ from math import sqrt
 
 from ....problem import Printed
 from ....problem.cases import Cartesian, Statement, StatementClaim
+from ....problem.robots import Chain, Equation, EquationCheck, check_equation
 from ...documents import Basis, ClaimVerdict, Finding
+from ..rounding import meet
 from ..study import Study
+from .rule_group import Explained, rule_group
 
 
+@rule_group(
+    TG110=Explained(
+        "A joint that is said to vary most does, among the printed joints",
+        "Does a joint go through the range that the text speaks of? Its largest and smallest "
+        "printed angles are set beside those of the other printed joints.",
+        "Where the joint is said to vary most: supported if all joints are printed and no range "
+        "is larger; inconsistent, with a warning, if one is larger however the digits were "
+        "rounded. Where it is only said to vary much, nothing is decided: no text "
+        "says how much that is.",
+        "Joint 3 is said to vary most. Its printed angles lie within 0.6 rad, those of joint 1 "
+        "within 4.6 rad.",
+    ),
+    TG602=Explained(
+        "A position that is said to lie above another does",
+        "Does a position that is said to lie above another do so?",
+        "Supported if the two agree in the plane within rounding and the first is higher. "
+        "Otherwise not checkable, with both distances: signs are easily lost in print and in "
+        "extracted text.",
+        "“Above the table” stands 0.30 m beside the table; with another sign of y it would be 0 m.",
+    ),
+    without_waypoints=True,
+)
 def judge_joints(study: Study) -> Iterator[Finding]:
     """Findings of TG110 and TG602."""
     for claim in study.claims:
@@ -134,10 +159,7 @@ def _finding(
 
 def _meets(one: Cartesian, other: Cartesian) -> bool:
     pairs = zip(one.values[:2], other.values[:2], strict=True)
-    return all(
-        a.interval.lower <= b.interval.upper and b.interval.lower <= a.interval.upper
-        for a, b in pairs
-    )
+    return all(meet(a.interval, b.interval) for a, b in pairs)
 
 
 def _beside(
@@ -150,3 +172,69 @@ def _beside(
     ]
     changed = tuple(name for name, sign in zip("xy", signs, strict=True) if sign < 0)
     return sqrt(sum(x * x for x in away)), changed
+
+
+@rule_group(
+    TG603=Explained(
+        "Printed kinematic equations hold on the printed chain",
+        "Do the printed kinematic equations hold on the printed robot? Both sides are computed at "
+        "random joint angles.",
+        "Supported if all hold as the text carries them. Otherwise not checkable, with what would "
+        "make each of them hold: signs, exponents and indices are easily lost in extracted text.",
+        "13 of 16 equations hold; another holds with a plus sign that the text lacks.",
+    ),
+    without_waypoints=True,
+)
+def judge_equations(study: Study) -> Iterator[Finding]:
+    """One finding for the statement that the equations of the file hold.
+
+    Nothing is ever held against a paper: whether a sign was lost in print or in the extraction
+    cannot be told from the text.
+    """
+    for claim in study.claims:
+        if isinstance(claim, StatementClaim) and claim.checks == "equations":
+            chain = study.case.chain()
+            assert chain is not None
+            yield _judged(claim, study.case.document.equations, chain)
+
+
+def _judged(claim: StatementClaim, equations: tuple[Equation, ...], chain: Chain) -> Finding:
+    held, mended, apart = [], [], []
+    for equation in equations:
+        found = check_equation(chain, equation.printed)
+        if found.holds:
+            held.append(_name(equation))
+        elif equation.mended is not None and check_equation(chain, equation.mended).holds:
+            mended.append(f"{_name(equation)} {_partly(found)}with {equation.mend}")
+        else:
+            apart.append(_name(equation))
+    listed = f": {', '.join(held)}" if held else ""
+    said = [
+        f"{len(held)} of {len(equations)} equations hold at every pose tried, as the text has them"
+        f"{listed}."
+    ]
+    if mended:
+        said.append(f"Others hold once mended: {'; '.join(mended)}.")
+    if apart:
+        said.append(f"Not as the text has them: {', '.join(apart)}.")
+    if mended or apart:
+        said.append("Whether the paper or the extraction lost what is missing cannot be told.")
+    return Finding(
+        rule="TG603",
+        verdict=ClaimVerdict.NOT_CHECKABLE if mended or apart else ClaimVerdict.SUPPORTED,
+        basis=Basis.KINEMATICS,
+        claim=claim.id,
+        printed="; ".join(equation.where for equation in equations),
+        computed=f"{len(held)} hold as they are, {len(mended)} once mended",
+        kind="in part" if mended or apart else "all",
+        sentences=tuple(said),
+    )
+
+
+def _name(equation: Equation) -> str:
+    return equation.where.removeprefix("equation ")
+
+
+def _partly(found: EquationCheck) -> str:
+    """How often it holds as it is, where it does at some poses."""
+    return f"({found.share:.0%} of the poses as it is) " if found.share else ""

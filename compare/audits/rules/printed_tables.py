@@ -18,10 +18,11 @@ from ....problem.cases import (
 from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..printed_row import PrintedRow, rows_under
 from ..roots import TABLES
-from ..rounding import hull
+from ..rounding import hull, meet
 from ..stated import printed_total
 from ..study import Study
-from .printed_digits import end_blends, meet
+from .printed_digits import end_blends
+from .rule_group import Explained, rule_group
 
 _Timed = DurationsClaim | MaximumClaim | TotalTimeClaim
 """Claims that state a total, or durations of which it is the sum."""
@@ -29,6 +30,26 @@ _FEWEST = 4
 """Numbers that a table needs before two tables alike are worth a word."""
 
 
+@rule_group(
+    TG104=Explained(
+        "Tables under different names print different digits",
+        "Do two tables of different algorithms print the same numbers, digit by digit?",
+        "Inconsistent, with severity error, if something else in the paper says that the two "
+        "results differ; otherwise information. Two algorithms that both find the optimum "
+        "print the same, and the report says so where that explains it.",
+        "Table 2 (standard algorithm) and Table 3 (improved algorithm) agree in all 28 "
+        "numbers, yet the abstract says that the improved one is 10 % faster.",
+    ),
+    TG105=Explained(
+        "Two places that print the same total agree",
+        "Where one total is printed in two places, do the two agree?",
+        "Inconsistent if no value rounds to both; neither place is taken to be the right one. "
+        "Totals that the file keeps apart, by method, curve, table or improvement, are not "
+        "compared.",
+        "The abstract prints 3.9 s and the table 3.52 s for the same motion.",
+    ),
+    without_waypoints=True,
+)
 def judge_tables(study: Study) -> Iterator[Finding]:
     """Findings of TG104 and TG105."""
     yield from _tables_alike(study)
@@ -47,17 +68,7 @@ def _alike(case: Case) -> Iterator[tuple[Table, Table]]:
 
 
 def doubted(study: Study, claims: Iterable[AnyClaim]) -> tuple[str, ...]:
-    """Roots of the tables alike that print one of the claims.
-
-    Parameters
-    ----------
-    study : Study
-    claims : iterable of AnyClaim
-
-    Returns
-    -------
-    tuple of str
-    """
+    """Roots of the tables alike that print one of the claims."""
     tables = {claim.table for claim in claims} - {None}
     return tuple(
         f"{TABLES} {first.id} {second.id}"
@@ -67,17 +78,7 @@ def doubted(study: Study, claims: Iterable[AnyClaim]) -> tuple[str, ...]:
 
 
 def contradicted(study: Study, claims: Iterable[AnyClaim]) -> bool:
-    """Whether a table that prints one of the claims equals another that is said to differ.
-
-    Parameters
-    ----------
-    study : Study
-    claims : iterable of AnyClaim
-
-    Returns
-    -------
-    bool
-    """
+    """Whether a table that prints one of the claims equals another that is said to differ."""
     tables = {claim.table for claim in claims} - {None}
     return any(
         tables & {first.id, second.id} and _apart(study.case, first, second)
@@ -246,7 +247,6 @@ def total_allowed(study: Study, claim: AnyClaim) -> Interval:
 
     Parameters
     ----------
-    study : Study
     claim : AnyClaim
         States a total, or durations.
 

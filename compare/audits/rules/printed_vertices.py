@@ -10,9 +10,9 @@ from ....problem import Interval, Printed, shown_bound
 from ....problem.cases import ControlVerticesClaim, Statement
 from ....problem.curves import vertex_matrix
 from ...documents import Basis, ClaimVerdict, Finding, Severity, ranged
-from ..rounding import hull
+from ..rounding import Agreement, agreement, hull
 from ..study import Study
-from .printed_digits import meet
+from .rule_group import Explained, rule_group
 
 
 @dataclass(frozen=True)
@@ -21,10 +21,8 @@ class Vertex:
 
     Attributes
     ----------
-    joint : str
     index : int
         From 0, as the paper counts.
-    printed : Printed
     allowed : Interval
         Of the vertex on the uniform cubic B-spline, for every way-point that rounds to its digits.
     allowed_cut : Interval
@@ -43,16 +41,29 @@ class Vertex:
         return (self.allowed.upper - self.allowed.lower) / 2 + self.printed.unit / 2
 
     @property
-    def inside(self) -> bool:
-        """Whether some way-points that round to the digits give a vertex that rounds to its own."""
-        return meet(self.printed.interval, self.allowed)
+    def agreement(self) -> Agreement:
+        """How it agrees with some way-points, whether their digits are rounded or cut off."""
+        return agreement(
+            (Agreement.ROUNDING, self.printed.interval, self.allowed),
+            (Agreement.CUT_OFF, hull(self.printed), self.allowed_cut),
+        )
 
     @property
-    def inside_cut(self) -> bool:
-        """The same, wherever digits are rounded or cut off."""
-        return meet(hull(self.printed), self.allowed_cut)
+    def inside(self) -> bool:
+        """Whether some way-points that round to the digits give a vertex that rounds to its own."""
+        return self.agreement is Agreement.ROUNDING
 
 
+@rule_group(
+    TG205=Explained(
+        "Printed control vertices follow from the printed way-points",
+        "Do printed control vertices follow from the printed way-points?",
+        "Supported if each lies within what the rounding of the way-points allows, else refuted; "
+        "not checkable on another curve than the uniform cubic B-spline.",
+        "The vertex computed from the way-points lies between 0.4317 and 0.4319; 0.4318 is "
+        "supported and 0.4381 refuted.",
+    ),
+)
 def judge_vertices(study: Study) -> Iterator[Finding]:
     """Set every printed control vertex beside the way-points of its problem.
 
@@ -120,7 +131,7 @@ def _combined(weights: Sequence[Fraction], intervals: Sequence[Interval]) -> Int
 def _judged(claim: ControlVerticesClaim, found: tuple[Vertex, ...], apart: bool) -> Finding:
     """The finding; joints whose units lie ``apart`` have no widest interval in common."""
     outside = [v for v in found if not v.inside]
-    beyond = [v for v in outside if not v.inside_cut]
+    beyond = [v for v in outside if v.agreement is Agreement.OFF]
     most = shown_bound(float(max(v.width for v in found)), "upper", digits=2)
     widest = f", at most {most} either side of the value"
     widest = "" if apart else widest + " computed from the digits"

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ....problem import QUANTITIES, Array, CaseError, Measured, Problem
+from ....problem import Array, CaseError, Measured, Problem
 from ....problem.cases import (
     AnyClaim,
     Digits,
@@ -24,24 +24,14 @@ from ....problem.cases import (
     profile_of,
 )
 from ...documents import Basis, ClaimVerdict, Finding
+from ..named_profiles import NOT_SHORTEST, RESTING, SHORTEST, profile_called, resting_total
 from ..printed_row import PrintedRow
-from ..profile_motions import (
-    NOT_SHORTEST,
-    SHORTEST,
-    NumberRange,
-    ProfileMotion,
-    motions,
-    profile_called,
-    profiled_limits,
-)
-from ..rest_profile import PROFILES, shortest, shortest_straight
-from ..stated import place_of_value
+from ..profile_motions import NumberRange, ProfileMotion, motions, profiled_limits
+from ..rounding import FEW_ROUNDINGS, meet
+from ..stated import DERIVATIVES, place_of_value
 from ..study import Study
+from .rule_group import Explained, rule_group
 
-_SLACK = 1e-12
-"""Relative margin that outweighs the few roundings of a closed form in floats."""
-_ORDERS = {"position": 0, **{name: order for order, name in enumerate(QUANTITIES[:2], 1)}}
-"""Order of each derivative that a profile has everywhere."""
 _PATHS = {
     False: "each segment as long as its slowest joint needs",
     True: "all joints on a straight line in each segment",
@@ -88,6 +78,17 @@ class _Asked:
         return profile_called([self.profile])
 
 
+@rule_group(
+    TG304=Explained(
+        "What is printed of a profile beside the profile that the limits allow",
+        "Is the printed total of a trapezoidal, S-curve or other profile the shortest that the "
+        "limits allow between the states at its ends? Are phases, peaks and values its own?",
+        "Supported within rounding, else inconsistent: the paper may have meant another profile. "
+        "Not checkable where the shortest total jumps within the rounding, and for several joints "
+        "between moving ends.",
+        "140° within 150 °/s, 70 °/s² and 70 °/s³ take 4 s with a jerk that is constant in phases.",
+    ),
+)
 def judge_profiles(study: Study) -> Iterator[Finding]:
     """Findings of TG304."""
     for claim in study.claims:
@@ -111,12 +112,10 @@ def judge_profiles(study: Study) -> Iterator[Finding]:
 
 
 def _unknown(asked: _Asked, why: str) -> Finding:
-    return Finding(
-        rule="TG304",
+    return asked.row.finding(
+        "TG304",
         basis=Basis.CHECK,
         claim=asked.claim.id,
-        problem=asked.row.problem,
-        reading=asked.row.reading,
         kind="other profile",
         sentences=(why,),
     )
@@ -137,14 +136,14 @@ def _not_computed(asked: _Asked) -> str | None:
             "The case file gives derivatives other than 0 at the ends of the motion; the "
             f"{profile} profile is computed {which} only."
         )
-    total = isinstance(asked.claim, TotalTimeClaim) and profile in PROFILES
+    total = isinstance(asked.claim, TotalTimeClaim) and profile in RESTING
     if total and asked.resting:
         return None
     if profile not in SHORTEST:
         return f"Phases and values of the {profile} profile are not computed."
     if several and asked.row.claim.path is None:
         return "Several joints, each by itself, have no one profile."
-    if profile not in PROFILES and end_states(asked.row.statement)[:, :, 1].any():
+    if profile not in RESTING and end_states(asked.row.statement)[:, :, 1].any():
         return "The algorithm of Biagiotti and Melchiorri has no acceleration at its ends."
     every = motions(asked.row, profile)
     if every is None:
@@ -159,7 +158,7 @@ def _out_of_range(problem: Problem, motion: ProfileMotion) -> str | None:
     for j, label in enumerate(problem.joints):
         places = motion.states(j)[:, 0]
         low, high = problem.limits.position_lower[j], problem.limits.position_upper[j]
-        room = _SLACK * max(map(abs, places))
+        room = FEW_ROUNDINGS * max(map(abs, places))
         if places.min() < low - room or places.max() > high + room:
             return (
                 f"The shortest profile leaves the position range of joint {label}, within which "
@@ -176,7 +175,7 @@ def _total_beside(asked: _Asked) -> Finding:
     notes: tuple[str, ...] = ()
     verdict, kind, said = ClaimVerdict.SUPPORTED, "fits", "which fits"
     # The closed forms grow with the way and fall with the limits: two of them enclose all others.
-    enclosed = asked.resting and asked.profile in PROFILES
+    enclosed = asked.resting and asked.profile in RESTING
     if enclosed:
         how = f"from rest to rest, {_PATHS[straight]},"
         plain, fits = _fitted(asked, number, straight)
@@ -221,13 +220,11 @@ def _found(
     asked: _Asked, verdict: ClaimVerdict, kind: str, enclosed: bool = False, **facts: Any
 ) -> Finding:
     """A finding that speaks of all that rounds to the digits: enclosed, or tried at their ends."""
-    return Finding(
-        rule="TG304",
+    return asked.row.finding(
+        "TG304",
         verdict=verdict,
         basis=Basis.CHECK if enclosed else Basis.COMPUTED,
         claim=asked.claim.id,
-        problem=asked.row.problem,
-        reading=asked.row.reading,
         kind=kind,
         **facts,
     )
@@ -247,7 +244,7 @@ def _notes(asked: _Asked, totals: NumberRange) -> tuple[str, ...]:
             "The start lies outside the limits: the profile brakes into them at once, and is the "
             "shortest from there."
         )
-    if asked.profile not in PROFILES:
+    if asked.profile not in RESTING:
         best = asked.range(lambda motion: [motion.total_time], "s-curve")
         more = 100 * (totals.plain / best.plain - 1)
         beside = f"; the algorithm's is {more:.2f} % longer" if more >= 0.01 else " too"
@@ -257,29 +254,21 @@ def _notes(asked: _Asked, totals: NumberRange) -> tuple[str, ...]:
 
 def _fitted(asked: _Asked, number: Measured, straight: bool) -> tuple[float, bool]:
     """The shortest total at the printed numbers, and whether the printed one fits its interval."""
-    total, profile, row = (shortest_straight if straight else shortest), asked.profile, asked.row
+    row = asked.row
     problem = row.posed()
-    ways = np.abs(np.diff(problem.waypoints, axis=0))
-    plain = total(profile, ways, profiled_limits(row, Digits.PRINTED))
-    least, most = _ways(row, problem)
-    loose = profiled_limits(row, Digits.LOOSEST_CUT)
-    low = total(profile, least, loose) * (1.0 - _SLACK)
+
+    def total(ways: Array, digits: Digits) -> float:
+        return resting_total(asked.profile, ways, profiled_limits(row, digits), straight)
+
+    plain = total(np.abs(np.diff(problem.waypoints, axis=0)), Digits.PRINTED)
+    least, most = row.waypoint_box(problem).or_cut_off().steps
+    low = total(least, Digits.LOOSEST_CUT) * (1.0 - FEW_ROUNDINGS)
     try:
-        tight = profiled_limits(row, Digits.TIGHTEST)
-        high = total(profile, most, tight) * (1.0 + _SLACK)
+        high = total(most, Digits.TIGHTEST) * (1.0 + FEW_ROUNDINGS)
     except CaseError:
         high = inf
     cut = number.cut_off()
-    return plain, cut.lower <= high and low <= cut.upper
-
-
-def _ways(row: PrintedRow[_Profiled], problem: Problem) -> tuple[Array, Array]:
-    """Least and most that each joint moves in each segment, digits rounded or cut off."""
-    box = row.waypoint_box(problem).or_cut_off()
-    low, high = box.lower[1:] - box.upper[:-1], box.upper[1:] - box.lower[:-1]
-    most = np.maximum(np.abs(low), np.abs(high))
-    least = np.where((low <= 0) & (high >= 0), 0.0, np.minimum(np.abs(low), np.abs(high)))
-    return least, most
+    return plain, meet((cut.lower, cut.upper), (low, high))
 
 
 def _phases_beside(asked: _Asked) -> Finding:
@@ -324,7 +313,7 @@ def _numbers_beside(asked: _Asked) -> Finding:
     claim, row = asked.claim, asked.row
     assert isinstance(claim, PeakClaim | ValueClaim)
     joints = row.posed().joints
-    if claim.derivative not in _ORDERS:
+    if claim.derivative == "jerk":
         return _unknown(asked, "The jerk of a profile is not computed.")
     said, wrong, plain = [], False, []
     where = "" if isinstance(claim, PeakClaim) else place_of_value(row.study.case, claim)
@@ -372,7 +361,7 @@ def _of_motion(
 
     A peak is the largest of all ``joints``; a value is of one joint.
     """
-    order = _ORDERS[claim.derivative]
+    order = DERIVATIVES.index(claim.derivative)
     if isinstance(claim, PeakClaim):
         return [max(float(np.abs(motion.states(joint)[:, order]).max()) for joint in joints)]
     (joint,) = joints

@@ -13,10 +13,24 @@ from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..fixed_ratios import off_ratios
 from ..printed_row import rows_under
 from ..roots import OPTIMAL
+from ..rounding import FEW_ROUNDINGS, ROUNDING
 from ..stated import called_under, other_objective
 from ..study import Study
+from .rule_group import Explained, rule_group
 
 
+@rule_group(
+    TG301=Explained(
+        "Totals of one path under two velocity limits obey the scaling law",
+        "One path is timed under two velocity limits, and nothing else is limited. Then "
+        "the shortest time multiplied by the limit is constant, with no solver needed. Do the two "
+        "printed totals obey that?",
+        "Where both are called optimal and one is longer than the law allows, refuted. The "
+        "rounding of way-points, limits and durations is allowed for.",
+        "At 80 °/s the total is 1.87 s. At 110 °/s the same motion, run faster, takes 1.36 s. "
+        "A printed optimum of 1.60 s at 110 °/s is not the shortest.",
+    ),
+)
 def judge_scaling(study: Study) -> Iterator[Finding]:
     """Stretch one claim's durations to another's limits: a feasible total the other can meet."""
     claims = [c for c in study.claims if isinstance(c, DurationsClaim | MaximumClaim)]
@@ -65,7 +79,7 @@ def velocity_factor(one: Problem, other: Problem) -> float | None:
     if not finite.any() or (b.velocity[finite] == 0).any():
         return None
     factors = a.velocity[finite] / b.velocity[finite]
-    return float(factors[0]) if np.ptp(factors) <= 1e-12 * factors[0] else None
+    return float(factors[0]) if np.ptp(factors) <= FEW_ROUNDINGS * factors[0] else None
 
 
 def _same_ratios(one: Problem, other: Problem) -> bool:
@@ -102,7 +116,7 @@ def _stretched(
         return
     reachable = feasible * factor
     shown, (low, _) = total
-    if low <= reachable * (1 + 1e-9):
+    if low <= reachable * (1 + ROUNDING):
         return
     summed = float(durations.sum())
     exact = f"{summed * factor:.6g} s"

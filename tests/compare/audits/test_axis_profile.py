@@ -13,8 +13,7 @@ from trajgap.compare.audits.axis_profile import (
     shortest_s_curve,
     shortest_trapezoid,
 )
-from trajgap.compare.audits.double_s import double_s
-from trajgap.compare.audits.rest_profile import fourth_order, s_curve
+from trajgap.compare.audits.named_profiles import double_s, fourth_order, s_curve
 
 
 def by_ruckig(start: AxisState, finish: AxisState, sizes: Sizes) -> float | None:

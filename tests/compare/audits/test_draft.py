@@ -12,7 +12,7 @@ from support.papers.spoiled import spoiled
 from support.studies import EVERY, audited_alone
 from trajgap.compare.audits import CaseAudit, audit
 from trajgap.compare.audits.draft import advise
-from trajgap.compare.audits.edits import edited
+from trajgap.compare.audits.reworded import edited
 from trajgap.compare.documents import Advice, ClaimVerdict, Urgency, Why
 from trajgap.compare.pages.advised import advised
 from trajgap.compare.pages.claims import against

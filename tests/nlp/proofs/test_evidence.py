@@ -14,9 +14,8 @@ from support.checkout import ROOT
 from support.documents import assert_valid, plain
 from support.shipped_problems import COVERED_PROBLEMS
 from trajgap.compare.audits import Pair
-from trajgap.compare.audits.chosen_case import Total
 from trajgap.compare.audits.rules.distances import judge_distances
-from trajgap.compare.audits.study import Study
+from trajgap.compare.audits.study import Study, Total
 from trajgap.compare.audits.waterfall import waterfalls
 from trajgap.compare.documents import Gap, SolveDocument, Why, solve_result
 from trajgap.nlp import (

@@ -19,7 +19,7 @@ from support.made_up import (
 from support.papers.apart import apart
 from support.papers.claims import draw
 from trajgap.compare.audits import printed_rows
-from trajgap.compare.audits.rules.kept_limits import said_to_keep
+from trajgap.compare.audits.own_result import said_to_keep
 from trajgap.compare.documents import Basis, ClaimVerdict, Finding, Scope, Severity
 from trajgap.nlp import Evidence, Status
 
@@ -39,7 +39,7 @@ def decided(found: list[Finding]) -> dict[str, ClaimVerdict | None]:
 def test_what_is_said_of_a_total_is_said_of_its_durations_alone() -> None:
     rows = row("own", "1.90") + row("other", "2.20") + total("t", "1.90", of="own")
     study = study_of(paper([[0, 1]], rows, sentence("kept", "within_limits", "t"), velocity=1))
-    assert [said_to_keep(study, c) for c in study.case.claims] == [True, False, True, False]
+    assert [said_to_keep(study.case, c) for c in study.case.claims] == [True, False, True, False]
 
 
 # Papers that round, and print all joints in one row.

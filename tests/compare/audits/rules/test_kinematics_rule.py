@@ -12,7 +12,7 @@ from support.checkout import ROOT
 from support.findings import study_of
 from support.made_up import entry, paper, readings, sentence
 from trajgap.compare.audits.rules.printed_chain import judge_kinematics
-from trajgap.compare.audits.rules.printed_equations import judge_equations
+from trajgap.compare.audits.rules.printed_joints import judge_equations
 from trajgap.compare.audits.study import Study
 from trajgap.compare.documents import Basis, ClaimVerdict, Finding, Severity
 from trajgap.problem import CaseError

@@ -11,14 +11,8 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from support.findings import audited_text, finding, said_of, study_of, verdicts
 from support.made_up import Numbers, claim, paper, row, sentence, total
-from trajgap.compare.audits.parabolic_blends import (
-    Between,
-    Blended,
-    EndBlends,
-    by_blend_accelerations,
-    by_blend_times,
-)
 from trajgap.compare.audits.rounding import RoundingBox
+from trajgap.compare.audits.rules.linear_blends import Between, Blended, EndBlends, blended_motion
 from trajgap.compare.documents import ClaimVerdict, Finding
 from trajgap.problem import parse_case
 
@@ -177,8 +171,8 @@ def test_the_example_of_craig() -> None:
     The book rounds the first blend to 0.27 s and the speed to 13.50; its straight parts take
     1.50 and 2.849 s.
     """
-    found = by_blend_accelerations(
-        column(10, 35, 25, 10), exact(2, 1, 3), exact(50), EndBlends.WITHIN
+    found = blended_motion(
+        column(10, 35, 25, 10), exact(2, 1, 3), EndBlends.WITHIN, accelerations=exact(50)
     )
     speeds = found.velocity.low[:, 0]
     assert speeds == pytest.approx([13.40, -10.0, -5.09], abs=0.005)
@@ -189,7 +183,7 @@ def test_the_example_of_craig() -> None:
 
 def moved(points: Array, durations: Array, blends: Array, ends: EndBlends) -> Array:
     """Where the motion ends that speeds up and down as its description says, from the start."""
-    found = by_blend_times(column(*points), exact(*durations), exact(*blends), ends)
+    found = blended_motion(column(*points), exact(*durations), ends, times=exact(*blends))
     speeds = np.concatenate([[0.0], found.velocity.low[:, 0], [0.0]])
     at = points[0]
     for k, tau in enumerate(blends):
@@ -226,13 +220,13 @@ def test_bounds_hold_for_everything_in_the_boxes(data: st.DataObject, ends: EndB
     def box(x: Array) -> RoundingBox:
         return RoundingBox(x, x - 0.01, x + 0.01)
 
-    wide = by_blend_accelerations(box(q), box(h), box(a), ends)
-    timed = by_blend_times(box(q), box(h), box(np.full(n + 1, 0.1)), ends)
+    wide = blended_motion(box(q), box(h), ends, accelerations=box(a))
+    timed = blended_motion(box(q), box(h), ends, times=box(np.full(n + 1, 0.1)))
     for _ in range(20):
         inner = [RoundingBox.exact(x + seed.uniform(-0.01, 0.01, x.shape)) for x in (q, h, a)]
         tau = RoundingBox.exact(0.1 + seed.uniform(-0.01, 0.01, n + 1))
-        held(by_blend_accelerations(*inner, ends), wide)
-        held(by_blend_times(inner[0], inner[1], tau, ends), timed)
+        held(blended_motion(*inner[:2], ends, accelerations=inner[2]), wide)
+        held(blended_motion(*inner[:2], ends, times=tau), timed)
 
 
 def held(one: Blended, wide: Blended) -> None:
@@ -246,10 +240,10 @@ def held(one: Blended, wide: Blended) -> None:
 
 
 def test_too_long_a_way_has_no_speed_that_is_high_enough() -> None:
-    short = by_blend_accelerations(column(0, 1), exact(1.9), exact(1.0), EndBlends.WITHIN)
+    short = blended_motion(column(0, 1), exact(1.9), EndBlends.WITHIN, accelerations=exact(1.0))
     assert short.room.high[0, 0] < 0
-    just = by_blend_accelerations(column(0, 1), exact(2.0), exact(1.0), EndBlends.WITHIN)
+    just = blended_motion(column(0, 1), exact(2.0), EndBlends.WITHIN, accelerations=exact(1.0))
     assert just.velocity.low[0, 0] == pytest.approx(1.0)
     assert just.room.low[0, 0] == pytest.approx(0.0, abs=1e-12)
-    still = by_blend_accelerations(column(0, 0), exact(2.0), exact(0.0), EndBlends.WITHIN)
+    still = blended_motion(column(0, 0), exact(2.0), EndBlends.WITHIN, accelerations=exact(0.0))
     assert (still.velocity.low[0, 0], still.velocity.high[0, 0]) == (0.0, 0.0)

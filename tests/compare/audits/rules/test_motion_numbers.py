@@ -14,7 +14,7 @@ from support.findings import finding, study_of
 from support.made_up import Numbers, claim, paper, peak, row
 from trajgap.compare.audits import printed_rows
 from trajgap.compare.audits.rules.beside import Beside
-from trajgap.compare.audits.rules.measures import NAMES, measured
+from trajgap.compare.audits.rules.motion_numbers import NAMES, measured
 from trajgap.compare.audits.rules.peaks import _norm_top, largest_norm
 from trajgap.compare.documents import ClaimVerdict, Confidence
 from trajgap.problem import (

@@ -10,10 +10,9 @@ from scipy.integrate import quad
 from scipy.optimize import linprog
 from support.findings import finding
 from support.made_up import QUINTIC, claim, paper, sentence, total
-from trajgap.compare.audits.rest_profile import (
+from trajgap.compare.audits.named_profiles import (
+    resting_total,
     s_curve,
-    shortest,
-    shortest_straight,
     sine_jerk,
     trapezoidal,
 )
@@ -53,7 +52,7 @@ def test_a_trapezoid_reaches_its_speed_or_does_not() -> None:
     assert trapezoidal(0.25, 2.0, 4.0, 1.0) == 0.5
     assert trapezoidal(3.0, 2.0, 4.0, 1.0) == 2.0
     ways, limits = np.array([[0.25, 3.0], [0.0, 0.25]]), np.tile([2.0, 4.0, np.inf], (2, 1))
-    assert shortest("trapezoidal", ways, limits) == 2.5
+    assert resting_total("trapezoidal", ways, limits) == 2.5
 
 
 def of_half_sines(ramp: float, held: float, cruise: float, jerk: float) -> np.ndarray:
@@ -100,20 +99,20 @@ def test_half_sines_of_jerk_take_the_time_of_a_jerk_smaller_by_half_pi(
 def test_joints_on_a_straight_line_share_one_time_law() -> None:
     # s from 0 to 1 within 2/3 (joint 2) and 1 (joint 1): 3/2 + 2/3 s; alone both take 2 s.
     ways, limits = np.array([[1.0, 3.0]]), np.array([[2.0, 1.0, np.inf], [2.0, 4.0, np.inf]])
-    assert shortest_straight("trapezoidal", ways, limits) == pytest.approx(13 / 6)
-    assert shortest("trapezoidal", ways, limits) == pytest.approx(2.0)
+    assert resting_total("trapezoidal", ways, limits, True) == pytest.approx(13 / 6)
+    assert resting_total("trapezoidal", ways, limits) == pytest.approx(2.0)
     assert farthest(13 / 6, 2 / 3, 1.0, np.inf) == pytest.approx(1.0, rel=2e-2)
     # A joint that rests asks for nothing, even where it must not move.
     still = np.vstack([limits, np.zeros(3)])
-    assert shortest_straight("trapezoidal", np.array([[1.0, 3.0, 0.0]]), still) == pytest.approx(
+    assert resting_total("trapezoidal", np.array([[1.0, 3.0, 0.0]]), still, True) == pytest.approx(
         13 / 6
     )
-    assert shortest_straight("s-curve", np.zeros((2, 3)), still) == 0.0
-    assert shortest_straight("sine-jerk", ways, limits) == pytest.approx(13 / 6)
+    assert resting_total("s-curve", np.zeros((2, 3)), still, True) == 0.0
+    assert resting_total("sine-jerk", ways, limits, True) == pytest.approx(13 / 6)
     one = np.array([[2.0, 1.0, 5.0]])
     for profile in ("trapezoidal", "s-curve", "sine-jerk"):
-        alone = shortest(profile, np.array([[0.7]]), one)
-        assert shortest_straight(profile, np.array([[0.7]]), one) == pytest.approx(alone)
+        alone = resting_total(profile, np.array([[0.7]]), one)
+        assert resting_total(profile, np.array([[0.7]]), one, True) == pytest.approx(alone)
 
 
 CLAIM = {"other_curve": "blends"}

@@ -9,17 +9,17 @@ from support.findings import study_of
 from support.made_up import algorithms, paper, row
 from support.studies import hurried
 from support.suite import benchmark
-from trajgap.compare.audits import comparisons
-from trajgap.compare.audits.comparisons import (
+from trajgap.compare.audits.replay_settings import DESIGN, LISTED, spread_settings
+from trajgap.compare.audits.rules import compared_before as comparisons
+from trajgap.compare.audits.rules.compared_before import (
     Ablated,
     Comparison,
     Designed,
     Listed,
     PairShown,
     all_comparisons,
+    cite_comparisons,
 )
-from trajgap.compare.audits.replay_settings import DESIGN, LISTED, spread_settings
-from trajgap.compare.audits.rules.compared_before import cite_comparisons
 from trajgap.compare.audits.rules.replays import _typical, interval_words, judge_replays
 from trajgap.compare.audits.study import Study
 from trajgap.compare.documents import ClaimVerdict, Severity
