@@ -1,4 +1,4 @@
-"""Optima of every family: what follows from units, names, mirrors and time; the NLP and the descent."""
+"""Optima of every family: units, names, mirrors, the direction of time; the NLP and the descent."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Paths timed anew: known answers, order, the one-sided inequality, identities, and what is refused."""
+"""Paths timed anew: known answers, order, the one-sided inequality, and where it applies."""
 
 import logging
 
