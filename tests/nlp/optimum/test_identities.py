@@ -10,9 +10,8 @@ from functools import cache
 import numpy as np
 import pytest
 from support.b_splines import uniform
-from support.long_problems import long_problem
 from support.same_question import DRESSES, OWN_UNITS, SLOWER, same_question
-from support.small_problems import small_problem
+from support.samples import long_problem, small_problem
 from support.uneven import CURVES as UNEVEN
 from support.uneven import uneven_problem
 from trajgap.nlp import Route, Solution, Status, kkt, with_other_route
