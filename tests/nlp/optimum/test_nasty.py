@@ -20,6 +20,7 @@ from trajgap.nlp.optimum import limit_rows, solve, solver
 from trajgap.nlp.optimum.basins import short_ways, shortened
 from trajgap.nlp.optimum.closed_forms import straight_shares
 from trajgap.nlp.optimum.decided import decided, incumbent
+from trajgap.nlp.optimum.descent import least_point
 from trajgap.nlp.optimum.limit_rows import exact_rows
 from trajgap.nlp.optimum.optimality import kkt
 from trajgap.nlp.proofs import exact_problem
@@ -33,6 +34,7 @@ from trajgap.problem import (
     check,
     cubic_spline,
     cubic_spline_virtual,
+    load_case,
     piecewise,
     quintic_spline,
     rest_to_rest,
@@ -145,6 +147,14 @@ def test_no_answer_depends_on_the_clock(monkeypatch: pytest.MonkeyPatch) -> None
     assert (again.lower, again.upper, again.nodes) == (proved.lower, proved.upper, proved.nodes)
     assert proved.nodes > 0
     assert proved.lower < (1 - asked["gap"]) * proved.upper  # the boxes ended first
+
+
+def test_a_step_to_durations_that_define_no_curve_raises_nothing() -> None:
+    """The clock of the timed B-spline would turn back there."""
+    case = load_case("irb1600-ga-cubic-bspline")
+    problem = case.problem("nine-segments", "angles-modulo-2pi-v-rad-a-rad-timed")
+    assert solve(problem, seed=1, starts=8).found
+    assert least_point(np.eye(2), np.zeros(2), np.eye(2), np.array([-np.inf, 1.0])) is None
 
 
 NEAR_QUINTIC, NEAR_REST = NEAR["quintic"][0], NEAR["rest"][0]
