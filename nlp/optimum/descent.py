@@ -41,7 +41,8 @@ def least_point(
 ) -> tuple[Array, Array] | None:
     """Least ½dᵀHd + gᵀd with Ad ≤ b, and the multipliers; None if no d keeps the rows.
 
-    None too where rounding has left H without a Cholesky factor.
+    None too where rounding has left H without a Cholesky factor, and where a number is not finite,
+    as that of a row is at durations that define no curve.
 
     With H = LLᵀ, y = Lᵀd + L⁻¹g makes it the shortest y with Gy ≥ w, G = −AL⁻ᵀ, w = −b − AH⁻¹g,
     which non-negative least squares solve (Lawson and Hanson, Solving Least Squares Problems,
@@ -60,6 +61,8 @@ def least_point(
     shift, turned = inverse @ slope, rows @ inverse.T
     facing, needed = -turned, -room - turned @ shift
     stacked = np.vstack([facing.T, needed])
+    if not np.isfinite(stacked).all():
+        return None
     target = np.zeros(len(stacked))
     target[-1] = 1.0
     try:

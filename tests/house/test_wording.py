@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from support.base_case import BASE
+from support.case_texts import BASE
 from support.made_up import TWO_UNITS, claim, gain, one_joint, peak, row, sentence, total
 from trajgap.compare import CaseAudit, audit
 from trajgap.compare.audits import claim_text

@@ -1,8 +1,12 @@
-"""The text of a small case file, of which tests state what they are about."""
+"""Case files that tests change in a place: a small one, one of every field, one of a SCARA arm."""
 
 from __future__ import annotations
 
 import json
+from pathlib import Path
+
+from trajgap.problem import Case
+from trajgap.problem.cases import parse_case
 
 
 def case_text(
@@ -40,3 +44,19 @@ time = "s"
 [interpolant]
 {curve}
 {more}"""
+
+
+BASE = Path(__file__).with_name("base_case.toml").read_text(encoding="utf-8")
+
+
+SCARA = Path(__file__).with_name("scara.toml").read_text("utf-8")
+"""Its case file; way-points, limits and peaks in degrees, turns per minute, mm and m."""
+
+
+def scara(*changes: tuple[str, str]) -> Case:
+    """The case with parts of its text replaced, each of which occurs exactly once."""
+    text = SCARA
+    for old, new in changes:
+        assert text.count(old) == 1, (old, text.count(old))
+        text = text.replace(old, new)
+    return parse_case(text, "scara.toml")

@@ -1,6 +1,8 @@
-"""Shifted, unequal sample problems for the tests of ``trajgap.problem``."""
+"""Shifted, unequal problems: of every declaration, of sizes that papers pose, of many segments."""
 
 from __future__ import annotations
+
+from collections.abc import Callable
 
 import numpy as np
 from trajgap.problem import (
@@ -66,3 +68,52 @@ def sample_problem(
         )
     durations = rng.uniform(0.3, 2.0, interpolant.segments)
     return Problem(waypoints, limits, interpolant, **changes), durations  # type: ignore[arg-type]
+
+
+FAMILIES: dict[str, Callable[[int], Interpolant]] = {
+    "3-5-3": lambda n: three_five_three(),
+    "4-3-4": lambda n: piecewise((4, 3, 4), 2),
+    "C2 cubic": cubic_spline,
+    "C4 quintic": quintic_spline,
+    "septic": lambda n: rest_to_rest(n, 7),
+}
+"""Declarations by name, for a number of segments where it is theirs to choose."""
+
+
+def small_problem(family: str, seed: int) -> Problem:
+    """A problem of a family; some have a position range or bounds on the durations."""
+    generator = np.random.default_rng([seed, len(family)])
+    curve = FAMILIES[family](int(generator.integers(2, 5)))
+    joints = int(generator.integers(1, 5))
+    q = generator.normal(size=(curve.segments + 1, joints))
+    limits = generator.uniform(0.5, 3.0, (3, joints)) * np.array([[1.0], [2.0], [8.0]])
+    limits[generator.integers(3)] = np.inf
+    low, high = -np.inf, np.inf
+    if generator.random() < 0.3:
+        span = np.ptp(q, axis=0)
+        low, high = q.min(axis=0) - 0.2 * span, q.max(axis=0) + 0.2 * span
+    lower = generator.uniform(0.2, 1.0) if generator.random() < 0.4 else 0.0
+    return Problem(q, Limits(*limits, low, high, joints=joints), curve, duration_lower=lower)
+
+
+WALK_LIMITS = Limits([1.5, 3.0], [6.0, 15.0], [np.inf, 90.0])
+
+
+def long_curves(segments: int) -> dict[str, Interpolant]:
+    return {
+        "cubic": cubic_spline(segments),
+        "quintic": quintic_spline(segments),
+        "virtual": cubic_spline_virtual(segments - 1),
+        "degrees of two kinds": piecewise((4, *(3,) * (segments - 2), 4), 2),
+        "moving ends": cubic_spline(segments, ((1, 0.25),)),
+        "ends apart": cubic_spline(segments, ((1, (0.25, -0.4)),), ((1, (-0.1, 0.3)),)),
+    }
+
+
+def long_problem(
+    curve: Interpolant, seed: int = 3, limits: Limits = WALK_LIMITS, **bounds: object
+) -> Problem:
+    rng = np.random.default_rng(seed)
+    count = len(curve.waypoint_breaks)
+    q = np.cumsum(rng.normal(size=(count, 2)) * [0.4, 0.9], axis=0) - 5.0
+    return Problem(q, limits, curve, **bounds)  # type: ignore[arg-type]

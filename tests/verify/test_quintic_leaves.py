@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from scipy.interpolate import make_interp_spline
+from scipy.interpolate import BPoly, make_interp_spline
 from scipy.optimize import minimize
 from support.forgeries.forgery import NO_ANSWER, altered
 from trajgap.verify import read_problem
@@ -70,6 +70,34 @@ def test_where_nothing_moves_a_leaf_is_off_by_its_allowance_for_rounding_alone(o
     proved = Fraction(float(Centre(task, h[None], h[None]).least(*leaf)[0]))
     value = -sum(3 * Fraction(limit) * Fraction(x) ** (order - 2) for x in h.tolist())
     assert value * (1 + Fraction(2, 10**11)) <= proved <= value
+
+
+def test_what_a_leaf_allows_for_rounding_is_the_most_of_each_term_in_its_box() -> None:
+    """Jumps of snap and jerk at way-points, of the steps alone and of one velocity or acceleration
+    alone: each is largest where the segment is shortest, whatever its sign."""
+    low, high, count = np.array([0.7, 1.1, 2.3]), np.array([0.8, 1.2, 2.5]), 3
+    unknowns = [(way, order) for way in (1, 2) for order in (1, 2)]
+    load, stiffness = np.zeros((count, 4)), np.zeros((4, 4))
+
+    def jumps(k: int, way: int, position: int, ends: np.ndarray) -> tuple[float, float]:
+        """Snap and jerk of a segment at a way-point, from position and derivatives at its ends."""
+        own = BPoly.from_derivatives([0.0, low[k]], [[0.0, *ends[0]], [position, *ends[1]]])
+        at = low[k] * (way - k)
+        return abs(float(own(at, 4))), abs(float(own(at, 3)))
+
+    for k in range(count):
+        for row, (way, order) in enumerate(unknowns):
+            if way in (k, k + 1):
+                load[k, row] = jumps(k, way, 1, np.zeros((2, 2)))[order - 1]
+                for column, (place, other) in enumerate(unknowns):
+                    if place in (k, k + 1):
+                        ends = np.zeros((2, 2))
+                        ends[place - k, other - 1] = 1.0
+                        stiffness[row, column] += jumps(k, way, 0, ends)[order - 1]
+    task = Task(np.ones((count, 1)), np.full((1, 3), 9.0), 4.0)
+    centre = Centre(task, low[None], high[None])
+    np.testing.assert_allclose(centre.load_top[0], load, rtol=1e-9)
+    np.testing.assert_allclose(centre.stiff_top[0], stiffness, rtol=1e-9)
 
 
 @pytest.mark.parametrize("seed", range(10))

@@ -51,7 +51,7 @@ def arrives(profile: AxisProfile, finish: AxisState) -> bool:
     return bool(np.allclose(end[:2], finish[:2], rtol=1e-6, atol=1e-6))
 
 
-@pytest.mark.parametrize("count", [2000, pytest.param(100_000, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("count", [400, pytest.param(100_000, marks=pytest.mark.slow)])
 def test_s_curves_between_random_states_take_ruckigs_time(count: int) -> None:
     rng = np.random.default_rng(31)
     compared = 0
@@ -63,7 +63,7 @@ def test_s_curves_between_random_states_take_ruckigs_time(count: int) -> None:
             compared += 1
             assert found.total_time == pytest.approx(truth, rel=1e-7, abs=1e-7), (k, start, finish)
             assert arrives(found, finish)
-    assert compared > count // 2
+    assert compared > 0.8 * count
 
 
 def test_trapezoids_take_ruckigs_time_and_reversed_swap_both_limits() -> None:
@@ -113,10 +113,12 @@ def test_the_shortest_total_jumps_where_the_start_moves_a_little() -> None:
 
 
 def test_no_profile_ends_where_a_limit_was_exceeded_before() -> None:
-    sizes = Sizes(1.0, 2.0, 4.0)
-    assert shortest_s_curve(AxisState(0.0), AxisState(1.0, 1.5), sizes) is None
-    assert shortest_s_curve(AxisState(0.0), AxisState(1.0, 0.9, -1.5), sizes) is None
-    assert shortest_trapezoid(AxisState(0.0), AxisState(1.0, 1.5), sizes) is None
+    sizes, start = Sizes(1.0, 2.0, 4.0), AxisState(0.0)
+    fast, earlier = AxisState(1.0, 1.5), AxisState(1.0, 0.9, -1.5)
+    for finish in (fast, earlier, fast.mirrored(), earlier.mirrored()):
+        assert shortest_s_curve(start, finish, sizes) is None
+    for finish in (fast, fast.mirrored(), AxisState(1.0, -1.5)):
+        assert shortest_trapezoid(start, finish, sizes) is None
 
 
 def test_the_algorithm_of_the_book_is_not_the_shortest() -> None:

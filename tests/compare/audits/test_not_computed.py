@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from support.base_case import BASE
+from support.case_texts import BASE
 from support.findings import audited_text, study_of, verdicts
 from support.made_up import claim, entry, one_joint, paper, readings, row, sentence
 from trajgap.compare.audits import CaseAudit, Study, audit, case_audit

@@ -11,10 +11,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from support.case_texts import SCARA, scara
 from support.drawn import sketched
 from support.findings import OwnCurve, found_by, judged, report_of
 from support.made_up import claim
-from support.scara import SCARA, scara
 from trajgap.compare.audits import claim_text, digits_of
 from trajgap.compare.audits.case_audit import CaseAudit
 from trajgap.compare.audits.causes import find_causes

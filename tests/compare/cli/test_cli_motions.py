@@ -228,6 +228,20 @@ def test_a_repaired_file_is_read_back_whatever_was_stated_of_the_first(run, fold
     assert (folder / "s.csv").read_text().startswith("time,arm\n")
 
 
+def test_whole_nanoseconds_are_slowed_down_once_more(run, folder):
+    """1 rad within 1300.4 ns: in 1300 ns, as a message rounds them, the limit is exceeded."""
+    points = [
+        {"positions": [float(k)], "time_from_start": {"sec": 0, "nanosec": 1000 * k}}
+        for k in range(2)
+    ]
+    (folder / "fast.json").write_text(json.dumps({"joint_names": ["j1"], "points": points}))
+    flags = ["--velocity", str(1.0 / 1300.4e-9), "--repair", "SLOW.JSON"]
+    found = run.document("check", "fast.json", *flags)["repaired"]
+    assert found["result"]["verdict"] == "pass"
+    slow = json.loads((folder / "SLOW.JSON").read_text())["points"]
+    assert slow[1]["time_from_start"]["nanosec"] == 1301
+
+
 def test_what_no_slow_down_repairs_is_not_written(run, folder):
     flags = ["--position", "-1:1", "--interpolation", "quintic", "--repair", "slow.csv"]
     found = run.document("check", "m.csv", *flags)

@@ -46,6 +46,23 @@ def test_what_is_worth_reading_stands_first() -> None:
     assert not any(row.against for row in clean)
 
 
+@pytest.mark.parametrize(
+    ("name", "shown"),
+    [
+        # A total that rounds to below its optimum, without a minus sign.
+        ("robotics1-2016-04-01", ("3.6926", "3.6926", "the optimum", "certified")),
+        # 3.528/3.4128 and 3.528/3.3324 of joints planned alone: that of all is another question.
+        (
+            "puma560-mnam-pso-353",
+            ("3.528", "3.3324 to 3.4128", "3.4 to 5.9 %", "best known"),
+        ),
+        ("irb1600-ga-cubic-bspline", ("6.81", "4.0381", "at least 68.5 %, but breaks a limit")),
+    ],
+)
+def test_a_row_of_the_table(name: str, shown: tuple[str, ...]) -> None:
+    assert paper_row(name, RESULTS.case(name)).cells[: len(shown)] == shown
+
+
 def test_a_distance_that_rounding_may_explain_says_so() -> None:
     """Published digits: 3.7341 s beside 3.5956 s, through way-points of two decimals."""
     name = "yu2022-aubo-b-spline"

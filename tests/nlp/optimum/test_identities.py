@@ -1,33 +1,39 @@
-"""Optima of every family: what follows from units, names, mirrors and the direction of time."""
+"""Optima of every family: units, names, mirrors, the direction of time; the NLP and the descent."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import replace
 from functools import cache
 
 import numpy as np
 import pytest
 from support.b_splines import uniform
-from support.long_problems import long_problem
 from support.same_question import DRESSES, OWN_UNITS, SLOWER, same_question
-from support.small_problems import small_problem
+from support.samples import long_problem, small_problem
 from support.uneven import CURVES as UNEVEN
 from support.uneven import uneven_problem
 from trajgap.nlp import Route, Solution, Status, kkt, with_other_route
 from trajgap.nlp.optimum import solve
 from trajgap.problem import (
+    CaseError,
     Limits,
     Problem,
     Verdict,
     check,
     cubic_spline,
     cubic_spline_virtual,
+    load_case,
     piecewise,
+    published_ids,
     quintic_spline,
     rest_to_rest,
+    septic_spline,
     three_five_three,
     uniform_cubic_b_spline,
 )
+from trajgap.problem.suite import list_instances, load_instance
 
 Q = np.array([[0.2, -1.0, 0.7], [0.9, 0.3, 0.1], [0.4, 1.1, -0.8], [1.3, 0.6, 0.2]])
 LIMITS = Limits([1.5, 2.0, 1.0], [4.0, 6.0, 5.0], [30.0, 50.0, 40.0])
@@ -152,3 +158,70 @@ def test_sensitivities_are_the_differences_of_totals(name: str) -> None:
         # T(cV, c²A, c³J) = T/c.
         weighted = sum((1 + orders.index(a.quantity)) * a.multiplier for a in found.active)
         assert name == "moving cubic" or weighted == pytest.approx(found.total_time, rel=1e-7)
+
+
+# --- the NLP and the descent, which share no search and no derivative -----------------------------
+
+
+SAME = 1e-8
+"""Relative difference of the two totals: both are a local optimum to some 1e-10."""
+
+
+def random_problem(number: int) -> Problem:
+    """Up to three joints through a random walk of up to four segments, some within bounds."""
+    generator = np.random.default_rng(1000 + number)
+    n = int(generator.integers(2, 5))
+    curve = (
+        three_five_three(),
+        piecewise((4, 3, 4)),
+        cubic_spline(n),
+        quintic_spline(n),
+        septic_spline(max(n, 3)),
+        rest_to_rest(n, 5),
+    )[number % 6]
+    joints = int(generator.integers(1, 4))
+    q = np.cumsum(generator.normal(size=(curve.segments + 1, joints)), axis=0)
+    jerk = generator.uniform(5.0, 60.0, joints) if number % 3 == 0 else np.inf
+    limits = Limits(generator.uniform(1, 6, joints), generator.uniform(1, 8, joints), jerk)
+    bounds = (0.01, float(generator.uniform(2.0, 6.0))) if number % 5 == 1 else (0.0, np.inf)
+    return Problem(q, limits, curve, *bounds)
+
+
+def published() -> Iterator[Problem]:
+    """Every problem of every published case under every reading."""
+    for name in published_ids():
+        case = load_case(name)
+        for problem, reading in case.selections():
+            with suppress(CaseError):  # one case prints no way-points
+                yield case.problem(problem, reading)
+
+
+def assert_same(problem: Problem, more: float = 0.0) -> bool:
+    """Whether there was a total to set beside another, which may be longer by a share."""
+    found = with_other_route(solve(problem))
+    if not found.found or found.status is Status.NOT_ATTAINED:
+        return False
+    assert found.other_total is not None, problem.name
+    least, most = (found.total_time * (1 + share) for share in (-SAME, more + SAME))
+    assert least <= found.other_total <= most, problem.name
+    return True
+
+
+NEIGHBOURS = {1114: 1.2e-4, 1426: 2.5e-4}
+"""C6 septics from whose longer motion the NLP goes down into the basin beside, by how much more."""
+TURNED = "irb1600-ga-cubic-bspline, nine-segments, angles-modulo-2pi-v-rad-a-rad-timed"
+"""Another one: its first way-point lies full turns away in that reading."""
+
+
+@pytest.mark.slow
+def test_two_thousand_random_problems() -> None:
+    rest = [number for number in range(2000) if number not in NEIGHBOURS]
+    assert sum(assert_same(random_problem(number)) for number in rest) >= 1900
+    assert all(assert_same(random_problem(number), more) for number, more in NEIGHBOURS.items())
+
+
+@pytest.mark.slow
+def test_the_whole_suite_and_every_published_problem() -> None:
+    names = [one.name for one in list_instances()]
+    assert all(assert_same(load_instance(name).problem()) for name in names)
+    assert all(assert_same(one, 1.3e-3 * (one.name == TURNED)) for one in published())

@@ -5,7 +5,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from support.long_problems import long_curves, long_problem
+from support.samples import long_curves, long_problem
 from trajgap.nlp import Solution, Status
 from trajgap.nlp.optimum import rounds, solve, solver
 from trajgap.nlp.optimum.closed_forms import CUT_SHORT

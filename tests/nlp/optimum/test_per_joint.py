@@ -8,7 +8,7 @@ from functools import cache
 import numpy as np
 import pytest
 from scipy.optimize import nnls
-from support.small_problems import FAMILIES, small_problem
+from support.samples import FAMILIES, small_problem
 from trajgap.nlp import Evidence, PerJointSolution, Status, solve_per_joint
 from trajgap.nlp.optimum import solve, stopping_after
 from trajgap.nlp.optimum.limit_rows import exact_rows

@@ -8,8 +8,7 @@ import casadi as ca
 import numpy as np
 import pytest
 from support.b_splines import clamped, uniform
-from support.long_problems import long_curves, long_problem
-from support.small_problems import FAMILIES, small_problem
+from support.samples import FAMILIES, long_curves, long_problem, small_problem
 from support.uneven import CURVES as UNEVEN
 from support.uneven import uneven_problem
 from trajgap.nlp import build

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from support.clocks import Ticking
+from support.proof_runs import Ticking
 from trajgap.nlp import Solution, Status, certify
 from trajgap.nlp.optimum import (
     clock,

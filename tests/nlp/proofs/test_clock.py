@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from support.clocks import Ticking
+from support.proof_runs import Ticking
 from trajgap.nlp.proofs import clock, judged, session, state
 from trajgap.nlp.proofs.answer import prove_feasible
 from trajgap.nlp.proofs.certifiers import certify

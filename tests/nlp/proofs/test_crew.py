@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from support.executors import LastFirst
 from support.proof_problems import QUINTIC
+from support.proof_runs import LastFirst
 from trajgap.nlp.proofs import certifiers, crew
 from trajgap.nlp.proofs.certifiers import certify
 from trajgap.nlp.proofs.crew import ProofCrew

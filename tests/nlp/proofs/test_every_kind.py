@@ -14,7 +14,6 @@ import numpy as np
 import pytest
 from support.any_curve_proofs import DETOUR
 from support.intervals import dense_best, judged
-from support.own_kinds import own_kinds as own_kinds
 from support.proof_problems import (
     NATURAL,
     QUINTIC,
@@ -24,9 +23,9 @@ from support.proof_problems import (
     random_in_motion,
     random_quintic,
 )
+from support.proof_runs import answering, unjudged
+from support.proof_runs import own_kinds as own_kinds
 from support.puma import PUMA
-from support.unjudged import unjudged
-from support.unlucky import answering
 from trajgap.nlp import solve
 from trajgap.nlp.proofs.certifier import Certifier
 from trajgap.nlp.proofs.certifiers import CERTIFIERS, certifiers, certify, covered

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from attacks.grammar import draw_case
 from attacks.judging import poses
-from support.base_case import BASE
+from support.case_texts import BASE
 from support.checkout import ROOT
 from trajgap.problem.cases.case import Case
 from trajgap.problem.cases.load import load_case, parse_case, published_ids

@@ -8,10 +8,8 @@ from functools import cache
 
 import numpy as np
 import pytest
-from support.base_case import BASE
-from support.case_texts import case_text
+from support.case_texts import BASE, SCARA, case_text, scara
 from support.refusals import Refusal, each_refusal
-from support.scara import SCARA, scara
 from trajgap.problem import (
     CaseError,
     Problem,

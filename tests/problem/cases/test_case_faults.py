@@ -12,8 +12,7 @@ import pytest
 from attacks.mutations import places
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from support.base_case import BASE
-from support.case_texts import case_text
+from support.case_texts import BASE, case_text
 from support.checkout import ROOT
 from support.refusals import Refusal, each_refusal
 from trajgap.heuristics import from_settings

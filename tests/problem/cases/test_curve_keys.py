@@ -15,6 +15,7 @@ from trajgap.problem import (
     parse_case,
     quintic_spline_virtual,
 )
+from trajgap.problem.cases import end_states
 
 POINTS = "[10, -50, 3], [50, -30, 9], [12, 20, 30], [-25, 6, 4]"
 HEAD = case_text(
@@ -79,6 +80,15 @@ def test_printed_digits_are_intervals(written: str, knots: str | None) -> None:
     statement = case(written).statement("main", "as-printed")
     assert statement.loose_ends == (knots != "")
     assert knots is None or statement.declaration.loose == knots
+
+
+def test_states_at_the_ends_are_those_of_each_end_and_joint_with_their_digits() -> None:
+    """Digits stand for what is rounded to them and for what is cut off to them, zeros too."""
+    given = 'end_derivatives = [[1, "2.0", 3]]\nfinish_derivatives = [[0, "0.0", -4]]'
+    found = np.rad2deg(end_states(case(f"{CUBIC}\n{given}").statement("main", "as-printed")))
+    velocities = [[[1] * 3, [2, 1.95, 2.1], [3] * 3], [[0] * 3, [0, -0.1, 0.1], [-4] * 3]]
+    np.testing.assert_allclose(found[:, :, 0], velocities, atol=1e-12)
+    assert not found[:, :, 1].any()
 
 
 # --- breaks without a way-point -------------------------------------------------------------------

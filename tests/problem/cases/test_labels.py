@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from support.base_case import BASE
-from support.case_texts import case_text
+from support.case_texts import BASE, case_text
 from trajgap.problem.cases import parse_case, published_ids
 from trajgap.problem.cases.load import load_case
 from trajgap.problem.errors import CaseError

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import pytest
 from support.checkout import ROOT
 from support.made_up import claim, paper, row, sentence, total
 from support.refusals import Refusal, each_refusal
 from support.toml_text import Bare, block
-from trajgap.problem import parse_case
+from trajgap.problem import CaseError, parse_case
 
 MOVED = row("d", "1.00"), sentence("s", "optimal", "d")
 LABELS = {"waypoints": {"labels": ["A", "B"]}, "angle": "deg"}
@@ -43,3 +44,26 @@ def test_each_fault_has_its_line(one: Refusal) -> None:
     base = BASES[one.section]
     parse_case(base, "made-up.toml")
     one.said_by(lambda: parse_case(one.text(base), "made-up.toml"), "made-up.toml: ")
+
+
+@pytest.mark.parametrize("joint", ["1", "2"])
+def test_a_profile_of_one_joint_needs_the_limit_of_that_joint(joint: str) -> None:
+    own = total("t", "2.00", other_curve="blends", profile="s-curve", joint=joint)
+    text = paper([[0, 1], [0, -3]], own, **SLOW, jerk=[9, Bare("inf")])
+    if joint == "1":
+        assert parse_case(text, "made-up.toml").claims[0].profile == "s-curve"
+        return
+    with pytest.raises(CaseError, match=r'"s-curve" needs limits.jerk, and none is stated; add'):
+        parse_case(text, "made-up.toml")
+
+
+def test_a_peak_is_of_durations_or_of_a_profile() -> None:
+    peak = claim("p", "peak", derivative="velocity", value="2.0", of="t")
+    for keys, refused in (({"profile": "trapezoidal"}, False), ({}, True)):
+        own = total("t", "2.00", other_curve="blends", **keys)
+        text = paper([[0, 1]], own, peak, velocity=2, acceleration=1)
+        if refused:
+            with pytest.raises(CaseError, match="'t' is a claim of quantity 'total_time'; name"):
+                parse_case(text, "made-up.toml")
+        else:
+            assert len(parse_case(text, "made-up.toml").claims) == 2

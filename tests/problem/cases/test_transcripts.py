@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from support.base_case import BASE
+from support.case_texts import BASE
 from support.checkout import ROOT
 from trajgap.problem import compare_transcriptions, load_case, parse_case
 from trajgap.problem.cases import Difference

@@ -5,8 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from support.long_problems import long_curves, long_problem
-from support.samples import DECLARATIONS, sample_problem
+from support.samples import DECLARATIONS, long_curves, long_problem, sample_problem
 from trajgap.problem import (
     Problem,
     check,

@@ -5,6 +5,7 @@ import pytest
 from scipy.interpolate import BSpline, PPoly
 from trajgap.problem import Limits, TrajgapError, Verdict
 from trajgap.problem.motions import (
+    HalfUnits,
     Interpolation,
     JointLimits,
     Motion,
@@ -18,6 +19,25 @@ from trajgap.problem.motions.judged import MotionPeak, joined, judged, peak, slo
 NAMES = ("shoulder", "elbow", "wrist")
 WIDE = JointLimits.from_values(NAMES, 1e3, 1e3, 1e3, (-1e3, 1e3))
 """Limits that nothing here reaches: every peak is then reported."""
+
+
+def test_the_same_way_so_many_times_slower_from_its_start():
+    """Derivative r divides by factorʳ, and so does what it may be off by; digits are exact then."""
+    rng, factor = np.random.default_rng(8), 2.5
+    time, values = 7.0 + np.cumsum(rng.uniform(0.2, 0.5, 6)), rng.normal(size=(3, 6, 2))
+    samples = Samples(("a", "b"), time, *values, rounding=HalfUnits(1e-4, np.full((3, 1), 1e-3)))
+    slow = samples.slowed(factor)
+    np.testing.assert_allclose(slow.time, time[0] + factor * (time - time[0]))
+    for order in range(3):
+        np.testing.assert_allclose(slow.given(order), values[order] / factor**order)
+    assert (samples.clock, slow.clock, *slow.margin) == (1e-4, 0.0, 0.0, 0.0)
+    one = interpolated(samples, Interpolation.QUINTIC)
+    other = one.slowed(factor)
+    at = rng.uniform(time[0], time[-1], 50)
+    for order in range(4):
+        there = other(time[0] + factor * (at - time[0]), order)
+        np.testing.assert_allclose(there, one(at, order) / factor**order, rtol=1e-9, atol=1e-9)
+        np.testing.assert_allclose(other.error[:, order], one.error[:, order] / factor**order)
 
 
 def test_jumps_are_reported_with_place_and_number():

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 from scipy.interpolate import PPoly
-from support.suite import benchmark
+from support.benchmarks import benchmark
 from trajgap.problem.motions import shortest
 
 

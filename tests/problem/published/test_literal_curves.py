@@ -7,7 +7,7 @@ from math import sqrt
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from support.suite import benchmark
+from support.benchmarks import benchmark
 from trajgap.problem import (
     control_vertices,
     extrema,

@@ -11,7 +11,7 @@ from fractions import Fraction
 import jsonschema
 import numpy as np
 import pytest
-from support.base_case import BASE
+from support.case_texts import BASE
 from support.checkout import ROOT
 from support.refusals import Refusal, each_refusal
 from trajgap.problem.cases.load import load_case, parse_case

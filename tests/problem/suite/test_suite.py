@@ -17,8 +17,8 @@ import numpy as np
 import pytest
 from numpy.lib.stride_tricks import sliding_window_view
 from pydantic import ValidationError
+from support.benchmarks import benchmark
 from support.checkout import ROOT
-from support.suite import benchmark
 from trajgap.compare.gaps import Store
 from trajgap.heuristics import uniform_rescaling
 from trajgap.nlp import certify, printed_problem, proved, shipped_file, solve

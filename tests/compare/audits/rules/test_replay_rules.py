@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from support.benchmarks import benchmark
 from support.checkout import ROOT
 from support.findings import study_of
 from support.made_up import algorithms, paper, row
 from support.studies import hurried
-from support.suite import benchmark
 from trajgap.compare.audits.replay_settings import DESIGN, LISTED, spread_settings
 from trajgap.compare.audits.rules import compared_before as comparisons
 from trajgap.compare.audits.rules.compared_before import (

@@ -9,8 +9,8 @@ from functools import cache
 
 import numpy as np
 import pytest
-from support.executors import LastFirst
 from support.papers.motions import FAMILIES
+from support.proof_runs import LastFirst
 from trajgap.nlp.proofs.certifiers import certify
 from trajgap.nlp.proofs.clock import RunClock
 from trajgap.nlp.proofs.crew import ProofCrew

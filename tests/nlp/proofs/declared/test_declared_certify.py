@@ -14,8 +14,8 @@ from scipy.optimize import linprog
 from support.checkout import ROOT
 from support.declared_curves import CURVES
 from support.intervals import dense_best, judged
+from support.proof_runs import answering
 from support.shipped_problems import COVERED_PROBLEMS
-from support.unlucky import answering
 from trajgap.nlp.proofs.certifiers import certify
 from trajgap.nlp.proofs.declared.certifier import DECLARED
 from trajgap.nlp.proofs.declared.simplex import best_weights

@@ -2,34 +2,20 @@
 
 from __future__ import annotations
 
-import runpy
-import sys
-from typing import Any
-
 import numpy as np
 import pytest
+from support.benchmarks import benchmark
 from support.checkout import ROOT
 from trajgap.nlp import solve
 
-BENCHMARKS = ROOT / "benchmarks"
-
-
-@pytest.fixture
-def reference(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
-    """What benchmarks/quintic_mccormick.py defines."""
-    monkeypatch.syspath_prepend(str(BENCHMARKS))
-    found = runpy.run_path(str(BENCHMARKS / "quintic_mccormick.py"))
-    sys.modules.pop("quintic_instances", None)
-    return found
-
 
 def test_the_page_shows_what_the_file_of_the_runs_holds() -> None:
-    module = runpy.run_path(str(BENCHMARKS / "quintic_bounds.py"))
+    module = benchmark("quintic_bounds")
     found = module["rows"]()
     page = (ROOT / "docs" / "explanation" / "certificates-quintic.md").read_text("utf-8")
     for line in (*module["summary"](found), *module["each"](found)):
         assert line.startswith("|---") or f"\n{line}\n" in page
-    problems = runpy.run_path(str(BENCHMARKS / "quintic_instances.py"))["instances"]()
+    problems = benchmark("quintic_instances")["instances"]()
     wanted = {(method, problem.name) for method in module["METHODS"] for problem in problems}
     assert sorted((row["method"], row["problem"]) for row in found) == sorted(wanted)
     (limit,) = {row["limit_s"] for row in found}
@@ -42,7 +28,7 @@ def test_the_page_shows_what_the_file_of_the_runs_holds() -> None:
 
 
 def test_no_bound_of_the_file_exceeds_a_certified_upper_bound() -> None:
-    found = runpy.run_path(str(BENCHMARKS / "quintic_bounds.py"))["rows"]()
+    found = benchmark("quintic_bounds")["rows"]()
     proved = {row["problem"]: row for row in found if row["method"] == "certificate"}
     for row in found:
         certified = proved[row["problem"]]
@@ -52,10 +38,9 @@ def test_no_bound_of_the_file_exceeds_a_certified_upper_bound() -> None:
 
 
 @pytest.mark.slow
-def test_near_the_answer_the_linear_program_says_little_more_than_the_box(
-    reference: dict[str, Any],
-) -> None:
-    problem = runpy.run_path(str(BENCHMARKS / "quintic_instances.py"))["instances"]()[0]
+def test_near_the_answer_the_linear_program_says_little_more_than_the_box() -> None:
+    reference = benchmark("quintic_mccormick")
+    problem = benchmark("quintic_instances")["instances"]()[0]
     best = solve(problem, seed=0).durations
     upper = float(best.sum())
     limits = np.stack([problem.limits.velocity, problem.limits.acceleration], axis=1)

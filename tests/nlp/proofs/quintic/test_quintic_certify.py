@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import runpy
 from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
@@ -12,9 +11,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from support.benchmarks import benchmark
 from support.checkout import ROOT
 from support.proof_problems import QUINTIC
-from support.unjudged import unjudged
+from support.proof_runs import unjudged
 from trajgap.nlp.proofs.certifiers import certify
 from trajgap.nlp.proofs.document import certificate
 from trajgap.nlp.proofs.exact import Real, exact_problem
@@ -66,7 +66,7 @@ def test_a_window_never_excludes_a_feasible_motion(limited: tuple[float, float])
 @pytest.mark.slow
 def test_a_row_of_the_docs_is_proved_again() -> None:
     page = (ROOT / "docs" / "explanation" / "certificates-quintic.md").read_text("utf-8")
-    problems = runpy.run_path(str(ROOT / "benchmarks" / "quintic_instances.py"))["instances"]()
+    problems = benchmark("quintic_instances")["instances"]()
     assert sum(f"| {problem.name} | [" in page for problem in problems) == 20
     problem = next(p for p in problems if p.name == "step 3.0 rad, number 2")
     found = certify(problem, gap=0.01, seconds=600.0)
