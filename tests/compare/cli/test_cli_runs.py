@@ -47,8 +47,8 @@ def test_a_table_a_page_and_the_verdict_first(run: Run, folder: Path) -> None:
 
 
 def test_json_keeps_to_the_schema_and_repeats(run: Run, folder: Path) -> None:
-    asked = ("--reading", "durations-positive", "--set", 'pso={"particles": 9}')
-    arguments = ("bench", PUMA, "--optimizer", "pso", "--optimizer", "random", *SMALL, *asked)
+    asked = ("--reading", "durations-positive", "--set", 'Pso={"particles": 9}')
+    arguments = ("bench", PUMA, "--optimizer", "PSO", "--optimizer", "random", *SMALL, *asked)
     document = run.document(*arguments, kind="bench")
     (result,) = document["results"]
     assert result["reading"] == "durations-positive"
@@ -60,6 +60,18 @@ def test_json_keeps_to_the_schema_and_repeats(run: Run, folder: Path) -> None:
     assert '"iterations"' not in pso["settings"]
     assert not (folder / "trajgap-bench").exists()
     assert run.document(*arguments) == document
+
+
+@pytest.mark.parametrize(("budget", "said"), [("400", True), ("90", False)])
+def test_evaluations_beyond_the_budget_of_one_run_are_explained(
+    budget: str, said: bool, run: Run
+) -> None:
+    arguments = ("bench", "suite:353-3x1-v-1", "--optimizer", "pso", "--seeds", "8")
+    out = run.done(*arguments, "--budget", budget, "--no-baselines")
+    (row,) = (line for line in out.splitlines() if line.startswith("pso  "))
+    expected = re.search(r"(\d+) \(\d+ to", row)
+    assert (expected is not None and int(expected[1]) > int(budget)) == said
+    assert ("may exceed the budget of one run" in " ".join(out.split())) == said
 
 
 def test_joints_that_the_case_searches_apart_are_named(run: Run) -> None:
