@@ -9,6 +9,7 @@ from .benches import (
 )
 from .crate import crate_library, crate_of
 from .glossary import word_groups
+from .plotting import plot
 from .suite_report import suite_pages
 from .writer import MARK, RESERVED, foreign, write_report
 
@@ -24,6 +25,7 @@ __all__ = [
     "foreign",
     "most_solved",
     "optimum_said",
+    "plot",
     "suite_pages",
     "word_groups",
     "write_bench",
