@@ -8,7 +8,9 @@ from .benches import (
     write_bench,
 )
 from .crate import crate_library, crate_of
+from .environment import environment, style
 from .glossary import word_groups
+from .one_page import page_files
 from .plotting import plot
 from .suite_report import suite_pages
 from .writer import MARK, RESERVED, foreign, write_report
@@ -22,10 +24,13 @@ __all__ = [
     "crate_library",
     "crate_of",
     "ends_picture",
+    "environment",
     "foreign",
     "most_solved",
     "optimum_said",
+    "page_files",
     "plot",
+    "style",
     "suite_pages",
     "word_groups",
     "write_bench",
