@@ -93,6 +93,10 @@ def make_form() -> Flask:
     kept: OrderedDict[int, dict[str, str]] = OrderedDict()
     one_at_a_time = threading.Lock()
 
+    def _fields() -> dict[str, str]:
+        # Browsers end the lines of a form by two characters.
+        return {name: text.replace("\r\n", "\n") for name, text in request.form.items()}
+
     @app.before_request
     def _of_this_machine() -> None:
         # Pages of other sites can send forms here, or reach it by a name of their own.
@@ -114,7 +118,7 @@ def make_form() -> Flask:
 
     @app.post("/audit")
     def _audit() -> Any:
-        fields = request.form.to_dict()
+        fields = _fields()
         try:
             text, case = case_of(fields)
             with one_at_a_time:
@@ -139,19 +143,24 @@ def make_form() -> Flask:
 
     @app.post("/check")
     def _check() -> Any:
-        fields, sent = request.form.to_dict(), request.files.get("motion")
+        fields, sent = _fields(), request.files.get("motion")
         name, content = (sent.filename or "", sent.read()) if sent else ("", b"")
         try:
             found, how = judge_motion(fields, name, content)
         except FormError as error:
             return form_page(fields, error.faults), 422
         between = "" if how is None else f", interpolation {how}"
-        return form_page(fields, {}, f"{name}{between}\n{found}", str(found.verdict))
+        return form_page(
+            fields,
+            {},
+            f"{name}{between}\n{found}".replace("; limit from flags", ""),
+            str(found.verdict),
+        )
 
     @app.errorhandler(500)
     def _failed(_: Exception) -> Any:
         said = "a fault of trajgap itself; please report the lines in the terminal"
-        return form_page(request.form.to_dict(), {"table": said}), 500
+        return form_page(_fields(), {"table": said}), 500
 
     @app.errorhandler(413)
     def _too_large(_: Exception) -> Any:

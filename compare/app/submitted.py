@@ -149,7 +149,7 @@ def judge_motion(
             return check_samples(read.content, limits), how
         return check_motion(interpolated(read.content, how), limits), how
     except (TrajgapError, ValueError) as error:
-        raise FormError({"between": str(error)}) from None
+        raise FormError({"between": str(error).replace("--", "")}) from None
 
 
 def _told(error: Exception, path: Path) -> str:

@@ -21,12 +21,14 @@ class Browser:
 
     def __init__(self, address: str) -> None:
         self._address = address
-        options = {"args": ["--headless=new", "--no-sandbox", "--disable-gpu"]}
+        options = {"args": ["--headless=new", "--no-sandbox", "--disable-gpu", "--hide-scrollbars"]}
         wanted = {"browserName": "chrome", "goog:chromeOptions": options}
         wanted["goog:loggingPrefs"] = {"browser": "ALL"}
         asked = {"capabilities": {"alwaysMatch": wanted}}
         self._session = ""
         self._session = f"/session/{self.call('POST', '/session', asked)['sessionId']}"
+
+        self.call("POST", "/timeouts", {"implicit": 60_000})  # ms until an element must be there
 
     def call(self, method: str, path: str, content: object = None) -> Any:
         data = None if content is None else json.dumps(content).encode()
@@ -64,8 +66,8 @@ class Browser:
     def click(self, selector: str) -> None:
         self.call("POST", f"{self.find(selector)}/click", {})
 
-    def picture(self) -> bytes:
-        command = {"cmd": "Page.captureScreenshot", "params": {"captureBeyondViewport": True}}
+    def picture(self, whole: bool = True) -> bytes:
+        command = {"cmd": "Page.captureScreenshot", "params": {"captureBeyondViewport": whole}}
         return base64.b64decode(self.call("POST", "/goog/cdp/execute", command)["data"])
 
     @property

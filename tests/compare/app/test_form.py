@@ -10,6 +10,7 @@ from typing import Any
 
 import pytest
 from support import browser
+from support.checkout import ROOT
 from trajgap.compare.app import make_server, server
 from trajgap.compare.app.curves_shown import offered_curves
 from trajgap.compare.app.submitted import FormError, case_of
@@ -27,6 +28,7 @@ FIELDS = {
     "where": "Table 2",
     "name": "My paper",
 }
+GUIDE = (ROOT / "docs/guides/form.md").read_text(encoding="utf-8")
 MOTION = b"time,j1\n0,0\n0.5,0.25\n1,1\n1.5,1.75\n2,2\n"
 
 
@@ -63,7 +65,7 @@ def test_the_page_of_the_audit_appears_and_the_case_file_can_be_saved(client: An
     assert answer.status_code == 303
     page = client.get(answer.location).get_data(as_text=True)
     assert 'class="card"' in page
-    assert "2.15 s is" in page
+    assert "2.15 s, which breaks a limit, is 41.9 % below" in page
     folder = answer.location.rpartition("/")[0]
     for target in re.findall(r'(?:src|href)="([^#":]+)"', page):
         address = target if target.startswith("/") else f"{folder}/{target}"
@@ -105,8 +107,10 @@ def test_a_fault_is_one_line_beside_its_field(
 
 
 def test_several_faults_stand_beside_several_fields(client: Any) -> None:
-    found = faults(client.post("/audit", data=FIELDS | {"velocity": "x", "total": "y"}))
-    assert set(found) == {"velocity", "total"}
+    table = FIELDS["table"].replace("\n", "\r\n")  # as browsers send it
+    answer = client.post("/audit", data=FIELDS | {"table": table, "velocity": "x", "total": "y"})
+    assert set(faults(answer)) == {"velocity", "total"}
+    assert f">{FIELDS['table']}</textarea>" in answer.get_data(as_text=True)
 
 
 def test_every_curve_of_the_form_is_a_case(client: Any) -> None:
@@ -125,10 +129,10 @@ def checked(client: Any, content: bytes = MOTION, name: str = "m.csv", **fields:
 
 def test_a_motion_is_judged(client: Any) -> None:
     slow = checked(client, motion_velocity="1", between="linear").get_data(as_text=True)
-    fast = checked(client, motion_velocity="2", between="cubic").get_data(as_text=True)
+    fast = checked(client, motion_velocity="9", between="spline").get_data(as_text=True)
     assert re.search(r'id="verdict".*<strong class="word violated">', slow)
     assert re.search(r'id="verdict".*<strong class="word pass">', fast)
-    assert "m.csv, interpolation cubic" in fast
+    assert "m.csv, interpolation spline" in fast
 
 
 @pytest.mark.parametrize(
@@ -208,6 +212,15 @@ def served() -> Iterator[str]:
     bound.server_close()
 
 
+def test_the_guide_says_what_is_there(client: Any) -> None:
+    text = client.get("/").get_data(as_text=True)
+    for word in re.findall(r"\*([A-Z]\w+)\*", GUIDE):
+        assert f">{word}<" in text or word == "Save", word
+    assert f"Up to {server._KEPT} audits" in " ".join(GUIDE.split())
+    assert server.ADDRESS in GUIDE
+    assert (ROOT / "docs/pictures/form.png").is_file()
+
+
 def test_a_port_that_is_taken_is_named(served: str) -> None:
     port = int(served.rpartition(":")[2].strip("/"))
     with pytest.raises(TrajgapError, match=f"--port: {port} cannot be used"):
@@ -229,8 +242,8 @@ def test_in_a_real_browser(width: int, served: str, tmp_path: Any) -> None:
         assert window.run("document.querySelector('input[value=\"3-5-3\"]').checked")
         window.run("document.querySelector('#velocity').value = '2'")
         window.click("form[action='/audit'] button")
+        assert "2.15 s, which breaks a limit," in window.text(".card")
         assert window.address.endswith("/audits/1/my-paper.html")
-        assert "2.15 s is" in window.text(".card")
         assert window.run("document.documentElement.scrollWidth") <= width
         window.open(served)
         (tmp_path / "motion.csv").write_bytes(MOTION)
