@@ -46,6 +46,8 @@ from .table import Columns, line
 
 _ONE_BY_ONE = 6
 """Problems up to which each has a table of its own on the terminal; the page and JSON have all."""
+SEEDS = 30
+"""Runs of each optimiser by default: as many as papers of this field report."""
 BENCH_FOLDER = Path("trajgap-bench")
 """Where the page goes, unless the command line says otherwise."""
 
@@ -71,8 +73,8 @@ def bench_case(
     folder = out if out is not None or as_json else BENCH_FOLDER
     if folder is not None:
         check_bench_folder(folder)
-    chosen = [optimizer_name(name) for text in optimizers for name in text.split(",") if name]
-    set_here = _settings(settings)
+    chosen = named_optimizers(optimizers)
+    set_here = named_settings(settings)
     asked = []
     for case in cases:
         own = _own(case, chosen, iterations=budget is None)
@@ -113,7 +115,12 @@ def _cases(source: str) -> list[Case]:
     return [one.case() for one in select_instances(source)] if several else [read_case(source)]
 
 
-def _settings(texts: Sequence[str]) -> dict[str, dict[str, Any]]:
+def named_optimizers(texts: Sequence[str]) -> list[str]:
+    """Names of optimisers, of options with commas between."""
+    return [optimizer_name(name) for text in texts for name in text.split(",") if name]
+
+
+def named_settings(texts: Sequence[str]) -> dict[str, dict[str, Any]]:
     """Settings given as ``NAME={"key": value}``."""
     found = {}
     for text in texts:
