@@ -12,7 +12,6 @@ from typing import Any
 from ...problem import CaseError
 from ...problem.cases import SUITE_PREFIX
 from ...problem.suite import select_instances
-from ..documents import counted
 from ..gaps import (
     LEADERBOARD,
     SOLVED,
@@ -100,12 +99,13 @@ def stand_against(
     ]
     (found,) = boards([*theirs, *own])
     standing = [one for one in found.standings if one.optimizer in labels]
+    many = f"{len(found.problems)} instance{'s' * (len(found.problems) > 1)}"
     say(rendered([
         *(line(_said(one, found), "bold") for one in standing),
         line(""),
         Columns(BOARD_COLUMNS, _marked(found, labels)),
         line(
-            f"{handling}, {budget:,} evaluations, {counted(len(found.problems), 'instance')}. Rows "
+            f"{handling}, {budget:,} evaluations, {many}. Rows "
             "with * were run now; the others are the committed ones of the leaderboard."
         ),
     ]))  # fmt: skip
