@@ -9,12 +9,10 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from jinja2 import FileSystemLoader
-
 from ...problem import CHOICES, PackageError, TrajgapError
 from ...problem.motions import UNITS, Interpolation
 from ..audits import audit
-from ..pages import environment, page_files, style
+from ..pages import fill_template, page_files
 from .curves_shown import offered_curves
 from .submitted import LIMITS, FormError, case_of, judge_motion
 
@@ -35,6 +33,8 @@ _POLICY = (
 """What pages may load: nothing from elsewhere, and no script at all."""
 _TYPES = {".html": "text/html", ".svg": "image/svg+xml", ".json": "application/json"}
 """Kinds of files; anything else is plain text."""
+_TEMPLATE = Path(__file__).parent / "templates" / "form.html"
+"""The form, as package data."""
 _EXAMPLE = {
     "table": "j1,j2\n0.0,0.2\n0.6,0.9\n1.1,0.4\n0.8,-0.1",
     "velocity": "3",
@@ -181,8 +181,8 @@ def form_page(
     fields: Mapping[str, str], faults: Mapping[str, str], result: str = "", verdict: str = ""
 ) -> str:
     """The form with what was filled in, faults beside their fields, and a verdict on a motion."""
-    shapes = environment().overlay(loader=FileSystemLoader(Path(__file__).parent / "templates"))
-    return shapes.get_template("form.html").render(
+    return fill_template(
+        _TEMPLATE,
         fields=fields,
         faults=faults,
         example=_EXAMPLE,
@@ -193,5 +193,4 @@ def form_page(
         curves=offered_curves(),
         result=result,
         verdict=verdict,
-        style=style(),
     )

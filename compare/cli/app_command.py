@@ -13,9 +13,10 @@ def app_form(
     ] = 8350,
     browser: Annotated[bool, typer.Option(help="Open the form in the browser.")] = True,
 ) -> int:
-    """Open a form in the browser: paste a table of way-points, or check a motion.
+    """Open a form in the browser.
 
-    The form runs on this machine alone; nothing leaves it.
+    It audits a table of way-points, or checks a motion. The form runs on this machine alone;
+    nothing leaves it.
     """
     import webbrowser
 

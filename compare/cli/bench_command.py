@@ -107,7 +107,7 @@ def bench(
     from .benching import SEEDS, bench_case, named_optimizers, named_settings
 
     if against is not None:
-        from . import against as board
+        from . import committed_board as board
 
         for name, value in (("--json", as_json), ("--out", out), ("--problem", problem),
                             ("--reading", reading)):  # fmt: skip

@@ -8,9 +8,8 @@ from .benches import (
     write_bench,
 )
 from .crate import crate_library, crate_of
-from .environment import environment, style
 from .glossary import word_groups
-from .one_page import page_files
+from .one_page import fill_template, page_files
 from .plotting import plot
 from .suite_report import suite_pages
 from .writer import MARK, RESERVED, foreign, write_report
@@ -24,13 +23,12 @@ __all__ = [
     "crate_library",
     "crate_of",
     "ends_picture",
-    "environment",
+    "fill_template",
     "foreign",
     "most_solved",
     "optimum_said",
     "page_files",
     "plot",
-    "style",
     "suite_pages",
     "word_groups",
     "write_bench",

@@ -3,10 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from jinja2 import FileSystemLoader
 
 from ..audits import CaseAudit
 from ..pictures import themed
 from .blocks import GLOSSARY, Page
+from .environment import environment, style
 from .glossary import glossary
 from .writer import case_page, page_text
 
@@ -28,3 +33,20 @@ def page_files(one: CaseAudit, links: tuple[tuple[str, str], ...]) -> dict[str, 
     words = replace(Page("glossary", "How to read a verdict", (glossary(),)), links=links[:1])
     pictures = {page.picture(drawn): themed(drawn.document) for drawn in page.pictures}
     return {f"{page.file}.html": page_text(page), GLOSSARY: page_text(words), **pictures}
+
+
+def fill_template(path: Path, **values: Any) -> str:
+    """Fill a template that lies elsewhere, with the style and the safety of all pages.
+
+    Parameters
+    ----------
+    path : Path
+    **values
+        What it names; ``style`` is the style sheet.
+
+    Returns
+    -------
+    str
+    """
+    shapes = environment().overlay(loader=FileSystemLoader(path.parent))
+    return shapes.get_template(path.name).render(style=style(), **values)
