@@ -1,4 +1,4 @@
-from .compare import AuditReport, audit, bench, gap, write_report
+from .compare import AuditReport, audit, bench, gap, plot, write_report
 from .nlp import Solution, certify, solve
 from .problem import (
     Check,
@@ -26,6 +26,7 @@ __all__ = [
     "cubic_spline",
     "gap",
     "load_case",
+    "plot",
     "quintic_spline",
     "solve",
     "three_five_three",

@@ -28,7 +28,7 @@ from .documents import (
     Waterfall,
 )
 from .gaps import bench, gap, measure_gaps
-from .pages import write_report
+from .pages import plot, write_report
 
 __all__ = [
     "RULES",
@@ -57,6 +57,7 @@ __all__ = [
     "gap",
     "judge_rounding",
     "measure_gaps",
+    "plot",
     "printed_rows",
     "waterfalls",
     "write_report",

@@ -24,7 +24,14 @@ from .loop import (
     states,
 )
 from .objective import Bounds, Counted, DeathPenalty, Objective
-from .optimizers import BASELINES, Borrowed, BorrowedTask, evaluations_of, find_optimizer
+from .optimizers import (
+    BASELINES,
+    Borrowed,
+    BorrowedTask,
+    evaluations_of,
+    find_optimizer,
+    optimizer_name,
+)
 from .repair import Handling, Stretch, compile_judge, judge_of
 from .result import JointRuns, Run
 from .search_boxes import search_box
@@ -69,6 +76,7 @@ __all__ = [
     "kept_processes",
     "one_by_one",
     "open_choices",
+    "optimizer_name",
     "run",
     "run_asked",
     "run_many",

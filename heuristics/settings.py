@@ -19,9 +19,15 @@ def nearest(word: str, known: Iterable[str] | Mapping[str, str]) -> str:
 
     A mapping names what is meant by each.
     """
-    meant = known if isinstance(known, Mapping) else {one: one for one in known}
-    close = get_close_matches(word, meant, n=1, cutoff=0.0)
+    pairs = known.items() if isinstance(known, Mapping) else ((one, one) for one in known)
+    meant = {folded(one): said for one, said in pairs}
+    close = get_close_matches(folded(word), meant, n=1, cutoff=0.0)
     return f"did you mean {meant[close[0]]!r}?"
+
+
+def folded(word: str) -> str:
+    """A word without the case, hyphens and underscores that people write as they like."""
+    return word.casefold().replace("-", "").replace("_", "")
 
 
 # Each returns a pydantic Field; its description is what the message says was expected.

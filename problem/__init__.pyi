@@ -71,6 +71,7 @@ from .files import (
     try_writing_in,
 )
 from .gradient import peak_gradients
+from .in_notebooks import InNotebooks
 from .jumps import Jump
 from .limits import QUANTITIES, Limits, half_range
 from .printed import Interval, Printed, down, read_float, up
@@ -127,6 +128,7 @@ __all__ = [
     "Extremum",
     "IkSolution",
     "IkStatus",
+    "InNotebooks",
     "Interpolant",
     "Interval",
     "JointKind",

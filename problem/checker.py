@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from .arrays import Array
 from .curves import Enclosed, Extremum, Trajectory, as_durations, furthest
 from .errors import CurveError, SingularError
+from .in_notebooks import InNotebooks
 from .jumps import Jump, jumps_of
 from .limits import QUANTITIES, half_range
 from .problem import Problem
@@ -82,7 +83,7 @@ _DERIVATIVES = ("position", *QUANTITIES)
 
 
 @dataclass(frozen=True, eq=False)
-class Check:
+class Check(InNotebooks):
     """What the checker found about one duration vector.
 
     Attributes

@@ -11,7 +11,15 @@ from pathlib import Path
 from typing import Any
 
 from ...heuristics import kept_processes
-from ...problem import Case, CaseError, ProcessError, TrajgapError, load_case, published_ids
+from ...problem import (
+    Case,
+    CaseError,
+    InNotebooks,
+    ProcessError,
+    TrajgapError,
+    load_case,
+    published_ids,
+)
 from ...problem.cases import AnyClaim
 from ..documents import (
     Advice,
@@ -57,7 +65,7 @@ _ENDING = (CaseError, ProcessError)
 
 
 @dataclass(frozen=True, eq=False)
-class CaseAudit:
+class CaseAudit(InNotebooks):
     """Findings and verdicts of one case, with the study they were drawn from.
 
     What informs and decides nothing is computed when it is asked for: waterfalls, the readings side
@@ -168,7 +176,7 @@ class CaseAudit:
 
 
 @dataclass(frozen=True, eq=False)
-class AuditReport:
+class AuditReport(InNotebooks):
     """Audits of several cases."""
 
     cases: tuple[CaseAudit, ...]

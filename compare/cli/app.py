@@ -13,6 +13,7 @@ from typing import Annotated, Any
 
 import typer
 
+from .app_command import app_form
 from .bench_command import bench
 from .case_app import case_app
 from .check_command import check
@@ -233,6 +234,7 @@ app.command(epilog=ENDS)(bench)
 
 
 app.command(epilog=ENDS)(new)
+app.command("app", epilog=ENDS)(app_form)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -12,13 +12,15 @@ from .options import MOST, ProblemId
 
 def bench(
     case: Annotated[
-        str,
+        str | None,
         typer.Argument(
             metavar="CASE|FILE|SUITE",
             help="Id of a published case, a case file, suite:NAME, several as suite:A,B or "
             "suite:353-*, or suite for all.",
+            show_default="with --against: all instances of the leaderboard",
         ),
-    ],
+    ] = None,
+    *,
     optimizer: Annotated[
         list[str],
         typer.Option(
@@ -40,14 +42,22 @@ def bench(
         str | None,
         typer.Option("--reading", metavar="ID", help="Under this reading, not the default one."),
     ] = None,
-    seeds: Annotated[int, typer.Option(min=1, max=MOST, help="Runs of each optimiser.")] = 30,
+    seeds: Annotated[
+        int | None,
+        typer.Option(
+            min=1,
+            max=MOST,
+            help="Runs of each optimiser.",
+            show_default="30; 15 with --against",
+        ),
+    ] = None,
     budget: Annotated[
         int | None,
         typer.Option(
             min=1,
             max=10**7,
             help="Evaluations of each run.",
-            show_default="6000; a paper's algorithm makes its own iterations",
+            show_default="6000; a paper's algorithm makes its own iterations; 1000 with --against",
         ),
     ] = None,
     handling: Annotated[
@@ -79,6 +89,12 @@ def bench(
             show_default="trajgap-bench",
         ),
     ] = None,
+    against: Annotated[
+        str | None,
+        typer.Option(
+            metavar="leaderboard", help="Show where the optimisers stand among committed results."
+        ),
+    ] = None,
     store: Annotated[
         Path | None,
         typer.Option(
@@ -88,9 +104,22 @@ def bench(
     ] = None,
 ) -> int:
     """Show how far optimisers end from the optimum of a case or suite."""
-    from .benching import bench_case
+    from .benching import SEEDS, bench_case, named_optimizers, named_settings
 
+    if against is not None:
+        from . import committed_board as board
+
+        for name, value in (("--json", as_json), ("--out", out), ("--problem", problem),
+                            ("--reading", reading)):  # fmt: skip
+            if value:
+                raise typer.BadParameter(f"{name} does not go with --against")
+        return board.stand_against(
+            against, case, named_optimizers(optimizer), named_settings(settings or []),
+            seeds or board.SEEDS, budget or board.BUDGET, handling, seconds, workers, store,
+        )  # fmt: skip
+    if case is None:
+        raise typer.BadParameter("name a CASE, FILE or SUITE, or --against leaderboard")
     return bench_case(
-        case, optimizer, settings or [], problem, reading, seeds, budget, handling, baselines,
-        seconds, workers, as_json, out, store,
+        case, optimizer, settings or [], problem, reading, seeds or SEEDS, budget, handling,
+        baselines, seconds, workers, as_json, out, store,
     )  # fmt: skip

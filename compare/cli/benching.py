@@ -12,7 +12,7 @@ from typing import Any
 
 from rich.console import RenderableType
 
-from ...heuristics import KINDS
+from ...heuristics import KINDS, optimizer_name
 from ...nlp import Evidence, Solution, printed_problem_or_none, solve
 from ...problem import Case, CaseError, Coupling, TrajgapError
 from ...problem.cases import SUITE_PREFIX
@@ -21,6 +21,7 @@ from ..audits import asked_as
 from ..documents import (
     BENCH_COLUMNS,
     OVERALL_COLUMNS,
+    SHOWN_GAPS,
     BenchDocument,
     BenchResult,
     Reference,
@@ -45,6 +46,8 @@ from .table import Columns, line
 
 _ONE_BY_ONE = 6
 """Problems up to which each has a table of its own on the terminal; the page and JSON have all."""
+SEEDS = 30
+"""Runs of each optimiser by default: as many as papers of this field report."""
 BENCH_FOLDER = Path("trajgap-bench")
 """Where the page goes, unless the command line says otherwise."""
 
@@ -70,8 +73,8 @@ def bench_case(
     folder = out if out is not None or as_json else BENCH_FOLDER
     if folder is not None:
         check_bench_folder(folder)
-    chosen = [name for text in optimizers for name in text.split(",") if name]
-    set_here = _settings(settings)
+    chosen = named_optimizers(optimizers)
+    set_here = named_settings(settings)
     asked = []
     for case in cases:
         own = _own(case, chosen, iterations=budget is None)
@@ -112,7 +115,12 @@ def _cases(source: str) -> list[Case]:
     return [one.case() for one in select_instances(source)] if several else [read_case(source)]
 
 
-def _settings(texts: Sequence[str]) -> dict[str, dict[str, Any]]:
+def named_optimizers(texts: Sequence[str]) -> list[str]:
+    """Names of optimisers, of options with commas between."""
+    return [optimizer_name(name) for text in texts for name in text.split(",") if name]
+
+
+def named_settings(texts: Sequence[str]) -> dict[str, dict[str, Any]]:
     """Settings given as ``NAME={"key": value}``."""
     found = {}
     for text in texts:
@@ -125,7 +133,7 @@ def _settings(texts: Sequence[str]) -> dict[str, dict[str, Any]]:
             raise CaseError(
                 "--set", "", f'{text!r} is not NAME={{"setting": value}}; give JSON after the ='
             )
-        found[name] = values
+        found[optimizer_name(name)] = values
     return found
 
 
@@ -216,6 +224,23 @@ def _optimum(case: Case, one: Selected) -> Solution | Reference:
     return answer
 
 
+_RESTARTS = (
+    "Evaluations to a gap: what restarts need on average until one run reaches it, so the number "
+    "may exceed the budget of one run."
+)
+"""Said under a table with such a number."""
+
+
+def _beyond_one_run(result: BenchResult) -> bool:
+    """Whether a number of evaluations in the table exceeds what one run has."""
+    return any(
+        isinstance(target.evaluations, float) and target.evaluations > result.budget
+        for one in result.standings
+        for target in one.targets
+        if target.gap in SHOWN_GAPS
+    )
+
+
 def _tables(document: BenchDocument) -> list[RenderableType]:
     parts: list[RenderableType] = []
     if document.overall:
@@ -234,5 +259,6 @@ def _tables(document: BenchDocument) -> list[RenderableType]:
             for one in result.standings
             for message in one.messages
         ]
-        parts += [line(note, "dim") for note in result.notes] + [line("")]
+        remarks = (*result.notes, _RESTARTS) if _beyond_one_run(result) else result.notes
+        parts += [line(note, "dim") for note in remarks] + [line("")]
     return parts[:-1]

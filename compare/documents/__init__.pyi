@@ -3,6 +3,7 @@ from .audited import AuditDocument, AuditedCase
 from .benched import (
     BENCH_COLUMNS,
     OVERALL_COLUMNS,
+    SHOWN_GAPS,
     BenchDocument,
     BenchResult,
     OverallStanding,
@@ -208,6 +209,7 @@ __all__ = [
     "RELAXED_RETIMED",
     "SCHEMA",
     "SHARED_OPTIMUM",
+    "SHOWN_GAPS",
     "STAND_IN_OPTIMUM",
     "TERMS",
     "THIRD_ORDER",

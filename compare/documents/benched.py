@@ -164,7 +164,7 @@ OVERALL_COLUMNS = (
 
 def overall_cells(standing: OverallStanding) -> tuple[str, ...]:
     """The row of an optimiser over all problems, as `OVERALL_COLUMNS`."""
-    shown = [t for t in standing.targets if t.gap in _SHOWN]
+    shown = [t for t in standing.targets if t.gap in SHOWN_GAPS]
     return (
         standing.optimizer,
         gap_cell(standing.median),
@@ -185,7 +185,7 @@ tell apart, and what they cannot; the JSON has all."""
 
 def bench_cells(standing: Standing) -> tuple[str, ...]:
     """The row of an optimiser in a table, as `BENCH_COLUMNS`."""
-    shown = [t for t in standing.targets if t.gap in _SHOWN]
+    shown = [t for t in standing.targets if t.gap in SHOWN_GAPS]
     return (
         standing.optimizer,
         gap_cell(standing.median),
@@ -197,7 +197,7 @@ def bench_cells(standing: Standing) -> tuple[str, ...]:
     )
 
 
-_SHOWN = (0.01, 1e-4)
+SHOWN_GAPS = (0.01, 1e-4)
 """Gaps of the targets in a table."""
 
 

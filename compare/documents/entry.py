@@ -19,7 +19,7 @@ from pydantic.fields import FieldInfo
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema
 
-from ...problem import Described, escaped
+from ...problem import Described, InNotebooks, escaped
 
 T = TypeVar("T")
 
@@ -92,7 +92,7 @@ def reason(value: object) -> str | None:
     return None
 
 
-class Entry(Described):
+class Entry(Described, InNotebooks):
     """An object of a document; its fields are the keys, in their order."""
 
     model_config = ConfigDict(

@@ -18,6 +18,7 @@ from ...heuristics import (
     find_optimizer,
     from_settings,
     judge_of,
+    optimizer_name,
     search_box,
 )
 from ...nlp import Solution
@@ -353,9 +354,10 @@ def enter(
         the optimisers.
     """
     notes: list[str] = []
+    settings = {optimizer_name(name): own for name, own in settings.items()}
     entrants: dict[str, Entrant] = {}
     for one in optimizers:
-        name = one if isinstance(one, str) else _path(one)
+        name = optimizer_name(one) if isinstance(one, str) else _path(one)
         own = dict(settings.get(name, {}))
         drawn = first_range(name, own, box)
         if drawn:

@@ -5,9 +5,9 @@ from __future__ import annotations
 from decimal import Decimal
 from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Field
+from pydantic import AfterValidator, BeforeValidator, Field
 
-from ...heuristics import Handling
+from ...heuristics import Handling, optimizer_name
 from ...problem import Coupling, Strict
 
 STUDY_FORMAT = 1
@@ -67,7 +67,7 @@ class ProblemsBlock(Strict):
 class OptimizerBlock(Strict):
     """An optimiser, under one or several settings."""
 
-    name: Annotated[str, Field(min_length=1)]
+    name: Annotated[str, Field(min_length=1), AfterValidator(optimizer_name)]
     """As `trajgap bench --optimizer` takes it."""
     settings: Settings = ({},)
     """What is left out takes the optimiser's own default."""

@@ -9,6 +9,8 @@ from .benches import (
 )
 from .crate import crate_library, crate_of
 from .glossary import word_groups
+from .one_page import fill_template, page_files
+from .plotting import plot
 from .suite_report import suite_pages
 from .writer import MARK, RESERVED, foreign, write_report
 
@@ -21,9 +23,12 @@ __all__ = [
     "crate_library",
     "crate_of",
     "ends_picture",
+    "fill_template",
     "foreign",
     "most_solved",
     "optimum_said",
+    "page_files",
+    "plot",
     "suite_pages",
     "word_groups",
     "write_bench",

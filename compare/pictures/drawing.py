@@ -107,6 +107,9 @@ class Picture(Figure):
         self.title = title
         self.description = description
 
+    def _repr_html_(self) -> str:
+        return svg(self)
+
 
 @contextmanager
 def drawing() -> Iterator[None]:

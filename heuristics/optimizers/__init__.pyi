@@ -1,4 +1,11 @@
 from .borrowed import Borrowed, BorrowedTask
-from .catalogue import BASELINES, evaluations_of, find_optimizer
+from .catalogue import BASELINES, evaluations_of, find_optimizer, optimizer_name
 
-__all__ = ["BASELINES", "Borrowed", "BorrowedTask", "evaluations_of", "find_optimizer"]
+__all__ = [
+    "BASELINES",
+    "Borrowed",
+    "BorrowedTask",
+    "evaluations_of",
+    "find_optimizer",
+    "optimizer_name",
+]

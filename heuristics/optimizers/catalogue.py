@@ -13,7 +13,7 @@ from ...problem import Array, TrajgapError
 from ..algorithm import Algorithm, Search
 from ..algorithms import KINDS, from_settings
 from ..objective import Bounds, Counted
-from ..settings import checked, nearest, whole
+from ..settings import checked, folded, nearest, whole
 from .baselines import rescale_equal, search_locally, search_randomly
 from .borrowed import Borrowed, BorrowedTask
 from .callables import call_function, call_object, check_call, load_function
@@ -28,6 +28,7 @@ from .libraries import (
     minimise_by_pymoo,
 )
 from .scipy_methods import (
+    ENDED_BY_BUDGET,
     check_scipy,
     check_scipy_settings,
     minimise_by_scipy,
@@ -72,7 +73,8 @@ def find_optimizer(
     Parameters
     ----------
     name : str or callable
-        One of the papers' algorithms (`KINDS`), such as "pso"; a baseline: "random", "rescale",
+        In any case, with or without hyphens (`optimizer_name`):
+        one of the papers' algorithms (`KINDS`), such as "pso"; a baseline: "random", "rescale",
         "multistart"; "cma"; one of scipy's, mealpy's, pymoo's or pygmo's:
         "scipy:differential_evolution", "mealpy:OriginalWOA", "pymoo:DE", "pygmo:sade"; your own
         function
@@ -107,6 +109,7 @@ def find_optimizer(
         said = f"{getattr(name, '__module__', '?')}:{getattr(name, '__qualname__', name)}"
         check_call(said, name, settings)
         return _borrowed(said, partial(call_object, name), budget, settings)
+    name = optimizer_name(name)
     if name in KINDS:
         algorithm = from_settings(name, settings)
         return algorithm if own or "iterations" in settings else _fitted(algorithm, budget)
@@ -130,6 +133,29 @@ def find_optimizer(
         return _borrowed(name, partial(minimise, rest), budget, settings)
     check_call(name, load_function(name), settings)
     return _borrowed(name, partial(call_function, name), budget, settings)
+
+
+def optimizer_name(text: str) -> str:
+    """Name of an optimiser as rows and tables have it.
+
+    Parameters
+    ----------
+    text : str
+        Case, hyphens and underscores do not matter in names of ours and of scipy.
+
+    Returns
+    -------
+    str
+        Anything else as it is.
+
+    Examples
+    --------
+    >>> optimizer_name("MNAM_PSO"), optimizer_name("SciPy:shgo"), optimizer_name("mine:PSO")
+    ('mnam-pso', 'scipy:shgo', 'mine:PSO')
+    """
+    scipys = (f"scipy:{one}" for one in ENDED_BY_BUDGET)
+    known = {folded(one): one for one in (*KINDS, *_BASELINES, "cma", *scipys)}
+    return known.get(folded(text), text)
 
 
 def _by_word() -> dict[str, str]:

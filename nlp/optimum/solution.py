@@ -8,7 +8,17 @@ from enum import StrEnum
 
 import numpy as np
 
-from ...problem import TOLERANCE, Array, Check, Problem, Trajectory, TrajgapError, fit, shown_bound
+from ...problem import (
+    TOLERANCE,
+    Array,
+    Check,
+    InNotebooks,
+    Problem,
+    Trajectory,
+    TrajgapError,
+    fit,
+    shown_bound,
+)
 from ...problem.motions import Samples, sampled
 from .optimality import Active
 
@@ -82,7 +92,7 @@ def weakest(evidence: Iterable[Evidence]) -> Evidence:
 
 
 @dataclass(frozen=True, eq=False)
-class SearchResult:
+class SearchResult(InNotebooks):
     """What a search comes to: durations that `check` has judged, or the reason why there are none.
 
     Attributes

@@ -47,8 +47,8 @@ def test_a_table_a_page_and_the_verdict_first(run: Run, folder: Path) -> None:
 
 
 def test_json_keeps_to_the_schema_and_repeats(run: Run, folder: Path) -> None:
-    asked = ("--reading", "durations-positive", "--set", 'pso={"particles": 9}')
-    arguments = ("bench", PUMA, "--optimizer", "pso", "--optimizer", "random", *SMALL, *asked)
+    asked = ("--reading", "durations-positive", "--set", 'Pso={"particles": 9}')
+    arguments = ("bench", PUMA, "--optimizer", "PSO", "--optimizer", "random", *SMALL, *asked)
     document = run.document(*arguments, kind="bench")
     (result,) = document["results"]
     assert result["reading"] == "durations-positive"
@@ -60,6 +60,18 @@ def test_json_keeps_to_the_schema_and_repeats(run: Run, folder: Path) -> None:
     assert '"iterations"' not in pso["settings"]
     assert not (folder / "trajgap-bench").exists()
     assert run.document(*arguments) == document
+
+
+@pytest.mark.parametrize(("budget", "said"), [("400", True), ("90", False)])
+def test_evaluations_beyond_the_budget_of_one_run_are_explained(
+    budget: str, said: bool, run: Run
+) -> None:
+    arguments = ("bench", "suite:353-3x1-v-1", "--optimizer", "pso", "--seeds", "8")
+    out = run.done(*arguments, "--budget", budget, "--no-baselines")
+    (row,) = (line for line in out.splitlines() if line.startswith("pso  "))
+    expected = re.search(r"(\d+) \(\d+ to", row)
+    assert (expected is not None and int(expected[1]) > int(budget)) == said
+    assert ("may exceed the budget of one run" in " ".join(out.split())) == said
 
 
 def test_joints_that_the_case_searches_apart_are_named(run: Run) -> None:
@@ -106,6 +118,61 @@ def test_instances_of_the_suite_and_what_all_of_them_say(run: Run, folder: Path)
     out = run.done(*arguments, "--store", "runs.sqlite")
     assert out.startswith("Within 1 % of the optimum most often: random, in 0 % of its runs over 2")
     assert (folder / "runs.sqlite").read_bytes() == began
+
+
+INSTANCE = "suite:353-3x1-v-1"
+AGAINST = ("--against", "leaderboard", "--optimizer")
+
+
+def test_a_committed_optimiser_stands_where_it_stood(run: Run) -> None:
+    """The same runs again: a line beside the committed one, with the same numbers."""
+    out = run.done("bench", INSTANCE, *AGAINST, "PSO,support.optimizers:fair", "--budget", "100")
+    rows = [line.split(maxsplit=1) for line in out.splitlines() if re.match(r" +\d+ ", line)]
+    assert [int(place) for place, _ in rows] == list(range(1, len(rows) + 1))
+    numbers = {rest.partition("  ")[0]: rest.partition("  ")[2].split() for _, rest in rows}
+    assert numbers["* pso (now)"] == numbers["pso"]
+    places = {rest.partition("  ")[0]: place for place, rest in rows}
+    said = re.findall(r"^(.+): place (\d+) of (\d+); .* of 15 runs come", out, re.MULTILINE)
+    assert {name for name, _, _ in said} == {"pso (now)", "support.optimizers:fair"}
+    for name, place, total in said:
+        assert (places[f"* {name}"], int(total)) == (place, len(rows))
+    assert "100 evaluations, 1 instance. Rows with *" in " ".join(out.split())
+
+
+def test_runs_against_the_leaderboard_are_kept(run: Run, folder: Path) -> None:
+    asked = ("bench", INSTANCE, *AGAINST, "random", "--seeds", "2", "--budget", "100")
+    first = run.done(*asked, "--store", "runs.sqlite")
+    began = (folder / "runs.sqlite").read_bytes()
+    assert run.done(*asked, "--store", "runs.sqlite") == first
+    assert (folder / "runs.sqlite").read_bytes() == began
+
+
+def test_an_optimiser_that_always_fails_stands_and_is_shown_by_the_exit_code(run: Run) -> None:
+    asked = ("bench", INSTANCE, *AGAINST, "support.optimizers:raises", "--seeds", "2")
+    code, out, _ = run(*asked, "--budget", "100")
+    assert code == 1
+    assert "support.optimizers:raises: place " in out
+
+
+@pytest.mark.parametrize(
+    ("asked", "said"),
+    [
+        (("--optimizer", "pso"), "name a CASE, FILE or SUITE, or --against leaderboard"),
+        ((*AGAINST, "pso", "--budget", "200"), "--budget: the leaderboard has 100, 1000, 10000"),
+        ((*AGAINST, "pso", "--handling", "rescale"), "has death-penalty and stretch, not 'resc"),
+        ((*AGAINST, "pso", "--json"), "--json does not go with --against"),
+        ((*AGAINST, "psso"), "did you mean 'pso'?"),
+        (("suite:353-puma560", *AGAINST, "pso"), "no instance of the leaderboard"),
+        (("--against", "board", "--optimizer", "pso"), "the word is leaderboard"),
+    ],
+)
+def test_what_cannot_stand_against_the_leaderboard(
+    asked: tuple[str, ...], said: str, run: Run
+) -> None:
+    code, out, err = run("bench", *asked)
+    assert (code, out) == (2, "")
+    assert said in err
+    assert err.count("\n") == 1
 
 
 # --- docs/reference/bench.md, docs/guides/enter-your-optimiser.md --------------------------------

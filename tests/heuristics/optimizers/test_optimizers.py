@@ -24,6 +24,7 @@ from trajgap.heuristics import (
     evaluations_of,
     find_optimizer,
     one_by_one,
+    optimizer_name,
     run,
     run_within,
     search_box,
@@ -202,6 +203,29 @@ def test_a_missing_package_is_named_with_its_install_line(
     monkeypatch.setitem(sys.modules, package, None)
     with pytest.raises(TrajgapError, match=f"install it with `python -m pip install {package}`"):
         find_optimizer(name)
+
+
+@pytest.mark.parametrize(
+    ("written", "name"),
+    [
+        ("PSO", "pso"),
+        ("MNAM_pso", "mnam-pso"),
+        ("improvedGA", "improved-ga"),
+        ("CMA", "cma"),
+        ("Scipy:Differential-Evolution", "scipy:differential_evolution"),
+        ("mealpy:OriginalWOA", "mealpy:OriginalWOA"),
+        ("mine:PSO", "mine:PSO"),
+        ("PSOO", "PSOO"),
+    ],
+)
+def test_case_and_hyphens_of_a_name_do_not_matter(written: str, name: str) -> None:
+    assert optimizer_name(written) == name
+
+
+def test_a_name_in_any_case_names_the_optimiser_and_the_nearest_is_offered() -> None:
+    assert find_optimizer("PSO") == find_optimizer("pso")
+    with pytest.raises(TrajgapError, match="unknown; did you mean 'mnam-pso'"):
+        find_optimizer("MNAMPSOO")
 
 
 def test_the_budget_is_checked() -> None:

@@ -1,0 +1,3 @@
+from .server import make_server
+
+__all__ = ["make_server"]

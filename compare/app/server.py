@@ -1,0 +1,196 @@
+"""The form, the pages that it leads to, and the server of both on this machine alone."""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections import OrderedDict
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ...problem import CHOICES, PackageError, TrajgapError
+from ...problem.motions import UNITS, Interpolation
+from ..audits import audit
+from ..pages import fill_template, page_files
+from .curves_shown import offered_curves
+from .submitted import LIMITS, FormError, case_of, judge_motion
+
+if TYPE_CHECKING:
+    from flask import Flask, Response
+    from werkzeug.serving import BaseWSGIServer
+
+ADDRESS = "127.0.0.1"
+"""Where the server listens: no other machine reaches it."""
+_LARGEST = 20_000_000
+"""Bytes of a request: a motion of an hour at 500 rows a second."""
+_KEPT = 20
+"""Audits whose pages are kept in memory, the last ones."""
+_POLICY = (
+    "default-src 'none'; img-src 'self' data:; style-src 'unsafe-inline'; form-action 'self'; "
+    "frame-ancestors 'none'; base-uri 'none'"
+)
+"""What pages may load: nothing from elsewhere, and no script at all."""
+_TYPES = {".html": "text/html", ".svg": "image/svg+xml", ".json": "application/json"}
+"""Kinds of files; anything else is plain text."""
+_TEMPLATE = Path(__file__).parent / "templates" / "form.html"
+"""The form, as package data."""
+_EXAMPLE = {
+    "table": "j1,j2\n0.0,0.2\n0.6,0.9\n1.1,0.4\n0.8,-0.1",
+    "velocity": "3",
+    "durations": "0.7, 0.8, 0.65",
+    "where": "Table 2",
+    "name": "my-paper",
+}
+"""What the form shows in grey."""
+
+
+def make_server(port: int = 0) -> BaseWSGIServer:
+    """Make the server of the form, on this machine alone.
+
+    Parameters
+    ----------
+    port : int
+        0 for any that is free.
+
+    Returns
+    -------
+    BaseWSGIServer
+        Its ``port`` is bound; ``serve_forever()`` serves.
+
+    Raises
+    ------
+    TrajgapError
+        If flask is missing, or the port is taken.
+    """
+    app = make_form()
+    from werkzeug.serving import make_server as bound
+
+    logging.getLogger("werkzeug").setLevel(logging.ERROR)  # a line for each request otherwise
+    try:
+        return bound(ADDRESS, port, app, threaded=True)
+    except (OSError, SystemExit):
+        raise TrajgapError(f"--port: {port} cannot be used; name another one") from None
+
+
+def make_form() -> Flask:
+    """Make the form and its pages.
+
+    Raises
+    ------
+    PackageError
+        If flask is missing.
+    """
+    try:
+        from flask import Flask, abort, redirect, request
+    except ImportError as error:
+        raise PackageError(
+            f"trajgap app: needs the package flask ({error}); install it with "
+            "`python -m pip install flask`"
+        ) from None
+    app = Flask(__name__, static_folder=None)
+    app.config["MAX_CONTENT_LENGTH"] = _LARGEST
+    kept: OrderedDict[int, dict[str, str]] = OrderedDict()
+    one_at_a_time = threading.Lock()
+
+    def _fields() -> dict[str, str]:
+        # Browsers end the lines of a form by two characters.
+        return {name: text.replace("\r\n", "\n") for name, text in request.form.items()}
+
+    @app.before_request
+    def _of_this_machine() -> None:
+        # Pages of other sites can send forms here, or reach it by a name of their own.
+        if request.host.partition(":")[0] not in (ADDRESS, "localhost"):
+            abort(403)
+        if request.headers.get("Origin", request.host_url[:-1]) != request.host_url[:-1]:
+            abort(403)
+
+    @app.after_request
+    def _closed(response: Response) -> Response:
+        response.headers["Content-Security-Policy"] = _POLICY
+        response.headers["X-Content-Type-Options"] = "nosniff"
+        response.headers["Cache-Control"] = "no-store"
+        return response
+
+    @app.get("/")
+    def _form() -> str:
+        return form_page({}, {})
+
+    @app.post("/audit")
+    def _audit() -> Any:
+        fields = _fields()
+        try:
+            text, case = case_of(fields)
+            with one_at_a_time:
+                files = page_files(audit(case).cases[0], _links(case.id))
+                number = next(reversed(kept), 0) + 1
+                kept[number] = files | {f"{case.id}.toml": text}
+                if len(kept) > _KEPT:
+                    kept.popitem(last=False)
+        except FormError as error:
+            return form_page(fields, error.faults), 422
+        except TrajgapError as error:
+            return form_page(fields, {"table": " ".join(str(error).split())}), 422
+        return redirect(f"/audits/{number}/{next(iter(files))}", 303)
+
+    @app.get("/audits/<int:number>/<path:name>")
+    def _page(number: int, name: str) -> Any:
+        if name not in kept.get(number, {}):
+            abort(404)
+        kind = _TYPES.get(Path(name).suffix, "text/plain")
+        head = {"Content-Disposition": "attachment"} if name.endswith(".toml") else {}
+        return app.response_class(kept[number][name], mimetype=kind, headers=head)
+
+    @app.post("/check")
+    def _check() -> Any:
+        fields, sent = _fields(), request.files.get("motion")
+        name, content = (sent.filename or "", sent.read()) if sent else ("", b"")
+        try:
+            found, how = judge_motion(fields, name, content)
+        except FormError as error:
+            return form_page(fields, error.faults), 422
+        between = "" if how is None else f", interpolation {how}"
+        return form_page(
+            fields,
+            {},
+            f"{name}{between}\n{found}".replace("; limit from flags", ""),
+            str(found.verdict),
+        )
+
+    @app.errorhandler(500)
+    def _failed(_: Exception) -> Any:
+        said = "a fault of trajgap itself; please report the lines in the terminal"
+        return form_page(_fields(), {"table": said}), 500
+
+    @app.errorhandler(413)
+    def _too_large(_: Exception) -> Any:
+        return form_page({}, {"motion": f"larger than {_LARGEST // 10**6} MB"}), 413
+
+    return app
+
+
+def _links(name: str) -> tuple[tuple[str, str], ...]:
+    return (
+        ("New audit", "/"),
+        ("Save the case file", f"{name}.toml"),
+        ("Glossary", "glossary.html"),
+    )
+
+
+def form_page(
+    fields: Mapping[str, str], faults: Mapping[str, str], result: str = "", verdict: str = ""
+) -> str:
+    """The form with what was filled in, faults beside their fields, and a verdict on a motion."""
+    return fill_template(
+        _TEMPLATE,
+        fields=fields,
+        faults=faults,
+        example=_EXAMPLE,
+        limits=LIMITS,
+        choices=CHOICES,
+        units=tuple(UNITS),
+        between=[str(one) for one in Interpolation],
+        curves=offered_curves(),
+        result=result,
+        verdict=verdict,
+    )
