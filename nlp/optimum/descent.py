@@ -27,7 +27,9 @@ WIDEST_STEP = 1.0
 SMALLEST_STEP = 1e-10
 """Trust region at which a descent ends; the total is then settled to its square."""
 GAIN = 1e-13
-"""Relative gain below which a descent ends: rounding of the total."""
+"""Relative gain below which rounding of the total hides it: steps go on while they shrink."""
+SHRINKING = 0.5
+"""Share of the one before by which such a step shrinks at least."""
 SLOW, PATIENCE = 1e-9, 6
 """A descent that gains less than this (relative) in so many steps creeps, and ends."""
 GOOD = 0.5
@@ -181,7 +183,7 @@ def descend(problem: Problem, start: Array, box: LogBox) -> Descent:
         return Descent(rows.durations, rows.worst, False, 0)
     total = float(rows.durations.sum())
     hessian = np.diag(rows.durations / total + 1e-4)
-    radius, taken, history = WIDEST_STEP, 0, [total]
+    radius, taken, history, size = WIDEST_STEP, 0, [total], WIDEST_STEP
     for taken in range(1, STEPS + 1):
         if time_up():
             break
@@ -191,21 +193,24 @@ def descend(problem: Problem, start: Array, box: LogBox) -> Descent:
         if found is None:
             break
         step, weights = found
-        size = float(np.abs(step).max())
+        size, before = float(np.abs(step).max()), size
         expected = -float(slope @ step)
-        if not expected > GAIN or size < SMALLEST_STEP:
+        settled = not expected > GAIN
+        if size < SMALLEST_STEP or (settled and size > SHRINKING * before):
             return Descent(rows.durations, rows.worst, True, taken)
         trial = _onto_limits(problem, np.exp(np.log(rows.durations) + step), box)
         if not _gain(total, trial) > GOOD * expected:
             # Limits bend: a second step from beyond them follows the valley, a stretch leaves it.
             beyond = exact_rows(problem, np.exp(box.inside(np.log(rows.durations) + step)))
             matrix, room = _walled(beyond, box, size)
-            bent = least_point(hessian, beyond.durations / total, matrix, room)
+            lost = not np.isfinite(beyond.worst)
+            bent = None if lost else least_point(hessian, beyond.durations / total, matrix, room)
             if bent is not None:
                 other = _onto_limits(problem, np.exp(np.log(beyond.durations) + bent[0]), box)
                 trial = max(trial, other, key=lambda one: _gain(total, one))
         after = float(trial.durations.sum())
-        if trial.worst <= KEPT and after < total * (1.0 - 1e-15):
+        # What rounding hides of a gain, steps that shrink still win of the conditions.
+        if trial.worst <= KEPT and after < total * (1.0 + (GAIN if settled else -1e-15)):
             hessian = _curved(hessian, rows, trial, weights[: len(rows.excess)])
             good = _gain(total, trial) > GOOD * expected
             radius = min(2.0 * radius, WIDEST_STEP) if good else 0.5 * max(size, 0.5 * radius)
