@@ -203,8 +203,7 @@ def descend(problem: Problem, start: Array, box: LogBox) -> Descent:
             # Limits bend: a second step from beyond them follows the valley, a stretch leaves it.
             beyond = exact_rows(problem, np.exp(box.inside(np.log(rows.durations) + step)))
             matrix, room = _walled(beyond, box, size)
-            lost = not np.isfinite(beyond.worst)
-            bent = None if lost else least_point(hessian, beyond.durations / total, matrix, room)
+            bent = least_point(hessian, beyond.durations / total, matrix, room)
             if bent is not None:
                 other = _onto_limits(problem, np.exp(np.log(beyond.durations) + bent[0]), box)
                 trial = max(trial, other, key=lambda one: _gain(total, one))

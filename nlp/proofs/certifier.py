@@ -58,9 +58,10 @@ class Certifier:
     def allowance(self, exact: ExactProblem) -> int:
         """Boxes that an audit allows a problem by default.
 
-        What is computed of a box grows with the segments at least: fewer have as many boxes more.
+        What is computed of a box grows with the square of the segments, of four and more.
         """
-        return self.boxes * max(7, exact.segments) // exact.segments
+        n = exact.segments
+        return self.boxes * max(7, n) ** 2 // max(4, n) ** 2
 
     def run(self, exact: ExactProblem, request: Request) -> Certified:
         """Prove an interval of the optimum; the time limit and Ctrl-C end it with what is proved.

@@ -57,7 +57,8 @@ class Ladder:
         No stage is nearer to the last one than by this factor.
     near : float
         From a stage of this gap on, the last one takes at most ``growth`` times as long: where that
-        time is there, the stages between are left out.
+        time is there, the stages between are left out. Without a time limit they are after the
+        first stage; at 0 they never are.
     growth : float
     """
 
@@ -74,7 +75,8 @@ class Ladder:
 
     def leaps(self, gap: float, took: float, left: float) -> bool:
         """Whether the last stage comes next, after one of ``gap`` that took some of the time."""
-        return gap <= self.near and took * self.growth <= left
+        soon = gap <= self.near and took * self.growth <= left
+        return self.near > 0.0 and (soon or left == math.inf)
 
 
 class Session:
