@@ -2,10 +2,12 @@ from .benching import BenchPlan, Entrant, Runs, bench, measure_gaps, plan_bench,
 from .engines import Engine, on_dask, on_this_machine, outcomes
 from .exports import COLUMNS, check_export, export_rows, rows_text
 from .leaderboard import (
+    BOARD_COLUMNS,
     LEADERBOARD,
     SIZES,
     Board,
     Ranked,
+    board_cells,
     boards,
     curve_of,
     leaderboard_rows,
@@ -53,6 +55,7 @@ from .trial_process import TrialOutcome, run_apart
 from .trials import DESCENT, origin_of, run_trial
 
 __all__ = [
+    "BOARD_COLUMNS",
     "COLUMNS",
     "CURVE_TARGETS",
     "DESCENT",
@@ -83,6 +86,7 @@ __all__ = [
     "band",
     "bench",
     "bench_result",
+    "board_cells",
     "boards",
     "canonical",
     "check_export",
