@@ -10,8 +10,8 @@ from typing import Annotated
 import typer
 from rich.console import RenderableType
 
-from ... import problem as problems
 from ...problem import Case, Check, Coupling, Peak, published_ids
+from ...problem import check as judge
 from ..audits import Point, RoundingBox, RoundingVerdict, in_words, judge_rounding
 from ..documents import (
     BrokenPlace,
@@ -195,13 +195,13 @@ def _checked(case: Case, one: Selected, box: RoundingBox) -> CheckResult:
         for j, label in enumerate(problem.joints):
             alone = problem.joint(j)
             rounding = judge_rounding(alone, box, one_joint(points, j), loose_ends=loose)
-            joints.append((label, problems.check(alone, box.value), rounding))
+            joints.append((label, judge(alone, box.value), rounding))
     return check_result(
         case.id,
         one.problem_id,
         one.reading_id,
         problem.coupling,
-        problems.check(problem, box.value),
+        judge(problem, box.value),
         judge_rounding(problem, box, points, loose_ends=loose),
         box.value.tolist(),
         joints,

@@ -11,12 +11,14 @@ from typing import Annotated
 import typer
 from rich.console import RenderableType
 
-from ... import nlp
 from ...nlp import (
     Solution,
     printed_problem_or_none,
     solve_per_joint,
     with_other_route,
+)
+from ...nlp import (
+    solve as solve_exactly,
 )
 from ...nlp.optimum import OPTIMUM_SLACK, stopping_after
 from ...nlp.retiming import Retiming, retime
@@ -275,7 +277,7 @@ def _solved(
         alone = len(question.joints) < len(one.problem.joints)
         joint = one.problem.joints.index(question.joints[0]) if alone else None
         exact = printed_problem_or_none(statement, joint)
-        answer = nlp.solve(question, exact=exact, starts=starts, seed=seed, prove=prove)
+        answer = solve_exactly(question, exact=exact, starts=starts, seed=seed, prove=prove)
         return with_other_route(answer)
 
     if one.problem.coupling is Coupling.PER_JOINT:

@@ -8,9 +8,9 @@ from ...nlp import Evidence, PerJointSolution, Route, Solution, Status
 from ...nlp.optimum import Active
 from ...nlp.retiming import Retiming
 from ...problem import Coupling, Verdict
+from .checked import WrittenMotion
 from .entry import Count, Document, Entry, OrLeftOut, OrWhy, Real, Why, known
 from .finding import UNCERTIFIED
-from .motion_checked import WrittenMotion
 from .vocabulary import Limited
 
 NO_OTHER_ROUTE = "no second route knows this curve and this many durations"

@@ -72,9 +72,7 @@ def test_the_same_motion_within_the_same_limits_is_timed_once(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     asked = []
-    monkeypatch.setattr(
-        solving, "retime", lambda *given: asked.append(given) or retime(*given)
-    )
+    monkeypatch.setattr(solving, "retime", lambda *given: asked.append(given) or retime(*given))
     q = np.array([[0.13], [0.81], [0.32], [1.07]])
     problem = Problem(q, Limits([1.6], [4.0]), three_five_three())
     answer = Solution(problem, Status.FEASIBLE, vector=np.array([1.3, 1.1, 1.7]))
@@ -84,8 +82,7 @@ def test_the_same_motion_within_the_same_limits_is_timed_once(
     mirrored = replace(answer, problem=replace(problem, waypoints=-q))
     known: solving._Retimings = {}
     found = [
-        solving._retimed(one, known)
-        for one in (answer, longer, bounded, slower, mirrored, answer)
+        solving._retimed(one, known) for one in (answer, longer, bounded, slower, mirrored, answer)
     ]
     assert len(asked) == 4
     assert found[2] is found[0] is found[5]
