@@ -233,10 +233,6 @@ def check_result(
         s.
     joints : iterable of (str, Check, RoundingVerdict), optional
         The same for each joint by itself, by label.
-
-    Returns
-    -------
-    CheckResult
     """
     alone = tuple(CheckedJoint(joint=label, **dict(_judged(c, r))) for label, c, r in joints)
     return CheckResult(

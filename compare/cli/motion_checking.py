@@ -178,10 +178,6 @@ def stated_limits(joints: Sequence[str], factors: Array, options: MotionOptions)
         What a number of a flag is in rad or m.
     options : MotionOptions
 
-    Returns
-    -------
-    JointLimits
-
     Raises
     ------
     CaseError

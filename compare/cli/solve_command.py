@@ -38,13 +38,6 @@ from ..documents import (
 from .certifying import certify_case
 from .input import Selected, naming, read_case, select
 from .motion_checking import MotionOptions
-from .motion_writing import (
-    AskedSamples,
-    asked_samples,
-    check_one_motion,
-    write_motion,
-    written_lines,
-)
 from .options import (
     FAMILY,
     MOST,
@@ -70,8 +63,15 @@ from .options import (
     VelocityLimit,
 )
 from .output import Columns, emit, line, new_output, progress
-from .points import points_case
 from .result_tables import by_result, place, reasons, seconds
+from .solve_files import (
+    AskedSamples,
+    asked_samples,
+    check_one_motion,
+    points_case,
+    write_motion,
+    written_lines,
+)
 
 
 def solve(

@@ -81,10 +81,6 @@ def certify_result(
         Files that were written.
     why : str or None
         Why the outcome is what it is, where that needs to be said.
-
-    Returns
-    -------
-    CertifiedResult
     """
     if isinstance(found, str):
         nothing = Why(found)
@@ -200,16 +196,7 @@ class VerifyDocument(Document):
 
 
 def verify_document(verdicts: Iterable[JudgedFile]) -> VerifyDocument:
-    """Document of `verify`: one verdict per file.
-
-    Parameters
-    ----------
-    verdicts : iterable of JudgedFile
-
-    Returns
-    -------
-    VerifyDocument
-    """
+    """Document of `verify`: one verdict per file."""
     return VerifyDocument(verified=tuple(_verified(*one) for one in verdicts))
 
 

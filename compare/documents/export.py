@@ -138,10 +138,6 @@ def filled(text: str, rules: Iterable[Rule]) -> str:
         A table stands between ``<!-- table: NAME -->`` and ``<!-- end -->``.
     rules : iterable of Rule
         Of the audit, which the documents do not know.
-
-    Returns
-    -------
-    str
     """
     now = tables(rules)
     return _TABLE.sub(lambda place: f"{place[1]}{now[place[2]]}", text)

@@ -126,10 +126,6 @@ def show_document(
     problem, reading : str, optional
         Keep only this one, and the claims that speak about it.
 
-    Returns
-    -------
-    ShowDocument
-
     Raises
     ------
     CaseError

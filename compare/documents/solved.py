@@ -167,10 +167,6 @@ def solve_result(
         joint.
     shared : Solution, optional
         Of joints that do not share their durations: the optimum if they did.
-
-    Returns
-    -------
-    SolveResult
     """
     ids = _Asked(case=case, problem=problem, reading=reading, coupling=Coupling.SHARED)
     if isinstance(answer, Solution):

@@ -40,10 +40,6 @@ from .optimality_gap import (
     gap as gap,
     reference_of as reference_of,
 )
-from .pairs import (
-    compare_pairs as compare_pairs,
-    vargha_delaney as vargha_delaney,
-)
 from .rows import (
     Bracket as Bracket,
     Row as Row,
@@ -69,12 +65,14 @@ from .standings import (
 from .statistics import (
     SETTLED as SETTLED,
     Spread as Spread,
+    compare_pairs as compare_pairs,
     quantiles as quantiles,
     settled_at as settled_at,
     share_interval as share_interval,
     share_of_luck as share_of_luck,
     share_of_pairs as share_of_pairs,
     spread as spread,
+    vargha_delaney as vargha_delaney,
 )
 from .store import Store as Store
 from .studies import (

@@ -138,10 +138,6 @@ def boards(found: Iterable[Summary]) -> tuple[Board, ...]:
     An optimiser stands in a board only with all its runs on all problems of the board, which are
     those that at least half of the optimisers have finished.
 
-    Parameters
-    ----------
-    found : iterable of Summary
-
     Returns
     -------
     tuple of Board
