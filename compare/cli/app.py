@@ -1,52 +1,83 @@
-"""The command line ``trajgap``: what each command takes, and how it ends."""
+"""The command line ``trajgap``: its commands, and how it ends."""
 
 from __future__ import annotations
 
 import io
+import multiprocessing
 import os
+import signal
 import sys
+import threading
 import traceback
 from collections.abc import Sequence
+from contextlib import suppress
 from functools import cache
-from pathlib import Path
+from importlib import import_module
+from types import FrameType
 from typing import Annotated, Any
 
 import typer
+from typer.core import TyperGroup
 
-from .app_command import app_form
-from .bench_command import bench
-from .case_app import case_app
-from .check_command import check
-from .interrupt import INTERRUPTED, catch_interrupts
-from .new_command import new
-from .options import (
-    ENDS,
-    MOST,
-    AsJson,
-    Crate,
-    NoCache,
-    Out,
-    ProblemId,
-    ReadingId,
-    Source,
-    Workers,
-)
-from .solve_command import solve
-from .study_command import study
-from .suite_app import suite_app
-from .threads import one_thread
+from .options import ENDS, INTERRUPTED
 
-# Whatever computes is imported inside the commands, so that --help answers at once.
+COMMANDS = {
+    "cases": "List the published cases.",
+    "show": "Show what a case holds, and what it leaves open.",
+    "check": "Judge a motion, or a case's durations, against limits.",
+    "solve": "Solve a case exactly: all its problems under all its readings.",
+    "verify": "Prove certificates again, apart from the solver.",
+    "audit": "Audit every claim of the cases, and write pages with pictures.",
+    "explain": "Explain a rule or a word of the reports.",
+    "study": "Run optimisers on many problems; what is finished is kept.",
+    "bench": "Show how far optimisers end from the optimum of a case or suite.",
+    "new": "Start a case file from a table of way-points.",
+    "suite": "List problems whose optimum is known within proved bounds.",
+    "case": "Work on case files.",
+    "app": "Open a form in the browser.",
+}
+"""Every command with the first line of its help: NAME_command.py holds the command NAME, and is
+imported when it is called, so that --help answers at once."""
+
+
+class _Commands(TyperGroup):
+    """The commands, of which only the one that is called is imported."""
+
+    def list_commands(self, ctx: Any) -> list[str]:
+        return list(COMMANDS)
+
+    def get_command(self, ctx: Any, cmd_name: str) -> Any:
+        return _loaded(cmd_name) if cmd_name in COMMANDS else None
+
+    def format_commands(self, ctx: Any, formatter: Any) -> None:
+        with formatter.section("Commands"):
+            formatter.write_dl(list(COMMANDS.items()))
+
+
+@cache
+def _loaded(name: str) -> Any:
+    """One command as the parser has it."""
+    found = getattr(import_module(f".{name}_command", __package__), name)
+    if not isinstance(found, typer.Typer):
+        alone = typer.Typer(add_completion=False, context_settings=_HELP, rich_markup_mode=None)
+        alone.command(name, epilog=ENDS)(found)
+        found = alone
+    command = typer.main.get_command(found)
+    command.name = name
+    return command
+
+
+_HELP = {"help_option_names": ["-h", "--help"]}
+"""Options that print the help."""
+
 # The commands of this program.
 app = typer.Typer(
+    cls=_Commands,
     add_completion=False,
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
-    context_settings={"help_option_names": ["-h", "--help"]},
+    context_settings=_HELP,
 )
-
-app.add_typer(suite_app, name="suite")
-app.add_typer(case_app, name="case")
 
 BAD_INPUT, FAULT, CLOSED_PIPE = 2, 70, 141
 """Exit codes: that of argument parsers, EX_SOFTWARE, and what a shell says of SIGPIPE."""
@@ -79,162 +110,6 @@ def _trajgap(
     """Audit published time-optimal trajectories against the exact optimum of the same problem."""
     if context.invoked_subcommand is None:
         typer.echo(f"{_BEGIN}\n{context.get_help()}")
-
-
-@app.command(epilog=ENDS)
-def cases(as_json: AsJson = False, out: Out = None) -> int:
-    """List the published cases."""
-    from .listing import list_cases
-
-    return list_cases(as_json, out)
-
-
-@app.command(epilog=ENDS)
-def show(
-    case: Source,
-    problem: ProblemId = None,
-    reading: ReadingId = None,
-    as_json: AsJson = False,
-    out: Out = None,
-) -> int:
-    """Show what a case holds, and what it leaves open."""
-    from .showing import show_case
-
-    return show_case(case, problem, reading, as_json, out)
-
-
-app.command(epilog=ENDS)(check)
-
-
-app.command(epilog=ENDS)(solve)
-
-
-@app.command(epilog=ENDS)
-def verify(
-    files: Annotated[
-        list[Path], typer.Argument(metavar="FILE...", help="Certificates, or states.")
-    ],
-    case: Annotated[
-        str | None,
-        typer.Option(
-            "--case",
-            metavar="CASE",
-            help="Id of a published case, or case file: compare the problems, number by number.",
-        ),
-    ] = None,
-    seconds: Annotated[
-        float,
-        typer.Option("--time", metavar="SECONDS", min=0.0, help="For each file."),
-    ] = 60.0,
-    as_json: AsJson = False,
-    out: Out = None,
-) -> int:
-    """Prove certificates again, apart from the solver.
-
-    The code that does so imports nothing of it.
-    """
-    from .certifying import verify_files
-
-    return verify_files(files, case, seconds, as_json, out)
-
-
-@app.command(epilog=ENDS)
-def audit(
-    cases: Annotated[
-        list[str] | None,
-        typer.Argument(
-            metavar="[CASE|FILE]...",
-            help="Ids of published cases, or case files; all published ones by default.",
-        ),
-    ] = None,
-    problem: ProblemId = None,
-    reading: ReadingId = None,
-    seeds: Annotated[int, typer.Option(min=2, max=MOST, help="Seeds of each replay.")] = 100,
-    workers: Workers = None,
-    certify_seconds: Annotated[
-        float | None,
-        typer.Option(
-            metavar="SECONDS",
-            min=0.0,
-            help="For each case: time to certify optima that no certificate proves; 0 for none. "
-            "By default boxes are counted, so that no verdict depends on the machine.",
-        ),
-    ] = None,
-    certificates: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="FOLDER",
-            help="Certificates to use beside the shipped ones; each is proved again.",
-        ),
-    ] = None,
-    draft: Annotated[
-        bool,
-        typer.Option("--draft", help="Your own draft: say what to change before you submit it."),
-    ] = False,
-    no_cache: NoCache = False,
-    strict: Annotated[
-        bool, typer.Option("--strict", help="Exit with 1 if a finding has severity error.")
-    ] = False,
-    as_json: Annotated[
-        bool, typer.Option("--json", help="Print JSON; write pages only where --out says.")
-    ] = False,
-    out: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="FOLDER",
-            help="Where the pages go: a new or an empty folder, or that of an earlier audit.",
-            show_default="trajgap-audit",
-        ),
-    ] = None,
-    crate: Crate = None,
-) -> int:
-    """Audit every claim of the cases, and write pages with pictures."""
-    from .auditing import audit_cases
-
-    return audit_cases(
-        cases or [],
-        problem,
-        reading,
-        seeds,
-        workers,
-        certify_seconds,
-        certificates,
-        draft,
-        strict,
-        as_json,
-        out,
-        crate,
-        not no_cache,
-    )
-
-
-@app.command(epilog=ENDS)
-def explain(
-    asked: Annotated[
-        list[str] | None,
-        typer.Argument(
-            metavar="[RULE|WORD]...", help="Such as TG201 or certified; all are listed by default."
-        ),
-    ] = None,
-    as_json: AsJson = False,
-    out: Out = None,
-) -> int:
-    """Explain a rule or a word of the reports.
-
-    A rule is explained with what it may conclude and an example. Without an argument, everything
-    that can be explained is listed.
-    """
-    from .explaining import explain
-
-    return explain(asked or [], as_json, out)
-
-
-app.command(epilog=ENDS)(study)
-app.command(epilog=ENDS)(bench)
-
-
-app.command(epilog=ENDS)(new)
-app.command("app", epilog=ENDS)(app_form)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -331,3 +206,45 @@ def _fail(message: str, code: int) -> int:
         line = f"{line[: _LONGEST // 2]} ... {line[-_LONGEST // 2 :]}"
     print(f"trajgap: {line}", file=sys.stderr)
     return code
+
+
+def catch_interrupts() -> None:
+    """Answer Ctrl-C with one line and exit code 130.
+
+    CasADi takes a KeyboardInterrupt for the failure of one solve and goes on, so raising one is
+    not enough.
+    """
+    if threading.current_thread() is threading.main_thread():
+        signal.signal(signal.SIGINT, _end)
+
+
+def _end(signum: int, frame: FrameType | None) -> None:
+    # The second Ctrl-C of an impatient hand would only say the same again.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    from ...problem import remove_drafts
+
+    for process in multiprocessing.active_children():
+        process.terminate()
+    remove_drafts()
+    # A progress bar hides the cursor.
+    restored = "\x1b[?25h\r\x1b[K" if sys.stderr.isatty() else ""
+    with suppress(OSError):
+        os.write(2, f"{restored}trajgap: interrupted\n".encode())
+    # An exception would unwind whatever runs, and could be printed on its way or be lost in a call.
+    os._exit(INTERRUPTED)
+
+
+LIBRARIES = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
+"""What the libraries that numpy and scipy are built with read when they are imported."""
+EVERY = "OMP_NUM_THREADS"
+"""What all of them read where their own variable is missing."""
+
+
+def one_thread() -> None:
+    """Leave linear algebra one thread, unless the environment says how many; before any import.
+
+    Our matrices are small: a second thread waits for work, which on a busy machine takes more
+    processor time than all the rest, and sums depend on how many share them. Processes inherit it.
+    """
+    if EVERY not in os.environ and not any(name in os.environ for name in LIBRARIES):
+        os.environ.update(dict.fromkeys((EVERY, *LIBRARIES), "1"))

@@ -1,4 +1,4 @@
-"""What the command `app` takes."""
+"""The command `app`: the form in the browser."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 
-def app_form(
+def app(
     port: Annotated[
         int, typer.Option(min=0, max=65535, help="Of this machine; 0 for any that is free.")
     ] = 8350,

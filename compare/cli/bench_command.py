@@ -1,13 +1,49 @@
-"""What the command `bench` takes."""
+"""The command `bench`: optimisers on a case or on instances of the suite, against the optimum."""
 
 from __future__ import annotations
 
+import json
+import math
+from collections.abc import Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
+from rich.console import RenderableType
 
+from ...heuristics import KINDS, optimizer_name
+from ...nlp import Evidence, Solution, printed_problem_or_none, solve
+from ...problem import Case, CaseError, Coupling, TrajgapError
+from ...problem.cases import SUITE_PREFIX
+from ...problem.suite import instance_of, select_instances
+from .. import pages
+from ..audits import asked_as
+from ..documents import (
+    BENCH_COLUMNS,
+    OVERALL_COLUMNS,
+    SHOWN_GAPS,
+    BenchDocument,
+    BenchResult,
+    Reference,
+    bench_cells,
+    known,
+    noted,
+    overall_cells,
+)
+from ..gaps import (
+    BenchPlan,
+    Runs,
+    Store,
+    measure_gaps,
+    on_this_machine,
+    plan_bench,
+    run_bench,
+)
+from .input import Selected, naming, read_case, select
 from .options import MOST, ProblemId
+from .output import NEVER_RAN, Columns, emit, line, progress, say
 
 
 def bench(
@@ -104,22 +140,220 @@ def bench(
     ] = None,
 ) -> int:
     """Show how far optimisers end from the optimum of a case or suite."""
-    from .benching import SEEDS, bench_case, named_optimizers, named_settings
-
+    chosen = [optimizer_name(name) for text in optimizer for name in text.split(",") if name]
+    set_here = _settings(settings or [])
     if against is not None:
         from . import committed_board as board
 
-        for name, value in (("--json", as_json), ("--out", out), ("--problem", problem),
-                            ("--reading", reading)):  # fmt: skip
+        unused = {"--json": as_json, "--out": out, "--problem": problem, "--reading": reading}
+        for name, value in unused.items():
             if value:
                 raise typer.BadParameter(f"{name} does not go with --against")
         return board.stand_against(
-            against, case, named_optimizers(optimizer), named_settings(settings or []),
-            seeds or board.SEEDS, budget or board.BUDGET, handling, seconds, workers, store,
-        )  # fmt: skip
+            against,
+            case,
+            chosen,
+            set_here,
+            seeds or board.SEEDS,
+            budget or board.BUDGET,
+            handling,
+            seconds,
+            workers,
+            store,
+        )
     if case is None:
         raise typer.BadParameter("name a CASE, FILE or SUITE, or --against leaderboard")
-    return bench_case(
-        case, optimizer, settings or [], problem, reading, seeds or SEEDS, budget, handling,
-        baselines, seconds, workers, as_json, out, store,
-    )  # fmt: skip
+    cases = _cases(case)
+    folder = out if out is not None or as_json else BENCH_FOLDER
+    if folder is not None:
+        pages.check_bench_folder(folder)
+    asked = []
+    for stated in cases:
+        own = _own(stated, chosen, iterations=budget is None)
+        settled = own | {
+            name: {**own.get(name, {}), **changed} for name, changed in set_here.items()
+        }
+        with naming(stated.file):
+            for one in select(stated, problem, reading or stated.default_reading.id, "shared"):
+                plan = plan_bench(
+                    one.problem,
+                    chosen,
+                    seeds=seeds or SEEDS,
+                    budget=budget,
+                    handling=handling,
+                    settings=settled,
+                    baselines=baselines,
+                    name=stated.id if len(cases) > 1 else f"{stated.id}/{one.problem_id}",
+                    reading="" if len(cases) > 1 else one.reading_id,
+                    seconds=seconds,
+                )
+                asked.append(_Asked(stated, one, _coupling_said(stated, one, plan)))
+    results = _run(asked, workers, store)
+    if folder is not None:
+        pages.write_bench(results, folder)
+    emit(pages.bench_document(results), _tables, as_json)
+    if folder is not None and not as_json:
+        say(f"page: {folder / 'index.html'}\n")
+    every = [one for result, _ in results for one in result.standings]
+    return NEVER_RAN if any(one.failed == one.runs for one in every) else 0
+
+
+_ONE_BY_ONE = 6
+"""Problems up to which each has a table of its own on the terminal; the page and JSON have all."""
+SEEDS = 30
+"""Runs of each optimiser by default: as many as papers of this field report."""
+BENCH_FOLDER = Path("trajgap-bench")
+"""Where the page goes, unless the command line says otherwise."""
+
+
+def _cases(source: str) -> list[Case]:
+    """One case, or the instances of the suite that are named."""
+    word = SUITE_PREFIX.rstrip(":")
+    several = source == word or (
+        source.startswith(SUITE_PREFIX) and any(sign in source for sign in ",*?[")
+    )
+    return [one.case() for one in select_instances(source)] if several else [read_case(source)]
+
+
+def _settings(texts: Sequence[str]) -> dict[str, dict[str, Any]]:
+    """Settings given as ``NAME={"key": value}``."""
+    found = {}
+    for text in texts:
+        name, equals, value = text.partition("=")
+        try:
+            values = json.loads(value) if equals else None
+        except ValueError:
+            values = None
+        if not isinstance(values, dict):
+            raise CaseError(
+                "--set", "", f'{text!r} is not NAME={{"setting": value}}; give JSON after the ='
+            )
+        found[optimizer_name(name)] = values
+    return found
+
+
+def _own(case: Case, chosen: Sequence[str], iterations: bool) -> dict[str, dict[str, Any]]:
+    """Settings of the paper's own algorithms; a budget takes the place of its iterations."""
+    found: dict[str, dict[str, Any]] = {}
+    for block in case.algorithms:
+        if block.kind in chosen and block.kind in KINDS:
+            values = dict(block.parameters)
+            if not iterations:
+                values.pop("iterations", None)
+            # An infinite penalty is every algorithm's default, and JSON knows no infinity.
+            found[block.kind] = {
+                k: v for k, v in values.items() if not (isinstance(v, float) and math.isinf(v))
+            }
+    return found
+
+
+def _coupling_said(case: Case, one: Selected, plan: BenchPlan) -> BenchPlan:
+    stated = case.problem(one.problem_id, one.reading_id).coupling
+    if stated is Coupling.SHARED or len(one.problem.joints) == 1:
+        return plan
+    note = (
+        "The case searches each joint by itself; here all joints share their durations. So this "
+        "optimum is not the one that the audit sets the paper's total beside, which is what the "
+        "joints' own optima give."
+    )
+    return replace(plan, notes=(note, *plan.notes))
+
+
+@dataclass(frozen=True, eq=False)
+class _Asked:
+    """One problem with its runs, before they are made."""
+
+    case: Case
+    selected: Selected
+    plan: BenchPlan
+
+    @property
+    def words(self) -> str:
+        """What a reader calls case, problem and reading, with the ids that a command takes."""
+        case = self.case
+        name = case.id if instance_of(case) is None else f"{SUITE_PREFIX}{case.id}"
+        head = noted(case.title, "" if name == case.title else name)
+        if len(case.problems) == len(case.readings) == 1:
+            return head
+        return f"{head}; {asked_as(case, self.selected.problem_id, self.selected.reading_id)}"
+
+
+def _run(
+    asked: Sequence[_Asked], workers: int, kept: Path | None
+) -> list[tuple[BenchResult, Runs]]:
+    results = []
+    with progress("solve", len(asked)) as solving:
+        optima = []
+        for one in asked:
+            solving(f"the optimum: {one.words}")
+            with naming(one.case.file):
+                optima.append(_optimum(one.case, one.selected))
+    with ExitStack() as stack:
+        store = None if kept is None else stack.enter_context(Store(kept))
+        engine = stack.enter_context(on_this_machine(workers))
+        total = sum(len(one.plan.trials) for one in asked)
+        step = stack.enter_context(progress("first runs", total, rate=True))
+        for one, optimum in zip(asked, optima, strict=True):
+            with naming(one.case.file):
+                runs = run_bench(one.plan, engine, lambda row: step.done(row.optimizer), store)
+                result = measure_gaps(runs, optimum).model_copy(update={"words": one.words})
+                results.append((result, runs))
+    return results
+
+
+def _optimum(case: Case, one: Selected) -> Solution | Reference:
+    """What the suite knows of its own; else solved, certified where a certificate is shipped."""
+    instance = instance_of(case)
+    if instance is not None:
+        lower = known(instance.lower or None, "no lower bound is proved")
+        evidence = Evidence(str(instance.evidence))
+        return Reference(upper=instance.upper, lower=lower, evidence=evidence)
+    exact = printed_problem_or_none(case.statement(one.problem_id, one.reading_id))
+    answer = solve(one.problem, exact=exact)
+    if not 0 < answer.best < math.inf:
+        why = answer.why or str(answer.status)
+        raise TrajgapError(
+            f"{case.file}: {asked_as(case, one.problem_id, one.reading_id)}: no positive optimum "
+            f"to measure gaps against ({why})"
+        )
+    return answer
+
+
+_RESTARTS = (
+    "Evaluations to a gap: what restarts need on average until one run reaches it, so the number "
+    "may exceed the budget of one run."
+)
+"""Said under a table with such a number."""
+
+
+def _beyond_one_run(result: BenchResult) -> bool:
+    """Whether a number of evaluations in the table exceeds what one run has."""
+    return any(
+        isinstance(target.evaluations, float) and target.evaluations > result.budget
+        for one in result.standings
+        for target in one.targets
+        if target.gap in SHOWN_GAPS
+    )
+
+
+def _tables(document: BenchDocument) -> list[RenderableType]:
+    parts: list[RenderableType] = []
+    if document.overall:
+        parts += [line(pages.most_solved(document.overall)), line("")]
+        columns = tuple(f">{name}" if i else name for i, name in enumerate(OVERALL_COLUMNS))
+        parts.append(Columns(columns, [overall_cells(one) for one in document.overall]))
+        parts.append(line(""))
+    for result in document.results if len(document.results) <= _ONE_BY_ONE else ():
+        parts.append(line(result.title, "bold"))
+        parts.append(line(result.verdict))
+        parts += [line(pages.optimum_said(result.optimum)), line("")]
+        columns = tuple(f">{name}" if i else name for i, name in enumerate(BENCH_COLUMNS))
+        parts.append(Columns(columns, [bench_cells(one) for one in result.standings]))
+        parts += [
+            line(f"{one.optimizer}: {message}", "yellow")
+            for one in result.standings
+            for message in one.messages
+        ]
+        remarks = (*result.notes, _RESTARTS) if _beyond_one_run(result) else result.notes
+        parts += [line(note, "dim") for note in remarks] + [line("")]
+    return parts[:-1]

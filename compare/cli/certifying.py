@@ -1,4 +1,4 @@
-"""The commands `solve --certify` and `verify`: proofs written to files, and proved again."""
+"""`solve --certify`: an interval of each optimum, with its proof in files."""
 
 from __future__ import annotations
 
@@ -9,9 +9,12 @@ import threading
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from pathlib import Path
 from types import FrameType
 from typing import Any
+
+from rich.console import RenderableType
 
 from ...nlp import Certified, ExactProblem, Outcome, Progress, certify, printed_problem
 from ...nlp.proofs import (
@@ -21,14 +24,12 @@ from ...nlp.proofs import (
     fits,
     read_state,
     state_document,
-    unlike,
 )
 from ...problem import (
     Case,
     CaseError,
     Coupling,
     TrajgapError,
-    check_regular,
     file_name,
     shown_bound,
 )
@@ -37,10 +38,8 @@ from ...verify import (
     CERTIFICATE_FORMAT,
     OLD_FORMATS,
     STATE_FORMAT,
-    CertificateVerdict,
     CertifiedQuestion,
     Clock,
-    OutOfTime,
     Refused,
     Subject,
     number,
@@ -51,24 +50,23 @@ from ..audits import in_words
 from ..documents import (
     CertifiedResult,
     CertifyDocument,
-    JudgedFile,
+    Why,
     certify_result,
     json_text,
-    verify_document,
-    worth,
 )
-from . import proof_tables as cli_proofs
-from .input import Selected, naming, read_case, select
-from .kept import kept_proofs
+from .input import Selected, naming, select
 from .output import (
     Steps,
     check_certificates,
     emit,
+    kept_proofs,
+    line,
     new_output,
     progress,
     replace_output,
     say,
 )
+from .result_tables import by_question
 
 CERTIFICATE_FOLDER = Path("trajgap-certificates")
 """Where certificates go, unless the command line says otherwise."""
@@ -168,7 +166,7 @@ def certify_case(
                 results.append(certify_result(*ids, subject, found, *files, _why(found)))
         document = CertifyDocument(intervals=tuple(results))
         write(json_text(document))
-    emit(document, lambda shown: cli_proofs.certified(shown, case), as_json)
+    emit(document, lambda shown: _certified(shown, case), as_json)
     if folder is not None and not as_json and any(r.certificate for r in results):
         say(f"certificates: {folder}\n")
     if kept and not as_json:
@@ -203,14 +201,14 @@ def _questions(case: Case, one: Selected, subject: Subject) -> Iterator[Question
     """What is asked under one reading, of all joints or of each, with why it is not covered."""
     # A bound over any curve is one of all joints together: what else would they share.
     coupling = Coupling.SHARED if subject is Subject.ANY else one.problem.coupling
-    for question in _questions_of(case, one, coupling):
+    for question in questions_of(case, one, coupling):
         exact = question.problem
         why = exact if isinstance(exact, str) else covered(exact, subject)
         asked = replace(question, subject=subject)
         yield asked if why is None else replace(asked, problem=why)
 
 
-def _questions_of(case: Case, one: Selected, coupling: Coupling) -> Iterator[Question]:
+def questions_of(case: Case, one: Selected, coupling: Coupling) -> Iterator[Question]:
     """What is asked under one reading, covered or not."""
     statement = case.statement(one.problem_id, one.reading_id)
     name = f"{case.id}.{one.problem_id}.{one.reading_id}"
@@ -384,67 +382,45 @@ class _Stop:
         return report
 
 
-def verify_files(
-    files: Sequence[Path],
-    case: str | None,
-    seconds: float,
-    as_json: bool,
-    out: Path | None,
-) -> int:
-    """Prove certificates again; 1 if any is refused, or is about no problem of the case."""
-    for path in files:
-        check_regular(path)
-    asked = None
-    stated = None if case is None else read_case(case)
-    if stated is not None:
-        asked = [
-            question
-            for one in select(stated, None, None)
-            for coupling in Coupling
-            for question in _questions_of(stated, one, coupling)
-        ]
-    with new_output(out) as write:
-        verdicts: list[JudgedFile] = []
-        with progress("verify", len(files)) as step:
-            for path in files:
-                step(path.name)
-                verdicts.append((str(path), *_verdict(path, seconds, asked)))
-        document = verify_document(verdicts)
-        write(json_text(document))
-    if as_json:
-        emit(document, lambda _: (), as_json)
-    else:
-        say(cli_proofs.verified(document, stated))
-    good = all(verdict.proves and not isinstance(about, str) for _, verdict, about in verdicts)
-    return 0 if good else 1
+_PROVED: dict[str, str] = {Outcome.INFEASIBLE: "infeasible: proved", Outcome.OPEN: "nothing proved"}
+"""Outcomes whose word alone might be taken for a guess."""
+_BOUNDED = "no motion proved"
+"""Of an open outcome whose lower bound is proved."""
+_COLUMNS = (">lower s", ">upper s", ">gap", ">nodes", ">open", ">seconds", "outcome")
+"""What the table says of each interval."""
 
 
-def _verdict(
-    path: Path, seconds: float, asked: Sequence[Question] | None
-) -> tuple[CertificateVerdict, CertifiedQuestion | str | None]:
-    """What a file is worth, and which question of a case it is about."""
-    clock = Clock(seconds)  # for reading, too
-    try:
-        document = read_document(path, clock)
-    except (Refused, OutOfTime):
-        verdict = verify_certificate(path, clock=clock)
-        return verdict, None if asked is None else str(worth(verdict))
-    verdict = verify_certificate(document, clock=clock)
-    if asked is None:
-        return verdict, None
-    return verdict, _about(document, verdict, asked) if verdict.proves else str(worth(verdict))
+def _certified(document: CertifyDocument, case: Case) -> list[RenderableType]:
+    """Summary of the `solve --certify` document."""
+    results = document.intervals
+    if not results:
+        return [line("nothing was begun", "dim")]
+    apart = any(r.joint is not None for r in results)
+    rows: dict[tuple[str, str], list[Sequence[object]]] = {}
+    for r in results:
+        row = ((r.joint or "all",) if apart else ()) + _cells(r)
+        rows.setdefault((r.problem, r.reading), []).append(row)
+    columns = (("joint",) if apart else ()) + _COLUMNS
+    parts: list[RenderableType] = [line(results[0].case, "bold")]
+    parts += by_question(rows, columns, apart, case)
+    reasons = dict.fromkeys(r.outcome_why for r in results if r.outcome_why)
+    parts += [line(reason, "dim") for reason in reasons]
+    return parts + [line(f"go on with --resume {r.state}") for r in results if r.state]
 
 
-def _about(
-    document: dict[str, Any], verdict: CertificateVerdict, asked: Sequence[Question]
-) -> CertifiedQuestion | str:
-    """The question of a case that a certificate is about, or why there is none."""
-    differs = {}
-    for one in asked:
-        if isinstance(one.problem, ExactProblem):
-            differs[one.asked] = unlike(document, one.problem, verdict.subject)
-            if differs[one.asked] is None:
-                return one.asked
-    own = replace(verdict.question, case_sha256=None)
-    named = [why for q, why in differs.items() if replace(q, case_sha256=None) == own]
-    return f"its problem differs in {named[0]}" if named else "no problem of the case is this one"
+def _cells(result: CertifiedResult) -> tuple[object, ...]:
+    gap, seconds = result.gap, result.seconds
+    bounded = result.outcome == Outcome.OPEN and Fraction(result.lower_exact or 0) > 0
+    return (
+        _bound(result.lower_exact, "lower"),
+        _bound(result.upper_exact, "upper"),
+        "" if isinstance(gap, Why) else f"{gap:.1e}",
+        *("" if isinstance(n, Why) else n for n in (result.nodes, result.open_nodes)),
+        "" if isinstance(seconds, Why) else f"{seconds:.1f}",
+        _BOUNDED if bounded else _PROVED.get(result.outcome, result.outcome),
+    )
+
+
+def _bound(exact: str | None, side: str) -> str:
+    """Nine decimals, rounded outwards."""
+    return "none" if exact is None else shown_bound(Fraction(exact), side, places=9)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -13,6 +13,7 @@ from ...problem import CaseError
 from ...problem.cases import SUITE_PREFIX
 from ...problem.suite import select_instances
 from ..gaps import (
+    BOARD_COLUMNS,
     LEADERBOARD,
     SOLVED,
     Board,
@@ -20,6 +21,7 @@ from ..gaps import (
     Store,
     StudyPlan,
     StudySession,
+    board_cells,
     boards,
     leaderboard_rows,
     on_this_machine,
@@ -27,14 +29,14 @@ from ..gaps import (
     run_study,
     summed_up,
 )
-from .leaderboard import BOARD_COLUMNS, board_cells
-from .output import NEVER_RAN, progress, rendered, say
-from .table import Columns, line
+from .output import NEVER_RAN, Columns, line, progress, rendered, say
 
 BUDGET, SEEDS = 1000, 15
 """Evaluations and seeds of a run against the leaderboard: those of its first table."""
 _MIDDLE = SOLVED.index(1e-3)
 """Place of the target by which the leaderboard is sorted: 0.1 %."""
+_ROOM = 6
+"""Columns of a leaderboard that fit a terminal."""
 
 
 def stand_against(
@@ -103,7 +105,7 @@ def stand_against(
     say(rendered([
         *(line(_said(one, found), "bold") for one in standing),
         line(""),
-        Columns(BOARD_COLUMNS, _marked(found, labels)),
+        board_table(found, labels),
         line(
             f"{handling}, {budget:,} evaluations, {many}. Rows "
             "with * were run now; the others are the committed ones of the leaderboard."
@@ -177,9 +179,11 @@ def _said(one: Ranked, board: Board) -> str:
     )
 
 
-def _marked(board: Board, labels: Mapping[str, str]) -> list[tuple[str, ...]]:
-    """Lines of the board; those of now are marked."""
-    return [
-        (place, f"* {name}" if name in labels else name, *rest)
-        for place, name, *rest in board_cells(board)
+def board_table(board: Board, marked: Container[str] = ()) -> Columns:
+    """A board on the terminal, without what has no room there; some optimisers are marked."""
+    columns = [f">{name}" if name != "optimiser" else name for name in BOARD_COLUMNS[:_ROOM]]
+    rows = [
+        [f"* {said}" if said in marked else said for said, _ in board_cells(board, one)[:_ROOM]]
+        for one in board.standings
     ]
+    return Columns(columns, rows)

@@ -116,10 +116,6 @@ def select(
     coupling : str, optional
         Instead of the case's own.
 
-    Returns
-    -------
-    list of Selected
-
     Raises
     ------
     CaseError
@@ -140,10 +136,6 @@ def read_durations(text: str, file: str) -> tuple[Printed, ...]:
         Separated by commas or blanks.
     file : str
         The case that they are for, for messages.
-
-    Returns
-    -------
-    tuple of Printed
 
     Raises
     ------

@@ -1,10 +1,11 @@
-"""The command `check` for a motion from elsewhere: samples, polynomials, ROS trajectories."""
+"""The command `check` for a motion from elsewhere: judged, shown, and repaired."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 
@@ -33,7 +34,6 @@ from ..documents import (
     known,
 )
 from .input import naming
-from .motion_repair import repaired
 from .motion_results import checked_motion, shown_check
 from .output import emit, new_output
 
@@ -178,10 +178,6 @@ def stated_limits(joints: Sequence[str], factors: Array, options: MotionOptions)
         What a number of a flag is in rad or m.
     options : MotionOptions
 
-    Returns
-    -------
-    JointLimits
-
     Raises
     ------
     CaseError
@@ -230,3 +226,68 @@ def _numbers(text: str | None) -> tuple[float, ...] | None:
         except TrajgapError as error:
             raise CaseError("--noise", "", f"{error}; give a length") from None
     return tuple(found)
+
+
+_ENDINGS = {
+    MotionForm.CSV: (".csv", ".txt"),
+    MotionForm.ROS: (".json", ".yaml", ".yml"),
+    MotionForm.PPOLY: (".json",),
+}
+"""How a file is called, so that it is read as what it is."""
+_ROUNDS = 3
+"""Times that a file is written: whole nanoseconds may take a motion past a limit once more."""
+
+
+def repaired(
+    read: ForeignFile,
+    found: MotionCheck,
+    out: Path,
+    check: Callable[[Path], MotionCheck],
+    write: Callable[[str], None],
+) -> OrWhy[RepairedMotion]:
+    """Write the motion slowed down, and what is true of the file when it is read back.
+
+    Parameters
+    ----------
+    read : ForeignFile
+    found : MotionCheck
+        What was found about it.
+    out : Path
+    check : callable
+        Reads a file as this one was read, and judges it.
+    write : callable
+        Writes the text of the file.
+
+    Returns
+    -------
+    RepairedMotion or Why
+        Why nothing was written: no slow-down repairs the motion.
+
+    Raises
+    ------
+    CaseError
+        If the file would be read as another format.
+    """
+    endings = _ENDINGS[read.form]
+    if out.suffix.lower() not in endings:
+        known = " or ".join(endings)
+        raise CaseError(
+            str(out), "--repair", f"the motion would be read as something else; use {known}"
+        )
+    if found.feasible_time is None:
+        advice = read.content.advice
+        return Why(f"{found.feasible_why}. {advice}" if advice else str(found.feasible_why))
+    factor, after = 1.0, found
+    with TemporaryDirectory() as folder:
+        draft = Path(folder) / out.name
+        for _ in range(_ROUNDS):
+            factor *= after.stretch
+            text = read.slowed(factor).written()
+            draft.write_text(text, encoding="utf-8")
+            after = check(draft)
+            if after.stretch <= 1.0 + after.tolerance:
+                break
+    write(text)
+    return RepairedMotion(
+        file=str(out), form=read.form, slow_down=factor, result=checked_motion(after)
+    )

@@ -21,7 +21,7 @@ from ..documents import (
     known,
     value_or_none,
 )
-from .table import Columns, line
+from .output import Columns, line
 
 
 def checked_motion(found: MotionCheck) -> CheckedMotion:

@@ -1,13 +1,19 @@
-"""What the command `new` takes."""
+"""The command `new`: a case file from a table, asking for the units that are not given."""
 
 from __future__ import annotations
 
+import shlex
+import sys
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from ...problem import CHOICES, CaseError, scaffold, visible
+from ...problem.cases import identity_of
 from .options import FAMILY, LIMIT, USUAL
+from .output import new_output, say
 
 _UNITS = "One for all joints, or one for each with commas between: deg,deg,mm."
 """Said of each option that takes a unit of joints."""
@@ -55,8 +61,6 @@ def new(
 
     Units that are not given are asked for.
     """
-    from .scaffolding import new_case
-
     units = {
         "position": position_unit,
         "velocity": velocity_unit,
@@ -65,5 +69,96 @@ def new(
         "time": time_unit,
     }
     limits = {"velocity": velocity, "acceleration": acceleration, "jerk": jerk}
-    new_case(out, table, units, limits, case_id, family, degree, durations, total, where)
+    with new_output(out, "OUT") as write:
+        needed = ["position", *(name for name, limit in limits.items() if limit is not None)]
+        given = {name: unit for name, unit in units.items() if unit is not None}
+
+        def written(stated: Mapping[str, str]) -> str:
+            return scaffold(
+                table,
+                stated,
+                case_id=identity_of(out.stem) if case_id is None else case_id,
+                family=family,
+                degree=degree,
+                durations=durations,
+                total=total,
+                where=where or "",
+                warn=doubts.append,
+                **limits,
+            )
+
+        doubts: list[str] = []
+
+        faults: list[tuple[str, str]] = []
+        file = ""
+        # A faulty table or option should be refused before anything is asked.
+        guess = {name: CHOICES[name][0] for name in needed} | given
+        try:
+            written(guess)
+        except CaseError as error:
+            file, faults = error.file, [(_option(field), why) for field, why in error.faults]
+        asked = [name for name in (*needed, "time") if name not in given]
+        if faults:
+            # Nobody is asked in vain; what a pipe does not hold either is named with the faults.
+            asked = [] if _interactive() else [name for name in asked if name != "time"]
+        for name in asked:
+            answer = _ask(name, str(table))
+            if _known(answer, name):
+                given[name] = answer
+            else:
+                said = f"{answer!r} is no unit of {name}" if answer else "is missing"
+                faults.append((f"--{name}-unit", f"{said}; give one of {', '.join(CHOICES[name])}"))
+        if faults:
+            raise CaseError(file, *faults[0], faults[1:])
+        doubts.clear()
+        write(written(given))
+    for doubt in doubts:
+        sys.stderr.write(f"trajgap: {visible(doubt)}\n")
+    then = "judges what is claimed" if durations or total else "once claims are filled in"
+    say(f"written: {out}\nnext: trajgap audit {shlex.quote(str(out))}  # {then}\n")
     return 0
+
+
+def _option(field: str) -> str:
+    """The option of the command line that an argument of `scaffold` comes from."""
+    if field.startswith("units."):
+        return f"--{field.removeprefix('units.')}-unit"
+    options = ("family", "degree", "velocity", "acceleration", "jerk", "durations", "total")
+    if field in options:
+        return f"--{field}"
+    return "--id" if field == "case_id" else field
+
+
+def _ask(quantity: str, table: str) -> str:
+    """Ask for a unit on a terminal until one is given, or read a line of a pipe, which may end."""
+    choices = CHOICES[quantity]
+    default = "s" if quantity == "time" else None
+    shown = ", ".join(choices) + (f" [{default}]" if default else "")
+    while True:
+        interactive = _interactive()
+        if interactive:
+            sys.stderr.write(f"unit of {quantity} in {table} ({shown}): ")
+            sys.stderr.flush()
+        line = _line()
+        answer = line.strip() or default or ""
+        if _known(answer, quantity) or not line or not interactive:
+            return answer
+
+
+def _known(answer: str, quantity: str) -> bool:
+    """Whether an answer is a unit, or one for each joint with commas between."""
+    choices = CHOICES[quantity]
+    several = quantity != "time" and "," in answer
+    return all(one.strip() in choices for one in (answer.split(",") if several else [answer]))
+
+
+def _interactive() -> bool:
+    return sys.stdin is not None and sys.stdin.isatty()
+
+
+def _line() -> str:
+    """The next line of standard input; empty where it has ended, or cannot be read at all."""
+    try:
+        return "" if sys.stdin is None else sys.stdin.readline()
+    except OSError:
+        return ""

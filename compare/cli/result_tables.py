@@ -12,7 +12,7 @@ from rich.text import Text
 from ...problem import Case
 from ..audits import asked_as, in_words
 from ..documents import ActiveLimit, Why, WorstPeak
-from .table import Columns, line
+from .output import Columns, line
 
 
 class Result(Protocol):

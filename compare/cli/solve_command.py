@@ -1,43 +1,77 @@
-"""The command `solve`: what it takes, and which of its two answers is wanted."""
+"""The command `solve`: the exact optimum of each problem under each reading."""
 
 from __future__ import annotations
 
+import math
 import os
+from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
+from rich.console import RenderableType
 
-from .motion_options import (
+from ...nlp import (
+    Solution,
+    printed_problem_or_none,
+    solve_per_joint,
+    with_other_route,
+)
+from ...nlp import (
+    solve as solve_exactly,
+)
+from ...nlp.optimum import OPTIMUM_SLACK, stopping_after
+from ...nlp.retiming import Retiming, retime
+from ...problem import Case, Coupling, Problem, fit, shown_bound
+from ...verify import Subject
+from ..audits import Pair, Study, in_words
+from ..documents import (
+    Answer,
+    SolveDocument,
+    SolveResult,
+    Why,
+    json_text,
+    reason,
+    solve_result,
+    value_or_none,
+)
+from .certifying import certify_case
+from .input import Selected, naming, read_case, select
+from .motion_checking import MotionOptions
+from .options import (
+    FAMILY,
+    MOST,
+    USUAL,
     AccelerationLimit,
+    AsJson,
+    Coupled,
     DecelerationLimit,
     Form,
     JerkLimit,
     LimitsFile,
     MotionUnits,
+    NoCache,
+    Out,
     PositionLimit,
+    ProblemId,
+    ProofWorkers,
     Rate,
+    ReadingId,
     Retimed,
     SamplesFile,
     UrdfFile,
     VelocityLimit,
 )
-from .options import (
-    FAMILY,
-    MOST,
-    USUAL,
-    AsJson,
-    Coupled,
-    NoCache,
-    Out,
-    ProblemId,
-    ProofWorkers,
-    ReadingId,
+from .output import Columns, emit, line, new_output, progress
+from .result_tables import by_result, place, reasons, seconds
+from .solve_files import (
+    AskedSamples,
+    asked_samples,
+    check_one_motion,
+    points_case,
+    write_motion,
+    written_lines,
 )
-
-if TYPE_CHECKING:
-    from ...problem import Case
-    from .motion_checking import MotionOptions
 
 
 def solve(
@@ -136,8 +170,6 @@ def solve(
 
     With --certify, Ctrl-C leaves the best interval, and a state to go on from.
     """
-    from .motion_checking import MotionOptions
-
     flags = {
         "velocity": velocity,
         "acceleration": acceleration,
@@ -161,18 +193,12 @@ def solve(
         if samples is None and (rate is not None or form is not None or retimed):
             lone = "--rate" if rate is not None else "--retimed" if retimed else "--format"
             raise typer.BadParameter(f"{lone} needs --samples")
-        from .motion_writing import asked_samples
-        from .solving import solve_case
-
         asked = None if samples is None else asked_samples(samples, rate, form, retimed)
-        return solve_case(
+        return _solve_case(
             read, problem, reading, coupling, starts, seed, prove, seconds, as_json, out, asked
         )
     if samples is not None or rate is not None or form is not None or retimed:
         raise typer.BadParameter("--samples is of a solution; leave --certify out")
-    from ...verify import Subject
-    from .certifying import certify_case
-
     return certify_case(
         read,
         problem,
@@ -193,13 +219,170 @@ def solve(
 
 def _read(source: str, stated: MotionOptions, family: str | None, degree: int | None) -> Case:
     """A case, or a table of way-points with the limits beside it."""
-    from .input import read_case
-
     if source.lower().endswith(".csv"):
-        from .points import points_case
-
         return points_case(source, stated, family, degree)
     curve = [name for name, one in (("--family", family), ("--degree", degree)) if one is not None]
     for name in (*stated.names, *curve):
         raise typer.BadParameter(f"{name} is of a table of way-points (CSV); a case states its own")
     return read_case(source)
+
+
+def _solve_case(
+    case: Case,
+    problem: str | None,
+    reading: str | None,
+    coupling: str | None,
+    starts: int,
+    seed: int,
+    prove: float,
+    limit: float | None,
+    as_json: bool,
+    out: Path | None,
+    asked: AskedSamples | None = None,
+) -> int:
+    """Solve each selected problem and reading; write the motion of the first if asked to."""
+    selected = select(case, problem, reading, coupling)
+    if asked is not None:
+        check_one_motion(case, selected)
+    samples_file = None if asked is None else asked.file
+    with new_output(out) as write, new_output(samples_file, "--samples") as write_samples:
+        results, written = [], None
+        retimings: _Retimings = {}
+        with progress("solve", len(selected)) as step, naming(case.file):
+            for one in selected:
+                step(in_words(case, one.problem_id, one.reading_id))
+                with stopping_after(math.inf if limit is None else limit):
+                    result, answer = _solved(case, one, starts, seed, prove, retimings)
+                results.append(result)
+                if asked is not None and written is None:
+                    text, written = write_motion(one, answer, asked)
+                    write_samples(text)
+        document = SolveDocument(results=tuple(results), written=written)
+        write(json_text(document))
+    emit(document, lambda shown: _tables(shown, case), as_json)
+    return 0
+
+
+_Retimings = dict[tuple[object, ...], Retiming]
+"""By motion and limits: readings often leave a joint the same optimum, and a path takes long."""
+
+
+def _solved(
+    case: Case, one: Selected, starts: int, seed: int, prove: float, retimings: _Retimings
+) -> tuple[SolveResult, Solution]:
+    ids = (case.id, one.problem_id, one.reading_id)
+    statement = case.statement(one.problem_id, one.reading_id)
+
+    def solver(question: Problem) -> Solution:
+        alone = len(question.joints) < len(one.problem.joints)
+        joint = one.problem.joints.index(question.joints[0]) if alone else None
+        exact = printed_problem_or_none(statement, joint)
+        answer = solve_exactly(question, exact=exact, starts=starts, seed=seed, prove=prove)
+        return with_other_route(answer)
+
+    if one.problem.coupling is Coupling.PER_JOINT:
+        halves = Study(case).half_digits(Pair(one.problem_id, one.reading_id))
+        slacks = tuple(dict.fromkeys((*halves, OPTIMUM_SLACK)))
+        apart = solve_per_joint(one.problem, slacks=slacks, solver=solver)
+        together = solver(one.problem)
+        retimed = [_retimed(s, retimings) for s in apart.joints]
+        return solve_result(*ids, apart, retimed, together), together
+    answer = solver(one.problem)
+    return solve_result(*ids, answer, [_retimed(answer, retimings)]), answer
+
+
+def _retimed(answer: Solution, known: _Retimings) -> Retiming | str:
+    problem = answer.problem
+    if not answer.found:
+        return "no durations, so no path"
+    trajectory = fit(problem.curve, problem.waypoints, answer.durations, answer.nodal)
+    motion = (trajectory.durations.tobytes(), trajectory.scaled.shape, trajectory.scaled.tobytes())
+    key = (*motion, problem.limits.sides.tobytes())
+    if key not in known:
+        known[key] = retime(trajectory, problem.limits)
+    return known[key]
+
+
+_COLUMNS = ("status", ">total s", ">proved ≥ s", "evidence", "durations s", "KKT", ">TOPPRA s")
+"""What the table says of each result, or of each of its joints."""
+
+
+def _tables(document: SolveDocument, case: Case) -> list[RenderableType]:
+    results = document.results
+    parts: list[RenderableType] = [line(results[0].case, "bold")]
+    parts += by_result(results, _COLUMNS, _cells, "longest", case)
+    parts += [line(said) for result in results for said in _procedure(result, case)]
+    active = [
+        (name, place(a), f"{a.multiplier:.6g}", f"{a.sensitivity:+.4f}")
+        for r, name in ((r, in_words(case, r.problem, r.reading)) for r in results)
+        for a in r.active
+    ]
+    if active:
+        limits = ("limit reached", ">multiplier s", ">10 % more changes s")
+        parts.append(
+            Columns(("~problem", *limits), _without_repeats(active, 1))
+            if len(results) > 1
+            else Columns(limits, [row[1:] for row in active])
+        )
+    parts += reasons(results, lambda r: {"status": r.status_why, "toppra": reason(r.toppra)}, case)
+    build, solve = sum(r.build_seconds for r in results), sum(r.solve_seconds for r in results)
+    if document.written is not None:
+        parts += [line(said) for said in written_lines(document.written, case)]
+    return [*parts, line(f"build {build:.2f} s, solve {solve:.2f} s", "dim")]
+
+
+def _cells(result: Answer) -> tuple[object, ...]:
+    longest = result.longest_per_segment if isinstance(result, SolveResult) else None
+    durations = value_or_none((longest or result).segment_durations) or ()
+    residual, retimed = result.kkt_residual, result.toppra_extrapolated
+    known = retimed is not None and not isinstance(retimed.duration, Why)
+    bound = value_or_none(result.lower_bound)
+    return (
+        result.status,
+        seconds(result.total_time),
+        "" if bound is None else shown_bound(bound, "lower", places=6),
+        result.evidence,
+        " ".join(f"{d:.4f}" for d in durations),
+        "" if reason(residual) else f"{residual:.0e}",
+        seconds(retimed.duration) if retimed is not None and known else "",
+    )
+
+
+def _procedure(result: SolveResult, case: Case) -> list[str]:
+    """What is known of the longest durations per segment, where joints are solved one by one."""
+    longest = result.longest_per_segment
+    if longest is None:
+        return []
+    under = in_words(case, result.problem, result.reading)
+    name = f"{under}: longest per segment"
+    shared = result.shared
+    together = [] if shared is None else [f"{under}: {_together(shared)}"]
+    if isinstance(longest.verdict, Why):
+        return [*together, f"{name}: none, {longest.verdict}"]
+    lines = [*together, f"{name}: {longest.verdict}, tight at {seconds(longest.tight_time)} s"]
+    for span in longest.ranges:
+        lines.append(
+            f"  {span.lowest:.6f} to {span.highest:.6f} s while each joint stays within "
+            f"{span.slack:g} s of its own optimum"
+        )
+    return lines
+
+
+def _together(shared: Answer) -> str:
+    """The optimum with durations that all joints share."""
+    durations = " ".join(f"{d:.4f}" for d in value_or_none(shared.segment_durations) or ())
+    return (
+        f"all joints with the same durations: {shared.status}, {seconds(shared.total_time)} s, "
+        f"{shared.evidence}" + (f" ({durations} s)" if durations else "")
+    )
+
+
+def _without_repeats(rows: Iterable[Sequence[object]], count: int) -> list[Sequence[object]]:
+    """Blank the first cells of a row where they repeat those of the row above."""
+    shown: list[Sequence[object]] = []
+    above: Sequence[object] = ()
+    for row in rows:
+        same = list(row[:count]) == list(above[:count])
+        shown.append((*("" for _ in range(count)), *row[count:]) if same else row)
+        above = row
+    return shown

@@ -1,14 +1,54 @@
-"""What the command `study` takes."""
+"""The command `study`: many runs, each stored as it ends, and what they came to."""
 
 from __future__ import annotations
 
+import json
+import os
+import shlex
+import signal
+import sys
+import threading
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager, contextmanager
+from datetime import timedelta
+from itertools import groupby
+from math import inf
 from pathlib import Path
 from typing import Annotated
 
+import numpy as np
 import typer
+from rich.console import RenderableType
 
-_MOST = 10_000
-"""Largest number of workers: no machine has as many cores."""
+from ...problem import CaseError, replace_file
+from ..audits import in_words
+from ..documents import noted
+from ..gaps import (
+    LEADERBOARD,
+    Engine,
+    Row,
+    RowStatus,
+    Store,
+    StudyPlan,
+    StudyProblem,
+    StudySession,
+    boards,
+    check_export,
+    export_rows,
+    leaderboard_study,
+    load_study,
+    on_dask,
+    on_this_machine,
+    quantiles,
+    run_study,
+    study_rows,
+    summaries_text,
+    summed_up,
+)
+from .committed_board import board_table
+from .options import INTERRUPTED, MOST
+from .output import NEVER_RAN, Columns, line, progress, rendered, say
 
 
 def study(
@@ -31,7 +71,7 @@ def study(
         int | None,
         typer.Option(
             min=1,
-            max=_MOST,
+            max=MOST,
             help="Processes; the rows do not depend on it.",
             show_default="one for each core",
         ),
@@ -62,8 +102,208 @@ def study(
 
     Ctrl-C loses nothing that is finished; the same command goes on.
     """
-    from .studying import conduct
-
     if dask is not None and workers is not None:
         raise typer.BadParameter("--workers does not go with --dask, whose cluster has its own")
-    return conduct(file, store, workers, dask, export or [], summary, retry)
+    exports = export or []
+    shipped = file == Path(LEADERBOARD)
+    path = store or file.with_suffix(_ENDING)
+    if path == file:
+        raise CaseError(str(path), "--store", "is the study file itself; name another")
+    for one in exports:
+        check_export(one)
+        if exports.count(one) > 1:
+            raise CaseError(str(one), "--export", "is named twice; name it once")
+    if summary is not None and summary.suffix != ".csv":
+        raise CaseError(str(summary), "--summary", "is no .csv file; name one")
+    plan = leaderboard_study() if shipped else load_study(file)
+    again = ["trajgap", "study", str(file), *_options("--store", [] if store is None else [store])]
+    with Store(path) as kept:
+        session = StudySession(total=len(plan), resumed=0)
+        try:
+            with _engine(workers, dask) as engine, progress("study", len(plan)) as step:
+                begun = time.monotonic()
+
+                def show(now: StudySession) -> None:
+                    nonlocal session
+                    session = now
+                    step(_going(now, time.monotonic() - begun))
+
+                step("the optima that gaps are set against")
+                with _interruptible():
+                    session = run_study(plan, kept, engine, retry=retry, progress=show)
+        except KeyboardInterrupt:
+            rest = [*([] if dask is None else ["--dask", dask]), *_options("--export", exports)]
+            print(f"\ntrajgap: {_interrupted(session, [*again, *rest])}", file=sys.stderr)
+            return INTERRUPTED
+        for one in exports:
+            export_rows(study_rows(plan, kept), one)
+        if summary is not None:
+            replace_file(summary, summaries_text(summed_up(plan, kept)))
+        parts, never_ran = _summary(plan, kept, session, path, exports, again)
+        say(rendered(parts))
+    return NEVER_RAN if never_ran else 0
+
+
+_ENDING = ".sqlite"
+"""Of the store beside a study file."""
+_ONE_BY_ONE = 6
+"""Problems up to which each has a table of its own, as in `bench`; of more there is one, in which
+they are called as in the exports."""
+_COLUMNS = ("optimiser", "~settings", "handling", ">budget", ">runs", ">failed", ">feasible",
+            ">best gap %", ">median gap %")  # fmt: skip
+"""What a table says of the runs of one optimiser under one settings."""
+Cells = tuple[object, ...]
+"""A row of such a table."""
+_MESSAGES = 5
+"""Different messages of failed runs that are printed: the store and the exports have all."""
+
+
+def _options(name: str, paths: Sequence[Path]) -> list[str]:
+    return [word for one in paths for word in (name, str(one))]
+
+
+def _engine(workers: int | None, dask: str | None) -> AbstractContextManager[Engine]:
+    return on_dask(dask) if dask is not None else on_this_machine(workers or os.cpu_count() or 1)
+
+
+@contextmanager
+def _interruptible() -> Iterator[None]:
+    """Let Ctrl-C end the session with its tally, instead of the program at once."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        yield
+    except KeyboardInterrupt:
+        # What follows only ends processes; a second Ctrl-C would say the same again.
+        before = signal.SIG_IGN
+        raise
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+def _going(now: StudySession, seconds: float) -> str:
+    done = now.resumed + now.run
+    words = f"{done:,} of {now.total:,} runs"
+    if now.run and seconds:
+        rate = now.run / seconds
+        left = timedelta(seconds=round(now.left / rate))
+        words += f", {rate:.3g} a second, {left} left"
+    return words + (f", {now.failed:,} failed" if now.failed else "")
+
+
+def _interrupted(session: StudySession, again: Sequence[str]) -> str:
+    done = session.resumed + session.run
+    return (
+        f"interrupted; {done:,} of {session.total:,} runs are stored, "
+        f"`{shlex.join(again)}` goes on from there"
+    )
+
+
+def _summary(
+    plan: StudyPlan,
+    kept: Store,
+    session: StudySession,
+    path: Path,
+    exports: Sequence[Path],
+    again: Sequence[str],
+) -> tuple[list[RenderableType], bool]:
+    """What the runs came to, and whether all of some optimiser on some problem failed."""
+    found: dict[tuple[str, str], list[Cells]] = {}
+    messages, failed, never_ran = dict[str, int](), 0, False
+    for (problem, reading, optimizer, settings, handling, budget), group in groupby(
+        study_rows(plan, kept), _named
+    ):
+        runs = list(group)
+        bad = [row.message for row in runs if row.status is RowStatus.FAILED]
+        for message in bad:
+            messages[message] = messages.get(message, 0) + 1
+        failed += len(bad)
+        never_ran |= len(bad) == len(runs)
+        passed = sum(row.feasible for row in runs)
+        named = optimizer, _readable(settings), handling, f"{budget:,}"
+        cells = (*named, len(runs), len(bad), passed, *_gaps(runs))
+        found.setdefault((problem, reading), []).append(cells)
+    parts: list[RenderableType] = [
+        line(f"{path}: {session.run:,} runs done now, {session.resumed:,} were there", "bold"),
+        *(_boards(plan, kept) if plan.file == LEADERBOARD else _tables(plan, found)),
+        line("A gap is that of the feasible time, (T − U)/U against the best known total U."),
+    ]
+    for message, count in sorted(messages.items(), key=lambda one: -one[1])[:_MESSAGES]:
+        parts.append(line(f"failed, {count:,} times: {message}", "yellow"))
+    if len(messages) > _MESSAGES:
+        parts.append(line(f"and {len(messages) - _MESSAGES:,} other messages, in the exports"))
+    if session.run:
+        parts.append(line(f"{session.seconds / session.run:.3g} s a run", "dim"))
+    parts += [line(f"written: {one}") for one in exports]
+    if failed:
+        parts.append(line(f"run the failed ones again: {shlex.join([*again, '--retry'])}"))
+    if not exports:
+        name = f"{Path(plan.file).stem}.csv"
+        parts.append(line(f"next: {shlex.join([*again, '--export', name])}"))
+    return parts, never_ran
+
+
+def _tables(
+    plan: StudyPlan, found: Mapping[tuple[str, str], Sequence[Cells]]
+) -> list[RenderableType]:
+    """What the runs on each problem came to, with what was chosen for it."""
+    if len(plan.problems) > _ONE_BY_ONE:
+        rows = [(*ids, *cells) for ids, own in found.items() for cells in own]
+        notes = dict.fromkeys(
+            [
+                *plan.notes,
+                *(f"{_words(one)}: {note}" for one in plan.problems for note in one.notes),
+            ]
+        )
+        return [Columns(("problem", "reading", *_COLUMNS), rows), *map(line, notes)]
+    parts: list[RenderableType] = []
+    for one in plan.problems:
+        ids = (one.name, one.reading)
+        parts.append(line(noted(_words(one), ", ".join(ids))))
+        parts.append(Columns(_COLUMNS, found.get(ids, ())))
+        parts += [line(note, "dim") for note in (*plan.notes, *one.notes)] + [line("")]
+    return parts
+
+
+def _boards(plan: StudyPlan, kept: Store) -> list[RenderableType]:
+    """Where each optimiser stands over all problems: their own lines would be thousands."""
+    parts: list[RenderableType] = []
+    for board in boards(summed_up(plan, kept)):
+        head = f"{board.handling}, {board.budget:,} evaluations, {len(board.problems)} instances"
+        parts.append(line(head, "bold"))
+        parts.append(board_table(board))
+        if board.missing:
+            parts.append(line(f"not complete: {', '.join(board.missing)}"))
+        parts.append(line(""))
+    return [*parts, *(line(note, "dim") for note in plan.notes)]
+
+
+def _words(one: StudyProblem) -> str:
+    """What a problem of a study is called."""
+    joint = "" if one.joint is None else f"joint {one.joint} alone; "
+    return f"{joint}{in_words(one.case, one.problem_id, one.reading)}"
+
+
+def _named(row: Row) -> tuple[str, str, str, str, str, int]:
+    return row.problem, row.reading, row.optimizer, row.settings, row.handling, row.budget
+
+
+def _readable(settings: str) -> str:
+    """Settings of a row, which are JSON, in words that a narrow column can break between."""
+    each = json.loads(settings)
+    return ", ".join(f"{name} {json.dumps(value)}" for name, value in each.items()) or "its own"
+
+
+def _gaps(runs: Sequence[Row]) -> tuple[str, str]:
+    """Least and median gap in percent; a run without a feasible time counts as infinite."""
+    if all(row.reference_upper is None for row in runs):
+        return "no optimum", ""
+    found = [inf if row.feasible_gap is None else row.feasible_gap[0] for row in runs]
+    best, median = quantiles(np.array(found), [0.0, 0.5])
+    return _percent(best), _percent(median)
+
+
+def _percent(gap: float) -> str:
+    return "none" if gap == inf else f"{100 * gap:+.3g}"

@@ -4,17 +4,179 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from .advice import Advice
+from pydantic import Field
+
+from ...verify import Subject
 from .card import VerdictCard
-from .cause import Cause
 from .entry import Count, Document, Entry, Fact, OrWhy
 from .finding import Finding, Judgement
 from .instances import ExaminedInstances
-from .provenance import Provenance
 from .reached import Reached
 from .side_by_side import ReadingsSummary
-from .stated import StatedClaim, StatedSource
+from .vocabulary import Severity, Urgency
 from .waterfall import Waterfall
+
+
+class StatedAnswer(Entry):
+    """What the authors were asked about a claim, and what they said."""
+
+    sent: str
+    """Day on which they were asked."""
+    answered: OrWhy[str]
+    """Day of their answer."""
+    outcome: str
+    """What came of it; empty where nothing has yet."""
+
+
+class StatedClaim(Entry):
+    """One claim: its words, its place in the paper, its digits."""
+
+    claim: str
+    """Its id, which findings, verdicts and causes name."""
+    quantity: str
+    """What kind of claim it is."""
+    text: str
+    """What the paper says, in our words."""
+    where: str
+    """Place in the paper: section, table, row."""
+    printed: str
+    """The printed digits with their unit; empty where it prints none."""
+    objective: OrWhy[str]
+    """What was minimised for a printed time, where that is not time alone."""
+    answer: OrWhy[StatedAnswer]
+    """Of the authors, where they were asked."""
+
+
+class StatedSource(Entry):
+    """Where the numbers were printed; an empty text is not named in the case file."""
+
+    kind: str
+    """``paper``, ``teaching``, ``software`` or ``unpublished``."""
+    authors: str
+    title: str
+    journal: str
+    year: OrWhy[int]
+    doi: str
+    note: str
+    transcribed_by: OrWhy[str]
+    """Who typed the numbers of the case file, and from what."""
+    checked_by: OrWhy[str]
+    """Who compared them with the paper, and how."""
+
+
+class Consequence(Entry):
+    """What follows from a cause and is no fault of its own."""
+
+    rule: str
+    """Permanent id of the rule that saw it."""
+    claim: str | None
+    """Null where it is about no claim."""
+    says: str
+    """One or two sentences with the numbers."""
+
+
+class Explanation(Entry):
+    """An innocent reason that the printed numbers allow, tried by computing."""
+
+    change: str
+    """What would have to be otherwise in print."""
+    effect: str
+    """What that would settle, and what it would leave."""
+    settles: bool = True
+    """Whether it would settle the whole of it."""
+    in_any: str = Field(default="", exclude=True)
+    """The effect without its reading; the effect itself if empty; not in JSON."""
+    brief: str = Field(default="", exclude=True)
+    """The effect in fewer words, for a card; the effect itself if empty; not in JSON."""
+
+
+class Cause(Entry):
+    """One thing that speaks against something printed; findings that follow from it stand below."""
+
+    severity: Severity
+    """The gravest of its findings."""
+    rule: str
+    """Permanent id of the rule that saw it first."""
+    claim: str | None
+    """What it is about; null where it is about the case or a table."""
+    says: str
+    """One or two sentences with the numbers, under the first of its readings."""
+    head: Finding | None = Field(default=None, exclude=True)
+    """Its finding under that reading; None where a cause is made by hand; not in JSON."""
+    readings: tuple[str, ...]
+    """The readings under which it holds; empty where it depends on none."""
+    elsewhere: str = Field(default="", exclude=True)
+    """What contradicts the same claim under all other readings; empty where nothing does or there
+    are none; not in JSON."""
+    explanations: tuple[Explanation, ...]
+    """The most charitable first; empty where none that was tried fits the numbers."""
+    consequences: tuple[Consequence, ...]
+
+
+class Edit(Entry):
+    """One printed thing that is to read otherwise; all edits of a draft hold together."""
+
+    claim: str | None
+    """Id of the claim; null where the text as a whole is to say something."""
+    key: str
+    """Key of the claim in the case file; `claim` where it is to be left out as a whole, `readings`
+    where the text is to say which reading is meant."""
+    printed: tuple[str, ...]
+    """What stands there."""
+    becomes: tuple[str, ...]
+    """What is to stand there; empty where nothing is."""
+    trigger: str | None
+    """Id of the claim that is wrong without it; null where it follows from other edits alone."""
+
+
+class Advice(Entry):
+    """One thing to change in a draft, in the second person."""
+
+    urgency: Urgency
+    where: str
+    """Place in the draft."""
+    claim: str | None
+    """Id of the claim; null where it is about the case, a table or an algorithm."""
+    says: str
+    """What was found."""
+    change: str
+    """How to fix it; numbers that it names were computed and checked."""
+    edits: tuple[Edit, ...]
+    """The same as facts; empty where no number mends it. After all edits of the draft, an audit
+    finds nothing but what has none."""
+
+
+class UsedCertificate(Entry):
+    """A certificate that the audit proved again and rests on."""
+
+    file: str
+    """Name of the file."""
+    sha256: str
+    """Of the file."""
+    subject: Subject
+    """Curves that it speaks about."""
+
+
+class Provenance(Entry):
+    """Date, versions, hashes and the command that makes the audit again."""
+
+    date: str
+    """Day of the audit in UTC, such as "2026-01-31"; that of SOURCE_DATE_EPOCH where it is set."""
+    trajgap: str
+    """Version."""
+    commit: OrWhy[str]
+    """Of the git checkout that it ran from; ends with "+changes" where files differ from it."""
+    libraries: dict[str, str]
+    """Versions of Python and of the libraries that can move a digit or a pixel."""
+    seeds: Count
+    """Seeds of each replay, from 0 on."""
+    case_sha256: OrWhy[str]
+    """Of the case file."""
+    certificates: tuple[UsedCertificate, ...]
+    command: str
+    """What makes the audit again."""
+    citation: str
+    """BibTeX entry for this audit."""
 
 
 class AuditedCase(Entry):

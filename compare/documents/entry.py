@@ -70,10 +70,6 @@ def known(value: T | None, why: str | None = None) -> T | Why:
     value : object or None
     why : str, optional
         Why it is None.
-
-    Returns
-    -------
-    object or Why
     """
     return Why(why or "not computed") if value is None else value
 

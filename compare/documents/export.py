@@ -13,18 +13,13 @@ from pydantic.json_schema import GenerateJsonSchema, models_json_schema
 from ...problem import case_schema
 from .audited import AuditDocument
 from .benched import BenchDocument
-from .case_shown import ShowDocument
-from .certified import CertifyDocument
-from .checked import CheckDocument
-from .diffed import CaseDiffDocument
+from .certified import CertifyDocument, VerifyDocument
+from .checked import CheckDocument, MotionCheckDocument
 from .entry import SCHEMA, Document, Why
-from .explain_shown import ExplainDocument
 from .finding import Caveat, CaveatKind
-from .listed import CasesDocument
-from .motion_checked import MotionCheckDocument
+from .lookups import CaseDiffDocument, CasesDocument, ExplainDocument, ShowDocument
 from .solved import SolveDocument
 from .suite import SuiteDocument, SuiteShowDocument
-from .verified import VerifyDocument
 from .vocabulary import VOCABULARY, Rule, Words, meaning, meanings
 
 DOCUMENTS: tuple[type[Document], ...] = (
@@ -143,10 +138,6 @@ def filled(text: str, rules: Iterable[Rule]) -> str:
         A table stands between ``<!-- table: NAME -->`` and ``<!-- end -->``.
     rules : iterable of Rule
         Of the audit, which the documents do not know.
-
-    Returns
-    -------
-    str
     """
     now = tables(rules)
     return _TABLE.sub(lambda place: f"{place[1]}{now[place[2]]}", text)

@@ -81,11 +81,6 @@ def qualified(verdict: str, beside: str) -> str:
 def said_beside(verdict: ClaimVerdict, caveats: Iterable[Caveat]) -> str:
     """What stands beside a verdict; what holds by construction rests on no numbers at all.
 
-    Parameters
-    ----------
-    verdict : ClaimVerdict
-    caveats : iterable of Caveat
-
     Returns
     -------
     str
@@ -107,10 +102,6 @@ def _beside(verdict: ClaimVerdict, caveats: Iterable[Caveat]) -> list[str]:
 
 def worth_little(judgements: Sequence[Judgement]) -> str:
     """How many of some claims hold by construction or on what is doubted; empty where none does.
-
-    Parameters
-    ----------
-    judgements : sequence of Judgement
 
     Returns
     -------
@@ -135,10 +126,6 @@ def same_reason(text: str, where: str, own: str) -> str:
         Words and place of the earlier claim.
     own : str
         Place of this one; where it is the same, the words tell them apart.
-
-    Returns
-    -------
-    str
     """
     called = f"at {where}" if where != own else f"for “{text.rstrip('.')}”"
     return f"For the reason given {called}."

@@ -8,9 +8,9 @@ from ...nlp import Evidence, PerJointSolution, Route, Solution, Status
 from ...nlp.optimum import Active
 from ...nlp.retiming import Retiming
 from ...problem import Coupling, Verdict
+from .checked import WrittenMotion
 from .entry import Count, Document, Entry, OrLeftOut, OrWhy, Real, Why, known
 from .finding import UNCERTIFIED
-from .motion_checked import WrittenMotion
 from .vocabulary import Limited
 
 NO_OTHER_ROUTE = "no second route knows this curve and this many durations"
@@ -167,10 +167,6 @@ def solve_result(
         joint.
     shared : Solution, optional
         Of joints that do not share their durations: the optimum if they did.
-
-    Returns
-    -------
-    SolveResult
     """
     ids = _Asked(case=case, problem=problem, reading=reading, coupling=Coupling.SHARED)
     if isinstance(answer, Solution):

@@ -108,10 +108,6 @@ def instance_document(one: BenchmarkInstance, file: str | None) -> SuiteShowDocu
     one : BenchmarkInstance
     file : str or None
         Where its certificate lies.
-
-    Returns
-    -------
-    SuiteShowDocument
     """
     case = one.case()
     return SuiteShowDocument(

@@ -237,10 +237,6 @@ def si_unit(quantity: str, linear: bool) -> str:
 def meanings(*enums: type[StrEnum]) -> dict[str, str]:
     """The words of enumerations that are explained there, with their explanations.
 
-    Parameters
-    ----------
-    *enums : type of StrEnum
-
     Returns
     -------
     dict

@@ -167,10 +167,6 @@ def with_readings(
         Whether its word stands in front: where readings give different ones.
     why : bool
         Whether an implausible reading has its reason beside it.
-
-    Returns
-    -------
-    tuple of str
     """
     text, notes = _under(one.readings, computed, named, _FEW, why=why)
     if len(one.each) > 1:

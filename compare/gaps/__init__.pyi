@@ -1,135 +1,111 @@
-from .benching import BenchPlan, Entrant, Runs, bench, measure_gaps, plan_bench, run_bench
-from .engines import Engine, on_dask, on_this_machine, outcomes
-from .exports import COLUMNS, check_export, export_rows, rows_text
+from .benching import (
+    BenchPlan as BenchPlan,
+    Entrant as Entrant,
+    Runs as Runs,
+    bench as bench,
+    measure_gaps as measure_gaps,
+    plan_bench as plan_bench,
+    run_bench as run_bench,
+)
+from .engines import (
+    Engine as Engine,
+    on_dask as on_dask,
+    on_this_machine as on_this_machine,
+    outcomes as outcomes,
+)
+from .exports import (
+    COLUMNS as COLUMNS,
+    check_export as check_export,
+    export_rows as export_rows,
+    rows_text as rows_text,
+)
 from .leaderboard import (
-    LEADERBOARD,
-    SIZES,
-    Board,
-    Ranked,
-    boards,
-    curve_of,
-    leaderboard_rows,
-    leaderboard_study,
-    size_of,
+    BOARD_COLUMNS as BOARD_COLUMNS,
+    LEADERBOARD as LEADERBOARD,
+    SIZES as SIZES,
+    Board as Board,
+    Ranked as Ranked,
+    board_cells as board_cells,
+    boards as boards,
+    curve_of as curve_of,
+    leaderboard_rows as leaderboard_rows,
+    leaderboard_study as leaderboard_study,
+    size_of as size_of,
 )
-from .many_problems import overall, relative_rows
-from .optimality_gap import gap, reference_of
-from .pairs import compare_pairs, vargha_delaney
-from .rows import Bracket, Row, RowStatus, Trial, against, canonical, checkpoints, failed, trace_of
-from .sessions import StudySession, run_study, study_rows, unfinished
-from .standings import bench_result, target_reached, totals_of
+from .many_problems import (
+    overall as overall,
+    relative_rows as relative_rows,
+)
+from .optimality_gap import (
+    gap as gap,
+    reference_of as reference_of,
+)
+from .rows import (
+    Bracket as Bracket,
+    Row as Row,
+    RowStatus as RowStatus,
+    Trial as Trial,
+    against as against,
+    canonical as canonical,
+    checkpoints as checkpoints,
+    failed as failed,
+    trace_of as trace_of,
+)
+from .sessions import (
+    StudySession as StudySession,
+    run_study as run_study,
+    study_rows as study_rows,
+    unfinished as unfinished,
+)
+from .standings import (
+    bench_result as bench_result,
+    target_reached as target_reached,
+    totals_of as totals_of,
+)
 from .statistics import (
-    SETTLED,
-    Spread,
-    quantiles,
-    settled_at,
-    share_interval,
-    share_of_luck,
-    share_of_pairs,
-    spread,
+    SETTLED as SETTLED,
+    Spread as Spread,
+    compare_pairs as compare_pairs,
+    quantiles as quantiles,
+    settled_at as settled_at,
+    share_interval as share_interval,
+    share_of_luck as share_of_luck,
+    share_of_pairs as share_of_pairs,
+    spread as spread,
+    vargha_delaney as vargha_delaney,
 )
-from .store import Store
-from .studies import StudyPlan, StudyProblem, load_study, parse_study
+from .store import Store as Store
+from .studies import (
+    StudyPlan as StudyPlan,
+    StudyProblem as StudyProblem,
+    load_study as load_study,
+    parse_study as parse_study,
+)
 from .summaries import (
-    LADDER,
-    SOLVED,
-    Summary,
-    read_summaries,
-    summaries_text,
-    summary_of,
-    summed_up,
+    LADDER as LADDER,
+    SOLVED as SOLVED,
+    Summary as Summary,
+    read_summaries as read_summaries,
+    summaries_text as summaries_text,
+    summary_of as summary_of,
+    summed_up as summed_up,
 )
 from .targets import (
-    CURVE_TARGETS,
-    TARGETS,
-    band,
-    expected_running_time,
-    hit,
-    share_of_targets,
-    share_within,
-    success_interval,
+    CURVE_TARGETS as CURVE_TARGETS,
+    TARGETS as TARGETS,
+    band as band,
+    expected_running_time as expected_running_time,
+    hit as hit,
+    share_of_targets as share_of_targets,
+    share_within as share_within,
+    success_interval as success_interval,
 )
-from .trial_process import TrialOutcome, run_apart
-from .trials import DESCENT, origin_of, run_trial
-
-__all__ = [
-    "COLUMNS",
-    "CURVE_TARGETS",
-    "DESCENT",
-    "LADDER",
-    "LEADERBOARD",
-    "SETTLED",
-    "SIZES",
-    "SOLVED",
-    "TARGETS",
-    "BenchPlan",
-    "Board",
-    "Bracket",
-    "Engine",
-    "Entrant",
-    "Ranked",
-    "Row",
-    "RowStatus",
-    "Runs",
-    "Spread",
-    "Store",
-    "StudyPlan",
-    "StudyProblem",
-    "StudySession",
-    "Summary",
-    "Trial",
-    "TrialOutcome",
-    "against",
-    "band",
-    "bench",
-    "bench_result",
-    "boards",
-    "canonical",
-    "check_export",
-    "checkpoints",
-    "compare_pairs",
-    "curve_of",
-    "expected_running_time",
-    "export_rows",
-    "failed",
-    "gap",
-    "hit",
-    "leaderboard_rows",
-    "leaderboard_study",
-    "load_study",
-    "measure_gaps",
-    "on_dask",
-    "on_this_machine",
-    "origin_of",
-    "outcomes",
-    "overall",
-    "parse_study",
-    "plan_bench",
-    "quantiles",
-    "read_summaries",
-    "reference_of",
-    "relative_rows",
-    "rows_text",
-    "run_apart",
-    "run_bench",
-    "run_study",
-    "run_trial",
-    "settled_at",
-    "share_interval",
-    "share_of_luck",
-    "share_of_pairs",
-    "share_of_targets",
-    "share_within",
-    "size_of",
-    "spread",
-    "study_rows",
-    "success_interval",
-    "summaries_text",
-    "summary_of",
-    "summed_up",
-    "target_reached",
-    "totals_of",
-    "trace_of",
-    "unfinished",
-    "vargha_delaney",
-]
+from .trial_process import (
+    TrialOutcome as TrialOutcome,
+    run_apart as run_apart,
+)
+from .trials import (
+    DESCENT as DESCENT,
+    origin_of as origin_of,
+    run_trial as run_trial,
+)

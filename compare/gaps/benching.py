@@ -211,10 +211,6 @@ def plan_bench(
     name, reading : str
         What rows call the problem.
 
-    Returns
-    -------
-    BenchPlan
-
     Raises
     ------
     TrajgapError

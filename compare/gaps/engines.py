@@ -50,10 +50,6 @@ def on_this_machine(workers: int) -> Iterator[Engine]:
     ----------
     workers : int
         1 runs one trial after another, in a process of its own all the same.
-
-    Yields
-    ------
-    Engine
     """
     with ExitStack() as stack:
         crew = Crew()
@@ -73,10 +69,6 @@ def on_dask(address: str) -> Iterator[Engine]:
     ----------
     address : str
         Of the scheduler, such as "tcp://node1:8786".
-
-    Yields
-    ------
-    Engine
 
     Raises
     ------
@@ -114,10 +106,6 @@ def outcomes(trials: Iterable[Trial], engine: Engine) -> Iterator[TrialOutcome]:
     trials : iterable of Trial
         Read as workers become free.
     engine : Engine
-
-    Yields
-    ------
-    TrialOutcome
 
     Raises
     ------

@@ -84,10 +84,6 @@ def run_study(
     progress : callable
         Called before the first run and after each.
 
-    Returns
-    -------
-    StudySession
-
     Raises
     ------
     ProcessError

@@ -19,9 +19,8 @@ from ..documents import (
     value_or_none,
 )
 from .optimality_gap import gap
-from .pairs import compare_pairs
 from .rows import Row, RowStatus
-from .statistics import quantiles
+from .statistics import compare_pairs, quantiles
 from .targets import (
     TARGETS,
     expected_running_time,
@@ -70,10 +69,6 @@ def bench_result(
     problem, reading : str
     budget, seeds : int
     notes : tuple of str
-
-    Returns
-    -------
-    BenchResult
     """
     reference = gap(1.0, optimum).reference
     standings = [_standing(label, one, reference) for label, one in rows.items()]
@@ -152,10 +147,6 @@ def target_reached(wanted: float, hits: Array, spent: Array) -> TargetReached:
         The relative gap.
     hits, spent : ndarray, shape (runs,)
         Evaluations until each run reaches it, inf where it does not, and those of the whole run.
-
-    Returns
-    -------
-    TargetReached
     """
     reached = int(np.isfinite(hits).sum())
     lowest, highest = success_interval(reached, hits.size)

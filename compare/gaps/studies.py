@@ -34,7 +34,7 @@ from .benching import (
     first_range,
     run_budget,
 )
-from .references import bracket_of
+from .optimality_gap import bracket_of
 from .rows import Bracket, Trial, canonical
 from .store import Store
 from .study_file import STUDY_FORMAT, OptimizerBlock, ProblemsBlock, StudyFile
@@ -174,14 +174,6 @@ def _seeds(name: str, asked: StudyFile) -> int:
 def load_study(path: Path) -> StudyPlan:
     """Read a study file, and everything that it names.
 
-    Parameters
-    ----------
-    path : Path
-
-    Returns
-    -------
-    StudyPlan
-
     Raises
     ------
     CaseError
@@ -201,10 +193,6 @@ def parse_study(text: str, file: str, folder: Path) -> StudyPlan:
         Name for messages.
     folder : Path
         Where the paths in it start.
-
-    Returns
-    -------
-    StudyPlan
 
     Raises
     ------

@@ -72,10 +72,6 @@ def summary_of(label: str, rows: Sequence[Row]) -> Summary:
         Of the optimiser.
     rows : sequence of Row
         At least one; of a problem whose optimum is known.
-
-    Returns
-    -------
-    Summary
     """
     first = rows[0]
     optimum = first.reference_upper
@@ -105,11 +101,6 @@ def summary_of(label: str, rows: Sequence[Row]) -> Summary:
 
 def summed_up(study: StudyPlan, store: Store) -> Iterator[Summary]:
     """Sum up what a store holds of a study, leaving out what is not complete.
-
-    Parameters
-    ----------
-    study : StudyPlan
-    store : Store
 
     Yields
     ------

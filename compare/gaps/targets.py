@@ -27,11 +27,6 @@ def hit(row: Row, total: float) -> float:
 
     Counted at the log-spaced evaluations of the row's trace, so up to 7.5 % too many and never
     too few. A run whose answer fails `trajgap.problem.check` never hits.
-
-    Parameters
-    ----------
-    row : Row
-    total : float
     """
     if not row.feasible:
         return np.inf

@@ -223,10 +223,6 @@ atexit.register(_crew.end)
 def run_apart(trial: Trial) -> TrialOutcome:
     """Run a trial in a process that belongs to this thread; it is started at the first trial.
 
-    Parameters
-    ----------
-    trial : Trial
-
     Returns
     -------
     TrialOutcome

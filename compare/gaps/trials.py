@@ -104,10 +104,6 @@ def _optimizer(trial: Trial) -> Algorithm[Any] | Search:
 def run_trial(trial: Trial) -> Row:
     """Run a trial in this process.
 
-    Parameters
-    ----------
-    trial : Trial
-
     Returns
     -------
     Row

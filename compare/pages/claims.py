@@ -1,4 +1,4 @@
-"""Claims on a report page: words, place, digits, verdict, why; and the causes behind them."""
+"""Claims on a report page with verdict and why, their causes, and what to change in a draft."""
 
 from __future__ import annotations
 
@@ -21,16 +21,17 @@ from ..documents import (
     Said,
     Scope,
     Severity,
+    Urgency,
     capital,
     grouped,
     opened,
     qualified,
+    same_reason,
     under,
     with_readings,
     worth_little,
 )
-from .blocks import Behind, Block, Cell, Claimed, Prose, Section, slug, word
-from .said_once import shown_once
+from .blocks import Behind, Block, Cell, Claimed, Folded, Grid, Prose, Section, slug, text, word
 
 _AGAINST = (ClaimVerdict.REFUTED, ClaimVerdict.INCONSISTENT, ClaimVerdict.DEPENDS)
 """Verdicts that stand in the open, the gravest first."""
@@ -219,3 +220,70 @@ def _to(one: CaseAudit, claim_id: str) -> Cell:
     claim = one.case.claim(claim_id)
     said = f"{claim_text(one.case, claim)} ({place(claim)})"
     return Cell(said, target=file_name("claim", claim.id))
+
+
+def shown_once(found: Sequence[Claimed]) -> Iterator[Claimed]:
+    """Claims in order, without what an earlier one has said.
+
+    Returns
+    -------
+    iterator of Claimed
+        Claims of the same words and the same verdict are one with several places. A reason that an
+        earlier claim gave is named, and a long caveat is given in full once.
+    """
+    groups: dict[tuple[str, ...], list[Claimed]] = {}
+    for one in found:
+        groups.setdefault((one.text, one.verdict.text, one.holds), []).append(one)
+    first: dict[tuple[str, ...], Claimed] = {}
+    seen: set[Caveat] = set()
+    for group in groups.values():
+        one = _joined(group)
+        before = first.setdefault((*one.why, *one.more), one)
+        if before is not one:
+            one = replace(one, why=(same_reason(before.text, before.where, one.where),), more=())
+        caveats = tuple(
+            Caveat(c.kind, f"{c.says} (see above).") if c in seen else c for c in one.caveats
+        )
+        seen.update(caveat for caveat in one.caveats if caveat.why)
+        yield replace(one, caveats=caveats)
+
+
+def _joined(group: Sequence[Claimed]) -> Claimed:
+    """Claims of the same words as one, with the reasons of the others a fold away."""
+    one, *others = group
+    if not others:
+        return one
+    more = [
+        f"{other.where}: {' '.join((*other.why, *other.more))}"
+        for other in others
+        if (other.why, other.more) != (one.why, one.more)
+    ]
+    return replace(
+        one,
+        where="; ".join(dict.fromkeys(c.where for c in group)),
+        printed="; ".join(dict.fromkeys(c.printed for c in group if c.printed)),
+        more=(*one.more, *more),
+        caveats=tuple(dict.fromkeys(caveat for c in group for caveat in c.caveats)),
+        answer=" ".join(dict.fromkeys(c.answer for c in group if c.answer)),
+        also=tuple(c.anchor for c in others),
+    )
+
+
+def advised(one: CaseAudit) -> Section:
+    """What contradicts itself or is doubtful stands open, what is left open behind a fold."""
+    pressing = [a for a in one.advice if a.urgency is not Urgency.OPEN]
+    opened = [a for a in one.advice if a.urgency is Urgency.OPEN]
+    columns = ("", "where", "what was found", "what to change")
+    grids = [
+        Grid(
+            columns,
+            tuple((word(a.urgency), text(a.where), text(a.says), text(a.change)) for a in some),
+            prose=True,
+        )
+        for some in (pressing, opened)
+        if some
+    ]
+    blocks: list[Block] = list(grids[:1] if pressing else [])
+    if opened:
+        blocks.append(Folded(f"{len(opened)} things that a reader cannot check", (grids[-1],)))
+    return Section("before-you-submit", "Before you submit", tuple(blocks))

@@ -50,10 +50,6 @@ def crate_library() -> Any:
 def crate_of(report: AuditReport) -> bytes:
     """The archive that holds an audit and all that it was made from.
 
-    Parameters
-    ----------
-    report : AuditReport
-
     Returns
     -------
     bytes

@@ -1,4 +1,4 @@
-"""Templates and style of all pages, and how text becomes safe in them."""
+"""Templates and style of all pages, how text becomes safe in them, and the page as HTML."""
 
 from __future__ import annotations
 

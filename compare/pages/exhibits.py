@@ -37,16 +37,7 @@ _NEGLIGIBLE = 1e-9
 
 
 def exhibits_of_motion(study: Study) -> list[Section]:
-    """Sections with the workspace, the control polygon and the jumps; absent where there is none.
-
-    Parameters
-    ----------
-    study : Study
-
-    Returns
-    -------
-    list of Section
-    """
+    """Sections with workspace, control polygon and jumps; absent where there is none."""
     sections = (
         Section("jumps", "Jumps of the velocity", tuple(_jumps(study)), folded=True),
         Section("control-polygon", "Control polygon", tuple(_polygons(study)), folded=True),

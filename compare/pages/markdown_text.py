@@ -27,10 +27,6 @@ _LIST = re.compile(r"^(\s*)([-+]|\d+[.)])(\s)", re.MULTILINE)
 def markdown(page: Page) -> str:
     """Render a page; pictures are links to the files beside it.
 
-    Parameters
-    ----------
-    page : Page
-
     Returns
     -------
     str

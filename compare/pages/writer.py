@@ -23,9 +23,8 @@ from ..audits import AuditReport, CaseAudit, package_version
 from ..documents import AuditDocument, ClaimVerdict, Why, json_text, more_errors, tally
 from ..pictures import themed
 from . import motions_shown as report_pictures
-from .advised import advised
 from .blocks import GLOSSARY, Block, CardShown, Folded, Page, Prose, Section, Terms
-from .claims import against, folded_claims
+from .claims import advised, against, folded_claims
 from .environment import environment, style
 from .exhibits import exhibits_of_motion, exhibits_of_search
 from .glossary import glossary
@@ -124,16 +123,7 @@ def foreign(out: Path) -> str | None:
 
 
 def report_files(report: AuditReport) -> dict[str, str]:
-    """Every file of a report, by its path in the folder.
-
-    Parameters
-    ----------
-    report : AuditReport
-
-    Returns
-    -------
-    dict of str to str
-    """
+    """Every file of a report, by its path in the folder."""
     document = report.document
     shapes = environment()
     files: dict[str, str] = {}
@@ -177,16 +167,7 @@ def _row(one: CaseAudit) -> dict[str, Any]:
 
 
 def case_page(one: CaseAudit) -> Page:
-    """Everything that the page of one case says, in order.
-
-    Parameters
-    ----------
-    one : CaseAudit
-
-    Returns
-    -------
-    Page
-    """
+    """Everything that the page of one case says, in order."""
     source, made = one.document.source, one.document.provenance
     printed = ", ".join(
         str(p)

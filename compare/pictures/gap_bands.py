@@ -208,10 +208,6 @@ def profile_picture(profiles: Mapping[str, tuple[Array, Array]], *, title: str) 
     profiles : mapping of str to (ratios, shares)
         Of each optimiser, as `share_within` gives them; colours and line styles in this order.
     title : str
-
-    Returns
-    -------
-    Picture
     """
     description = "; ".join(
         f"{label}: {100 * float(shares[ratios <= 1.01].max(initial=0.0)):.0f} % of runs end within "

@@ -63,10 +63,6 @@ def leaderboard_picture(
     gaps : sequence of float
         Relative, falling.
     title : str
-
-    Returns
-    -------
-    Picture
     """
     description = "; ".join(
         f"{panel.title}: {label}, " + ", ".join(

@@ -44,11 +44,6 @@ class PaperBar:
 def papers_picture(bars: Sequence[PaperBar], *, title: str) -> Picture:
     """A bar for each paper, from its optimum at the left to its printed total.
 
-    Parameters
-    ----------
-    bars : sequence of PaperBar
-    title : str
-
     Returns
     -------
     Picture

@@ -327,10 +327,6 @@ def reached_picture(
     waterfalls : iterable of Waterfall
         Of the case, which have its printed totals.
     title : str
-
-    Returns
-    -------
-    Picture
     """
     ends = {
         f"{one.handling.replace('-', ' ')}: {one.name}": np.array(

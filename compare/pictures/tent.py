@@ -83,10 +83,6 @@ def tent_scatter(
         Range to which [0, 1] is scaled.
     beta : float
         Between 0 and 1; its shortest decimal is meant.
-
-    Returns
-    -------
-    TentScatter
     """
     start = repr(float(np.random.default_rng(0).random()))
     share = Fraction(repr(beta))
@@ -136,10 +132,6 @@ def tent_picture(scatter: TentScatter, *, unit: str, title: str) -> Picture:
     unit : str
         Of the coordinates.
     title : str
-
-    Returns
-    -------
-    Picture
     """
     zero = scatter.orbit.zero_at
     rest = f"exactly 0 from step {zero} on" if zero is not None else "never exactly 0"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections import Counter
 from collections.abc import Callable, Sequence
 from functools import lru_cache
@@ -14,8 +13,8 @@ from docutils.parsers.rst import directives
 from sphinx.util.docutils import SphinxDirective
 
 from ...heuristics import KINDS
-from ..documents import percent
 from ..gaps import (
+    BOARD_COLUMNS,
     DESCENT,
     LADDER,
     SIZES,
@@ -23,6 +22,7 @@ from ..gaps import (
     Board,
     Ranked,
     Summary,
+    board_cells,
     boards,
     curve_of,
     leaderboard_rows,
@@ -39,9 +39,6 @@ _HANDLINGS = {
 """What each handling does, as the title of its panel."""
 _MIDDLE = SOLVED.index(1e-3)
 """Place of the target that sentences speak of: 0.1 %, which printed digits can tell apart."""
-COLUMNS = ("place", "optimiser", "runs within 1 %", "within 0.1 %", "within 0.01 %",
-           "median gap", "evaluations to 1 %", "to 0.1 %", "to 0.01 %", "failed")  # fmt: skip
-"""What a row of the table says."""
 
 
 @lru_cache(maxsize=1)
@@ -127,31 +124,12 @@ def _panel(board: Board) -> BoardPanel:
     )
 
 
-def cells(place: int | None, one: Ranked) -> list[nodes.Node | str]:
-    """The row of an optimiser, as `COLUMNS`; the reference has no place."""
-    black = place is not None
-    return [
-        str(place or "–"),
-        one.optimizer if black else f"{one.optimizer} (reference, no black box)",
-        *(_with_interval(share, low, high) for share, low, high in one.solved),
-        percent(one.median) if math.isfinite(one.median) else "no answer",
-        *(_evaluations(ends) if black else "–" for ends in one.expected),
-        str(one.failed),
-    ]
-
-
-def _with_interval(share: float, low: float, high: float) -> nodes.Node:
-    found = nodes.inline("", f"{100 * share:.0f} %")
-    found += nodes.inline("", f" ({100 * low:.0f} to {100 * high:.0f})", classes=["trajgap-beside"])
-    return found
-
-
-def _evaluations(ends: tuple[float, float, float]) -> nodes.Node | str:
-    value, low, high = ("∞" if math.isinf(end) else f"{end:.0f}" for end in ends)
-    if value == "∞":
-        return "–"
-    found = nodes.inline("", value)
-    found += nodes.inline("", f" ({low} to {high})", classes=["trajgap-beside"])
+def _with_interval(said: str, interval: str) -> nodes.Node | str:
+    """A value, with its interval in brackets where it has one."""
+    if not interval:
+        return said
+    found = nodes.inline("", said)
+    found += nodes.inline("", f" ({interval})", classes=["trajgap-beside"])
     return found
 
 
@@ -186,8 +164,10 @@ class Leaderboard(SphinxDirective):
         raise self.error("trajgap-leaderboard: say said, picture, table, curves or sizes")
 
     def _table(self, board: Board) -> list[nodes.Node]:
-        rows = [cells(board.place(one), one) for one in board.standings]
-        found: list[nodes.Node] = [table(COLUMNS, rows, "trajgap-sortable")]
+        rows = [
+            [_with_interval(*cell) for cell in board_cells(board, one)] for one in board.standings
+        ]
+        found: list[nodes.Node] = [table(BOARD_COLUMNS, rows, "trajgap-sortable")]
         if board.missing:
             found.append(paragraph(f"Not complete yet: {', '.join(board.missing)}."))
         return found
@@ -212,8 +192,9 @@ class Leaderboard(SphinxDirective):
         return table(("optimiser", *heads), rows, "trajgap-sortable")
 
 
-def _share_of(rows: Sequence[Summary]) -> nodes.Node:
+def _share_of(rows: Sequence[Summary]) -> nodes.Node | str:
     """Share of the runs within 0.1 %, each problem counting alike, with Wilson's interval."""
     at, runs = LADDER.index(SOLVED[_MIDDLE]), sum(row.runs for row in rows)
     share = float(np.mean([row.within[at] / row.runs for row in rows]))
-    return _with_interval(share, *success_interval(round(share * runs), runs))
+    low, high = success_interval(round(share * runs), runs)
+    return _with_interval(f"{100 * share:.0f} %", f"{100 * low:.0f} to {100 * high:.0f}")

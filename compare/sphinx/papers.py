@@ -150,10 +150,6 @@ def paper_rows(results: Results, kinds: str = "") -> tuple[PaperRow, ...]:
     results : Results
     kinds : str
         Kinds of source, separated by spaces; all if empty.
-
-    Returns
-    -------
-    tuple of PaperRow
     """
     cases = {n: results.case(n) for n in results.names if "cases" in results.document(n)}
     chosen = (
@@ -172,10 +168,6 @@ def paper_row(name: str, case: Mapping[str, Any]) -> PaperRow:
     name : str
     case : mapping
         As `Results.case` returns it.
-
-    Returns
-    -------
-    PaperRow
     """
     counts = Counter(ClaimVerdict(one["verdict"]) for one in case["verdicts"])
     decided = counts.total() - counts[_OPEN]
@@ -282,16 +274,7 @@ def distance_of(case: Mapping[str, Any]) -> Distance | None:
 
 
 def papers_drawn(rows: Iterable[PaperRow]) -> Picture:
-    """The papers that minimise time alone and print a total, each beside its optimum.
-
-    Parameters
-    ----------
-    rows : iterable of PaperRow
-
-    Returns
-    -------
-    Picture
-    """
+    """The papers that minimise time alone and print a total, each beside its optimum."""
     bars = [
         PaperBar(
             row.cited or row.title.split(",")[0],

@@ -1,11 +1,13 @@
-"""Why a claim has its word: the first reason, the others folded, each with all its readings."""
+"""What a page says of claims: which are wanted, and why each has its word."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 from docutils import nodes
 
+from ...problem import TrajgapError
 from ..documents import ClaimVerdict, Named, Said, grouped, in_full
 from .parts import folded, paragraph
 
@@ -19,10 +21,6 @@ def reasons(case: dict[str, Any], verdict: dict[str, Any]) -> list[nodes.Node]:
         Of a result.
     verdict : dict
         One of its verdicts.
-
-    Returns
-    -------
-    list of nodes
     """
     named, computed = names(case), tuple(verdict["readings"])
     said = [
@@ -45,3 +43,28 @@ def names(case: dict[str, Any]) -> Named:
     """What the readings of a result are called."""
     said = case["readings"] or {}
     return Named(said.get("labels", {}), said.get("implausible", {}), said.get("default", ""))
+
+
+def wanted_words(option: str) -> list[str]:
+    """The verdicts that an option names, separated by commas, in their order.
+
+    Raises
+    ------
+    TrajgapError
+        If one is no verdict on a claim: such a list would be empty whatever the case says.
+    """
+    words = [" ".join(word.split()) for word in option.split(",") if word.strip()]
+    for word in words:
+        if word not in tuple(ClaimVerdict):
+            known = ", ".join(ClaimVerdict)
+            raise TrajgapError(f":verdict: {word!r} is no verdict on a claim; use some of: {known}")
+    return words
+
+
+def none_said(wanted: Sequence[str]) -> str:
+    """A sentence in place of an empty list of claims."""
+    if not wanted:
+        return "No claim was audited."
+    *others, last = (f"“{word}”" for word in wanted)
+    said = f"{', '.join(others)} or {last}" if others else last
+    return f"No claim has the verdict {said}."

@@ -131,10 +131,10 @@ PLANTED: dict[tuple[str, str, int], dict[str, Any]] = {
     ("valid case files", "a fault", 2): {
         CLI + name: fails
         for name in (
-            "showing.show_case",
-            "checking.check_durations",
-            "solving.solve_case",
-            "auditing.audit_cases",
+            "show_command.show_document",
+            "check_command._check_durations",
+            "solve_command._solve_case",
+            "audit_command.read_cases",
         )
     },
     ("damaged case files", "two lines", 10): {f"{CLI}app._fail": two_lines},

@@ -175,7 +175,7 @@ def test_a_command_line_has_options_that_exist(line):
     name = words[0]
     if name.startswith("-"):
         return
-    command = group.commands[name]
+    command = group.get_command(None, name)
     known = {o for p in command.params for o in (*p.opts, *p.secondary_opts)}
     assert {w.split("=")[0] for w in words[1:] if w.startswith("-")} <= known | {"-h", "--help"}
 

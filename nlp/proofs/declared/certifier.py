@@ -38,8 +38,8 @@ _LADDER = Ladder(
     near=0.2,
     growth=30.0,
 )
-"""From a gap of 0.1 on, boxes grow to 2 to 6 times as many, whatever the last gap. A gap of 0.3 takes
-few beside that."""
+"""From a gap of 0.1 on, boxes grow to 2 to 6 times as many, whatever the last gap; few are needed
+for a gap of 0.3."""
 _WEIGHT = 2.0**12
 """Sum of the weights of a leaf, about: finer ones spare no box at 1e-8, 1 in 80 at 1e-9."""
 _SAFE = 1e-12

@@ -16,7 +16,7 @@ from trajgap.compare.audits.case_audit import CaseAudit
 from trajgap.compare.audits.intervals import Intervals
 from trajgap.compare.audits.study import Study
 from trajgap.compare.audits.waterfall import waterfalls
-from trajgap.compare.cli.auditing import audited
+from trajgap.compare.cli.audit_command import audited
 from trajgap.compare.documents import AuditDocument, Why, facts
 from trajgap.compare.pages.verdicts import problems_audited
 from trajgap.nlp import Evidence, Outcome, Solution, Status, certificate, certify, printed_problem

@@ -19,7 +19,7 @@ from trajgap.compare.audits.case_audit import AuditReport, CaseAudit
 from trajgap.compare.audits.readings import answers, holding, segments
 from trajgap.compare.audits.rules.continuous_time import judge_motions
 from trajgap.compare.audits.study import Study
-from trajgap.compare.cli.auditing import audited
+from trajgap.compare.cli.audit_command import audited
 from trajgap.compare.documents import (
     AuditDocument,
     Cause,

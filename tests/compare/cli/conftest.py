@@ -55,9 +55,9 @@ def no_computing(monkeypatch: pytest.MonkeyPatch) -> None:
         raise AssertionError("computes")
 
     for name in (
-        "solving.solve",
-        "solving.solve_per_joint",
-        "checking.check",
+        "solve_command.solve_exactly",
+        "solve_command.solve_per_joint",
+        "check_command.judge",
         "certifying.certify",
     ):
         monkeypatch.setattr(f"trajgap.compare.cli.{name}", compute)

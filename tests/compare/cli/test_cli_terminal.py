@@ -18,7 +18,6 @@ from support.command_line import CASE, IRB, ONE, START, Run, on_terminal, strict
 from support.documents import SCHEMA
 from trajgap.compare.cli import main
 from trajgap.compare.cli import output as cli_output
-from trajgap.compare.cli import table as cli_table
 
 # --- odd but correct problems ---------------------------------------------------------------------
 
@@ -91,7 +90,7 @@ def test_no_digit_is_cut_off_in_a_narrow_window(monkeypatch: pytest.MonkeyPatch)
     rows = [("name", "3.296695", "prose " * 40)]
     for width in (20, 40, 200):
         monkeypatch.setenv("COLUMNS", str(width))
-        text = cli_output.rendered([cli_table.Columns(("a", ">total s", "…why"), rows)])
+        text = cli_output.rendered([cli_output.Columns(("a", ">total s", "…why"), rows)])
         assert "name" in text
         assert "3.296695" in text
         assert "…" in text
@@ -102,7 +101,7 @@ def test_prose_shares_what_the_window_leaves() -> None:
     """A narrow column of prose takes what it needs, one that would be cut off comes first."""
     words, cut = "some words of prose " * 5, "c" * 50
     rows = [("x" * 10, words, "short prose", cut)]
-    text = cli_output.rendered([cli_table.Columns(("firm", "~long", "~short", "…cut"), rows)])
+    text = cli_output.rendered([cli_output.Columns(("firm", "~long", "~short", "…cut"), rows)])
     # Tests have a window of 120 columns.
     assert max(map(len, text.splitlines())) == 120
     assert cut in text
@@ -152,7 +151,7 @@ def test_a_full_disk(arguments: tuple[str, ...]) -> None:
 def test_interrupted() -> None:
     # CasADi swallows a KeyboardInterrupt and would go on with a solve that was cut short.
     started = (
-        "import sys, trajgap.compare.cli.solving as c; from trajgap.compare.cli import main\n"
+        "import sys, trajgap.compare.cli.solve_command as c; from trajgap.compare.cli import main\n"
         "solve = c.solve_per_joint\n"
         "def slow(*a, **k):\n"
         "    print('solving', file=sys.stderr, flush=True)\n"
@@ -180,7 +179,7 @@ def test_interrupted_inside_a_library(run: Run, monkeypatch: pytest.MonkeyPatch)
     def stop(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("trajgap.compare.cli.solving.solve_per_joint", stop)
+    monkeypatch.setattr("trajgap.compare.cli.solve_command.solve_per_joint", stop)
     ended = run("solve", "mine.toml", "--out", "answer.json")
     assert ended == (130, "", "trajgap: interrupted\n")
     assert sorted(p.name for p in Path().iterdir()) == ["mine.toml"]
@@ -190,7 +189,7 @@ def test_a_fault_of_ours_is_told_apart(run: Run, monkeypatch: pytest.MonkeyPatch
     def fail(*_: object, **__: object) -> None:
         raise ZeroDivisionError
 
-    monkeypatch.setattr("trajgap.compare.cli.solving.solve_per_joint", fail)
+    monkeypatch.setattr("trajgap.compare.cli.solve_command.solve_per_joint", fail)
     code, out, err = run("solve", "mine.toml", "--out", "answer.json")
     assert (code, out) == (70, "")
     assert err.endswith("trajgap: a fault of trajgap itself, please report the lines above\n")

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from support.command_line import IRB, NAME, ONE, Run
 from support.shipped_problems import COVERED_PROBLEMS
-from trajgap.compare.cli import certifying, solving
+from trajgap.compare.cli import certifying, solve_command
 from trajgap.nlp import shipped
 from trajgap.nlp.optimum import closed_forms
 from trajgap.problem import Verdict, check, load_case
@@ -42,13 +42,13 @@ def test_time_that_is_not_needed_changes_nothing(run: Run) -> None:
 
 def test_the_limit_is_that_of_each_problem(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[float] = []
-    real = solving.stopping_after
+    real = solve_command.stopping_after
 
     def noted(seconds: float) -> Any:
         asked.append(seconds)
         return real(seconds)
 
-    monkeypatch.setattr(solving, "stopping_after", noted)
+    monkeypatch.setattr(solve_command, "stopping_after", noted)
     found = run.document("solve", IRB, "--problem", "limit-80", "--time", "0")
     assert asked == [0.0] * len(found["results"])
     assert len(asked) > 1

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from trajgap.compare.cli import solving
+from trajgap.compare.cli import solve_command as solving
 from trajgap.nlp import Evidence, Solution, Status, exact_problem, shipped_file, solve
 from trajgap.nlp.retiming import retime
 from trajgap.problem import Coupling, Limits, Problem, fit, load_case, three_five_three

@@ -84,7 +84,7 @@ def test_an_export_is_whole_and_needs_no_trajgap(run: Run, folder: Path) -> None
 def test_show_of_an_instance_whose_certificate_is_not_shipped(
     run: Run, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("trajgap.compare.cli.suite_listing._certificate", lambda one: None)
+    monkeypatch.setattr("trajgap.compare.cli.suite_command._certificate", lambda one: None)
     one = load_instance("353-irb460")
     out = run.done("suite", "show", one.name)
     assert one.command in out.splitlines()

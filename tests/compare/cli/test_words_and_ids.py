@@ -9,7 +9,7 @@ import pytest
 from support.command_line import IRB, PUMA, Run
 from support.made_up import claim, paper, total
 from trajgap.compare.audits import Pair, PrintedRow, Study, asked_as, in_words
-from trajgap.compare.cli import solving
+from trajgap.compare.cli import solve_command
 from trajgap.problem import load_case
 
 TITLE = "Shortest time of joint 5 under 80 °/s"
@@ -95,7 +95,7 @@ def test_a_problem_is_called_by_what_tells_it_from_others() -> None:
 
 def test_what_is_being_done_is_said_in_words(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     said: list[str] = []
-    monkeypatch.setattr(solving, "progress", lambda *_: nullcontext(said.append))
+    monkeypatch.setattr(solve_command, "progress", lambda *_: nullcontext(said.append))
     run.done("solve", IRB, *ONE.split())
     assert said == [WORDS]
     said.clear()

@@ -12,7 +12,7 @@ from support.checkout import ROOT
 from support.documents import SCHEMA, assert_reasons, assert_valid, plain, report
 from trajgap.compare.audits.rounding import RoundingBox, judge_rounding
 from trajgap.compare.audits.rules import RULES
-from trajgap.compare.cli.checking import check_result
+from trajgap.compare.cli.check_command import check_result
 from trajgap.compare.documents import (
     VOCABULARY,
     CheckDocument,

@@ -34,7 +34,7 @@ from trajgap.compare.gaps import (
     share_within,
     vargha_delaney,
 )
-from trajgap.compare.gaps.pairs import compare_pair, corrected
+from trajgap.compare.gaps.statistics import compare_pair, corrected
 from trajgap.compare.gaps.targets import hit, running_time_interval, success_interval
 from trajgap.compare.pages import bench_picture, write_bench
 from trajgap.heuristics import search_box

@@ -25,11 +25,11 @@ from trajgap.compare.documents import (
     Why,
 )
 from trajgap.compare.pages.blocks import Cell, Claimed, Folded, Grid, Page, Prose, Section, word
+from trajgap.compare.pages.claims import shown_once
 from trajgap.compare.pages.environment import environment, style
 from trajgap.compare.pages.markdown_text import markdown
 from trajgap.compare.pages.motions_shown import _totals
 from trajgap.compare.pages.numbers import where_time_goes
-from trajgap.compare.pages.said_once import shown_once
 from trajgap.compare.pages.units import both_units
 from trajgap.nlp import Evidence
 from trajgap.problem import load_case

@@ -7,9 +7,8 @@ from docutils import nodes
 from support.checkout import ROOT
 from trajgap.compare.documents import ClaimVerdict
 from trajgap.compare.sphinx import Results
-from trajgap.compare.sphinx.claim_words import wanted_words
 from trajgap.compare.sphinx.directives import readings_of
-from trajgap.compare.sphinx.reasons import reasons
+from trajgap.compare.sphinx.reasons import reasons, wanted_words
 from trajgap.compare.sphinx.suite import instances_of
 from trajgap.problem import TrajgapError
 from trajgap.problem.suite import list_instances, select_curve

@@ -4,22 +4,36 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from difflib import get_close_matches
-from pathlib import Path
+from typing import Annotated
 
+import typer
 from rich.console import RenderableType
 
 from ...problem import CaseError
+from .. import pages
 from ..audits import EXPLAINED, RULES
 from ..documents import ExplainDocument, ExplainedRule, ExplainedWord, json_text
-from ..pages import word_groups
-from .output import emit, new_output
-from .table import Columns, line
+from .options import AsJson, Out
+from .output import Columns, emit, line, new_output
 
 
-def explain(asked: Sequence[str], as_json: bool, out: Path | None) -> int:
-    """Explain rules and words; without any, list what can be explained."""
+def explain(
+    asked: Annotated[
+        list[str] | None,
+        typer.Argument(
+            metavar="[RULE|WORD]...", help="Such as TG201 or certified; all are listed by default."
+        ),
+    ] = None,
+    as_json: AsJson = False,
+    out: Out = None,
+) -> int:
+    """Explain a rule or a word of the reports.
+
+    A rule is explained with what it may conclude and an example. Without an argument, everything
+    that can be explained is listed.
+    """
     with new_output(out) as write:
-        document = _document(asked)
+        document = _document(asked or [])
         write(json_text(document))
     emit(document, _in_full if asked else _listed, as_json)
     return 0
@@ -57,7 +71,7 @@ def _rules() -> Iterator[ExplainedRule]:
 
 
 def _words() -> Iterator[ExplainedWord]:
-    for about, group in word_groups():
+    for about, group in pages.word_groups():
         for word, meaning in group.items():
             yield ExplainedWord(word=word, about=about, meaning=meaning)
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import Literal
 
 from rich.console import RenderableType
@@ -26,19 +25,23 @@ from ...problem.cases import (
 from ..audits import claim_text
 from ..documents import ShowDocument, capital, json_text, quoted, show_document
 from .input import read_case
-from .output import emit, new_output
-from .table import Columns, line
+from .options import AsJson, Out, ProblemId, ReadingId, Source
+from .output import Columns, emit, line, new_output
 
 
-def show_case(
-    source: str, problem: str | None, reading: str | None, as_json: bool, out: Path | None
+def show(
+    case: Source,
+    problem: ProblemId = None,
+    reading: ReadingId = None,
+    as_json: AsJson = False,
+    out: Out = None,
 ) -> int:
-    """Show one case."""
+    """Show what a case holds, and what it leaves open."""
     with new_output(out) as write:
-        case = read_case(source)
-        document = show_document(case, problem, reading)
+        found = read_case(case)
+        document = show_document(found, problem, reading)
         write(json_text(document))
-    emit(document, lambda shown: _tables(shown, case), as_json)
+    emit(document, lambda shown: _tables(shown, found), as_json)
     return 0
 
 

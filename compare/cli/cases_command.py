@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 from rich.console import RenderableType
 
 from ...problem import published_ids
 from ..documents import CasesDocument, cases_document, json_text
 from .input import read_case
-from .output import emit, new_output
-from .table import Columns
+from .options import AsJson, Out
+from .output import Columns, emit, new_output
 
 
-def list_cases(as_json: bool, out: Path | None) -> int:
+def cases(as_json: AsJson = False, out: Out = None) -> int:
     """List the published cases."""
     with new_output(out) as write:
         document = cases_document(read_case(name) for name in published_ids())

@@ -2,19 +2,42 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from typing import Annotated
 
+import typer
 from rich.console import RenderableType
 
 from ...problem import compare_transcriptions
 from ..documents import CaseDiffDocument, diff_document, json_text
 from .input import read_case
-from .output import emit, new_output
-from .table import Columns, line
+from .options import ENDS, AsJson, Out, Source
+from .output import Columns, emit, line, new_output
+
+# Commands on case files.
+case = typer.Typer(
+    add_completion=False,
+    rich_markup_mode=None,
+    no_args_is_help=True,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
 
 
-def diff_cases(first: str, second: str, words: bool, as_json: bool, out: Path | None) -> int:
-    """Compare two case files; 1 if they differ."""
+@case.callback(epilog=ENDS)
+def _case() -> None:
+    """Work on case files."""
+
+
+@case.command(epilog=ENDS)
+def diff(
+    first: Source,
+    second: Source,
+    words: Annotated[
+        bool, typer.Option("--words", help="Compare titles, notes and places in the paper too.")
+    ] = False,
+    as_json: AsJson = False,
+    out: Out = None,
+) -> int:
+    """Compare two transcriptions of one paper field by field; exit code 1 if they differ."""
     with new_output(out) as write:
         one, two = read_case(first), read_case(second)
         document = diff_document(first, second, compare_transcriptions(one, two, words))

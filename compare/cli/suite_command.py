@@ -7,7 +7,9 @@ import shlex
 from collections.abc import Mapping
 from importlib.resources import files
 from pathlib import Path
+from typing import Annotated
 
+import typer
 from rich.console import RenderableType
 
 from ...problem import CaseError, TrajgapError, replace_folder
@@ -19,6 +21,7 @@ from ...problem.suite import (
     plain_text,
     select_curve,
 )
+from .. import pages as written
 from ..documents import (
     SuiteDocument,
     SuiteShowDocument,
@@ -27,16 +30,35 @@ from ..documents import (
     suite_document,
     value_or_none,
 )
-from ..pages import suite_pages
-from .output import emit, new_output, progress, say
-from .table import Columns, command, line
+from .options import ENDS, AsJson, Out
+from .output import Columns, command, emit, line, new_output, progress, say
 
-_MARK = "suite.json"
-"""The file by which a folder that was written so is known."""
+# Commands of the suite.
+suite = typer.Typer(
+    add_completion=False,
+    rich_markup_mode=None,
+    invoke_without_command=True,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+Folder = Annotated[
+    Path, typer.Argument(metavar="FOLDER", help="A new or an empty folder, or one written so.")
+]
 
 
-def list_suite(curve: str | None, as_json: bool, out: Path | None) -> int:
-    """List the instances."""
+@suite.callback(epilog=ENDS)
+def _suite(
+    context: typer.Context,
+    curve: Annotated[
+        str | None,
+        typer.Option(metavar="WORD", help="Only curves with this word in their name: quintic."),
+    ] = None,
+    as_json: AsJson = False,
+    out: Out = None,
+) -> int:
+    """List problems whose optimum is known within proved bounds."""
+    if context.invoked_subcommand is not None:
+        return 0
     chosen = list_instances() if curve is None else select_curve(curve)
     if not chosen:
         known = ", ".join(sorted({one.curve for one in list_instances()}))
@@ -46,6 +68,61 @@ def list_suite(curve: str | None, as_json: bool, out: Path | None) -> int:
         write(json_text(document))
     emit(document, _table, as_json)
     return 0
+
+
+@suite.command(epilog=ENDS)
+def show(
+    name: Annotated[
+        str, typer.Argument(metavar="NAME", help="An instance, with or without `suite:`.")
+    ],
+    as_json: AsJson = False,
+    out: Out = None,
+) -> int:
+    """Show an instance: bounds, where it comes from, how hard it is, how to verify it."""
+    with new_output(out) as write:
+        one = load_instance(name)
+        document = instance_document(one, _certificate(one))
+        write(json_text(document))
+    emit(document, _shown, as_json)
+    return 0
+
+
+@suite.command(epilog=ENDS)
+def export(out: Folder) -> int:
+    """Write plain instance files, case files, certificates, the table, and a loader."""
+    found = {"load_instance.py": LOADER}
+    package = files("trajgap.problem.suite")
+    for name in (_MARK, "suite.csv"):
+        found[name] = package.joinpath(name).read_text(encoding="utf-8")
+    instances = list_instances()
+    with progress("export", len(instances)) as step:
+        for one in instances:
+            step(one.name)
+            found[f"instances/{one.name}.toml"] = plain_text(one)
+            case = package.joinpath("cases", f"{one.name}.toml")
+            found[f"cases/{one.name}.toml"] = case.read_text(encoding="utf-8")
+            certificate = one.certificate_file()
+            if certificate is not None:
+                text = certificate.read_text(encoding="utf-8")
+                found[f"certificates/{one.name}.json"] = text
+    _write(out, found)
+    say(f"{len(instances)} instances: {out}\n")
+    return 0
+
+
+@suite.command(epilog=ENDS)
+def pages(out: Folder) -> int:
+    """Write a page for each instance, and an index."""
+    instances = list_instances()
+    with progress("pages", len(instances)) as step:
+        found = written.suite_pages(instances, step)
+    _write(out, {**found, _MARK: json_text(suite_document(instances))})
+    say(f"pages: {out / 'index.html'}\n")
+    return 0
+
+
+_MARK = "suite.json"
+"""The file by which a folder that was written so is known."""
 
 
 def _table(document: SuiteDocument) -> list[RenderableType]:
@@ -69,16 +146,6 @@ def _table(document: SuiteDocument) -> list[RenderableType]:
         f"suite {document.version}: {len(rows)} instances, {narrow} certified to 1 % or better"
     )
     return [Columns((*names, ">width", "evidence"), rows), line(summary)]
-
-
-def show_instance(name: str, as_json: bool, out: Path | None) -> int:
-    """Show one instance."""
-    with new_output(out) as write:
-        one = load_instance(name)
-        document = instance_document(one, _certificate(one))
-        write(json_text(document))
-    emit(document, _shown, as_json)
-    return 0
 
 
 def _certificate(one: BenchmarkInstance) -> str | None:
@@ -125,38 +192,6 @@ def _shown(document: SuiteShowDocument) -> list[RenderableType]:
         command(one.command),
         *([] if verify is None else [line("verify it:"), command(verify)]),
     ]
-
-
-def export_suite(out: Path) -> int:
-    """Write the suite as plain files."""
-    found = {"load_instance.py": LOADER}
-    package = files("trajgap.problem.suite")
-    for name in (_MARK, "suite.csv"):
-        found[name] = package.joinpath(name).read_text(encoding="utf-8")
-    instances = list_instances()
-    with progress("export", len(instances)) as step:
-        for one in instances:
-            step(one.name)
-            found[f"instances/{one.name}.toml"] = plain_text(one)
-            case = package.joinpath("cases", f"{one.name}.toml")
-            found[f"cases/{one.name}.toml"] = case.read_text(encoding="utf-8")
-            certificate = one.certificate_file()
-            if certificate is not None:
-                text = certificate.read_text(encoding="utf-8")
-                found[f"certificates/{one.name}.json"] = text
-    _write(out, found)
-    say(f"{len(instances)} instances: {out}\n")
-    return 0
-
-
-def write_pages(out: Path) -> int:
-    """Write a page for each instance and an index."""
-    instances = list_instances()
-    with progress("pages", len(instances)) as step:
-        found = suite_pages(instances, step)
-    _write(out, {**found, _MARK: json_text(suite_document(instances))})
-    say(f"pages: {out / 'index.html'}\n")
-    return 0
 
 
 def _write(out: Path, found: Mapping[str, str]) -> None:

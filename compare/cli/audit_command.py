@@ -5,11 +5,14 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Annotated
 
+import typer
 from rich.console import RenderableType
 
 from ...nlp import Evidence
 from ...problem import Case, published_ids
+from .. import audits
 from ..audits import Study, in_words
 from ..documents import (
     OPTIMA_STEPS,
@@ -36,32 +39,65 @@ from ..documents import (
 )
 from .certifying import read_certificates
 from .input import read_cases
-from .kept import kept_proofs
-from .output import check_folder, emit, new_output, progress, say
+from .options import MOST, Crate, NoCache, ProblemId, ReadingId, Workers
+from .output import Columns, check_folder, emit, kept_proofs, line, new_output, progress, say
 from .result_tables import seconds
-from .table import Columns, line
 
 AUDIT_FOLDER = Path("trajgap-audit")
 """Where the pages go, unless the command line says otherwise."""
 
 
-def audit_cases(
-    sources: Sequence[str],
-    problem: str | None,
-    reading: str | None,
-    seeds: int,
-    workers: int | None,
-    certify_seconds: float | None,
-    certificates: Path | None,
-    draft: bool,
-    strict: bool,
-    as_json: bool,
-    out: Path | None,
-    crate: Path | None,
-    cache: bool = True,
+def audit(
+    cases: Annotated[
+        list[str] | None,
+        typer.Argument(
+            metavar="[CASE|FILE]...",
+            help="Ids of published cases, or case files; all published ones by default.",
+        ),
+    ] = None,
+    problem: ProblemId = None,
+    reading: ReadingId = None,
+    seeds: Annotated[int, typer.Option(min=2, max=MOST, help="Seeds of each replay.")] = 100,
+    workers: Workers = None,
+    certify_seconds: Annotated[
+        float | None,
+        typer.Option(
+            metavar="SECONDS",
+            min=0.0,
+            help="For each case: time to certify optima that no certificate proves; 0 for none. "
+            "By default boxes are counted, so that no verdict depends on the machine.",
+        ),
+    ] = None,
+    certificates: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FOLDER",
+            help="Certificates to use beside the shipped ones; each is proved again.",
+        ),
+    ] = None,
+    draft: Annotated[
+        bool,
+        typer.Option("--draft", help="Your own draft: say what to change before you submit it."),
+    ] = False,
+    no_cache: NoCache = False,
+    strict: Annotated[
+        bool, typer.Option("--strict", help="Exit with 1 if a finding has severity error.")
+    ] = False,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print JSON; write pages only where --out says.")
+    ] = False,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FOLDER",
+            help="Where the pages go: a new or an empty folder, or that of an earlier audit.",
+            show_default="trajgap-audit",
+        ),
+    ] = None,
+    crate: Crate = None,
 ) -> int:
-    """Audit cases; all of them are read before anything is computed."""
-    chosen = read_cases(sources or published_ids())
+    """Audit every claim of the cases, and write pages with pictures."""
+    chosen = read_cases(cases or published_ids())
     for case in chosen:
         study = Study(case, seeds=seeds, problem=problem, reading=reading)
         for algorithm in case.algorithms:
@@ -74,10 +110,8 @@ def audit_cases(
         from ..pages import crate_library
 
         crate_library()
-    from ..audits import audit
-
     with new_output(crate, "--crate") as bundle, progress("audit") as step:
-        report = audit(
+        report = audits.audit(
             chosen,
             seeds=seeds,
             workers=workers,
@@ -91,7 +125,7 @@ def audit_cases(
             if certificates is None
             else str(certificates.name if certificates.is_absolute() else certificates),
             draft=draft,
-            cache=cache,
+            cache=not no_cache,
         )
         if folder is not None:
             from ..pages import write_report
@@ -103,8 +137,8 @@ def audit_cases(
 
             step("archive")
             bundle(crate_of(report))
-    cases = [one.case for one in report.cases]
-    emit(report.document, lambda shown: audited(shown, cases), as_json)
+    read = [one.case for one in report.cases]
+    emit(report.document, lambda shown: audited(shown, read), as_json)
     if folder is not None and not as_json:
         say(f"pages: {folder / 'index.html'}\n")
     if report.kept and not as_json:

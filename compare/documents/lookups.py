@@ -1,7 +1,8 @@
-"""What `show` answers: a case file, its numbers as printed."""
+"""What `cases`, `show`, `case diff` and `explain` answer: what is shipped, said and written."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Annotated, Any, get_args
 
 from pydantic import BaseModel, PlainSerializer, SkipValidation, WithJsonSchema
@@ -12,6 +13,7 @@ from ...problem.cases import (
     AlgorithmBlock,
     AnyClaim,
     Assumption,
+    Difference,
     InstancesBlock,
     NotCheckable,
     ProblemBlock,
@@ -20,7 +22,42 @@ from ...problem.cases import (
     Source,
     Table,
 )
-from .entry import Document
+from .entry import Document, Entry
+
+
+class ListedCase(Entry):
+    """A published case."""
+
+    id: str
+    title: str
+    problems: tuple[str, ...]
+    """Ids."""
+    readings: tuple[str, ...]
+    """Ids."""
+    claims: int
+    """Their number."""
+
+
+class CasesDocument(Document):
+    """What `trajgap cases --json` prints."""
+
+    cases: tuple[ListedCase, ...]
+
+
+def cases_document(cases: Iterable[Case]) -> CasesDocument:
+    """Document of `cases`: what is shipped."""
+    return CasesDocument(
+        cases=tuple(
+            ListedCase(
+                id=case.id,
+                title=case.title,
+                problems=tuple(p.id for p in case.problems),
+                readings=tuple(r.id for r in case.readings),
+                claims=len(case.claims),
+            )
+            for case in cases
+        )
+    )
 
 
 def _as_in_the_file(block: BaseModel) -> dict[str, Any]:
@@ -89,10 +126,6 @@ def show_document(
     problem, reading : str, optional
         Keep only this one, and the claims that speak about it.
 
-    Returns
-    -------
-    ShowDocument
-
     Raises
     ------
     CaseError
@@ -120,3 +153,62 @@ def show_document(
         tables=case.tables,
         not_checkable=case.not_checkable,
     )
+
+
+class DifferingField(Entry):
+    """One place at which two transcriptions differ."""
+
+    field: str
+    """Where, such as "claims.total.value"."""
+    first: str
+    """What stands there in the first file; digits in quotes are printed ones."""
+    second: str
+    """The same of the second file."""
+
+
+class CaseDiffDocument(Document):
+    """What `trajgap case diff --json` prints."""
+
+    first: str
+    """Name of the first file."""
+    second: str
+    """Name of the second file."""
+    differences: tuple[DifferingField, ...]
+    """Empty if the transcriptions agree."""
+
+
+def diff_document(first: str, second: str, found: Iterable[Difference]) -> CaseDiffDocument:
+    """Document of `case diff`: what was found between two files."""
+    differing = (DifferingField(field=d.field, first=d.first, second=d.second) for d in found)
+    return CaseDiffDocument(first=first, second=second, differences=tuple(differing))
+
+
+class ExplainedRule(Entry):
+    """A rule of the audit."""
+
+    id: str
+    """Permanent id, e.g. "TG101"."""
+    title: str
+    """What it looks at."""
+    asks: str
+    """What it compares, and how."""
+    concludes: str
+    """What it may say of a claim, and what it never says."""
+    example: str
+    """With made-up numbers."""
+
+
+class ExplainedWord(Entry):
+    """A word of the reports."""
+
+    word: str
+    about: str
+    """What the word is said of, such as "on a claim"."""
+    meaning: str
+
+
+class ExplainDocument(Document):
+    """What `trajgap explain --json` prints."""
+
+    rules: tuple[ExplainedRule, ...]
+    words: tuple[ExplainedWord, ...]
