@@ -76,8 +76,10 @@ def excess_and_total(problem: Problem, h: Array, box: LogBox) -> tuple[Array, Ar
     stretch = evaluate(usable, h).stretch
     excess = np.where(np.isfinite(stretch), 0.0, HOPELESS)
     left = np.flatnonzero(np.isfinite(stretch) & (stretch > 0))
+    # What a prescribed motion takes of a limit, no shorter time uses up: it would break others.
+    least = 0.0 if problem.curve.homogeneous else 1.0
     for _ in range(EVOLUTION.repairs):
-        wanted = h[left] * stretch[left, None]
+        wanted = h[left] * np.maximum(stretch[left, None], least)
         h[left] = np.clip(wanted, low, high)
         # Where the whole stretch fits and time can be stretched, the limits are met exactly.
         bent = (h[left] != wanted).any(axis=1) | (not problem.curve.homogeneous)

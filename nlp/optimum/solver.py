@@ -316,6 +316,8 @@ def _within_tolerance(problem: Problem, ask: _Ask) -> Solution:
     """
     wide, floor = tolerated(problem), made_up(problem, DEEP[0])
     ends = exact_search(wide, basins(wide, ask.starts, ask.seed, floor), floor)
+    for end in ends[:1]:
+        ends += exact_search(wide, shortened(problem, end.durations, floor), floor)
     points = np.array([end.durations for end in ends]).reshape(-1, problem.segments)
     within = exact_search(problem, points, floor)
     answer = judged(problem, within, floor, len(within))

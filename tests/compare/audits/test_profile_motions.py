@@ -12,13 +12,13 @@ from trajgap.compare.audits import PrintedRow
 from trajgap.compare.audits.axis_profile import AxisProfile, AxisState, Phase, Sizes
 from trajgap.compare.audits.axis_profile import shortest_s_curve as s_curve
 from trajgap.compare.audits.axis_profile import shortest_trapezoid as trapezoid
+from trajgap.compare.audits.named_profiles import fourth_order
 from trajgap.compare.audits.profile_motions import (
     NumberRange,
     ProfileMotion,
     ProfileQuestion,
     questions,
 )
-from trajgap.compare.audits.rest_profile import fourth_order
 
 STILL = np.zeros((2, 1, 2))
 WITHIN = np.full((1, 4), 9.0)

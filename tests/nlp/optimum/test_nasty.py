@@ -63,6 +63,16 @@ def test_no_known_durations_are_missed(kept: dict) -> None:
     answered(problem, h)
 
 
+def test_a_start_near_the_limit_of_velocity_leaves_little_room() -> None:
+    """No time shortens what the prescribed velocity takes of its limit."""
+    limits = Limits(0.88, 1.07, 0.194, 0.65, 1.21)
+    curve = cubic_spline(1, ((1, -0.813),), ((1, 0.0),))
+    problem = Problem([[1.14], [0.72]], limits, curve, 0.855, 2.01)
+    known = np.array([1.05])
+    assert check(problem, known).verdict is Verdict.PASS
+    answered(problem, known)
+
+
 def test_a_total_that_falls_far_below_floors_of_1e_4(tmp_path: Path) -> None:
     nasty(np.random.default_rng([20261123, 119]), tmp_path)
 
