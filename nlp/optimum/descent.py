@@ -27,9 +27,7 @@ WIDEST_STEP = 1.0
 SMALLEST_STEP = 1e-10
 """Trust region at which a descent ends; the total is then settled to its square."""
 GAIN = 1e-13
-"""Relative gain below which rounding of the total hides it: steps go on while they shrink."""
-SHRINKING = 0.5
-"""Share of the one before by which such a step shrinks at least."""
+"""Relative gain below which a descent ends: rounding of the total."""
 SLOW, PATIENCE = 1e-9, 6
 """A descent that gains less than this (relative) in so many steps creeps, and ends."""
 GOOD = 0.5
@@ -183,7 +181,7 @@ def descend(problem: Problem, start: Array, box: LogBox) -> Descent:
         return Descent(rows.durations, rows.worst, False, 0)
     total = float(rows.durations.sum())
     hessian = np.diag(rows.durations / total + 1e-4)
-    radius, taken, history, size = WIDEST_STEP, 0, [total], WIDEST_STEP
+    radius, taken, history = WIDEST_STEP, 0, [total]
     for taken in range(1, STEPS + 1):
         if time_up():
             break
@@ -193,10 +191,9 @@ def descend(problem: Problem, start: Array, box: LogBox) -> Descent:
         if found is None:
             break
         step, weights = found
-        size, before = float(np.abs(step).max()), size
+        size = float(np.abs(step).max())
         expected = -float(slope @ step)
-        settled = not expected > GAIN
-        if size < SMALLEST_STEP or (settled and size > SHRINKING * before):
+        if not expected > GAIN or size < SMALLEST_STEP:
             return Descent(rows.durations, rows.worst, True, taken)
         trial = _onto_limits(problem, np.exp(np.log(rows.durations) + step), box)
         if not _gain(total, trial) > GOOD * expected:
@@ -208,8 +205,7 @@ def descend(problem: Problem, start: Array, box: LogBox) -> Descent:
                 other = _onto_limits(problem, np.exp(np.log(beyond.durations) + bent[0]), box)
                 trial = max(trial, other, key=lambda one: _gain(total, one))
         after = float(trial.durations.sum())
-        # What rounding hides of a gain, steps that shrink still win of the conditions.
-        if trial.worst <= KEPT and after < total * (1.0 + (GAIN if settled else -1e-15)):
+        if trial.worst <= KEPT and after < total * (1.0 - 1e-15):
             hessian = _curved(hessian, rows, trial, weights[: len(rows.excess)])
             good = _gain(total, trial) > GOOD * expected
             radius = min(2.0 * radius, WIDEST_STEP) if good else 0.5 * max(size, 0.5 * radius)

@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ...problem import TOLERANCE, Array, Problem, Verdict
-from .decided import Local, decided, longer_than_tight
-from .optimality import KKT_TOLERANCE, UNKNOWN, kkt, unmet
+from ...problem import TOLERANCE, Array, Problem, Verdict, check
+from .decided import Local, decided, longer_than_tight, stretched
+from .optimality import KKT, KKT_TOLERANCE, SHARP, UNKNOWN, kkt, sharpened, unmet
 from .solution import Route, Solution, Status
 from .starts import DENSE
 
@@ -75,7 +75,10 @@ def judged(
     dense, fixed = problem.segments <= DENSE, problem.ratios is not None
     if report is None:
         report = kkt(problem, tight, nodal) if dense or fixed else UNKNOWN
-    beyond = 0.0 if best.tight is None else max(0.0, best.total / float(tight.sum()) - 1.0)
+    answer = best
+    if report.residual > SHARP and dense and not (problem.curve.free or fixed):
+        answer, report = _sharper(problem, tight, report) or (best, report)
+    beyond = 0.0 if answer.tight is None else max(0.0, answer.total / float(tight.sum()) - 1.0)
     status = Status.CONVERGED if report.residual <= KKT_TOLERANCE else Status.FEASIBLE
     why = None if status is Status.CONVERGED else unmet(report.residual)
     if beyond > SAME:
@@ -83,20 +86,20 @@ def judged(
     if beyond > KKT_TOLERANCE:
         note = longer_than_tight(beyond)
         why = note if why is None else f"{why}; {note}"
-    if best.verdict.verdict is Verdict.DISCONTINUOUS:
-        jumps = sum(jump.order < 2 for jump in best.verdict.jumps)
+    if answer.verdict.verdict is Verdict.DISCONTINUOUS:
+        jumps = sum(jump.order < 2 for jump in answer.verdict.jumps)
         note = f"limits kept inside the segments; {jumps} jumps of velocity between them"
         why = note if why is None else f"{why}; {note}"
-    falling = still_falling(best.durations, floor)
+    falling = still_falling(answer.durations, floor)
     if falling is not None:
         status, why = Status.NOT_ATTAINED, falling
     return Solution(
         problem,
         status,
         why,
-        vector=best.durations,
-        nodal=best.nodal,
-        check=best.verdict,
+        vector=answer.durations,
+        nodal=answer.nodal,
+        check=answer.verdict,
         route=route,
         kkt_residual=report.residual if np.isfinite(report.residual) else None,
         active=report.active,
@@ -106,6 +109,20 @@ def judged(
         build_seconds=sum(local.build_seconds for local in found),
         totals=tuple(local.total if local.feasible else float("inf") for local in found),
     )
+
+
+def _sharper(problem: Problem, durations: Array, report: KKT) -> tuple[Local, KKT] | None:
+    """An answer sharpened by Newton steps, where it stays as short, within limits, and smooth."""
+    h = sharpened(problem, durations)
+    stretch = np.inf if h is None else check(problem, h).stretch
+    if h is None or not stretch <= 1 + ROUNDED:
+        return None
+    h = np.clip(h * max(1.0, stretch), problem.duration_lower, problem.duration_upper)
+    passing = stretched(problem, h, None)  # rounding may blur the very optimum
+    if passing is None or passing.total > durations.sum() * (1 + ROUNDED):
+        return None
+    better = kkt(problem, passing.durations)
+    return (passing, better) if better.residual < report.residual else None
 
 
 def on_floor(durations: Array, floor: Array) -> NDArray[np.bool_]:

@@ -21,7 +21,8 @@ import numpy as np
 
 from ...problem import QUANTITIES, Array, Extremum, Problem
 from ...problem.curves import Places
-from .limit_rows import exact_rows, excesses
+from .clock import time_up
+from .limit_rows import ExactRows, Indices, exact_rows, excesses
 
 ACTIVE = 1e-7
 """Relative distance to a limit within which a peak counts as active. What a multiplier is of the
@@ -85,6 +86,46 @@ UNKNOWN = KKT(np.inf, ())
 """Of durations at which rounding hides the curve or its gradients: no condition is met."""
 
 
+@dataclass(frozen=True, eq=False)
+class _Weighed:
+    """Limits and bounds of durations that are reached, with least-squares multipliers for log T.
+
+    The limits by their numbers among the exact rows, and after them the bounds by segment and side,
+    each with its slope and its weight; then what is left of the gradient of the Lagrangian.
+    """
+
+    near: Indices
+    segments: Indices
+    sides: Array
+    slopes: Array
+    weights: Array
+    stationary: Array
+
+    @classmethod
+    def of(cls, problem: Problem, rows: ExactRows, active: float) -> _Weighed | None:
+        """Multipliers of all that is nearer than ``active``; None where rounding hides them."""
+        h, unknowns = rows.durations, rows.gradient.shape[1]
+        near = np.flatnonzero(rows.excess >= -active)
+        low = np.flatnonzero(h <= problem.duration_lower * (1 + active))
+        high = np.flatnonzero(h >= problem.duration_upper * (1 - active))
+        segments, sides = np.append(low, high), np.repeat([-1.0, 1.0], [low.size, high.size])
+        walls = sides[:, None] * np.eye(unknowns)[segments]
+        slopes = np.vstack([rows.gradient[near], walls])
+        objective = np.append(h / h.sum(), np.zeros(unknowns - h.size))
+        if problem.ratios is not None:
+            slopes, objective = slopes.sum(axis=1, keepdims=True), objective.sum(keepdims=True)
+        weights = np.zeros(len(slopes))
+        if weights.size:
+            from scipy.optimize import nnls  # a quarter of a second; a check does without
+
+            try:
+                weights, _ = nnls(slopes.T, -objective, maxiter=30 * weights.size + 100)
+            except RuntimeError:  # too many iterations
+                return None
+        stationary = objective + weights @ slopes
+        return cls(near, segments, sides, slopes, weights, stationary)
+
+
 def kkt(
     problem: Problem,
     durations: Array,
@@ -113,34 +154,19 @@ def kkt(
     added up.
     """
     rows = exact_rows(problem, durations, nodal)
-    if rows.worst == np.inf:
+    found = _Weighed.of(problem, rows, active) if rows.worst < np.inf else None
+    if found is None:
         return UNKNOWN
-    h, unknowns = durations, rows.gradient.shape[1]
-    near = np.flatnonzero(rows.excess >= -active)
-    low = np.flatnonzero(h <= problem.duration_lower * (1 + active))
-    high = np.flatnonzero(h >= problem.duration_upper * (1 - active))
-    bounds = np.vstack([-np.eye(unknowns)[low], np.eye(unknowns)[high]])
-    slopes = np.vstack([rows.gradient[near], bounds])
-    objective = np.append(h / h.sum(), np.zeros(unknowns - h.size))
-    if problem.ratios is not None:
-        slopes, objective = slopes.sum(axis=1, keepdims=True), objective.sum(keepdims=True)
-    weights = np.zeros(len(slopes))
-    if weights.size:
-        from scipy.optimize import nnls  # a quarter of a second; a check does without
-
-        try:
-            weights, _ = nnls(slopes.T, -objective, maxiter=30 * weights.size + 100)
-        except RuntimeError:  # too many iterations
-            return UNKNOWN
-    walls = np.zeros((2, h.size))
-    of_limits, walls[0, low], walls[1, high] = np.split(weights, [near.size, near.size + low.size])
+    of_limits, of_bounds = np.split(found.weights, [found.near.size])
+    excess = rows.excess[found.near]
+    walls = np.zeros((2, problem.segments))
+    np.add.at(walls, ((found.sides > 0).astype(int), found.segments), of_bounds)
     limits = [
         (rows.points[i], float(rows.signs[i]), w)
-        for i, w in zip(near, of_limits, strict=True)
+        for i, w in zip(found.near, of_limits, strict=True)
         if w > 0
     ]
-    stationary = objective + weights @ slopes
-    return _report(problem, h, stationary, rows.excess[near], of_limits, limits, walls)
+    return _report(problem, durations, found.stationary, excess, of_limits, limits, walls)
 
 
 def sparse_kkt(
@@ -231,3 +257,68 @@ def _report(
         w = float(walls[side, k] * total)
         active.append(Active(None, "duration", k, None, w, (MORE - 2 * MORE * side) * w))
     return KKT(max(residual, float(excess.max(initial=0.0))), tuple(active))
+
+
+SHARP = 1e-10
+"""Residual that is left as it is, and rounding of differences of gradients: a total is settled to
+the last digit long before."""
+DIFFERENCE = 1e-6
+"""Step of its central differences in log durations: they err by 1e-12, their rounding by 1e-10."""
+
+NEAR_BY = 1e-3
+"""Log durations by which one of its steps changes a duration at most: an answer is very near."""
+
+
+def sharpened(problem: Problem, durations: Array) -> Array | None:
+    """Newton steps on stationarity and the active limits; None where they lead nowhere.
+
+    A search ends where rounding hides what it gains, before the gradient vanishes as far as it can.
+    Four steps are plenty from near by, since the convergence is quadratic. The curve is determined.
+    """
+    first = rows = exact_rows(problem, durations)
+    found = _Weighed.of(problem, first, ACTIVE)
+    if found is None or not found.weights.size:
+        return None
+    loaded = found.weights > 0
+    limits, bounds = np.split(loaded, [found.near.size])
+    active, weights = found.near[limits], found.weights[: found.near.size][limits]
+    free = ~np.isin(np.arange(durations.size), found.segments[bounds])
+    h, n, z, one = durations, int(free.sum()), active.size, np.eye(durations.size)
+    for _ in range(4):
+        now = _conditions(rows, first, active, weights)
+        if now is None or time_up():
+            return None
+        slope, excess, columns = now
+        if max(np.abs(slope[free]).max(initial=0.0), np.abs(excess).max(initial=0.0)) <= SHARP:
+            break
+        bends = []
+        for k in np.flatnonzero(free):
+            step = np.exp(DIFFERENCE * one[k])
+            ahead, behind = (
+                _conditions(exact_rows(problem, x), first, active, weights)
+                for x in (h * step, h / step)
+            )
+            if ahead is None or behind is None:
+                return None
+            bends.append((ahead[0] - behind[0])[free] / (2 * DIFFERENCE))
+        block = columns[:, free]
+        system = np.block([[np.reshape(bends, (n, n)).T, block.T], [block, np.zeros((z, z))]])
+        try:
+            change = np.linalg.lstsq(system, -np.append(slope[free], excess), rcond=SHARP)[0]
+        except np.linalg.LinAlgError:
+            return None
+        h = h * np.exp(one[free].T @ np.clip(change[:n], -NEAR_BY, NEAR_BY))
+        weights, rows = weights + change[n:], exact_rows(problem, h)
+    return h
+
+
+def _conditions(
+    rows: ExactRows, first: ExactRows, active: Indices, weights: Array
+) -> tuple[Array, Array, Array] | None:
+    """Slope of the Lagrangian in log durations, excess of the active limits, and their slopes."""
+    h = rows.durations
+    twins = [rows.twin(first.points[i], first.signs[i]) for i in active]
+    if None in twins:
+        return None
+    at = np.array(twins, dtype=np.int64)
+    return h / h.sum() + weights @ rows.gradient[at], rows.excess[at], rows.gradient[at]

@@ -9,9 +9,7 @@ from support.shipped_problems import COVERED_PROBLEMS
 from trajgap.nlp import Solution, Status, kkt, random_starts, shipped
 from trajgap.nlp.optimum import solve
 from trajgap.nlp.optimum.basins import EVOLUTION
-from trajgap.nlp.optimum.descent import descend
-from trajgap.nlp.optimum.optimality import sparse_kkt
-from trajgap.nlp.optimum.starts import box_above
+from trajgap.nlp.optimum.optimality import sharpened, sparse_kkt
 from trajgap.problem import (
     Limits,
     Problem,
@@ -211,8 +209,7 @@ def test_newton_sharpens() -> None:
     problem = Problem(Q, LIMITS, three_five_three())
     best = solve(problem).durations
     blurred = best * (1 + 1e-9)
-    box = box_above(problem, np.zeros(blurred.size))
-    sharp = descend(problem, blurred, box).durations
+    sharp = sharpened(problem, blurred)
     assert kkt(problem, blurred).residual > 1e-10
     assert kkt(problem, sharp).residual <= 1e-11
     assert sharp == pytest.approx(best, rel=1e-7)
