@@ -214,19 +214,6 @@ def test_the_duration_belongs_to_the_path_and_not_to_its_timing() -> None:
     assert two.inequality_holds
 
 
-def test_each_joint_by_itself_has_a_path_of_its_own() -> None:
-    curve = fit(rest_to_rest(2, 5), CORNERS[0][:3], [1.0, 1.6])
-    limits = Limits([1.5, 1.9, 1.1], [4.0, 3.0, 5.0])
-    found = retime_joints(curve, limits)
-    ways = np.abs(np.diff(CORNERS[0][:3], axis=0))
-    wanted = [
-        sum(rest_to_rest_time(np.array([way]), [v], [a]) for way in ways[:, j] if way > 0)
-        for j, (v, a) in enumerate([(1.5, 4.0), (1.9, 3.0), (1.1, 5.0)])
-    ]
-    assert len(found) == 3
-    assert all(close(one, time) for one, time in zip(found, wanted, strict=True))
-
-
 def test_a_path_from_rest_to_rest_has_a_speed_in_between() -> None:
     (piece,), _ = pieces(fit(rest_to_rest(1, 5), [[0.0, 0.0], [3.0, 4.0]], [2.0]))
     sampled = sample(piece, measure(piece), 40)
@@ -274,17 +261,22 @@ def test_another_dress_changes_no_time(dress: str) -> None:
 
 def test_each_joint_on_its_own_path() -> None:
     curve = puma(three_five_three(), PUMA_353)
-    each = retime_joints(curve, PUMA_LIMITS)
+    limits = Limits(np.linspace(5.0, 6.0, 6), np.linspace(8.0, 7.0, 6))
+    each = retime_joints(curve, limits)
+    assert len(each) == 6
     for j, found in enumerate(each):
         turning = [e for e in extrema(curve, j, 0) if abs(curve(e.time, 1)[j]) < 1e-9]
         values = [turning[0].value]
         for e in turning[1:]:
             if abs(e.value - values[-1]) > 1e-9:
                 values.append(e.value)
-        expected = sum(rest_to_rest_time([d], [6.0], [8.0]) for d in np.diff(values))
+        expected = sum(
+            rest_to_rest_time([d], limits.velocity[[j]], limits.acceleration[[j]])
+            for d in np.diff(values)
+        )
         assert close(found, expected)
         assert len(found.cuts) == len(values)
-    assert max(f.extrapolated for f in each) < retime(curve, PUMA_LIMITS).extrapolated
+    assert max(f.extrapolated for f in each) < retime(curve, limits).extrapolated
 
 
 # --- cutting, sampling ----------------------------------------------------------------------------
@@ -350,22 +342,14 @@ def test_not_applicable_by_limits(limits: Limits, why: str) -> None:
     assert why in str(found)
 
 
-def test_jerk_limits_of_joints_at_rest_do_not_matter() -> None:
+@pytest.mark.parametrize(
+    "limits", [Limits(6.0, [8.0, np.inf], [np.inf, 5.0]), Limits([6.0, 0.0], [8.0, 0.0])]
+)
+def test_limits_of_joints_at_rest_do_not_matter(limits: Limits) -> None:
     q = np.column_stack([PUMA[:, 0], np.full(4, 0.7)])
-    limits = Limits(6.0, [8.0, np.inf], [np.inf, 5.0])
     found = retime(fit(three_five_three(), q, PUMA_353), limits)
     alone = retime(fit(three_five_three(), q[:, :1], PUMA_353), Limits(6.0, 8.0, joints=1))
     assert found.durations == pytest.approx(alone.durations, rel=1e-5)
-
-
-def test_zero_limits_of_joints_at_rest_do_not_matter() -> None:
-    q = np.column_stack([PUMA[:, 0], np.full(4, 0.7), PUMA[:, 2]])
-    curve = fit(three_five_three(), q, PUMA_353)
-    found = retime(curve, Limits([6.0, 0.0, 6.0], [8.0, 0.0, 8.0]))
-    alone = fit(three_five_three(), q[:, [0, 2]], PUMA_353)
-    assert found.durations == pytest.approx(
-        retime(alone, Limits(6.0, 8.0, joints=2)).durations, rel=1e-5
-    )
     assert found.inequality_holds
 
 
