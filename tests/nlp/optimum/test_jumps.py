@@ -16,6 +16,7 @@ from trajgap.nlp.optimum.feasibility import forbidden_jumps
 from trajgap.nlp.optimum.jumps import as_answer, same_motions, smoother
 from trajgap.problem import (
     Array,
+    Curve,
     Interpolant,
     Limits,
     Problem,
@@ -247,8 +248,9 @@ TURNING_BACK = np.array([0.741, 0.493, 1.137, 1.554])
 V, A, J = 1.1, 2.1, 6.3
 
 
-def determined(q: Array, curve: object = DETERMINED, **bounds: Array) -> Problem:
-    return Problem(q[:, None], Limits([V], [A], [J]), curve, **bounds)  # type: ignore[arg-type]
+def determined(q: Array, curve: Curve = DETERMINED, jerk: float = J, **bounds: Array) -> Problem:
+    q = q.reshape(4, -1)
+    return Problem(q, Limits(V, A, jerk, joints=q.shape[1]), curve, **bounds)
 
 
 def end_accelerations(ratios: Array, q: Array) -> Array:
@@ -306,13 +308,9 @@ def test_bounds_on_the_durations_hold() -> None:
 
 
 def test_proportional_joints_share_the_ratios() -> None:
-    both = Problem(
-        np.column_stack([ON, 0.5 - 0.4 * ON]), Limits([V] * 2, [A] * 2, [J] * 2), DETERMINED
-    )
+    both = determined(np.column_stack([ON, 0.5 - 0.4 * ON]))
     np.testing.assert_allclose(solve(both).durations, without_a_jump(), rtol=1e-6)
-    other = Problem(
-        np.column_stack([ON, TURNING_BACK]), Limits([V] * 2, [A] * 2, [J] * 2), DETERMINED
-    )
+    other = determined(np.column_stack([ON, TURNING_BACK]))
     assert solve(other).status is Status.NONE_FOUND
 
 
@@ -321,7 +319,7 @@ def test_proportional_joints_share_the_ratios() -> None:
     [
         (determined(ON, cubic_spline(3)), []),
         (determined(ON), [(1, 2, 0), (2, 2, 0)]),
-        (Problem(ON[:, None], Limits([V], [A], joints=1), DETERMINED), []),
+        (determined(ON, jerk=np.inf), []),
         (determined(ON, piecewise((1, 3, 3), 0, ())), [(b, r, 0) for b in (1, 2) for r in (1, 2)]),
         (determined(np.full(4, 0.3)), []),
         (determined(ON, uniform_cubic_b_spline(4, "timed")), []),
@@ -348,10 +346,8 @@ ONWARDS = np.array([0.21, 0.9, 1.34, 1.87])
 BACK = np.array([0.21, 0.9, 0.34, 1.87])
 
 
-def problem_through(q: Array, jerk: float | list[float] = J) -> Problem:
-    q = q.reshape(4, -1)
-    joints = q.shape[1]
-    return Problem(q, Limits([V] * joints, [A] * joints, jerk, joints=joints), TOO_FEW)
+def problem_through(q: Array, jerk: float = J) -> Problem:
+    return determined(q, TOO_FEW, jerk)
 
 
 def mismatch(h: Array, q: Array) -> float:

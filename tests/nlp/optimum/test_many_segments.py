@@ -121,10 +121,8 @@ def test_bounds_on_durations_and_positions_are_kept_and_priced() -> None:
     assert free.found
     trajectory = fit(curve, long_problem(curve).waypoints, free.durations)
     top = max(extrema(trajectory, 1, 0), key=lambda e: e.value)
-    edge = (
-        max(float(long_problem(curve).waypoints[:, 1].max()), 0.5 * (top.value + top.value)) - 1e-3
-    )
-    edge = max(edge, float(long_problem(curve).waypoints[:, 1].max()) + 1e-4)
+    highest = float(long_problem(curve).waypoints[:, 1].max())
+    edge = max(top.value - 1e-3, highest + 1e-4)
     limits = Limits([1.5, 3.0], [6.0, 15.0], [np.inf, 90.0], -np.inf, [np.inf, edge])
     lower = np.zeros(SEGMENTS)
     lower[7] = 1.3 * free.durations[7]

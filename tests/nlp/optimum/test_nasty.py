@@ -340,17 +340,13 @@ def test_a_way_is_short_beside_what_a_joint_covers_that_enters_in_motion() -> No
 
 
 def test_starts_are_shorter_by_powers_of_ten_in_a_short_way_alone() -> None:
-    """Down to 2.7e-4 s, which the way takes at the velocity limit."""
+    """Down to 2.7e-4 s, which the way takes at the velocity limit, or to a bound above that."""
     answer = np.array([10.16655583, 10.83811028, 12.54426111, 0.2902423])
     starts = shortened(ONE_JOINT, answer, np.full(4, 1e-5))
     assert starts[:, 3] == pytest.approx(0.2902423 / 10.0 ** np.arange(1, 4), rel=1e-12)
     assert (starts[:, :3] == answer[:3]).all()
-
-
-def test_no_start_where_a_bound_is_above_it() -> None:
-    problem = replace(ONE_JOINT, duration_lower=np.array([0.0, 0.0, 0.0, 0.2]))
-    answer = np.array([10.16655583, 10.83811028, 12.54426111, 0.2902423])
-    assert shortened(problem, answer, np.full(4, 1e-5)).shape == (0, 4)
+    bounded = replace(ONE_JOINT, duration_lower=np.array([0.0, 0.0, 0.0, 0.2]))
+    assert shortened(bounded, answer, np.full(4, 1e-5)).shape == (0, 4)
 
 
 def test_segments_that_stand_alone_are_not_searched_again(monkeypatch: pytest.MonkeyPatch) -> None:

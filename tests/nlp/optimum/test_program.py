@@ -36,16 +36,10 @@ DECLARED = {
     **{f"uneven {name}": uneven_problem(name) for name in UNEVEN if name != "stretched"},
     "one segment": Problem([[0.1, 1.0], [0.9, -0.4]], Limits(1.0, 3.0, joints=2), piecewise((5,))),
     "moving ends": Problem(
-        [[0.1], [0.9], [0.3]],
-        Limits(2.0, 6.0),
-        cubic_spline(2, ends=((1, 0.4),), finish=((1, -0.2),)),
+        Q, Limits(2.0, 6.0), cubic_spline(2, ends=((1, 0.4),), finish=((1, -0.2),))
     ),
-    "fixed ratios": Problem(
-        [[0.1], [0.9], [0.3]], Limits(2.0, 6.0), cubic_spline(2), ratios=(1, 3)
-    ),
-    "virtual": Problem(
-        np.array([[0.1], [0.9], [0.3], [1.0]]), Limits(2.0, 6.0, 40.0), quintic_spline_virtual(4)
-    ),
+    "fixed ratios": Problem(Q, Limits(2.0, 6.0), cubic_spline(2), ratios=(1, 3)),
+    "virtual": Problem([*Q, [1.0]], Limits(2.0, 6.0, 40.0), quintic_spline_virtual(4)),
     "a higher degree first": Problem(
         np.cumsum(np.random.default_rng(4).normal(size=(10, 1)), axis=0),
         Limits(2.0, 6.0),

@@ -125,26 +125,12 @@ def test_a_state_is_judged_within_the_time_limit(monkeypatch: pytest.MonkeyPatch
     assert asked == [pytest.approx(7.0 + RunClock.spare, abs=0.5)]
 
 
-def waiting(monkeypatch: pytest.MonkeyPatch) -> tuple[Ticking, Session]:
-    hands = Ticking()
-    monkeypatch.setattr(clock, "time", hands)
-    return hands, Session(exact_problem(QUICK), Request(clock=RunClock(100.0)))
-
-
-def out_of_time(one: Session) -> bool:
-    try:
-        one.check_clock()
-    except OutOfTime:
-        return True
-    return False
-
-
-def test_a_search_leaves_time_for_judging(monkeypatch: pytest.MonkeyPatch) -> None:
-    hands, one = waiting(monkeypatch)
-    hands.now = 100.0 / (1.0 + one.judging) - 0.01
-    assert not out_of_time(one)
-    hands.now += 0.02
-    assert out_of_time(one)
+@pytest.fixture
+def ticks(monkeypatch: pytest.MonkeyPatch) -> Ticking:
+    """The clock of every run."""
+    found = Ticking()
+    monkeypatch.setattr(clock, "time", found)
+    return found
 
 
 def test_the_judge_has_a_second_even_if_the_time_is_over() -> None:
@@ -154,9 +140,7 @@ def test_the_judge_has_a_second_even_if_the_time_is_over() -> None:
     assert RunClock(-5.0).left == 0.0
 
 
-def test_a_share_of_the_time_is_a_clock_of_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
-    ticks = Ticking()
-    monkeypatch.setattr(clock, "time", ticks)
+def test_a_share_of_the_time_is_a_clock_of_its_own(ticks: Ticking) -> None:
     whole = RunClock(100.0)
     ticks.now = 20.0
     part = whole.share(0.5)
@@ -165,11 +149,9 @@ def test_a_share_of_the_time_is_a_clock_of_its_own(monkeypatch: pytest.MonkeyPat
     assert (whole.left, part.left) == (50.0, 10.0)
 
 
-def test_without_a_time_limit_boxes_are_counted(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_a_time_limit_boxes_are_counted(ticks: Ticking) -> None:
     """However slow the machine: whoever looks at the clock finds that an hour has passed."""
-    ticks = Ticking()
     ticks.step = 3600.0
-    monkeypatch.setattr(clock, "time", ticks)
     assert certify(QUICK, gap=0.01).outcome is Outcome.CERTIFIED
     few = certify(QUICK, gap=1e-6, boxes=1)
     assert few.outcome is Outcome.INTERVAL
@@ -210,22 +192,14 @@ def test_the_proof_of_an_answer_is_cut_short_and_proves_nothing(
     assert found.left_out == session.UNPROVED
 
 
-def test_an_answer_of_usual_size_is_proved_though_the_time_is_over(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    ticks = Ticking()
-    monkeypatch.setattr(clock, "time", ticks)
+def test_an_answer_of_usual_size_is_proved_though_the_time_is_over(ticks: Ticking) -> None:
     one = Session(exact_problem(CUBIC), Request(clock=RunClock(1.0)))
     ticks.now = 500.0
     assert one.offer(SLOW)
     assert one.upper == sum(map(Fraction, SLOW))
 
 
-def test_what_a_search_may_take_is_what_the_clock_leaves_it(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    ticks = Ticking()
-    monkeypatch.setattr(clock, "time", ticks)
+def test_what_a_search_may_take_is_what_the_clock_leaves_it(ticks: Ticking) -> None:
     one = Session(exact_problem(CUBIC), Request(clock=RunClock(100.0)))
     ticks.now = 30.0
     assert one.left == pytest.approx(100.0 / (1.0 + one.judging) - 30.0)

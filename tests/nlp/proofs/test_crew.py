@@ -32,13 +32,12 @@ ROUGH = Problem(
 """Jerk limits alone take boxes enough for several to be under way."""
 
 
-def _fast() -> Problem:
-    rng = np.random.default_rng(2)
-    q = rng.uniform(-1.0, 1.0, (6, 3))
-    return Problem(q, Limits(rng.uniform(1, 2, 3), rng.uniform(1, 2, 3)), cubic_spline(5))
-
-
-FAST = _fast()
+RNG = np.random.default_rng(2)
+FAST = Problem(
+    RNG.uniform(-1.0, 1.0, (6, 3)),
+    Limits(RNG.uniform(1, 2, 3), RNG.uniform(1, 2, 3)),
+    cubic_spline(5),
+)
 """Several ways of braking have to be told apart."""
 
 

@@ -53,6 +53,7 @@ intervals_module = import_module("trajgap.compare.audits.intervals")
 certificate_module = import_module("trajgap.nlp.proofs.document")
 IRB, PUMA, GA = "irb460-pso-353", "puma560-mnam-pso-353", "irb1600-ga-cubic-bspline"
 PAIR = Pair("limit-80", "waypoints-rad")
+EXACT = COVERED_PROBLEMS[f"{IRB}.{PAIR[0]}.{PAIR[1]}"]
 VERDICTS = (ROOT / "docs" / "explanation" / "verdicts.md").read_text("utf-8")
 
 
@@ -99,7 +100,7 @@ def test_a_proof_of_a_wide_interval_certifies_nothing(
     monkeypatch: pytest.MonkeyPatch, width: float, word: str
 ) -> None:
     assert f"at most {float(100 * WIDEST):g} % wide" in VERDICTS
-    problem = replace(COVERED_PROBLEMS[f"{IRB}.{PAIR[0]}.{PAIR[1]}"], name=f"width {width}")
+    problem = replace(EXACT, name=f"width {width}")
     document = certificate(certify(problem, gap=width))
     monkeypatch.setattr(evidence_module, "shipped", lambda *_: document)
     answer = solve(known_study().problem(PAIR))
@@ -124,20 +125,18 @@ def test_nothing_is_called_certified_without_a_certificate() -> None:
 def test_a_certificate_that_does_not_prove_its_claim_is_not_used(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    exact = COVERED_PROBLEMS[f"{IRB}.limit-80.waypoints-rad"]
-    wrong = copy.deepcopy(shipped(exact))
+    wrong = copy.deepcopy(shipped(EXACT))
     wrong["claim"]["lower"] = str(Fraction(wrong["claim"]["lower"]) * 2)
     monkeypatch.setattr(certificate_module, "all_shipped", lambda: (wrong,))
-    assert shipped(exact) == wrong
-    assert evidence_module.proved.__wrapped__(exact) is None
+    assert shipped(EXACT) == wrong
+    assert evidence_module.proved.__wrapped__(EXACT) is None
 
 
 def test_a_certificate_of_another_problem_is_not_used() -> None:
-    exact = COVERED_PROBLEMS[f"{IRB}.limit-80.waypoints-rad"]
-    other = replace(exact, duration_lower=(Fraction(1, 10**9), *exact.duration_lower[1:]))
+    other = replace(EXACT, duration_lower=(Fraction(1, 10**9), *EXACT.duration_lower[1:]))
     assert proved(other) is None
-    assert proved(exact, Subject.ANY) is None or shipped(exact, Subject.ANY) is not None
-    assert proved(replace(exact, name="another name")) == proved(exact)
+    assert proved(EXACT, Subject.ANY) is None or shipped(EXACT, Subject.ANY) is not None
+    assert proved(replace(EXACT, name="another name")) == proved(EXACT)
 
 
 @pytest.mark.parametrize(
@@ -194,7 +193,7 @@ def test_an_answer_beyond_the_interval(factor: float, evidence: Evidence) -> Non
     answer = known_study().optimum(PAIR)
     h = answer.durations * factor
     other = replace(answer, status=Status.CONVERGED, vector=h, lower_bound=None)
-    found = with_interval(other, proved(COVERED_PROBLEMS[f"{IRB}.limit-80.waypoints-rad"]))
+    found = with_interval(other, proved(EXACT))
     assert found.evidence is evidence
     if factor > 1.0:
         assert found.total_time == pytest.approx(answer.total_time, rel=1e-9)

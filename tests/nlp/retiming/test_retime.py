@@ -10,7 +10,7 @@ from support.retimed import PUMA_353, close, hermite, puma, rest_to_rest_time, t
 from support.same_question import DRESSES, OWN_UNITS, same_question
 from trajgap.nlp.retiming.grid import measure, sample
 from trajgap.nlp.retiming.path import pieces
-from trajgap.nlp.retiming.toppra_check import extrapolate, retime, retime_joints
+from trajgap.nlp.retiming.toppra_check import GRIDPOINTS, extrapolate, retime, retime_joints
 from trajgap.problem import (
     Limits,
     Problem,
@@ -30,6 +30,7 @@ from trajgap.problem import (
 # --- paths of known answers -----------------------------------------------------------------------
 
 
+MOTION = puma(three_five_three(), PUMA_353)
 THERE_AND_BACK = [[0.3], [1.7], [0.9]], [1.5, 1.2]
 STRAIGHT = [[0.2, -1.0, 3.0], [1.1, 1.5, 2.3]], [2.0]
 CORNERS = [[0.1, 0.9, -0.3], [0.8, 0.2, -0.3], [0.9, -1.4, 0.5], [-0.2, -1.1, 0.1]], [1.0, 1.6, 1.3]
@@ -119,9 +120,8 @@ def test_parabola_at_the_acceleration_limit_cannot_be_done_faster(start: float) 
 
 
 def test_first_order_and_extrapolation_within_its_error() -> None:
-    curve = puma(three_five_three(), PUMA_353)
-    coarse = retime(curve, PUMA_LIMITS, gridpoints=(100, 200, 400))
-    fine = retime(curve, PUMA_LIMITS, gridpoints=(2000, 4000, 8000))
+    coarse = retime(MOTION, PUMA_LIMITS, gridpoints=(100, 200, 400))
+    fine = retime(MOTION, PUMA_LIMITS, gridpoints=(2000, 4000, 8000))
     assert 0.8 < coarse.order < 1.5
     assert abs(coarse.extrapolated - fine.extrapolated) <= coarse.error
     assert fine.error < coarse.error / 5
@@ -178,18 +178,19 @@ def test_retiming_never_takes_longer_than_a_feasible_trajectory(seed: int) -> No
     assert found.extrapolated <= found.trajectory_time + found.error
 
 
-def test_no_inequality_for_a_trajectory_that_breaks_its_limits() -> None:
-    found = retime(puma(three_five_three(), 0.5 * PUMA_353), PUMA_LIMITS)
+@pytest.mark.parametrize(
+    ("factor", "gridpoints", "why"),
+    [
+        (0.5, GRIDPOINTS, "the trajectory exceeds a limit itself (ratio 3.99"),
+        (1.0, (2, 3, 4), "the grids are too coarse (error estimate"),
+    ],
+)
+def test_no_inequality(factor: float, gridpoints: tuple[int, ...], why: str) -> None:
+    curve = puma(three_five_three(), factor * PUMA_353)
+    found = retime(curve, PUMA_LIMITS, gridpoints=gridpoints)
     assert found.applicable
     assert found.inequality_holds is None
-    assert found.why.startswith("the trajectory exceeds a limit itself (ratio 3.99")
-
-
-def test_no_inequality_on_grids_that_are_too_coarse() -> None:
-    found = retime(puma(three_five_three(), PUMA_353), PUMA_LIMITS, gridpoints=(2, 3, 4))
-    assert found.applicable
-    assert found.inequality_holds is None
-    assert found.why.startswith("the grids are too coarse (error estimate")
+    assert found.why.startswith(why)
 
 
 def test_many_segments_get_more_cells() -> None:
@@ -207,24 +208,10 @@ def test_many_segments_get_more_cells() -> None:
 
 
 def test_the_duration_belongs_to_the_path_and_not_to_its_timing() -> None:
-    curve = puma(three_five_three(), PUMA_353)
     slow = puma(three_five_three(), 7.0 * PUMA_353)
-    one, two = (retime(c, PUMA_LIMITS) for c in (curve, slow))
+    one, two = (retime(c, PUMA_LIMITS) for c in (MOTION, slow))
     assert one.durations == pytest.approx(two.durations, rel=1e-5)
     assert two.inequality_holds
-
-
-def test_each_joint_by_itself_has_a_path_of_its_own() -> None:
-    curve = fit(rest_to_rest(2, 5), CORNERS[0][:3], [1.0, 1.6])
-    limits = Limits([1.5, 1.9, 1.1], [4.0, 3.0, 5.0])
-    found = retime_joints(curve, limits)
-    ways = np.abs(np.diff(CORNERS[0][:3], axis=0))
-    wanted = [
-        sum(rest_to_rest_time(np.array([way]), [v], [a]) for way in ways[:, j] if way > 0)
-        for j, (v, a) in enumerate([(1.5, 4.0), (1.9, 3.0), (1.1, 5.0)])
-    ]
-    assert len(found) == 3
-    assert all(close(one, time) for one, time in zip(found, wanted, strict=True))
 
 
 def test_a_path_from_rest_to_rest_has_a_speed_in_between() -> None:
@@ -273,18 +260,22 @@ def test_another_dress_changes_no_time(dress: str) -> None:
 
 
 def test_each_joint_on_its_own_path() -> None:
-    curve = puma(three_five_three(), PUMA_353)
-    each = retime_joints(curve, PUMA_LIMITS)
+    limits = Limits(np.linspace(5.0, 6.0, 6), np.linspace(8.0, 7.0, 6))
+    each = retime_joints(MOTION, limits)
+    assert len(each) == 6
     for j, found in enumerate(each):
-        turning = [e for e in extrema(curve, j, 0) if abs(curve(e.time, 1)[j]) < 1e-9]
+        turning = [e for e in extrema(MOTION, j, 0) if abs(MOTION(e.time, 1)[j]) < 1e-9]
         values = [turning[0].value]
         for e in turning[1:]:
             if abs(e.value - values[-1]) > 1e-9:
                 values.append(e.value)
-        expected = sum(rest_to_rest_time([d], [6.0], [8.0]) for d in np.diff(values))
+        expected = sum(
+            rest_to_rest_time([d], limits.velocity[[j]], limits.acceleration[[j]])
+            for d in np.diff(values)
+        )
         assert close(found, expected)
         assert len(found.cuts) == len(values)
-    assert max(f.extrapolated for f in each) < retime(curve, PUMA_LIMITS).extrapolated
+    assert max(f.extrapolated for f in each) < retime(MOTION, limits).extrapolated
 
 
 # --- cutting, sampling ----------------------------------------------------------------------------
@@ -310,17 +301,16 @@ def test_a_near_reversal_costs_about_as_much_as_a_reversal(miss: float) -> None:
 
 
 def test_samples_against_finite_differences() -> None:
-    curve = puma(three_five_three(), PUMA_353)
-    (piece,), _ = pieces(curve)
+    (piece,), _ = pieces(MOTION)
     path = sample(piece, measure(piece), 4000)
     assert np.allclose(np.linalg.norm(path.tangent, axis=1), 1.0, atol=1e-12)
     inner = slice(400, -400)
     slope = np.gradient(path.tangent, path.s, axis=0)
     middle = (path.before + path.after) / 2
     assert np.allclose(slope[inner], middle[inner], atol=2e-3 * np.abs(middle[inner]).max())
-    times = np.linspace(0, curve.total_time, 200_001)
+    times = np.linspace(0, MOTION.total_time, 200_001)
     assert path.s[-1] == pytest.approx(
-        np.trapezoid(np.linalg.norm(curve(times, 1), axis=1), times), rel=1e-8
+        np.trapezoid(np.linalg.norm(MOTION(times, 1), axis=1), times), rel=1e-8
     )
     # The grid is graded at the rest ends, where q″ grows like s^(−2/3): s ~ τ³.
     share = np.log(path.s[8] / path.s[4]) / np.log(2)
@@ -341,8 +331,7 @@ def test_samples_against_finite_differences() -> None:
     ],
 )
 def test_not_applicable_by_limits(limits: Limits, why: str) -> None:
-    curve = puma(three_five_three(), PUMA_353)
-    found = retime(curve, limits)
+    found = retime(MOTION, limits)
     assert not found.applicable
     assert found.why.startswith(why)
     assert found.extrapolated is None
@@ -350,22 +339,14 @@ def test_not_applicable_by_limits(limits: Limits, why: str) -> None:
     assert why in str(found)
 
 
-def test_jerk_limits_of_joints_at_rest_do_not_matter() -> None:
+@pytest.mark.parametrize(
+    "limits", [Limits(6.0, [8.0, np.inf], [np.inf, 5.0]), Limits([6.0, 0.0], [8.0, 0.0])]
+)
+def test_limits_of_joints_at_rest_do_not_matter(limits: Limits) -> None:
     q = np.column_stack([PUMA[:, 0], np.full(4, 0.7)])
-    limits = Limits(6.0, [8.0, np.inf], [np.inf, 5.0])
     found = retime(fit(three_five_three(), q, PUMA_353), limits)
     alone = retime(fit(three_five_three(), q[:, :1], PUMA_353), Limits(6.0, 8.0, joints=1))
     assert found.durations == pytest.approx(alone.durations, rel=1e-5)
-
-
-def test_zero_limits_of_joints_at_rest_do_not_matter() -> None:
-    q = np.column_stack([PUMA[:, 0], np.full(4, 0.7), PUMA[:, 2]])
-    curve = fit(three_five_three(), q, PUMA_353)
-    found = retime(curve, Limits([6.0, 0.0, 6.0], [8.0, 0.0, 8.0]))
-    alone = fit(three_five_three(), q[:, [0, 2]], PUMA_353)
-    assert found.durations == pytest.approx(
-        retime(alone, Limits(6.0, 8.0, joints=2)).durations, rel=1e-5
-    )
     assert found.inequality_holds
 
 
@@ -380,23 +361,21 @@ def test_not_applicable_by_shape() -> None:
 
 
 def test_end_speeds_that_are_not_the_trajectorys_or_cannot_be_reached() -> None:
-    curve = puma(three_five_three(), PUMA_353)
-    found = retime(curve, PUMA_LIMITS, end_speeds=(1000.0, 0.0))
+    found = retime(MOTION, PUMA_LIMITS, end_speeds=(1000.0, 0.0))
     assert not found.applicable
     assert found.why == "TOPPRA found no parametrisation of piece 1 on 500 cells"
-    moving = retime(curve, PUMA_LIMITS, end_speeds=(0.1, 0.0))
+    moving = retime(MOTION, PUMA_LIMITS, end_speeds=(0.1, 0.0))
     assert moving.inequality_holds is None
     assert moving.why == "the end speeds are not the trajectory's"
 
 
 def test_arguments_that_make_no_sense() -> None:
-    curve = puma(three_five_three(), PUMA_353)
     with pytest.raises(TrajgapError, match="gridpoints: expected three ascending numbers"):
-        retime(curve, PUMA_LIMITS, gridpoints=(100, 100, 200))
+        retime(MOTION, PUMA_LIMITS, gridpoints=(100, 100, 200))
     with pytest.raises(TrajgapError, match="end_speeds: expected two speeds of 0 or more"):
-        retime(curve, PUMA_LIMITS, end_speeds=(-1.0, 0.0))
+        retime(MOTION, PUMA_LIMITS, end_speeds=(-1.0, 0.0))
     with pytest.raises(TrajgapError, match="limits: given for 2 joints, trajectory has 6"):
-        retime(curve, Limits(1.0, 1.0, joints=2))
+        retime(MOTION, Limits(1.0, 1.0, joints=2))
 
 
 # --- manners --------------------------------------------------------------------------------------
@@ -406,13 +385,13 @@ def test_toppra_stays_quiet_and_its_logger_as_it_was(caplog: pytest.LogCaptureFi
     logger = logging.getLogger("toppra")
     level = logger.level
     with caplog.at_level(logging.DEBUG):
-        retime(puma(three_five_three(), PUMA_353), PUMA_LIMITS, end_speeds=(1000.0, 0.0))
+        retime(MOTION, PUMA_LIMITS, end_speeds=(1000.0, 0.0))
     assert [r for r in caplog.records if r.name.startswith("toppra")] == []
     assert logger.level == level
 
 
 def test_summary_on_one_screen() -> None:
-    text = str(retime(puma(three_five_three(), PUMA_353), PUMA_LIMITS))
+    text = str(retime(MOTION, PUMA_LIMITS))
     assert len(text.splitlines()) <= 6
     for part in ("2.0269", "(2000)", "fitted order 1.", "one-sided           holds"):
         assert part in text

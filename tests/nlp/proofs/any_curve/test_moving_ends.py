@@ -19,15 +19,9 @@ V, A = np.array([1.5, 1.25]), np.array([4.0, 2.5])
 START, FINISH = (1.0, -0.25), (0.0, 0.75)
 
 
-def problem_with(
-    start: tuple[float, ...] = START,
-    finish: tuple[float, ...] = FINISH,
-    way: Array = WAY,
-    v: Array = V,
-    a: Array = A,
-) -> Problem:
-    curve = cubic_spline(len(way) - 1, ((1, start),), ((1, finish),))
-    return Problem(way, Limits(v, a), curve, joints=("a", "b")[: way.shape[1]])
+def problem_with(start: tuple[float, ...] = START) -> Problem:
+    curve = cubic_spline(2, ((1, start),), ((1, FINISH),))
+    return Problem(WAY, Limits(V, A), curve, joints=("a", "b"))
 
 
 @cache

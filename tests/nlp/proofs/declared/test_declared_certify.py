@@ -36,6 +36,8 @@ from trajgap.problem import (
 from trajgap.verify import Subject
 from trajgap.verify import verify_certificate as verify
 
+IRB = COVERED_PROBLEMS["irb460-pso-353.limit-80.waypoints-rad"]
+
 
 def test_shipped_certificates_are_fresh_and_prove() -> None:
     assert COVERED_PROBLEMS
@@ -81,8 +83,7 @@ def test_the_table_in_the_docs_is_that_of_the_files() -> None:
 
 
 def test_no_time_gives_no_lower_bound() -> None:
-    exact = COVERED_PROBLEMS["irb460-pso-353.limit-80.waypoints-rad"]
-    found = certify(exact, seconds=0.0)
+    found = certify(IRB, seconds=0.0)
     assert (found.outcome, found.lower) == (Outcome.INTERVAL, 0)
     with pytest.raises(TrajgapError, match="nothing is proved"):
         certificate(found)
@@ -234,16 +235,14 @@ def test_a_resumed_bound_alone_proves_nothing_infeasible(monkeypatch: pytest.Mon
     ],
 )
 def test_a_bad_state_is_refused(part: str, change: dict[str, Any], reason: str) -> None:
-    exact = COVERED_PROBLEMS["irb460-pso-353.limit-80.waypoints-rad"]
-    state = state_of(certify(exact, seconds=0.0))
+    state = state_of(certify(IRB, seconds=0.0))
     state[part] |= change
     with pytest.raises(TrajgapError, match=reason):
-        certify(exact, resume=state)
+        certify(IRB, resume=state)
 
 
 def test_what_is_no_state_is_refused() -> None:
-    exact = COVERED_PROBLEMS["irb460-pso-353.limit-80.waypoints-rad"]
-    finished = certify(exact, gap=0.1)
+    finished = certify(IRB, gap=0.1)
     for other in (finished, certificate(finished), {}, {"format": "trajgap-state-1"}):
         with pytest.raises(TrajgapError, match="resume: no trajgap-state-2"):
-            certify(exact, resume=other)
+            certify(IRB, resume=other)
