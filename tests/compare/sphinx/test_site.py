@@ -48,9 +48,10 @@ def test_the_results_are_fresh():
     assert lock["code"] == made.code_hash(), "the code has changed; run docs/rebuild.py"
 
 
-def test_the_table_of_papers_in_the_readme_is_made_from_the_results():
-    text = (ROOT / "README.md").read_text(encoding="utf-8")
-    assert text == program("rebuild").readme(text)
+def test_tables_of_papers_are_made_from_the_results():
+    text, made = (ROOT / "README.md").read_text(encoding="utf-8"), program("rebuild")
+    assert text == made.readme(text)
+    assert made.GAPS.read_text(encoding="utf-8") == made.gaps_csv()
     papers = [n for n in RESULTS.names if RESULTS.case(n)["source"]["kind"] == "paper"]
     assert len(papers) > 4
     assert sorted(re.findall(r"\]\(docs/reports/(.+)\.md\)", text)) == papers
