@@ -21,8 +21,7 @@ sys.path.insert(0, str(Path(__file__).parent))
 import numpy as np
 import plain_opti
 import slsqp_small
-from trajgap.nlp import optimum
-from trajgap.nlp import solve as solve_with_certificate
+from trajgap.nlp import optimum, solve as solve_with_certificate
 from trajgap.nlp.optimum.solver import solve
 from trajgap.problem import check, load_case
 

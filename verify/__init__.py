@@ -7,40 +7,40 @@ docs/explanation/certificates.md.
 """
 
 from .answer import check_answer as check_answer
-from .any_curve import check_motion as check_motion
-from .any_curve import spans_of as spans_of
-from .problem import CHORD as CHORD
-from .problem import StatedProblem as StatedProblem
-from .problem import read_problem as read_problem
-from .ranges import MIX as MIX
-from .ranges import MIX_DIGITS as MIX_DIGITS
-from .ranges import MOST_DEPTH as MOST_DEPTH
-from .ranges import MOST_INTEGER as MOST_INTEGER
-from .ranges import MOST_POWER as MOST_POWER
-from .ranges import MOST_WEIGHT as MOST_WEIGHT
-from .ranges import PLACES as PLACES
-from .ranges import QUINTIC_PLACES as QUINTIC_PLACES
-from .ranges import SHORTEST_TOTAL as SHORTEST_TOTAL
-from .ranges import SPOTS as SPOTS
-from .ranges import TANGENT_UNIT as TANGENT_UNIT
-from .ranges import TICKS as TICKS
-from .ranges import WINDOW_UNIT as WINDOW_UNIT
-from .reading import Clock as Clock
-from .reading import OutOfTime as OutOfTime
-from .reading import Refused as Refused
-from .reading import number as number
-from .reading import read_document as read_document
-from .reading import shown as shown
-from .tree import CUT as CUT
-from .tree import LEAF as LEAF
-from .tree import OPEN as OPEN
-from .tree import Subject as Subject
-from .verdict import CERTIFICATE_FORMAT as CERTIFICATE_FORMAT
-from .verdict import OLD_FORMATS as OLD_FORMATS
-from .verdict import SECONDS as SECONDS
-from .verdict import STATE_FORMAT as STATE_FORMAT
-from .verdict import CertificateVerdict as CertificateVerdict
-from .verdict import CertifiedQuestion as CertifiedQuestion
-from .verdict import proof_kind as proof_kind
-from .verdict import seal as seal
-from .verdict import verify_certificate as verify_certificate
+from .any_curve import check_motion as check_motion, spans_of as spans_of
+from .problem import CHORD as CHORD, StatedProblem as StatedProblem, read_problem as read_problem
+from .ranges import (
+    MIX as MIX,
+    MIX_DIGITS as MIX_DIGITS,
+    MOST_DEPTH as MOST_DEPTH,
+    MOST_INTEGER as MOST_INTEGER,
+    MOST_POWER as MOST_POWER,
+    MOST_WEIGHT as MOST_WEIGHT,
+    PLACES as PLACES,
+    QUINTIC_PLACES as QUINTIC_PLACES,
+    SHORTEST_TOTAL as SHORTEST_TOTAL,
+    SPOTS as SPOTS,
+    TANGENT_UNIT as TANGENT_UNIT,
+    TICKS as TICKS,
+    WINDOW_UNIT as WINDOW_UNIT,
+)
+from .reading import (
+    Clock as Clock,
+    OutOfTime as OutOfTime,
+    Refused as Refused,
+    number as number,
+    read_document as read_document,
+    shown as shown,
+)
+from .tree import CUT as CUT, LEAF as LEAF, OPEN as OPEN, Subject as Subject
+from .verdict import (
+    CERTIFICATE_FORMAT as CERTIFICATE_FORMAT,
+    OLD_FORMATS as OLD_FORMATS,
+    SECONDS as SECONDS,
+    STATE_FORMAT as STATE_FORMAT,
+    CertificateVerdict as CertificateVerdict,
+    CertifiedQuestion as CertifiedQuestion,
+    proof_kind as proof_kind,
+    seal as seal,
+    verify_certificate as verify_certificate,
+)

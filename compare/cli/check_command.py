@@ -10,8 +10,7 @@ from typing import Annotated
 import typer
 from rich.console import RenderableType
 
-from ...problem import Case, Check, Coupling, Peak, published_ids
-from ...problem import check as judge
+from ...problem import Case, Check, Coupling, Peak, check as judge, published_ids
 from ..audits import Point, RoundingBox, RoundingVerdict, in_words, judge_rounding
 from ..documents import (
     BrokenPlace,

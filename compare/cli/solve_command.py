@@ -14,11 +14,9 @@ from rich.console import RenderableType
 from ...nlp import (
     Solution,
     printed_problem_or_none,
+    solve as solve_exactly,
     solve_per_joint,
     with_other_route,
-)
-from ...nlp import (
-    solve as solve_exactly,
 )
 from ...nlp.optimum import OPTIMUM_SLACK, stopping_after
 from ...nlp.retiming import Retiming, retime

@@ -108,6 +108,19 @@ from .instances import (
     Reduction as Reduction,
     Totals as Totals,
 )
+from .lookups import (
+    CaseDiffDocument as CaseDiffDocument,
+    CasesDocument as CasesDocument,
+    DifferingField as DifferingField,
+    ExplainDocument as ExplainDocument,
+    ExplainedRule as ExplainedRule,
+    ExplainedWord as ExplainedWord,
+    ListedCase as ListedCase,
+    ShowDocument as ShowDocument,
+    cases_document as cases_document,
+    diff_document as diff_document,
+    show_document as show_document,
+)
 from .reached import (
     REACHED_COLUMNS as REACHED_COLUMNS,
     REACHED_MEANING as REACHED_MEANING,
@@ -126,19 +139,6 @@ from .remarks import (
     said_beside as said_beside,
     same_reason as same_reason,
     worth_little as worth_little,
-)
-from .lookups import (
-    CaseDiffDocument as CaseDiffDocument,
-    CasesDocument as CasesDocument,
-    DifferingField as DifferingField,
-    ExplainDocument as ExplainDocument,
-    ExplainedRule as ExplainedRule,
-    ExplainedWord as ExplainedWord,
-    ListedCase as ListedCase,
-    ShowDocument as ShowDocument,
-    cases_document as cases_document,
-    diff_document as diff_document,
-    show_document as show_document,
 )
 from .side_by_side import (
     Excess as Excess,

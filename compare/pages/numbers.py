@@ -26,8 +26,7 @@ from ..documents import (
     reached_cells,
 )
 from ..gaps import gap, reference_of, spread
-from ..pictures import reached_picture, svg, waterfall_picture
-from ..pictures import seconds as interval
+from ..pictures import reached_picture, seconds as interval, svg, waterfall_picture
 from .blocks import (
     Block,
     Cell,

@@ -35,8 +35,7 @@ from .leaderboard import Leaderboard
 from .papers import COLUMNS, PaperRow, paper_rows, papers_drawn, reference
 from .parts import badge, folded, paragraph, picture, steps, table
 from .proofs import proved_again
-from .reasons import names as reading_names
-from .reasons import none_said, reasons, wanted_words
+from .reasons import names as reading_names, none_said, reasons, wanted_words
 from .results import Results, revived, waterfall_of
 from .suite import InstanceShown, SuiteTable
 

@@ -17,6 +17,7 @@ from .tent import TentRule, tent_population
 from .woa import (
     COUNTER_OPEN,
     INITIAL_OPEN,
+    OPEN_CHOICES as _SHARED,
     Coefficients,
     Counter,
     Replacement,
@@ -30,7 +31,6 @@ from .woa import (
     replaced,
     spiralled,
 )
-from .woa import OPEN_CHOICES as _SHARED
 
 OPEN_CHOICES = (
     "s: a constant above −1 in (22), not printed; 0, with which w falls linearly",

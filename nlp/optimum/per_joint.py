@@ -14,8 +14,7 @@ from .clock import time_up
 from .limit_rows import NEAR
 from .pieces import ca
 from .program import Program
-from .rounds import OPTIONS as OPTIONS_OF_ROUNDS
-from .rounds import constraints, near_rows
+from .rounds import OPTIONS as OPTIONS_OF_ROUNDS, constraints, near_rows
 from .solution import Evidence, SearchResult, Solution, Status, weakest
 from .solver import solve
 

@@ -12,8 +12,7 @@ from typing import TypeVar
 import numpy as np
 
 from ...problem import Array, TrajgapError, evaluate
-from ...verify import Clock, Subject
-from ...verify import OutOfTime as OutOfTime
+from ...verify import Clock, OutOfTime as OutOfTime, Subject
 from ..optimum import solve, stopping_after
 from .answer import float_problem, prove_feasible
 from .exact import ExactProblem

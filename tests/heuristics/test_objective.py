@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 from support.positions import CURVES, SWINGING, limited
 from support.two_joints import WAYPOINTS, WITH_JERK, two_joints
-from support.uneven import CURVES as UNEVEN
-from support.uneven import uneven_problem
+from support.uneven import CURVES as UNEVEN, uneven_problem
 from trajgap.heuristics import (
     PSO,
     Counted,

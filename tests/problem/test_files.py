@@ -9,6 +9,7 @@ import pytest
 from trajgap.problem import (
     CaseError,
     check_regular,
+    files as module,
     load_case,
     new_file,
     read_regular,
@@ -18,7 +19,6 @@ from trajgap.problem import (
     replace_folder,
     try_writing_in,
 )
-from trajgap.problem import files as module
 
 ODD = "half a pair \ud800"
 """What no file can hold, so that writing it fails half-way."""

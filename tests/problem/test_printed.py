@@ -9,8 +9,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from trajgap.problem.errors import CaseError, TrajgapError
 from trajgap.problem.printed import Printed, down, read_float, up
 from trajgap.problem.units import (

@@ -16,8 +16,7 @@ from trajgap.nlp.proofs.document import certificate
 from trajgap.nlp.proofs.exact import ExactProblem, printed_problem
 from trajgap.nlp.proofs.outcome import Certified, Outcome
 from trajgap.problem import Limits, Problem, cubic_spline, load_case, three_five_three
-from trajgap.verify import CertificateVerdict, Subject
-from trajgap.verify import verify_certificate as verify
+from trajgap.verify import CertificateVerdict, Subject, verify_certificate as verify
 
 certify_any = partial(certify, subject=Subject.ANY)
 PUMA_PROBLEM = Problem(PUMA, PUMA_LIMITS, three_five_three())

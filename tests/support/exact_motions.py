@@ -11,9 +11,14 @@ from fractions import Fraction
 from functools import cached_property
 from itertools import pairwise
 
-from support.exact_route import braking, extremes, fitted, solved
-from support.exact_route import derived as derived
-from support.exact_route import value as value
+from support.exact_route import (
+    braking,
+    derived as derived,
+    extremes,
+    fitted,
+    solved,
+    value as value,
+)
 from trajgap.problem import Interpolant
 
 Exact = list[Fraction]

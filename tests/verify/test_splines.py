@@ -11,8 +11,7 @@ import pytest
 from support.forgeries.forgery import NO_ANSWER, altered, document
 from support.papers.motions import FAMILIES, Motion, nodes, vertices
 from trajgap.verify import read_problem
-from trajgap.verify.cubic import FINE, Box, Cubic, least
-from trajgap.verify.cubic import box as box_module
+from trajgap.verify.cubic import FINE, Box, Cubic, box as box_module, least
 from trajgap.verify.curve import pieces, value_at
 from trajgap.verify.reading import Clock
 

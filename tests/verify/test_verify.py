@@ -13,8 +13,7 @@ import pytest
 from support.alterations import Path_, changed, fields, get, put
 from support.certificate_kinds import KINDS, stated, text
 from trajgap.problem import evaluate
-from trajgap.verify import Subject
-from trajgap.verify import verify_certificate as verify
+from trajgap.verify import Subject, verify_certificate as verify
 from trajgap.verify.curve import nonnegative
 from trajgap.verify.reading import Clock
 from trajgap.verify.verdict import KINDS as PROOFS

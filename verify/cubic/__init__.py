@@ -2,9 +2,10 @@
 
 from .box import Box as Box
 from .kind import CubicSpline as CubicSpline
-from .system import FINE as FINE
-from .system import Condition as Condition
-from .system import Cubic as Cubic
-from .system import kind_of_ends as kind_of_ends
-from .weights import Spot as Spot
-from .weights import least as least
+from .system import (
+    FINE as FINE,
+    Condition as Condition,
+    Cubic as Cubic,
+    kind_of_ends as kind_of_ends,
+)
+from .weights import Spot as Spot, least as least

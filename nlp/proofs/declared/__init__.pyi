@@ -1,9 +1,8 @@
-from .certifier import DECLARED as DECLARED
-from .certifier import FEW_SEGMENTS as FEW_SEGMENTS
-from .certifier import BoxStages as BoxStages
-from .certifier import Tree as Tree
+from .certifier import (
+    DECLARED as DECLARED,
+    FEW_SEGMENTS as FEW_SEGMENTS,
+    BoxStages as BoxStages,
+    Tree as Tree,
+)
 from .rows import NearLimits as NearLimits
-from .search import Curves as Curves
-from .search import Found as Found
-from .search import Leaf as Leaf
-from .search import Middle as Middle
+from .search import Curves as Curves, Found as Found, Leaf as Leaf, Middle as Middle

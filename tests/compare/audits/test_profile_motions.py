@@ -9,9 +9,14 @@ import pytest
 from support.findings import finding, study_of
 from support.made_up import claim, paper, sentence, total
 from trajgap.compare.audits import PrintedRow
-from trajgap.compare.audits.axis_profile import AxisProfile, AxisState, Phase, Sizes
-from trajgap.compare.audits.axis_profile import shortest_s_curve as s_curve
-from trajgap.compare.audits.axis_profile import shortest_trapezoid as trapezoid
+from trajgap.compare.audits.axis_profile import (
+    AxisProfile,
+    AxisState,
+    Phase,
+    Sizes,
+    shortest_s_curve as s_curve,
+    shortest_trapezoid as trapezoid,
+)
 from trajgap.compare.audits.named_profiles import fourth_order
 from trajgap.compare.audits.profile_motions import (
     NumberRange,

@@ -6,8 +6,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from support.exact_route import fitted
 from support.rounding_boxes import MOVING_ENDS, rounded_problem
 from trajgap.nlp.enclosure import balls as interval

@@ -23,8 +23,7 @@ from trajgap.nlp import ExactProblem, shipped
 from trajgap.nlp.proofs.document import shipped_folder
 from trajgap.nlp.proofs.state import read_state
 from trajgap.problem import TrajgapError
-from trajgap.verify import CertifiedQuestion, Subject, seal
-from trajgap.verify import verify_certificate as verify
+from trajgap.verify import CertifiedQuestion, Subject, seal, verify_certificate as verify
 
 
 def files_of(out: str) -> list[str]:

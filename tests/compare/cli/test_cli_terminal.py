@@ -16,8 +16,7 @@ from rich.cells import cell_len
 from support.checkout import ROOT
 from support.command_line import CASE, IRB, ONE, START, Run, on_terminal, strict
 from support.documents import SCHEMA
-from trajgap.compare.cli import main
-from trajgap.compare.cli import output as cli_output
+from trajgap.compare.cli import main, output as cli_output
 
 # --- odd but correct problems ---------------------------------------------------------------------
 

@@ -12,8 +12,7 @@ import pytest
 from support.b_splines import uniform
 from support.same_question import DRESSES, OWN_UNITS, SLOWER, same_question
 from support.samples import long_problem, small_problem
-from support.uneven import CURVES as UNEVEN
-from support.uneven import uneven_problem
+from support.uneven import CURVES as UNEVEN, uneven_problem
 from trajgap.nlp import Route, Solution, Status, kkt, with_other_route
 from trajgap.nlp.optimum import solve
 from trajgap.problem import (

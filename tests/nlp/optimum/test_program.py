@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 from support.b_splines import clamped, uniform
 from support.samples import FAMILIES, long_curves, long_problem, small_problem
-from support.uneven import CURVES as UNEVEN
-from support.uneven import uneven_problem
+from support.uneven import CURVES as UNEVEN, uneven_problem
 from trajgap.nlp import build
 from trajgap.nlp.optimum.program import Program
 from trajgap.nlp.optimum.rounds import near_rows

@@ -18,8 +18,7 @@ from trajgap.nlp.optimum import (
 )
 from trajgap.nlp.optimum.program import Program
 from trajgap.nlp.optimum.rounds import STAGES, begun, solve_round
-from trajgap.nlp.proofs import clock as proof_clock
-from trajgap.nlp.proofs import session
+from trajgap.nlp.proofs import clock as proof_clock, session
 from trajgap.nlp.proofs.any_curve.estimate import estimate_any_curve
 from trajgap.nlp.proofs.any_curve.local import call_cap
 from trajgap.nlp.proofs.exact import exact_problem

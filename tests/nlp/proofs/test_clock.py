@@ -30,8 +30,14 @@ from trajgap.problem import (
     cubic_spline_virtual,
     quintic_spline,
 )
-from trajgap.verify import CertificateVerdict, Clock, OutOfTime, Subject, verify_certificate
-from trajgap.verify import verify_certificate as verify
+from trajgap.verify import (
+    CertificateVerdict,
+    Clock,
+    OutOfTime,
+    Subject,
+    verify_certificate,
+    verify_certificate as verify,
+)
 
 LATE = CertificateVerdict(False, "nothing was decided", out_of_time=True)
 WAY = np.array([[0.2, -0.3], [1.3, 0.4], [0.6, 1.1]])

@@ -23,17 +23,14 @@ from support.proof_problems import (
     random_in_motion,
     random_quintic,
 )
-from support.proof_runs import answering, unjudged
-from support.proof_runs import own_kinds as own_kinds
+from support.proof_runs import answering, own_kinds as own_kinds, unjudged
 from support.puma import PUMA
 from trajgap.nlp import solve
 from trajgap.nlp.proofs.certifier import Certifier
 from trajgap.nlp.proofs.certifiers import CERTIFIERS, certifiers, certify, covered
 from trajgap.nlp.proofs.closed_form.formulas import MOST_REBUILT
-from trajgap.nlp.proofs.cubic import certifier as cubic_certify
-from trajgap.nlp.proofs.cubic import tree
-from trajgap.nlp.proofs.declared import certifier as boxes
-from trajgap.nlp.proofs.declared import search
+from trajgap.nlp.proofs.cubic import certifier as cubic_certify, tree
+from trajgap.nlp.proofs.declared import certifier as boxes, search
 from trajgap.nlp.proofs.document import certificate
 from trajgap.nlp.proofs.exact import MOVING, ExactProblem, exact_problem
 from trajgap.nlp.proofs.outcome import Certified, Outcome, Progress
@@ -52,8 +49,7 @@ from trajgap.problem import (
     three_five_three,
     uniform_cubic_b_spline,
 )
-from trajgap.verify import Subject, verify_certificate
-from trajgap.verify import boxes as verified_boxes
+from trajgap.verify import Subject, boxes as verified_boxes, verify_certificate
 from trajgap.verify.cubic import least
 
 Patches = tuple[tuple[Any, str, Any], ...]

@@ -28,11 +28,11 @@ from trajgap.nlp import (
     estimate_any_curve,
     proved,
     shipped,
+    solve as solve_and_prove,
     solve_per_joint,
     weakest,
     with_interval,
 )
-from trajgap.nlp import solve as solve_and_prove
 from trajgap.nlp.optimum import solve
 from trajgap.nlp.optimum.solution import WIDEST
 from trajgap.nlp.proofs import interval_of, printed_problem_or_none

@@ -10,8 +10,7 @@ from pathlib import Path
 
 import pytest
 from attacks.mutations import places
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from support.case_texts import BASE, case_text
 from support.checkout import ROOT
 from support.refusals import Refusal, each_refusal

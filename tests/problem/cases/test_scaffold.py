@@ -6,8 +6,7 @@ import re
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from support.refusals import Refusal, each_refusal
 from trajgap.problem.cases.literature import LITERATURE
 from trajgap.problem.cases.load import parse_case

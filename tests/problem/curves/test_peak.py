@@ -9,10 +9,8 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from hypothesis import assume, example, given
-from hypothesis import strategies as st
-from numpy.polynomial import Chebyshev
-from numpy.polynomial import Polynomial as Power
+from hypothesis import assume, example, given, strategies as st
+from numpy.polynomial import Chebyshev, Polynomial as Power
 from support import exact_route
 from trajgap.problem import (
     Interpolant,

@@ -5,8 +5,7 @@ from math import factorial, prod
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from trajgap.problem import Array, TrajgapError, Verdict
 from trajgap.problem.motions import JointLimits, Samples, check_samples, divided
 from trajgap.problem.motions.divided import divided_extremes

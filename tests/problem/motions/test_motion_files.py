@@ -9,8 +9,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 import yaml
-from attacks.motion_files import READERS
-from attacks.motion_files import write as write_rows
+from attacks.motion_files import READERS, write as write_rows
 from scipy.interpolate import CubicSpline
 from support.exact_motions import Row, hermite, value
 from support.refusals import Refusal, each_refusal

@@ -6,8 +6,7 @@ import re
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from support.chains import chains, elementary, rotation, translation
 from trajgap.problem.cases.robot_file import load_robot
 from trajgap.problem.errors import TrajgapError

@@ -13,9 +13,11 @@ from support.documents import SCHEMA, validator
 from support.findings import verdicts
 from trajgap.compare import audit
 from trajgap.compare.audits.case_audit import audit_case
-from trajgap.compare.audits.instances import drawn as family_study
-from trajgap.compare.audits.instances import examinable
-from trajgap.compare.audits.instances import examined as examine_once
+from trajgap.compare.audits.instances import (
+    drawn as family_study,
+    examinable,
+    examined as examine_once,
+)
 from trajgap.compare.audits.instances.drawn import printed_reduction
 from trajgap.compare.audits.instances.result import (
     MIDDLE,

@@ -6,8 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from numpy.typing import NDArray
 from support.findings import audited_text, finding, said_of, study_of, verdicts
 from support.made_up import Numbers, claim, paper, row, sentence, total

@@ -4,8 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from support.any_curve_proofs import PUMA_PROBLEM, interval, spline_problem, verified
 from support.puma import PUMA
 from support.retimed import rest_to_rest_time

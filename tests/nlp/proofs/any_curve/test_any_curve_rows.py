@@ -25,8 +25,7 @@ from trajgap.problem import (
     Limits,
     Problem,
 )
-from trajgap.verify import TANGENT_UNIT, Subject
-from trajgap.verify import verify_certificate as verify
+from trajgap.verify import TANGENT_UNIT, Subject, verify_certificate as verify
 
 Array = NDArray[np.float64]
 

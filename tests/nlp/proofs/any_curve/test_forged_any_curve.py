@@ -13,8 +13,7 @@ import pytest
 from support.alterations import put
 from support.any_curve_proofs import DETOUR, certify_any, printed, proved, spline_problem
 from support.proof_runs import unjudged
-from trajgap.nlp.proofs.any_curve import certifier as any_curve_certify
-from trajgap.nlp.proofs.any_curve import program, tangents
+from trajgap.nlp.proofs.any_curve import certifier as any_curve_certify, program, tangents
 from trajgap.nlp.proofs.any_curve.estimate import estimate_any_curve
 from trajgap.nlp.proofs.any_curve.proof import regrown
 from trajgap.nlp.proofs.any_curve.question import question

@@ -29,8 +29,7 @@ from trajgap.problem import (
     three_five_three,
     uniform_cubic_b_spline,
 )
-from trajgap.verify import Subject
-from trajgap.verify import verify_certificate as verify
+from trajgap.verify import Subject, verify_certificate as verify
 
 Q = np.array([[0.25, -0.5], [1.0, 0.125], [-0.375, 0.75], [0.5, 0.25]])
 LIMITS = Limits([1.0, 0.9], [2.0, 1.5], [12.0, 9.0])

@@ -29,8 +29,7 @@ from trajgap.problem import (
     cubic_spline,
     load_case,
 )
-from trajgap.verify import MOST_INTEGER, TICKS, read_problem
-from trajgap.verify import verify_certificate as verify
+from trajgap.verify import MOST_INTEGER, TICKS, read_problem, verify_certificate as verify
 
 # --- closed forms and identities ------------------------------------------------------------------
 

@@ -33,8 +33,7 @@ from trajgap.problem import (
     rest_to_rest,
     three_five_three,
 )
-from trajgap.verify import Subject
-from trajgap.verify import verify_certificate as verify
+from trajgap.verify import Subject, verify_certificate as verify
 
 IRB = COVERED_PROBLEMS["irb460-pso-353.limit-80.waypoints-rad"]
 

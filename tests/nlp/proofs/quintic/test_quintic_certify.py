@@ -23,8 +23,7 @@ from trajgap.nlp.proofs.quintic.windows import excluding_windows, window
 from trajgap.nlp.proofs.session import Session
 from trajgap.nlp.proofs.state import state_document
 from trajgap.problem import Limits, Problem, TrajgapError, evaluate, quintic_spline
-from trajgap.verify import seal
-from trajgap.verify import verify_certificate as verify
+from trajgap.verify import seal, verify_certificate as verify
 from trajgap.verify.quintic import QuinticSpline
 
 module = import_module("trajgap.nlp.proofs.quintic.certifier")
