@@ -160,7 +160,7 @@ class ClockedTrajectory(Trajectory):
         return Trajectory(even, self.scaled, self.degrees)
 
     @property
-    def polynomialin_time(self) -> bool:
+    def polynomial_in_time(self) -> bool:
         """Never: time is not linear in the parameter."""
         return False
 
