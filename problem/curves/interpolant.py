@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import os
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from itertools import product
@@ -23,7 +25,7 @@ from .kind import (
     value_errors,
 )
 from .peak import Extremum, PeakGradients
-from .polynomials import MAX_COEFFICIENTS
+from .polynomials import MAX_COEFFICIENTS, PERM
 from .refined import refined_coefficients
 from .system import DENSE_UNKNOWNS, system
 from .trajectory import Trajectory
@@ -32,6 +34,10 @@ from .tridiagonal import tridiagonal_fit
 MOST_OPEN = 600
 """Coefficients up to which a case file may leave some free: finding the derivatives that complete
 the declaration takes a dense decomposition for each, some seconds in all."""
+
+PART = 1000
+"""Polynomials (vectors times joints) of a thread's part: starting threads for fewer than four parts
+costs more than it saves."""
 
 
 @dataclass(frozen=True)
@@ -243,8 +249,6 @@ class Interpolant(Curve):
 
     def batch_reach(self, values: Array, durations: Array, asked: Asked) -> Array:
         """By the compiled kernel."""
-        from .kernel import reach_of
-
         return reach_of(self.layout, values, as_batch(self, durations), asked)
 
     def value_gradients(
@@ -393,6 +397,32 @@ def right_hand_sides(interpolant: Interpolant, waypoints: Array, nodal: Array | 
         rows = plan.nodal >= 0
         values[rows] = nodal[plan.nodal[rows]]
     return values
+
+
+def reach_of(layout: Layout, values: Array, durations: Array, asked: Asked) -> Array:
+    """`Curve.batch_reach` of a declared curve, on several threads where that pays.
+
+    The same bits whatever the order, the size or the threads.
+    """
+    from .kernel import batch_peaks  # compiled
+
+    vectors, joints = len(durations), values.shape[1]
+    peaks = asked.room(vectors)
+    rows, sides = layout.rows, np.array(asked.sides)
+
+    def run(first: int, last: int) -> None:
+        part = durations[first:last], values, *rows, PERM
+        batch_peaks(*part, asked.wanted, asked.least, sides, peaks[first:last])
+
+    parts = vectors * joints // PART
+    if parts < 4:
+        run(0, vectors)
+        return peaks
+    workers = os.cpu_count() or 1
+    cuts = np.linspace(0, vectors, min(2 * workers, parts) + 1).astype(int).tolist()
+    with ThreadPoolExecutor(workers) as pool:
+        list(pool.map(run, cuts[:-1], cuts[1:]))
+    return peaks
 
 
 def _unit_matrix(conditions: Conditions) -> Array:

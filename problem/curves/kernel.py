@@ -7,26 +7,18 @@ lane looks at another: order, blocks and threads do not change a bit. The root f
 
 from __future__ import annotations
 
-import os
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
 
-from ..arrays import Array
 from .compilation import compiler
-from .condition import Layout
-from .kind import Asked
-from .polynomials import MAX_COEFFICIENTS, PERM
+from .polynomials import MAX_COEFFICIENTS
 
 LANES = 192
 """Polynomials handled side by side: loops of that length vectorise, and a block fits a cache."""
 SETTLED = 1e-6
 """Newton step below which a lane rests: the next error is its square, 1e-12, and a peak's error
 the square of that of its place."""
-PART = 1000
-"""Polynomials (vectors times joints) of a thread's part: starting threads for fewer than four parts
-costs more than it saves."""
 KERNELS = ("kernel.py", "blocks.py")
 """Every file of compiled functions here: they share a stamp."""
 compiled = compiler(*(Path(__file__).with_name(name) for name in KERNELS))
@@ -308,27 +300,3 @@ def batch_peaks(  # type: ignore[no-untyped-def]
                         top = other if sides[side] > 0.0 else top
                         if wanted[j, i] and top > peaks[start + v, side, j, i]:
                             peaks[start + v, side, j, i] = top
-
-
-def reach_of(layout: Layout, values: Array, durations: Array, asked: Asked) -> Array:
-    """`Curve.batch_reach` of a declared curve, on several threads where that pays.
-
-    The same bits whatever the order, the size or the threads.
-    """
-    vectors, joints = len(durations), values.shape[1]
-    peaks = asked.room(vectors)
-    rows, sides = layout.rows, np.array(asked.sides)
-
-    def run(first: int, last: int) -> None:
-        part = durations[first:last], values, *rows, PERM
-        batch_peaks(*part, asked.wanted, asked.least, sides, peaks[first:last])
-
-    parts = vectors * joints // PART
-    if parts < 4:
-        run(0, vectors)
-        return peaks
-    workers = os.cpu_count() or 1
-    cuts = np.linspace(0, vectors, min(2 * workers, parts) + 1).astype(int).tolist()
-    with ThreadPoolExecutor(workers) as pool:
-        list(pool.map(run, cuts[:-1], cuts[1:]))
-    return peaks

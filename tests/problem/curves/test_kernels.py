@@ -21,7 +21,7 @@ from trajgap.problem import (
     evaluate,
     uniform_cubic_b_spline,
 )
-from trajgap.problem.curves import PERM, Asked, kernel
+from trajgap.problem.curves import PERM, Asked, interpolant, kernel
 
 JOINTS = 3
 CURVES: dict[str, Curve] = {
@@ -66,7 +66,7 @@ def test_no_vector_looks_at_another(name: str, monkeypatch: pytest.MonkeyPatch) 
     np.testing.assert_array_equal(curve.batch_reach(values, h[::-1].copy(), asked), found[::-1])
     # Sizes are those of the larger side.
     np.testing.assert_array_equal(found[:, 0], found[:, 1:].max(axis=1))
-    monkeypatch.setattr(kernel, "PART", 20)
+    monkeypatch.setattr(interpolant, "PART", 20)
     np.testing.assert_array_equal(curve.batch_reach(values, h, asked), found)
 
 
