@@ -20,9 +20,7 @@ from .evidence import ProvedInterval, interval_in, proved, proved_again, with_in
 from .exact import ExactProblem, exact_problem
 
 PROVING = 0.2
-"""Share of the boxes that an audit allows one problem: about a second's worth. Of 20 random
-problems of four segments of the kinds that need most, 18 or more close within it; with less than
-half of it, 13."""
+"""Share of the boxes that an audit allows one problem: about a second's worth."""
 _ROUNDED = 8 * np.finfo(np.float64).eps
 """Relative distance within which floats are those of the printed numbers: a conversion of units
 rounds three times, by half a unit of the last place each."""

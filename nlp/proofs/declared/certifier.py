@@ -62,7 +62,7 @@ gap in no more seconds than its own kind takes; beyond, some last, and certifica
 class DeclaredCurves(Curves):
     """Any declared curve."""
 
-    widest = 2.4
+    widest, evenly = 2.4, True
 
     def __init__(self, kind: Any) -> None:
         task = kind.task

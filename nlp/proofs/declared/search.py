@@ -62,6 +62,8 @@ class Curves(ABC):
 
     widest: ClassVar[float]
     """Width of a logarithm from which on a box is cut without a look at its limits."""
+    evenly: ClassVar[bool] = False
+    """Whether the widest side is cut where limits exclude a box but for what a series leaves."""
     part = 500
     """Boxes of a part: a tenth of a second, beside which handing it out costs nothing."""
 
@@ -232,6 +234,8 @@ def _judged(curves: Curves, sides: Array) -> tuple[list[Leaf | None], list[int],
     blame = np.ones_like(lean)
     for at, leaf in _excluded(curves, middle, own, most, weights, tau, blame):
         leaves[where[at]] = leaf
+    if curves.evenly:
+        lean[most > 0.0] = 1.0
     axes[where] = (width[where] * (lean + 0.1) * blame).argmax(axis=1)
     return leaves, axes.tolist(), _shortest(middle.h, own, most)
 
