@@ -9,12 +9,12 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ...problem import CHOICES, PackageError, TrajgapError
+from ...problem import CHOICES, QUANTITIES, PackageError, TrajgapError
 from ...problem.motions import UNITS, Interpolation
 from ..audits import audit
 from ..pages import fill_template, page_files
 from .curves_shown import offered_curves
-from .submitted import LIMITS, FormError, case_of, judge_motion
+from .submitted import FormError, case_of, judge_motion
 
 if TYPE_CHECKING:
     from flask import Flask, Response
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 ADDRESS = "127.0.0.1"
 """Where the server listens: no other machine reaches it."""
 _LARGEST = 20_000_000
-"""Bytes of a request: a motion of an hour at 500 rows a second."""
+"""Bytes of a request: half an hour of six joints at 125 rows a second takes that much as text."""
 _KEPT = 20
 """Audits whose pages are kept in memory, the last ones."""
 _POLICY = (
@@ -153,7 +153,7 @@ def make_form() -> Flask:
         return form_page(
             fields,
             {},
-            f"{name}{between}\n{found}".replace("; limit from flags", ""),
+            f"{name}{between}\n{found}",
             str(found.verdict),
         )
 
@@ -186,7 +186,7 @@ def form_page(
         fields=fields,
         faults=faults,
         example=_EXAMPLE,
-        limits=LIMITS,
+        limits=QUANTITIES,
         choices=CHOICES,
         units=tuple(UNITS),
         between=[str(one) for one in Interpolation],

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from ...problem import Case, CaseError, PackageError, TrajgapError, parse_case, scaffold
+from ...problem import QUANTITIES, Case, CaseError, PackageError, TrajgapError, parse_case, scaffold
 from ...problem.cases import identity_of
 from ...problem.limit_files import limits_of_flags, merge
 from ...problem.motions import (
@@ -20,8 +21,6 @@ from ...problem.motions import (
     read_motion,
 )
 
-LIMITS = ("velocity", "acceleration", "jerk")
-"""Quantities that may be limited, in the order of the form."""
 _TABLE = "way-points.csv"
 """Name of the file that the pasted table becomes."""
 _UNKNOWN_PLACES = {"": "table", "case_id": "name", "degree": "family"}
@@ -56,7 +55,7 @@ def case_of(fields: Mapping[str, str]) -> tuple[str, Case]:
     table = fields.get("table", "").strip()
     if not table:
         raise FormError({"table": "paste the way-points: a row each, with a header of joints"})
-    limits = {one: fields[one].strip() for one in LIMITS if fields.get(one, "").strip()}
+    limits = {one: fields[one].strip() for one in QUANTITIES if fields.get(one, "").strip()}
     asked = ("position", *limits, "time")
     units = {one: fields.get(f"{one}_unit", "") for one in asked}
     identity = identity_of(fields.get("name", "").strip() or "my-paper")
@@ -89,7 +88,7 @@ def _beside(faults: Iterable[tuple[str, str]]) -> dict[str, str]:
     """The first fault of each field of the form."""
     found: dict[str, str] = {}
     for place, why in faults:
-        known = place in (*LIMITS, "durations", "total", "family")
+        known = place in (*QUANTITIES, "durations", "total", "family")
         if place.startswith("units."):
             field = f"{place.removeprefix('units.').split('[')[0]}_unit"
         else:
@@ -123,7 +122,7 @@ def judge_motion(
     """
     if not content:
         raise FormError({"motion": "choose a file: a CSV with a column of time, or JSON, or YAML"})
-    given = {one: fields.get(f"motion_{one}", "").strip() or None for one in LIMITS}
+    given = {one: fields.get(f"motion_{one}", "").strip() or None for one in QUANTITIES}
     if not any(given.values()):
         raise FormError({"motion_velocity": "give a limit, so that there is something to judge"})
     with TemporaryDirectory() as folder:
@@ -135,11 +134,12 @@ def judge_motion(
             raise FormError({"motion": _told(error, path)}) from None
     factors = factors_of(read.units, len(read.joints), "motion_unit")
     try:
-        limits = merge(read.joints, [limits_of_flags(given, read.joints, factors)])
+        stated = replace(limits_of_flags(given, read.joints, factors), source="the form")
+        limits = merge(read.joints, [stated])
     except CaseError as error:
         field, why = error.faults[0]
         option = (error.file or field).removeprefix("--")
-        place = f"motion_{option if option in LIMITS else 'velocity'}"
+        place = f"motion_{option if option in QUANTITIES else 'velocity'}"
         raise FormError({place: why}) from None
     try:
         if isinstance(read.content, Motion):

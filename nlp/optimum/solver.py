@@ -316,8 +316,9 @@ def _within_tolerance(problem: Problem, ask: _Ask) -> Solution:
     """
     wide, floor = tolerated(problem), made_up(problem, DEEP[0])
     ends = exact_search(wide, basins(wide, ask.starts, ask.seed, floor), floor)
-    for end in ends[:1]:
-        ends += exact_search(wide, shortened(problem, end.durations, floor), floor)
+    if ends:
+        # From the best basin: what way-points at the ends of a range leave may lie decades away.
+        ends += exact_search(wide, shortened(problem, ends[0].durations, floor), floor)
     points = np.array([end.durations for end in ends]).reshape(-1, problem.segments)
     within = exact_search(problem, points, floor)
     answer = judged(problem, within, floor, len(within))

@@ -16,8 +16,8 @@ CELLS = 240
 _STILL = 1e-9
 """Speed at an end, beside the largest on the path, below which the motion is at rest there."""
 _STRATEGIES = ("adaptive", "monotone")
-"""Of IPOPT's barrier, one after the other: alone the second ends nowhere on one random path in
-twelve, the first on fewer, but which they are depends on the processor."""
+"""Of IPOPT's barrier, one after the other. Alone the second ends nowhere on one random path in
+twelve; on which paths either does depends on the last bits, and so on the processor."""
 
 
 def retime_third_order(

@@ -112,7 +112,8 @@ class Adjoint:
                 part = np.zeros((out.shape[1], v.size))
                 np.add.at(part, number[i], self._rows.factor[i, None] * y[i])
                 out[at] = part.T
-        return PeakGradients(by_duration, *given)
+        by_waypoint, by_nodal = given
+        return PeakGradients(by_duration, by_nodal, lambda: by_waypoint)
 
     def _basis(self, places: Places) -> Array:
         rate = self._durations[places.segment] ** places.order

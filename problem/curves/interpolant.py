@@ -257,6 +257,10 @@ class Interpolant(Curve):
         """Gradients by implicit differentiation of the linear system."""
         return self.adjoint(waypoints, durations, nodal).gradients(places_of(points))
 
+    def by_durations(self, waypoints: Array, durations: Array, points: list[Extremum]) -> Array:
+        """By the same."""
+        return self.value_gradients(waypoints, durations, points).durations
+
     def adjoint(self, waypoints: Array, durations: Array, nodal: Array | None = None) -> Adjoint:
         """The curve at one duration vector, ready for gradients."""
         return Adjoint(self.layout, right_hand_sides(self, waypoints, nodal), durations)

@@ -221,21 +221,27 @@ class Curve(ABC):
     ) -> PeakGradients:
         """Gradients of the values at fixed places ``s`` of pieces; their own motion is left out.
 
-        At an extremum it does not contribute (envelope theorem). Values are linear in the
-        way-points: those of the curves through unit ones are the gradients.
+        At an extremum it does not contribute (envelope theorem).
         """
-        count, joints = waypoints.shape
-        unit = self.fixed_by(waypoints).fitted(np.tile(np.eye(count), joints), durations)
-        by_waypoint = np.empty((len(points), count))
-        for i, e in enumerate(points):
-            own = slice(count * e.joint, count * (e.joint + 1))
-            by_waypoint[i] = unit.values(e.segment, own, e.order, np.array(e.s))
-        by_duration = self.by_durations(waypoints, durations, points)
-        return PeakGradients(by_duration, by_waypoint, np.empty((len(points), 0)))
 
+        def by_waypoints() -> Array:
+            # Values are linear in the way-points: those of the curves through unit ones. All
+            # joints take part, since the knots of each may cut the pieces of all.
+            count, joints = waypoints.shape
+            units = np.tile(np.eye(count), joints)
+            unit = self.fixed_by(waypoints).fitted(units, durations)
+            rows = [
+                unit.values(e.segment, slice(count * e.joint, count * (e.joint + 1)), e.order, s)
+                for e, s in zip(points, np.array([e.s for e in points]), strict=True)
+            ]
+            return np.array(rows).reshape(len(points), count)
+
+        by_duration = self.by_durations(waypoints, durations, points)
+        return PeakGradients(by_duration, np.empty((len(points), 0)), by_waypoints)
+
+    @abstractmethod
     def by_durations(self, waypoints: Array, durations: Array, points: list[Extremum]) -> Array:
-        """The gradients by durations, shape (points, segments): `value_gradients` takes them."""
-        raise NotImplementedError
+        """The gradients by durations alone, shape (points, segments), without free derivatives."""
 
     def segment_of(self, durations: Array, point: Extremum) -> int:
         """Segment in which an extremum of a piece lies, from 0: the piece, unless knots differ."""

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -47,15 +49,21 @@ class PeakGradients:
     ----------
     durations : ndarray, shape (extrema, segments)
         d value / d duration.
-    waypoints : ndarray, shape (extrema, way-points)
-        d value / d way-point of the extremum's own joint.
     nodal : ndarray, shape (extrema, free)
         d value / d free derivative of the extremum's own joint.
+    by_waypoints : callable
+        Computes `waypoints`, which searches over durations do without: of long B-splines it takes
+        hundreds of times as long as the rest.
     """
 
     durations: Array
-    waypoints: Array
     nodal: Array
+    by_waypoints: Callable[[], Array]
+
+    @cached_property
+    def waypoints(self) -> Array:
+        """D value / d way-point of the extremum's own joint, shape (extrema, way-points)."""
+        return self.by_waypoints()
 
 
 def extrema(trajectory: Trajectory, joint: int, order: int) -> list[Extremum]:
