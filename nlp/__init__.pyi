@@ -1,20 +1,19 @@
+from .clock import stopping_after
 from .optimum import (
     KKT,
     Active,
     Evidence,
-    PerJointSolution,
     Program,
-    Range,
     Route,
     Solution,
     Status,
     build,
     kkt,
     random_starts,
-    solve_per_joint,
     weakest,
     with_other_route,
 )
+from .per_joint import OPTIMUM_SLACK, PerJointSolution, Range, longest_status, solve_per_joint
 from .proofs import (
     Certified,
     ExactProblem,
@@ -39,6 +38,7 @@ from .retiming import Retiming, retime, retime_joints, retimed_motion
 
 __all__ = [
     "KKT",
+    "OPTIMUM_SLACK",
     "Active",
     "AnyCurveEstimate",
     "Certified",
@@ -60,6 +60,7 @@ __all__ = [
     "estimate_any_curve",
     "exact_problem",
     "kkt",
+    "longest_status",
     "printed_problem",
     "printed_problem_or_none",
     "problem_seal",
@@ -72,6 +73,7 @@ __all__ = [
     "shipped_file",
     "solve",
     "solve_per_joint",
+    "stopping_after",
     "weakest",
     "with_interval",
     "with_other_route",

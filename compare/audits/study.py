@@ -22,16 +22,19 @@ from ...heuristics import (
     run_many_per_joint,
 )
 from ...nlp import (
+    OPTIMUM_SLACK,
     ExactProblem,
     PerJointSolution,
     ProvedInterval,
     Solution,
     Status,
+    longest_status,
     printed_problem_or_none,
     solve_per_joint,
     with_interval,
+    with_other_route,
 )
-from ...nlp.optimum import OPTIMUM_SLACK, free_values, longest_status, solve, with_other_route
+from ...nlp.optimum import free_values, solve
 from ...problem import (
     Array,
     Case,
@@ -355,18 +358,15 @@ class Study:
 
         def compute() -> PerJointSolution:
             self.progress(f"each joint by itself; {in_words(self.case, *pair)}")
-            slacks = dict.fromkeys((*self.half_digits(pair), OPTIMUM_SLACK))
+            slacks = tuple(dict.fromkeys((*self.half_digits(pair), OPTIMUM_SLACK)))
             problem = self.problem(pair)
             try:
                 return solve_per_joint(
-                    problem,
-                    slacks=tuple(slacks),
-                    solver=lambda one: self.optimum(pair, one.joints[0]),
+                    problem, slacks=slacks, solver=lambda one: self.optimum(pair, one.joints[0])
                 )
             except TrajgapError as error:
                 joints = tuple(self.optimum(pair, label) for label in problem.joints)
-                status = longest_status(joints)
-                return PerJointSolution(problem, status, str(error), joints=joints)
+                return PerJointSolution(problem, longest_status(joints), str(error), joints=joints)
 
         return self.once(("per joint", pair), compute)
 

@@ -12,13 +12,14 @@ import typer
 from rich.console import RenderableType
 
 from ...nlp import (
+    OPTIMUM_SLACK,
     Solution,
     printed_problem_or_none,
     solve as solve_exactly,
     solve_per_joint,
+    stopping_after,
     with_other_route,
 )
-from ...nlp.optimum import OPTIMUM_SLACK, stopping_after
 from ...nlp.retiming import Retiming, retime
 from ...problem import Case, Coupling, Problem, fit, shown_bound
 from ...verify import Subject

@@ -1,53 +1,42 @@
-from .clock import seconds_left, stopping_after, time_up
 from .descent import KEPT
 from .feasibility import apart
 from .judgement import SAME
-from .limit_rows import exact_rows
+from .limit_rows import NEAR, exact_rows
 from .optimality import KKT, KKT_TOLERANCE, Active, kkt
 from .other_route import with_other_route
-from .per_joint import (
-    OPTIMUM_SLACK,
-    PerJointSolution,
-    Range,
-    longest_status,
-    solve_per_joint,
-)
 from .pieces import ca
 from .program import Program, free_values
-from .rounds import build
-from .solution import Evidence, Route, Solution, Status, close, weakest
+from .rounds import IPOPT_OPTIONS, build, constraints, near_rows
+from .solution import Evidence, Route, SearchResult, Solution, Status, close, weakest
 from .solver import STARTS, solve
 from .starts import random_starts
 
 __all__ = [
+    "IPOPT_OPTIONS",
     "KEPT",
     "KKT",
     "KKT_TOLERANCE",
-    "OPTIMUM_SLACK",
+    "NEAR",
     "SAME",
     "STARTS",
     "Active",
     "Evidence",
-    "PerJointSolution",
     "Program",
-    "Range",
     "Route",
+    "SearchResult",
     "Solution",
     "Status",
     "apart",
     "build",
     "ca",
     "close",
+    "constraints",
     "exact_rows",
     "free_values",
     "kkt",
-    "longest_status",
+    "near_rows",
     "random_starts",
-    "seconds_left",
     "solve",
-    "solve_per_joint",
-    "stopping_after",
-    "time_up",
     "weakest",
     "with_other_route",
 ]

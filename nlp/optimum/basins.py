@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...problem import TOLERANCE, Array, Problem, TrajgapError, evaluate
-from .clock import time_up
+from ..clock import time_up
 from .decided import Local
 from .descent import SLOW, Descent, descend
 from .starts import LogBox, box_above, equal_start, stretching

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...problem import Array, Problem
-from .clock import time_up
+from ..clock import time_up
 from .limit_rows import ExactRows, exact_rows
 from .starts import LogBox
 

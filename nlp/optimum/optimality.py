@@ -21,7 +21,7 @@ import numpy as np
 
 from ...problem import QUANTITIES, Array, Extremum, Problem
 from ...problem.curves import Places
-from .clock import time_up
+from ..clock import time_up
 from .limit_rows import ExactRows, Indices, exact_rows, excesses
 
 ACTIVE = 1e-7

@@ -18,7 +18,7 @@ import numpy as np
 
 from ...problem import TOLERANCE, Array, CurveError, Problem, as_piecewise, fit
 from ...problem.curves import Trajectory
-from .clock import seconds_left, time_up
+from ..clock import seconds_left, time_up
 from .decided import Local
 from .limit_rows import NEAR, near_limits
 from .optimality import KKT, KKT_TOLERANCE, kkt, sparse_kkt
@@ -53,7 +53,7 @@ JUDGED = len(STAGES) - 2
 FAILURES = 3
 """Rounds without success after which a search is given up; each begins again from the best motion
 with rows at all its extrema."""
-OPTIONS = {
+IPOPT_OPTIONS = {
     "print_time": False,
     "show_eval_warnings": False,  # the status says where a function is not defined
     "ipopt.print_level": 0,
@@ -211,7 +211,7 @@ def solve_round(
     tolerance, barrier = stage
     expressions, least, most = constraints(program, rows)
     nlp = {"x": program.variables, "f": ca.sum1(program.durations), "g": expressions}
-    options = OPTIONS | {
+    options = IPOPT_OPTIONS | {
         "ipopt.mu_init": barrier,
         "ipopt.tol": tolerance,
         "ipopt.constr_viol_tol": tolerance,

@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...problem import TOLERANCE, Array, Problem, TrajgapError, as_piecewise, check
+from ..clock import stopping_after, time_up
 from .basins import basins, exact_search, shortened
-from .clock import stopping_after, time_up
 from .closed_forms import (
     FORMULA,
     cut_short,

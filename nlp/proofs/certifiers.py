@@ -16,8 +16,8 @@ from numpy.typing import ArrayLike
 
 from ...problem import Problem, TrajgapError
 from ...verify import Subject
+from ..clock import RunClock
 from .certifier import Certifier
-from .clock import RunClock
 from .crew import ProofCrew
 from .exact import MOVING, ExactProblem, exact_problem
 from .judged import judged, why_too_large

@@ -6,7 +6,7 @@ from dataclasses import replace
 from fractions import Fraction
 
 from ...verify import Refused, verify_certificate
-from .clock import RunClock
+from ..clock import RunClock
 from .crew import ProofCrew
 from .document import certificate, stated_problem
 from .exact import ExactProblem

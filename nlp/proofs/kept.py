@@ -27,7 +27,7 @@ from ...verify import (
     seal,
     verify_certificate,
 )
-from .clock import RunClock
+from ..clock import RunClock
 from .crew import ProofCrew
 from .document import certificate, fits, problem_document
 from .exact import ExactProblem

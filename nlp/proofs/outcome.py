@@ -11,7 +11,7 @@ from typing import Any, Protocol
 
 from ...problem import Array, shown_bound
 from ...verify import CertificateVerdict, Subject, number
-from .clock import RunClock
+from ..clock import RunClock
 from .crew import ProofCrew
 from .exact import ExactProblem
 

@@ -13,7 +13,8 @@ from numpy.typing import ArrayLike
 from ...problem import Array, Problem, TrajgapError, scale
 from ...verify import Refused, Subject
 from .. import optimum
-from ..optimum import STARTS, Solution, seconds_left
+from ..clock import seconds_left
+from ..optimum import STARTS, Solution
 from .certifiers import certify, prompt
 from .document import all_shipped, problem_document, question, suite_documents
 from .evidence import ProvedInterval, interval_in, proved, proved_again, with_interval

@@ -13,7 +13,8 @@ import numpy as np
 
 from ...problem import Array, TrajgapError, evaluate
 from ...verify import Clock, OutOfTime as OutOfTime, Subject
-from ..optimum import solve, stopping_after
+from ..clock import stopping_after
+from ..optimum import solve
 from .answer import float_problem, prove_feasible
 from .exact import ExactProblem
 from .outcome import Argument, Certified, Outcome, Progress, Request, outcome_of

@@ -75,7 +75,6 @@ OWN = {"attacks", "house"}
 
 # Folders of the source without tests of their own, and where they are tested.
 ELSEWHERE = {
-    "nlp": "nlp/optimum",
     "nlp/enclosure": "compare/audits/test_rounding_enclosures.py",
     "compare": "compare/audits",
     "verify/cubic": "nlp/proofs/cubic",

@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ....problem import TOLERANCE, Problem, TrajgapError
-from ...optimum import Evidence, seconds_left, time_up
+from ...clock import seconds_left, time_up
+from ...optimum import Evidence
 from .local import LocalQuestion, local_optimum, starting_points
 from .reach import profile
 

@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....problem import TOLERANCE
-from ...optimum import ca, seconds_left
+from ...clock import seconds_left
+from ...optimum import ca
 from .reach import reachable
 
 CAPS = (0.25, 2.0, 16.0, 128.0)

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from ....problem import Array
 from ....verify import Clock, OutOfTime, proof_kind
-from ...optimum import time_up
+from ...clock import time_up
 from ..crew import Common
 from ..driver import Branching
 from ..exact import decimal

@@ -12,7 +12,7 @@ import numpy as np
 
 from ....problem import Array
 from ....verify import TICKS, OutOfTime
-from ...optimum import time_up
+from ...clock import time_up
 from ..crew import Common
 from ..driver import Branching
 from .guide import errors, peaks

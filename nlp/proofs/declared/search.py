@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from ....problem import Array
 from ....verify import LEAF, MOST_DEPTH
-from ...optimum import time_up
+from ...clock import time_up
 from ..crew import Common
 from ..driver import Branching
 from .rows import Candidates, NearLimits

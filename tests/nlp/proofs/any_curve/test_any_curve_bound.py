@@ -9,7 +9,7 @@ from support.any_curve_proofs import PUMA_PROBLEM, interval, spline_problem, ver
 from support.puma import PUMA
 from support.retimed import rest_to_rest_time
 from trajgap.nlp import Evidence
-from trajgap.nlp.optimum import stopping_after
+from trajgap.nlp.clock import stopping_after
 from trajgap.nlp.proofs.any_curve import estimate
 from trajgap.nlp.proofs.any_curve.estimate import estimate_any_curve
 from trajgap.nlp.proofs.any_curve.reach import furthest, profile, reachable

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 from support.papers.motions import FAMILIES
 from support.proof_runs import LastFirst
+from trajgap.nlp.clock import RunClock
 from trajgap.nlp.proofs.certifiers import certify
-from trajgap.nlp.proofs.clock import RunClock
 from trajgap.nlp.proofs.crew import ProofCrew
 from trajgap.nlp.proofs.declared import search
 from trajgap.nlp.proofs.declared.certifier import BoxStages

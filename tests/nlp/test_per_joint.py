@@ -10,9 +10,10 @@ import pytest
 from scipy.optimize import nnls
 from support.samples import FAMILIES, small_problem
 from trajgap.nlp import Evidence, PerJointSolution, Status, solve_per_joint
-from trajgap.nlp.optimum import solve, stopping_after
+from trajgap.nlp.clock import stopping_after
+from trajgap.nlp.optimum import solve
 from trajgap.nlp.optimum.limit_rows import exact_rows
-from trajgap.nlp.optimum.per_joint import nearby
+from trajgap.nlp.per_joint import nearby
 from trajgap.problem import Array, Limits, Problem, check, load_case, piecewise, rest_to_rest
 
 

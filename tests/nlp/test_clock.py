@@ -11,10 +11,11 @@ from typing import Any
 import numpy as np
 import pytest
 from support.proof_runs import Ticking
-from trajgap.nlp.proofs import clock, judged, session, state
+from trajgap.nlp import clock
+from trajgap.nlp.clock import RunClock
+from trajgap.nlp.proofs import judged, session, state
 from trajgap.nlp.proofs.answer import prove_feasible
 from trajgap.nlp.proofs.certifiers import certify
-from trajgap.nlp.proofs.clock import RunClock
 from trajgap.nlp.proofs.cubic import tree
 from trajgap.nlp.proofs.document import certificate
 from trajgap.nlp.proofs.exact import exact_problem

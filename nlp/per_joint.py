@@ -9,14 +9,22 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...problem import Array, Problem, as_piecewise, check, fit
+from ..problem import Array, Problem, as_piecewise, check, fit
 from .clock import time_up
-from .limit_rows import NEAR
-from .pieces import ca
-from .program import Program
-from .rounds import OPTIONS as OPTIONS_OF_ROUNDS, constraints, near_rows
-from .solution import Evidence, SearchResult, Solution, Status, weakest
-from .solver import solve
+from .optimum import (
+    IPOPT_OPTIONS,
+    NEAR,
+    Evidence,
+    Program,
+    SearchResult,
+    Solution,
+    Status,
+    ca,
+    constraints,
+    near_rows,
+    solve,
+    weakest,
+)
 
 ROUNDS = 20
 """Rounds from one optimum: a bound against endless shrinking of the region; two to four suffice
@@ -26,7 +34,7 @@ REGION = 0.05
 LEFT = 1e-8
 """Relative change of the durations at which the rounds end, and excess of a cap that rounding
 explains."""
-OPTIONS = OPTIONS_OF_ROUNDS | {"ipopt.mu_init": 1e-4, "ipopt.tol": 1e-9}
+OPTIONS = IPOPT_OPTIONS | {"ipopt.mu_init": 1e-4, "ipopt.tol": 1e-9}
 """Options of IPOPT, begun near a solution: with a small barrier."""
 
 
