@@ -30,8 +30,9 @@ AIM = 0.5 * TOLERANCE
 LENGTHENINGS = 30
 """Doublings of the shortest durations where rounding hides the limits: a jerk's error falls to an
 eighth each time, and over nine decades in all."""
-DEEPER_INSIDE = 2.0
-"""By how many bounds on rounding errors limits are narrowed where no stretch is possible."""
+NARROWER = tuple(TOLERANCE * 4.0**k for k in range(10))
+"""Shares by which limits are narrowed where no stretch is possible: from what the checker tolerates
+to a ten-thousandth, in steps small beside what rounding already costs."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,24 +89,17 @@ def kept(problem: Problem, verdict: Check) -> bool:
     return verdict.limits is Verdict.PASS
 
 
-def tolerated(problem: Problem) -> Problem:
-    """The problem with limits wider by half of what `check` tolerates beyond them.
+def widened(problem: Problem, share: float) -> Problem:
+    """The problem with limits wider by a share, or narrower by one below 0.
 
     Duration bounds, sides of 0 and ranges of no width stay as they are.
     """
-    low, high = problem.limits.position_lower, problem.limits.position_upper
-    half = np.array([[half_range(a, b, x) for x in (a, b)] for a, b in zip(low, high, strict=True)])
-    room = np.where(np.isfinite(half), AIM * half, 0.0)
-    return _moved(problem, 1.0 + AIM, room * [-1.0, 1.0])
-
-
-def _moved(problem: Problem, share: Array | float, positions: Array) -> Problem:
-    """The problem with sides of limits times a share, and both ends of positions moved."""
     limits = problem.limits
-    low, high = limits.position_lower + positions[:, 0], limits.position_upper + positions[:, 1]
-    return replace(
-        problem, limits=limits.with_sides(limits.sides * share).with_positions(low, high)
-    )
+    low, high = limits.position_lower, limits.position_upper
+    half = np.array([[half_range(a, b, x) for x in (a, b)] for a, b in zip(low, high, strict=True)])
+    room = np.where(np.isfinite(half), share * half, 0.0)
+    wider = limits.with_sides(limits.sides * (1.0 + share))
+    return replace(problem, limits=wider.with_positions(low - room[:, 0], high + room[:, 1]))
 
 
 def decided(problem: Problem, h: Array, nodal: Array | None = None) -> Local | None:
@@ -154,16 +148,6 @@ def longer_than_tight(beyond: float) -> str:
     return f"longer by {beyond:.1e} (relative) than a tight motion, which rounding errors blur"
 
 
-def _blur(problem: Problem, verdict: Check) -> Array:
-    """Bound on the rounding error of each joint's peaks over their limits, shape (joints, 3)."""
-    blur = np.zeros((len(problem.joints), len(QUANTITIES)))
-    for peak in verdict.peaks:
-        if peak.quantity in QUANTITIES and peak.joint is not None and peak.limit > 0:
-            j, r = problem.joints.index(peak.joint), QUANTITIES.index(peak.quantity)
-            blur[j, r] = peak.error / peak.limit
-    return blur
-
-
 def stretched(problem: Problem, h: Array, nodal: Array | None) -> Local | None:
     """The motion stretched until it passes, or None where the duration bounds leave no room."""
     for _ in range(ROUNDS):
@@ -189,17 +173,18 @@ def stretched(problem: Problem, h: Array, nodal: Array | None) -> Local | None:
 
 
 def _narrowed(problem: Problem, h: Array) -> Local | None:
-    """The end of a descent within limits that are narrower by the motion's rounding errors."""
+    """The end of a descent within the widest of narrower limits in which rounding decides nothing.
+
+    A way-point may lie beyond them: the descent does not look at what no duration moves.
+    """
     bottom = np.maximum(problem.duration_lower, 0.5 * h)
-    box = LogBox(
-        np.log(bottom), np.log(np.maximum(np.minimum(problem.duration_upper, 2 * h), bottom))
-    )
-    found = Local.of(problem, h)
-    for _ in range(ROUNDS):
-        if found.verdict.limits is not Verdict.UNDECIDED:
+    top = np.maximum(np.minimum(problem.duration_upper, 2.0 * h), bottom)
+    box = LogBox(np.log(bottom), np.log(top))
+    for share in NARROWER:
+        if Local.of(problem, h).verdict.limits is not Verdict.UNDECIDED:
             return None
-        end = descend(_narrower(problem, found.verdict), found.durations, box).durations
-        found = Local.of(problem, np.clip(end, problem.duration_lower, problem.duration_upper))
+        h = descend(widened(problem, -share), h, box).durations
+        found = Local.of(problem, np.clip(h, problem.duration_lower, problem.duration_upper))
         if found.feasible:
             return found
     return None
@@ -227,20 +212,3 @@ def _lengthened(problem: Problem, h: Array) -> Local | None:
         if found is not None:
             return found
     return None
-
-
-def _narrower(problem: Problem, verdict: Check) -> Problem:
-    """The problem with limits narrower by twice the bounds on rounding errors.
-
-    A way-point may lie beyond them: the descent does not look at what no duration moves.
-    """
-    limits = problem.limits
-    share = np.maximum(1.0 - DEEPER_INSIDE * _blur(problem, verdict), 0.5)
-    inwards = np.zeros((len(problem.joints), 2))
-    for peak in verdict.peaks:
-        if peak.quantity == "position" and peak.joint is not None:
-            j = problem.joints.index(peak.joint)
-            room = 0.25 * float(limits.position_upper[j] - limits.position_lower[j])
-            end = int(peak.limit != limits.position_lower[j])
-            inwards[j, end] = (1 - 2 * end) * min(DEEPER_INSIDE * peak.error, room)
-    return _moved(problem, share, inwards)

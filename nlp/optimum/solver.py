@@ -22,7 +22,7 @@ from .closed_forms import (
     tight_at_ratios,
     unsearched,
 )
-from .decided import Local, decided, incumbent, tolerated
+from .decided import AIM, Local, decided, incumbent, widened
 from .feasibility import apart, forbidden_jumps
 from .judgement import BETTER, SAME, better_of, judged, on_floor
 from .jumps import as_answer, carried_over, smoother
@@ -314,7 +314,7 @@ def _within_tolerance(problem: Problem, ask: _Ask) -> Solution:
     descent needs room to move in: it is given half the checker's tolerance, and goes on from its
     end within the limits themselves. Where nothing is there, the first end may pass all the same.
     """
-    wide, floor = tolerated(problem), made_up(problem, DEEP[0])
+    wide, floor = widened(problem, AIM), made_up(problem, DEEP[0])
     ends = exact_search(wide, basins(wide, ask.starts, ask.seed, floor), floor)
     if ends:
         # From the best basin: what way-points at the ends of a range leave may lie decades away.

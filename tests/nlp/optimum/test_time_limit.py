@@ -7,18 +7,16 @@ import math
 import numpy as np
 import pytest
 from support.proof_runs import Ticking
-from trajgap.nlp import Solution, Status, certify
+from trajgap.nlp import Solution, Status, certify, clock, stopping_after
+from trajgap.nlp.clock import time_up
 from trajgap.nlp.optimum import (
-    clock,
     closed_forms,
     rounds,
     solve,
-    stopping_after,
-    time_up,
 )
 from trajgap.nlp.optimum.program import Program
 from trajgap.nlp.optimum.rounds import STAGES, begun, solve_round
-from trajgap.nlp.proofs import clock as proof_clock, session
+from trajgap.nlp.proofs import session
 from trajgap.nlp.proofs.any_curve.estimate import estimate_any_curve
 from trajgap.nlp.proofs.any_curve.local import call_cap
 from trajgap.nlp.proofs.exact import exact_problem
@@ -121,9 +119,8 @@ def test_the_answer_of_a_certification_has_a_share_of_the_time(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     ticks = Ticking()
-    monkeypatch.setattr(proof_clock, "time", ticks)
     monkeypatch.setattr(clock, "time", ticks)
-    one = Session(exact_problem(NEAR), Request(clock=proof_clock.RunClock(100.0)))
+    one = Session(exact_problem(NEAR), Request(clock=clock.RunClock(100.0)))
     ticks.now = 60.0
     left: list[float] = []
     real = session.solve
