@@ -14,7 +14,7 @@ import numpy as np
 from ...problem import TOLERANCE, Array, Problem, TrajgapError, evaluate
 from ..clock import time_up
 from .decided import Local
-from .descent import SLOW, Descent, descend
+from .descent import Descent, descend
 from .starts import LogBox, box_above, equal_start, stretching
 
 HOPELESS = 10.0
@@ -172,10 +172,6 @@ def _grid_minima(problem: Problem, base: Array, box: LogBox) -> Array:
     return z[at[np.argsort(worth.ravel()[at], kind="stable")]]
 
 
-RESUMPTIONS = 8
-"""Most descents that go on from the end of the best one: two or three suffice where any does."""
-
-
 def as_local(problem: Problem, found: Descent) -> Local | None:
     """The end of a descent, judged by the checker; None where float64 has lost the curve.
 
@@ -193,11 +189,7 @@ def as_local(problem: Problem, found: Descent) -> Local | None:
 
 
 def exact_search(problem: Problem, points: Array, floor: Array) -> list[Local]:
-    """Local optima of all starts, above the floors; starts that end together are kept apart.
-
-    The best is descended from again for as long as that gains: a descent may stop short where its
-    Hessian, made along a bent valley, fits no longer. From its end one with a new Hessian goes on.
-    """
+    """Local optima of all starts, above the floors; starts that end together are kept apart."""
     box = box_above(problem, floor)
     found: list[Local] = []
     for start in points:
@@ -206,17 +198,6 @@ def exact_search(problem: Problem, points: Array, floor: Array) -> list[Local]:
         local = as_local(problem, descend(problem, start, box))
         if local is not None:
             found.append(local)
-    for _ in range(RESUMPTIONS):
-        feasible = [local for local in found if local.feasible]
-        best = min(feasible, key=lambda local: local.total, default=None)
-        if best is None or best.converged or time_up():
-            break
-        after = as_local(problem, descend(problem, best.durations, box))
-        if after is None or not (after.feasible and after.total <= best.total):
-            break
-        found[found.index(best)] = replace(after, iterations=best.iterations + after.iterations)
-        if after.total > best.total * (1.0 - SLOW):
-            break
     return found
 
 
