@@ -180,7 +180,7 @@ def descend(problem: Problem, start: Array, box: LogBox) -> Descent:
     if rows.worst > KEPT:
         return Descent(rows.durations, rows.worst, False, 0)
     total = float(rows.durations.sum())
-    hessian = np.diag(rows.durations / total + 1e-4)
+    hessian, began = _first_hessian(rows), total
     radius, taken, history = WIDEST_STEP, 0, [total]
     for taken in range(1, STEPS + 1):
         if time_up():
@@ -188,8 +188,13 @@ def descend(problem: Problem, start: Array, box: LogBox) -> Descent:
         slope = rows.durations / total
         matrix, room = _walled(rows, box, radius)
         found = least_point(hessian, slope, matrix, np.maximum(room, 0.0))
-        if found is None:
-            break
+        creeps = len(history) > PATIENCE and history[-1 - PATIENCE] < total * (1.0 + SLOW)
+        if found is None or creeps:
+            if began < total * (1.0 + SLOW):
+                break
+            # Made along a bent valley, the Hessian may fit no longer.
+            hessian, radius, began, history = _first_hessian(rows), WIDEST_STEP, total, [total]
+            continue
         step, weights = found
         size = float(np.abs(step).max())
         expected = -float(slope @ step)
@@ -211,13 +216,16 @@ def descend(problem: Problem, start: Array, box: LogBox) -> Descent:
             radius = min(2.0 * radius, WIDEST_STEP) if good else 0.5 * max(size, 0.5 * radius)
             rows, total = trial, after
             history.append(total)
-            if len(history) > PATIENCE and history[-1 - PATIENCE] < total * (1.0 + SLOW):
-                break
         else:
             radius = 0.25 * min(radius, size)
             if radius < SMALLEST_STEP:
                 return Descent(rows.durations, rows.worst, True, taken)
     return Descent(rows.durations, rows.worst, False, taken)
+
+
+def _first_hessian(rows: ExactRows) -> Array:
+    """That of the total in log durations, over the total, and a little more."""
+    return np.diag(rows.durations / rows.durations.sum() + 1e-4)
 
 
 def _gain(total: float, rows: ExactRows) -> float:

@@ -14,7 +14,6 @@ from support.two_joints import TURNING
 from trajgap.compare import audit
 from trajgap.nlp import Solution, Status, solve_per_joint
 from trajgap.nlp.optimum import feasibility, limit_rows, solve
-from trajgap.nlp.optimum.basins import exact_search
 from trajgap.nlp.optimum.descent import descend, least_point, restored
 from trajgap.nlp.optimum.limit_rows import exact_rows
 from trajgap.nlp.optimum.optimality import kkt
@@ -291,15 +290,13 @@ def bent_valley() -> Problem:
     return Problem(np.array(q), limits, quintic_spline(4))
 
 
-def test_a_descent_that_stops_short_is_resumed_to_an_optimum() -> None:
+def test_a_descent_goes_on_along_a_bent_valley_with_a_new_hessian() -> None:
     problem = bent_valley()
     start = np.array([1.65774685e-2, 8.28750141e-3, 4.75276979e-5, 2.06754698e-2])
-    once = descend(problem, start, box_above(problem, np.zeros(4)))
-    assert not once.converged
-    (ended,) = exact_search(problem, start[None], np.zeros(4))
+    ended = descend(problem, start, box_above(problem, np.zeros(4)))
     assert ended.converged
     assert ended.feasible
-    assert ended.total < once.durations.sum() * (1 - 1e-5)
+    assert ended.durations.sum() < 0.0450717  # 0.045405 with the first Hessian alone
 
 
 @pytest.mark.slow
