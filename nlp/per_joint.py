@@ -165,7 +165,6 @@ def longest_status(joints: tuple[Solution, ...]) -> Status:
         Status.CONVERGED,
         Status.FEASIBLE,
         Status.NOT_ATTAINED,
-        Status.LIMIT,
         Status.FAILED,
         Status.NONE_FOUND,
         Status.INFEASIBLE,

@@ -314,7 +314,6 @@ _STYLES = {
     "breaks": "red",
     "infeasible": "red",
     "failed": "red",
-    "limit": "red",
     "refuted": "red",
     "error": "red",
 }

@@ -143,11 +143,6 @@ def incumbent(problem: Problem, known: Array, nodal: Array | None) -> Local | No
     return best
 
 
-def longer_than_tight(beyond: float) -> str:
-    """Why an answer is longer than a tight motion, by that share."""
-    return f"longer by {beyond:.1e} (relative) than a tight motion, which rounding errors blur"
-
-
 def stretched(problem: Problem, h: Array, nodal: Array | None) -> Local | None:
     """The motion stretched until it passes, or None where the duration bounds leave no room."""
     for _ in range(ROUNDS):

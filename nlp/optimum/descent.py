@@ -90,7 +90,7 @@ def _walled(rows: ExactRows, box: LogBox, radius: float) -> tuple[Array, Array]:
     return matrix, np.concatenate([-rows.excess, np.maximum(up, 0.0), np.maximum(down, 0.0)])
 
 
-def restored(problem: Problem, h: Array, box: LogBox, steps: int = RESTORING_STEPS) -> ExactRows:
+def restored(problem: Problem, h: Array, box: LogBox) -> ExactRows:
     """Limits at a vector of the box with the least excess that is found near ``h``.
 
     Each step minimises ½(t + 1)² + ½ρ|d|² over steps d and excesses t, every linearised limit at
@@ -98,7 +98,7 @@ def restored(problem: Problem, h: Array, box: LogBox, steps: int = RESTORING_STE
     """
     rows = exact_rows(problem, np.exp(box.inside(np.log(h))))
     radius, n = WIDEST_STEP, h.size
-    for _ in range(steps):
+    for _ in range(RESTORING_STEPS):
         if time_up() or rows.worst <= KEPT or not np.isfinite(rows.worst) or radius < SMALLEST_STEP:
             break
         matrix, room = _walled(rows, box, radius)

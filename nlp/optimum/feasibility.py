@@ -177,16 +177,9 @@ def apart(problem: Problem) -> bool:
 
 
 def forbidden_jumps(problem: Problem) -> list[tuple[int, int, int]]:
-    """Jumps that the declaration allows and the limits forbid.
+    """Jumps that the declaration allows and the limits forbid: (break, order, joint) of each.
 
-    Parameters
-    ----------
-    problem : Problem
-
-    Returns
-    -------
-    list of (break, order, joint)
-        Of joints that move: of velocity, and of acceleration where jerk is limited.
+    Those of joints that move: of velocity, and of acceleration where jerk is limited.
     """
     curve, moving = as_piecewise(problem.curve), np.ptp(problem.waypoints, axis=0) > 0
     return [

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...problem import TOLERANCE, Array, Problem, Verdict, check
-from .decided import Local, decided, longer_than_tight, stretched
-from .optimality import KKT, KKT_TOLERANCE, SHARP, UNKNOWN, kkt, sharpened, unmet
+from .decided import Local, decided, stretched
+from .optimality import KKT, KKT_TOLERANCE, SHARP, UNKNOWN, kkt, sharpened
 from .solution import Route, Solution, Status
 from .starts import DENSE
 
@@ -59,12 +59,8 @@ def judged(
     found = [_past_rounding(problem, local) for local in found]
     feasible = [local for local in found if local.feasible]
     if not feasible:
-        return Solution(
-            problem,
-            *_nothing_found(found),
-            starts=starts,
-            iterations=iterations,
-        )
+        status, why = _nothing_found(found)
+        return Solution(problem, status, why, starts=starts, iterations=iterations)
     shortest = min(local.total for local in feasible)
     # Of ends that are the same to rounding, one that met its conditions.
     alike = [local for local in feasible if local.total <= shortest * (1 + ROUNDED)]
@@ -79,24 +75,21 @@ def judged(
     if report.residual > SHARP and dense and not (problem.curve.free or fixed):
         answer, report = _sharper(problem, tight, report) or (best, report)
     beyond = 0.0 if answer.tight is None else max(0.0, answer.total / float(tight.sum()) - 1.0)
-    status = Status.CONVERGED if report.residual <= KKT_TOLERANCE else Status.FEASIBLE
-    why = None if status is Status.CONVERGED else unmet(report.residual)
-    if beyond > SAME:
-        status = Status.FEASIBLE
+    notes = [] if report.unmet is None else [report.unmet]
+    status = Status.FEASIBLE if notes or beyond > SAME else Status.CONVERGED
     if beyond > KKT_TOLERANCE:
-        note = longer_than_tight(beyond)
-        why = note if why is None else f"{why}; {note}"
+        longer = f"longer by {beyond:.1e} (relative) than a tight motion"
+        notes += [f"{longer}, which rounding errors blur"]
     if answer.verdict.verdict is Verdict.DISCONTINUOUS:
         jumps = sum(jump.order < 2 for jump in answer.verdict.jumps)
-        note = f"limits kept inside the segments; {jumps} jumps of velocity between them"
-        why = note if why is None else f"{why}; {note}"
+        notes += [f"limits kept inside the segments; {jumps} jumps of velocity between them"]
     falling = still_falling(answer.durations, floor)
     if falling is not None:
-        status, why = Status.NOT_ATTAINED, falling
+        status, notes = Status.NOT_ATTAINED, [falling]
     return Solution(
         problem,
         status,
-        why,
+        "; ".join(notes) or None,
         vector=answer.durations,
         nodal=answer.nodal,
         check=answer.verdict,
@@ -131,10 +124,7 @@ def on_floor(durations: Array, floor: Array) -> NDArray[np.bool_]:
 
 
 def still_falling(durations: Array, floor: Array) -> str | None:
-    """Why an answer is no shortest motion: a duration lies on a least one that the search made up.
-
-    None where every duration is longer.
-    """
+    """Why an answer is no shortest motion, if a duration lies on a least one of the search."""
     at = np.flatnonzero(on_floor(durations, floor)).tolist()
     if not at:
         return None

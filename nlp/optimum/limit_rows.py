@@ -152,17 +152,7 @@ def near_limits(
 def exact_rows(problem: Problem, h: Array, nodal: Array | None = None) -> ExactRows:
     """Excesses near or above 0 and their gradients; one infinite excess where there is no curve.
 
-    Parameters
-    ----------
-    problem : Problem
-    h : ndarray, shape (segments,)
-        s.
-    nodal : ndarray, shape (free, joints), optional
-        Free derivatives, where the declaration leaves some.
-
-    Returns
-    -------
-    ExactRows
+    Durations are in s, shape (segments,); free derivatives have the shape (free, joints).
     """
     free = 0 if nodal is None else nodal.size
     try:

@@ -74,12 +74,14 @@ class KKT:
     residual: float
     active: tuple[Active, ...]
 
-
-def unmet(residual: float) -> str:
-    """Why an answer is not called converged, of its KKT residual."""
-    if np.isinf(residual):
-        return "the search ended before it met the conditions of an optimum"
-    return f"KKT residual {residual:.1e}, above {KKT_TOLERANCE:g}"
+    @property
+    def unmet(self) -> str | None:
+        """Why the conditions are not met, if they are not."""
+        if self.residual <= KKT_TOLERANCE:
+            return None
+        if np.isinf(self.residual):
+            return "the search ended before it met the conditions of an optimum"
+        return f"KKT residual {self.residual:.1e}, above {KKT_TOLERANCE:g}"
 
 
 UNKNOWN = KKT(np.inf, ())
@@ -145,8 +147,8 @@ def kkt(
     Returns
     -------
     KKT
-        Multipliers by non-negative least squares on the envelope gradients; an infinite residual
-        where rounding hides the curve.
+        Multipliers by non-negative least squares; an infinite residual where rounding hides the
+        curve.
 
     Notes
     -----

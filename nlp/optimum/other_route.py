@@ -25,10 +25,6 @@ def with_other_route(solution: Solution) -> Solution:
     state the same limits, by different code: symbolic derivatives and multipliers on one side,
     exact extrema and their gradients on the other.
 
-    Parameters
-    ----------
-    solution : Solution
-
     Returns
     -------
     Solution

@@ -388,17 +388,7 @@ class Program:
 
 
 def free_values(curve: Interpolant, trajectory: Trajectory) -> Array:
-    """What a trajectory gives the free derivatives of a declaration with the same breaks.
-
-    Parameters
-    ----------
-    curve : Interpolant
-    trajectory : Trajectory
-
-    Returns
-    -------
-    ndarray, shape (free, joints)
-    """
+    """Free derivatives of a trajectory, in a declaration with its breaks; shape (free, joints)."""
     n, joints = curve.segments, trajectory.scaled.shape[2]
     nodal = np.empty((curve.free, joints))
     for i, (b, order) in enumerate(curve.free_derivatives):

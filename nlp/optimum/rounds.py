@@ -84,10 +84,6 @@ Motion = tuple[Array, Array | None]
 def build(problem: Problem) -> Program:
     """The exact NLP of a problem, not solved: ``print(build(problem))`` says what it consists of.
 
-    Parameters
-    ----------
-    problem : Problem
-
     Returns
     -------
     Program

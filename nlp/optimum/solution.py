@@ -52,8 +52,6 @@ class Status(StrEnum):
     """No feasible duration vector found, and no proof that there is none; `why` says how near."""
     NOT_ATTAINED = "not_attained"
     """No shortest motion was found: the totals found fall as a duration goes to 0."""
-    LIMIT = "limit"
-    """The iteration limit was reached before a feasible point."""
     FAILED = "failed"
     """The solver failed; nothing is claimed."""
 

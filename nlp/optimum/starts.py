@@ -134,18 +134,9 @@ def worst_ratios(problem: Problem, trajectory: Trajectory) -> Array:
 
 
 def random_starts(problem: Problem, count: int, generator: np.random.Generator) -> Array:
-    """Starts log-uniform in [0.1, 10] times the uniformly rescaled equal durations.
+    """Starts log-uniform in [0.1, 10] times the uniformly rescaled equal durations, s.
 
-    Parameters
-    ----------
-    problem : Problem
-    count : int
-    generator : numpy.random.Generator
-
-    Returns
-    -------
-    ndarray, shape (count, segments)
-        Durations, s.
+    Their shape is (count, segments).
     """
     factors = 10.0 ** generator.uniform(-1.0, 1.0, (count, problem.segments))
     return np.asarray(equal_start(problem) * factors)
