@@ -57,9 +57,7 @@ class Adjoint:
     durations : ndarray, shape (segments,)
         s.
 
-    Raises
-    ------
-    SingularError
+    It raises `SingularError` where float64 has lost the curve.
     """
 
     def __init__(self, layout: Layout, values: Array, durations: Array) -> None:

@@ -172,13 +172,8 @@ class Curve(ABC):
     def batch_reach(self, values: Array, durations: Array, asked: Asked) -> Array:
         """How far derivatives go, for all t, for a batch of duration vectors.
 
-        Parameters
-        ----------
-        values : ndarray
-            From `motion_values`.
-        durations : ndarray, shape (batch, segments)
-            s; infinite for vectors that define no curve.
-        asked : Asked
+        The values are those of `motion_values`; durations, s, shape (batch, segments), are infinite
+        for vectors that define no curve.
 
         Returns
         -------

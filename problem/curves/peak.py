@@ -138,16 +138,7 @@ class Furthest:
 def furthest(trajectory: Trajectory, order: int, errors: Array) -> Furthest:
     """How far a derivative goes to both sides, for all t.
 
-    Parameters
-    ----------
-    trajectory : Trajectory
-    order : int
-    errors : ndarray, shape (pieces, joints)
-        Bound on the error of any extremum on a piece.
-
-    Returns
-    -------
-    Furthest
+    The errors are bounds on those of any extremum on a piece, shape (pieces, joints).
     """
     pieces = np.arange(len(trajectory.durations))
     if trajectory.polynomial_in_time:
