@@ -18,7 +18,6 @@ from trajgap.nlp import Evidence
 
 DURATIONS = np.array([0.7, 0.5, 0.6])
 
-
 LARGEST = 250_000
 """Characters of a picture."""
 

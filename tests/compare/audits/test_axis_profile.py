@@ -102,16 +102,6 @@ def test_slowing_down_less_than_speeding_up() -> None:
     assert still.total_time == 0.0
 
 
-def test_the_shortest_total_jumps_where_the_start_moves_a_little() -> None:
-    """Ruckig's issue 204."""
-    finish, sizes = AxisState(0.136553, 0.136894), Sizes(1.15145, 5.0, 40.0)
-    each = [
-        shortest_s_curve(AxisState(q, 0.416965, 3.28077), finish, sizes)
-        for q in (0.02491, 0.0249108)
-    ]
-    assert [one and round(one.total_time, 6) for one in each] == [0.285641, 0.450706]
-
-
 def test_no_profile_ends_where_a_limit_was_exceeded_before() -> None:
     sizes, start = Sizes(1.0, 2.0, 4.0), AxisState(0.0)
     fast, earlier = AxisState(1.0, 1.5), AxisState(1.0, 0.9, -1.5)

@@ -26,9 +26,7 @@ from trajgap.problem.curves.uniform import TimedUniformBSpline
 
 SVG = "{http://www.w3.org/2000/svg}"
 
-
 HOSTILE = '$\\frac{1}{ </title><script>alert("x")</script> --> 轨迹 \x07 _x'
-
 
 NAMES = ("curves", "jerk", "waterfall", "convergence", "joints", "endings", "landscape")
 

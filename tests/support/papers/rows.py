@@ -139,8 +139,7 @@ def _elsewhere(rng: np.random.Generator, seed: int) -> Paper:
 
 def _stated(draft: Draft, seconds: float) -> None:
     value = printed(seconds / draft.si(-1), draft.places, draft.how)
-    entry = {"id": "abstract", "quantity": "total_time", "where": "abstract", "of": "fast"}
-    draft.claims.append(entry | {"value": value})
+    draft.state("abstract", "total_time", where="abstract", of="fast", value=value)
 
 
 def _longer(rng: np.random.Generator, seed: int) -> Paper:

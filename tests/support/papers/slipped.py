@@ -126,8 +126,7 @@ def _abstract(rng: np.random.Generator, draft: Draft) -> tuple[str, str]:
     claim = draft.claim("fast")
     if "total" not in claim:
         raise UnfitError
-    repeated = {"id": "abstract", "quantity": "total_time", "value": claim["total"], "of": "fast"}
-    draft.claims.append(repeated)
+    draft.state("abstract", "total_time", value=claim["total"], of="fast")
     return _listed("abstract", "value")(rng, draft)
 
 

@@ -47,9 +47,7 @@ from trajgap.problem.cases.instances import instance_waypoints
 
 WHALE = "z1-woa-bspline"
 
-
 SMALL = (ROOT / "tests" / "support" / "family.toml").read_text("utf-8")
-
 
 UNSOLVED = (
     ("upper = 8", "upper = 0.05"),

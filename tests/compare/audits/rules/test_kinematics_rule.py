@@ -30,7 +30,6 @@ a = [0, "0.700", "0.400"]
 alpha = [90, 0, 0]
 """
 
-
 SLIDES = 'kinds = ["revolute", "prismatic", "revolute"]\nlower = [0, 0, 0]\nupper = [1, 1, 1]\n'
 Points = Sequence[Sequence[str]]
 

@@ -209,13 +209,6 @@ def test_a_difference_is_supported_where_some_rounding_gives_it(
         held(slow, fast, printed, true, seconds=printed)
 
 
-def test_intervals_that_touch_meet() -> None:
-    """1.2 − 0.8 is at most 0.5, the least that rounds to 1."""
-    true = [a - b for a, b in product(alike("1.2"), alike("0.8"))]
-    assert max(true) == min(alike("1")) == Fraction(1, 2)
-    assert held("1.2", "0.8", "1", true, seconds="1")
-
-
 @pytest.mark.parametrize(
     ("slow", "fast", "percent", "base", "verdict", "other"),
     [
