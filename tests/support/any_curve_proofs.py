@@ -1,7 +1,5 @@
 """Questions about all curves: their problems, and how estimates and proofs are judged."""
 
-from __future__ import annotations
-
 from functools import partial
 
 import numpy as np

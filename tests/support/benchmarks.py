@@ -1,7 +1,5 @@
 """Programs of benchmarks/, loaded as modules."""
 
-from __future__ import annotations
-
 import importlib.util
 import runpy
 import sys

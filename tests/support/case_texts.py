@@ -1,7 +1,5 @@
 """Case files that tests change in a place: a small one, one of every field, one of a SCARA arm."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

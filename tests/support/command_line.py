@@ -1,7 +1,5 @@
 """A case file for the command line, and ways to run it."""
 
-from __future__ import annotations
-
 import json
 import os
 import subprocess

@@ -1,7 +1,5 @@
 """Made-up cases put to single rules, without what an audit computes beside them, and audited."""
 
-from __future__ import annotations
-
 from trajgap.compare.audits import Pair
 from trajgap.compare.audits.case_audit import AuditReport, CaseAudit, audit_case
 from trajgap.compare.audits.rules import GROUPS

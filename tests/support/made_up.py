@@ -1,7 +1,5 @@
 """Made-up case files, a line for each claim: what tests of single rules are tried on."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Optimisers that behave, and some that do everything wrong; found as ``support.optimizers:…``."""
 
-from __future__ import annotations
-
 import contextlib
 import os
 import random

@@ -1,7 +1,5 @@
 """A page as a reader, a keyboard or a screen reader meets it: elements, words, what is unfolded."""
 
-from __future__ import annotations
-
 import html.parser
 
 VOID = {"meta", "img", "link", "br"}

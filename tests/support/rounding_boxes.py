@@ -1,7 +1,5 @@
 """Problems with rounded inputs, and what sampling of their boxes says of a verdict."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Shifted, unequal problems: of every declaration, of sizes that papers pose, of many segments."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A small case and study files about it: dozens of runs in a second."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

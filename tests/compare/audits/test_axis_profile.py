@@ -1,7 +1,5 @@
 """Shortest profiles between two states, beside ruckig, closed forms and their own reversal."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

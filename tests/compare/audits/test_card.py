@@ -1,7 +1,5 @@
 """The verdict card: at most 80 words, plain, built from the claims' own texts and places."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pytest

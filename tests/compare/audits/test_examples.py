@@ -5,8 +5,6 @@ Each recomputation was made from the same tables by another program, or in close
 name their sources.
 """
 
-from __future__ import annotations
-
 from functools import cache
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Optima that an audit certifies by itself, takes from given files, or leaves out and says so."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from datetime import date
 from pathlib import Path

@@ -1,7 +1,5 @@
 """What an audit cannot compute says why in one line, and everything else is judged as usual."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterator
 from pathlib import Path

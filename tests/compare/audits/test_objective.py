@@ -1,7 +1,5 @@
 """A paper that minimises something else than time alone is not held to the shortest time."""
 
-from __future__ import annotations
-
 import json
 
 import pytest

@@ -1,7 +1,5 @@
 """Numbers of profiles: their parts, their states at an instant, and what digits leave of them."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

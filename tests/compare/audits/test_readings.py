@@ -1,7 +1,5 @@
 """The readings side by side: limits, segments, fit, optimum, and what holds under all or some."""
 
-from __future__ import annotations
-
 import io
 from functools import cache
 from itertools import pairwise

@@ -1,7 +1,5 @@
 """Verdicts over rounding boxes, by sampling and by exact rational arithmetic."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise

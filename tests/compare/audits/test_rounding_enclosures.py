@@ -1,7 +1,5 @@
 """Enclosures of coefficients over a box of inputs, against exact arithmetic."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 import numpy as np

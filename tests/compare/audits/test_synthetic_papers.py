@@ -3,8 +3,6 @@
 The rates, over many more, are those of docs/measurements/auditor-errors.md.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Iterable
 

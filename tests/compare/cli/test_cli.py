@@ -1,7 +1,5 @@
 """The command line: what it prints, how it ends, and one clear line for every bad input."""
 
-from __future__ import annotations
-
 import re
 import subprocess
 import sys

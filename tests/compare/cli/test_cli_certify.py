@@ -1,7 +1,5 @@
 """`trajgap solve --certify` and `trajgap verify`: what they print and write, and how they end."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 import signal

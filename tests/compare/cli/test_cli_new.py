@@ -1,7 +1,5 @@
 """The command new, and one clear line for every bad input."""
 
-from __future__ import annotations
-
 import io
 import sys
 from pathlib import Path

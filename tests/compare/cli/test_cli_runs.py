@@ -1,7 +1,5 @@
 """The commands `bench` and `study`: what they print and write, and how they go on."""
 
-from __future__ import annotations
-
 import csv
 import os
 import re

@@ -1,7 +1,5 @@
 """Odd but correct problems, terminals, pipes, signals, and the schema of what is printed."""
 
-from __future__ import annotations
-
 import io
 import json
 import re

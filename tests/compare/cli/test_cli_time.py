@@ -1,7 +1,5 @@
 """Time limits and kept proofs on the command line: what is left, and that nothing else changes."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """The commands of `trajgap suite`."""
 
-from __future__ import annotations
-
 import json
 import re
 import runpy

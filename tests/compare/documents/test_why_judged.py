@@ -1,7 +1,5 @@
 """Reasons of a verdict, each once with its readings in words, and what stands beside a word."""
 
-from __future__ import annotations
-
 import pytest
 from trajgap.compare.documents import (
     DOUBTED,

@@ -1,7 +1,5 @@
 """Benches: numbers by hand and in print, a closed-form optimum, and every fault a row."""
 
-from __future__ import annotations
-
 import csv
 import io
 import itertools

@@ -1,7 +1,5 @@
 """Robots as pictures: the arm on several motions, its workspace, and those of the documents."""
 
-from __future__ import annotations
-
 import json
 import re
 import runpy

@@ -1,7 +1,5 @@
 """A forged document: a certificate with some values replaced, for one check of the verifier."""
 
-from __future__ import annotations
-
 import ast
 import json
 import sys

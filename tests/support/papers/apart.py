@@ -5,8 +5,6 @@ The truth is in closed form: a quintic from rest to rest over d in h peaks at 15
 reach V.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

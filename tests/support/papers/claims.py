@@ -1,7 +1,5 @@
 """A paper drawn at random: claims that are true of its answers, printed as papers print."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

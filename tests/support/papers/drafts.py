@@ -1,7 +1,5 @@
 """A problem drawn at random, true answers to it, and a draft that holds what a paper prints."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from typing import Any
 

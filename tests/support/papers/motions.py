@@ -1,7 +1,5 @@
 """Curves of every family by scipy and plain linear algebra, and their true peaks."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import comb, factorial

@@ -5,8 +5,6 @@ ones would have to be, and ``room``, how far rounded or cut-off digits alone cou
 first order: a fault whose size is below its room cannot be told from rounding by anybody.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass

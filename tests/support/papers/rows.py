@@ -5,8 +5,6 @@ shortest one of the problem that was not rounded, which no reader of the digits 
 says of every value that rounds to them has to hold for this one.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any

@@ -3,8 +3,6 @@
 The motion, its totals and its peaks are those of the numbers that were meant.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any

@@ -1,7 +1,5 @@
 """A paper drawn at random with several of its numbers and sentences wrong: a first draft."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

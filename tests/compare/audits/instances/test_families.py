@@ -1,7 +1,5 @@
 """Families of instances: what is drawn, computed, said and shown of them, and what is refused."""
 
-from __future__ import annotations
-
 import json
 import re
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Rules and rounding proofs on the B-spline cases: control vertices, jumps, cases without table."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from fractions import Fraction
 from functools import partial

@@ -1,7 +1,5 @@
 """Honest papers, made up, are accused of nothing, whether digits were rounded or cut off."""
 
-from __future__ import annotations
-
 import pytest
 from support.findings import audited_text, finding, found_by, said_of, study_of
 from support.made_up import (

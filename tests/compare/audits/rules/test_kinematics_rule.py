@@ -1,7 +1,5 @@
 """TG601: joint angles against positions, on cases built to fit or not, and on the palletiser."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
 from typing import Any

@@ -1,7 +1,5 @@
 """Values at a place, means, integrals and norms of a printed motion, by scipy and closed forms."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from math import sqrt
 from typing import Any

@@ -1,7 +1,5 @@
 """What is said of printed joints and positions, on made-up digits."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

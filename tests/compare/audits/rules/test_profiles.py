@@ -1,7 +1,5 @@
 """Shortest profiles from rest to rest, against time-optimal control solved as linear programs."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What replays and committed studies say: probabilities with their intervals, never a vote."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from support.benchmarks import benchmark

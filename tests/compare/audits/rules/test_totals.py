@@ -1,7 +1,5 @@
 """Printed totals and improvements: what proves and what excludes them, and what accuses nobody."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 from itertools import product
 from typing import Any
