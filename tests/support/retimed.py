@@ -53,8 +53,5 @@ def close(found: Retiming, expected: float) -> bool:
     return abs(found.extrapolated - expected) <= found.error
 
 
-# --- order, and the second solver -----------------------------------------------------------------
-
-
 def puma(interpolant: Interpolant, durations: ArrayLike) -> Trajectory:
     return fit(interpolant, PUMA, durations)

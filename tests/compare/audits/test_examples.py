@@ -217,9 +217,6 @@ def test_a_multi_objective_total_lies_above_the_shortest_known() -> None:
     assert one.errors == 0
 
 
-# --- profiles between states ----------------------------------------------------------------------
-
-
 @pytest.mark.parametrize(("name", "claim"), SAID)
 def test_what_is_said_of_a_profile(name: str, claim: str) -> None:
     (found,) = (f for f in examined(name).findings if f.claim == claim and f.rule == "TG304")

@@ -102,9 +102,6 @@ def summary_of(one: CaseAudit) -> ReadingsSummary:
     return one.readings
 
 
-# --- five readings --------------------------------------------------------------------------------
-
-
 def test_every_reading_has_its_outcome_and_the_segments_of_a_dense_sample() -> None:
     one = five()
     found = {o.reading: o for o in summary_of(one).outcomes}
@@ -210,9 +207,6 @@ def test_the_terminal_says_once_what_many_readings_say() -> None:
         (row_,) = [line for line in lines if line.startswith(f"{word} ")]
         assert beside in row_
     assert max(map(len, terminal(AuditDocument(cases=(changed,)), 80))) <= 100
-
-
-# --- the other papers -----------------------------------------------------------------------------
 
 
 def test_two_problems_of_one_reading_are_measured_by_the_worse() -> None:

@@ -11,8 +11,6 @@ from trajgap.nlp.enclosure import balls as interval
 from trajgap.nlp.enclosure.balls import Ball, enclose_spline
 from trajgap.problem import Interpolant, cubic_spline_virtual, quintic_spline, three_five_three
 
-# --- enclosures against exact arithmetic ----------------------------------------------------------
-
 
 def exact_coefficients(
     interpolant: Interpolant, durations: list[Fraction], waypoints: list[Fraction]

@@ -14,9 +14,6 @@ from support.documents import assert_valid
 from trajgap.compare.audits import RULES
 from trajgap.problem import load_case, published_ids
 
-# --- what is printed ------------------------------------------------------------------------------
-
-
 COMMANDS = (
     "cases", "show", "check", "solve", "verify", "audit", "explain", "bench", "study", "suite",
     "new",

@@ -173,9 +173,6 @@ def test_what_cannot_stand_against_the_leaderboard(
     assert err.count("\n") == 1
 
 
-# --- docs/reference/bench.md, docs/guides/enter-your-optimiser.md --------------------------------
-
-
 def test_the_optimiser_of_the_guide_has_ten_lines_and_is_measured(run: Run, folder: Path) -> None:
     mine = re.search(r":caption: mine.py\n\n(.*?)^```", GUIDE, re.MULTILINE | re.DOTALL)
     assert mine

@@ -16,8 +16,6 @@ from support.command_line import CASE, IRB, ONE, START, Run, on_terminal, strict
 from support.documents import SCHEMA
 from trajgap.compare.cli import main, output as cli_output
 
-# --- odd but correct problems ---------------------------------------------------------------------
-
 ROWS = 'waypoint_rows = [["0.3", "-1.0"], ["1.1", "0.4"], ["0.9", "1.7"], ["2.0", "1.2"]]'
 
 
@@ -41,9 +39,6 @@ def test_odd_problems_have_a_correct_result(run: Run, old: str, new: str, status
     (one,) = run.document("solve", "odd.toml", "--coupling", "shared", kind="solve")["results"]
     assert one["status"] == status
     assert run("solve", "odd.toml", "--coupling", "shared")[0] == 0
-
-
-# --- terminals, pipes, signals --------------------------------------------------------------------
 
 
 def test_colours_and_progress_only_on_a_terminal(run: Run) -> None:
@@ -191,9 +186,6 @@ def test_a_fault_of_ours_is_told_apart(run: Run, monkeypatch: pytest.MonkeyPatch
     assert (code, out) == (70, "")
     assert err.endswith("trajgap: a fault of trajgap itself, please report the lines above\n")
     assert not Path("answer.json").exists()
-
-
-# --- documents ------------------------------------------------------------------------------------
 
 
 def test_every_enum_is_documented() -> None:

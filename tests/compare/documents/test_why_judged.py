@@ -152,9 +152,6 @@ def test_what_holds_by_construction_is_counted_as_no_evidence() -> None:
     assert worth_little([judged(S), judged(R, DOUBT)]) == ""
 
 
-# --- the words for a gap, from its numbers alone --------------------------------------------------
-
-
 @pytest.mark.parametrize(
     ("lowest", "highest", "words"),
     [

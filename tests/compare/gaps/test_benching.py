@@ -272,13 +272,6 @@ def test_bounds_and_first_positions_are_said() -> None:
     assert plan_bench(TOY, "random", baselines=False).notes == ()
 
 
-def test_settings_reach_the_optimiser() -> None:
-    plan = plan_bench(TOY, "pso", settings={"pso": {"particles": 7}}, baselines=False, seeds=1)
-    assert json.loads(plan.trials[0].settings)["particles"] == 7
-    with pytest.raises(TrajgapError, match="settings of 'ga': it does not take part"):
-        plan_bench(TOY, "pso", settings={"ga": {}})
-
-
 def test_what_cannot_take_part_is_refused_before_anything_runs() -> None:
     with pytest.raises(TrajgapError, match="defined at the top of a module"):
         plan_bench(TOY, lambda fun, bounds, budget, rng: None)

@@ -260,9 +260,6 @@ def vertices_claim(rng: np.random.Generator, draft: Draft) -> dict[str, Any]:
     return {"id": "vertices", "quantity": "control_vertices", "joint_rows": digits}
 
 
-# --- each joint by itself -------------------------------------------------------------------------
-
-
 def _joint_by_joint(rng: np.random.Generator, draft: Draft) -> None:
     draft.coupling = "per-joint"
     draft.other_reading = False

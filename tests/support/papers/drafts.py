@@ -123,9 +123,6 @@ class Draft:
         )
 
 
-# --- the problem ----------------------------------------------------------------------------------
-
-
 def problem(rng: np.random.Generator, seed: int, name: str) -> Draft:
     family = FAMILIES[name]
     count, joints = int(rng.choice(family.points)), int(rng.integers(1, 4))
@@ -185,9 +182,6 @@ def problem(rng: np.random.Generator, seed: int, name: str) -> Draft:
         how=str(rng.choice(["round", "round", "round", "cut", "up"])),
         other_reading=bool(rng.random() < 0.1 and 1 in limits),
     )
-
-
-# --- answers --------------------------------------------------------------------------------------
 
 
 def fitted(draft: Draft, durations: Array, joint: int | None = None) -> Motion:

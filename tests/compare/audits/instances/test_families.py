@@ -350,9 +350,6 @@ def test_the_page_names_the_readings_and_the_share_of_the_rule() -> None:
     assert re.findall(r"^\| `([\w-]+)` \| ", page, re.MULTILINE) == list(block.readings)
 
 
-# --- instances are resampled ----------------------------------------------------------------------
-
-
 def test_instances_are_resampled_and_not_pairs_of_runs(result: InstancesResult) -> None:
     reading = result.readings[0]
     each = [distribution(s.reductions(Effect.BOTH)).median for s in result.of(reading)]

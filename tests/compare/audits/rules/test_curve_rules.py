@@ -53,9 +53,6 @@ def vertices_on(curve: dict[str, Any], *more: str) -> list[Finding]:
     return judged(study_of(text), "TG205")
 
 
-# --- TG205 ----------------------------------------------------------------------------------------
-
-
 def test_every_printed_control_vertex_is_inside_what_rounding_allows() -> None:
     study = shipped(POLISH)
     (found,) = judged(study, "TG205")
@@ -118,9 +115,6 @@ def test_vertices_of_another_curve_are_not_held_to_the_uniform_splines(
     assert words == (one if curve is STRETCHED else apart)
 
 
-# --- rounding boxes -------------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize("time", [*TIMES, NATURAL])
 def test_balls_hold_values_and_gradients_all_over_the_box(time: str) -> None:
     problem, h = uniform(time, 41, count=5)
@@ -152,9 +146,6 @@ def test_balls_hold_values_and_gradients_all_over_the_box(time: str) -> None:
         assert (excess <= 1e-9 * np.abs(slope).max()).all()
     central = peak_gradients(problem, h, points)
     np.testing.assert_allclose(form.by_waypoint.mid, central.waypoints, rtol=1e-9, atol=1e-11)
-
-
-# --- jumps ----------------------------------------------------------------------------------------
 
 
 @pytest.fixture(scope="module")
