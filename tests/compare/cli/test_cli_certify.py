@@ -15,6 +15,7 @@ from support.checkout import ROOT
 from support.command_line import CASE, IRB, NAME, ONE, Run, strict
 from support.documents import assert_valid
 from support.shipped_problems import COVERED_PROBLEMS
+from support.small_certificates import sealed
 from trajgap.compare.cli import certifying as cli_certify
 from trajgap.compare.documents import Uncovered
 from trajgap.nlp import ExactProblem, shipped
@@ -192,7 +193,7 @@ def test_ctrl_c_leaves_the_interval_and_a_state(run: Run) -> None:
 def test_verify_says_what_each_file_is_worth(run: Run, document: dict[str, Any]) -> None:
     harmless = {**document, "claim": {**document["claim"], "lower": "1"}}
     broken = {**document, "claim": {**document["claim"], "lower": "1.9"}}
-    broken["seal"] = seal({key: x for key, x in broken.items() if key != "seal"})
+    sealed(broken)
     for name, one in (("good", document), ("harmless", harmless), ("broken", broken)):
         Path(f"{name}.json").write_text(json.dumps(one))
     code, out, err = run("verify", "good.json", "harmless.json", "broken.json", "missing.json")
@@ -289,7 +290,7 @@ def test_a_state_file_that_was_edited_is_refused(run: Run) -> None:
     with pytest.raises(TrajgapError, match="differs from what was written"):
         read_state(path)
     # With the seal made right again, the mathematics refuses it.
-    document["seal"] = seal({key: x for key, x in document.items() if key != "seal"})
+    sealed(document)
     path.write_text(json.dumps(document))
     code, _, err = run("solve", *ONE, "--certify", "--resume", str(path))
     assert code == 2
