@@ -53,6 +53,12 @@ def algorithms(*names: str) -> str:
     return "".join(entry("algorithms", id=name, name=name) for name in names)
 
 
+def tables(*numbers: int, **keys: Any) -> str:
+    return "".join(
+        entry("tables", id=f"table-{k}", where=f"Table {k}", title="t", **keys) for k in numbers
+    )
+
+
 def readings(**changes: Mapping[str, Any]) -> str:
     """Readings by their ids, each with what it changes."""
     return "".join(entry("readings", id=k, why=k, **change) for k, change in changes.items())

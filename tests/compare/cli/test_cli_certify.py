@@ -2,9 +2,6 @@
 
 import hashlib
 import json
-import signal
-import subprocess
-import sys
 from fractions import Fraction
 from importlib import import_module
 from pathlib import Path
@@ -12,7 +9,7 @@ from typing import Any
 
 import pytest
 from support.checkout import ROOT
-from support.command_line import CASE, IRB, NAME, ONE, Run, strict
+from support.command_line import CASE, IRB, NAME, ONE, Run, interrupted, strict
 from support.documents import assert_valid
 from support.shipped_problems import COVERED_PROBLEMS
 from support.small_certificates import sealed
@@ -171,17 +168,8 @@ def test_ctrl_c_leaves_the_interval_and_a_state(run: Run) -> None:
         "sys.exit(main())"
     )
     arguments = ("solve", *ONE, "--certify", "--no-cache", "--out", "answer.json")
-    process = subprocess.Popen(
-        [sys.executable, "-c", started, *arguments],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-    )
-    assert process.stderr is not None
-    assert process.stderr.readline() == "searching\n"
-    process.send_signal(signal.SIGINT)
-    out, err = process.communicate(timeout=60)
-    assert process.returncode == 130
+    code, out, err = interrupted(started, *arguments, after="searching")
+    assert code == 130
     assert err.endswith("trajgap: interrupted\n")
     assert "interval" in out
     (result,) = strict(Path("answer.json").read_text())["intervals"]

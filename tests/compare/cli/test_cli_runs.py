@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from support.checkout import ROOT
 from support.command_line import Run, on_terminal
-from support.small_studies import HEAD
+from support.small_studies import HEAD, optimizers
 from trajgap.problem import load_case
 from trajgap.problem.suite import load_instance
 
@@ -198,17 +198,8 @@ def test_the_docs_name_what_is_there() -> None:
         assert column in DOC, column
 
 
-FEW = (
-    HEAD.replace("seeds = 4", "seeds = 2")
-    + """
-[[optimizers]]
-name = "pso"
-settings = { particles = 10 }
-
-[[optimizers]]
-name = "support.optimizers:raises"
-"""
-)
+FEW = HEAD.replace("seeds = 4", "seeds = 2") + optimizers("pso", "support.optimizers:raises")
+FEW = FEW.replace('"pso"', '"pso"\nsettings = { particles = 10 }')
 
 
 @pytest.fixture(autouse=True)

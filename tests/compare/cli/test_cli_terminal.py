@@ -3,16 +3,14 @@
 import io
 import json
 import re
-import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
 from rich.cells import cell_len
 from support.checkout import ROOT
-from support.command_line import CASE, IRB, ONE, START, Run, on_terminal, strict
+from support.command_line import CASE, IRB, ONE, START, Run, interrupted, on_terminal, strict
 from support.documents import SCHEMA
 from trajgap.compare.cli import main, output as cli_output
 
@@ -151,19 +149,8 @@ def test_interrupted() -> None:
         "c.solve_per_joint = slow\n"
         "sys.exit(main())"
     )
-    process = subprocess.Popen(
-        [sys.executable, "-c", started, "solve", "mine.toml", "--out", "answer.json"],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-    )
-    assert process.stderr is not None
-    assert process.stderr.readline() == "solving\n"
-    assert any(p.name.startswith(".trajgap") for p in Path().iterdir())
-    time.sleep(1.0)
-    process.send_signal(signal.SIGINT)
-    out, err = process.communicate(timeout=20)
-    assert (process.returncode, out, err) == (130, "", "trajgap: interrupted\n")
+    ended = interrupted(started, "solve", "mine.toml", "--out", "answer.json", after="solving")
+    assert ended == (130, "", "trajgap: interrupted\n")
     assert sorted(p.name for p in Path().iterdir()) == ["mine.toml"]
 
 

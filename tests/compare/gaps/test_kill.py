@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from support.small_studies import HEAD, small_trial, texts, written
+from support.small_studies import HEAD, optimizers, small_trial, texts, written
 from trajgap.compare.gaps import (
     Engine,
     Row,
@@ -161,19 +161,8 @@ with Store(Path(sys.argv[2])) as store, on_this_machine(2) as engine:
     run_study(load_study(Path(sys.argv[1])), store, engine, progress=show)
 """
 """A session that says how many runs it has stored."""
-STUDY = (
-    HEAD
-    + """
-[[optimizers]]
-name = "support.optimizers:draws"
-
-[[optimizers]]
-name = "support.optimizers:dawdles"
-
-[[optimizers]]
-name = "support.optimizers:raises"
-"""
-)
+NAMES = [f"support.optimizers:{name}" for name in ("draws", "dawdles", "raises")]
+STUDY = HEAD + optimizers(*NAMES)
 
 
 def session(study: Path, store: Path) -> subprocess.Popen[str]:
@@ -250,7 +239,7 @@ def at_once(trial: Trial) -> TrialOutcome:
 @pytest.mark.slow  # a quick look at the same: test_engines, trials are read as they are needed
 def test_memory_does_not_grow_over_ten_thousand_runs(tmp_path: Path) -> None:
     runs = 10_000
-    text = f'{HEAD}[[optimizers]]\nname = "random"\n'.replace("seeds = 4", f"seeds = {runs // 2}")
+    text = f"{HEAD}{optimizers('random')}".replace("seeds = 4", f"seeds = {runs // 2}")
     plan = load_study(written(tmp_path, text))
     held = 0
 

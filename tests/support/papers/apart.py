@@ -8,7 +8,7 @@ reach V.
 from typing import Any
 
 import numpy as np
-from support.made_up import algorithms, entry, paper
+from support.made_up import algorithms, entry, paper, tables
 from support.papers.printing import printed
 
 _APART: tuple[dict[str, str], ...] = (
@@ -87,6 +87,5 @@ def _profile(
 
 def _written(points: list[list[str]], claims: list[dict[str, Any]], **keys: Any) -> str:
     places = ("Table 2", "Figure 5", "conclusion", "abstract", "Table 6", "section 4")
-    tables = (entry("tables", id=f"table-{k}", where=f"Table {k}", title="t") for k in (2, 6))
     stated = (entry("claims", where=w, **c) for w, c in zip(places, claims, strict=False))
-    return paper(points, algorithms("old", "new"), *tables, *stated, angle="deg", **keys)
+    return paper(points, algorithms("old", "new"), tables(2, 6), *stated, angle="deg", **keys)

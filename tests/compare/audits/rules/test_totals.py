@@ -6,7 +6,17 @@ from typing import Any
 
 import pytest
 from support.findings import audited_text, finding, said_of, study_of
-from support.made_up import algorithms, claim, entry, gain, one_joint, paper, row, sentence, total
+from support.made_up import (
+    algorithms,
+    claim,
+    gain,
+    one_joint,
+    paper,
+    row,
+    sentence,
+    tables,
+    total,
+)
 from trajgap.compare.audits import printed_row as row_module
 from trajgap.compare.audits.card_errors import plainly
 from trajgap.compare.audits.case_audit import audit_case
@@ -97,9 +107,7 @@ def test_a_total_that_a_known_motion_takes_is_never_tried(monkeypatch: pytest.Mo
     assert found.verdict == "not checkable"
 
 
-TABLES = algorithms("new", "old") + "".join(
-    entry("tables", id=f"table-{k}", where=f"Table {k}", title="an experiment") for k in (2, 6)
-)
+TABLES = algorithms("new", "old") + tables(2, 6)
 NEW, OLD = {"algorithm": "new"}, {"algorithm": "old"}
 STRAIGHT = {"other_curve": "straight lines"}
 
