@@ -76,8 +76,7 @@ def test_enclosure_holds_the_exact_coefficients(interpolant, half):
 def test_enclosure_is_not_far_too_wide():
     # At a corner the exact coefficients use a fair part of the radius.
     assert worst_escape(three_five_three(), 5e-4, seed=3) > 0.1
-    _, h = rounded_problem(3, quintic_spline(3))
-    problem, _ = rounded_problem(3, quintic_spline(3))
+    problem, h = rounded_problem(3, quintic_spline(3))
     found = enclose_spline(problem.curve, Ball.exact(h), Ball.exact(problem.waypoints))
     assert found is not None
     assert found.coefficients.rad.max() < 1e-12

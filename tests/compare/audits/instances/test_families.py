@@ -133,21 +133,6 @@ def test_time_scaled_by_two_leaves_every_reduction_as_it_was(result: InstancesRe
         )
 
 
-def test_one_segment_by_hand() -> None:
-    # Through two way-points both curves are one quintic from rest to rest: largest velocity
-    # 15/8 Δ/T, largest acceleration (10/√3) Δ/T².
-    found = examined(("count = 3", "count = 2"))
-    for s in found.of("as-printed"):
-        way = np.abs(s.waypoints[1] - s.waypoints[0])
-        times = np.maximum(
-            15 / 8 * way / [1.5, 2.5], np.sqrt(10 / np.sqrt(3) * way / np.array([4.0, 3.0]))
-        )
-        assert s.faster.total == pytest.approx(times.max(), rel=1e-9)
-        assert s.slower.total == pytest.approx(times.max(), rel=1e-9)
-        assert s.reductions(Effect.CURVE) == pytest.approx([0.0], abs=1e-9)
-        assert (s.totals >= times.max() * (1 - 1e-8)).all()
-
-
 def test_optima_against_a_scan_of_the_shares(result: InstancesResult) -> None:
     shares = np.linspace(0.02, 0.98, 4001)
     unit = np.stack([shares, 1 - shares], axis=1)

@@ -26,6 +26,7 @@ from trajgap.problem import (
 
 EXAM = [45, 90, -45, 45]
 """Robotics I, exam of February 5, 2018, exercise 4: the table on page 12 follows."""
+SPLINE = CubicSpline([0, 1, 1.5, 3], EXAM, bc_type="clamped")
 
 
 def made_up(derivative: str, rows: Sequence[list[float]] = (EXAM,), **keys: Any) -> str:
@@ -65,8 +66,7 @@ def test_ends_instants_and_largest_values_are_those_of_scipys_spline() -> None:
 
 
 def test_either_side_of_a_jump_may_be_meant() -> None:
-    curve = CubicSpline([0, 1, 1.5, 3], EXAM, bc_type="clamped")
-    before, after = float(curve(0.9, 3)), float(curve(1.1, 3))
+    before, after = float(SPLINE(0.9, 3)), float(SPLINE(1.1, 3))
     for value, verdict in (
         (before, ClaimVerdict.SUPPORTED),
         (after, ClaimVerdict.SUPPORTED),
@@ -76,9 +76,8 @@ def test_either_side_of_a_jump_may_be_meant() -> None:
 
 
 def test_a_printed_instant_is_an_interval() -> None:
-    curve = CubicSpline([0, 1, 1.5, 3], EXAM, bc_type="clamped")
     for time, verdict in (("1.3", ClaimVerdict.SUPPORTED), (1.3, ClaimVerdict.INCONSISTENT)):
-        assert verdict_of("position", time=time, value=f"{float(curve(1.34)):.3f}") is verdict
+        assert verdict_of("position", time=time, value=f"{float(SPLINE(1.34)):.3f}") is verdict
 
 
 H = 1.25
