@@ -38,30 +38,17 @@ NOT_SUPPORTED: dict[str, dict[str, str]] = {
         "not checkable": "limits-kept time-bound",
         "refuted": "comprehensive",
     },
-    "liu2025-curtain-wall-nsga3": {},
-    "modern-robotics-joint-trajectory": {},
-    "robotics1-2016-07-11": {},
-    "robotics1-2017-02-03": {},
-    "robotics1-2017-06-06": {},
-    "robotics1-2019-01-11": {},
     "sun2024-segment-assembly": {"not checkable": "stage-1-shortest-time stage-2-shortest-time"},
     "ban2024-dual-s-welding": {
         "not checkable": "total-a total-b total-c a-shorter-than-b a-shorter-than-c"
     },
-    "biagiotti2008-double-s": {},
     "he2022-closed-form-paths": {
         "not checkable": "strictly-optimal "
         + " ".join(f"{p}-case-{n}" for p in ("sinusoid", "squircle", "nurbs") for n in (1, 2, 3))
     },
-    "long-term-planner-switch-times": {},
-    "pilz-atrap-profile": {},
-    "pilz-ptp-scaled": {},
     "riboli2023-iptp-16-tasks": {"not checkable": "plateau-15"},
-    "robotics1-2017-04-11": {},
     "ruckig-issue-128": {"inconsistent": "reported"},
-    "ruckig-issue-204": {},
     "wang2025-mim-wafer-stage": {"not checkable": "above-optimum"},
-    "zhao2022-sine-jerk-otg": {},
     "robotics1-2017-07-11": {
         "not checkable": "unit-3 unit-5 unit-7 fastest-under-acceleration",
         "inconsistent": "largest-acceleration-7",
@@ -73,10 +60,13 @@ NOT_SUPPORTED: dict[str, dict[str, str]] = {
 }
 """Claims of each case by their verdict where it is another one; why is said in each file."""
 RIGHT = """
-kdl-velocity-profiles ruckig-tests robotics1-2012-01-11 robotics1-2014-02-06 robotics1-2016-04-01
+biagiotti2008-double-s fang2020-task1 fang2020-task2 kdl-velocity-profiles
+liu2025-curtain-wall-nsga3 long-term-planner-switch-times modern-robotics-joint-trajectory
+pilz-atrap-profile pilz-ptp-scaled robotics1-2012-01-11 robotics1-2014-02-06 robotics1-2016-04-01
+robotics1-2016-07-11 robotics1-2017-02-03 robotics1-2017-04-11 robotics1-2017-06-06
 robotics1-2017-09-21 robotics1-2018-01-11 robotics1-2018-02-05 robotics1-2018-06-11
-robotics1-2022-02-03 robotics1-2024-09-19
-two-joint-arm-c4-quintic two-joint-arm-natural-cubic fang2020-task1 fang2020-task2
+robotics1-2019-01-11 robotics1-2022-02-03 robotics1-2024-09-19 ruckig-issue-204 ruckig-tests
+two-joint-arm-c4-quintic two-joint-arm-natural-cubic zhao2022-sine-jerk-otg
 """
 """Cases whose every claim is supported."""
 ERRORS = {

@@ -142,19 +142,15 @@ def test_where_an_optimiser_comes_from(tmp_path: Path, monkeypatch: pytest.Monke
 # --- processes ------------------------------------------------------------------------------------
 
 
-@pytest.fixture
-def crew() -> Iterator[Crew]:
+def of_one_child() -> Iterator[Crew]:
     found = Crew()
     yield found
     found.end()
 
 
-@pytest.fixture(scope="module")
-def going_on() -> Iterator[Crew]:
-    """A crew for the tests after which it can run trials as before: to start costs a second."""
-    found = Crew()
-    yield found
-    found.end()
+crew = pytest.fixture(of_one_child)
+going_on = pytest.fixture(of_one_child, scope="module")
+"""For the tests after which it can run trials as before: to start costs a second."""
 
 
 def test_a_trial_gives_the_same_row_in_a_process_of_its_own(going_on: Crew) -> None:
