@@ -100,7 +100,6 @@ def interrupted(program: str, *arguments: str, after: str) -> tuple[int, str, st
         stderr=subprocess.PIPE,
         text=True,
     )
-    assert process.stderr is not None
     assert process.stderr.readline() == f"{after}\n"
     assert any(p.name.startswith(".trajgap") for p in Path().iterdir()), "a draft is reserved"
     time.sleep(1.0)

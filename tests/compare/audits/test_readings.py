@@ -105,7 +105,6 @@ def document_of(one: CaseAudit) -> Any:
 
 
 def summary_of(one: CaseAudit) -> ReadingsSummary:
-    assert one.readings is not None
     return one.readings
 
 

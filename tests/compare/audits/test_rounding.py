@@ -103,7 +103,6 @@ def test_a_box_of_width_0_is_the_plain_check(name):
         plain, verdict = check(problem, at), judge_rounding(problem, RoundingBox.exact(at))
         keeps = plain.verdict is Verdict.PASS
         assert verdict.verdict is (Rounding.KEEPS if keeps else Rounding.BREAKS)
-        assert plain.worst is not None
         assert verdict.worst_at_print == plain.worst.ratio
         if not keeps:
             assert verdict.lower_bound_of_worst == pytest.approx(plain.worst.ratio, rel=1e-9)

@@ -37,7 +37,6 @@ def worst_escape(interpolant: Interpolant, half: float, seed: int, corners: int 
     q = problem.waypoints
     ball_h, ball_q = Ball.between(h - half, h + half), Ball.between(q - half, q + half)
     found = enclose_spline(interpolant, ball_h, ball_q)
-    assert found is not None
     worst = 0.0
     for way in [rng.uniform(-1, 1, h.size), *rng.choice([-1.0, 1.0], (corners, h.size))]:
         at = [Fraction(x) for x in np.clip(h + half * way, h - half, h + half).tolist()]
@@ -78,7 +77,6 @@ def test_enclosure_is_not_far_too_wide():
     assert worst_escape(three_five_three(), 5e-4, seed=3) > 0.1
     problem, h = rounded_problem(3, quintic_spline(3))
     found = enclose_spline(problem.curve, Ball.exact(h), Ball.exact(problem.waypoints))
-    assert found is not None
     assert found.coefficients.rad.max() < 1e-12
 
 

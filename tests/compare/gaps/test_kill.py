@@ -177,7 +177,6 @@ def session(study: Path, store: Path) -> subprocess.Popen[str]:
 
 def killed_at(running: subprocess.Popen[str], rng: random.Random, most: int) -> bool:
     """Kill a session after a random number of rows and a moment; False if it was done before."""
-    assert running.stdout is not None
     with running, running.stdout:
         # One in five is killed while it starts and reads what is there.
         wanted = rng.randint(0, most) if rng.random() > 0.2 else -1

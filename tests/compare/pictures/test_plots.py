@@ -12,13 +12,7 @@ import numpy as np
 import pytest
 from matplotlib.text import Text
 from support.drawn import DURATIONS, STEPS, fall, sound
-from trajgap.compare.pictures.drawing import (
-    THEME,
-    Picture,
-    embedded,
-    shown,
-    svg,
-)
+from trajgap.compare.pictures.drawing import THEME, Picture, embedded, shown, svg
 from trajgap.compare.pictures.motion import beyond, motion_picture
 from trajgap.compare.pictures.waterfall import waterfall_picture
 from trajgap.problem import Limits, Problem, TrajgapError, extrema, fit

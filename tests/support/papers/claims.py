@@ -234,7 +234,6 @@ def _qualities(rng: np.random.Generator, draft: Draft, of: str = "fast") -> None
 
 def _conditions(rng: np.random.Generator, draft: Draft, of: str) -> dict[str, Any]:
     family, n = draft.family, draft.segments
-    assert family.degrees is not None
     degrees, rest = list(family.degrees(n)), len(family.still)
     claim: dict[str, Any] = {
         "rest_at": "all" if family.at_all else "ends",

@@ -16,14 +16,7 @@ from support.papers.motions import (
     shortest_apart,
     stretch,
 )
-from support.papers.printing import (
-    ANGLES,
-    ORDERS,
-    TIMES,
-    last_place,
-    places_for,
-    printed,
-)
+from support.papers.printing import ANGLES, ORDERS, TIMES, last_place, places_for, printed
 from support.toml_text import Bare
 
 TIGHT = 1e-9

@@ -33,14 +33,7 @@ from trajgap.compare.pages.writer import case_page
 from trajgap.compare.pictures.drawing import svg
 from trajgap.compare.pictures.instances import instances_picture
 from trajgap.nlp import Evidence
-from trajgap.problem import (
-    Case,
-    TrajgapError,
-    evaluate,
-    forward_kinematics,
-    load_case,
-    parse_case,
-)
+from trajgap.problem import Case, TrajgapError, evaluate, forward_kinematics, load_case, parse_case
 from trajgap.problem.cases.instances import instance_waypoints
 
 WHALE = "z1-woa-bspline"
@@ -78,7 +71,6 @@ def result() -> InstancesResult:
 def drawn(*changes: tuple[str, str]) -> np.ndarray:
     case = small(*changes)
     chain = case.chain()
-    assert chain is not None
     return instance_waypoints(case.instances[0], chain, case.robot.joints, 3)
 
 
@@ -97,7 +89,6 @@ def test_steps_of_the_end_are_measured_at_the_end() -> None:
     case = load_case(WHALE)
     block = case.instances[0].model_copy(update={"instances": 1, "samples": 5000})
     chain = case.chain()
-    assert chain is not None
     points = instance_waypoints(block, chain, case.robot.joints, 8)
     assert points.shape == (3, 1, 8, 6)
     ends = forward_kinematics(chain, points.reshape(-1, 6))[:, :3, 3].reshape(3, 8, 3)

@@ -20,12 +20,7 @@ from trajgap.compare.audits.rules.printed_vertices import judge_vertices, vertic
 from trajgap.compare.documents import Basis, ClaimVerdict, Finding, Severity
 from trajgap.nlp.enclosure.balls import Ball
 from trajgap.nlp.enclosure.uniform import centred_stretched, centred_timed
-from trajgap.problem import (
-    extrema,
-    fit,
-    load_case,
-    peak_gradients,
-)
+from trajgap.problem import extrema, fit, load_case, peak_gradients
 
 POLISH, WHALE = "irb1600-ga-cubic-bspline", "z1-woa-bspline"
 TIMES = ("stretched", "timed")

@@ -15,14 +15,7 @@ from trajgap.compare.audits.rules.beside import Beside
 from trajgap.compare.audits.rules.motion_numbers import NAMES, measured
 from trajgap.compare.audits.rules.peaks import _norm_top, largest_norm
 from trajgap.compare.documents import ClaimVerdict, Confidence
-from trajgap.problem import (
-    Curve,
-    Printed,
-    cubic_spline,
-    fit,
-    rest_to_rest,
-    uniform_cubic_b_spline,
-)
+from trajgap.problem import Curve, Printed, cubic_spline, fit, rest_to_rest, uniform_cubic_b_spline
 
 EXAM = [45, 90, -45, 45]
 """Robotics I, exam of February 5, 2018, exercise 4: the table on page 12 follows."""

@@ -8,12 +8,7 @@ from scipy.integrate import quad
 from scipy.optimize import linprog
 from support.findings import finding
 from support.made_up import QUINTIC, Numbers, claim, paper, peak, sentence, total
-from trajgap.compare.audits.named_profiles import (
-    resting_total,
-    s_curve,
-    sine_jerk,
-    trapezoidal,
-)
+from trajgap.compare.audits.named_profiles import resting_total, s_curve, sine_jerk, trapezoidal
 from trajgap.compare.documents import Basis, ClaimVerdict, Finding
 from trajgap.problem import CaseError, parse_case
 

@@ -6,17 +6,7 @@ from typing import Any
 
 import pytest
 from support.findings import audited_text, finding, said_of, study_of
-from support.made_up import (
-    algorithms,
-    claim,
-    gain,
-    one_joint,
-    paper,
-    row,
-    sentence,
-    tables,
-    total,
-)
+from support.made_up import algorithms, claim, gain, one_joint, paper, row, sentence, tables, total
 from trajgap.compare.audits import printed_row as row_module
 from trajgap.compare.audits.card_errors import plainly
 from trajgap.compare.audits.case_audit import audit_case
