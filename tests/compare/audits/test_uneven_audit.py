@@ -8,7 +8,8 @@ from support.made_up import paper, row, sentence
 from support.uneven import WAYPOINTS, uneven_problem
 from trajgap.compare.audits.case_audit import CaseAudit
 from trajgap.compare.documents import ClaimVerdict, Severity
-from trajgap.problem import Problem
+from trajgap.nlp import solve
+from trajgap.problem import Problem, check
 
 TIMES = [1.1, 1.9, 1.4]
 
@@ -40,3 +41,12 @@ def test_claims_are_judged_by_the_side_that_counts() -> None:
         broken = audited(tight.tolist())
         assert any(f.severity is Severity.ERROR for f in broken.findings)
         assert set(verdicts(broken).values()) == {ClaimVerdict.REFUTED}
+
+
+def test_the_optimum_of_an_audit_is_that_of_both_sides() -> None:
+    one = audited([[-3, 5], [-6, 2.5]])
+    problem = one.case.problem("main", "as-printed")
+    total = solve(problem).total_time
+    assert total > solve(problem.hull).total_time * (1 + 1e-3)
+    assert f"{total:.4f}" in str(one.card)
+    assert check(problem, TIMES).stretch > 1.0
