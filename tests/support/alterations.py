@@ -1,7 +1,5 @@
 """Places of the numbers in a JSON document, and random changes of them."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Questions about all curves: their problems, and how estimates and proofs are judged."""
 
-from __future__ import annotations
-
 from functools import partial
 
 import numpy as np
@@ -63,7 +61,6 @@ def interval(problem: Problem, gap: float = 1e-6) -> tuple[float, float]:
     found = certify_any(problem, gap=gap, seconds=30)
     proved(found)
     assert found.outcome is Outcome.CERTIFIED, found
-    assert found.upper is not None
     assert 0 <= found.gap <= gap
     return float(found.lower), float(found.upper)
 
@@ -71,8 +68,6 @@ def interval(problem: Problem, gap: float = 1e-6) -> tuple[float, float]:
 def verified(problem: Problem, found: AnyCurveEstimate) -> float:
     """Total of an answer whose curves are built and judged one by one."""
     assert found.total_time is not None, found.why
-    assert found.durations is not None
-    assert found.nodal_velocities is not None
     assert found.evidence is Evidence.BEST_KNOWN
     limits = problem.limits
     for k, h in enumerate(found.durations):

@@ -4,7 +4,8 @@ import numpy as np
 from scipy.interpolate import BSpline, CubicSpline
 from scipy.optimize import brentq
 from support.papers.motions import vertices
-from trajgap.problem import ClampedBSpline, Limits, Problem, uniform_cubic_b_spline
+from support.samples import drawn_limits
+from trajgap.problem import ClampedBSpline, Problem, uniform_cubic_b_spline
 
 NATURAL = "timed, with natural ends of time"
 """The third reading of time, beside those of `Timing`."""
@@ -16,9 +17,7 @@ def clamped(kind, seed: int = 0, count: int = 8, joints: int = 3):
     rng = np.random.default_rng(seed)
     steps = rng.uniform(0.5, 1.0, (count, joints)) * rng.choice([-1, 1], (count, joints))
     q = steps.cumsum(axis=0) * rng.uniform(0.3, 2, joints) + rng.uniform(-3, 3, joints)
-    limits = Limits(
-        rng.uniform(1, 4, joints), rng.uniform(2, 9, joints), rng.uniform(20, 90, joints)
-    )
+    limits = drawn_limits(rng, joints)
     h = rng.uniform(0.9, 1.1, count - 1)
     curve = ClampedBSpline(count, degree, knots, parameters, time)
     return Problem(q, limits, curve), h
@@ -28,9 +27,7 @@ def uniform(time: str, seed: int = 0, count: int = 6, joints: int = 3, spread: f
     """Shifted, unequal way-points, limits on v, a and j, and durations of about 1 s."""
     rng = np.random.default_rng(seed)
     q = rng.normal(size=(count, joints)) * rng.uniform(0.3, 2, joints) + rng.uniform(-3, 3, joints)
-    limits = Limits(
-        rng.uniform(1, 4, joints), rng.uniform(2, 9, joints), rng.uniform(20, 90, joints)
-    )
+    limits = drawn_limits(rng, joints)
     h = rng.uniform(1 - spread, 1 + spread, count - 1)
     natural = time == NATURAL
     curve = uniform_cubic_b_spline(count, "timed" if natural else time, natural)

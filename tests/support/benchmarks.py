@@ -1,7 +1,5 @@
 """Programs of benchmarks/, loaded as modules."""
 
-from __future__ import annotations
-
 import importlib.util
 import runpy
 import sys
@@ -26,8 +24,6 @@ def benchmark(name: str) -> dict[str, Any]:
 def loaded(name: str) -> ModuleType:
     """A program as a module, afresh."""
     spec = importlib.util.spec_from_file_location(name, ROOT / "benchmarks" / f"{name}.py")
-    assert spec is not None
-    assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     sys.modules[spec.name] = module  # dataclasses look their module up
     spec.loader.exec_module(module)

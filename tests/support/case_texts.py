@@ -1,7 +1,5 @@
 """Case files that tests change in a place: a small one, one of every field, one of a SCARA arm."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 
@@ -47,7 +45,6 @@ time = "s"
 
 
 BASE = Path(__file__).with_name("base_case.toml").read_text(encoding="utf-8")
-
 
 SCARA = Path(__file__).with_name("scara.toml").read_text("utf-8")
 """Its case file; way-points, limits and peaks in degrees, turns per minute, mm and m."""

@@ -3,8 +3,6 @@
 Each kind of proof that `verify` knows has an entry in `KINDS`, so that attacks reach it.
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Chains for the tests, and elementary transforms to derive them by hand."""
 
-from __future__ import annotations
-
 import numpy as np
 from hypothesis import strategies as st
 from trajgap.problem.robots.chain import Chain, Convention, JointKind

@@ -1,11 +1,11 @@
 """A case file for the command line, and ways to run it."""
 
-from __future__ import annotations
-
 import json
 import os
+import signal
 import subprocess
 import sys
+import time
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -90,6 +90,22 @@ def assert_refused(ended: tuple[int, str, str], *words: str) -> None:
     for word in words:
         assert word in err
     assert [p.name for p in Path().iterdir() if p.name.startswith(".trajgap")] == []
+
+
+def interrupted(program: str, *arguments: str, after: str) -> tuple[int, str, str]:
+    """Exit code, output and errors of a program to which Ctrl-C comes once it has said a word."""
+    process = subprocess.Popen(
+        [sys.executable, "-c", program, *arguments],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    assert process.stderr.readline() == f"{after}\n"
+    assert any(p.name.startswith(".trajgap") for p in Path().iterdir()), "a draft is reserved"
+    time.sleep(1.0)
+    process.send_signal(signal.SIGINT)
+    out, err = process.communicate(timeout=60)
+    return process.returncode, out, err
 
 
 def on_terminal(

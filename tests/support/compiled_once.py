@@ -1,7 +1,5 @@
 """Processes that run tests together compile each function once: the others wait, and load it."""
 
-from __future__ import annotations
-
 import os
 import zlib
 from collections.abc import Callable, Iterator

@@ -1,7 +1,5 @@
 """Declared curves of many kinds, and problems on them with limits of every order."""
 
-from __future__ import annotations
-
 import numpy as np
 from trajgap.problem import (
     Interpolant,

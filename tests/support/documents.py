@@ -1,7 +1,5 @@
 """What holds of every JSON document, and a small report."""
 
-from __future__ import annotations
-
 import json
 from functools import cache
 from typing import Any

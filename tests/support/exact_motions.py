@@ -3,8 +3,6 @@
 Nothing here is the code under attack: splines are solved, and polynomials evaluated, in `Fraction`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction

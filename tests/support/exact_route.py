@@ -6,8 +6,6 @@ Where a derivative turns is found in float64 and then evaluated exactly, so that
 the square of the place's error.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from fractions import Fraction

@@ -1,12 +1,10 @@
 """Made-up cases put to single rules, without what an audit computes beside them, and audited."""
 
-from __future__ import annotations
-
 from trajgap.compare.audits import Pair
 from trajgap.compare.audits.case_audit import AuditReport, CaseAudit, audit_case
 from trajgap.compare.audits.rules import GROUPS
 from trajgap.compare.audits.study import Study
-from trajgap.compare.documents import ClaimVerdict, Finding
+from trajgap.compare.documents import Basis, ClaimVerdict, Finding
 from trajgap.nlp import Solution, Status
 from trajgap.problem import Case, parse_case
 
@@ -54,6 +52,12 @@ def finding(text: str, claim: str | None, id_: str) -> Finding:
 def audited_text(text: str, kind: type[Study] = OwnCurve) -> CaseAudit:
     """The whole audit of a case file's text, with nothing certified."""
     return audit_case(study_of(text, kind))
+
+
+def made_finding(verdict: ClaimVerdict, reading: str | None = None, **change: object) -> Finding:
+    """A finding on claim `c` that nothing computed."""
+    said = {"rule": "TG101", "basis": Basis.DIGITS, "claim": "c", "kind": "k", "sentences": ("m",)}
+    return Finding(verdict=verdict, reading=reading, **(said | change))
 
 
 def verdicts(one: CaseAudit) -> dict[str, ClaimVerdict]:

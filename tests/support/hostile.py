@@ -9,12 +9,9 @@ from trajgap.problem.cases.load import check_case
 
 ID = "irb460-pso-353"
 
-
 SCRIPT = "<script>alert(1)</script>"
 
-
 IMAGE = '"><img src=https://example.org/x.png onerror=alert(2)>'
-
 
 LINK = "[a](javascript:alert(3)) | ![b](https://example.org/y) `c` *d* $e$ 轨迹"
 

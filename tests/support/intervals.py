@@ -1,7 +1,5 @@
 """What holds of every certified interval, whatever the kind of proof, and a search beside it."""
 
-from __future__ import annotations
-
 import numpy as np
 from trajgap.nlp.proofs.answer import keeps_limits
 from trajgap.nlp.proofs.document import certificate

@@ -1,7 +1,5 @@
 """Made-up case files, a line for each claim: what tests of single rules are tried on."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -55,6 +53,12 @@ def algorithms(*names: str) -> str:
     return "".join(entry("algorithms", id=name, name=name) for name in names)
 
 
+def tables(*numbers: int, **keys: Any) -> str:
+    return "".join(
+        entry("tables", id=f"table-{k}", where=f"Table {k}", title="t", **keys) for k in numbers
+    )
+
+
 def readings(**changes: Mapping[str, Any]) -> str:
     """Readings by their ids, each with what it changes."""
     return "".join(entry("readings", id=k, why=k, **change) for k, change in changes.items())
@@ -69,6 +73,7 @@ def paper(
     waypoints: Mapping[str, Any] | None = None,
     bounds: Mapping[str, Any] | None = None,
     head: Mapping[str, Any] | None = None,
+    robot: Mapping[str, Any] | None = None,
     **limits: Any,
 ) -> str:
     """A case file of the way-points of each joint, and of the parts that follow."""
@@ -79,7 +84,7 @@ def paper(
     blocks = [
         block("", {"format": 1, "id": "made-up", "title": "made up"} | dict(head or {})),
         block("[source]", {"year": 2024}),
-        block("[robot]", {"name": "arm", "joints": joints}),
+        block("[robot]", {"name": "arm", "joints": joints} | dict(robot or {})),
         block("[units]", own | dict(units or {})),
         block("[waypoints]", {"joint_rows": [_listed(r) for r in rows]} | dict(waypoints or {})),
         block("[limits]", limits),
@@ -96,5 +101,7 @@ def one_joint(points: str, limit: str, time: str, checks: str, *parts: str) -> s
     return paper([[Bare(points)]], *claims, *parts, head=head, velocity=Bare(limit))
 
 
+ARM = {"convention": "standard", "length_unit": "m", "angle_unit": "deg"}
+"""How a robot's table is stated, beside its numbers."""
 TWO_UNITS = readings(header={}, degrees={"units": {"velocity": "deg/s"}})
 """The unit of a limit as printed, and another one."""

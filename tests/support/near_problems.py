@@ -9,8 +9,6 @@ a wide search and one in each decade ended at 11.0149 s and called it converged;
 duration cannot go to 0, since the way takes time at the velocity limit. "boxed" is held by bounds.
 """
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

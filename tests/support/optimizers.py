@@ -1,7 +1,5 @@
 """Optimisers that behave, and some that do everything wrong; found as ``support.optimizers:…``."""
 
-from __future__ import annotations
-
 import contextlib
 import os
 import random
@@ -207,10 +205,6 @@ def raises_at_times(fun: Any, bounds: Any, budget: int, rng: Any) -> None:
     fun(bounds[:, 1])
     if rng.random() < 0.5:
         raise ZeroDivisionError("at times")
-
-
-def generator_of(rng: Any) -> None:
-    """Takes too little."""
 
 
 def anything(*given: Any, **settings: Any) -> None:

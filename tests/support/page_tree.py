@@ -1,7 +1,5 @@
 """A page as a reader, a keyboard or a screen reader meets it: elements, words, what is unfolded."""
 
-from __future__ import annotations
-
 import html.parser
 
 VOID = {"meta", "img", "link", "br"}
@@ -26,12 +24,9 @@ class Tree(html.parser.HTMLParser):
         if tag not in VOID:
             self.open.append(len(self.found) - 1)
 
-    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        self.handle_starttag(tag, attrs)
-        if tag not in VOID:
-            self.open.pop()
-
     def handle_endtag(self, tag: str) -> None:
+        if tag in VOID:
+            return
         while self.open and self.found[self.open[-1]]["tag"] != tag:
             self.open.pop()
         if self.open:

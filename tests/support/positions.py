@@ -1,7 +1,5 @@
 """Problems whose paths swing beyond their way-points, by every kind of curve."""
 
-from __future__ import annotations
-
 import numpy as np
 from trajgap.problem import (
     Array,

@@ -1,7 +1,5 @@
 """Random problems of a few segments and joints, on which each kind of proof is tried."""
 
-from __future__ import annotations
-
 import numpy as np
 from trajgap.problem import (
     Interpolant,

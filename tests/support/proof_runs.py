@@ -1,7 +1,5 @@
 """Certification runs under a clock, a crew, answers and kinds of proof that a test chooses."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from concurrent.futures import Executor, Future
 from dataclasses import dataclass

@@ -5,8 +5,6 @@ text that the section's `[name]` stands for; lines behind `|` are written as the
 file, or is a whole command. The line behind `!` is the message; "…" stands for any words in it.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -5,11 +5,7 @@ from numpy.typing import ArrayLike
 from scipy.interpolate import BPoly, PPoly
 from support.puma import PUMA
 from trajgap.nlp.retiming.toppra_check import Retiming
-from trajgap.problem import (
-    Interpolant,
-    Trajectory,
-    fit,
-)
+from trajgap.problem import Interpolant, Trajectory, fit
 
 PUMA_353 = np.array([0.98201, 1.22974, 1.08496])
 """Optimal durations of the shared 3-5-3 problem, rounded up."""
@@ -47,13 +43,8 @@ def rest_to_rest_time(distance: ArrayLike, velocity: ArrayLike, acceleration: Ar
 
 def close(found: Retiming, expected: float) -> bool:
     assert found.applicable, found.why
-    assert found.extrapolated is not None
-    assert found.error is not None
     assert found.error < 1e-3 * expected
     return abs(found.extrapolated - expected) <= found.error
-
-
-# --- order, and the second solver -----------------------------------------------------------------
 
 
 def puma(interpolant: Interpolant, durations: ArrayLike) -> Trajectory:

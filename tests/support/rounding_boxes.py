@@ -1,26 +1,11 @@
 """Problems with rounded inputs, and what sampling of their boxes says of a verdict."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
-from trajgap.compare.audits.rounding import (
-    Place,
-    Point,
-    RoundingBox,
-    RoundingVerdict,
-)
+from trajgap.compare.audits.rounding import Place, Point, RoundingBox, RoundingVerdict
 from trajgap.compare.documents import Rounding
-from trajgap.problem import (
-    Interpolant,
-    Limits,
-    Problem,
-    Verdict,
-    check,
-    evaluate,
-    piecewise,
-)
+from trajgap.problem import Interpolant, Limits, Problem, Verdict, check, evaluate, piecewise
 
 MOVING_ENDS = piecewise((4, 3, 4), 2, ((1, 0.3), (2, -0.7)))
 

@@ -1,7 +1,5 @@
 """The same question in another dress: what every judge has to answer alike."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 

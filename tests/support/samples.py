@@ -1,7 +1,5 @@
 """Shifted, unequal problems: of every declaration, of sizes that papers pose, of many segments."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np
@@ -50,6 +48,10 @@ FREE: dict[str, Interpolant] = {
 """Under-determined declarations, completed by nodal derivatives."""
 
 
+def drawn_limits(rng: np.random.Generator, joints: int) -> Limits:
+    return Limits(*(rng.uniform(*span, joints) for span in ((1, 4), (2, 9), (20, 90))))
+
+
 def sample_problem(
     interpolant: Interpolant,
     seed: int,
@@ -63,9 +65,7 @@ def sample_problem(
     spread = rng.uniform(0.2, 2.0, joints)
     waypoints = rng.normal(size=(count, joints)) * spread + rng.uniform(-3, 3, joints)
     if limits is None:
-        limits = Limits(
-            rng.uniform(1, 4, joints), rng.uniform(2, 9, joints), rng.uniform(20, 90, joints)
-        )
+        limits = drawn_limits(rng, joints)
     durations = rng.uniform(0.3, 2.0, interpolant.segments)
     return Problem(waypoints, limits, interpolant, **changes), durations  # type: ignore[arg-type]
 

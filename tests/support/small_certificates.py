@@ -1,7 +1,5 @@
 """Small certificates written by hand."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from trajgap.verify import CERTIFICATE_FORMAT, seal

@@ -1,7 +1,5 @@
 """A small case and study files about it: dozens of runs in a second."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 
@@ -20,17 +18,18 @@ seconds = 60
 case = "mine.toml"
 coupling = "shared"
 """
-OPTIMIZERS = """
-[[optimizers]]
-name = "pso"
-settings = [{ inertia = 0.65, particles = 10 }, { particles = 12 }]
 
-[[optimizers]]
-name = "support.optimizers:draws"
 
-[[optimizers]]
-name = "support.optimizers:raises"
-"""
+def optimizers(*names: str) -> str:
+    """Entries of optimisers, of whose settings nothing is said."""
+    return "".join(f'[[optimizers]]\nname = "{name}"\n' for name in names)
+
+
+OPTIMIZERS = (
+    optimizers("pso")
+    + "settings = [{ inertia = 0.65, particles = 10 }, { particles = 12 }]\n"
+    + optimizers("support.optimizers:draws", "support.optimizers:raises")
+)
 STUDY = HEAD + OPTIMIZERS
 RUNS = 4 * 2 * 4
 

@@ -1,7 +1,5 @@
 """TOML written from plain values, whatever they hold; the standard library only reads it."""
 
-from __future__ import annotations
-
 from typing import Any
 
 _KEY = frozenset("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_")

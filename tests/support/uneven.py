@@ -1,7 +1,5 @@
 """Problems whose lower and upper limits differ."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np

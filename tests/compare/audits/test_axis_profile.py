@@ -1,7 +1,5 @@
 """Shortest profiles between two states, beside ruckig, closed forms and their own reversal."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -74,7 +72,6 @@ def test_trapezoids_take_ruckigs_time_and_reversed_swap_both_limits() -> None:
         start, finish = start._replace(acceleration=0.0), finish._replace(acceleration=0.0)
         one = sizes._replace(jerk=math.inf)
         found = shortest_trapezoid(start, finish, one)
-        assert found is not None
         assert found.total_time == pytest.approx(by_ruckig(start, finish, one), rel=1e-7, abs=1e-7)
         if abs(start.velocity) > sizes.velocity:
             continue
@@ -83,8 +80,6 @@ def test_trapezoids_take_ruckigs_time_and_reversed_swap_both_limits() -> None:
         swapped = braking._replace(acceleration=braking.braking, deceleration=braking.acceleration)
         back = [s._replace(velocity=-s.velocity) for s in (finish, start)]
         again = shortest_trapezoid(back[0], back[1], swapped)
-        assert forth is not None
-        assert again is not None
         assert arrives(forth, finish)
         assert forth.total_time == pytest.approx(again.total_time, rel=1e-9, abs=1e-9)
 
@@ -93,23 +88,11 @@ def test_slowing_down_less_than_speeding_up() -> None:
     """It stops in 2 s at 5, and goes back 1 with 2 and 1: sqrt(2 (1/2 + 1)) = 3 sqrt(1/3)."""
     sizes = Sizes(4.0, 2.0, math.inf, 1.0)
     found = shortest_trapezoid(AxisState(3.0, 2.0), AxisState(4.0), sizes)
-    assert found is not None
     assert found.total_time == pytest.approx(2 + 3 * math.sqrt(1 / 3))
     assert [round(p.time, 4) for p in found.phases if p.time] == [2.0, 0.5774, 1.1547]
     assert found.phases[0].acceleration == -1.0
     still = shortest_trapezoid(AxisState(5.0), AxisState(5.0), sizes)
-    assert still is not None
     assert still.total_time == 0.0
-
-
-def test_the_shortest_total_jumps_where_the_start_moves_a_little() -> None:
-    """Ruckig's issue 204."""
-    finish, sizes = AxisState(0.136553, 0.136894), Sizes(1.15145, 5.0, 40.0)
-    each = [
-        shortest_s_curve(AxisState(q, 0.416965, 3.28077), finish, sizes)
-        for q in (0.02491, 0.0249108)
-    ]
-    assert [one and round(one.total_time, 6) for one in each] == [0.285641, 0.450706]
 
 
 def test_no_profile_ends_where_a_limit_was_exceeded_before() -> None:
@@ -126,20 +109,14 @@ def test_the_algorithm_of_the_book_is_not_the_shortest() -> None:
     sizes = Sizes(10.0, 10.0, 30.0)
     for speed, book, best in ((7.0, 1.93837, 1.78045), (7.5, 2.66667, 1.75422)):
         start = AxisState(0.0, speed)
-        made, shortest = (
-            double_s(start, AxisState(10.0), sizes),
-            shortest_s_curve(start, AxisState(10.0), sizes),
-        )
-        assert made is not None
-        assert shortest is not None
+        made = double_s(start, AxisState(10.0), sizes)
+        shortest = shortest_s_curve(start, AxisState(10.0), sizes)
         assert arrives(made, AxisState(10.0))
         assert (round(made.total_time, 5), round(shortest.total_time, 5)) == (book, best)
         mirror = double_s(start.mirrored(), AxisState(-10.0), sizes)
-        assert mirror is not None
         assert mirror.total_time == made.total_time
     for way in (0.5, 3.0, 40.0):
         made = double_s(AxisState(0.0), AxisState(way), Sizes(2.0, 4.0, 9.0))
-        assert made is not None
         assert made.total_time == pytest.approx(s_curve(way, 2.0, 4.0, 9.0), rel=0.02)
         assert made.total_time >= s_curve(way, 2.0, 4.0, 9.0) - 1e-12
 
@@ -150,7 +127,6 @@ def test_a_fourth_order_profile_passes_the_integral_of_its_speed(
 ) -> None:
     limits = (0.8, 3.0, 20.0, 400.0)
     rise = shortest_s_curve(AxisState(0.0), AxisState(speed), Sizes(*limits[1:]))
-    assert rise is not None
     times = np.linspace(0.0, rise.total_time, 4001)
     passed = float(np.trapezoid([rise.at(float(t)).position for t in times], times))
     way, total = 2.0 * passed + speed * cruise, 2.0 * rise.total_time + cruise

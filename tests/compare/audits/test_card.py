@@ -1,7 +1,5 @@
 """The verdict card: at most 80 words, plain, built from the claims' own texts and places."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pytest
@@ -217,7 +215,6 @@ def test_a_sentence_says_under_how_many_readings_it_holds(
 def test_the_joint_whose_total_lies_farthest_is_named() -> None:
     """Six joints are called optimal one by one: a share of none of them would be of all."""
     one = longer(("durations-at-least-0.3",), gap=GAP)
-    assert one.head is not None
     head = one.head.model_copy(update={"farthest": "mnam-joint-3"})
     (said,) = plainly(load_case(PUMA), one.model_copy(update={"head": head}))
     assert said.endswith("joint 3 takes at least 40.0 % longer than a motion within the limits.")

@@ -1,7 +1,5 @@
 """Whose total stands beside the optimum: on the card, and where the way down starts."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 from itertools import permutations

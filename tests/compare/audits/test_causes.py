@@ -1,7 +1,5 @@
 """One cause for what follows from it, and innocent explanations that the numbers allow."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pytest

@@ -1,7 +1,5 @@
 """Advice to an author: what it tells to print must hold, and a sound draft needs none."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
 from decimal import Decimal

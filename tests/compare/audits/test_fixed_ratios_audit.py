@@ -1,7 +1,5 @@
 """Audits of questions that fix the ratios of the durations: made-up papers, clean and too long."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import replace
 from decimal import ROUND_CEILING, Decimal

@@ -1,7 +1,5 @@
 """Audits of curves that durations alone do not settle: virtual breaks, and knots in print."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

@@ -6,6 +6,7 @@ from datetime import date
 from itertools import permutations
 
 import pytest
+from support.findings import made_finding
 from support.made_up import gain, paper, row
 from support.studies import audited, source
 from trajgap.compare.audits import provenance as proving
@@ -127,16 +128,7 @@ READINGS = ("one", "two")
 
 
 def finding(verdict: ClaimVerdict, basis: Basis, reading: str | None, **more: object) -> Finding:
-    return Finding(
-        rule="TG201",
-        verdict=verdict,
-        basis=basis,
-        claim="c",
-        reading=reading,
-        kind="k",
-        sentences=("m",),
-        **more,
-    )
+    return made_finding(verdict, reading, basis=basis, **more)
 
 
 def under_both(verdict: ClaimVerdict, basis: Basis, **more: object) -> list[Finding]:

@@ -1,7 +1,5 @@
 """The readings side by side: limits, segments, fit, optimum, and what holds under all or some."""
 
-from __future__ import annotations
-
 import io
 from functools import cache
 from itertools import pairwise
@@ -99,12 +97,15 @@ def pallet() -> CaseAudit:
     return summed(shipped(PALLET), {"limit-80": "durations-80", "limit-110": "durations-110"})
 
 
+def document_of(one: CaseAudit) -> Any:
+    document = plain(AuditReport((one,)).document)
+    assert_valid(document, "audit")
+    assert_reasons(document)
+    return document["cases"][0]
+
+
 def summary_of(one: CaseAudit) -> ReadingsSummary:
-    assert one.readings is not None
     return one.readings
-
-
-# --- five readings --------------------------------------------------------------------------------
 
 
 def test_every_reading_has_its_outcome_and_the_segments_of_a_dense_sample() -> None:
@@ -214,9 +215,6 @@ def test_the_terminal_says_once_what_many_readings_say() -> None:
     assert max(map(len, terminal(AuditDocument(cases=(changed,)), 80))) <= 100
 
 
-# --- the other papers -----------------------------------------------------------------------------
-
-
 def test_two_problems_of_one_reading_are_measured_by_the_worse() -> None:
     found = summary_of(pallet())
     best, other = found.fits
@@ -255,9 +253,7 @@ def test_one_reading_alone_is_never_implausible_and_counts_as_one_of_all() -> No
     assert all(isinstance(o.keeping, Why) for o in found.outcomes)
     assert all(isinstance(o.optimum, float) and isinstance(o.gap, Why) for o in found.outcomes)
     assert answers(found) == ()
-    document = plain(AuditReport((bare,)).document)
-    assert_valid(document, "audit")
-    assert_reasons(document)
+    document_of(bare)
 
 
 def test_without_waypoints_the_reason_stands_in_place_of_numbers() -> None:
@@ -278,9 +274,7 @@ def test_a_single_reading_needs_no_comparison() -> None:
     text = one_joint("0, 1", "1.9496", "0.962", "within_limits")
     one = summed(study_of(text), {"main": "d"})
     assert one.readings is None
-    document = plain(AuditReport((one,)).document)
-    assert_valid(document, "audit")
-    assert document["cases"][0]["readings_why"] == "the case has one reading"
+    assert document_of(one)["readings_why"] == "the case has one reading"
 
 
 @pytest.mark.parametrize(
@@ -314,10 +308,7 @@ def test_durations_that_define_no_curve_are_not_decided() -> None:
 
 def test_the_document_carries_every_number() -> None:
     for one in (pallet(), five()):
-        document = plain(AuditReport((one,)).document)
-        assert_valid(document, "audit")
-        assert_reasons(document)
-        shown, found = document["cases"][0]["readings"], summary_of(one)
+        shown, found = document_of(one)["readings"], summary_of(one)
         assert shown["answers"] == list(answers(found))
         assert shown["holding"] == list(holding(found))
         fits = [(fit.reading, fit.factor) for fit in found.fits]

@@ -1,7 +1,5 @@
 """Verdicts over rounding boxes, by sampling and by exact rational arithmetic."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise
@@ -9,8 +7,9 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from support.positions import CURVES, WAYPOINTS, limited
-from support.rounding_boxes import MOVING_ENDS, boxes, contradiction, rounded_problem
+from support.rounding_boxes import boxes, contradiction, rounded_problem
 from support.same_question import DRESSES, SLOWER, same_question
+from support.samples import DECLARATIONS
 from trajgap.compare.audits.rounding import Place, Point, RoundingBox, judge_rounding
 from trajgap.compare.documents import Rounding
 from trajgap.nlp.enclosure import box_bound
@@ -22,7 +21,6 @@ from trajgap.problem import (
     Verdict,
     check,
     cubic_spline,
-    cubic_spline_virtual,
     evaluate,
     piecewise,
     quintic_spline,
@@ -30,17 +28,6 @@ from trajgap.problem import (
     three_five_three,
     uniform_cubic_b_spline,
 )
-from trajgap.problem.cases.load import load_case
-
-FAMILIES = {
-    "3-5-3": three_five_three(),
-    "C4 quintic": quintic_spline(4),
-    "C2 cubic": cubic_spline(3),
-    "virtual": cubic_spline_virtual(3),
-    "rest to rest": rest_to_rest(3, 5),
-    "moving ends": MOVING_ENDS,
-}
-
 
 WIDTHS = ((1.0, 5e-4), (0.9995, 5e-4), (0.99, 5e-4), (0.8, 1e-2))
 """Share of the durations that just keep the limits, and how far digits reach."""
@@ -107,54 +94,19 @@ def test_several_places_share_a_proof():
     assert found.lower_bound_of_worst == pytest.approx(1.5 / 1.51, rel=1e-12)
 
 
-def printed(case, claim, reading, problem_id=None):
-    """A claim's problem, its durations and its way-points, as boxes."""
-    problem = case.problem(problem_id, reading)
-    low, high = case.waypoint_box(problem_id, reading)
-    if claim.joint and len(problem.joints) > 1:
-        column = problem.joints.index(claim.joint)
-        problem, low, high = problem.joint(column), low[:, [column]], high[:, [column]]
-    box = case.claim_durations(claim, reading)
-    h = RoundingBox(box.value, box.lower, box.upper)
-    return problem, h, RoundingBox(problem.waypoints, low, high)
-
-
-@pytest.mark.parametrize("reading", ["durations-at-least-0.3", "durations-positive"])
-def test_puma_table_3(reading):
-    case = load_case("puma560-mnam-pso-353")
-    verdicts = []
-    for claim in case.table_claims("table-3"):
-        problem, h, q = printed(case, claim, reading)
-        verdict = judge_rounding(problem, h, q)
-        assert contradiction(problem, h, q, verdict, 0) is None
-        verdicts.append(verdict.verdict)
-        if isinstance(verdict.exhibit, Point):
-            # Not only in the box of floats: inside the printed interval itself.
-            for digits, at in zip(claim.durations, verdict.exhibit.durations, strict=True):
-                assert digits.interval.lower <= Fraction(float(at)) <= digits.interval.upper
-            assert (verdict.exhibit.durations >= problem.duration_lower).all()
-    # A plain check calls five of the six rows violated, by 0.03 to 0.04 %.
-    kept, near = Rounding.KEEPS, Rounding.CONSISTENT
-    assert verdicts == [near, kept, near, near, near, near, kept]
-
-
-@pytest.mark.parametrize("interpolant", FAMILIES.values(), ids=FAMILIES)
-def test_a_box_of_width_0_is_the_plain_check(interpolant):
-    problem, h = rounded_problem(7, interpolant)
+@pytest.mark.parametrize("name", sorted(DECLARATIONS.keys() - {"lines", "rest 7"}))
+def test_a_box_of_width_0_is_the_plain_check(name):
+    problem, h = rounded_problem(7, DECLARATIONS[name])
     stretch = check(problem, h).stretch
-    for share, expected in ((1.001, Rounding.KEEPS), (0.9999, Rounding.BREAKS)):
+    for share in (1.001, 0.9999):
         at = h * stretch * share
-        verdict = judge_rounding(problem, RoundingBox.exact(at))
-        if interpolant is MOVING_ENDS:
-            passes = check(problem, at).verdict is Verdict.PASS
-            expected = Rounding.KEEPS if passes else Rounding.BREAKS
-        assert verdict.verdict is expected
-        worst = check(problem, at).worst
-        assert worst is not None
-        assert verdict.worst_at_print == worst.ratio
-        if expected is Rounding.BREAKS:
-            assert verdict.lower_bound_of_worst == pytest.approx(worst.ratio, rel=1e-9)
-            assert verdict.lower_bound_of_worst <= worst.ratio * (1 + 1e-13)
+        plain, verdict = check(problem, at), judge_rounding(problem, RoundingBox.exact(at))
+        keeps = plain.verdict is Verdict.PASS
+        assert verdict.verdict is (Rounding.KEEPS if keeps else Rounding.BREAKS)
+        assert verdict.worst_at_print == plain.worst.ratio
+        if not keeps:
+            assert verdict.lower_bound_of_worst == pytest.approx(plain.worst.ratio, rel=1e-9)
+            assert verdict.lower_bound_of_worst <= plain.worst.ratio * (1 + 1e-13)
 
 
 def test_mean_speed_decides_where_nothing_else_does():

@@ -1,7 +1,5 @@
 """Audits of cases whose lower and upper limits differ: no side accuses or excuses the other."""
 
-from __future__ import annotations
-
 from itertools import product
 
 import numpy as np

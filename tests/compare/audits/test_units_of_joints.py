@@ -1,7 +1,5 @@
 """A made-up SCARA paper from end to end: each number in its joint's unit."""
 
-from __future__ import annotations
-
 import json
 import re
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Every test of the command line starts in an empty folder; an audit that takes no time."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

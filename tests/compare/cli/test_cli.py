@@ -1,7 +1,5 @@
 """The command line: what it prints, how it ends, and one clear line for every bad input."""
 
-from __future__ import annotations
-
 import re
 import subprocess
 import sys
@@ -15,9 +13,6 @@ from support.command_line import CASE, IRB, PUMA, Run, assert_refused, strict
 from support.documents import assert_valid
 from trajgap.compare.audits import RULES
 from trajgap.problem import load_case, published_ids
-
-# --- what is printed ------------------------------------------------------------------------------
-
 
 COMMANDS = (
     "cases", "show", "check", "solve", "verify", "audit", "explain", "bench", "study", "suite",
@@ -78,18 +73,11 @@ def test_every_rule_is_explained_with_an_example(run: Run) -> None:
     assert all(rule.id in run("explain")[1] for rule in RULES)
 
 
-def test_a_crate_never_takes_the_place_of_a_file(
-    run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    there = tmp_path / "there.zip"
-    there.write_text("mine", encoding="utf-8")
-    arguments = ("audit", IRB, "--json", "--crate", str(there))
-    assert_refused(run(*arguments), "exists already; name another file or delete this one")
-    assert there.read_text("utf-8") == "mine"
+def test_a_crate_needs_its_package(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "rocrate.rocrate", None)
-    elsewhere = (*arguments[:-1], str(tmp_path / "new.zip"))
-    assert_refused(run(*elsewhere), "install it with `pip install trajgap[crate]`")
-    assert not (tmp_path / "new.zip").exists()
+    ended = run("audit", IRB, "--json", "--crate", "new.zip")
+    assert_refused(ended, "install it with `pip install trajgap[crate]`")
+    assert not Path("new.zip").exists()
 
 
 def test_no_command_says_how_to_begin_and_prints_the_help(run: Run) -> None:

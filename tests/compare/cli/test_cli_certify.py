@@ -1,12 +1,7 @@
 """`trajgap solve --certify` and `trajgap verify`: what they print and write, and how they end."""
 
-from __future__ import annotations
-
 import hashlib
 import json
-import signal
-import subprocess
-import sys
 from fractions import Fraction
 from importlib import import_module
 from pathlib import Path
@@ -14,9 +9,10 @@ from typing import Any
 
 import pytest
 from support.checkout import ROOT
-from support.command_line import CASE, IRB, NAME, ONE, Run, strict
+from support.command_line import CASE, IRB, NAME, ONE, Run, interrupted, strict
 from support.documents import assert_valid
 from support.shipped_problems import COVERED_PROBLEMS
+from support.small_certificates import sealed
 from trajgap.compare.cli import certifying as cli_certify
 from trajgap.compare.documents import Uncovered
 from trajgap.nlp import ExactProblem, shipped
@@ -35,7 +31,6 @@ def files_of(out: str) -> list[str]:
 def document() -> dict[str, Any]:
     """The shipped certificate of the question, to be altered."""
     found = shipped(COVERED_PROBLEMS[NAME])
-    assert found is not None
     return json.loads(json.dumps(found))  # type: ignore[no-any-return]
 
 
@@ -71,8 +66,6 @@ def test_bounds_are_printed_outwards_and_the_file_names_its_question(run: Run) -
     row = out.splitlines()[-3].split()
     file = f"trajgap-certificates/{NAME}.json"
     verdict = verify(file)
-    assert verdict.lower is not None
-    assert verdict.upper is not None
     assert Fraction(row[0]) <= verdict.lower
     assert Fraction(row[1]) >= verdict.upper
     assert row[-1] == "certified"
@@ -172,17 +165,8 @@ def test_ctrl_c_leaves_the_interval_and_a_state(run: Run) -> None:
         "sys.exit(main())"
     )
     arguments = ("solve", *ONE, "--certify", "--no-cache", "--out", "answer.json")
-    process = subprocess.Popen(
-        [sys.executable, "-c", started, *arguments],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-    )
-    assert process.stderr is not None
-    assert process.stderr.readline() == "searching\n"
-    process.send_signal(signal.SIGINT)
-    out, err = process.communicate(timeout=60)
-    assert process.returncode == 130
+    code, out, err = interrupted(started, *arguments, after="searching")
+    assert code == 130
     assert err.endswith("trajgap: interrupted\n")
     assert "interval" in out
     (result,) = strict(Path("answer.json").read_text())["intervals"]
@@ -194,7 +178,7 @@ def test_ctrl_c_leaves_the_interval_and_a_state(run: Run) -> None:
 def test_verify_says_what_each_file_is_worth(run: Run, document: dict[str, Any]) -> None:
     harmless = {**document, "claim": {**document["claim"], "lower": "1"}}
     broken = {**document, "claim": {**document["claim"], "lower": "1.9"}}
-    broken["seal"] = seal({key: x for key, x in broken.items() if key != "seal"})
+    sealed(broken)
     for name, one in (("good", document), ("harmless", harmless), ("broken", broken)):
         Path(f"{name}.json").write_text(json.dumps(one))
     code, out, err = run("verify", "good.json", "harmless.json", "broken.json", "missing.json")
@@ -291,7 +275,7 @@ def test_a_state_file_that_was_edited_is_refused(run: Run) -> None:
     with pytest.raises(TrajgapError, match="differs from what was written"):
         read_state(path)
     # With the seal made right again, the mathematics refuses it.
-    document["seal"] = seal({key: x for key, x in document.items() if key != "seal"})
+    sealed(document)
     path.write_text(json.dumps(document))
     code, _, err = run("solve", *ONE, "--certify", "--resume", str(path))
     assert code == 2

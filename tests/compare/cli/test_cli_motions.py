@@ -139,10 +139,6 @@ def test_thirty_thousand_samples_of_seven_joints(run):
     found = run.document(*command, "--time-noise", "0")["result"]
     taken = time.process_time() - begun
     assert found["verdict"] == "pass"
-    said = run.document(*command)
-    assert said["time_noise"] > 5e-4
-    assert said["result"]["verdict"] == "undecided"
-    assert "--time-noise 0" in said["result"]["open"][-1]
     sizes = [abs(p["value"]) for p in found["peaks"]]
     np.testing.assert_allclose(sizes, speed, rtol=1e-6)
     assert taken < 4.0  # 0.3 s; the rest is for a loaded machine

@@ -1,7 +1,5 @@
 """The command new, and one clear line for every bad input."""
 
-from __future__ import annotations
-
 import io
 import sys
 from pathlib import Path
@@ -9,8 +7,6 @@ from pathlib import Path
 import pytest
 from support.command_line import Run, assert_refused, on_terminal
 from trajgap.problem import load_case
-
-# --- new ------------------------------------------------------------------------------------------
 
 TABLE = "point,q1,q2\nA,0.30,-1.0\nB,1.10,0.4\nC,0.90,1.7\nD,2.00,1.2\n"
 
@@ -92,9 +88,6 @@ def test_new_takes_no_wrong_unit_from_a_pipe(
         "give one of rad, deg, m, cm, mm",
     )
     assert not Path("out.toml").exists()
-
-
-# --- bad input ------------------------------------------------------------------------------------
 
 
 def test_new_tells_all_missing_units_and_wrong_options_at_once(

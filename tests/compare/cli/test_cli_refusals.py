@@ -3,8 +3,6 @@
 What is wrong inside a file is tested beside the code that reads it; here, that commands say so.
 """
 
-from __future__ import annotations
-
 import io
 import os
 import shlex

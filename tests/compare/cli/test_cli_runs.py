@@ -1,7 +1,5 @@
 """The commands `bench` and `study`: what they print and write, and how they go on."""
 
-from __future__ import annotations
-
 import csv
 import os
 import re
@@ -11,7 +9,7 @@ from pathlib import Path
 import pytest
 from support.checkout import ROOT
 from support.command_line import Run, on_terminal
-from support.small_studies import HEAD
+from support.small_studies import HEAD, optimizers
 from trajgap.problem import load_case
 from trajgap.problem.suite import load_instance
 
@@ -175,9 +173,6 @@ def test_what_cannot_stand_against_the_leaderboard(
     assert err.count("\n") == 1
 
 
-# --- docs/reference/bench.md, docs/guides/enter-your-optimiser.md --------------------------------
-
-
 def test_the_optimiser_of_the_guide_has_ten_lines_and_is_measured(run: Run, folder: Path) -> None:
     mine = re.search(r":caption: mine.py\n\n(.*?)^```", GUIDE, re.MULTILINE | re.DOTALL)
     assert mine
@@ -203,17 +198,8 @@ def test_the_docs_name_what_is_there() -> None:
         assert column in DOC, column
 
 
-FEW = (
-    HEAD.replace("seeds = 4", "seeds = 2")
-    + """
-[[optimizers]]
-name = "pso"
-settings = { particles = 10 }
-
-[[optimizers]]
-name = "support.optimizers:raises"
-"""
-)
+FEW = HEAD.replace("seeds = 4", "seeds = 2") + optimizers("pso", "support.optimizers:raises")
+FEW = FEW.replace('"pso"', '"pso"\nsettings = { particles = 10 }')
 
 
 @pytest.fixture(autouse=True)

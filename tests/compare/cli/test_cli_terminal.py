@@ -1,24 +1,18 @@
 """Odd but correct problems, terminals, pipes, signals, and the schema of what is printed."""
 
-from __future__ import annotations
-
 import io
 import json
 import re
-import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
 from rich.cells import cell_len
 from support.checkout import ROOT
-from support.command_line import CASE, IRB, ONE, START, Run, on_terminal, strict
+from support.command_line import CASE, IRB, ONE, START, Run, interrupted, on_terminal, strict
 from support.documents import SCHEMA
 from trajgap.compare.cli import main, output as cli_output
-
-# --- odd but correct problems ---------------------------------------------------------------------
 
 ROWS = 'waypoint_rows = [["0.3", "-1.0"], ["1.1", "0.4"], ["0.9", "1.7"], ["2.0", "1.2"]]'
 
@@ -43,9 +37,6 @@ def test_odd_problems_have_a_correct_result(run: Run, old: str, new: str, status
     (one,) = run.document("solve", "odd.toml", "--coupling", "shared", kind="solve")["results"]
     assert one["status"] == status
     assert run("solve", "odd.toml", "--coupling", "shared")[0] == 0
-
-
-# --- terminals, pipes, signals --------------------------------------------------------------------
 
 
 def test_colours_and_progress_only_on_a_terminal(run: Run) -> None:
@@ -158,19 +149,8 @@ def test_interrupted() -> None:
         "c.solve_per_joint = slow\n"
         "sys.exit(main())"
     )
-    process = subprocess.Popen(
-        [sys.executable, "-c", started, "solve", "mine.toml", "--out", "answer.json"],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-    )
-    assert process.stderr is not None
-    assert process.stderr.readline() == "solving\n"
-    assert any(p.name.startswith(".trajgap") for p in Path().iterdir())
-    time.sleep(1.0)
-    process.send_signal(signal.SIGINT)
-    out, err = process.communicate(timeout=20)
-    assert (process.returncode, out, err) == (130, "", "trajgap: interrupted\n")
+    ended = interrupted(started, "solve", "mine.toml", "--out", "answer.json", after="solving")
+    assert ended == (130, "", "trajgap: interrupted\n")
     assert sorted(p.name for p in Path().iterdir()) == ["mine.toml"]
 
 
@@ -193,9 +173,6 @@ def test_a_fault_of_ours_is_told_apart(run: Run, monkeypatch: pytest.MonkeyPatch
     assert (code, out) == (70, "")
     assert err.endswith("trajgap: a fault of trajgap itself, please report the lines above\n")
     assert not Path("answer.json").exists()
-
-
-# --- documents ------------------------------------------------------------------------------------
 
 
 def test_every_enum_is_documented() -> None:

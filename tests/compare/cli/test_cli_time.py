@@ -1,7 +1,5 @@
 """Time limits and kept proofs on the command line: what is left, and that nothing else changes."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from typing import Any
@@ -71,7 +69,6 @@ def test_what_cannot_be_proved_again_in_time_is_not_thrown_away(
     path = Path(f"trajgap-certificates/{NAME}.json")
     path.parent.mkdir()
     document = shipped(COVERED_PROBLEMS[NAME])
-    assert document is not None
     narrow = json.dumps(document)
     path.write_text(narrow)
     limits: list[float] = []

@@ -61,9 +61,7 @@ def test_a_number_longer_than_a_certificate_may_state_ends_nothing():
     problem = load_case("puma560-mnam-pso-353").problem()
     moved = problem.waypoints.copy()
     moved[1, 0] = 1e-300
-    same = Problem(
-        moved, problem.limits, three_five_three(), problem.duration_lower, problem.duration_upper
-    )
+    same = replace(problem, waypoints=moved)
     assert solve(same, starts=1).evidence is Evidence.BEST_KNOWN
     assert shipped_file(exact_problem(same)) is None
 

@@ -1,7 +1,5 @@
 """`trajgap solve` of a table of way-points, with limits from flags and a URDF beside it."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What a command prints calls problems and readings by words; an id stands once, to be typed."""
 
-from __future__ import annotations
-
 from contextlib import nullcontext
 from pathlib import Path
 

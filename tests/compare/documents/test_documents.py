@@ -1,7 +1,5 @@
 """The JSON documents: their keys, their enums, and no number that JSON does not know."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Reasons of a verdict, each once with its readings in words, and what stands beside a word."""
 
-from __future__ import annotations
-
 import pytest
 from trajgap.compare.documents import (
     DOUBTED,
@@ -152,9 +150,6 @@ def test_what_holds_by_construction_is_counted_as_no_evidence() -> None:
     )
     assert worth_little(every) == "1 by construction, 2 on doubted numbers"
     assert worth_little([judged(S), judged(R, DOUBT)]) == ""
-
-
-# --- the words for a gap, from its numbers alone --------------------------------------------------
 
 
 @pytest.mark.parametrize(

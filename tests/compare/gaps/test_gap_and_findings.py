@@ -2,26 +2,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from support.findings import made_finding as finding
 from trajgap.compare.audits.judging import judge, weigh
-from trajgap.compare.documents import (
-    Basis,
-    ClaimVerdict,
-    Finding,
-    GapKind,
-    Reference,
-    Scope,
-    Severity,
-)
+from trajgap.compare.documents import ClaimVerdict, GapKind, Reference, Scope, Severity
 from trajgap.compare.gaps.optimality_gap import gap
 from trajgap.compare.gaps.statistics import settled_at, share_of_luck, share_of_pairs, spread
 from trajgap.nlp import Evidence, solve
 from trajgap.problem import TrajgapError, load_case
-
-
-def finding(verdict: ClaimVerdict, reading: str | None, **change: object) -> Finding:
-    said = {"rule": "TG101", "basis": Basis.DIGITS, "claim": "c"}
-    said |= {"kind": "k", "sentences": ("m",)}
-    return Finding(verdict=verdict, reading=reading, **(said | change))
 
 
 @pytest.mark.parametrize(

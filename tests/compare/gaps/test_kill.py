@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from support.small_studies import HEAD, small_trial, texts, written
+from support.small_studies import HEAD, optimizers, small_trial, texts, written
 from trajgap.compare.gaps import (
     Engine,
     Row,
@@ -50,16 +50,29 @@ def test_trials_are_read_as_they_are_needed() -> None:
         coming.close()
 
 
-class Failing(Executor):
-    """An executor whose futures end as told."""
+def called_here(future: Future[Any], call: Callable[..., Any], *given: Any, **named: Any) -> None:
+    future.set_result(call(*given, **named))
 
-    def __init__(self, end: Callable[[Future[Any]], object]) -> None:
+
+class AtOnce(Executor):
+    """An executor whose futures end as told, before anybody asks."""
+
+    def __init__(self, end: Callable[..., object] = called_here) -> None:
         self.end = end
 
-    def submit(self, *_: Any, **__: Any) -> Future[Any]:
+    def submit(self, *given: Any, **named: Any) -> Future[Any]:
         future: Future[Any] = Future()
-        self.end(future)
+        self.end(future, *given, **named)
         return future
+
+
+def failing(error: Exception) -> AtOnce:
+    return AtOnce(lambda future, *_: future.set_exception(error))
+
+
+def cancelled(future: Future[Any], *_: Any) -> None:
+    future.cancel()
+    future.set_running_or_notify_cancel()
 
 
 class KilledWorker(Exception):
@@ -67,7 +80,7 @@ class KilledWorker(Exception):
 
 
 def test_a_run_at_which_workers_of_dask_die_is_reported() -> None:
-    engine = Engine(Failing(lambda f: f.set_exception(KilledWorker())), lambda: 1, "far")
+    engine = Engine(failing(KilledWorker()), lambda: 1, "far")
     (outcome,) = outcomes([small_trial()], engine)
     assert outcome.row.status is RowStatus.FAILED
     assert outcome.row.message == "support.optimizers:draws: workers died at it, several times"
@@ -80,11 +93,11 @@ CLOSED.shutdown()
 @pytest.mark.parametrize(
     ("executor", "said"),
     [
-        (Failing(lambda f: f.cancel() and f.set_running_or_notify_cancel()), r"\(.*cancelled.*\)"),
-        (Failing(lambda f: f.set_exception(OSError("gone"))), r"\(OSError: gone\)"),
-        (Failing(lambda f: f.set_exception(KeyError("odd"))), r"\(KeyError: 'odd'\)"),
+        (AtOnce(cancelled), r"\(.*cancelled.*\)"),
+        (failing(OSError("gone")), r"\(OSError: gone\)"),
+        (failing(KeyError("odd")), r"\(KeyError: 'odd'\)"),
         (CLOSED, r"\(RuntimeError: cannot schedule.*\)"),
-        (Failing(lambda f: f.set_exception(ProcessError("none"))), "^none$"),  # cannot start one
+        (failing(ProcessError("none")), "^none$"),  # cannot start one
     ],
 )
 def test_an_engine_that_is_lost_ends_the_session(executor: Executor, said: str) -> None:
@@ -148,19 +161,8 @@ with Store(Path(sys.argv[2])) as store, on_this_machine(2) as engine:
     run_study(load_study(Path(sys.argv[1])), store, engine, progress=show)
 """
 """A session that says how many runs it has stored."""
-STUDY = (
-    HEAD
-    + """
-[[optimizers]]
-name = "support.optimizers:draws"
-
-[[optimizers]]
-name = "support.optimizers:dawdles"
-
-[[optimizers]]
-name = "support.optimizers:raises"
-"""
-)
+NAMES = [f"support.optimizers:{name}" for name in ("draws", "dawdles", "raises")]
+STUDY = HEAD + optimizers(*NAMES)
 
 
 def session(study: Path, store: Path) -> subprocess.Popen[str]:
@@ -175,7 +177,6 @@ def session(study: Path, store: Path) -> subprocess.Popen[str]:
 
 def killed_at(running: subprocess.Popen[str], rng: random.Random, most: int) -> bool:
     """Kill a session after a random number of rows and a moment; False if it was done before."""
-    assert running.stdout is not None
     with running, running.stdout:
         # One in five is killed while it starts and reads what is there.
         wanted = rng.randint(0, most) if rng.random() > 0.2 else -1
@@ -190,29 +191,25 @@ def killed_at(running: subprocess.Popen[str], rng: random.Random, most: int) -> 
         return running.wait() == -signal.SIGKILL
 
 
-def kill_and_resume(
-    folder: Path, kills: int, seeds: int, most: int, report: Callable[[str], None]
-) -> None:
-    """Kill studies so many times; each must end with the rows of one that was left alone.
-
-    A study that is done gives way to a fresh one; `most` rows are stored before a kill.
-    """
-    study = written(folder, STUDY.replace("seeds = 4", f"seeds = {seeds}"))
+@pytest.mark.slow
+def test_a_study_survives_fifty_kills(tmp_path: Path) -> None:
+    """Each killed study ends with the rows of one that was left alone; a done one begins afresh."""
+    study = written(tmp_path, STUDY.replace("seeds = 4", "seeds = 20"))
     plan = load_study(study)
-    whole = folder / "whole.sqlite"
+    whole = tmp_path / "whole.sqlite"
     with session(study, whole) as running:
         assert running.communicate()
         assert running.returncode == 0
     wanted = texts(plan, whole)
     assert len(wanted) == len(plan)
     rng, done, fresh = random.Random(7), 0, 0
-    while done < kills:
+    while done < 50:
         fresh += 1
-        path, before = folder / f"killed-{fresh}.sqlite", 0
+        path, before = tmp_path / f"killed-{fresh}.sqlite", 0
         finished = False
         while not finished:
-            if done < kills:
-                hit = killed_at(session(study, path), rng, most)
+            if done < 50:
+                hit = killed_at(session(study, path), rng, most=6)
                 done, finished = done + hit, not hit
             else:
                 with session(study, path) as running:
@@ -223,33 +220,13 @@ def kill_and_resume(
             # Nothing that was stored is lost, and nothing half-done is there.
             assert len(found) >= before
             assert [text for text in wanted if text in set(found)] == found
-            word = "was finished" if finished else f"kill {done}"
-            report(f"study {fresh}: {word}, {len(found)} of {len(wanted)} rows stored")
+            print(f"study {fresh}: {done} kills, {len(found)} of {len(wanted)} rows stored")
             before = len(found)
         assert found == wanted, "the resumed study differs from the uninterrupted one"
-        report(f"study {fresh}: equal to the uninterrupted one, row for row")
-
-
-@pytest.mark.slow
-def test_a_study_survives_fifty_kills(tmp_path: Path) -> None:
-    lines: list[str] = []
-    kill_and_resume(tmp_path, kills=50, seeds=20, most=6, report=lines.append)
-    print("\n".join(lines))
-    assert sum("kill" in line for line in lines) == 50
-    assert "row for row" in lines[-1]
 
 
 ROOM = 2_000_000
 """Bytes that a session may grow by: a tenth of 10,000 rows, each of some 2,000 bytes."""
-
-
-class Here(Executor):
-    """An executor that calls at once."""
-
-    def submit(self, call: Callable[..., Any], *given: Any, **named: Any) -> Future[Any]:
-        future: Future[Any] = Future()
-        future.set_result(call(*given, **named))
-        return future
 
 
 def at_once(trial: Trial) -> TrialOutcome:
@@ -261,7 +238,7 @@ def at_once(trial: Trial) -> TrialOutcome:
 @pytest.mark.slow  # a quick look at the same: test_engines, trials are read as they are needed
 def test_memory_does_not_grow_over_ten_thousand_runs(tmp_path: Path) -> None:
     runs = 10_000
-    text = f'{HEAD}[[optimizers]]\nname = "random"\n'.replace("seeds = 4", f"seeds = {runs // 2}")
+    text = f"{HEAD}{optimizers('random')}".replace("seeds = 4", f"seeds = {runs // 2}")
     plan = load_study(written(tmp_path, text))
     held = 0
 
@@ -275,7 +252,7 @@ def test_memory_does_not_grow_over_ten_thousand_runs(tmp_path: Path) -> None:
         next(plan.trials(store))  # the optimum is solved before anything is counted
         tracemalloc.start()
         try:
-            engine = Engine(Here(), lambda: 2, "here", at_once)
+            engine = Engine(AtOnce(), lambda: 2, "here", at_once)
             assert run_study(plan, store, engine, progress=forget_the_start).run == runs
             assert export_rows(study_rows(plan, store), tmp_path / "rows.csv") == runs
             assert sum(1 for _ in store.rows()) == runs

@@ -7,6 +7,7 @@ import sys
 import threading
 import time
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -31,7 +32,6 @@ def test_a_row_is_what_the_loop_of_the_papers_finds(handling: str) -> None:
     assert row.reported_time == found.reported_time == row.trace[-1][1]
     judged = check(small_problem(), found.durations)
     assert (row.verdict, row.feasible_time) == (judged.verdict, judged.feasible_time)
-    assert judged.worst is not None
     assert row.worst_ratio == judged.worst.ratio
     assert row.feasible
 
@@ -141,19 +141,15 @@ def test_where_an_optimiser_comes_from(tmp_path: Path, monkeypatch: pytest.Monke
 # --- processes ------------------------------------------------------------------------------------
 
 
-@pytest.fixture
-def crew() -> Iterator[Crew]:
+def of_one_child() -> Iterator[Crew]:
     found = Crew()
     yield found
     found.end()
 
 
-@pytest.fixture(scope="module")
-def going_on() -> Iterator[Crew]:
-    """A crew for the tests after which it can run trials as before: to start costs a second."""
-    found = Crew()
-    yield found
-    found.end()
+crew = pytest.fixture(of_one_child)
+going_on = pytest.fixture(of_one_child, scope="module")
+"""For the tests after which it can run trials as before: to start costs a second."""
 
 
 def test_a_trial_gives_the_same_row_in_a_process_of_its_own(going_on: Crew) -> None:
@@ -259,24 +255,12 @@ def test_a_search_that_catches_everything_is_ended_from_outside(
 def test_a_process_that_cannot_start_is_reported(
     crew: Crew, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    said: list[str] = []
-
-    def try_starting() -> None:
-        try:
-            crew.run(small_trial())
-        except ProcessError as error:
-            said.append(str(error))
-
-    def in_a_thread_of_its_own() -> str:
-        thread = threading.Thread(target=try_starting)
-        thread.start()
-        thread.join()
-        return said.pop()
-
     monkeypatch.setattr(trial_process, "_PROGRAM", "raise SystemExit(3)")
-    assert in_a_thread_of_its_own().startswith("workers: a process ends at once; see why: python")
+    with pytest.raises(ProcessError, match=r"^workers: a process ends at once; see why: python"):
+        crew.run(small_trial())
     monkeypatch.setattr(sys, "executable", "/no/such/python")
-    assert in_a_thread_of_its_own().startswith("workers: a process cannot be started (")
+    with pytest.raises(ProcessError, match=r"^workers: a process cannot be started \("):
+        crew.run(small_trial())
 
 
 def test_a_crew_that_has_ended_starts_nothing(crew: Crew) -> None:
@@ -302,19 +286,11 @@ def test_a_process_that_begins_while_the_crew_ends_ends_too(
             begun.append(self)
 
     monkeypatch.setattr(trial_process, "_Child", Slow)
-    refused: list[Exception] = []
-
-    def run() -> None:
-        try:
-            crew.run(small_trial())
-        except ProcessError as error:
-            refused.append(error)
-
-    thread = threading.Thread(target=run)
-    thread.start()
-    beginning.wait()
-    crew.end()
-    may_begin.set()
-    thread.join()
-    assert [str(error) for error in refused] == ["workers: stopped"]
+    with ThreadPoolExecutor(1) as pool:
+        row = pool.submit(crew.run, small_trial())
+        beginning.wait()
+        crew.end()
+        may_begin.set()
+    with pytest.raises(ProcessError, match=r"^workers: stopped$"):
+        row.result()
     assert [child._process.poll() is None for child in begun] == [False]

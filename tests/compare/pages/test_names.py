@@ -9,7 +9,6 @@ import pytest
 from support.drawn import sketched
 from support.findings import report_of
 from support.made_up import entry, paper, row
-from support.toml_text import block
 from trajgap.compare import write_report
 from trajgap.compare.pages import foreign
 from trajgap.compare.pages.blocks import Cell, Grid, Page, Prose, Section, Terms
@@ -29,8 +28,9 @@ def dash(case: str, text: str = "t") -> str:
         row("y", "2.5 2.5 2.5", problem="a-b", where=text),
         curve={"family": "3-5-3"},
         head={"id": case, "title": text},
+        robot={"name": text},
         velocity=1,
-    ).replace('name = "arm"', block("", {"name": text}).strip())
+    )
 
 
 HIDDEN = "total \u202e5.1\u202c\u2066x\u2069\u200e\u200f\u061c\x1b[31m\x07\x9b\x7f s"

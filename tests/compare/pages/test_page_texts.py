@@ -1,7 +1,5 @@
 """Pages of papers: on a phone, for a keyboard, short until unfolded, each thing said once."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 from math import radians

@@ -2,21 +2,19 @@
 
 import pytest
 import trajgap as tg
-from support.drawn import DURATIONS, STEPS, fall, sound
+from support.drawn import DURATIONS, PROBLEM, STEPS, fall, sound
 from trajgap.compare import AuditReport, CaseAudit, Study
 from trajgap.problem import InNotebooks, TrajgapError
-
-WAYPOINTS = [[0.4, -1.2], [1.3, -0.9], [1.1, 0.3], [0.2, 0.9]]
 
 
 @pytest.fixture(scope="module")
 def problem() -> tg.Problem:
-    return tg.Problem(WAYPOINTS, tg.Limits([3.0, 5.0], [9.0, 14.0]), tg.three_five_three(), 0.2)
+    return PROBLEM
 
 
 @pytest.fixture(scope="module")
-def best(problem: tg.Problem) -> tg.Solution:
-    return tg.solve(problem)
+def best() -> tg.Solution:
+    return tg.solve(PROBLEM)
 
 
 def test_the_motion_of_a_solution_and_of_durations(problem: tg.Problem, best: tg.Solution) -> None:

@@ -42,8 +42,6 @@ def test_a_page_fetches_nothing_but_its_own_pictures(folder: Path, name: str) ->
             continue
         assert tag not in ("link", "script", "iframe", "object", "embed", "base", "form")
         if tag == "img":
-            assert attributes["loading"] == "lazy"
-            assert attributes["alt"]
             assert (folder / str(attributes["src"])).is_file()
         assert not any(key.startswith("on") for key in attributes)
         for key in ("src", "href", "xlink:href", "action", "srcset", "data"):

@@ -55,9 +55,6 @@ def test_an_earlier_report_is_replaced_as_a_whole(folder: Path, tmp_path: Path) 
     assert [p.name for p in tmp_path.iterdir()] == ["audit"]
 
 
-# --- never over other files -----------------------------------------------------------------------
-
-
 def refuses(report: AuditReport, out: Path, message: str) -> None:
     with pytest.raises(TrajgapError, match=message) as caught:
         write_report(report, out)
@@ -113,9 +110,6 @@ def test_what_would_share_names_or_lie_over_files_is_refused(
         *((one, "out", f"a case cannot be called '{name}'; rename it") for one, name in named),
     ):
         refuses(made, tmp_path / place, said)
-
-
-# --- Markdown -------------------------------------------------------------------------------------
 
 
 def test_markdown_of_every_block() -> None:

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from support.drawn import DURATIONS, STEPS, fall
+from support.drawn import DURATIONS, PROBLEM, STEPS, fall
 from trajgap.compare.pictures.drawing import Picture
 from trajgap.compare.pictures.motion import motion_picture
 from trajgap.compare.pictures.searches import convergence, endings
@@ -12,13 +12,12 @@ from trajgap.compare.pictures.totals_map import landscape
 from trajgap.compare.pictures.waterfall import waterfall_picture
 from trajgap.heuristics import PSO, JointRuns, Run, run, run_per_joint
 from trajgap.nlp import Solution, solve
-from trajgap.problem import Limits, Problem, check, three_five_three
+from trajgap.problem import Limits, Problem, check
 
 
 @pytest.fixture(scope="session")
 def problem() -> Problem:
-    waypoints = [[0.4, -1.2], [1.3, -0.9], [1.1, 0.3], [0.2, 0.9]]
-    return Problem(waypoints, Limits([3.0, 5.0], [9.0, 14.0]), three_five_three(), 0.2)
+    return PROBLEM
 
 
 @pytest.fixture(scope="session")

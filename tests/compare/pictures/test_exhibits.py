@@ -59,9 +59,6 @@ def printed_vertices(shift: str = "0") -> list[Vertex]:
     return found
 
 
-# --- jumps ----------------------------------------------------------------------------------------
-
-
 def test_jumps_are_those_of_the_slopes_of_the_control_polygon(stretched: Problem) -> None:
     # dq/de at way-point k is (V_{k+1} − V_{k−1})/2 on both sides; only the stretch differs.
     v = control_vertices(WAYPOINTS)
@@ -86,9 +83,6 @@ def test_jumps_need_shared_durations(stretched: Problem) -> None:
         jump_picture(stretched, DURATIONS[:3], title="T")
 
 
-# --- control polygon ------------------------------------------------------------------------------
-
-
 def test_the_polygon_shows_differences_and_marks_what_rounding_leaves_out() -> None:
     good = polygon_picture(WAYPOINTS, printed_vertices(), title="Polygon")
     assert "joint shoulder: 7 of 7 within rounding" in good.description
@@ -106,9 +100,6 @@ def test_the_polygon_refuses_other_counts() -> None:
         polygon_picture(WAYPOINTS[:4], printed_vertices(), title="T")
 
 
-# --- tent map -------------------------------------------------------------------------------------
-
-
 def test_the_collapse_is_where_the_powers_of_two_end(scatter: TentScatter) -> None:
     # A double is m/2ᵖ with m odd; every step takes one factor, then 1 maps to 0.
     p = Fraction(float(scatter.start)).denominator.bit_length() - 1
@@ -118,9 +109,6 @@ def test_the_collapse_is_where_the_powers_of_two_end(scatter: TentScatter) -> No
     assert scatter.at_zero == 30 - whole
     assert (scatter.doubles[whole:] == 0).all()
     assert (scatter.exact[whole:] > 0).all()
-
-
-# --- labels ---------------------------------------------------------------------------------------
 
 
 def test_labels_overlap_neither_each_other_nor_the_points() -> None:
@@ -145,9 +133,6 @@ def test_labels_overlap_neither_each_other_nor_the_points() -> None:
         assert box.x1 <= frame.x1
         for place in axes.transData.transform(points):
             assert not box.contains(*place)
-
-
-# --- on the pages ---------------------------------------------------------------------------------
 
 
 def test_the_polishing_case_shows_jumps_and_polygon(irb1600: Study) -> None:

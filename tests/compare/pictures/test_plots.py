@@ -12,13 +12,7 @@ import numpy as np
 import pytest
 from matplotlib.text import Text
 from support.drawn import DURATIONS, STEPS, fall, sound
-from trajgap.compare.pictures.drawing import (
-    THEME,
-    Picture,
-    embedded,
-    shown,
-    svg,
-)
+from trajgap.compare.pictures.drawing import THEME, Picture, embedded, shown, svg
 from trajgap.compare.pictures.motion import beyond, motion_picture
 from trajgap.compare.pictures.waterfall import waterfall_picture
 from trajgap.problem import Limits, Problem, TrajgapError, extrema, fit
@@ -26,9 +20,7 @@ from trajgap.problem.curves.uniform import TimedUniformBSpline
 
 SVG = "{http://www.w3.org/2000/svg}"
 
-
 HOSTILE = '$\\frac{1}{ </title><script>alert("x")</script> --> 轨迹 \x07 _x'
-
 
 NAMES = ("curves", "jerk", "waterfall", "convergence", "joints", "endings", "landscape")
 

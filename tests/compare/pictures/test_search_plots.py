@@ -22,9 +22,6 @@ def words(picture: Picture) -> str:
     return "\n".join(t.get_text() for t in picture.findobj(Text) if t.get_visible())
 
 
-# --- waterfall ------------------------------------------------------------------------------------
-
-
 def test_the_waterfall_shows_every_value_its_evidence_and_every_reason(
     pictures: dict[str, Picture],
 ) -> None:
@@ -46,9 +43,6 @@ def test_the_waterfall_shows_every_value_its_evidence_and_every_reason(
 def test_a_waterfall_of_no_time_or_no_value_is_drawn(times: tuple[float | None, ...]) -> None:
     steps = [STEPS[4] if at is None else Step(name=f"step {at}", time=at) for at in times]
     ElementTree.fromstring(svg(waterfall_picture(fall(*steps), title="Nothing")))
-
-
-# --- searches -------------------------------------------------------------------------------------
 
 
 def test_nothing_is_clipped_at_the_optimum(runs: dict[str, list[Run]]) -> None:
@@ -109,15 +103,6 @@ def test_convergence_needs_runs_and_one_optimum_for_each_problem(
     assert ["1.200000 s" in titles[0], "1.300000 s" in titles[1]] == [True, True]
 
 
-# --- landscape ------------------------------------------------------------------------------------
-
-
-def test_the_tight_total_is_that_of_the_checker(problem: Problem) -> None:
-    shares = np.random.default_rng(3).dirichlet((2, 2, 2), 5)
-    expected = [check(problem, 3 * s).tight_time for s in shares]
-    assert tight_total(problem, shares) == pytest.approx(expected, rel=1e-9)
-
-
 def test_points_stand_at_their_shares(
     problem: Problem, optimum: Solution, pictures: dict[str, Picture]
 ) -> None:
@@ -164,9 +149,6 @@ def test_shares_whose_path_leaves_its_range_are_hatched() -> None:
     assert hatched in words(drawn)
     assert "White" not in words(drawn)
     assert "printed: no rescaling keeps the limits" in drawn.description
-
-
-# --- themes ---------------------------------------------------------------------------------------
 
 
 def test_the_dark_colours_are_those_of_the_pages() -> None:

@@ -1,7 +1,5 @@
 """Reasons of a verdict on a page, the words of claims, and the table of the suite."""
 
-from __future__ import annotations
-
 import pytest
 from docutils import nodes
 from support.checkout import ROOT

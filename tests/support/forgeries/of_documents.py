@@ -1,7 +1,5 @@
 """Forgeries that no list of values states: of a tree's nodes, of long splines, of the walk."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator
 from itertools import islice
 from typing import Any

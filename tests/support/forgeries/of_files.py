@@ -1,7 +1,5 @@
 """Forgeries of the file itself, of its keys, and of what is too long to be written down."""
 
-from __future__ import annotations
-
 import json
 import os
 from pathlib import Path

@@ -5,12 +5,10 @@ The truth is in closed form: a quintic from rest to rest over d in h peaks at 15
 reach V.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
-from support.made_up import entry, paper
+from support.made_up import algorithms, entry, paper, tables
 from support.papers.printing import printed
 
 _APART: tuple[dict[str, str], ...] = (
@@ -89,7 +87,5 @@ def _profile(
 
 def _written(points: list[list[str]], claims: list[dict[str, Any]], **keys: Any) -> str:
     places = ("Table 2", "Figure 5", "conclusion", "abstract", "Table 6", "section 4")
-    named = (entry("algorithms", id=name, name=name) for name in ("old", "new"))
-    tables = (entry("tables", id=f"table-{k}", where=f"Table {k}", title="t") for k in (2, 6))
     stated = (entry("claims", where=w, **c) for w, c in zip(places, claims, strict=False))
-    return paper(points, *named, *tables, *stated, angle="deg", **keys)
+    return paper(points, algorithms("old", "new"), tables(2, 6), *stated, angle="deg", **keys)

@@ -1,7 +1,5 @@
 """A paper drawn at random: claims that are true of its answers, printed as papers print."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -139,9 +137,7 @@ def _abstract(rng: np.random.Generator, draft: Draft) -> None:
         how = "round" if draft.how == "up" else draft.how
         value = time_text(draft, draft.answers["fast"].total, how, int(rng.integers(0, 2)))
     said = {"of": "fast"} if rng.random() < 0.5 else {}
-    draft.claims.append(
-        {"id": "abstract", "quantity": "total_time", "value": value, "algorithm": "new"} | said
-    )
+    draft.state("abstract", "total_time", value=value, algorithm="new", **said)
 
 
 def _improvement(rng: np.random.Generator, draft: Draft) -> None:
@@ -150,12 +146,7 @@ def _improvement(rng: np.random.Generator, draft: Draft) -> None:
         return
     unit = TIMES[draft.units["time"]]
     faster = "abstract" if draft.has("abstract") and rng.random() < 0.4 else "fast"
-    claim: dict[str, Any] = {
-        "id": "gain",
-        "quantity": "improvement",
-        "slower": "slow",
-        "faster": faster,
-    }
+    claim: dict[str, Any] = {"slower": "slow", "faster": faster}
     texts = [draft.claim(i).get("total", draft.claim(i).get("value")) for i in ("slow", faster)]
     how = "cut" if draft.how == "cut" and rng.random() < 0.7 else "round"
     if None not in texts and rng.random() < 0.6:
@@ -173,7 +164,7 @@ def _improvement(rng: np.random.Generator, draft: Draft) -> None:
         claim["seconds"] = printed((slow - fast) / unit, draft.places, how)
     elif None not in texts and float(texts[0]) <= float(texts[1]):
         return
-    draft.claims.append(claim)
+    draft.state("gain", "improvement", **claim)
 
 
 def _say(rng: np.random.Generator, draft: Draft, chance: float, *said: str, **more: Any) -> None:
@@ -213,14 +204,8 @@ def peak_claim(
     significant = int(rng.integers(3, 6))
     how = "cut" if way == "cut" else "round"
     texts = [printed(x / unit, places_for(x / unit, significant), how) for x in values]
-    name = f"peak-{order}"
-    return {
-        "id": name,
-        "quantity": "peak",
-        "derivative": ORDERS[order],
-        "of": of,
-        key: texts[0] if key == "value" else texts,
-    }
+    claim = {"id": f"peak-{order}", "quantity": "peak", "derivative": ORDERS[order], "of": of}
+    return claim | {key: texts[0] if key == "value" else texts}
 
 
 def _qualities(rng: np.random.Generator, draft: Draft, of: str = "fast") -> None:
@@ -237,7 +222,7 @@ def _qualities(rng: np.random.Generator, draft: Draft, of: str = "fast") -> None
     if 1 in family.still:
         _say(rng, draft, 0.4, "rest", "at_rest", of)
     if family.degrees is not None and rng.random() < 0.4:
-        draft.claims.append(_conditions(rng, draft, of))
+        draft.state("conditions", "conditions", **_conditions(rng, draft, of))
     if "uniform" in draft.name and rng.random() < 0.7:
         draft.claims.append(vertices_claim(rng, draft))
     ranges = np.ptp(np.array([[float(t) for t in row] for row in draft.points]), axis=1)
@@ -249,11 +234,8 @@ def _qualities(rng: np.random.Generator, draft: Draft, of: str = "fast") -> None
 
 def _conditions(rng: np.random.Generator, draft: Draft, of: str) -> dict[str, Any]:
     family, n = draft.family, draft.segments
-    assert family.degrees is not None
     degrees, rest = list(family.degrees(n)), len(family.still)
     claim: dict[str, Any] = {
-        "id": "conditions",
-        "quantity": "conditions",
         "rest_at": "all" if family.at_all else "ends",
         "orders": list(family.still),
         "degrees": degrees,
@@ -273,14 +255,8 @@ def vertices_claim(rng: np.random.Generator, draft: Draft) -> dict[str, Any]:
     places = len(texts.split(".")[1]) if "." in texts else 0
     how = str(rng.choice(["round", "cut"]))
     places += int(rng.integers(0, 2))
-    return {
-        "id": "vertices",
-        "quantity": "control_vertices",
-        "joint_rows": [[printed(x, places, how) for x in row] for row in rows],
-    }
-
-
-# --- each joint by itself -------------------------------------------------------------------------
+    digits = [[printed(x, places, how) for x in row] for row in rows]
+    return {"id": "vertices", "quantity": "control_vertices", "joint_rows": digits}
 
 
 def _joint_by_joint(rng: np.random.Generator, draft: Draft) -> None:
@@ -302,12 +278,5 @@ def _joint_by_joint(rng: np.random.Generator, draft: Draft) -> None:
     longest = np.max([one.durations for one in found], axis=0)
     how = "round" if draft.how == "up" else draft.how
     texts = [time_text(draft, h, how) for h in longest]
-    draft.claims.append(
-        {
-            "id": "longest",
-            "quantity": "maximum",
-            "of": names,
-            "durations": texts,
-            "total": _total(rng, draft, texts, float(longest.sum()), how),
-        }
-    )
+    total = _total(rng, draft, texts, float(longest.sum()), how)
+    draft.state("longest", "maximum", of=names, durations=texts, total=total)

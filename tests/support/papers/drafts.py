@@ -1,12 +1,11 @@
 """A problem drawn at random, true answers to it, and a draft that holds what a paper prints."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from scipy.optimize import minimize_scalar
+from support.made_up import algorithms, entry, paper, readings
 from support.papers.motions import (
     FAMILIES,
     Array,
@@ -17,15 +16,8 @@ from support.papers.motions import (
     shortest_apart,
     stretch,
 )
-from support.papers.printing import (
-    ANGLES,
-    ORDERS,
-    TIMES,
-    last_place,
-    places_for,
-    printed,
-)
-from support.toml_text import Bare, toml_text
+from support.papers.printing import ANGLES, ORDERS, TIMES, last_place, places_for, printed
+from support.toml_text import Bare
 
 TIGHT = 1e-9
 """Share by which answers that use a limit up stay below it: what floats may be off."""
@@ -84,10 +76,13 @@ class Draft:
     def has(self, name: str) -> bool:
         return any(c["id"] == name for c in self.claims)
 
+    def state(self, name: str, quantity: str, **keys: Any) -> None:
+        self.claims.append({"id": name, "quantity": quantity} | keys)
+
     def say(self, name: str, checks: str, *of: str, **more: Any) -> None:
         """Claim a statement about some of the durations."""
         about = {"of": list(of)} if of else {}
-        self.claims.append({"id": name, "quantity": "statement", "checks": checks} | about | more)
+        self.state(name, "statement", checks=checks, **about, **more)
 
     def si(self, order: int) -> float:
         """A unit of a derivative in SI units; of time if the order is -1."""
@@ -97,41 +92,28 @@ class Draft:
 
     def text(self) -> str:
         """The case file."""
-        wrap = Bare if self.exact_points else str
-        limit = Bare if self.exact_limits else str
+        wrap, limit = (Bare if exact else str for exact in (self.exact_points, self.exact_limits))
         tables = {c["table"]: c.get("algorithm") for c in self.claims if "table" in c}
-        document: dict[str, Any] = {
-            "format": 1,
-            "id": f"paper-{self.seed}",
-            "title": self.name,
-            "coupling": self.coupling,
-            "source": {"year": 2020},
-            "robot": {"name": "arm", "joints": [str(j + 1) for j in range(self.joints)]},
-            "units": self.units,
-            "waypoints": {
-                "where": "Table 1",
-                "joint_rows": [[wrap(t) for t in row] for row in self.points],
-            },
-            "limits": {"where": "Table 2"}
-            | {ORDERS[o]: [limit(t) for t in row] for o, row in self.limits.items()},
-            "interpolant": self.family.block,
-            "algorithms": [{"id": name, "name": name} for name in ("old", "new")],
-            "tables": [
-                {"id": name, "where": name, "title": name, "algorithm": algorithm}
-                for name, algorithm in tables.items()
-            ],
-            "claims": [{"where": "text"} | c for c in self.claims],
-        }
+        parts = [algorithms("old", "new")]
+        for name, algorithm in tables.items():
+            named = {} if algorithm is None else {"algorithm": algorithm}
+            parts.append(entry("tables", id=name, where=name, title=name, **named))
+        parts += (entry("claims", **{"where": "text"} | c) for c in self.claims)
         if self.other_reading:
             other = "deg" if self.units["velocity"].startswith("rad") else "rad"
-            document["readings"] = [
-                {"id": "printed", "why": "as printed", "default": True},
-                {"id": "other", "why": "a unit", "units": {"velocity": f"{other}/s"}},
-            ]
-        return toml_text(document)
-
-
-# --- the problem ----------------------------------------------------------------------------------
+            parts.append(
+                readings(printed={"default": True}, other={"units": {"velocity": f"{other}/s"}})
+            )
+        return paper(
+            [[wrap(t) for t in row] for row in self.points],
+            *parts,
+            curve=self.family.block,
+            units=self.units,
+            waypoints={"where": "Table 1"},
+            head={"id": f"paper-{self.seed}", "title": self.name, "coupling": self.coupling},
+            where="Table 2",
+            **{ORDERS[o]: [limit(t) for t in row] for o, row in self.limits.items()},
+        )
 
 
 def problem(rng: np.random.Generator, seed: int, name: str) -> Draft:
@@ -193,9 +175,6 @@ def problem(rng: np.random.Generator, seed: int, name: str) -> Draft:
         how=str(rng.choice(["round", "round", "round", "cut", "up"])),
         other_reading=bool(rng.random() < 0.1 and 1 in limits),
     )
-
-
-# --- answers --------------------------------------------------------------------------------------
 
 
 def fitted(draft: Draft, durations: Array, joint: int | None = None) -> Motion:

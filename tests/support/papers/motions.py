@@ -1,7 +1,5 @@
 """Curves of every family by scipy and plain linear algebra, and their true peaks."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import comb, factorial
@@ -322,25 +320,24 @@ def _degrees(degree: int) -> Callable[[int], tuple[int, ...]]:
     return lambda segments: (degree,) * segments
 
 
+def _determined(block: dict[str, Any], *degrees: int) -> Family:
+    """C2 polynomials at rest at both ends that way-points and durations determine."""
+    return Family(
+        block,
+        lambda w, h: declared(degrees, h, w, (1, 2), ()),
+        (len(degrees) + 1,),
+        degrees=lambda n: degrees,
+    )
+
+
 FAMILIES = {
-    "3-5-3": Family(
-        {"family": "3-5-3"},
-        lambda w, h: declared((3, 5, 3), h, w, (1, 2), ()),
-        (4,),
-        degrees=lambda n: (3, 5, 3),
-    ),
-    "4-3-4": Family(
-        {"family": "polynomials", "degrees": [4, 3, 4]},
-        lambda w, h: declared((4, 3, 4), h, w, (1, 2), ()),
-        (4,),
-        degrees=lambda n: (4, 3, 4),
-    ),
-    "4-3-3-4": Family(
-        {"family": "polynomials", "degrees": [4, 3, 3, 4]},
-        lambda w, h: declared((4, 3, 3, 4), h, w, (1, 2), ()),
-        (5,),
-        degrees=lambda n: (4, 3, 3, 4),
-    ),
+    "3-5-3": _determined({"family": "3-5-3"}, 3, 5, 3),
+    **{
+        "-".join(map(str, degrees)): _determined(
+            {"family": "polynomials", "degrees": [*degrees]}, *degrees
+        )
+        for degrees in ((4, 3, 4), (4, 3, 3, 4))
+    },
     "clamped cubic": Family(
         {"family": "cubic-spline"}, _cubic("clamped"), still=(1,), degrees=_degrees(3)
     ),

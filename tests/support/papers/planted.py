@@ -5,8 +5,6 @@ ones would have to be, and ``room``, how far rounded or cut-off digits alone cou
 first order: a fault whose size is below its room cannot be told from rounding by anybody.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
@@ -326,15 +324,8 @@ def _other_clock(rng: np.random.Generator, draft: Draft) -> Planted:
         raise UnfitError
     restated(rng, draft, Answer(slowest.durations, fitted(draft, slowest.durations)), peaks=False)
     peaks = np.array([a.motion.peaks(1)[0] for a in own]) / draft.si(1)
-    draft.claims.append(
-        {
-            "id": "peak-1",
-            "quantity": "peak",
-            "derivative": "velocity",
-            "of": "fast",
-            "values": [printed(x, 4) for x in peaks],
-        }
-    )
+    values = [printed(x, 4) for x in peaks]
+    draft.state("peak-1", "peak", derivative="velocity", of="fast", values=values)
     size, room = peak_distance(draft, draft.claim("peak-1"))
     return Planted(draft, size, room)
 

@@ -1,7 +1,5 @@
 """Numbers to digits as papers print them, and digits back to numbers."""
 
-from __future__ import annotations
-
 from decimal import ROUND_CEILING, ROUND_DOWN, ROUND_HALF_EVEN, Decimal
 from math import floor, log10, pi
 

@@ -5,8 +5,6 @@ shortest one of the problem that was not rounded, which no reader of the digits 
 says of every value that rounds to them has to hold for this one.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -139,8 +137,7 @@ def _elsewhere(rng: np.random.Generator, seed: int) -> Paper:
 
 def _stated(draft: Draft, seconds: float) -> None:
     value = printed(seconds / draft.si(-1), draft.places, draft.how)
-    entry = {"id": "abstract", "quantity": "total_time", "where": "abstract", "of": "fast"}
-    draft.claims.append(entry | {"value": value})
+    draft.state("abstract", "total_time", where="abstract", of="fast", value=value)
 
 
 def _longer(rng: np.random.Generator, seed: int) -> Paper:

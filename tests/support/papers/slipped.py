@@ -3,8 +3,6 @@
 The motion, its totals and its peaks are those of the numbers that were meant.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -126,8 +124,7 @@ def _abstract(rng: np.random.Generator, draft: Draft) -> tuple[str, str]:
     claim = draft.claim("fast")
     if "total" not in claim:
         raise UnfitError
-    repeated = {"id": "abstract", "quantity": "total_time", "value": claim["total"], "of": "fast"}
-    draft.claims.append(repeated)
+    draft.state("abstract", "total_time", value=claim["total"], of="fast")
     return _listed("abstract", "value")(rng, draft)
 
 

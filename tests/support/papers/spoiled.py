@@ -1,7 +1,5 @@
 """A paper drawn at random with several of its numbers and sentences wrong: a first draft."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 import numpy as np
@@ -25,14 +23,15 @@ def spoiled(seed: int) -> tuple[Draft, tuple[str, ...]]:
             return draft, done
 
 
-def _row(rng: np.random.Generator, draft: Draft) -> dict | None:
-    rows = [c for c in draft.claims if c["quantity"] == "durations"]
-    return rows[int(rng.integers(len(rows)))] if rows else None
+def _one(rng: np.random.Generator, draft: Draft, quantity: str) -> dict | None:
+    """Any claim about a quantity."""
+    found = [c for c in draft.claims if c["quantity"] == quantity]
+    return found[int(rng.integers(len(found)))] if found else None
 
 
 def _shortened(rng: np.random.Generator, draft: Draft) -> bool:
     """Durations of a row that are too short, with their sum, and said to keep the limits."""
-    row = _row(rng, draft)
+    row = _one(rng, draft, "durations")
     if row is None:
         return False
     factor = float(rng.uniform(0.7, 0.98))
@@ -55,11 +54,6 @@ def _said(draft: Draft, name: str) -> dict | None:
     return draft.claim(name) if draft.has(name) else None
 
 
-def _peak(rng: np.random.Generator, draft: Draft) -> dict | None:
-    peaks = [c for c in draft.claims if c["quantity"] == "peak"]
-    return peaks[int(rng.integers(len(peaks)))] if peaks else None
-
-
 def _other(rng: np.random.Generator, claim: dict | None, *keys: str) -> bool:
     """Other digits under the first of these keys that the claim has."""
     key = next((key for key in keys if key in (claim or {})), None)
@@ -72,7 +66,7 @@ def _other(rng: np.random.Generator, claim: dict | None, *keys: str) -> bool:
 
 def _called_optimal(rng: np.random.Generator, draft: Draft) -> bool:
     """A motion longer than it need be, called the shortest."""
-    row = _row(rng, draft)
+    row = _one(rng, draft, "durations")
     if row is None or draft.has("optimal"):
         return False
     if rng.random() < 0.5:
@@ -90,10 +84,10 @@ def _moved(rng: np.random.Generator, text: str) -> str:
 
 FAULTS: dict[str, Spoil] = {
     "durations too short": _shortened,
-    "total": lambda rng, draft: _other(rng, _row(rng, draft), "total"),
+    "total": lambda rng, draft: _other(rng, _one(rng, draft, "durations"), "total"),
     "abstract": lambda rng, draft: _other(rng, _said(draft, "abstract"), "value"),
     "percentage": lambda rng, draft: _other(rng, _said(draft, "gain"), "percent", "seconds"),
-    "peak": lambda rng, draft: _other(rng, _peak(rng, draft), "value", "values"),
+    "peak": lambda rng, draft: _other(rng, _one(rng, draft, "peak"), "value", "values"),
     "called optimal": _called_optimal,
 }
 """What is made wrong, in words."""

@@ -1,7 +1,5 @@
 """Families of instances: what is drawn, computed, said and shown of them, and what is refused."""
 
-from __future__ import annotations
-
 import json
 import re
 from dataclasses import replace
@@ -35,21 +33,12 @@ from trajgap.compare.pages.writer import case_page
 from trajgap.compare.pictures.drawing import svg
 from trajgap.compare.pictures.instances import instances_picture
 from trajgap.nlp import Evidence
-from trajgap.problem import (
-    Case,
-    TrajgapError,
-    evaluate,
-    forward_kinematics,
-    load_case,
-    parse_case,
-)
+from trajgap.problem import Case, TrajgapError, evaluate, forward_kinematics, load_case, parse_case
 from trajgap.problem.cases.instances import instance_waypoints
 
 WHALE = "z1-woa-bspline"
 
-
 SMALL = (ROOT / "tests" / "support" / "family.toml").read_text("utf-8")
-
 
 UNSOLVED = (
     ("upper = 8", "upper = 0.05"),
@@ -82,7 +71,6 @@ def result() -> InstancesResult:
 def drawn(*changes: tuple[str, str]) -> np.ndarray:
     case = small(*changes)
     chain = case.chain()
-    assert chain is not None
     return instance_waypoints(case.instances[0], chain, case.robot.joints, 3)
 
 
@@ -101,7 +89,6 @@ def test_steps_of_the_end_are_measured_at_the_end() -> None:
     case = load_case(WHALE)
     block = case.instances[0].model_copy(update={"instances": 1, "samples": 5000})
     chain = case.chain()
-    assert chain is not None
     points = instance_waypoints(block, chain, case.robot.joints, 8)
     assert points.shape == (3, 1, 8, 6)
     ends = forward_kinematics(chain, points.reshape(-1, 6))[:, :3, 3].reshape(3, 8, 3)
@@ -135,21 +122,6 @@ def test_time_scaled_by_two_leaves_every_reduction_as_it_was(result: InstancesRe
         np.testing.assert_array_equal(
             twice.reductions("as-printed", effect), result.reductions("as-printed", effect)
         )
-
-
-def test_one_segment_by_hand() -> None:
-    # Through two way-points both curves are one quintic from rest to rest: largest velocity
-    # 15/8 Δ/T, largest acceleration (10/√3) Δ/T².
-    found = examined(("count = 3", "count = 2"))
-    for s in found.of("as-printed"):
-        way = np.abs(s.waypoints[1] - s.waypoints[0])
-        times = np.maximum(
-            15 / 8 * way / [1.5, 2.5], np.sqrt(10 / np.sqrt(3) * way / np.array([4.0, 3.0]))
-        )
-        assert s.faster.total == pytest.approx(times.max(), rel=1e-9)
-        assert s.slower.total == pytest.approx(times.max(), rel=1e-9)
-        assert s.reductions(Effect.CURVE) == pytest.approx([0.0], abs=1e-9)
-        assert (s.totals >= times.max() * (1 - 1e-8)).all()
 
 
 def test_optima_against_a_scan_of_the_shares(result: InstancesResult) -> None:
@@ -352,9 +324,6 @@ def test_the_page_names_the_readings_and_the_share_of_the_rule() -> None:
     (block,) = load_case(WHALE).instances
     assert f"{100 * MIDDLE:g} %" in page
     assert re.findall(r"^\| `([\w-]+)` \| ", page, re.MULTILINE) == list(block.readings)
-
-
-# --- instances are resampled ----------------------------------------------------------------------
 
 
 def test_instances_are_resampled_and_not_pairs_of_runs(result: InstancesResult) -> None:

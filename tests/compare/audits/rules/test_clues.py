@@ -1,7 +1,5 @@
 """What speaks for and against readings, on one joint that moves from rest to rest."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

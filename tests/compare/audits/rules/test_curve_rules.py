@@ -1,7 +1,5 @@
 """Rules and rounding proofs on the B-spline cases: control vertices, jumps, cases without table."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from fractions import Fraction
 from functools import partial
@@ -22,12 +20,7 @@ from trajgap.compare.audits.rules.printed_vertices import judge_vertices, vertic
 from trajgap.compare.documents import Basis, ClaimVerdict, Finding, Severity
 from trajgap.nlp.enclosure.balls import Ball
 from trajgap.nlp.enclosure.uniform import centred_stretched, centred_timed
-from trajgap.problem import (
-    extrema,
-    fit,
-    load_case,
-    peak_gradients,
-)
+from trajgap.problem import extrema, fit, load_case, peak_gradients
 
 POLISH, WHALE = "irb1600-ga-cubic-bspline", "z1-woa-bspline"
 TIMES = ("stretched", "timed")
@@ -53,9 +46,6 @@ def vertices_on(curve: dict[str, Any], *more: str) -> list[Finding]:
     )
     text = paper(["0.1 1.2 -0.4 0.7"], printed, *more, curve=curve, velocity=3)
     return judged(study_of(text), "TG205")
-
-
-# --- TG205 ----------------------------------------------------------------------------------------
 
 
 def test_every_printed_control_vertex_is_inside_what_rounding_allows() -> None:
@@ -120,9 +110,6 @@ def test_vertices_of_another_curve_are_not_held_to_the_uniform_splines(
     assert words == (one if curve is STRETCHED else apart)
 
 
-# --- rounding boxes -------------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize("time", [*TIMES, NATURAL])
 def test_balls_hold_values_and_gradients_all_over_the_box(time: str) -> None:
     problem, h = uniform(time, 41, count=5)
@@ -154,9 +141,6 @@ def test_balls_hold_values_and_gradients_all_over_the_box(time: str) -> None:
         assert (excess <= 1e-9 * np.abs(slope).max()).all()
     central = peak_gradients(problem, h, points)
     np.testing.assert_allclose(form.by_waypoint.mid, central.waypoints, rtol=1e-9, atol=1e-11)
-
-
-# --- jumps ----------------------------------------------------------------------------------------
 
 
 @pytest.fixture(scope="module")

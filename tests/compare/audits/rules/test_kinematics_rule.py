@@ -1,7 +1,5 @@
 """TG601: joint angles against positions, on cases built to fit or not, and on the palletiser."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
 from typing import Any
@@ -10,7 +8,7 @@ import numpy as np
 import pytest
 from support.checkout import ROOT
 from support.findings import study_of
-from support.made_up import entry, paper, readings, sentence
+from support.made_up import ARM, entry, paper, readings, sentence
 from trajgap.compare.audits.rules.printed_chain import judge_kinematics
 from trajgap.compare.audits.rules.printed_joints import judge_equations
 from trajgap.compare.audits.study import Study
@@ -19,20 +17,16 @@ from trajgap.problem import CaseError
 from trajgap.problem.cases.load import load_case
 
 ANGLES = {"a": [10.0, 60.5, -20.25, 55.0], "b": [20.0, 50.0, 120.0, 35.0]}
-TABLE = """
-[robot.dh]
-convention = "standard"
-length_unit = "m"
-angle_unit = "deg"
-joints = ["a", "c", "b"]
-d = [0.3, 0, 0]
-a = [0, "0.700", "0.400"]
-alpha = [90, 0, 0]
-"""
-
-
-SLIDES = 'kinds = ["revolute", "prismatic", "revolute"]\nlower = [0, 0, 0]\nupper = [1, 1, 1]\n'
 Points = Sequence[Sequence[str]]
+Table = dict[str, Any]
+TABLE: Table = ARM | {
+    "joints": ["a", "c", "b"],
+    "d": [0.3, 0, 0],
+    "a": [0, "0.700", "0.400"],
+    "alpha": [90, 0, 0],
+}
+RANGES = {"lower": [0, 0, 0], "upper": [1, 1, 1]}
+SLIDING = TABLE | RANGES | {"kinds": ["revolute", "prismatic", "revolute"]}
 
 
 def positions(third=0.0, elbow=(0.7, 0.4), up=1.0, unit=1000.0):
@@ -47,10 +41,10 @@ def positions(third=0.0, elbow=(0.7, 0.4), up=1.0, unit=1000.0):
 
 THIRD = [12.0, -40.0, 5.5, 70.0]
 PLACES = positions(THIRD)
-EXACT = TABLE.replace('"0.700", "0.400"', "0.7, 0.4")
-UNSURE = 'alpha_signs = "uncertain"\n'
-MODIFIED = TABLE.replace('"standard"', '"modified"')
-OTHER_TOO = 'other_conventions = ["standard"]\n'
+EXACT = TABLE | {"a": [0, 0.7, 0.4]}
+UNSURE = {"alpha_signs": "uncertain"}
+MODIFIED = TABLE | {"convention": "modified"}
+OTHER_TOO = {"other_conventions": ["standard"]}
 ROWS = [[f"{x:.2f}" for x in ANGLES[j]] for j in "ab"]
 
 
@@ -58,24 +52,26 @@ def column(values: Sequence[object] = THIRD, **keys: str) -> str:
     return entry("columns", id="c", where="Table 1", joint="c", values=list(values), **keys)
 
 
-def case_text(points: Points, table: str = TABLE, *parts: str, **keys: Any) -> str:
+def case_text(points: Points, table: Table = TABLE, *parts: str, **keys: Any) -> str:
     """An arm that prints joints a and b, positions of its end, and parts that follow."""
     placed = (
         entry("cartesian", id=f"p{i}", where="Table 2", unit="mm", values=point)
         for i, point in enumerate(points)
     )
     labels = {"labels": ["A", "B", "C", "D"]}
-    text = paper(ROWS, *parts, *placed, curve={"family": "3-5-3"}, waypoints=labels, **keys)
-    text = text.replace("[limits]\n", "").replace('joints = ["1", "2"]', 'joints = ["a", "b"]')
-    return text.replace("[units]", f"{table}\n[units]", 1)
+    robot = {"joints": ["a", "b"]} | ({"dh": table} if table else {})
+    curve = {"family": "3-5-3"}
+    return paper(
+        ROWS, *parts, *placed, curve=curve, waypoints=labels, robot=robot, angle="deg", **keys
+    )
 
 
 def findings(text: str) -> list[Finding]:
     return list(judge_kinematics(study_of(text)))
 
 
-def one(points: Points = PLACES, table: str = TABLE, *parts: str, **keys: Any) -> Finding:
-    (found,) = findings(case_text(points, table, *parts, **{"angle": "deg"} | keys))
+def one(points: Points = PLACES, table: Table = TABLE, *parts: str, **keys: Any) -> Finding:
+    (found,) = findings(case_text(points, table, *parts, **keys))
     assert found.rule == "TG601"
     assert found.basis is Basis.KINEMATICS
     inconsistent = found.verdict is ClaimVerdict.INCONSISTENT
@@ -109,41 +105,41 @@ SLIGHTLY = positions(THIRD, elbow=(0.7004, 0.3996))
         (SLIGHTLY, TABLE, column(), "supported", ""),
         # Signs that may be lost are tried.
         (HANGING, TABLE, column(), "inconsistent", ""),
-        (HANGING, TABLE + UNSURE, column(), "not checkable", "With other signs of the twists"),
-        ([[x, y, "-900.0"] for x, y, _ in HANGING], TABLE + UNSURE, column(), "inconsistent",
+        (HANGING, TABLE | UNSURE, column(), "not checkable", "With other signs of the twists"),
+        ([[x, y, "-900.0"] for x, y, _ in HANGING], TABLE | UNSURE, column(), "inconsistent",
          "Whatever signs the twists, the angles and the positions have"),
-        (LOST, TABLE + UNSURE, column(), "not checkable",
+        (LOST, TABLE | UNSURE, column(), "not checkable",
          "no printed position is shown to be out of reach"),
         (LOST, TABLE, column(), "inconsistent", ""),
         # Another admitted convention may fit.
         (PLACES, MODIFIED, column(), "inconsistent", ""),
-        (PLACES, MODIFIED + OTHER_TOO, column(), "supported",
+        (PLACES, MODIFIED | OTHER_TOO, column(), "supported",
          "(standard convention)"),
-        (HANGING, MODIFIED + UNSURE + OTHER_TOO, column(), "not checkable",
+        (HANGING, MODIFIED | UNSURE | OTHER_TOO, column(), "not checkable",
          "With other signs of the twists"),
         # Axes of the base that are swapped keep the distance from its origin.
-        ([[y, x, z] for x, y, z in PLACES], MODIFIED + OTHER_TOO, column(), "inconsistent",
+        ([[y, x, z] for x, y, z in PLACES], MODIFIED | OTHER_TOO, column(), "inconsistent",
          "m (modified); in the standard convention it need not."),
         # Nothing to say, or not enough.
-        (positions(), "", "", "not checkable", "but no table of the robot."),
-        (positions(), TABLE + SLIDES, "", "not checkable",
+        (positions(), {}, "", "not checkable", "but no table of the robot."),
+        (positions(), SLIDING, "", "not checkable",
          "joint c slides, and its positions are not printed"),
-        (positions(), TABLE + SLIDES, column([1.0, 2.0, 3.0, 4.0]), "not checkable",
+        (positions(), SLIDING, column([1.0, 2.0, 3.0, 4.0]), "not checkable",
          "the unit of joint c is not that of its kind in the robot's table"),
     ],
 )  # fmt: skip
 def test_positions_are_held_against_angles(
-    points: Points, table: str, third: str, verdict: str, said: str
+    points: Points, table: Table, third: str, verdict: str, said: str
 ) -> None:
     found = one(points, table, third)
     assert found.verdict == verdict
     assert said in found.message
-    assert ("signs of the twists" in found.message) <= ("uncertain" in table)
+    assert ("signs of the twists" in found.message) <= ("alpha_signs" in table)
 
 
 def test_positions_may_name_their_way_point() -> None:
     for first, second, verdict in (("D", "B", "supported"), ("B", "D", "inconsistent")):
-        text = case_text([PLACES[3], PLACES[1]], TABLE, column(), angle="deg")
+        text = case_text([PLACES[3], PLACES[1]], TABLE, column())
         for k, label in enumerate((first, second)):
             text = text.replace(f'id = "p{k}"', f'id = "p{k}"\nwaypoint = "{label}"')
         (found,) = findings(text)
@@ -159,7 +155,7 @@ def test_problems_with_other_way_points_are_judged_apart() -> None:
     parts = (
         entry("problems", id=k, **v) for k, v in (("same", {}), ("other", ways), ("again", {}))
     )
-    text = case_text(PLACES, TABLE, *parts, column(), angle="deg")
+    text = case_text(PLACES, TABLE, *parts, column())
     assert {f.problem: f.verdict for f in findings(text)} == {
         "same": "supported", "other": "inconsistent"
     }  # fmt: skip
@@ -173,30 +169,21 @@ def test_problems_with_other_way_points_are_judged_apart() -> None:
     ],
 )
 def test_each_reading_is_judged(changes: Any, third: str, verdict: str, said: str) -> None:
-    text = case_text(PLACES, TABLE, readings(plain={}, other=changes), third, angle="deg")
+    text = case_text(PLACES, TABLE, readings(plain={}, other=changes), third)
     found = {f.reading: f for f in findings(text)}
     assert (found["plain"].verdict, found["other"].verdict) == ("supported", verdict)
     assert said in found["other"].message
 
 
 def test_without_positions_there_is_no_finding() -> None:
-    assert findings(case_text([], angle="deg")) == []
+    assert findings(case_text([])) == []
     assert list(judge_kinematics(Study(load_case("puma560-mnam-pso-353")))) == []
 
 
 def test_a_column_has_a_unit_of_its_own_where_joints_have() -> None:
     """The slide at the end of a SCARA arm, printed in a column."""
-    table = """
-[robot.dh]
-convention = "standard"
-length_unit = "m"
-angle_unit = "deg"
-joints = ["a", "b", "c"]
-kinds = ["revolute", "revolute", "prismatic"]
-d = [0.3, 0, 0]
-a = [0.5, "0.400", 0]
-alpha = [0, 0, 0]
-"""
+    kinds = {"joints": ["a", "b", "c"], "kinds": ["revolute", "revolute", "prismatic"]}
+    table = ARM | kinds | {"d": [0.3, 0, 0], "a": [0.5, "0.400", 0], "alpha": [0, 0, 0]}
     drop = np.array([5.0, 10.0, 15.0, 20.0])
     first, second = np.deg2rad(ANGLES["a"]), np.deg2rad(ANGLES["b"])
     x = 0.5 * np.cos(first) + 0.4 * np.cos(first + second)
@@ -226,7 +213,7 @@ def test_equations_are_judged_and_never_held_against_a_paper() -> None:
         keys = {"printed": printed} | ({"mended": mended, "mend": "all of it"} if mended else {})
         equation = entry("equations", id="e", where="equation (4)", **keys)
         claim = sentence("holds", "equations")
-        study = study_of(case_text([], EXACT, claim, equation, angle="deg"))
+        study = study_of(case_text([], EXACT, claim, equation))
         (found,) = judge_equations(study)
         assert (found.rule, found.claim, found.verdict) == ("TG603", "holds", verdict)
         assert found.severity is Severity.INFO

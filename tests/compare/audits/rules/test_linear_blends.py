@@ -1,7 +1,5 @@
 """TG210 on a row of linear segments with parabolic blends, beside limits and digits."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What a careless rule misses, or supports without ground."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pytest

@@ -1,28 +1,22 @@
 """What is said of printed joints and positions, on made-up digits."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
 import pytest
 from support.findings import finding
-from support.made_up import Numbers, entry, paper, sentence
-from support.toml_text import block
+from support.made_up import ARM, Numbers, entry, paper, sentence
 from trajgap.compare.documents import ClaimVerdict, Severity
 from trajgap.nlp import Status, solve
 from trajgap.problem import Limits, Problem, load_case, three_five_three
 
 LINKS = {"joints": ["1", "2"], "d": [0, 0], "a": [0.7, 0.4], "alpha": [0, 0]}
-UNITS = {"convention": "standard", "length_unit": "m", "angle_unit": "deg"}
-TABLE = block("[robot.dh]", UNITS | LINKS)
 
 
 def arm(*parts: str, rows: tuple[Numbers, ...] = ("10.0 40.0", "20.0 45.0")) -> str:
     """Two links in a plane, of which joints are printed."""
-    labels = {"labels": ["A", "B"]}
-    text = paper(rows, *parts, angle="deg", waypoints=labels, velocity=90)
-    return text.replace("[units]", f"{TABLE}\n[units]", 1)
+    labels, robot = {"labels": ["A", "B"]}, {"dh": ARM | LINKS}
+    return paper(rows, *parts, angle="deg", waypoints=labels, robot=robot, velocity=90)
 
 
 def most(joint: str = "1", checks: str = "varies_most") -> str:

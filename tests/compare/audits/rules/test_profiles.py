@@ -1,7 +1,5 @@
 """Shortest profiles from rest to rest, against time-optimal control solved as linear programs."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
@@ -9,13 +7,8 @@ import pytest
 from scipy.integrate import quad
 from scipy.optimize import linprog
 from support.findings import finding
-from support.made_up import QUINTIC, claim, paper, sentence, total
-from trajgap.compare.audits.named_profiles import (
-    resting_total,
-    s_curve,
-    sine_jerk,
-    trapezoidal,
-)
+from support.made_up import QUINTIC, Numbers, claim, paper, peak, sentence, total
+from trajgap.compare.audits.named_profiles import resting_total, s_curve, sine_jerk, trapezoidal
 from trajgap.compare.documents import Basis, ClaimVerdict, Finding
 from trajgap.problem import CaseError, parse_case
 
@@ -245,11 +238,11 @@ STRAIGHT = {"profile": "trapezoidal", "path": "straight"}
 """How the profile of several joints is stated."""
 
 
-def of_profile(value: str, asked: dict[str, Any], own: dict[str, Any]) -> Finding:
+def of_profile(value: Numbers, asked: dict[str, Any], own: dict[str, Any]) -> Finding:
     """The finding on a peak velocity of the profile of two joints on a straight line."""
     printed = total("t", own.pop("total", "2.17"), **STRAIGHT, **CLAIM | own)
-    peak = claim("p", "peak", derivative="velocity", value=value, of="t", **asked)
-    text = paper([[0, 1], [0, -3]], printed, peak, curve=QUINTIC, velocity=2, acceleration=[1, 4])
+    top = peak("p", "t", "velocity", value, **asked)
+    text = paper([[0, 1], [0, -3]], printed, top, curve=QUINTIC, velocity=2, acceleration=[1, 4])
     return finding(text, "p", "TG304")
 
 
@@ -262,10 +255,12 @@ def of_profile(value: str, asked: dict[str, Any], own: dict[str, Any]) -> Findin
         ("2.0", "2", "supported"),
         ("0.67", "1", "supported"),
         ("2.0", "1", "inconsistent"),
+        (["0.67", "2.0"], None, "supported"),
+        (["9.9", "2.0"], None, "inconsistent"),
     ],
 )
 def test_a_peak_without_a_joint_is_the_largest_of_all(
-    value: str, joint: str | None, verdict: str
+    value: Numbers, joint: str | None, verdict: str
 ) -> None:
     found = of_profile(value, {} if joint is None else {"joint": joint}, {})
     assert found.verdict == verdict, found.message
@@ -279,8 +274,9 @@ def test_a_peak_of_a_joint_that_the_profile_lacks_is_not_checkable() -> None:
 
 def test_a_peak_of_a_profile_of_another_problem_is_refused() -> None:
     own = total("t", "1.0", profile="trapezoidal", problem="one", **CLAIM)
-    peak = claim("p", "peak", derivative="velocity", value="2.0", of="t")
-    text = paper([[0, 1]], own, peak, curve=QUINTIC, velocity=2, acceleration=4)
+    text = paper(
+        [[0, 1]], own, peak("p", "t", "velocity", "2.0"), curve=QUINTIC, velocity=2, acceleration=4
+    )
     with pytest.raises(CaseError, match="'t' is about another problem"):
         parse_case(text, "made-up.toml")
 

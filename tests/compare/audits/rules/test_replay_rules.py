@@ -1,7 +1,5 @@
 """What replays and committed studies say: probabilities with their intervals, never a vote."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from support.benchmarks import benchmark
@@ -205,8 +203,6 @@ def test_committed_results_are_about_claims_and_algorithms_that_exist(one: Compa
     for cell in (*one.listed, *one.ablated):
         shown = cell.shown
         if shown.share is not None:
-            assert shown.lowest is not None
-            assert shown.highest is not None
             assert shown.lowest <= shown.share <= shown.highest
     for tried in one.designed:
         assert tried.typical <= tried.pairs <= tried.settings[0] * tried.settings[1]

@@ -1,7 +1,5 @@
 """Every rule on a shipped case, and on one with a place of its file changed."""
 
-from __future__ import annotations
-
 import pytest
 from support.findings import judged
 from support.studies import changed
