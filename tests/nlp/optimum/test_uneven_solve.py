@@ -3,16 +3,13 @@
 import numpy as np
 import pytest
 from support.uneven import LIMITS, WAYPOINTS, uneven_problem
-from trajgap.heuristics import PSO, run, run_per_joint
 from trajgap.nlp import Status
 from trajgap.nlp.optimum import solve
 from trajgap.problem import (
     Interpolant,
     Limits,
     Problem,
-    TrajgapError,
     Verdict,
-    check,
     cubic_spline,
     piecewise,
     rest_to_rest,
@@ -56,7 +53,6 @@ def test_a_search_stays_where_curves_have_coefficients() -> None:
 
 WAY = np.array([[0.3, -1.0], [0.9, -0.55], [0.2, 0.35], [-0.45, 0.1]])
 WITHIN = Limits([1.1, 1.7], [3.0, 2.2])
-MOVING = cubic_spline(3, ((1, (0.5, -0.2)),), ((1, (-0.3, 0.4)),))
 
 
 def problem_of(curve: Interpolant, limits: Limits = WITHIN, **more: object) -> Problem:
@@ -82,16 +78,3 @@ def test_a_velocity_beyond_one_joints_limit_is_proved_infeasible() -> None:
     bent = cubic_spline(3, ((1, 0.0),), ((2, (0.0, -1.5)),))
     assert solve(problem_of(bent, one_way)).status is Status.INFEASIBLE
     assert "exceeds" not in str(solve(problem_of(bent)).why)
-
-
-def test_searches_know_them() -> None:
-    problem = problem_of(MOVING)
-    best = solve(problem).total_time
-    swarm = PSO(particles=20, iterations=80, position_initial=(0.2, 3.0))
-    found = run(swarm, problem, 2)
-    assert check(problem, found.durations).verdict is Verdict.PASS
-    assert best * (1 - 1e-9) <= found.reported_time <= 1.3 * best
-    for j, one in enumerate(run_per_joint(swarm, problem, 2).runs):
-        assert check(problem.joint(j), one.durations).verdict is Verdict.PASS
-    with pytest.raises(TrajgapError, match="a prescribed derivative is not 0"):
-        run(swarm, problem, 2, objective="stretch")

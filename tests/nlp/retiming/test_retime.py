@@ -207,13 +207,6 @@ def test_many_segments_get_more_cells() -> None:
 # --- identities -----------------------------------------------------------------------------------
 
 
-def test_the_duration_belongs_to_the_path_and_not_to_its_timing() -> None:
-    slow = puma(three_five_three(), 7.0 * PUMA_353)
-    one, two = (retime(c, PUMA_LIMITS) for c in (MOTION, slow))
-    assert one.durations == pytest.approx(two.durations, rel=1e-5)
-    assert two.inequality_holds
-
-
 def test_a_path_from_rest_to_rest_has_a_speed_in_between() -> None:
     (piece,), _ = pieces(fit(rest_to_rest(1, 5), [[0.0, 0.0], [3.0, 4.0]], [2.0]))
     sampled = sample(piece, measure(piece), 40)

@@ -23,8 +23,6 @@ from trajgap.problem import (
 from trajgap.problem.cases import Digits, ratio_words
 
 POSITION = 'position = ["deg", "deg", "mm"]'
-VELOCITY = 'velocity = ["rpm", "deg/s", "mm/s"]'
-ACCELERATION = 'acceleration = ["deg/s^2", "deg/s^2", "m/s^2"]'
 
 
 def test_each_joint_is_read_in_its_unit():

@@ -23,7 +23,6 @@ HEAD = case_text(
     joints="a b c",
     limits="velocity = [63, 97, 80]\nacceleration = [170, 126, 300]",
 )
-H = np.array([0.8, 1.3, 0.7])
 CUBIC, QUINTIC, SEPTIC = (f'family = "{name}-spline"' for name in ("cubic", "quintic", "septic"))
 GIVEN = 'family = "clamped-b-spline"\ndegree = 4\nknots = "given"\n'
 TIMED = f'{GIVEN}parameters = "times"\n'
