@@ -36,12 +36,7 @@ from trajgap.problem.suite import list_instances, load_instance
 
 Q = np.array([[0.2, -1.0, 0.7], [0.9, 0.3, 0.1], [0.4, 1.1, -0.8], [1.3, 0.6, 0.2]])
 LIMITS = Limits([1.5, 2.0, 1.0], [4.0, 6.0, 5.0], [30.0, 50.0, 40.0])
-USUAL = {
-    "3-5-3": three_five_three(),
-    "cubic": cubic_spline(3),
-    "quintic": quintic_spline(3),
-    "rest-to-rest": rest_to_rest(3, 5),
-}
+USUAL = {name: curve() for name, curve in UNEVEN.items() if name != "stretched"}
 MOVING = {
     "cubic": cubic_spline(3, ((1, (0.5, -0.2)),), ((1, (-0.3, 0.4)),)),
     "velocity, then acceleration": cubic_spline(3, ((1, (0.5, -0.2)),), ((2, (0.0, 1.5)),)),
