@@ -111,18 +111,6 @@ def test_a_joint_that_must_not_move_and_does_not_is_no_obstacle() -> None:
     assert both.total_time == pytest.approx(alone.total_time, rel=1e-9)
 
 
-def test_duration_and_position_limits_are_kept_and_listed() -> None:
-    problem = puma()
-    longer = solve(Problem(problem.waypoints, problem.limits, problem.curve, [0.3, 0.3, 1.4]))
-    assert longer.durations[2] == pytest.approx(1.4, rel=1e-9)
-    assert any(a.joint is None and a.quantity == "duration" for a in longer.active)
-    tight = Limits(6.0, 8.0, np.inf, -3.0, 0.9, joints=6)
-    solution = solve(Problem(problem.waypoints, tight, problem.curve, 0.3))
-    assert solution.status is Status.CONVERGED
-    assert solution.check.verdict is Verdict.PASS
-    assert solution.total_time > solve(problem).total_time
-
-
 def test_starts_of_the_wrong_length_or_number_are_refused() -> None:
     with pytest.raises(TrajgapError, match="starts: must be 1 or more, got 0"):
         solve(puma(), starts=0)
