@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from support.b_splines import uniform
 from support.same_question import DRESSES, OWN_UNITS, SLOWER, same_question
-from support.samples import long_problem, small_problem
+from support.samples import long_curves, long_problem, small_problem
 from support.uneven import CURVES as UNEVEN, uneven_problem
 from trajgap.nlp import Route, Solution, Status, kkt, with_other_route
 from trajgap.nlp.optimum import solve
@@ -22,7 +22,6 @@ from trajgap.problem import (
     Verdict,
     check,
     cubic_spline,
-    cubic_spline_virtual,
     load_case,
     piecewise,
     published_ids,
@@ -72,9 +71,7 @@ PROBLEMS = {
     "small 4-3-4": small_problem("4-3-4", 2),
     "small C2 cubic": small_problem("C2 cubic", 2),
     "small 3-5-3": small_problem("3-5-3", 2),
-    "long quintic": long_problem(quintic_spline(26)),
-    "long cubic": long_problem(cubic_spline(26)),
-    "long virtual": long_problem(cubic_spline_virtual(25)),
+    **{f"long {name}": long_problem(curve) for name, curve in long_curves(26).items()},
     "long, uneven": replace(
         long_problem(cubic_spline(26)),
         limits=Limits([[-1.0, 2.0]] * 2, [[-4.0, 2.0]] * 2, [[-30.0, 60.0]] * 2),
@@ -124,7 +121,7 @@ def test_the_other_route_ends_at_the_same_total(name: str) -> None:
     assert found.other_total == pytest.approx(found.total_time, rel=1e-8)
 
 
-OTHERS = ("moving cubic", "uneven quintic", "timed", "small 4-3-4", "cubic at ratios")
+OTHERS = ("moving cubic", "uneven quintic", "timed", "small 4-3-4", "cubic at ratios", "long cubic")
 
 
 @pytest.mark.parametrize("name", [*USUAL, *OTHERS])

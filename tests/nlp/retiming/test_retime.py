@@ -62,25 +62,6 @@ def test_straight_segments_from_rest_to_rest(
     assert found.cuts == pytest.approx((0.0, *np.cumsum(h)), abs=1e-9)
 
 
-def test_circle_at_the_velocity_limit() -> None:
-    # max(|sin|, |cos|) of the path speed is V, so that a full turn takes 8·(R/√2)/V.
-    radius, speed = 0.8, 1.3
-    angle = np.linspace(0.0, 2 * np.pi, 41)
-    rate = speed / radius
-    nodes = [
-        [
-            [radius * np.cos(a + m * np.pi / 2) * rate**m + (m == 0) * 0.5 for a in angle],
-            [radius * np.sin(a + m * np.pi / 2) * rate**m - (m == 0) * 1.5 for a in angle],
-        ]
-        for m in range(4)
-    ]
-    circle = hermite(angle / rate, np.transpose(nodes, (2, 0, 1)))
-    found = retime(circle, Limits(speed, 2.9 * speed**2 / radius, joints=2))
-    assert close(found, 4 * np.sqrt(2) * radius / speed)
-    assert found.inequality_holds
-    assert found.cuts == ()
-
-
 @pytest.mark.parametrize("start", [0.0, -0.9])
 def test_parabola_at_the_acceleration_limit_cannot_be_done_faster(start: float) -> None:
     # q2 = k q1² at constant q1 velocity c has q2'' = 2kc² on its limit throughout, while only a
