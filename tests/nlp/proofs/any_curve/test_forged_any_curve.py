@@ -172,17 +172,6 @@ def test_a_resumed_run_keeps_the_shorter_answer_with_its_own_speeds(
     proved(found)
 
 
-def test_a_resumed_run_takes_a_shorter_answer_that_it_finds(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    with monkeypatch.context() as patch:
-        stretched_first_motion(patch, 1.5)
-        state = stopped_state()
-    found = certify_any(DETOUR, gap=0.1, resume=state)
-    assert found.upper < Fraction(state["claim"]["upper"]) * Fraction(3, 4)
-    proved(found)
-
-
 def test_a_state_of_a_higher_cap_is_resumed_below_a_lower_one(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

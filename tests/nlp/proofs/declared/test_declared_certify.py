@@ -20,7 +20,7 @@ from trajgap.nlp.proofs.certifiers import certify
 from trajgap.nlp.proofs.declared.certifier import DECLARED
 from trajgap.nlp.proofs.declared.simplex import best_weights
 from trajgap.nlp.proofs.document import certificate, problem_document, shipped, shipped_folder
-from trajgap.nlp.proofs.exact import decimal, exact_problem
+from trajgap.nlp.proofs.exact import exact_problem
 from trajgap.nlp.proofs.outcome import Certified, Outcome, Request
 from trajgap.problem import (
     Interpolant,
@@ -168,20 +168,6 @@ def test_a_segment_in_which_nothing_moves_needs_a_bound() -> None:
         assert verify(certificate(found)).proves
         if one is not bounded:
             judged(one, found, dense_best(one))
-
-
-@pytest.mark.parametrize(
-    ("number", "text"),
-    [
-        (Fraction(-5, 4), "-1.25"),
-        (Fraction(4, 9), "4/9"),
-        (Fraction(12), "12"),
-        (Fraction(1, 1000), "0.001"),
-    ],
-)
-def test_exact_numbers_are_written_exactly(number: Fraction, text: str) -> None:
-    assert decimal(number) == text
-    assert Fraction(text) == number
 
 
 # --- states ---------------------------------------------------------------------------------------
