@@ -154,7 +154,7 @@ def test_a_deviation_is_the_distance_from_the_nearest_place_of_the_line(length) 
     arm = load_robot("puma560")
     q = START + np.array([[0.0], [0.3]])
     poses = forward_kinematics(arm, np.stack([START, START]))
-    poses[1, :3, 3] += length * np.array([0.6, 0.0, -0.8])
+    poses[1, :3, 3] += length * np.array([-0.8, 0.0, 0.6])
     motion = fit(jtraj(1), q, [1.0])
     ends = forward_kinematics(arm, motion(np.linspace(0.0, 1.0, 51)))[:, None, :3, 3]
     line = np.linspace(poses[0, :3, 3], poses[1, :3, 3], 4001)
