@@ -3,8 +3,6 @@
 ``python tests/attacks --seconds 3600 --seed 1 | python docs/tables.py attacks``.
 """
 
-from __future__ import annotations
-
 import argparse
 import os
 import sys

@@ -1,7 +1,5 @@
 """Case files drawn from their grammar, with what each of their questions means in rad and s."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from typing import Any
 

@@ -5,8 +5,6 @@ beside its exact peaks. Two motions must agree with what is said: the one that w
 one that the written numbers are; both are what the file may stand for.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise

@@ -1,7 +1,5 @@
 """Faults put in: signals, full disks, folders without rights, dead workers, closed pipes."""
 
-from __future__ import annotations
-
 import json
 import shlex
 import signal

@@ -1,7 +1,5 @@
 """Whole case files drawn from their grammar, and a second reading of what they pose."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

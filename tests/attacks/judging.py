@@ -1,7 +1,5 @@
 """Attacks on the judge: verdicts, peaks, rounding boxes and readings beside the truth."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from pathlib import Path
 from typing import Any

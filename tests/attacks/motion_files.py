@@ -1,7 +1,5 @@
 """Motions drawn in rational numbers, and written as programs write them, for every reader."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Sequence
 from dataclasses import dataclass

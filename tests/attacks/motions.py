@@ -1,7 +1,5 @@
 """Attacks on motions from elsewhere: their files and those of their limits, and their verdicts."""
 
-from __future__ import annotations
-
 import json
 import os
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Damage: seeded mutations of the values, the structure and the text of files."""
 
-from __future__ import annotations
-
 import copy
 from collections.abc import Callable
 from typing import Any

@@ -1,7 +1,5 @@
 """Valid problems that are nasty: scales, coincidences, bounds and sides where solvers give up."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable
 from pathlib import Path

@@ -5,8 +5,6 @@ below its bound. What an altered number of the problem itself allows is searched
 `tests/verify/test_verify.py`; altered states are taken up again beside their certifiers.
 """
 
-from __future__ import annotations
-
 import copy
 import json
 from collections.abc import Callable

@@ -1,7 +1,5 @@
 """Attacks on what reads case files: valid ones of every kind, and damaged ones."""
 
-from __future__ import annotations
-
 import json
 import re
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The runner: trials in turn until the time is up, every one to be repeated by its number."""
 
-from __future__ import annotations
-
 import contextlib
 import io
 import os

@@ -4,8 +4,6 @@ The parent has everything imported and compiled, so that a command costs what it
 seconds that Python takes to start. Signals, pipes and limits are those of a process of its own.
 """
 
-from __future__ import annotations
-
 import contextlib
 import ctypes
 import io
@@ -237,22 +235,16 @@ def _watched(pid: int, pipes: list[int], began: float, plan: Plan, wall: float) 
             if now - began > wall:
                 late = True
                 _sweep(pid)
-            if os.waitid(os.P_PID, pid, os.WEXITED | os.WNOHANG | os.WNOWAIT) is not None:
-                # Whatever it left running keeps the pipes open: they are read out and left.
-                for key, _ in ready.select(0.05):
-                    chunk = os.read(key.fd, 1 << 20)
-                    seen[key.fd].append(chunk)
-                    if not chunk:
-                        ready.unregister(key.fd)
-                if not ready.select(0.0):
-                    break
-                continue
+            ended = os.waitid(os.P_PID, pid, os.WEXITED | os.WNOHANG | os.WNOWAIT) is not None
             next_due = 0.2 if due is None else min(0.2, max(0.0, due - now))
-            for key, _ in ready.select(next_due):
+            for key, _ in ready.select(0.05 if ended else next_due):
                 chunk = os.read(key.fd, 1 << 20)
                 seen[key.fd].append(chunk)
                 if not chunk:
                     ready.unregister(key.fd)
+            # Whatever it left running keeps the pipes open: they are read out and left.
+            if ended and not ready.select(0.0):
+                break
     _, status, usage = os.wait4(pid, 0)
     seconds = time.monotonic() - began
     leftover = not _gone(pid) and _sweep(pid)

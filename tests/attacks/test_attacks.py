@@ -1,7 +1,5 @@
 """A few seeded trials of every attack, and the generators against the schema."""
 
-from __future__ import annotations
-
 import os
 import signal
 from collections import Counter

@@ -1,7 +1,5 @@
 """Each attack finds a fault planted for it: trials fork, so that a child has the fault too."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager

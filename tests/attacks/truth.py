@@ -1,7 +1,5 @@
 """True ranges of a motion: polynomials in fractions, B-splines by scipy; no code of the judge."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import accumulate

@@ -1,7 +1,6 @@
 """The loop: what a run says of itself, seeds, traces, runs side by side, and interrupts."""
 
 import os
-import pickle
 import signal
 import subprocess
 import sys
@@ -134,16 +133,8 @@ def test_same_bits_for_any_number_of_workers(algorithm: PSO, handling: str) -> N
     for a, b in zip(one, two, strict=True):
         same_bits(a, b)
         same_bits(a, run(algorithm, PROBLEM, a.seed, 10, handling))
-        assert not any(x.flags.writeable for x in (b.durations, b.trace, b.position))
-
-
-def test_the_random_stream_is_pinned() -> None:
-    """Seed and generator fix the first swarm; a change here changes every stored result."""
-    first = run(PSO(), PROBLEM, 2024, 0)
-    x = np.random.Generator(np.random.PCG64(2024)).random((30, 3)) * 2.7 + 0.3
-    fitness = DeathPenalty(PROBLEM)(x)
-    np.testing.assert_allclose(first.durations, x[fitness.argmin()], rtol=1e-15)
-    assert first.evaluations == 30
+        each = [x for one in (a, b) for x in (one.durations, one.trace, one.position)]
+        assert not any(x.flags.writeable for x in each)
 
 
 @pytest.mark.parametrize("judge", [DeathPenalty(PROBLEM), Stretch(PROBLEM)])
@@ -201,17 +192,6 @@ def test_a_joint_that_finds_nothing() -> None:
     assert not found.feasible
     assert found.reported_time == np.inf
     assert "some joint found nothing" in str(found)
-
-
-def test_answers_cannot_be_touched() -> None:
-    found = run(PSO(), PROBLEM, 0, 2)
-    with pytest.raises(ValueError, match="read-only"):
-        found.durations[0] = 1.0
-    with pytest.raises(ValueError, match="read-only"):
-        found.trace[0] = 1.0
-    back = pickle.loads(pickle.dumps(found))
-    same_bits(found, back)
-    assert not back.trace.flags.writeable
 
 
 @pytest.mark.parametrize("workers", [1, pytest.param(2, marks=pytest.mark.slow)])

@@ -4,8 +4,6 @@
 CONTRIBUTING.md, where a test fails if it is stale.
 """
 
-from __future__ import annotations
-
 import ast
 import importlib.util
 import sys

@@ -1,7 +1,5 @@
 """Tests that run side by side compile each function once."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """The list behind "The four papers, element by element": nothing left out, all of it there."""
 
-from __future__ import annotations
-
 import ast
 import runpy
 import tomllib

@@ -1,7 +1,5 @@
 """The committed faults fit the source, and the tool that plants them finds what tests find."""
 
-from __future__ import annotations
-
 import shutil
 import subprocess
 import sys

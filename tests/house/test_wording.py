@@ -4,8 +4,6 @@ After a change of words, write the files anew and read the difference:
 `WRITE_WORDING=1 python -m pytest tests/house/test_wording.py`
 """
 
-from __future__ import annotations
-
 import os
 import re
 from pathlib import Path

@@ -1,8 +1,5 @@
 """The time limit of a certification: states, search, answer and judging share it."""
 
-from __future__ import annotations
-
-import json
 from dataclasses import replace
 from fractions import Fraction
 from functools import lru_cache
@@ -10,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from support.proof_runs import Ticking
+from support.proof_runs import Ticking, state_of, stopped
 from trajgap.nlp import clock
 from trajgap.nlp.clock import RunClock
 from trajgap.nlp.proofs import judged, session, state
@@ -19,7 +16,7 @@ from trajgap.nlp.proofs.certifiers import certify
 from trajgap.nlp.proofs.cubic import tree
 from trajgap.nlp.proofs.document import certificate
 from trajgap.nlp.proofs.exact import exact_problem
-from trajgap.nlp.proofs.outcome import Certified, Outcome, Progress, Request
+from trajgap.nlp.proofs.outcome import Certified, Outcome, Request
 from trajgap.nlp.proofs.quintic import certifier
 from trajgap.nlp.proofs.session import Session
 from trajgap.nlp.proofs.state import state_document
@@ -46,25 +43,16 @@ QUICK = Problem(WAY, Limits([1.1, 0.9], [1.9, 2.3]), cubic_spline(2))
 LONG = Problem(WAY[:, :1], Limits([1.1], [1.9], [7.0]), cubic_spline_virtual(3))
 
 
-def interrupted(progress: Progress) -> None:
-    if progress.nodes >= 4 and progress.open_boxes >= 2:
-        raise KeyboardInterrupt
-
-
 @lru_cache(maxsize=1)
-def text() -> str:
-    """The state of a run that was interrupted after some boxes."""
-    return json.dumps(state_document(certify(LONG, gap=1e-3, report=interrupted)))
-
-
-def stopped() -> dict[str, Any]:
-    return dict(json.loads(text()))
+def interrupted() -> Certified:
+    """After some boxes."""
+    return stopped(LONG, lambda now: now.nodes >= 4 and now.open_boxes >= 2, gap=1e-3)
 
 
 def test_a_resumed_run_without_time_replays_nothing_and_loses_nothing(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    given = stopped()
+    given = state_of(interrupted())
     monkeypatch.setattr(state, "verify_certificate", lambda document, **_: verify(document))
     boxes: list[Any] = []
     real = tree.TickBox
@@ -100,7 +88,7 @@ def test_what_is_not_judged_in_time_is_not_certified_and_can_be_resumed(
     assert found.outcome is Outcome.OPEN
     assert (found.lower, found.proof, found.verdict) == (0, None, LATE)
     assert found.upper is not None
-    kept = json.loads(json.dumps(state_document(found)))
+    kept = state_of(found)
     assert kept["proof"] is None
     assert kept["proposals"] is not None
     assert verify(kept).proves
@@ -112,7 +100,7 @@ def test_what_is_not_judged_in_time_is_not_certified_and_can_be_resumed(
 def test_what_a_state_proved_stays_if_the_rest_is_not_judged_in_time(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    given = stopped()
+    given = state_of(interrupted())
     monkeypatch.setattr(judged, "verify_certificate", lambda *_, **__: LATE)
     found = certify(LONG, gap=0.1, resume=given)
     assert found.lower == Fraction(given["claim"]["lower"]) > 0
@@ -125,7 +113,7 @@ def test_what_a_state_proved_stays_if_the_rest_is_not_judged_in_time(
 
 
 def test_a_state_is_judged_within_the_time_limit(monkeypatch: pytest.MonkeyPatch) -> None:
-    given = stopped()
+    given = state_of(interrupted())
     asked = late(monkeypatch, state)
     with pytest.raises(TrajgapError, match="the state is not proved"):
         certify(LONG, seconds=7.0, resume=given)

@@ -4,8 +4,6 @@ What a test reads from a cache of the tests, or from a fixture that several shar
 by it, whichever test filled the cache.
 """
 
-from __future__ import annotations
-
 import functools
 import json
 import os

@@ -1,7 +1,5 @@
 """Which tests are asked about a fault, and in which order."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 from collections.abc import Iterator

@@ -6,8 +6,6 @@ text that stands there exactly once, and what replaces it. `[old, new, 2]` means
 several places. Spaces and line breaks between the tokens of `old` do not count.
 """
 
-from __future__ import annotations
-
 import ast
 import re
 import tomllib

@@ -1,7 +1,5 @@
 """Limits and problems: what they fill in, what they freeze, and what they refuse in one line."""
 
-from __future__ import annotations
-
 import dataclasses
 import pickle
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """Printed digits against decimal rounding as the second route."""
 
-from __future__ import annotations
-
 import math
 import re
 from decimal import ROUND_DOWN, ROUND_HALF_DOWN, ROUND_HALF_UP, Decimal

@@ -5,8 +5,6 @@ millionth above or below such an extreme decides what each judge has to answer: 
 `evaluate`, `keeps_limits`, `check_motion`, and the repairs that they state.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 from functools import cache
 
@@ -226,23 +224,6 @@ def test_braking_and_speeding_up_are_told_apart(curve: str, mirror: float) -> No
             assert peaks[word].value / peaks[word].limit > 0.0
             if sign < 0:
                 assert found.stretch == pytest.approx((1 - ROOM) ** -0.5, rel=1e-8)
-            # Reversed in time, braking is speeding up.
-            back = PPoly(_reversed(motion.polynomial), np.cumsum([0.0, *truth.durations[::-1]]))
-            turned = JointLimits.from_values(names, acceleration=given[1], deceleration=given[0])
-            again = check_motion(Motion.of_polynomial(back), turned, 1e-9)
-            assert again.limits is found.limits
-
-
-def _reversed(polynomial: PPoly) -> Array:
-    """Coefficients of the same motion from its end to its start."""
-    h, c = np.diff(polynomial.x), np.zeros_like(polynomial.c)
-    n = len(c) - 1
-    for k, step in enumerate(h):
-        for j in range(c.shape[2]):
-            own = np.polynomial.Polynomial(polynomial.c[::-1, k, j])
-            turned = own(np.polynomial.Polynomial([step, -1.0])).coef
-            c[n + 1 - len(turned) :, len(h) - 1 - k, j] = turned[::-1]
-    return c
 
 
 @pytest.mark.parametrize("order", range(4), ids=ORDERS)

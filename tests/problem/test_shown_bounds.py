@@ -1,7 +1,5 @@
 """Bounds in few digits are bounds as well."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 
 import pytest

@@ -41,6 +41,11 @@ def spline_problem(
     return Problem(q, limits, cubic_spline(len(q) - 1, ends), **bounds)
 
 
+def random_problem(rng: np.random.Generator, segments: int, joints: int) -> Problem:
+    q = rng.normal(size=(segments + 1, joints))
+    return spline_problem(q, rng.uniform(0.8, 3.0, joints), rng.uniform(1.0, 6.0, joints))
+
+
 def proved(found: Certified) -> CertificateVerdict:
     """The certificate of a result, checked again, and found to say the same."""
     verdict = verify(certificate(found))

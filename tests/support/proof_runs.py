@@ -1,5 +1,6 @@
 """Certification runs under a clock, a crew, answers and kinds of proof that a test chooses."""
 
+import json
 from collections.abc import Callable
 from concurrent.futures import Executor, Future
 from dataclasses import dataclass
@@ -13,8 +14,10 @@ from trajgap.nlp.proofs.certifier import Certifier
 from trajgap.nlp.proofs.declared import FEW_SEGMENTS
 from trajgap.nlp.proofs.exact import ExactProblem
 from trajgap.nlp.proofs.judged import judged
-from trajgap.nlp.proofs.outcome import Certified
+from trajgap.nlp.proofs.outcome import Certified, Progress
 from trajgap.nlp.proofs.session import Session
+from trajgap.nlp.proofs.state import state_document
+from trajgap.problem import Problem
 from trajgap.verify import Subject
 
 
@@ -98,6 +101,21 @@ def unjudged(monkeypatch: pytest.MonkeyPatch) -> list[Certified]:
     raw: list[Certified] = []
     monkeypatch.setattr(import_module("trajgap.nlp.proofs.certifiers"), "judged", seen)
     return raw
+
+
+def stopped(problem: Problem, when: Callable[[Progress], bool], **asked: Any) -> Certified:
+    """A run that is interrupted as soon as what it reports says so."""
+
+    def report(now: Progress) -> None:
+        if when(now):
+            raise KeyboardInterrupt
+
+    return certifiers.certify(problem, report=report, **asked)
+
+
+def state_of(found: Certified) -> dict[str, Any]:
+    """The state of a run, through JSON."""
+    return dict(json.loads(json.dumps(state_document(found))))
 
 
 @pytest.fixture(autouse=True)

@@ -1,7 +1,5 @@
 """The verifier stands alone: nothing of ours, nothing from others, and its folder suffices."""
 
-from __future__ import annotations
-
 import ast
 import json
 import os

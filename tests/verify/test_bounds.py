@@ -1,7 +1,5 @@
 """What proofs lean on, against motions made here: no bound excludes one of them."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 from itertools import product
 from typing import Any

@@ -1,7 +1,5 @@
 """The bound for declared curves against sums of limits in rationals, and against answers."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from fractions import Fraction
 from math import inf

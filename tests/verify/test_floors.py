@@ -1,7 +1,5 @@
 """Least durations of segments: none above those of a motion that keeps the limits, some equal."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 from itertools import pairwise
 

@@ -1,7 +1,5 @@
 """A forged document for every check of the verifier: that check refuses it, and none before it."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -1,7 +1,5 @@
 """What is true is proved: certificates of every kind, values at their ranges, what is said."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable, Iterable, Iterator
 from fractions import Fraction

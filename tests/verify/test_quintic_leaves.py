@@ -1,7 +1,5 @@
 """What a leaf of a quintic proof bounds, and how a tree of them is read."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 from itertools import pairwise
 

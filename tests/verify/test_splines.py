@@ -1,7 +1,5 @@
 """Splines that the verifier reads, and what bounds them, against splines by scipy."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 from itertools import product
 from typing import Any

@@ -1,7 +1,5 @@
 """What the verifier reads is of bounded size, and all that it does ends with its time."""
 
-from __future__ import annotations
-
 import itertools
 import pickle
 import random

@@ -1,7 +1,5 @@
 """The verifier: no alteration of a number, with the hash left aside, proves a false statement."""
 
-from __future__ import annotations
-
 import copy
 import json
 from collections import Counter

@@ -6,13 +6,12 @@ states. Every open choice is drawn; a coarse objective makes ties, an edge makes
 
 import math
 from collections.abc import Callable
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 from support.drawn_settings import drawn
-from trajgap.heuristics import KINDS, Bounds, from_settings
+from trajgap.heuristics import KINDS, Bounds
 
 Vector = list[float]
 Judge = Callable[[Vector], float]
@@ -337,8 +336,6 @@ def generation(record: Any, before: Any, rng: Any, judge: Judge) -> dict[str, An
 
 # --- beside the package ---------------------------------------------------------------------------
 
-SMOOTH = np.array([0.713, 1.329, 0.851])
-"""Where the smooth objective of a whole search has its least value."""
 LOOPS = {"pso": swarm, "mnam-pso": swarm, "constrained-pso": swarm, "woa": whales,
          "improved-woa": whales, "ga": generation, "improved-ga": generation}  # fmt: skip
 
@@ -356,7 +353,7 @@ def test_each_step_is_that_of_the_loop(kind: str) -> None:
             return float(coarse(np.array(x), penalty))
 
         before, known = None, {}
-        for _ in range(4):
+        for _ in range(7):
             wanted = LOOPS[kind](record, before, other, judge)
             after = record.step(before, BOUNDS, own, many) if before else record.init(
                 BOUNDS, own, many
@@ -370,32 +367,3 @@ def test_each_step_is_that_of_the_loop(kind: str) -> None:
                 np.testing.assert_array_equal(getattr(before, name), values)
             before, known = after, {name: np.copy(getattr(after, name)) for name in wanted}
         assert own.random() == other.random()
-
-
-@pytest.mark.parametrize("seed", [0, 1, 2])
-@pytest.mark.parametrize("kind", KINDS)
-def test_a_whole_search_is_that_of_the_loop(kind: str, seed: int) -> None:
-    """A hundred iterations with the paper's settings, from the same draws, each on its own.
-
-    The weight of the constrained swarm divides small differences of fitness, which multiplies
-    rounding a hundred times: there the loop takes each step from the package's state.
-    """
-    record = from_settings(kind, {"iterations": 100})
-    own, other = np.random.default_rng(seed), np.random.default_rng(seed)
-
-    def many(x: np.ndarray) -> np.ndarray:
-        return np.where(x.min(axis=-1) < 0, INF, 1 + ((x - SMOOTH) ** 2).sum(axis=-1))
-
-    before: Any = None
-    state: Any = None
-    for step in range(101):
-        wanted = LOOPS[kind](record, before, other, lambda x: float(many(np.array(x))))
-        with np.errstate(over="ignore", invalid="ignore"):
-            args = (BOUNDS, own, many)
-            state = record.step(state, *args) if step else record.init(*args)
-        for name, values in wanted.items():
-            np.testing.assert_allclose(getattr(state, name), values, rtol=1e-12, atol=1e-12)
-        alone = kind != "constrained-pso"
-        before = SimpleNamespace(**wanted, iteration=step) if alone else state
-    assert own.random() == other.random()
-    assert state.best_fitness < 1.1

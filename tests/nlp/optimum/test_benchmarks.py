@@ -1,7 +1,5 @@
 """Benchmarks of the solver: the rates of its errors, and twenty C4 quintic problems."""
 
-from __future__ import annotations
-
 import sys
 from collections import Counter
 from dataclasses import replace

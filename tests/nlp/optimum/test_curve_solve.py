@@ -1,7 +1,5 @@
 """The NLP of the B-splines beside closed forms and identities."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import partial
 
@@ -15,7 +13,6 @@ from trajgap.problem import (
     Verdict,
     evaluate,
     load_case,
-    quintic_spline,
     solve_in_closed_form,
 )
 
@@ -105,14 +102,6 @@ def test_clamped_splines_are_solved_to_a_kkt_point(kind) -> None:
     near = solution.durations * np.exp(0.02 * rng.standard_normal((4000, 4)))
     repaired = near.sum(axis=1) * evaluate(problem, near).stretch
     assert repaired.min() >= solution.total_time * (1 - 1e-9)
-
-
-def test_degree_5_at_the_waypoints_has_the_optimum_of_the_quintic_spline() -> None:
-    problem, _ = clamped((5, "waypoints", "times", "timed"), 22, count=6)
-    other = solve(replace(problem, curve=quintic_spline(5)))
-    found = solve(problem)
-    assert found.status is Status.CONVERGED
-    assert found.total_time == pytest.approx(other.total_time, rel=1e-9)
 
 
 @pytest.mark.parametrize("time", ["stretched", pytest.param("timed", marks=pytest.mark.slow)])

@@ -1,11 +1,10 @@
 """The shortest total at fixed ratios: against other routes, and what no total repairs."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from support.uneven import CURVES as UNEVEN
 from trajgap.nlp import Evidence, Status, solve_per_joint
 from trajgap.nlp.optimum import solve
 from trajgap.problem import (
@@ -19,21 +18,13 @@ from trajgap.problem import (
     piecewise,
     quintic_spline,
     rest_to_rest,
-    three_five_three,
     uniform_cubic_b_spline,
 )
 
 Q = np.array([[0.2, -1.0], [0.9, 0.3], [0.4, 1.1], [1.3, 0.6]])
 LIMITS = Limits([1.5, 2.0], [4.0, 3.0], [30.0, 12.0])
 RATIOS = np.array([1.0, 1.7, 0.6])
-CURVES = [
-    three_five_three(),
-    cubic_spline(3),
-    quintic_spline(3),
-    rest_to_rest(3, 5),
-    uniform_cubic_b_spline(4, "stretched"),
-    uniform_cubic_b_spline(4, "timed"),
-]
+CURVES = [*(curve() for curve in UNEVEN.values()), uniform_cubic_b_spline(4, "timed")]
 EVERY = pytest.mark.parametrize("curve", CURVES, ids=lambda curve: curve.name)
 
 

@@ -1,7 +1,5 @@
 """Positions of virtual breaks as decision variables: an optimum by a route without our code."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.interpolate import make_interp_spline

@@ -1,7 +1,5 @@
 """`solve` on problems on which it once gave wrong answers, and what it may say without a proof."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -13,9 +11,8 @@ from support.near_problems import NEAR
 from support.two_joints import TURNING
 from trajgap.compare import audit
 from trajgap.nlp import Solution, Status, solve_per_joint
-from trajgap.nlp.optimum import feasibility, limit_rows, solve
+from trajgap.nlp.optimum import feasibility, solve
 from trajgap.nlp.optimum.descent import descend, least_point, restored
-from trajgap.nlp.optimum.limit_rows import exact_rows
 from trajgap.nlp.optimum.optimality import kkt
 from trajgap.nlp.optimum.starts import LogBox, box_above, least_durations, slowed
 from trajgap.problem import (
@@ -31,7 +28,6 @@ from trajgap.problem import (
     quintic_spline,
     rest_to_rest,
     three_five_three,
-    uniform_cubic_b_spline,
 )
 
 CLAIMS = """
@@ -237,38 +233,6 @@ def test_the_least_point_meets_its_conditions() -> None:
     contradiction = np.array([[1.0, 0, 0, 0], [-1.0, 0, 0, 0]])
     assert least_point(np.eye(4), np.zeros(4), contradiction, np.array([-1.0, -1.0])) is None
     assert least_point(np.diag([1.0, -1.0]), np.zeros(2), np.eye(2), np.ones(2)) is None
-
-
-@pytest.mark.parametrize("curve", [quintic_spline(3), uniform_cubic_b_spline(4, "timed")])
-def test_exact_rows_have_the_gradients_of_their_excesses(
-    monkeypatch: pytest.MonkeyPatch, curve: object
-) -> None:
-    monkeypatch.setattr(limit_rows, "NEAR", 1e-6)  # no row comes or goes with a small step
-    generator = np.random.default_rng(6)
-    q = generator.normal(size=(4, 2)) + 3.0
-    limits = Limits(0.4, 0.5, 0.9, q.min() - 0.01, q.max() + 0.01, joints=2)
-    problem, h = Problem(q, limits, curve), np.array([1.1, 0.7, 1.6])
-    rows, step = exact_rows(problem, h), 1e-6
-    assert {e.order for e in rows.points} == {0, 1, 2, 3}
-
-    def excess(h: np.ndarray, e: object, sign: float) -> float:
-        """Of the row at the same extremum; rounding makes some come and go at the very ends."""
-        there = exact_rows(problem, h)
-        same = [
-            (abs(p.s - e.s), x)
-            for p, x, side in zip(there.points, there.excess, there.signs, strict=True)
-            if (p.joint, p.order, p.segment, side) == (e.joint, e.order, e.segment, sign)
-        ]
-        return min(same)[1]
-
-    inner = [i for i, e in enumerate(rows.points) if e.s in (0.0, 1.0) or 0.01 < e.s < 0.99]
-    assert len(inner) > 25
-    for k in range(3):
-        ahead, behind = (h * np.exp(way * step * np.eye(3)[k]) for way in (1, -1))
-        for i in inner:
-            e, sign = rows.points[i], rows.signs[i]
-            slope = (excess(ahead, e, sign) - excess(behind, e, sign)) / (2 * step)
-            assert rows.gradient[i, k] == pytest.approx(slope, abs=1e-5)
 
 
 def test_a_descent_starts_outside_the_limits_and_ends_within() -> None:

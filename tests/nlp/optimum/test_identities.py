@@ -1,7 +1,5 @@
 """Optima of every family: units, names, mirrors, the direction of time; the NLP and the descent."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import replace
@@ -11,7 +9,7 @@ import numpy as np
 import pytest
 from support.b_splines import uniform
 from support.same_question import DRESSES, OWN_UNITS, SLOWER, same_question
-from support.samples import long_problem, small_problem
+from support.samples import long_curves, long_problem, small_problem
 from support.uneven import CURVES as UNEVEN, uneven_problem
 from trajgap.nlp import Route, Solution, Status, kkt, with_other_route
 from trajgap.nlp.optimum import solve
@@ -22,7 +20,6 @@ from trajgap.problem import (
     Verdict,
     check,
     cubic_spline,
-    cubic_spline_virtual,
     load_case,
     piecewise,
     published_ids,
@@ -36,12 +33,7 @@ from trajgap.problem.suite import list_instances, load_instance
 
 Q = np.array([[0.2, -1.0, 0.7], [0.9, 0.3, 0.1], [0.4, 1.1, -0.8], [1.3, 0.6, 0.2]])
 LIMITS = Limits([1.5, 2.0, 1.0], [4.0, 6.0, 5.0], [30.0, 50.0, 40.0])
-USUAL = {
-    "3-5-3": three_five_three(),
-    "cubic": cubic_spline(3),
-    "quintic": quintic_spline(3),
-    "rest-to-rest": rest_to_rest(3, 5),
-}
+USUAL = {name: curve() for name, curve in UNEVEN.items() if name != "stretched"}
 MOVING = {
     "cubic": cubic_spline(3, ((1, (0.5, -0.2)),), ((1, (-0.3, 0.4)),)),
     "velocity, then acceleration": cubic_spline(3, ((1, (0.5, -0.2)),), ((2, (0.0, 1.5)),)),
@@ -77,9 +69,7 @@ PROBLEMS = {
     "small 4-3-4": small_problem("4-3-4", 2),
     "small C2 cubic": small_problem("C2 cubic", 2),
     "small 3-5-3": small_problem("3-5-3", 2),
-    "long quintic": long_problem(quintic_spline(26)),
-    "long cubic": long_problem(cubic_spline(26)),
-    "long virtual": long_problem(cubic_spline_virtual(25)),
+    **{f"long {name}": long_problem(curve) for name, curve in long_curves(26).items()},
     "long, uneven": replace(
         long_problem(cubic_spline(26)),
         limits=Limits([[-1.0, 2.0]] * 2, [[-4.0, 2.0]] * 2, [[-30.0, 60.0]] * 2),
@@ -129,7 +119,7 @@ def test_the_other_route_ends_at_the_same_total(name: str) -> None:
     assert found.other_total == pytest.approx(found.total_time, rel=1e-8)
 
 
-OTHERS = ("moving cubic", "uneven quintic", "timed", "small 4-3-4", "cubic at ratios")
+OTHERS = ("moving cubic", "uneven quintic", "timed", "small 4-3-4", "cubic at ratios", "long cubic")
 
 
 @pytest.mark.parametrize("name", [*USUAL, *OTHERS])

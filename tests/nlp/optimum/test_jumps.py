@@ -1,7 +1,5 @@
 """Curves that may jump where the limits forbid it, and what keeps them from it."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache
 
@@ -9,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq, differential_evolution, fsolve, minimize_scalar
-from trajgap.nlp import Solution, Status
+from trajgap.nlp import Status
 from trajgap.nlp.optimum import solve
 from trajgap.nlp.optimum.closed_forms import joined
 from trajgap.nlp.optimum.feasibility import forbidden_jumps
@@ -343,11 +341,6 @@ def test_an_acceleration_that_is_prescribed_is_no_obstacle() -> None:
 
 TOO_FEW = piecewise((3, 2, 3), 1, ((1, 0.0),))
 ONWARDS = np.array([0.21, 0.9, 1.34, 1.87])
-BACK = np.array([0.21, 0.9, 0.34, 1.87])
-
-
-def problem_through(q: Array, jerk: float = J) -> Problem:
-    return determined(q, TOO_FEW, jerk)
 
 
 def mismatch(h: Array, q: Array) -> float:
@@ -355,7 +348,7 @@ def mismatch(h: Array, q: Array) -> float:
     return float(clamped(h, q).c[0, 1] * h[1] ** 3)
 
 
-def brute_total(q: Array, count: int = 31) -> float:
+def brute_total(q: Array) -> float:
     """Least total over a grid of one ratio, and all ratios of the last that go with it, refined."""
     thirds = np.exp(np.linspace(-4.0, 4.0, 81))
 
@@ -371,28 +364,16 @@ def brute_total(q: Array, count: int = 31) -> float:
         found = [np.array([1.0, np.exp(log_second), x]) for x in roots]
         return min((tight_total(h, q, V, A, J) for h in found), default=np.inf)
 
-    grid = np.linspace(-3.0, 3.0, count)
+    grid = np.linspace(-3.0, 3.0, 31)
     found = [total(x) for x in grid]
-    if not np.isfinite(found).any():
-        return np.inf
     best, step = grid[int(np.argmin(found))], float(grid[1] - grid[0])
     near = minimize_scalar(total, bounds=(best - step, best + step), options={"xatol": 1e-10})
     return min(float(near.fun), min(found))
 
 
-@cache
-def shortest() -> Solution:
-    """The answer for one joint that goes on, which two tests look at."""
-    return solve(problem_through(ONWARDS))
-
-
-@cache
-def shortest_by_force() -> float:
-    return brute_total(ONWARDS)
-
-
 def test_the_shortest_motion_without_a_jump_is_found() -> None:
-    problem, solution = problem_through(ONWARDS), shortest()
+    problem = determined(ONWARDS, TOO_FEW)
+    solution = solve(problem)
     assert solution.status is Status.FEASIBLE
     assert "at which the motion does not jump" in str(solution.why)
     assert check(problem, solution.durations, solution.nodal).verdict is Verdict.PASS
@@ -400,34 +381,11 @@ def test_the_shortest_motion_without_a_jump_is_found() -> None:
     h = solution.durations
     assert mismatch(h, ONWARDS) == pytest.approx(0.0, abs=1e-8)
     assert tight_total(h, ONWARDS, V, A, J) == pytest.approx(h.sum(), rel=1e-8)
-    assert solution.total_time == pytest.approx(shortest_by_force(), rel=1e-6)
-
-
-def test_there_is_none_where_the_middle_turns_back() -> None:
-    """The mean speed of the middle lies between those at its ends, both of the outer ways' sign."""
-    assert brute_total(BACK, 21) == np.inf
-    solution = solve(problem_through(BACK))
-    assert solution.status is Status.NONE_FOUND
-    assert "jumps" in str(solution.why)
-
-
-BOTH = np.column_stack([ONWARDS, 0.5 - 0.4 * ONWARDS])
-
-
-def test_joints_whose_equations_are_the_same_share_the_shortest_motion() -> None:
-    shared = solve(problem_through(BOTH))
-    assert shared.total_time == pytest.approx(shortest().total_time, rel=1e-9)
+    assert solution.total_time == pytest.approx(brute_total(ONWARDS), rel=1e-6)
 
 
 def test_more_equations_than_ratios_are_named() -> None:
     q = np.column_stack([ONWARDS, ONWARDS**2, np.sqrt(ONWARDS)])
-    solution = solve(problem_through(q))
+    solution = solve(determined(q, TOO_FEW))
     assert solution.status is Status.NONE_FOUND
     assert "it would take 2 ratios of durations that meet 3 equations" in str(solution.why)
-
-
-def test_without_a_jerk_limit_the_acceleration_may_jump() -> None:
-    assert forbidden_jumps(problem_through(ONWARDS, np.inf)) == []
-    solution = solve(problem_through(ONWARDS, np.inf))
-    assert solution.status is Status.CONVERGED
-    assert solution.total_time < shortest_by_force()

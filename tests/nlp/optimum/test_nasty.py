@@ -1,7 +1,5 @@
 """Nasty problems: nothing known is missed, rounding hides nothing, no answer looks at the clock."""
 
-from __future__ import annotations
-
 import itertools
 import json
 import math

@@ -1,7 +1,5 @@
 """The exact NLP: what it consists of, and that its expressions are those of the fitted curve."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import casadi as ca
@@ -25,7 +23,6 @@ from trajgap.problem import (
     piecewise,
     quintic_spline_virtual,
 )
-from trajgap.problem.curves import Places
 
 REST = ((1, 0.0), (2, 0.0))
 Q = [[0.1], [0.9], [0.3]]
@@ -96,7 +93,7 @@ def test_expressions_are_those_of_the_fitted_curve(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", DECLARED)
-def test_sides_of_rows_and_bounds_are_the_limits(name: str) -> None:
+def test_bounds_at_left_ends_are_the_limits(name: str) -> None:
     problem = DECLARED[name]
     program = build(problem)
     low, high = program.bounds()
@@ -107,16 +104,6 @@ def test_sides_of_rows_and_bounds_are_the_limits(name: str) -> None:
             unit = program.unit**r / program.angle[j]
             assert low[i] == pytest.approx(-below[j, r - 1] * unit)
             assert high[i] == pytest.approx(above[j, r - 1] * unit)
-    for side, sign in ((below, -1.0), (above, 1.0)):
-        for j in range(program.joints):
-            for r in (1, 2, 3):
-                if np.isfinite(program.sides.scale[j, r - 1]):
-                    zero = np.array([0])
-                    room = program.rooms(
-                        Places(zero + j, zero, zero + r, zero + 0.5), np.array([sign])
-                    )
-                    scale = program.sides.scale[j, r - 1] * program.angle[j] / program.unit**r
-                    assert room[0] * scale == pytest.approx(sign * side[j, r - 1])
 
 
 def test_a_place_follows_its_extremum_to_second_order() -> None:

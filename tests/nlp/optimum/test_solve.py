@@ -57,31 +57,6 @@ def test_puma_optima_lie_in_their_certified_intervals(reading: str, joint: int |
     assert lower * (1 - 1e-9) <= solve(problem).total_time <= upper * (1 + 1e-9)
 
 
-@pytest.mark.parametrize(
-    ("degree", "velocity", "acceleration", "jerk"),
-    [
-        (5, 15 / 8, 10 / np.sqrt(3), 60.0),
-        (7, 35 / 16, 7.5131884043929, 52.5),
-    ],
-)
-def test_one_rest_to_rest_segment_has_the_textbook_time(
-    degree: int, velocity: float, acceleration: float, jerk: float
-) -> None:
-    """Peaks of the normalised quintic and septic (Biagiotti & Melchiorri 2008, tables 5.1)."""
-    q = np.array([[0.3, -1.0], [1.5, 0.7]])
-    span = np.abs(np.diff(q, axis=0))[0]
-    for limits, peak, order in (
-        (Limits([0.9, 2.0]), velocity, 1),
-        (Limits(np.inf, [1.1, 0.8]), acceleration, 2),
-        (Limits(np.inf, np.inf, [3.0, 9.0]), jerk, 3),
-    ):
-        bound = limits.derivatives[:, order - 1]
-        expected = float(((span * peak / bound) ** (1 / order)).max())
-        solution = solve(Problem(q, limits, rest_to_rest(1, degree)))
-        assert solution.status is Status.CONVERGED
-        assert solution.total_time == pytest.approx(expected, rel=1e-10)
-
-
 def test_a_segment_without_motion_is_named_and_its_infimum_is_the_rest() -> None:
     q = np.array([[0.3, 1.0], [0.9, 0.2], [0.9, 0.2], [1.4, 0.8]])
     limits = Limits([1.0, 1.5], [3.0, 4.0])
@@ -134,18 +109,6 @@ def test_a_joint_that_must_not_move_and_does_not_is_no_obstacle() -> None:
     both = solve(Problem(q, Limits([1.0, 0.0], [3.0, 0.0]), three_five_three()))
     assert both.status is Status.CONVERGED
     assert both.total_time == pytest.approx(alone.total_time, rel=1e-9)
-
-
-def test_duration_and_position_limits_are_kept_and_listed() -> None:
-    problem = puma()
-    longer = solve(Problem(problem.waypoints, problem.limits, problem.curve, [0.3, 0.3, 1.4]))
-    assert longer.durations[2] == pytest.approx(1.4, rel=1e-9)
-    assert any(a.joint is None and a.quantity == "duration" for a in longer.active)
-    tight = Limits(6.0, 8.0, np.inf, -3.0, 0.9, joints=6)
-    solution = solve(Problem(problem.waypoints, tight, problem.curve, 0.3))
-    assert solution.status is Status.CONVERGED
-    assert solution.check.verdict is Verdict.PASS
-    assert solution.total_time > solve(problem).total_time
 
 
 def test_starts_of_the_wrong_length_or_number_are_refused() -> None:

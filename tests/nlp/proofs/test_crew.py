@@ -1,7 +1,5 @@
 """Pieces of a proof: the same results wherever they are worked on, and whatever becomes of it."""
 
-from __future__ import annotations
-
 import os
 import signal
 import subprocess

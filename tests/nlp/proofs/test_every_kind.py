@@ -1,8 +1,5 @@
 """Of every search: dense searches, broken rows, stops."""
 
-from __future__ import annotations
-
-import json
 import re
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -23,7 +20,7 @@ from support.proof_problems import (
     random_in_motion,
     random_quintic,
 )
-from support.proof_runs import answering, own_kinds as own_kinds, unjudged
+from support.proof_runs import answering, own_kinds as own_kinds, state_of, unjudged
 from support.puma import PUMA
 from trajgap.nlp import solve
 from trajgap.nlp.proofs.certifier import Certifier
@@ -34,7 +31,6 @@ from trajgap.nlp.proofs.declared import certifier as boxes, search
 from trajgap.nlp.proofs.document import certificate
 from trajgap.nlp.proofs.exact import MOVING, ExactProblem, exact_problem
 from trajgap.nlp.proofs.outcome import Certified, Outcome, Progress
-from trajgap.nlp.proofs.state import state_document
 from trajgap.problem import (
     Curve,
     Limits,
@@ -290,7 +286,7 @@ def test_a_stopped_run_goes_on_where_it_stopped(name: str, monkeypatch: pytest.M
     assert first.stopped
     assert 0 < first.lower < (first.upper or 0)
     assert verify_certificate(certificate(first)).lower == first.lower
-    state = json.loads(json.dumps(state_document(first)))
+    state = state_of(first)
     assert verify_certificate(state).lower == first.lower
     if name == "quintic":  # proved again in no time
         waited = certify(problem, gap=gap, seconds=0.0, resume=state)

@@ -1,7 +1,5 @@
 """The word "certified": said of what was proved again, and of nothing else."""
 
-from __future__ import annotations
-
 import copy
 from dataclasses import replace
 from fractions import Fraction

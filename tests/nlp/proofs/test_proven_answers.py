@@ -1,7 +1,5 @@
 """`solve` proves what it answers: *optimal* is said of proved answers alone."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -4,7 +4,6 @@ import logging
 
 import numpy as np
 import pytest
-from scipy.optimize import brentq
 from support.puma import PUMA, PUMA_LIMITS
 from support.retimed import PUMA_353, close, hermite, puma, rest_to_rest_time, trajectory
 from support.same_question import DRESSES, OWN_UNITS, same_question
@@ -61,48 +60,6 @@ def test_straight_segments_from_rest_to_rest(
     steps = [np.where(step == 0, 1e-300, step) for step in np.diff(q, axis=0) if step.any()]
     assert close(found, sum(rest_to_rest_time(step, velocity, acceleration) for step in steps))
     assert found.cuts == pytest.approx((0.0, *np.cumsum(h)), abs=1e-9)
-
-
-def test_a_reversal_inside_a_segment_is_a_standstill_and_not_a_smooth_point() -> None:
-    # 0.97 s with a stop at the turning point; one arc of the same length would take 0.79 s.
-    there, back, limit = 1.162, 0.0864, 8.0
-    expected = 2 * np.sqrt(there / limit) + 2 * np.sqrt(back / limit)
-    assert expected == pytest.approx(0.970, abs=5e-4)
-    assert 2 * np.sqrt((there + back) / limit) == pytest.approx(0.790, abs=5e-4)
-
-    def quartic(turn: float) -> np.polynomial.Polynomial:
-        return np.polynomial.Polynomial.fromroots([0.0, turn, 1.0]).integ()
-
-    def excess(turn: float) -> float:
-        q = quartic(turn)
-        return float((q(turn) - q(1.0)) / q(turn)) - back / there
-
-    turn = float(brentq(excess, 0.55, 0.95, xtol=1e-15))
-    q = quartic(turn)
-    coefficients = (q * (there / q(turn))).coef[:, None]
-    coefficients[0] = 0.4
-    found = retime(trajectory([coefficients], [1.0]), Limits(100.0, limit, joints=1))
-    assert close(found, expected)
-    assert found.cuts == pytest.approx((0.0, turn, 1.0), abs=1e-12)
-
-
-def test_circle_at_the_velocity_limit() -> None:
-    # max(|sin|, |cos|) of the path speed is V, so that a full turn takes 8·(R/√2)/V.
-    radius, speed = 0.8, 1.3
-    angle = np.linspace(0.0, 2 * np.pi, 41)
-    rate = speed / radius
-    nodes = [
-        [
-            [radius * np.cos(a + m * np.pi / 2) * rate**m + (m == 0) * 0.5 for a in angle],
-            [radius * np.sin(a + m * np.pi / 2) * rate**m - (m == 0) * 1.5 for a in angle],
-        ]
-        for m in range(4)
-    ]
-    circle = hermite(angle / rate, np.transpose(nodes, (2, 0, 1)))
-    found = retime(circle, Limits(speed, 2.9 * speed**2 / radius, joints=2))
-    assert close(found, 4 * np.sqrt(2) * radius / speed)
-    assert found.inequality_holds
-    assert found.cuts == ()
 
 
 @pytest.mark.parametrize("start", [0.0, -0.9])
@@ -205,13 +162,6 @@ def test_many_segments_get_more_cells() -> None:
 
 
 # --- identities -----------------------------------------------------------------------------------
-
-
-def test_the_duration_belongs_to_the_path_and_not_to_its_timing() -> None:
-    slow = puma(three_five_three(), 7.0 * PUMA_353)
-    one, two = (retime(c, PUMA_LIMITS) for c in (MOTION, slow))
-    assert one.durations == pytest.approx(two.durations, rel=1e-5)
-    assert two.inequality_holds
 
 
 def test_a_path_from_rest_to_rest_has_a_speed_in_between() -> None:

@@ -1,7 +1,5 @@
 """Our loop over toppra's linear programs, what it loads, and the motions that come of it."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from pathlib import Path

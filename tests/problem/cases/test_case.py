@@ -1,7 +1,5 @@
 """Case files: what loads, what it means, and one clear line for everything that does not."""
 
-from __future__ import annotations
-
 import json
 import tomllib
 from functools import cache

@@ -1,7 +1,5 @@
 """Blocks of case files: units of joints, limits by side, ratios of durations, straight lines."""
 
-from __future__ import annotations
-
 import tomllib
 from dataclasses import replace
 from functools import cache
@@ -23,8 +21,6 @@ from trajgap.problem import (
 from trajgap.problem.cases import Digits, ratio_words
 
 POSITION = 'position = ["deg", "deg", "mm"]'
-VELOCITY = 'velocity = ["rpm", "deg/s", "mm/s"]'
-ACCELERATION = 'acceleration = ["deg/s^2", "deg/s^2", "m/s^2"]'
 
 
 def test_each_joint_is_read_in_its_unit():
@@ -263,16 +259,13 @@ def line_problem() -> Problem:
     return parse_case(line_text(), "line.toml").problem()
 
 
-def test_its_waypoints_are_those_of_ctraj_and_lie_on_the_line() -> None:
+def test_its_waypoints_are_those_of_ctraj() -> None:
     problem = line_problem()
     arm = load_robot("puma560")
     poses = forward_kinematics(arm, np.array([FIRST, LAST]))
     line = ctraj(arm, *poses, 4, guess=FIRST)
     np.testing.assert_allclose(problem.waypoints, line.waypoints, atol=1e-9)
     np.testing.assert_array_equal(problem.waypoints[[0, -1]], [FIRST, LAST])
-    ends = forward_kinematics(arm, problem.waypoints)[:, :3, 3]
-    for k, share in enumerate(np.linspace(0, 1, 4)):
-        np.testing.assert_allclose(ends[k], ends[0] + share * (ends[3] - ends[0]), atol=1e-9)
 
 
 def test_its_angles_are_in_the_unit_of_the_file() -> None:

@@ -1,7 +1,5 @@
 """Everything that can be wrong in a case file, and the one line that says so."""
 
-from __future__ import annotations
-
 import copy
 import time
 import tomllib

@@ -1,7 +1,5 @@
 """Keys of curves in case files: end derivatives, printed knots, breaks without a way-point."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from support.case_texts import case_text
@@ -23,7 +21,6 @@ HEAD = case_text(
     joints="a b c",
     limits="velocity = [63, 97, 80]\nacceleration = [170, 126, 300]",
 )
-H = np.array([0.8, 1.3, 0.7])
 CUBIC, QUINTIC, SEPTIC = (f'family = "{name}-spline"' for name in ("cubic", "quintic", "septic"))
 GIVEN = 'family = "clamped-b-spline"\ndegree = 4\nknots = "given"\n'
 TIMED = f'{GIVEN}parameters = "times"\n'

@@ -1,7 +1,5 @@
 """What a reading means in words: its own label, or what it changes and the others do not."""
 
-from __future__ import annotations
-
 import pytest
 from support.case_texts import BASE, case_text
 from trajgap.problem.cases import parse_case, published_ids

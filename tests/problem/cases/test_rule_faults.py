@@ -1,7 +1,5 @@
 """Keys that single rules of an audit read: what is refused of them, on papers that are made up."""
 
-from __future__ import annotations
-
 import pytest
 from support.checkout import ROOT
 from support.made_up import claim, paper, row, sentence, total

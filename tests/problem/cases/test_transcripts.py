@@ -1,7 +1,5 @@
 """Two transcriptions of one paper: what differs is named, what only looks otherwise is not."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

@@ -1,7 +1,5 @@
 """Clamped B-splines: counts, knots and curves by routes that share no code with them."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from scipy.interpolate import BSpline, make_interp_spline
@@ -172,12 +170,8 @@ def test_the_curve_is_scipys(name: str) -> None:
 
 
 @each
-def test_rest_at_the_ends_and_continuity(name: str) -> None:
+def test_continuity(name: str) -> None:
     problem, h = posed(name, 4)
-    trajectory = fit(problem.curve, problem.waypoints, h)
-    for order in (1, 2):
-        ends = trajectory(np.array([0.0, h.sum()]), order)
-        np.testing.assert_allclose(ends, 0.0, rtol=0, atol=1e-8)
     verdict = check(problem, 9 * h)
     stretched = problem.curve.time is Timing.STRETCHED
     assert (verdict.limits, verdict.continuous) == (Verdict.PASS, not stretched)

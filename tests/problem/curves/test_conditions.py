@@ -1,11 +1,8 @@
 """The conditions over every kind of number, against derivatives of the polynomials in time."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 from typing import Any
 
-import casadi as ca
 import numpy as np
 import pytest
 from support.exact_route import derived, value
@@ -74,20 +71,6 @@ def test_floats_of_any_precision_round_the_fractions(name: str, kind: Any) -> No
     for one, other in zip(found.ravel(), exact.ravel(), strict=True):
         size = abs(other) * 40 * Fraction(float(np.finfo(kind).eps))
         assert abs(Fraction(*one.as_integer_ratio()) - other) <= size
-
-
-@each
-def test_symbols_are_the_same_numbers(name: str) -> None:
-    plan = CURVES[name].layout
-    symbol = ca.SX.sym("h", plan.segments)
-    h = np.empty(plan.segments, dtype=object)
-    h[:] = ca.vertsplit(symbol)
-    values, rates = plan.matrix(h), plan.rates(h)
-    function = ca.Function("f", [symbol], [ca.vertcat(*values.ravel()), ca.vertcat(*rates)])
-    floats = np.array([float(x) for x in drawn(CURVES[name])[0]])
-    both = [np.array(part).ravel() for part in function(floats)]
-    np.testing.assert_allclose(both[0], plan.matrix(floats).ravel(), rtol=1e-14)
-    np.testing.assert_allclose(both[1], plan.rates(floats), rtol=1e-14)
 
 
 @each

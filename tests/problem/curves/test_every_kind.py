@@ -1,7 +1,5 @@
 """Every kind of curve is asked the same: samples, batches, identities, gradients, refusals."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from functools import cache
 

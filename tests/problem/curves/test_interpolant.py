@@ -13,65 +13,12 @@ from trajgap.problem import (
     cubic_spline_virtual,
     fit,
     piecewise,
-    quintic_spline,
-    quintic_spline_virtual,
     rest_to_rest,
-    septic_spline,
     three_five_three,
 )
 
 REST = ((1, 0.0), (2, 0.0))
 JERK = (*REST, (3, 0.0))
-SNAP = (*JERK, (4, 0.0))
-
-
-@pytest.mark.parametrize(
-    ("interpolant", "conditions", "coefficients", "waypoints"),
-    [
-        (three_five_three(), 14, 14, 4),
-        (piecewise((4, 3, 4)), 14, 14, 4),
-        # n segments: 2n positions, 2(n − 1) from C2, 2 at the ends
-        (cubic_spline(5), 20, 20, 6),
-        # 2n positions, 4(n − 1) from C4, 4 at the ends
-        (quintic_spline(7), 42, 42, 8),
-        # as the cubic, 2 end conditions more, and one position less for each of 2 virtual breaks
-        (cubic_spline_virtual(4), 20, 20, 4),
-        (cubic_spline_virtual(2), 12, 12, 2),
-        # as the quintic, with jerk 0 at both ends in place of two positions
-        (quintic_spline_virtual(4), 30, 30, 4),
-        (quintic_spline_virtual(2), 18, 18, 2),
-        # 2n positions, 6(n − 1) from C6, 6 at the ends
-        (septic_spline(5), 40, 40, 6),
-        # a virtual break for each order more: of 2(n − 2) + 4 positions, 6(n − 1), 8 at the ends
-        (septic_spline(5, SNAP, virtual=(1, 4)), 40, 40, 4),
-        # one position less, and nothing in its place
-        (quintic_spline(5, virtual=(2,)), 29, 30, 5),
-        (cubic_spline(6, virtual=(4, 2)), 22, 24, 5),
-        (rest_to_rest(3, 3), 12, 12, 4),
-        (rest_to_rest(3, 5), 18, 18, 4),
-        (rest_to_rest(3, 7), 24, 24, 4),
-        (rest_to_rest(1, 9), 10, 10, 2),
-        (piecewise((5, 5, 5), 2), 14, 18, 4),
-        (piecewise((1, 1), 0, ()), 4, 4, 3),
-    ],
-)
-def test_counts(
-    interpolant: Interpolant, conditions: int, coefficients: int, waypoints: int
-) -> None:
-    assert (interpolant.conditions, interpolant.coefficients) == (conditions, coefficients)
-    assert interpolant.free == coefficients - conditions
-    assert interpolant.rank == conditions
-    assert len(interpolant.waypoint_breaks) == waypoints
-    assert len(interpolant.free_derivatives) == interpolant.free
-
-
-def test_rest_at_every_waypoint_is_over_determined() -> None:
-    # "velocity and acceleration 0 at the ends and the intermediate points" for 3-5-3
-    message = (
-        "3-5-3: over-determined, 18 conditions, but only 14 coefficients; raise a degree or drop"
-    )
-    with pytest.raises(TrajgapError, match=message):
-        Interpolant((3, 5, 3), (2, 2), (REST,) * 4, name="3-5-3")
 
 
 @pytest.mark.parametrize(
@@ -120,19 +67,6 @@ def test_long_declarations_are_judged_too() -> None:
     # As many conditions as coefficients, but the first line has three of them and two coefficients.
     with pytest.raises(TrajgapError, match="318 conditions for 318 coefficients contradict"):
         Interpolant((1, *(3,) * 79), (0, *(2,) * 78), (start, *((),) * 79, end))
-
-
-@pytest.mark.parametrize(
-    ("interpolant", "homogeneous"),
-    [
-        (three_five_three(), True),
-        (piecewise((5, 5, 5), 2), True),
-        (cubic_spline(3, ((1, 0.25),)), False),
-        (Interpolant((3, 3), (2,), (((1, 0.0),), (), ((2, -1.0),))), False),
-    ],
-)
-def test_homogeneous(interpolant: Interpolant, homogeneous: bool) -> None:
-    assert interpolant.homogeneous is homogeneous
 
 
 def test_free_derivatives_complete_a_declaration() -> None:

@@ -1,7 +1,5 @@
 """Kernels of populations: no other bits in other company, and one form of each on disk."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 

@@ -9,7 +9,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from hypothesis import assume, example, given, strategies as st
+from hypothesis import example, given, strategies as st
 from numpy.polynomial import Chebyshev, Polynomial as Power
 from support import exact_route
 from trajgap.problem import (
@@ -120,17 +120,6 @@ def test_clustered_and_multiple_turning_points(
     room = 1e-12 * np.abs(p.coef).sum()
     for peaks in peaks_by_both(np.asarray(p.coef)):
         assert abs(peaks[0] - expected) <= room
-
-
-@given(st.lists(st.floats(0.01, 0.99), min_size=1, max_size=8, unique=True), st.floats(0.01, 100))
-def test_separate_roots_are_found_in_order(roots: list[float], scale: float) -> None:
-    known = np.sort(roots)
-    assume(np.diff(known).min(initial=1.0) > 0.02)
-    primitive = (scale * Power.fromroots(known)).integ()
-    found = critical_points(np.asarray(primitive.coef))
-    assert found.size == known.size
-    np.testing.assert_allclose(found, known, atol=1e-6)
-    assert (np.abs(primitive.deriv()(found)) <= 1e-13 * np.abs(primitive.deriv().coef).sum()).all()
 
 
 def test_no_turning_point_outside_or_without_sign_change() -> None:

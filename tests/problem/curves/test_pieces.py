@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from support.b_splines import uniform
 from support.samples import DECLARATIONS, long_curves, long_problem, sample_problem
 from trajgap.problem import (
     Problem,
@@ -18,12 +19,14 @@ from trajgap.problem.curves import Trajectory, furthest, peak
 NAMES = ("3-5-3", "cubic", "quintic", "rest 7", "4-2-3", "lines", "uneven")
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", [*NAMES, "timed"])
 def test_the_furthest_are_the_largest_of_all_extrema(name: str) -> None:
     """Errors differ between pieces, so that another piece than that of the peak may count."""
     for seed in range(4):
-        problem, h = sample_problem(DECLARATIONS[name], 11 + seed)
+        timed = name == "timed"
+        problem, h = uniform(name, seed) if timed else sample_problem(DECLARATIONS[name], 11 + seed)
         found = problem.curve.enclosed(problem.waypoints, h)
+        assert found.trajectory.polynomial_in_time != timed
         curve = found.trajectory
         error = found.error + np.random.default_rng(seed).random(found.error.shape)
         for j, r in itertools.product(range(3), range(4)):

@@ -209,19 +209,6 @@ def test_singular_is_said(banded: bool, monkeypatch: pytest.MonkeyPatch) -> None
         fit(three_five_three(), waypoints(4), [1.0, 1.0, 1.0])
 
 
-def test_motion_values_count_from_the_first_waypoint() -> None:
-    interpolant = cubic_spline_virtual(4)
-    q = waypoints(4)
-    np.testing.assert_array_equal(
-        interpolant.motion_values(q + 0.0), interpolant.motion_values(q - q[0])
-    )
-    h = np.array([[0.4, 0.9, 1.3, 0.2, 0.8]])
-    still = np.full((4, 1), 61.7)
-    values, asked = interpolant.motion_values(still), Asked(np.ones((1, 3), bool))
-    peaks = interpolant.batch_reach(values, h, asked)
-    assert not peaks.any()
-
-
 def test_error_bound_near_a_singular_system() -> None:
     interpolant = singular_at_two_to_three()
     q = np.array([[0.3], [1.1], [-0.4]])

@@ -1,9 +1,6 @@
 """Long cubic splines by their velocities: the bound against rational arithmetic, and when it is."""
 
-from __future__ import annotations
-
 import math
-from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
@@ -11,8 +8,7 @@ import pytest
 from scipy.linalg import lapack
 from support import exact_route
 from trajgap.problem import Interpolant, Limits, Problem, Verdict, check, cubic_spline
-from trajgap.problem.curves import furthest, right_hand_sides, tridiagonal
-from trajgap.problem.curves.refined import refined_coefficients
+from trajgap.problem.curves import tridiagonal
 from trajgap.problem.curves.tridiagonal import tridiagonal_fit
 
 ENDS = {
@@ -73,22 +69,6 @@ def test_a_solution_that_is_off_is_bounded_all_the_same(
     away = np.abs(found.trajectory.scaled - right.trajectory.scaled)[:, 1] / h[:, None]
     assert (away <= found.error[:, 1] + right.error[:, 1]).all()
     assert (found.error[:, 1, 0] < 3e-3).all()
-
-
-@pytest.mark.parametrize("name", ENDS)
-def test_extrema_are_within_their_bounds_of_the_closer_route(name: str) -> None:
-    curve = ENDS[name]
-    q, h = drawn(curve, 1.0, 7)
-    found = tridiagonal_fit(curve.ends, q, h)
-    assert found is not None
-    closer, _ = refined_coefficients(curve.layout, right_hand_sides(curve, q, None), h)
-    other = replace(found.trajectory, scaled=closer)
-    for r in range(4):
-        one, two = (furthest(t, r, found.error[:, r]) for t in (found.trajectory, other))
-        assert (one.outer[0] <= two.values[0]).all()
-        assert (two.values[0] <= one.inner[0]).all()
-        assert (one.inner[1] <= two.values[1]).all()
-        assert (two.values[1] <= one.outer[1]).all()
 
 
 def test_a_joint_that_stands_still_has_no_blur() -> None:

@@ -1,7 +1,5 @@
 """The uniform cubic B-spline under both readings of time, by routes that share no code with it."""
 
-from __future__ import annotations
-
 import pickle
 from dataclasses import replace
 from fractions import Fraction
@@ -23,13 +21,11 @@ from trajgap.problem import (
     Verdict,
     check,
     evaluate,
-    extrema,
     fit,
     keeps_limits,
     solve_in_closed_form,
     uniform_cubic_b_spline,
 )
-from trajgap.problem.curves import furthest
 from trajgap.problem.curves.uniform import vertex_matrix
 
 # --- control vertices -----------------------------------------------------------------------------
@@ -149,18 +145,6 @@ def test_time_must_not_run_backwards() -> None:
     assert int(np.argmin(slopes) // 2000) == verdict.worst.segment
     error = pickle.loads(pickle.dumps(CurveError("a reason", 2, -0.5)))
     assert (str(error), error.segment, error.value) == ("a reason", 2, -0.5)
-
-
-@pytest.mark.parametrize("seed", range(6))
-def test_the_furthest_values_are_among_all_extrema(seed: int) -> None:
-    problem, h = uniform("timed", seed)
-    trajectory = fit(problem.curve, problem.waypoints, h)
-    assert not trajectory.polynomial_in_time
-    for order in range(4):
-        reach = furthest(trajectory, order, np.zeros((h.size, trajectory.joints)))
-        for joint in range(trajectory.joints):
-            values = [e.value for e in extrema(trajectory, joint, order)]
-            assert reach.values[:, joint].tolist() == [min(values), max(values)]
 
 
 def test_a_derivative_is_no_polynomial() -> None:

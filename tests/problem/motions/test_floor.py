@@ -90,17 +90,6 @@ def test_the_larger_side_counts(order, side):
     assert found.floor.time == pytest.approx(shortest(1.0, *sizes))
 
 
-def test_the_floor_lies_below_the_trapezoid_with_braking_of_its_own():
-    """d/V + V/2A + V/2D (Biagiotti and Melchiorri, 2008, trapezoid with unequal ramps)."""
-    stops = np.array([[0.0, 4.0], [4.0, 3.5]])
-    for speeding, braking in ((3.0, 8.0), (8.0, 3.0), (8.0, INF)):
-        limits = JointLimits.from_values(("1", "2"), 2.0, speeding, deceleration=braking)
-        ramps = [a if np.isfinite(a) else speeding for a in (speeding, braking)]
-        floor = check_motion(trip(stops), limits).floor.time
-        assert floor == pytest.approx(shortest(4.0, 2.0, max(ramps), INF))
-        assert floor <= 4.0 / 2.0 + sum(2.0 / (2 * a) for a in ramps) + 1e-12
-
-
 @pytest.mark.parametrize(
     ("speeds", "limited", "why"),
     [

@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from attacks.motion_files import DEGREES, through
-from support.exact_motions import Row, derived, spline, value
+from support.exact_motions import Row, derived, value
 from trajgap.problem import Verdict
 from trajgap.problem.motions import (
     HalfUnits,
@@ -94,21 +94,6 @@ def test_times_that_noise_may_swap_bound_nothing(how):
     assert np.isinf(motion.error).any()
     assert found.limits is not Verdict.PASS
     assert found.feasible_time is None
-
-
-def test_a_spline_through_two_near_samples_does_not_pass():
-    """One cubic through four samples, two of them 1.6e-7 s apart: |a| reaches 0.15481 rad/s²."""
-    time = [0.0, 0.04087067573392611, 0.0408708316722213, 0.1550835580000704]
-    q = [[0.0], [0.040859298205440854], [0.04085945401351307], [0.1544626550196691]]
-    samples = Samples(("a",), time, q)
-    curve = spline(*([Fraction(float(x)) for x in np.ravel(one)] for one in (time, q)))
-    peak = float(max(abs(x) for x in curve.ranges[2]))
-    assert peak == pytest.approx(0.15481, rel=1e-4)
-    motion = interpolated(samples, Interpolation.SPLINE)
-    for limit, never in ((0.1535, Verdict.PASS), (peak * 1.01, Verdict.VIOLATED)):
-        found = check_motion(motion, JointLimits.from_values(("a",), acceleration=limit))
-        assert found.verdict is not never
-        assert found.peaks[0].least_ratio * limit <= peak <= found.peaks[0].most_ratio * limit
 
 
 def test_lines_that_may_bend_within_their_noise_do_not_pass():

@@ -13,7 +13,6 @@ from trajgap.problem import (
     Problem,
     TrajgapError,
     Verdict,
-    check,
     fit,
     piecewise,
     three_five_three,
@@ -53,20 +52,6 @@ def test_the_motion_comes_back(form, step):
         error = np.abs(back(at, order) - truth(at, order)).max()
         # Rows between breaks alone round the corners of acceleration at the breaks.
         assert error < (loose if exact else 2.0 * step ** (3 - order) * 60)
-
-
-@pytest.mark.parametrize("form", [MotionForm.ROS, MotionForm.PPOLY])
-def test_the_verdict_is_that_of_the_case(form):
-    problem = Problem(WAYPOINTS, Limits(3.0, 9.0, 90.0), three_five_three(), joints=NAMES)
-    own = check(problem, H)
-    back = read_back(motion_text(motion(), form, 0.002, NAMES), form, "x")
-    found = check_motion(back, JointLimits.of(problem.limits, NAMES))
-    assert found.limits == own.verdict
-    peaks = {(p.joint, p.quantity): abs(p.value) for p in found.peaks}
-    for p in own.peaks:
-        if p.quantity in ("velocity", "acceleration"):
-            assert peaks[p.joint, p.quantity] == pytest.approx(abs(p.value), rel=1e-6)
-    assert found.stretch == pytest.approx(max(1.0, own.stretch), rel=1e-6)
 
 
 def test_rows_are_a_grid_with_the_end():

@@ -1,7 +1,5 @@
 """The largest acceleration on one side of a motion, against dense samples of it and of others."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The referee's converters: closed forms, and the planners' own values at many times."""
 
-from __future__ import annotations
-
 import sys
 from itertools import pairwise
 from types import SimpleNamespace

@@ -1,7 +1,5 @@
 """Curves of the four papers, written once more from their equations as scalars."""
 
-from __future__ import annotations
-
 from math import sqrt
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Published case files against a transcription of the papers made for this test alone."""
 
-from __future__ import annotations
-
 import json
 import re
 import tomllib

@@ -1,7 +1,5 @@
 """Inverse kinematics: round trips, bounds, and honest answers where there is none."""
 
-from __future__ import annotations
-
 import importlib
 import re
 
@@ -17,7 +15,7 @@ from trajgap.problem.robots.chain import Chain, Convention, forward_kinematics
 from trajgap.problem.robots.inverse import POSE, POSITION, IkStatus, inverse_kinematics
 from trajgap.problem.robots.nearness import proximity
 
-S, M = Convention.STANDARD, Convention.MODIFIED
+S = Convention.STANDARD
 PLANAR = Chain(S, a=[0.7, 0.4], alpha=[0, 0], d=[0, 0], lower=[-3, -3], upper=[3, 3])
 
 

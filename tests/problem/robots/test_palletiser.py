@@ -3,8 +3,6 @@
 Transforms and equations are typed from the paper's section 2 alone, as scalars.
 """
 
-from __future__ import annotations
-
 import re
 from math import acos, atan2, cos, pi, sin, sqrt
 

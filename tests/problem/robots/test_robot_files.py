@@ -1,7 +1,5 @@
 """Robots as data: tables of shipped files and case files, and one line for what is wrong."""
 
-from __future__ import annotations
-
 import json
 import math
 import re

@@ -1,19 +1,17 @@
 """The sampled workspace and families of way-points: bounds, seeds, step lengths."""
 
-from __future__ import annotations
-
 import re
 from functools import cache
-from itertools import pairwise
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 from trajgap.problem import (
-    cubic_spline,
     fit,
     jtraj,
+    parse_case,
     rest_to_rest,
+    scaffold,
 )
 from trajgap.problem.cases.robot_file import load_robot
 from trajgap.problem.errors import TrajgapError
@@ -154,7 +152,7 @@ def test_a_deviation_is_the_distance_from_the_nearest_place_of_the_line(length) 
     arm = load_robot("puma560")
     q = START + np.array([[0.0], [0.3]])
     poses = forward_kinematics(arm, np.stack([START, START]))
-    poses[1, :3, 3] += length * np.array([0.6, 0.0, -0.8])
+    poses[1, :3, 3] += length * np.array([-0.8, 0.0, 0.6])
     motion = fit(jtraj(1), q, [1.0])
     ends = forward_kinematics(arm, motion(np.linspace(0.0, 1.0, 51)))[:, None, :3, 3]
     line = np.linspace(poses[0, :3, 3], poses[1, :3, 3], 4001)
@@ -163,15 +161,13 @@ def test_a_deviation_is_the_distance_from_the_nearest_place_of_the_line(length) 
     assert found == pytest.approx(furthest, abs=1e-6)
 
 
-def test_a_curve_through_more_points_leaves_the_line_less() -> None:
-    off = []
-    for points in (2, 4, 7):
-        line = moved(points)
-        curve = cubic_spline(points - 1) if points > 2 else jtraj(1)
-        off.append(line.deviation(fit(curve, line.waypoints, np.full(points - 1, 0.3))))
-    assert off[-1] > 1e-6
-    # Standing still at the ends, the clamped spline is of second order in the spacing there.
-    assert all(b < a / 3 for a, b in pairwise(off))
+def test_a_table_of_its_way_points_keeps_every_bit(tmp_path) -> None:
+    line = moved(5)
+    (tmp_path / "line.csv").write_text(line.table)
+    text = scaffold(tmp_path / "line.csv", {"position": "rad"}, family="cubic-spline")
+    problem = parse_case(text, "line.toml").problem()
+    np.testing.assert_array_equal(problem.waypoints, line.waypoints)
+    assert problem.joints == line.chain.labels
 
 
 def test_a_move_on_the_spot_turns_only() -> None:

@@ -1,7 +1,5 @@
 """The suite: its table, its bounds, and its plain files read without trajgap."""
 
-from __future__ import annotations
-
 import json
 import random
 import re

@@ -94,12 +94,6 @@ def test_a_closed_form_is_found_and_proved(problem: Problem, total: float) -> No
     assert high >= total * (1 - 1e-9)
 
 
-def test_there_and_back_stops_at_the_turning_point() -> None:
-    found = estimate_any_curve(spline_problem([0.2, 1.5, -0.1], 1.7, 4.0))
-    assert found.nodal_velocities == pytest.approx(0.0, abs=1e-5)
-    assert found.attained
-
-
 def test_rest_at_waypoints_of_the_interpolant_is_not_asked_for() -> None:
     smooth = estimate_any_curve(PUMA_PROBLEM)
     stopping = estimate_any_curve(replace(PUMA_PROBLEM, curve=rest_to_rest(3, 5)))

@@ -1,13 +1,11 @@
-"""Bounds over any curve where joints start or finish in motion, each in its own."""
-
-from __future__ import annotations
+"""Bounds over any curve beside dense grids, and where joints start or finish in motion."""
 
 from functools import cache
 from typing import Any
 
 import numpy as np
 import pytest
-from support.any_curve_proofs import certify_any, proved
+from support.any_curve_proofs import certify_any, interval, proved, random_problem, verified
 from trajgap.nlp.proofs.any_curve.estimate import estimate_any_curve
 from trajgap.nlp.proofs.document import certificate, stated_problem
 from trajgap.nlp.proofs.exact import exact_problem, printed_problem
@@ -19,8 +17,8 @@ V, A = np.array([1.5, 1.25]), np.array([4.0, 2.5])
 START, FINISH = (1.0, -0.25), (0.0, 0.75)
 
 
-def problem_with(start: tuple[float, ...] = START) -> Problem:
-    curve = cubic_spline(2, ((1, start),), ((1, FINISH),))
+def problem_with(start: tuple[float, ...] = START, finish: tuple[float, ...] = FINISH) -> Problem:
+    curve = cubic_spline(2, ((1, start),), ((1, finish),))
     return Problem(WAY, Limits(V, A), curve, joints=("a", "b"))
 
 
@@ -29,10 +27,10 @@ def found() -> Certified:
     return certify_any(exact_problem(problem_with()), gap=1e-5, seconds=60)
 
 
-def within(d: float, h: Array, v0: Array, v1: Array, top: float, bend: float) -> Any:
+def within(d: float, h: Array, v0: Any, v1: Any, top: float, bend: float) -> Any:
     """Whether a way is gone in time h, from the area below the fastest velocities there are."""
 
-    def furthest(b: Array, e: Array) -> Array:
+    def furthest(b: Any, e: Any) -> Array:
         peak = (bend * h + b + e) / 2
         cut = np.maximum(peak - top, 0.0)
         return (2 * peak**2 - b**2 - e**2) / (2 * bend) - cut**2 / bend
@@ -41,29 +39,41 @@ def within(d: float, h: Array, v0: Array, v1: Array, top: float, bend: float) ->
     return room & (d <= furthest(v0, v1)) & (-d <= furthest(-v0, -v1))
 
 
-def best_of_a_grid(start: tuple[float, ...], finish: tuple[float, ...]) -> float:
-    """Least total over durations and speeds half-way: each of the two joints by itself."""
-    h = np.linspace(0.3, 2.6, 231)
-    first, last = (np.zeros((h.size, h.size), dtype=bool) for _ in range(2))
-    for j, held in enumerate((first, last)):
-        for speed in np.linspace(-V[j], V[j], 601):
-            d = np.diff(WAY[:, j])
-            one = within(d[0], h, np.array(start[j]), speed, V[j], A[j])
-            two = within(d[1], h, speed, np.array(finish[j]), V[j], A[j])
+def best_of_a_grid(problem: Problem, near: Array) -> float:
+    """Least total over durations and speeds half-way: each joint by itself."""
+    h = near * np.linspace(0.4, 2.5, 231)[:, None]
+    at_ends = problem.piecewise.ends
+    speeds = [np.broadcast_to(dict(one)[1], len(problem.joints)) for one in at_ends]
+    good = np.ones((len(h), len(h)), dtype=bool)
+    for j, (v, a) in enumerate(zip(*problem.limits.derivatives.T[:2], strict=True)):
+        d, held = np.diff(problem.waypoints[:, j]), np.zeros_like(good)
+        for speed in np.linspace(-v, v, 601):
+            one = within(d[0], h[:, 0], speeds[0][j], speed, v, a)
+            two = within(d[1], h[:, 1], speed, speeds[1][j], v, a)
             held |= one[:, None] & two[None, :]
-    totals = (h[:, None] + h[None, :])[first & last]
-    return float(totals.min())
+        good &= held
+    return float((h[:, 0, None] + h[:, 1])[good].min())
 
 
 def test_a_dense_grid_of_durations_and_speeds_agrees() -> None:
-    result = found()
+    result, near = found(), estimate_any_curve(problem_with()).durations
     proved(result)
     assert result.outcome is Outcome.CERTIFIED
-    best = best_of_a_grid(START, FINISH)
+    best = best_of_a_grid(problem_with(), near)
     assert float(result.lower) <= best <= 1.03 * float(result.upper or 0)
     # Bringing both to rest, or exchanging the joints' ends, is another question.
-    for other in (((0.0, 0.0), (0.0, 0.0)), (START[::-1], FINISH[::-1])):
-        assert abs(best_of_a_grid(*other) / best - 1) > 0.02
+    for start, finish in (((0.0, 0.0), (0.0, 0.0)), (START[::-1], FINISH[::-1])):
+        other = best_of_a_grid(problem_with(start, finish), near)
+        assert abs(other / best - 1) > 0.02
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_a_dense_grid_from_rest_to_rest_agrees(seed: int) -> None:
+    problem = random_problem(np.random.default_rng(seed), 2, 1 + seed % 3)
+    low, high = interval(problem)
+    seen = estimate_any_curve(problem)
+    assert low <= verified(problem, seen) <= high * (1 + 1e-9)
+    assert low <= best_of_a_grid(problem, seen.durations) <= 1.03 * high
 
 
 def test_a_bound_within_the_larger_sides_keeps_the_ends() -> None:

@@ -1,12 +1,11 @@
 """Certificates in closed form: at fixed ratios, and of the stretched uniform cubic B-spline."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
 import pytest
+from support.uneven import CURVES
 from trajgap.nlp import solve
 from trajgap.nlp.proofs.answer import keeps_limits
 from trajgap.nlp.proofs.certifiers import certify, covered
@@ -23,10 +22,8 @@ from trajgap.problem import (
     cubic_spline,
     parse_case,
     piecewise,
-    quintic_spline,
     rest_to_rest,
     solve_in_closed_form,
-    three_five_three,
     uniform_cubic_b_spline,
 )
 from trajgap.verify import Subject, verify_certificate as verify
@@ -35,17 +32,10 @@ Q = np.array([[0.25, -0.5], [1.0, 0.125], [-0.375, 0.75], [0.5, 0.25]])
 LIMITS = Limits([1.0, 0.9], [2.0, 1.5], [12.0, 9.0])
 RATIOS = [1.0, 1.75, 1.25]
 UNEVEN = LIMITS.with_sides([LIMITS.derivatives, 0.7 * LIMITS.derivatives])
-CURVES = [
-    three_five_three(),
-    cubic_spline(3),
-    quintic_spline(3),
-    rest_to_rest(3, 5),
-    uniform_cubic_b_spline(4, "stretched"),
-]
 CLOSED = {
     **{
-        f"{curve.name} at ratios, {name}": Problem(Q, limits, curve, ratios=RATIOS)
-        for curve in CURVES
+        f"{curve} at ratios, {name}": Problem(Q, limits, declare(), ratios=RATIOS)
+        for curve, declare in CURVES.items()
         for name, limits in (("even", LIMITS), ("uneven", UNEVEN))
     },
     # A cubic's acceleration jumps at the way-points, which no jerk limit survives.

@@ -1,7 +1,5 @@
 """Certificates of C2 cubic splines: closed forms, identities, both systems, and altered states."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import replace
 from fractions import Fraction
@@ -13,6 +11,7 @@ import pytest
 from support.alterations import places, put
 from support.checkout import ROOT
 from support.proof_problems import NATURAL, cubic_problem, random_cubic
+from support.proof_runs import state_of, stopped
 from trajgap.nlp.proofs.certifiers import certify
 from trajgap.nlp.proofs.cubic.certifier import CUBIC
 from trajgap.nlp.proofs.cubic.relaxation import BoxProgram, Relaxation
@@ -21,7 +20,6 @@ from trajgap.nlp.proofs.cubic.tree import Prover
 from trajgap.nlp.proofs.document import certificate, problem_document
 from trajgap.nlp.proofs.exact import exact_problem, printed_problem
 from trajgap.nlp.proofs.outcome import Certified, Outcome, Progress, Request
-from trajgap.nlp.proofs.state import state_document
 from trajgap.problem import (
     Limits,
     Problem,
@@ -109,18 +107,14 @@ EXAMPLE = ROOT / "docs" / "examples" / "gasparetto-zanotto2008.toml"
 
 @lru_cache(maxsize=1)
 def interrupted() -> Certified:
-    def report(progress: Progress) -> None:
-        if progress.nodes >= 12 and progress.open_boxes >= 3:
-            raise KeyboardInterrupt
-
-    return certify(cubic_problem(), gap=1e-3, report=report)
+    return stopped(cubic_problem(), lambda now: now.nodes >= 12 and now.open_boxes >= 3, gap=1e-3)
 
 
 def test_an_altered_state_is_refused() -> None:
     def stop(_: Progress) -> None:
         raise KeyboardInterrupt
 
-    document = json.loads(json.dumps(state_document(interrupted())))
+    document = state_of(interrupted())
     rng = np.random.default_rng(0)
     for part, key in (("proposals", "tree"), ("proposals", "root"), ("proof", "tree")):
         found_places = [p for p in places({"proof": document[part]}) if p[1] == key]

@@ -1,7 +1,5 @@
 """A search through boxes in parts: the same tree, wherever and in whatever order they run."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from fractions import Fraction

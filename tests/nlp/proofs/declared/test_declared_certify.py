@@ -1,7 +1,5 @@
 """Declared curves: shipped certificates, whole runs beside other directions, altered states."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import replace
 from fractions import Fraction
@@ -14,15 +12,14 @@ from scipy.optimize import linprog
 from support.checkout import ROOT
 from support.declared_curves import CURVES
 from support.intervals import dense_best, judged
-from support.proof_runs import answering
+from support.proof_runs import answering, state_of, stopped
 from support.shipped_problems import COVERED_PROBLEMS
 from trajgap.nlp.proofs.certifiers import certify
 from trajgap.nlp.proofs.declared.certifier import DECLARED
 from trajgap.nlp.proofs.declared.simplex import best_weights
 from trajgap.nlp.proofs.document import certificate, problem_document, shipped, shipped_folder
-from trajgap.nlp.proofs.exact import decimal, exact_problem
-from trajgap.nlp.proofs.outcome import Certified, Outcome, Progress, Request
-from trajgap.nlp.proofs.state import state_document
+from trajgap.nlp.proofs.exact import exact_problem
+from trajgap.nlp.proofs.outcome import Certified, Outcome, Request
 from trajgap.problem import (
     Interpolant,
     Limits,
@@ -171,43 +168,17 @@ def test_a_segment_in_which_nothing_moves_needs_a_bound() -> None:
             judged(one, found, dense_best(one))
 
 
-@pytest.mark.parametrize(
-    ("number", "text"),
-    [
-        (Fraction(-5, 4), "-1.25"),
-        (Fraction(4, 9), "4/9"),
-        (Fraction(12), "12"),
-        (Fraction(1, 1000), "0.001"),
-    ],
-)
-def test_exact_numbers_are_written_exactly(number: Fraction, text: str) -> None:
-    assert decimal(number) == text
-    assert Fraction(text) == number
-
-
 # --- states ---------------------------------------------------------------------------------------
 
 
 def stopped_at(name: str, monkeypatch: pytest.MonkeyPatch) -> Certified:
     """A run that was stopped with a proved lower bound and with open boxes."""
-
-    def interrupt(progress: Progress) -> None:
-        if progress.lower > 0 and progress.open_boxes > 0:
-            raise KeyboardInterrupt
-
     # However fast boxes are, something is said after every few of them.
     monkeypatch.setattr("trajgap.verify.boxes._LEAVES", 8)
     monkeypatch.setattr("trajgap.nlp.proofs.declared.search.Curves.part", 8)
-    found = certify(COVERED_PROBLEMS[name], report=interrupt)
+    found = stopped(COVERED_PROBLEMS[name], lambda now: now.lower > 0 and now.open_boxes > 0)
     assert found.outcome is Outcome.INTERVAL
     return found
-
-
-def state_of(found: Certified) -> dict[str, Any]:
-    """The state of a stopped run, through JSON."""
-    document = state_document(found)
-    assert document is not None
-    return dict(json.loads(json.dumps(document)))
 
 
 def test_a_resumed_bound_alone_proves_nothing_infeasible(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,7 +1,5 @@
 """The published comparison of three lower bounds, and the numbers of the McCormick reference."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from support.benchmarks import benchmark

@@ -1,7 +1,5 @@
 """C4 quintic intervals: bounds against sampled curves, dense search, broken limits, stops."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable
 from dataclasses import replace
