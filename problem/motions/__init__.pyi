@@ -1,5 +1,6 @@
 from .between import check_samples
 from .digits import HalfUnits
+from .divided import neighbours
 from .floor import Floor, shortest
 from .foreign_objects import as_motion
 from .interpolation import interpolated
@@ -37,6 +38,7 @@ __all__ = [
     "factors_of",
     "interpolated",
     "motion_text",
+    "neighbours",
     "read_back",
     "read_motion",
     "read_yaml",
