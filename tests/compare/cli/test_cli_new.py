@@ -160,6 +160,7 @@ def test_a_limit_that_is_given_takes_precedence_over_the_urdf(
     ("header", "words"),
     [
         ("trun,swing,reach", ("arm.urdf", "trun", "did you mean 'turn'?")),
+        ("1,2", ("t.csv", "numbers 2 joints", "has 3 with limits")),
         ("1,2,3,4", ("t.csv", "numbers 4 joints", "(turn, swing, reach)")),
         ("a,b,c", ("arm.urdf", "a: is no joint", "known: turn, swing, reach")),
     ],

@@ -114,7 +114,7 @@ def test_the_marked_values_are_those_of_the_verdict() -> None:
 def test_a_deceleration_holds_while_the_speed_falls() -> None:
     motion = swing(seed=8)
     limits = held(motion, acceleration=3.0, deceleration=5.0)
-    _, _, grid = drawn(motion, limits)
+    _, found, grid = drawn(motion, limits)
     times = np.linspace(motion.breaks[0], motion.breaks[-1], 4001)
     both = set()
     for j in range(2):
@@ -126,6 +126,8 @@ def test_a_deceleration_holds_while_the_speed_falls() -> None:
         settled = far([*red, *((t, t) for t in (*motion.breaks, *turns))], times, 3e-3)
         assert (over == inside(red, times))[settled].all()
         both |= set(slowing[over].tolist())
+        worst = max(p.ratio for p in found.peaks if p.joint == motion.joints[j])
+        assert f", {100 * worst:.{2 if worst < 10 else 0}f} %" in grid[j][2].get_title(loc="right")
         heights = {line.get_ydata()[0] for line in grid[j][2].lines if line.is_dashed()}  # type: ignore[index]
         assert heights == {-5.0, -3.0, 3.0, 5.0}
     assert both == {True, False}
@@ -246,6 +248,16 @@ def test_dots_that_say_nothing_of_a_limit_are_left_out() -> None:
     assert len(velocity.get_xdata()) == 500  # known to within 1 rad/s
     assert len(jerk.get_xdata()) == 0
     assert spans(grid[0][1], ORANGE) == []
+
+
+def test_samples_may_pass_the_smaller_of_acceleration_and_deceleration() -> None:
+    time = np.linspace(0.0, 6.0, 61)
+    samples = Samples(("one",), time, np.sin(time)[:, None])
+    for sizes in ((0.5, 2.0), (2.0, 0.5)):
+        limits = JointLimits.from_values(("one",), acceleration=sizes[0], deceleration=sizes[1])
+        assert not spans(drawn(samples, limits)[2][0][2], RED)
+    both = JointLimits.from_values(("one",), acceleration=0.5, deceleration=0.6)
+    assert spans(drawn(samples, both)[2][0][2], RED)
 
 
 def test_two_samples_have_no_jerk() -> None:

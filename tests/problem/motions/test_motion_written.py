@@ -329,6 +329,9 @@ def test_a_message_as_rosbags_has_it():
 def test_messages_without_one_trajectory_are_refused():
     with pytest.raises(TrajgapError, match="the message holds 0 trajectories; give one"):
         as_motion({"points": []})
+    plain = json.loads(motion_text(motion(), MotionForm.ROS, 0.5, NAMES))
+    with pytest.raises(TrajgapError, match="the message holds 2 trajectories; give one"):
+        as_motion({"trajectory": [plain, plain]})
     lost = SimpleNamespace(joint_names=["a"], points=[SimpleNamespace(positions=[0.0])] * 2)
     with pytest.raises(
         TrajgapError, match=r"JointTrajectory: points\[0\].time_from_start: is missing"
