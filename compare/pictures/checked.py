@@ -20,7 +20,7 @@ from ...problem.motions import (
 )
 from .drawing import INK, ORANGE, RED, Picture
 from .panels import Line, Mark, Unit, panels_picture
-from .traced import POINTS, Stretches, beyond, joined_stretches, sampled, thinned, without
+from .traced import HUGE, POINTS, Stretches, beyond, joined_stretches, sampled, thinned, without
 
 _FEW = 60
 """Samples or pieces of which each is marked: more would hide the curve."""
@@ -129,9 +129,11 @@ class _Row:
         if np.isfinite(braking):
             low, high = min(low, -braking), max(high, braking)
         sizes = [abs(x) for x in (low, high) if np.isfinite(x)]
+        told = np.isfinite(values)
         if sizes and order:
-            told = errors <= max(sizes)
-            times, values, errors = times[told], values[told], errors[told]
+            told &= errors <= max(sizes)
+        times, values = times[told], values[told]
+        errors = np.nan_to_num(errors[told], nan=HUGE, posinf=HUGE)
         gap = (samples.time[-1] - samples.time[0]) / POINTS
         broken, unsure = (
             joined_stretches(

@@ -15,7 +15,9 @@ POINTS = 480
 """Points of a curve of many segments, extrema apart: more than a panel has pixels."""
 _FEWEST = 8
 """Points of a segment at least, however many there are."""
-_HUGE = 1e300
+_LOST = 1e-16
+"""Share of the largest coefficient below which another one moves no digit on a piece."""
+HUGE = 1e300
 """What stands for an error of which nothing is known: beyond every limit."""
 Stretches = Sequence[tuple[float, float]]
 """Starts and ends, s."""
@@ -109,7 +111,7 @@ def beyond(
     if slack is None:
         slack = TOLERANCE * max((abs(x) for x in (low, high) if np.isfinite(x)), default=0.0)
     # Where nothing is known of an error, infinity less infinity would be no number.
-    slacks = np.broadcast_to(np.clip(slack, -_HUGE, _HUGE), durations.shape)
+    slacks = np.broadcast_to(np.clip(slack, -HUGE, HUGE), durations.shape)
     values = trajectory.turns(order)[1][:, :, column]
     lowest, highest = np.nanmin(values, axis=0), np.nanmax(values, axis=0)
     some = (lowest < max(low, -braking) - slacks) | (highest > min(high, braking) + slacks)
@@ -151,7 +153,9 @@ def beyond(
 def _roots(polynomials: Sequence[Array]) -> Iterator[float]:
     """Places in (0, 1) at which any of some polynomials vanishes."""
     for one in polynomials:
-        powers = np.trim_zeros(one, "b")
+        # Leading coefficients that are lost in the digits of the others would divide them.
+        told = np.nonzero(np.abs(one) > _LOST * np.abs(one).max())[0]
+        powers = one[: told[-1] + 1] if told.size else one[:0]
         for root in np.polynomial.polynomial.polyroots(powers) if powers.size else ():
             if abs(root.imag) < 1e-9 and 0 < root.real < 1:
                 yield float(root.real)

@@ -175,6 +175,15 @@ def test_of_many_pieces_none_that_breaks_a_limit_is_missed() -> None:
     assert len(sound(lambda: picture)) < 200_000
 
 
+def test_leading_coefficients_that_are_rounding_do_no_harm() -> None:
+    scaled = np.array([[[0.0], [1.0], [1e-320]], [[1.0], [-3.0], [0.0]]])
+    trajectory = Trajectory(np.array([1.0, 2.0]), scaled, (2, 2))
+    assert beyond(trajectory, 0, 0, -9.0, 0.25) == [(pytest.approx(0.25), pytest.approx(1.5))]
+    open_all = beyond(trajectory, 0, 0, -9.0, 0.25, np.full(2, -np.inf))
+    assert open_all == [pytest.approx((0.0, 3.0))]
+    assert beyond(trajectory, 0, 0, -9.0, 0.25, np.full(2, np.inf)) == []
+
+
 def test_a_deceleration_of_many_pieces() -> None:
     """Pieces shorter than a pixel count in whole, by the sign of their own speed."""
     pieces, h = 1000, 0.002
@@ -258,6 +267,16 @@ def test_samples_may_pass_the_smaller_of_acceleration_and_deceleration() -> None
         assert not spans(drawn(samples, limits)[2][0][2], RED)
     both = JointLimits.from_values(("one",), acceleration=0.5, deceleration=0.6)
     assert spans(drawn(samples, both)[2][0][2], RED)
+
+
+def test_a_clock_that_tells_no_order_proves_nothing() -> None:
+    time = np.linspace(0.0, 1.0, 11)
+    samples = Samples(("one",), time, np.sin(9 * time)[:, None], time_noise=1.0)
+    _, found, grid = drawn(samples, JointLimits.from_values(("one",), velocity=1.0))
+    assert found.verdict == "undecided"
+    assert not any(spans(axes, RED) for axes in grid[0])
+    (dots,) = [a for a in grid[0][2].lines if a.get_marker() == "."]
+    assert len(dots.get_xdata()) == 9  # nothing is limited there
 
 
 def test_two_samples_have_no_jerk() -> None:
