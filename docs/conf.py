@@ -42,7 +42,7 @@ sphinx_gallery_conf = {
     "image_scrapers": ("trajgap.compare.sphinx.gallery.scrape_pictures", "matplotlib"),
     "capture_repr": (),
     "download_all_examples": False,
-    "notebook_extensions": set(),
+    "notebook_extensions": {".py"},  # every program as a notebook too
     "show_signature": False,
     "write_computation_times": False,
     "min_reported_time": 3600,  # s: how long a program took says nothing to a reader

@@ -115,6 +115,15 @@ def check(
             "table as CSV, a message as JSON), slowed down until it keeps every limit.",
         ),
     ] = None,
+    plot: Annotated[
+        Path | None,
+        typer.Option(
+            "--plot",
+            metavar="FILE",
+            help="Of a motion: draw it with its limits to this new file (.png, .svg or .pdf), what "
+            "breaks them in red.",
+        ),
+    ] = None,
     as_json: AsJson = False,
     out: Out = None,
 ) -> int:
@@ -145,6 +154,7 @@ def check(
         tolerance,
         strict,
         repair,
+        plot,
     )
     if math.isnan(tolerance):
         raise typer.BadParameter("--tolerance is no number; give one from 0 to 1")

@@ -33,6 +33,7 @@ from ..documents import (
     json_text,
     known,
 )
+from ..pictures import KINDS, checked_picture, picture_bytes
 from .input import naming
 from .motion_results import checked_motion, shown_check
 from .output import emit, new_output
@@ -54,6 +55,7 @@ class MotionOptions:
     tolerance: float = 1e-6
     strict: bool = False
     repair: Path | None = None
+    plot: Path | None = None
 
     @property
     def names(self) -> list[str]:
@@ -70,6 +72,7 @@ class MotionOptions:
             "topic": self.topic,
             "strict": self.strict or None,
             "repair": self.repair,
+            "plot": self.plot,
         }
         return [f"--{name}" for name, value in named.items() if value is not None]
 
@@ -80,8 +83,14 @@ def check_file(source: str, options: MotionOptions, as_json: bool, out: Path | N
     read = _read(Path(source), options)
     factors = factors_of(read.units, len(read.joints), "--units")
     limits = stated_limits(read.joints, factors, options)
-    repair = options.repair
-    with new_output(out) as write, new_output(repair, "--repair") as write_motion, naming(source):
+    repair, plot = options.repair, options.plot
+    kind = None if plot is None else _kind_of_picture(plot)
+    with (
+        new_output(out) as write,
+        new_output(repair, "--repair") as write_motion,
+        new_output(plot, "--plot") as write_picture,
+        naming(source),
+    ):
         how, found = judged(read, limits, how, options.tolerance)
 
         def check(path: Path) -> MotionCheck:
@@ -92,8 +101,15 @@ def check_file(source: str, options: MotionOptions, as_json: bool, out: Path | N
 
         slower = repair and repaired(read, found, repair, check, write_motion)
         document = motion_document(
-            source, read, how, found, slower or Why(found.feasible_why or "--repair asks for it")
+            source,
+            read,
+            how,
+            found,
+            slower or Why(found.feasible_why or "--repair asks for it"),
+            plot,
         )
+        if kind is not None:
+            write_picture(_picture(source, read, limits, how, found, kind))
         write(json_text(document))
     emit(document, shown_check, as_json)
     passes = found.verdict is Verdict.PASS and not found.not_judged
@@ -149,6 +165,7 @@ def motion_document(
     how: Interpolation | None,
     found: MotionCheck,
     slower: OrWhy[RepairedMotion],
+    picture: Path | None = None,
 ) -> MotionCheckDocument:
     """What `check` says of a motion, as a document."""
     content = read.content
@@ -165,6 +182,35 @@ def motion_document(
         time_noise=samples.clock if samples else 0.0,
         result=checked_motion(found),
         repaired=slower,
+        picture=None if picture is None else str(picture),
+    )
+
+
+def _kind_of_picture(path: Path) -> str:
+    """The format that the name of a picture ends with."""
+    kind = path.suffix.lower().removeprefix(".")
+    if kind not in KINDS:
+        known = ", ".join(f".{one}" for one in KINDS)
+        raise CaseError(str(path), "--plot", f"is no name of a picture; end it with one of {known}")
+    return kind
+
+
+def _picture(
+    source: str,
+    read: ForeignFile,
+    limits: JointLimits,
+    how: Interpolation | None,
+    found: MotionCheck,
+    kind: str,
+) -> bytes:
+    """The motion as it was judged, as the content of a file."""
+    content = read.content
+    if isinstance(content, Samples) and how is not None and how is not Interpolation.NONE:
+        content = interpolated(content, how)
+    between = "" if how is None else f", interpolation {how}"
+    title = f"{source}{between}"
+    return picture_bytes(
+        checked_picture(content, limits, found, title=title, units=read.units), kind
     )
 
 

@@ -103,6 +103,8 @@ def shown_check(document: MotionCheckDocument) -> list[RenderableType]:
         slower = f"{written.slow_down:.6f} times slower" if written.slow_down > 1 else "as it is"
         said = f"{written.file}: the motion {slower}, as {written.form}"
         parts.append(line(f"{said}; read back: {written.result.verdict}"))
+    if document.picture is not None:
+        parts.append(line(f"{document.picture}: the motion with its limits"))
     rows = [
         (
             one.joint,

@@ -10,10 +10,12 @@ from typing import Annotated
 
 import typer
 
-from ...problem import CHOICES, CaseError, scaffold, visible
+from ...problem import CHOICES, CaseError, scaffold
 from ...problem.cases import identity_of
+from .motion_checking import MotionOptions
 from .options import FAMILY, LIMIT, USUAL
-from .output import new_output, say
+from .output import new_output, say, warn
+from .solve_files import limits_of_table
 
 _UNITS = "One for all joints, or one for each with commas between: deg,deg,mm."
 """Said of each option that takes a unit of joints."""
@@ -29,6 +31,15 @@ def new(
     ],
     position_unit: Annotated[
         str | None, typer.Option(metavar="rad|deg|m|cm|mm", help=_UNITS)
+    ] = None,
+    urdf: Annotated[
+        Path | None,
+        typer.Option(
+            "--urdf",
+            metavar="FILE",
+            help="Limits that are not given below, of the URDF's joints that the table names or "
+            "numbers.",
+        ),
     ] = None,
     velocity: Annotated[str | None, typer.Option(help=LIMIT)] = None,
     velocity_unit: Annotated[
@@ -69,6 +80,8 @@ def new(
         "time": time_unit,
     }
     limits = {"velocity": velocity, "acceleration": acceleration, "jerk": jerk}
+    beside = MotionOptions(urdf=urdf)
+    limits_of_urdf = None if urdf is None else limits_of_table(str(table), beside)
     with new_output(out, "OUT") as write:
         needed = ["position", *(name for name, limit in limits.items() if limit is not None)]
         given = {name: unit for name, unit in units.items() if unit is not None}
@@ -83,6 +96,7 @@ def new(
                 durations=durations,
                 total=total,
                 where=where or "",
+                limits_of=limits_of_urdf,
                 warn=doubts.append,
                 **limits,
             )
@@ -112,8 +126,7 @@ def new(
             raise CaseError(file, *faults[0], faults[1:])
         doubts.clear()
         write(written(given))
-    for doubt in doubts:
-        sys.stderr.write(f"trajgap: {visible(doubt)}\n")
+    warn(doubts)
     then = "judges what is claimed" if durations or total else "once claims are filled in"
     say(f"written: {out}\nnext: trajgap audit {shlex.quote(str(out))}  # {then}\n")
     return 0

@@ -53,6 +53,12 @@ def emit(document: D, summary: Callable[[D], Sequence[RenderableType]], as_json:
     say(text)
 
 
+def warn(doubts: Iterable[str]) -> None:
+    """Write sentences to standard error, each on a line of its own."""
+    for doubt in doubts:
+        sys.stderr.write(f"trajgap: {visible(doubt)}\n")
+
+
 def say(text: str) -> None:
     """Write text to standard output.
 

@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
-import sys
-import tomllib
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from decimal import Decimal
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from ...nlp import Solution, retimed_motion
-from ...problem import QUANTITIES, Case, CaseError, TrajgapError, is_linear, scaffold, visible
-from ...problem.cases import check_case
+from ...problem import (
+    Case,
+    CaseError,
+    FileLimits,
+    TrajgapError,
+    parse_case,
+    scaffold,
+)
+from ...problem.limit_files import read_urdf
 from ...problem.motions import (
     Evaluated,
     JointLimits,
@@ -22,6 +25,7 @@ from ...problem.motions import (
     check_motion,
     factors_of,
     motion_text,
+    numbered,
     read_back,
 )
 from ..audits import in_words
@@ -29,9 +33,7 @@ from ..documents import WrittenMotion, value_or_none
 from .input import Selected
 from .motion_checking import MotionOptions, stated_limits, words
 from .motion_results import checked_motion
-
-_POWERS = {"velocity": "/s", "acceleration": "/s^2", "jerk": "/s^3"}
-"""What follows the unit of positions in that of a limit."""
+from .output import warn
 
 
 def points_case(
@@ -54,43 +56,62 @@ def points_case(
         If the table or an option cannot be used, or a joint has no limit that others have.
     """
     units = words(options.units) or ("rad",)
-    given = {"position": ",".join(units), "jerk": "rad/s^3"}
-    # The curve that is usual depends on whether jerk is limited: only that is asked of the number.
-    raw = tomllib.loads(scaffold(source, given, family=family, degree=degree), parse_float=Decimal)
-    joints = raw["robot"]["joints"]
-    factors = factors_of(units, len(joints), "--units")
-    try:
-        stated = stated_limits(joints, factors, options)
-        limits = stated.two_sided
-    except CaseError:
-        raise
-    except TrajgapError as error:
-        raise CaseError("limits", "", str(error)) from None
-    if family is None and np.isfinite(limits.sides[:, :, 2]).any():
-        text = scaffold(source, given, family=family, degree=degree, jerk="1")
-        raw = tomllib.loads(text, parse_float=Decimal)
-    slides = [is_linear(unit) for unit in units] * (len(joints) if len(units) == 1 else 1)
-    raw["limits"] = block = {}
-    for quantity in QUANTITIES:
-        low, high = limits.ends(quantity)
-        block[quantity] = [[_number(a), _number(b)] for a, b in zip(low, high, strict=True)]
-        raw["units"][quantity] = [("m" if s else "rad") + _POWERS[quantity] for s in slides]
-    for name in ("position_lower", "position_upper"):
-        block[name] = [_number(x) for x in getattr(limits, name) / factors]
-    case = check_case(raw, source)
-    slower = [j for j, x in zip(joints, stated.deceleration, strict=True) if np.isfinite(x)]
-    if slower:
-        sys.stderr.write(
-            f"trajgap: {visible(source)}: deceleration has its own limit at joint "
-            f"{visible(', '.join(slower))}; here the smaller value limits acceleration and "
-            "deceleration alike, so a motion that uses the larger one may be shorter\n"
+    text = scaffold(
+        source,
+        {"position": ",".join(units)},
+        family=family,
+        degree=degree,
+        limits_of=limits_of_table(source, options),
+        warn=lambda doubt: warn([doubt]),
+    )
+    return parse_case(text, source)
+
+
+def limits_of_table(source: str, options: MotionOptions) -> Callable[[tuple[str, ...]], FileLimits]:
+    """What finds the limits that options state of the joints of a table of way-points.
+
+    Joints that the table only numbers take the names of the URDF, in its order.
+
+    Parameters
+    ----------
+    source : str
+        The table.
+    """
+
+    def found(joints: tuple[str, ...]) -> FileLimits:
+        factors = factors_of(words(options.units) or ("rad",), len(joints), "--units")
+        if options.urdf and joints == numbered(len(joints)):
+            joints = _names(source, options.urdf, len(joints))
+        try:
+            stated = stated_limits(joints, factors, options)
+            limits = stated.two_sided
+        except CaseError:
+            raise
+        except TrajgapError as error:
+            raise CaseError(str(options.urdf or "limits"), "", str(error)) from None
+        slower = [j for j, x in zip(joints, stated.deceleration, strict=True) if np.isfinite(x)]
+        doubt = slower and (
+            f"deceleration has its own limit at joint {', '.join(slower)}; here the smaller value "
+            "limits acceleration and deceleration alike, so a motion that uses the larger one may "
+            "be shorter"
         )
-    return case
+        sources = ", ".join(dict.fromkeys(stated.sources.values()))
+        return FileLimits(joints, limits, sources, doubt or "")
+
+    return found
 
 
-def _number(value: float) -> Any:
-    """A number as TOML gives it, to the last bit."""
-    return Decimal(repr(float(value))) if np.isfinite(value) else float(value)
+def _names(source: str, urdf: Path, count: int) -> tuple[str, ...]:
+    """Names of a URDF's joints, if they are as many as those of a table."""
+    names = tuple(read_urdf(urdf).ranges)
+    if len(names) != count:
+        raise CaseError(
+            source,
+            "line 1",
+            f"numbers {count} joints, and {urdf} has {len(names)} with limits "
+            f"({', '.join(names)}); name those of the table",
+        )
+    return names
 
 
 _RATE = 500.0

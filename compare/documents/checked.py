@@ -196,6 +196,8 @@ class MotionCheckDocument(Document):
     result: CheckedMotion
     repaired: OrWhy[RepairedMotion]
     """What `--repair` wrote."""
+    picture: OrLeftOut[str] = None
+    """The file that `--plot` wrote."""
 
 
 class WrittenMotion(Entry):

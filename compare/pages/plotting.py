@@ -8,28 +8,31 @@ from numpy.typing import ArrayLike
 
 from ...nlp import Solution
 from ...problem import Problem, TrajgapError, check
+from ...problem.motions import JointLimits, Motion, Samples, check_motion, check_samples
 from ..audits import AuditReport, CaseAudit
 from ..documents import Waterfall
 from ..gaps import Runs, measure_gaps
-from ..pictures import Picture, motion_picture, waterfall_picture
+from ..pictures import Picture, checked_picture, motion_picture, waterfall_picture
 from .benches import bench_picture
 from .numbers import first_waterfall
 
-Plotted = Solution | Problem | Runs | CaseAudit | AuditReport | Waterfall
+Plotted = Solution | Problem | Motion | Samples | Runs | CaseAudit | AuditReport | Waterfall
 """What `plot` takes."""
 
 
-def plot(result: Plotted, beside: ArrayLike | Solution | None = None) -> Picture:
+def plot(result: Plotted, beside: ArrayLike | Solution | JointLimits | None = None) -> Picture:
     """Draw a result.
 
     Parameters
     ----------
-    result : Solution, Problem, Runs, CaseAudit, AuditReport or Waterfall
-        A solution and a problem with durations: the motion, with limits and largest values. Runs of
+    result : Solution, Problem, Motion, Samples, Runs, CaseAudit, AuditReport or Waterfall
+        A solution and a problem with durations: the motion, with limits and largest values. A
+        motion or samples from elsewhere with limits: the same, and what breaks them. Runs of
         `bench`: gaps over the evaluations. An audit of one case, and a waterfall: where the time
         goes.
-    beside : array_like, shape (segments,), or Solution or float, optional
-        The durations of a problem, s; the optimum against which runs are set.
+    beside : array_like, shape (segments,), or JointLimits or Solution or float, optional
+        The durations of a problem, s; the limits of a motion; the optimum against which runs are
+        set.
 
     Returns
     -------
@@ -39,8 +42,9 @@ def plot(result: Plotted, beside: ArrayLike | Solution | None = None) -> Picture
     Raises
     ------
     TrajgapError
-        If there is nothing to draw: a solution without a motion, a problem without durations, runs
-        without an optimum, an audit of several cases or without an optimum.
+        If there is nothing to draw: a solution without a motion, a problem without durations, a
+        motion without limits, runs without an optimum, an audit of several cases or without an
+        optimum.
 
     Examples
     --------
@@ -56,12 +60,20 @@ def plot(result: Plotted, beside: ArrayLike | Solution | None = None) -> Picture
             nodal=result.nodal,
         )  # fmt: skip
     if isinstance(result, Problem):
-        if beside is None or isinstance(beside, Solution):
+        if beside is None or isinstance(beside, Solution | JointLimits):
             raise TrajgapError("plot: give the durations of the motion, plot(problem, durations)")
         judged = check(result, beside)
         return motion_picture(result, beside, title=_motion(result), check=judged)
+    if isinstance(result, Motion | Samples):
+        if not isinstance(beside, JointLimits):
+            raise TrajgapError("plot: give the limits beside the motion, plot(motion, limits)")
+        if isinstance(result, Samples):
+            found = check_samples(result, beside)
+        else:
+            found = check_motion(result, beside)
+        return checked_picture(result, beside, found, title="Motion, with its limits")
     if isinstance(result, Runs):
-        if beside is None:
+        if beside is None or isinstance(beside, JointLimits):
             raise TrajgapError("plot: give the optimum beside the runs, plot(runs, solution)")
         optimum = beside if isinstance(beside, Solution) else float(cast(float, beside))
         return bench_picture(measure_gaps(result, optimum), result)

@@ -2,11 +2,14 @@ from .arm import (
     ArmMotion as ArmMotion,
     arm_picture as arm_picture,
 )
+from .checked import checked_picture as checked_picture
 from .drawing import (
     DARK as DARK,
+    KINDS as KINDS,
     THEME as THEME,
     Picture as Picture,
     embedded as embedded,
+    picture_bytes as picture_bytes,
     svg as svg,
     themed as themed,
 )

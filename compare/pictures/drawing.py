@@ -57,6 +57,10 @@ DARK = {
     "red": "#ff6b81",
 }
 """The same colours on a dark page, as its style has them."""
+KINDS = ("png", "svg", "pdf")
+"""Formats of a file with a picture, as its name ends."""
+_DOTS = 150
+"""Dots an inch of a PNG: small type is sharp on a screen and in print."""
 Line = Literal["-", "--", "-.", ":"]
 """Line styles of matplotlib."""
 SERIES: tuple[tuple[str, Line], ...] = ((BLUE, "-"), (ORANGE, "--"), (GREEN, "-."), (PURPLE, ":"))
@@ -244,6 +248,24 @@ def svg(figure: Figure) -> str:
     tag = opening[0][:-1] + ' role="img" aria-labelledby="title desc">'
     words = f'<title id="title">{_xml(title)}</title>\n <desc id="desc">{_xml(description)}</desc>'
     return text[: opening.start()] + tag + f"\n {words}" + text[opening.end() :]
+
+
+def picture_bytes(figure: Figure, kind: str) -> bytes:
+    """Render a figure as the content of a file, the same bytes each time.
+
+    Parameters
+    ----------
+    figure : Figure
+    kind : str
+        One of `KINDS`.
+    """
+    if kind == "svg":
+        return svg(figure).encode()
+    buffer = io.BytesIO()
+    dated = {"CreationDate": None} if kind == "pdf" else {}
+    with drawing():
+        figure.savefig(buffer, format=kind, dpi=_DOTS, metadata=dated)
+    return buffer.getvalue()
 
 
 def themed(document: str) -> str:

@@ -18,7 +18,9 @@ from .drawing import (
     finish,
     shown,
 )
-from .motion import Units, sampled, shown_in
+from .motion import shown_in
+from .panels import Units
+from .traced import sampled
 
 _VELOCITY = 1
 """Order of the derivative whose jumps are drawn."""

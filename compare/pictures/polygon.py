@@ -25,7 +25,7 @@ from .drawing import (
     finish,
     shown,
 )
-from .motion import sampled
+from .traced import sampled
 
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 """Digits as exponents, for type without formulas."""

@@ -31,7 +31,7 @@ from .labels import ratio_words
 from .load import check_case, load_case, parse_case, published_ids
 from .moving_ends import end_states
 from .robot_file import load_robot, robot_ids
-from .scaffolding import identity_of, scaffold
+from .scaffolding import FileLimits, identity_of, scaffold
 from .schema import (
     AlgorithmBlock,
     Assumption,
@@ -72,6 +72,7 @@ __all__ = [
     "Digits",
     "DurationBox",
     "DurationsClaim",
+    "FileLimits",
     "HalfTurnsClue",
     "ImprovementClaim",
     "InstancesBlock",

@@ -5,14 +5,18 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
+import numpy as np
+
 from ..errors import CaseError, TrajgapError
+from ..limits import QUANTITIES, Limits
 from ..printed import MINUS_SIGNS, Printed
 from ..textfile import read_text
-from ..units import CHOICES, Quantity, check_unit
+from ..units import CHOICES, Quantity, check_unit, is_linear, scale
 from .declaration import FAMILIES
 from .faults import Faults
 from .literature import meant_by, unknown
@@ -29,6 +33,31 @@ _ROUND = 5
 """Degrees of which angles that are settings are multiples: what is rounded to whole degrees seldom
 is, and hardly ever all of a table."""
 
+_POWERS = {"velocity": "/s", "acceleration": "/s^2", "jerk": "/s^3"}
+"""What follows rad or m in the unit of a limit from a file."""
+
+
+@dataclass(frozen=True)
+class FileLimits:
+    """Limits of joints as a file states them, such as a URDF.
+
+    Attributes
+    ----------
+    joints : tuple of str
+        Names for the joints of the table, in its order.
+    limits : Limits
+        rad, m and s.
+    source : str
+        Name of the file.
+    doubt : str
+        What they leave out, in a sentence; empty for nothing.
+    """
+
+    joints: tuple[str, ...]
+    limits: Limits
+    source: str
+    doubt: str = ""
+
 
 def scaffold(
     csv_path: str | Path,
@@ -43,6 +72,7 @@ def scaffold(
     durations: str | None = None,
     total: str | None = None,
     where: str = "",
+    limits_of: Callable[[tuple[str, ...]], FileLimits] | None = None,
     warn: Callable[[str], None] | None = None,
 ) -> str:
     """Write a case file for a table of way-points.
@@ -73,6 +103,9 @@ def scaffold(
     where : str, optional
         Table, section or figure that prints them. If it is empty the claim says that its place is
         not stated.
+    limits_of : callable, optional
+        Given the names in the header, the limits that a file states of these joints. A limit that
+        is also given above takes precedence.
     warn : callable, optional
         Called with a sentence on what may not be meant as it was taken.
 
@@ -101,12 +134,22 @@ def scaffold(
         for number in each:
             add_digits(options, key, number)
     found = read_waypoint_table(table, read_text(path))
-    joints = found.joints
+    joints, from_file, doubt = found.joints, "", ""
+    stated: dict[str, str] = {}
+    # Units for another number of joints are refused when the case is read.
+    fits = all(isinstance(one, str) or len(one) == len(joints) for one in checked.values())
+    if limits_of is not None and fits and "position" in checked and not table.found:
+        of_file = limits_of(joints)
+        joints, doubt = of_file.joints, of_file.doubt
+        stated, units_of_file = _stated(of_file.limits, checked["position"], checked)
+        stated = {key: text for key, text in stated.items() if key not in given}
+        checked = units_of_file | checked
+        from_file = f"{_named(stated)} from {Path(of_file.source).name}" if stated else ""
     for key, each in given.items():
         if len(each) not in (1, len(joints)):
             many = f"lists {len(each)} numbers for {len(joints)} joints"
             options.add(key, f"{many}; give one for all, or one each")
-    curve = _curve(options, family, degree, len(found.rows), "jerk" in given)
+    curve = _curve(options, family, degree, len(found.rows), "jerk" in {**given, **stated})
     _refuse(table, options)
     identity = case_id if case_id is not None else identity_of(path.stem)
 
@@ -114,12 +157,13 @@ def scaffold(
         printed = next(iter(claimed["total"]), None)
         return _template().render(
             identity=_quoted(identity),
-            note=_quoted(f"way-points from {path.name}"),
+            note=_quoted("; ".join(filter(None, (f"way-points from {path.name}", from_file)))),
             joints=[_quoted(joint) for joint in joints],
             units=_unit_lines(checked),
             labels=[_quoted(label) for label in found.labels],
             **_angles(found, checked["position"]),
-            limits=_limit_lines(given),
+            limits=_limit_lines(given, stated),
+            from_file=_comment(from_file),
             families=FAMILIES,
             curve=curve,
             durations=json.dumps(claimed["durations"]) if claimed["durations"] else None,
@@ -146,6 +190,8 @@ def scaffold(
             f"segment{'' if segments == 1 else 's'}; give one for each, or change the family",
         )
         _refuse(table, options)
+    if doubt and warn is not None:
+        warn(f"{name}: {doubt}")
     if found.counted and warn is not None:
         warn(
             f"{name}: line 1 is taken for the names of the joints, {', '.join(joints)}; if these "
@@ -264,13 +310,61 @@ def _unit_lines(units: Mapping[str, str | tuple[str, ...]]) -> list[str]:
     return lines
 
 
-def _limit_lines(limits: Mapping[str, Sequence[str]]) -> list[str]:
+def _limit_lines(limits: Mapping[str, Sequence[str]], stated: Mapping[str, str]) -> list[str]:
     lines = []
-    for key in ("velocity", "acceleration", "jerk"):
+    for key in QUANTITIES:
         each = [str(Printed(text).decimal) for text in limits.get(key, ())]
         shown = each[0] if len(each) == 1 else f"[{', '.join(each)}]"
-        lines.append(f"{key} = {shown}" if each else f"# {key} = inf")
-    return lines
+        shown = shown if each else stated.get(key, "")
+        lines.append(f"{key} = {shown}" if shown else f"# {key} = inf")
+    return lines + [f"{key} = {text}" for key, text in stated.items() if key not in QUANTITIES]
+
+
+def _stated(
+    limits: Limits, position: str | tuple[str, ...], units: Mapping[str, str | tuple[str, ...]]
+) -> tuple[dict[str, str], dict[str, str | tuple[str, ...]]]:
+    """Finite limits of a file as a case file writes them, and the units of their derivatives.
+
+    In the units that are given, and in SI where none is.
+    """
+    count = limits.sides.shape[1]
+
+    def each(unit: str | tuple[str, ...]) -> tuple[str, ...]:
+        return unit if isinstance(unit, tuple) else (unit,) * count
+
+    def scaled(values: np.ndarray, unit: str | tuple[str, ...]) -> list[float]:
+        factors = [float(scale(one).bounds[0]) for one in each(unit)]
+        return [x / factor + 0.0 for x, factor in zip(values.tolist(), factors, strict=True)]
+
+    found: dict[str, str] = {}
+    added: dict[str, str | tuple[str, ...]] = {}
+    for order, key in enumerate(QUANTITIES):
+        below, above = limits.sides[:, :, order]
+        if np.isinf(limits.sides[:, :, order]).all():
+            continue
+        si = tuple(("m" if is_linear(one) else "rad") + _POWERS[key] for one in each(position))
+        unit = units.get(key, si if len(set(si)) > 1 else si[0])
+        added[key] = unit
+        ends = zip(scaled(-below, unit), scaled(above, unit), strict=True)
+        found[key] = _one_or_each(
+            [repr(high) if low == -high else f"[{low!r}, {high!r}]" for low, high in ends]
+        )
+    for key in ("position_lower", "position_upper"):
+        values = getattr(limits, key)
+        if np.isfinite(values).any():
+            found[key] = _one_or_each([repr(x) for x in scaled(values, position)])
+    return found, added
+
+
+def _one_or_each(numbers: Sequence[str]) -> str:
+    alike = len(set(numbers)) == 1 and "[" not in numbers[0]
+    return numbers[0] if alike else f"[{', '.join(numbers)}]"
+
+
+def _named(stated: Iterable[str]) -> str:
+    """Which limits are those of a file, in words."""
+    names = dict.fromkeys(key.partition("_")[0] for key in stated)
+    return f"limits of {' and '.join(filter(None, (', '.join([*names][:-1]), [*names][-1])))}"
 
 
 def _angles(table: WaypointTable, unit: str | tuple[str, ...]) -> dict[str, Any]:

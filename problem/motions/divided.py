@@ -6,6 +6,7 @@ import numpy as np
 
 from ..arrays import Array
 from .motion import EPS
+from .samples import Samples
 
 _TOGETHER = 1 << 14
 """Windows that are looked at together: a dozen arrays of that length stay in a core's own cache."""
@@ -74,6 +75,41 @@ def divided_extremes(
                         sure[j, side] = proof[k]
                         found[j, side] = value[k], error[k], middle[k]
     return found, widest
+
+
+def neighbours(samples: Samples, order: int) -> tuple[Array, Array, Array]:
+    """What samples side by side prove of a derivative, from the highest that every row states.
+
+    Parameters
+    ----------
+    order : int
+        0 to 3.
+
+    Returns
+    -------
+    times : ndarray, shape (windows,)
+        Middles of the windows, s; none if the samples are too few.
+    values, errors : ndarray, shape (windows, joints)
+        Every motion through the samples has such a value in the window, or jumps across it.
+    """
+    given = max(r for r in range(min(order, 2) + 1) if samples.has(r).all())
+    values = samples.given(given)
+    assert values is not None
+    count = max(0, samples.time.size - (order - given))
+    sites = [slice(m, m + count) for m in range(order - given + 1)]
+    times = [samples.time[at] for at in sites]
+    noise = samples.doubt(given).tolist()
+    with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+        spans = _spans(times, samples.clock) if count else []
+        found = [
+            _differences([values[at, j] for at in sites], spans, noise[j])
+            for j in range(values.shape[1] if count else 0)
+        ]
+    if not count:
+        none = np.empty((0, values.shape[1]))
+        return np.empty(0), none, none
+    middles = 0.5 * (times[0] + times[-1])
+    return middles, np.column_stack([v for v, _ in found]), np.column_stack([e for _, e in found])
 
 
 Span = tuple[Array, Array, Array]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from itertools import pairwise
 from typing import Any
 
@@ -10,7 +10,10 @@ import numpy as np
 
 from ..arrays import Array
 from ..errors import TrajgapError
+from .interpolation import interpolated
 from .motion import Motion
+from .ros import plain_message, samples_of_message, trajectories
+from .samples import Interpolation
 
 _SAME = 1e-9
 """Share of a grid cell within which a knot of the path is the grid point: far above rounding, and
@@ -18,17 +21,18 @@ its cube, by which the motion is off there, far below."""
 
 
 def as_motion(given: Any, joints: Sequence[str] = ()) -> Motion:
-    """The exact motion of an object of scipy, TOPPRA, Ruckig or Drake, or of a `Trajectory`.
+    """The exact motion of an object of scipy, TOPPRA, Ruckig, Drake or ROS, or of a `Trajectory`.
 
     Parameters
     ----------
     given : object
         scipy's ``PPoly``, ``CubicSpline``, ``BPoly`` or ``BSpline``; TOPPRA's
         ``SplineInterpolator``, ``ParametrizeSpline`` or ``ParametrizeConstAccel``; Ruckig's
-        ``Trajectory``; Drake's ``PiecewisePolynomial`` or ``BsplineTrajectory``; or
-        what `fit` gives.
+        ``Trajectory``; Drake's ``PiecewisePolynomial`` or ``BsplineTrajectory``; a message
+        ``JointTrajectory`` of ROS, or any message with one as plain values, as the controller
+        follows it; or what `fit` gives.
     joints : sequence of str, optional
-        Labels; "1", "2", ... by default.
+        Labels; "1", "2", ... by default. A message names its own.
 
     Raises
     ------
@@ -217,6 +221,19 @@ def _drake_spline(given: Any, joints: Sequence[str]) -> Motion:
     return _b_spline(spline, joints)
 
 
+def _message(given: Any, joints: Sequence[str]) -> Motion:
+    """A JointTrajectory of ROS: a message, or its plain values, as its controller follows it."""
+    held = list(trajectories(given if isinstance(given, Mapping) else plain_message(given)))
+    if len(held) != 1:
+        raise TrajgapError(f"the message holds {len(held)} trajectories; give one")
+    samples = samples_of_message(held[0], "JointTrajectory", text=False)
+    if joints and tuple(joints) != samples.joints:
+        raise TrajgapError(
+            f"joints: the message itself names {', '.join(samples.joints)}; leave them out"
+        )
+    return interpolated(samples, Interpolation.CONTROLLER)
+
+
 _KINDS: tuple[tuple[Callable[[Any], bool], Callable[[Any, Sequence[str]], Motion]], ...] = (
     (_has("polynomial", "polynomial_in_time", "scaled"), _trajectory),
     (_has("_path", "_ss", "_velocities", "_ts"), _toppra_steps),
@@ -227,5 +244,6 @@ _KINDS: tuple[tuple[Callable[[Any], bool], Callable[[Any, Sequence[str]], Motion
     (_has("c", "t", "k"), _b_spline),
     (lambda one: _has("c", "x")(one) and type(one).__name__ == "BPoly", _bernstein),
     (_has("c", "x"), _ppoly),
+    (lambda one: isinstance(one, Mapping) or _has("joint_names", "points")(one), _message),
 )
 """What an object offers, to what reads it; the first that fits."""

@@ -46,6 +46,27 @@ def trajectories(found: Any, depth: int = 6) -> Iterator[Mapping[str, Any]]:
             yield from trajectories(one, depth - 1)
 
 
+def plain_message(message: Any) -> dict[str, Any]:
+    """A JointTrajectory as Python has it in ROS 1 or 2, or read by rosbags, as plain values.
+
+    Parameters
+    ----------
+    message : object
+        With ``joint_names`` and ``points``. What it lacks is left out.
+    """
+    points = []
+    for one in message.points:
+        row: dict[str, Any] = {
+            key: np.asarray(getattr(one, key)).tolist() for key in _DERIVATIVES if hasattr(one, key)
+        }
+        clock = getattr(one, "time_from_start", None)
+        for names in _CLOCKS:
+            if all(hasattr(clock, name) for name in names):
+                row["time_from_start"] = {name: int(getattr(clock, name)) for name in names}
+        points.append(row)
+    return {"joint_names": list(message.joint_names), "points": points}
+
+
 def samples_of_message(message: Mapping[str, Any], name: str, text: bool = True) -> Samples:
     """Samples of a JointTrajectory, derivatives where points have them.
 

@@ -60,7 +60,7 @@ def read_rosbag(path: Path, topic: str | None = None) -> Samples:
         raise CaseError(
             name,
             "",
-            "a bag needs rosbags; pip install trajgap[rosbags], or give the message as YAML",
+            "a bag needs rosbags; pip install trajgap[rosbag], or give the message as YAML",
         ) from None
     held: list[Mapping[str, Any]] = []
     try:

@@ -1,4 +1,4 @@
-"""Programs in the documents pass pyright, and strict mypy, in a project outside the checkout."""
+"""Programs of documents and notebooks pass pyright, and strict mypy, outside the checkout."""
 
 import re
 import shutil
@@ -14,6 +14,7 @@ DOCUMENTS = [
     *sorted((ROOT / "docs/start").glob("*.md")),
     *sorted((ROOT / "docs/guides").glob("*.md")),
 ]
+NOTEBOOKS = sorted((ROOT / "docs/gallery/examples/notebooks").glob("*.py"))
 PROGRAM = re.compile(r"^```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 FILE = re.compile(r"^```\{code-block\} python\n:caption: (\S+)\n\n(.*?)^```$", re.M | re.DOTALL)
 
@@ -32,6 +33,8 @@ def project(tmp_path_factory: pytest.TempPathFactory) -> Path:
         parts = programs if document.stem == "README" else ["\n".join(programs)]
         for number, program in enumerate(filter(None, parts), 1):
             (own / f"program_{number}.py").write_text(program, encoding="utf-8")
+    for notebook in NOTEBOOKS:
+        shutil.copy(notebook, folder)
     return folder
 
 
@@ -43,6 +46,7 @@ def said(project: Path, *command: str) -> str:
 def test_the_programs_are_there(project: Path) -> None:
     assert len(list(project.glob("README/*.py"))) == 2
     assert len(list(project.rglob("*.py"))) > 8
+    assert len(list(project.glob("plot_*.py"))) == 3
 
 
 def test_pyright_finds_nothing(project: Path) -> None:

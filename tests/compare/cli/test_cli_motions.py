@@ -253,3 +253,33 @@ def test_what_no_slow_down_repairs_is_not_written(run, folder):
         "use .csv or .txt",
     )
     assert not (folder / "s.json").exists()
+
+
+@pytest.mark.parametrize("kind", ["png", "svg", "pdf"])
+def test_a_picture_of_the_motion_is_written(run, folder, kind):
+    flags = ["--velocity", "0.75", "--interpolation", "quintic", "--plot", f"motion.{kind}"]
+    found = run.document("check", "m.csv", *flags, kind="motion_check")
+    assert found["picture"] == f"motion.{kind}"
+    head = {"png": b"\x89PNG", "svg": b"<?xml", "pdf": b"%PDF"}[kind]
+    assert (folder / f"motion.{kind}").read_bytes().startswith(head)
+    assert "picture" not in run.document("check", "m.csv", *flags[:4])
+
+
+def test_a_picture_has_the_units_of_the_file_and_says_so(run, folder):
+    flags = ["--velocity", "0.75", "--units", "deg", "--plot", "m.svg"]
+    assert "m.svg: the motion with its limits" in run.done("check", "m.csv", *flags)
+    text = (folder / "m.svg").read_text()
+    assert "m.csv, interpolation none" in text
+    assert "joint j2: largest velocity -1.8" in text
+    assert "deg/s at" in text
+
+
+def test_what_cannot_be_plotted_is_refused(run, folder):
+    flags = ["--velocity", "1", "--plot"]
+    words = ("m.jpg", "--plot", "end it with one of .png, .svg, .pdf")
+    assert_refused(run("check", "m.csv", *flags, "m.jpg"), *words)
+    (folder / "there.png").write_bytes(b"")
+    assert_refused(run("check", "m.csv", *flags, "there.png"), "--plot", "exists already")
+    durations = ["check", "mine.toml", "--durations", "1,1,1", "--plot", "m.png"]
+    assert_refused(run(*durations), "--plot is of a motion")
+    assert not (folder / "m.png").exists()

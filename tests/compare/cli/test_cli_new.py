@@ -4,6 +4,7 @@ import io
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 from support.command_line import Run, assert_refused, on_terminal
 from trajgap.problem import load_case
@@ -88,6 +89,91 @@ def test_new_takes_no_wrong_unit_from_a_pipe(
         "give one of rad, deg, m, cm, mm",
     )
     assert not Path("out.toml").exists()
+
+
+URDF = """<robot name="a">
+  <joint name="turn" type="continuous"><limit velocity="2.5" acceleration="9" effort="1"/></joint>
+  <joint name="swing" type="revolute">
+    <limit lower="-1.5" upper="2.25" velocity="3.5" acceleration="7" deceleration="6" effort="1"/>
+  </joint>
+  <joint name="reach" type="prismatic">
+    <limit lower="0" upper="0.4" velocity="0.125" acceleration="0.5" effort="1"/>
+  </joint>
+</robot>"""
+ROWS = "0.10,0.20,100\n0.30,0.50,150\n0.20,0.90,120\n"
+UNITS = ("--position-unit", "rad,rad,mm", "--time-unit", "s")
+
+
+@pytest.fixture
+def arm(folder: Path) -> str:
+    (folder / "arm.urdf").write_text(URDF, encoding="utf-8")
+    return "arm.urdf"
+
+
+@pytest.mark.parametrize("header", ["turn,swing,reach", "1,2,3", "point,1,2,3"])
+def test_new_takes_limits_and_names_from_a_urdf(
+    run: Run, folder: Path, arm: str, header: str
+) -> None:
+    rows = ROWS if header[0] != "p" else "".join(f"P{k},{r}\n" for k, r in enumerate(ROWS.split()))
+    (folder / "t.csv").write_text(f"{header}\n{rows}", encoding="utf-8")
+    code, _, err = run("new", "out.toml", "--from", "t.csv", "--urdf", arm, *UNITS)
+    assert code == 0
+    assert err.count("deceleration has its own limit at joint swing") == 1
+    case = load_case("out.toml")
+    assert case.robot.joints == ("turn", "swing", "reach")
+    limits = case.problem().limits
+    assert limits.velocity == pytest.approx([2.5, 3.5, 0.125])
+    assert limits.acceleration == pytest.approx([9.0, 6.0, 0.5])
+    assert np.isinf(limits.jerk).all()
+    assert limits.position_lower == pytest.approx([-np.inf, -1.5, 0.0])
+    assert limits.position_upper == pytest.approx([np.inf, 2.25, 0.4])
+    text = Path("out.toml").read_text(encoding="utf-8")
+    said = "limits of velocity, acceleration and position from arm.urdf"
+    assert f'note = "way-points from t.csv; {said}"' in text
+    assert f"\n# L{said[1:]}\nvelocity = [2.5, 3.5, 0.125]\n" in text
+    assert 'velocity = ["rad/s", "rad/s", "m/s"]' in text
+
+
+def test_a_limit_that_is_given_takes_precedence_over_the_urdf(
+    run: Run, folder: Path, arm: str
+) -> None:
+    (folder / "t.csv").write_text("swing,turn\n10,20\n30,50\n", encoding="utf-8")
+    given = ("--velocity", "30", "--velocity-unit", "deg/s", "--acceleration-unit", "deg/s^2")
+    units = ("--position-unit", "deg", "--time-unit", "s")
+    assert run("new", "out.toml", "--from", "t.csv", "--urdf", arm, *given, *units)[0] == 0
+    limits = load_case("out.toml").problem().limits
+    assert limits.velocity == pytest.approx(np.radians([30.0, 30.0]))
+    assert limits.acceleration == pytest.approx([6.0, 9.0])
+    assert limits.position_upper == pytest.approx([2.25, np.inf])
+    text = Path("out.toml").read_text(encoding="utf-8")
+    assert "limits of acceleration and position from arm.urdf" in text
+    assert 'acceleration = "deg/s^2"' in text
+
+
+@pytest.mark.parametrize(
+    ("header", "words"),
+    [
+        ("trun,swing,reach", ("arm.urdf", "trun", "did you mean 'turn'?")),
+        ("1,2", ("t.csv", "numbers 2 joints", "has 3 with limits")),
+        ("1,2,3,4", ("t.csv", "numbers 4 joints", "(turn, swing, reach)")),
+        ("a,b,c", ("arm.urdf", "a: is no joint", "known: turn, swing, reach")),
+    ],
+)
+def test_joints_that_a_urdf_does_not_have(
+    run: Run, folder: Path, arm: str, header: str, words: tuple[str, ...]
+) -> None:
+    row = ",".join("0.1" for _ in header.split(","))
+    (folder / "t.csv").write_text(f"{header}\n{row}\n{row}2\n", encoding="utf-8")
+    units = ("--position-unit", "rad", "--time-unit", "s")
+    assert_refused(run("new", "out.toml", "--from", "t.csv", "--urdf", arm, *units), *words)
+    assert not Path("out.toml").exists()
+
+
+def test_a_joint_that_lacks_a_limit_which_others_have(run: Run, folder: Path) -> None:
+    (folder / "arm.urdf").write_text(URDF.replace(' velocity="3.5"', ""), encoding="utf-8")
+    (folder / "t.csv").write_text(f"turn,swing,reach\n{ROWS}", encoding="utf-8")
+    ended = run("new", "out.toml", "--from", "t.csv", "--urdf", "arm.urdf", *UNITS)
+    assert_refused(ended, "arm.urdf", "velocity of joint swing: no limit is stated")
 
 
 def test_new_tells_all_missing_units_and_wrong_options_at_once(

@@ -64,6 +64,17 @@ def test_unequal_sides_are_kept_as_they_are(run: Run, table: str) -> None:
     assert found["total_time"] == again["total_time"]
 
 
+def test_joints_that_are_only_numbered_are_those_of_the_urdf(run: Run, table: str) -> None:
+    urdf, path = Path(table).parent / "arm.urdf", Path(table)
+    arguments = (table, "--urdf", str(urdf), "--units", "deg", "--family", "cubic-spline-virtual")
+    named = answered(run, *arguments, said="its own limit at joint shoulder; here")
+    text = path.read_text(encoding="utf-8")
+    path.write_text(text.replace("shoulder,elbow", "1,2"), encoding="utf-8")
+    numbered = answered(run, *arguments, said="its own limit at joint shoulder; here")
+    assert numbered["total_time"] == named["total_time"]
+    assert [one["joint"] for one in numbered["active"]] == [one["joint"] for one in named["active"]]
+
+
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [

@@ -5,6 +5,7 @@ import trajgap as tg
 from support.drawn import DURATIONS, PROBLEM, STEPS, fall, sound
 from trajgap.compare import AuditReport, CaseAudit, Study
 from trajgap.problem import InNotebooks, TrajgapError
+from trajgap.problem.motions import JointLimits, as_motion
 
 
 @pytest.fixture(scope="module")
@@ -46,6 +47,15 @@ def test_an_audit_is_drawn_where_it_has_one_case_with_an_optimum() -> None:
         tg.plot(empty)
     with pytest.raises(TrajgapError, match=r"the audit has 2 cases; plot one of \.cases"):
         tg.plot(AuditReport((drawn, empty)))
+
+
+def test_a_motion_from_elsewhere_with_its_limits(problem: tg.Problem, best: tg.Solution) -> None:
+    limits = JointLimits.of(problem.limits, problem.joints)
+    motion = as_motion(best.trajectory.polynomial, problem.joints)
+    assert "joint 2: largest jerk" in sound(lambda: tg.plot(motion, limits))
+    assert "largest velocity" in tg.plot(best.sample(0.01), limits).description
+    with pytest.raises(TrajgapError, match=r"give the limits beside the motion"):
+        tg.plot(motion)
 
 
 def test_what_cannot_be_drawn_says_why(problem: tg.Problem) -> None:

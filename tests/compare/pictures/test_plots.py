@@ -13,7 +13,8 @@ import pytest
 from matplotlib.text import Text
 from support.drawn import DURATIONS, STEPS, fall, sound
 from trajgap.compare.pictures.drawing import THEME, Picture, embedded, shown, svg
-from trajgap.compare.pictures.motion import beyond, motion_picture
+from trajgap.compare.pictures.motion import motion_picture
+from trajgap.compare.pictures.traced import beyond
 from trajgap.compare.pictures.waterfall import waterfall_picture
 from trajgap.problem import Limits, Problem, TrajgapError, extrema, fit
 from trajgap.problem.curves.uniform import TimedUniformBSpline

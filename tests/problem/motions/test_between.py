@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings, strategies as st
 from trajgap.problem import Array, TrajgapError, Verdict
 from trajgap.problem.motions import JointLimits, Samples, check_samples, divided
-from trajgap.problem.motions.divided import divided_extremes
+from trajgap.problem.motions.divided import divided_extremes, neighbours
 
 NAMES = ("1", "2")
 
@@ -223,3 +223,24 @@ def test_samples_whose_order_is_not_known_prove_nothing() -> None:
     found, widest = divided_extremes(times, values, 1, 1, np.zeros(1), 0.3)
     np.testing.assert_array_equal(found[0, 1, :1], [1.0])
     assert widest[0] == np.inf
+
+
+@pytest.mark.parametrize("order", [0, 1, 2, 3])
+def test_what_neighbours_prove_is_reached_within_their_window(order):
+    """The mean value theorem, by a dense look at the true motion, whatever columns are there."""
+    rng = np.random.default_rng(order)
+    value, _ = waves(rng)
+    time = np.cumsum(rng.uniform(0.02, 0.04, 40))
+    shaken = value(time, 0) + rng.uniform(-1e-6, 1e-6, (40, 2))
+    for columns in ({}, {"velocity": value(time, 1)}):
+        samples = Samples(("a", "b"), time, shaken, noise=1e-6, **columns)
+        middles, found, errors = neighbours(samples, order)
+        steps = max(0, order - len(columns))
+        np.testing.assert_allclose(middles, 0.5 * (time[: 40 - steps] + time[steps:]))
+        if not steps and order:
+            assert errors.max() < 1e-12  # velocities are not as noisy as positions
+        for k, at in enumerate(middles):
+            dense = value(np.linspace(at - 0.07, at + 0.07, 400), order)
+            off = errors[k] + 1e-3 * np.ptp(dense, axis=0)
+            assert (found[k] >= dense.min(axis=0) - off).all()
+            assert (found[k] <= dense.max(axis=0) + off).all()

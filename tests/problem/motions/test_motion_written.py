@@ -264,3 +264,61 @@ def test_steps_of_roundings_length_are_no_pieces():
     motion = as_motion(still)
     np.testing.assert_allclose(motion.durations, [500.0, 500.0])
     same(motion, lambda t, order: [[t, 2.0 * t], [1.0, 2.0], [0.0, 0.0]][order])
+
+
+def stamped(message, clock):
+    """A message of ROS as an object with the fields of its clock."""
+    points = []
+    for one in message["points"]:
+        at = one["time_from_start"]
+        named = dict(zip(clock, (at["sec"], at["nanosec"]), strict=True))
+        fields = one | {"time_from_start": SimpleNamespace(**named)}
+        points.append(SimpleNamespace(**{k: tuple(v) if v == [] else v for k, v in fields.items()}))
+    return SimpleNamespace(joint_names=message["joint_names"], points=points)
+
+
+def test_a_message_of_ros_is_the_motion_that_its_controller_follows():
+    text = motion_text(motion(), MotionForm.ROS, 0.05, NAMES)
+    plain = json.loads(text)
+    truth = read_back(text, MotionForm.ROS, "x")
+    given = [plain, {"goal": {"trajectory": plain}}]
+    given += [stamped(plain, clock) for clock in (("sec", "nanosec"), ("secs", "nsecs"))]
+    for one in given:
+        found = as_motion(one)
+        assert found.joints == NAMES
+        np.testing.assert_array_equal(found.breaks, truth.breaks)
+        np.testing.assert_array_equal(found.scaled, truth.scaled)
+    for joints in (NAMES, ()):
+        assert as_motion(plain, joints).joints == NAMES
+    with pytest.raises(TrajgapError, match="the message itself names j1, j2; leave them out"):
+        as_motion(plain, ("a", "b"))
+
+
+def test_a_message_as_rosbags_has_it():
+    typesys = pytest.importorskip("rosbags.typesys")
+    types = typesys.get_typestore(typesys.Stores.ROS2_HUMBLE).types
+    of = {name.rpartition("/")[2]: one for name, one in types.items()}
+    none = np.empty(0)
+    points = [
+        of["JointTrajectoryPoint"](
+            np.array(q), np.zeros(2), none, none, of["Duration"](sec, nanosec)
+        )
+        for q, sec, nanosec in (([0.1, 0.2], 0, 0), ([0.5, 0.1], 1, 500_000_000))
+    ]
+    header = of["Header"](of["Time"](0, 0), "")
+    found = as_motion(of["JointTrajectory"](header, list(NAMES), points))
+    np.testing.assert_array_equal(found.breaks, [0.0, 1.5])
+    np.testing.assert_allclose(found([0.0, 0.75, 1.5]), [[0.1, 0.2], [0.3, 0.15], [0.5, 0.1]])
+
+
+def test_messages_without_one_trajectory_are_refused():
+    with pytest.raises(TrajgapError, match="the message holds 0 trajectories; give one"):
+        as_motion({"points": []})
+    plain = json.loads(motion_text(motion(), MotionForm.ROS, 0.5, NAMES))
+    with pytest.raises(TrajgapError, match="the message holds 2 trajectories; give one"):
+        as_motion({"trajectory": [plain, plain]})
+    lost = SimpleNamespace(joint_names=["a"], points=[SimpleNamespace(positions=[0.0])] * 2)
+    with pytest.raises(
+        TrajgapError, match=r"JointTrajectory: points\[0\].time_from_start: is missing"
+    ):
+        as_motion(lost)
