@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from copy import copy
 from dataclasses import replace
 from pathlib import Path
@@ -16,10 +15,7 @@ from ...heuristics import (
     Algorithm,
     DeathPenalty,
     JointRuns,
-    Run,
     from_settings,
-    run_many,
-    run_many_per_joint,
 )
 from ...nlp import (
     ExactProblem,
@@ -46,20 +42,16 @@ from ...problem import (
 from ...problem.cases import AnyClaim, Claim, DurationsClaim, MotionValueClaim, TimeClaim
 from ..documents import capital, noted
 from .intervals import Intervals
+from .kept_replays import KeptReplays, Replays
 from .replay_settings import LISTED, spread_settings
 from .stated import in_words, in_words_among, printed_total, prints_durations
 
 T = TypeVar("T")
 SEEDS = 100
 """Seeds of a replay by default: independent runs enough for a probability to a few per cent."""
-Replays = tuple[Run, ...] | tuple[JointRuns, ...]
-"""Runs of one algorithm, one for each seed: of all joints, or of each joint by itself."""
 SPREAD_SEEDS = 3
 """Seeds under each of the spread settings, of which there are sixteen: enough to see a median
 move across them."""
-WORTH_PROCESSES = 50_000
-"""Iterations of all seeds of a replay from which further processes pay: fewer take some seconds
-side by side, and each process takes two to import what it needs."""
 
 
 class Pair(NamedTuple):
@@ -115,6 +107,7 @@ class Study:
         """What the study was kept to, and given beside; None where it was not."""
         self._progress = progress or (lambda _: None)
         self._kept: dict[tuple[Any, ...], Any] = {}
+        self._kept_replays = KeptReplays(cache)
         self.intervals = Intervals(certificates, certify_seconds, self._progress, cache)
 
     def progress(self, doing: str) -> None:
@@ -235,7 +228,7 @@ class Study:
 
     def called(self, algorithm_id: str) -> str:
         """An algorithm as a sentence calls it, by its name."""
-        return f"the {next(a.name for a in self.case.algorithms if a.id == algorithm_id)}"
+        return f"the {self._name(algorithm_id)}"
 
     def unreplayed(self, algorithm_id: str, pair: Pair) -> str | None:
         """Why an algorithm is not replayed on a problem, as a sentence; None if it is."""
@@ -260,20 +253,28 @@ class Study:
             return ()
         return self.once(
             ("runs", algorithm_id, pair),
-            lambda: self._replay(algorithm, algorithm_id, pair, self.seeds),
+            lambda: next(
+                iter(
+                    self._replayed(pair, {self._name(algorithm_id): algorithm}, self.seeds).values()
+                )
+            ),
         )
 
-    def _replay(self, algorithm: Algorithm[Any], name: str, pair: Pair, seeds: int) -> Replays:
-        problem = self.problem(pair)
-        called = next((a.name for a in self.case.algorithms if a.id == name), name)
-        self.progress(f"{seeds} replays of {called}; {in_words(self.case, *pair)}")
-        workers = self.workers
-        if workers is None:
-            long = seeds * algorithm.iterations >= WORTH_PROCESSES
-            workers = (os.cpu_count() or 1) if long else 1
-        if problem.coupling is Coupling.PER_JOINT and len(problem.joints) > 1:
-            return run_many_per_joint(algorithm, problem, range(seeds), workers)
-        return run_many(algorithm, problem, range(seeds), workers)
+    def _name(self, algorithm_id: str) -> str:
+        return next(a.name for a in self.case.algorithms if a.id == algorithm_id)
+
+    def _replayed(
+        self, pair: Pair, algorithms: Mapping[str, Algorithm[Any]], seeds: int
+    ) -> dict[str, Replays]:
+        """Replays of some algorithms, each under what it is called."""
+        where = in_words(self.case, *pair)
+        return self._kept_replays.replayed(
+            self.problem(pair),
+            algorithms,
+            seeds,
+            self.workers,
+            lambda called: self.progress(f"{seeds} replays of {called}; {where}"),
+        )
 
     def settings(self, algorithm_id: str) -> dict[str, Algorithm[Any]]:
         """The algorithm as listed, and under settings spread over all that the paper leaves open.
@@ -292,13 +293,12 @@ class Study:
             return {}
 
         def compute() -> dict[str, Replays]:
-            few = min(SPREAD_SEEDS, self.seeds)
-            return {
-                name: self.runs(algorithm_id, pair)
-                if name == LISTED
-                else self._replay(algorithm, f"{algorithm_id}, {name}", pair, few)
-                for name, algorithm in self.settings(algorithm_id).items()
-            }
+            named = self.settings(algorithm_id)
+            spread = {f"{algorithm_id}, {n}": one for n, one in named.items() if n != LISTED}
+            few = self._replayed(pair, spread, min(SPREAD_SEEDS, self.seeds))
+            others = [name for name in named if name != LISTED]
+            found = dict(zip(others, few.values(), strict=True))
+            return {LISTED: self.runs(algorithm_id, pair), **found}
 
         return self.once(("spread", algorithm_id, pair), compute)
 

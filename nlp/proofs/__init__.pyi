@@ -17,14 +17,16 @@ from .evidence import (
     with_interval,
 )
 from .exact import ExactProblem, decimal, exact_problem, printed_problem
-from .kept import cache_folder
+from .kept_files import UNREADABLE, KeptFiles, cache_folder, code_hash, folder_of
 from .outcome import Certified, Outcome, Progress
 from .proven_optimum import solve
 from .state import StateFile, read_state, state_document
 
 __all__ = [
+    "UNREADABLE",
     "Certified",
     "ExactProblem",
+    "KeptFiles",
     "Outcome",
     "Progress",
     "ProvedInterval",
@@ -34,10 +36,12 @@ __all__ = [
     "certificate",
     "certificate_text",
     "certify",
+    "code_hash",
     "covered",
     "decimal",
     "exact_problem",
     "fits",
+    "folder_of",
     "interval_of",
     "printed_problem",
     "printed_problem_or_none",
