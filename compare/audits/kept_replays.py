@@ -1,7 +1,6 @@
-"""Replays of earlier audits, kept in a folder of the user's and judged again before they count.
+"""Replays of an audit, kept in a folder of the user's for later ones.
 
-Nothing proves a replay but the same search. So every answer is judged again by the objective that
-the search had, a few of the searches are made again, and one bit that differs discards them all.
+Each answer is judged again by the objective that the search had, see `KeptFiles.answers`.
 """
 
 from __future__ import annotations
@@ -27,14 +26,8 @@ from ...heuristics import (
     run_many_per_joint,
 )
 from ...nlp import problem_seal
-from ...nlp.proofs import UNREADABLE, KeptFiles, code_hash, folder_of
-from ...problem import Array, Coupling, Problem, TrajgapError
-from ...verify import seal
-
-AGAIN = 100
-"""Runs of which one is made again, and at least one of each group: a hundredth of the searches
-finds out whether this machine computes what the one that kept them did."""
-
+from ...nlp.proofs import KeptFiles, as_text, code_hash, folder_of, from_text
+from ...problem import Coupling, Problem, TrajgapError
 
 WORTH_PROCESSES = 50_000
 """Iterations of all seeds of a replay from which further processes pay: fewer take some seconds
@@ -84,13 +77,14 @@ class KeptReplays:
             question = _question(asked)
         except TrajgapError:  # a curve that no exact problem has
             return tuple(compute())
-        try:
-            return _judged(asked, question, self._files.read(question))
-        except UNREADABLE:
-            found = tuple(compute())
-        left = [_left(run) for run in found]
-        self._files.write(question, {"runs": left, "seal": seal([question, left])})
-        return found
+        return self._files.answers(
+            question,
+            len(asked),
+            compute,
+            _left,
+            lambda at, left: _judged(*asked[at], *left),
+            lambda at: run_asked(asked[at].algorithm, [asked[at].question])[0],
+        )
 
     def replayed(
         self,
@@ -183,34 +177,19 @@ def _settings(algorithm: Algorithm[Any]) -> list[str]:
 def _left(run: Run) -> list[Any]:
     """What a search left, as text: its position, its evaluations, and where its trace falls."""
     falls = [0, *(1 + np.flatnonzero(run.trace[1:] < run.trace[:-1])).tolist()]
-    return [_text(run.position), run.evaluations, falls, _text(run.trace[falls])]
-
-
-def _text(values: Array) -> str:
-    return " ".join(map(repr, values.tolist()))
-
-
-def _numbers(text: str) -> Array:
-    return np.array([float(word) for word in text.split(" ")])
+    return [as_text(run.position), run.evaluations, falls, as_text(run.trace[falls])]
 
 
 def _judged(
-    asked: Sequence[AskedReplay], question: dict[str, Any], kept: dict[str, Any]
-) -> tuple[Run, ...]:
-    """The runs of a file; raises one of `UNREADABLE` where it is not what these searches leave."""
-    left = kept["runs"]
-    if kept["seal"] != seal([question, left]):
-        raise ValueError("altered")
-    found = []
-    for (algorithm, one), (position, evaluations, falls, totals) in zip(asked, left, strict=True):
-        trace = np.empty(algorithm.iterations + 1)
-        for start, total in zip(falls, _numbers(totals), strict=True):
-            trace[start:] = total
-        found.append(run_as_left(algorithm, one, trace, _numbers(position), int(evaluations)))
-    rng = np.random.default_rng(int(kept["seal"], 16))
-    count = -(-len(asked) // AGAIN)
-    for at in rng.choice(len(asked), count, replace=False).tolist():
-        (again,) = run_asked(asked[at].algorithm, [asked[at].question])
-        if _left(again) != left[at]:
-            raise ValueError("another run")
-    return tuple(found)
+    algorithm: Algorithm[Any],
+    question: AskedRun,
+    position: str,
+    evaluations: int,
+    falls: list[int],
+    totals: str,
+) -> Run:
+    """The run that left this; raises if it is not what such a search leaves."""
+    trace = np.empty(algorithm.iterations + 1)
+    for start, total in zip(falls, from_text(totals), strict=True):
+        trace[start:] = total
+    return run_as_left(algorithm, question, trace, from_text(position), evaluations)

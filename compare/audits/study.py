@@ -28,6 +28,7 @@ from ...nlp import (
     with_interval,
 )
 from ...nlp.optimum import OPTIMUM_SLACK, free_values, longest_status, solve, with_other_route
+from ...nlp.proofs import KeptNearby
 from ...problem import (
     Array,
     Case,
@@ -107,7 +108,8 @@ class Study:
         """What the study was kept to, and given beside; None where it was not."""
         self._progress = progress or (lambda _: None)
         self._kept: dict[tuple[Any, ...], Any] = {}
-        self._kept_replays = KeptReplays(cache)
+        self.kept_replays = KeptReplays(cache)
+        self._kept_nearby = KeptNearby(cache)
         self.intervals = Intervals(certificates, certify_seconds, self._progress, cache)
 
     def progress(self, doing: str) -> None:
@@ -228,7 +230,7 @@ class Study:
 
     def called(self, algorithm_id: str) -> str:
         """An algorithm as a sentence calls it, by its name."""
-        return f"the {self._name(algorithm_id)}"
+        return f"the {next(a.name for a in self.case.algorithms if a.id == algorithm_id)}"
 
     def unreplayed(self, algorithm_id: str, pair: Pair) -> str | None:
         """Why an algorithm is not replayed on a problem, as a sentence; None if it is."""
@@ -253,27 +255,20 @@ class Study:
             return ()
         return self.once(
             ("runs", algorithm_id, pair),
-            lambda: next(
-                iter(
-                    self._replayed(pair, {self._name(algorithm_id): algorithm}, self.seeds).values()
-                )
-            ),
+            lambda: self._replayed(pair, algorithm_id, {LISTED: algorithm}, self.seeds)[LISTED],
         )
 
-    def _name(self, algorithm_id: str) -> str:
-        return next(a.name for a in self.case.algorithms if a.id == algorithm_id)
-
     def _replayed(
-        self, pair: Pair, algorithms: Mapping[str, Algorithm[Any]], seeds: int
+        self, pair: Pair, name: str, settings: Mapping[str, Algorithm[Any]], seeds: int
     ) -> dict[str, Replays]:
-        """Replays of some algorithms, each under what it is called."""
+        """Replays of an algorithm under some settings, each under its words."""
         where = in_words(self.case, *pair)
-        return self._kept_replays.replayed(
+        return self.kept_replays.replayed(
             self.problem(pair),
-            algorithms,
+            settings,
             seeds,
             self.workers,
-            lambda called: self.progress(f"{seeds} replays of {called}; {where}"),
+            lambda words: self.progress(f"{seeds} replays of {name}, {words}; {where}"),
         )
 
     def settings(self, algorithm_id: str) -> dict[str, Algorithm[Any]]:
@@ -293,12 +288,9 @@ class Study:
             return {}
 
         def compute() -> dict[str, Replays]:
-            named = self.settings(algorithm_id)
-            spread = {f"{algorithm_id}, {n}": one for n, one in named.items() if n != LISTED}
-            few = self._replayed(pair, spread, min(SPREAD_SEEDS, self.seeds))
-            others = [name for name in named if name != LISTED]
-            found = dict(zip(others, few.values(), strict=True))
-            return {LISTED: self.runs(algorithm_id, pair), **found}
+            others = {n: one for n, one in self.settings(algorithm_id).items() if n != LISTED}
+            few = self._replayed(pair, algorithm_id, others, min(SPREAD_SEEDS, self.seeds))
+            return {LISTED: self.runs(algorithm_id, pair), **few}
 
         return self.once(("spread", algorithm_id, pair), compute)
 
@@ -362,6 +354,7 @@ class Study:
                     problem,
                     slacks=tuple(slacks),
                     solver=lambda one: self.optimum(pair, one.joints[0]),
+                    search=self._kept_nearby,
                 )
             except TrajgapError as error:
                 joints = tuple(self.optimum(pair, label) for label in problem.joints)

@@ -17,21 +17,23 @@ from .evidence import (
     with_interval,
 )
 from .exact import ExactProblem, decimal, exact_problem, printed_problem
-from .kept_files import UNREADABLE, KeptFiles, cache_folder, code_hash, folder_of
+from .kept_files import KeptFiles, as_text, cache_folder, code_hash, folder_of, from_text
+from .kept_nearby import KeptNearby
 from .outcome import Certified, Outcome, Progress
 from .proven_optimum import solve
 from .state import StateFile, read_state, state_document
 
 __all__ = [
-    "UNREADABLE",
     "Certified",
     "ExactProblem",
     "KeptFiles",
+    "KeptNearby",
     "Outcome",
     "Progress",
     "ProvedInterval",
     "StateFile",
     "allowance",
+    "as_text",
     "cache_folder",
     "certificate",
     "certificate_text",
@@ -42,6 +44,7 @@ __all__ = [
     "exact_problem",
     "fits",
     "folder_of",
+    "from_text",
     "interval_of",
     "printed_problem",
     "printed_problem_or_none",

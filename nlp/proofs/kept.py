@@ -108,7 +108,7 @@ def _asked(problem: ExactProblem, subject: Subject, gap: float, seed: int) -> di
         "subject": str(subject),
         "gap": repr(float(gap)),
         "seed": seed,
-        "code": _code(),
+        "code": search_code(),
     }
 
 
@@ -135,7 +135,7 @@ def _settled(found: Certified, gap: float) -> bool:
     return found.upper - found.lower <= Fraction(gap) * found.upper
 
 
-def _code() -> str:
+def search_code() -> str:
     """Hash of the exact side, of the problem and of the verifier."""
     own = folder_of(Certified).parent
     return code_hash(own, folder_of(TrajgapError), folder_of(Refused))

@@ -11,12 +11,15 @@ import inspect
 import json
 import os
 import sys
+from collections.abc import Callable, Iterable
 from contextlib import suppress
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
-from ...problem import TrajgapError, replace_file
+import numpy as np
+
+from ...problem import Array, TrajgapError, replace_file
 from ...verify import read_document, seal
 
 VARIABLE = "TRAJGAP_CACHE"
@@ -27,6 +30,11 @@ UNREADABLE = (OSError, LookupError, TypeError, ValueError, ArithmeticError, Recu
 """What a file of any content may raise while it is read; `Refused` is a `ValueError`."""
 _LIBRARIES = ("casadi", "numba", "numpy", "scipy")
 """What searches compute with: another version may find another answer to the same question."""
+AGAIN = 100
+"""Searches of which one is made again, and at least one of each group: a hundredth of the work
+finds out whether this machine computes what the one that kept them did."""
+
+A = TypeVar("A")
 
 
 def cache_folder() -> Path | None:
@@ -109,6 +117,58 @@ class KeptFiles:
             replace_file(self._file(asked), text + "\n")
             self._make_room()
 
+    def answers(
+        self,
+        question: object,
+        count: int,
+        compute: Callable[[], Iterable[A]],
+        left: Callable[[A], Any],
+        judged: Callable[[int, Any], A],
+        again: Callable[[int], A],
+    ) -> tuple[A, ...]:
+        """The answers of some searches: what earlier ones left, or else found now and kept.
+
+        Nothing proves what a search finds but the same search. So each answer is judged again, a
+        few of the searches are made again, and one bit that differs discards all of them.
+
+        Parameters
+        ----------
+        question : object
+            As in `read`.
+        count : int
+            Number of the searches.
+        compute : callable
+            Makes all of them.
+        left : callable
+            An answer as JSON without floats, to the last bit.
+        judged : callable
+            The answer of a search, by its place and what was left; raises one of `UNREADABLE` if no
+            search leaves that.
+        again : callable
+            Makes the search at one place.
+
+        Returns
+        -------
+        tuple
+        """
+        if not self.used:
+            return tuple(compute())
+        try:
+            kept = self.read(question)
+            parts = kept["answers"]
+            if kept["seal"] != seal([question, parts]) or len(parts) != count:
+                raise ValueError("altered")
+            found = tuple(judged(at, part) for at, part in enumerate(parts))
+            rng = np.random.default_rng(int(kept["seal"], 16))
+            for at in rng.choice(count, -(-count // AGAIN), replace=False).tolist():
+                if left(again(at)) != parts[at]:
+                    raise ValueError("another answer")
+        except UNREADABLE:
+            found = tuple(compute())
+            parts = [left(one) for one in found]
+            self.write(question, {"answers": parts, "seal": seal([question, parts])})
+        return found
+
     def _file(self, asked: object) -> Path:
         assert self._folder is not None
         return self._folder / f"{seal(asked)}.json"
@@ -144,3 +204,13 @@ def code_hash(*folders: Path) -> str:
 def folder_of(known: type) -> Path:
     """The folder of the module in which a class is defined."""
     return Path(inspect.getfile(known)).parent
+
+
+def as_text(values: Array) -> str:
+    """An array of one axis as text, to the last bit; `from_text` reads it."""
+    return " ".join(map(repr, values.tolist()))
+
+
+def from_text(text: str) -> Array:
+    """The array of `as_text`; raises one of `UNREADABLE` if it is none."""
+    return np.array([float(word) for word in text.split(" ")])

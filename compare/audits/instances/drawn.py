@@ -6,6 +6,7 @@ import os
 from collections.abc import Callable, Iterable
 from contextlib import ExitStack, closing
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any, cast
 
 import numpy as np
@@ -27,6 +28,7 @@ from ....problem import (
 from ....problem.cases import Claim, ImprovementClaim, InstancesBlock, instance_waypoints
 from ...documents import Procedure
 from ...gaps import SETTLED, settled_at
+from ..kept_replays import AskedReplay, KeptReplays
 from ..study import Study
 from .result import InstancesResult, Optimum, Sample
 
@@ -50,6 +52,7 @@ class Task:
     """Of the slower and of the faster procedure."""
     runs: int
     objectives: tuple[str, ...]
+    replays: KeptReplays
 
 
 def examine(
@@ -101,7 +104,7 @@ def _of_task(task: Task) -> tuple[Sample, ...]:
         for problem, algorithm in each
         for objective in task.objectives
     ]
-    _run_all(kept, asked, task.runs)
+    _run_all(kept, asked, task.runs, task.replays)
     found = []
     for reading, each in zip(task.readings, routes, strict=True):
         totals = np.empty((len(task.objectives), _ROUTES, task.runs))
@@ -149,7 +152,12 @@ def _key(problem: Problem) -> tuple[object, ...]:
     return (problem.curve, *(array.tobytes() for array in arrays))
 
 
-def _run_all(kept: Kept, asked: Iterable[tuple[Problem, Algorithm[Any], str]], runs: int) -> None:
+def _run_all(
+    kept: Kept,
+    asked: Iterable[tuple[Problem, Algorithm[Any], str]],
+    runs: int,
+    replays: KeptReplays,
+) -> None:
     """Keep what every run gives, each once: all runs of an algorithm are moved side by side."""
     todo: dict[Algorithm[Any], dict[tuple[object, ...], AskedRun]] = {}
     for problem, algorithm, objective in asked:
@@ -159,7 +167,9 @@ def _run_all(kept: Kept, asked: Iterable[tuple[Problem, Algorithm[Any], str]], r
             one = AskedRun(problem, seed, (), objective)
             todo.setdefault(algorithm, {}).setdefault(key, one)
     for algorithm, questions in todo.items():
-        ran = run_asked(algorithm, list(questions.values()))
+        together = list(questions.values())
+        named = [AskedReplay(algorithm, one) for one in together]
+        ran = replays.runs(named, partial(run_asked, algorithm, together))
         for (key, question), done in zip(questions.items(), ran, strict=True):
             kept[key] = _judged(question.problem, done)
 
@@ -299,6 +309,7 @@ def _examined(study: Study, block: InstancesBlock) -> InstancesResult:
             algorithms=(first, last),
             runs=block.runs,
             objectives=block.objectives,
+            replays=study.kept_replays,
         )
         for step, instances in zip(block.lengths, drawn, strict=True)
         for index, points in enumerate(instances)

@@ -125,8 +125,8 @@ def forged(change: Callable[[list[Any]], object]) -> Callable[[bytes], bytes]:
 
     def spoiled(content: bytes) -> bytes:
         stored = json.loads(content)
-        change(stored["runs"])
-        stored["seal"] = seal([kept_replays._question(some()), stored["runs"]])
+        change(stored["answers"])
+        stored["seal"] = seal([kept_replays._question(some()), stored["answers"]])
         return json.dumps(stored).encode()
 
     return spoiled
@@ -139,7 +139,7 @@ def longer(text: str) -> str:
 
 def altered(content: bytes) -> bytes:
     stored = json.loads(content)
-    stored["runs"][1][1] += 1
+    stored["answers"][1][1] += 1
     return json.dumps(stored).encode()
 
 

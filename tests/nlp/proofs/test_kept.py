@@ -109,7 +109,7 @@ def test_another_question_is_searched(tmp_path, searches):
 
 def test_what_another_version_kept_is_not_looked_at(tmp_path, searches, monkeypatch):
     certify(shifted_problem(), gap=GAP, cache=tmp_path)
-    monkeypatch.setattr(kept, "_code", lambda: "another version")
+    monkeypatch.setattr(kept, "search_code", lambda: "another version")
     assert not certify(shifted_problem(), gap=GAP, cache=tmp_path).kept
     assert len(list(tmp_path.glob("*.json"))) == 2
 
