@@ -108,6 +108,7 @@ class Study:
         """What the study was kept to, and given beside; None where it was not."""
         self._progress = progress or (lambda _: None)
         self._kept: dict[tuple[Any, ...], Any] = {}
+        self.cache = cache
         self.kept_replays = KeptReplays(cache)
         self._kept_nearby = KeptNearby(cache)
         self.intervals = Intervals(certificates, certify_seconds, self._progress, cache)

@@ -17,6 +17,7 @@ from .evidence import (
     with_interval,
 )
 from .exact import ExactProblem, decimal, exact_problem, printed_problem
+from .kept import search_code
 from .kept_files import KeptFiles, as_text, cache_folder, code_hash, folder_of, from_text
 from .kept_nearby import KeptNearby
 from .outcome import Certified, Outcome, Progress
@@ -51,6 +52,7 @@ __all__ = [
     "problem_seal",
     "proved",
     "read_state",
+    "search_code",
     "shipped",
     "shipped_file",
     "solve",

@@ -13,7 +13,6 @@ import numpy as np
 
 from ....heuristics import Algorithm, AskedRun, Run, compile_judge, in_processes, run_asked
 from ....nlp import Solution
-from ....nlp.optimum import solve
 from ....problem import (
     TOLERANCE,
     Array,
@@ -30,6 +29,7 @@ from ...documents import Procedure
 from ...gaps import SETTLED, settled_at
 from ..kept_replays import AskedReplay, KeptReplays
 from ..study import Study
+from .kept_optima import AskedOptimum, KeptOptima
 from .result import InstancesResult, Optimum, Sample
 
 STARTS = 2
@@ -53,6 +53,7 @@ class Task:
     runs: int
     objectives: tuple[str, ...]
     replays: KeptReplays
+    optima: KeptOptima
 
 
 def examine(
@@ -105,6 +106,7 @@ def _of_task(task: Task) -> tuple[Sample, ...]:
         for objective in task.objectives
     ]
     _run_all(kept, asked, task.runs, task.replays)
+    _solve_all(kept, [problem for each in routes for problem, _ in each], task.optima)
     found = []
     for reading, each in zip(task.readings, routes, strict=True):
         totals = np.empty((len(task.objectives), _ROUTES, task.runs))
@@ -123,8 +125,8 @@ def _of_task(task: Task) -> tuple[Sample, ...]:
                 step=task.step,
                 index=task.index,
                 waypoints=task.waypoints,
-                slower=_optimum(kept, one),
-                faster=_optimum(kept, other),
+                slower=kept[_key(one)],
+                faster=kept[_key(other)],
                 totals=totals,
                 settled=settled,
             )
@@ -182,14 +184,15 @@ def _judged(problem: Problem, done: Run) -> tuple[float, int]:
     return total, settled_at(done.trace, SETTLED * total)
 
 
-def _optimum(kept: Kept, problem: Problem) -> Optimum:
-    key = _key(problem)
-    if key not in kept:
+def _solve_all(kept: Kept, problems: Iterable[Problem], optima: KeptOptima) -> None:
+    """Keep the optimum of every problem, each once."""
+    asked: dict[tuple[object, ...], AskedOptimum] = {}
+    for problem in problems:
         polynomials = as_piecewise(problem.curve)
         alone = polynomials is not None and set(polynomials.continuity) <= {0}
-        kept[key] = _ended(solve(problem, starts=1 if alone else STARTS))
-    known: Optimum = kept[key]
-    return known
+        asked.setdefault(_key(problem), AskedOptimum(problem, 1 if alone else STARTS))
+    solved = optima.solved(list(asked.values()))
+    kept.update(zip(asked, map(_ended, solved), strict=True))
 
 
 def _ended(solution: Solution) -> Optimum:
@@ -310,6 +313,7 @@ def _examined(study: Study, block: InstancesBlock) -> InstancesResult:
             runs=block.runs,
             objectives=block.objectives,
             replays=study.kept_replays,
+            optima=KeptOptima(study.cache),
         )
         for step, instances in zip(block.lengths, drawn, strict=True)
         for index, points in enumerate(instances)
