@@ -6,10 +6,13 @@ from .limit_rows import exact_rows
 from .optimality import KKT, KKT_TOLERANCE, Active, kkt
 from .other_route import with_other_route
 from .per_joint import (
+    LEFT,
     OPTIMUM_SLACK,
+    Near,
     PerJointSolution,
     Range,
     longest_status,
+    nearby,
     solve_per_joint,
 )
 from .pieces import ca
@@ -23,11 +26,13 @@ __all__ = [
     "KEPT",
     "KKT",
     "KKT_TOLERANCE",
+    "LEFT",
     "OPTIMUM_SLACK",
     "SAME",
     "STARTS",
     "Active",
     "Evidence",
+    "Near",
     "PerJointSolution",
     "Program",
     "Range",
@@ -42,6 +47,7 @@ __all__ = [
     "free_values",
     "kkt",
     "longest_status",
+    "nearby",
     "random_starts",
     "seconds_left",
     "solve",

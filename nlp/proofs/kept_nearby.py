@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from ...problem import TOLERANCE, Array, check
-from ..optimum.per_joint import LEFT, Near, nearby
+from ..optimum import LEFT, Near, nearby
 from .document import problem_seal
 from .kept import search_code
 from .kept_files import KeptFiles, as_text, from_text
