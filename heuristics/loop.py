@@ -10,7 +10,7 @@ from typing import Annotated, Any, TypeVar, cast
 
 import numpy as np
 
-from ..problem import Array, Problem
+from ..problem import Array, Problem, TrajgapError
 from .algorithm import Algorithm, S, Search, State
 from .budget import searched
 from .objective import Bounds, Counted, Objective
@@ -147,13 +147,45 @@ def run_asked(method: Method, questions: Sequence[AskedRun]) -> list[Run]:
     else:
         found = [_alone(method, start) for start in starts]
     return [
-        _answered(method, one, start, *each)
+        _answered(method, one, start.judge, *each)
         for one, start, each in zip(questions, starts, found, strict=True)
     ]
 
 
+def run_as_left(
+    method: Method, question: AskedRun, trace: Array, position: Array, evaluations: int
+) -> Run:
+    """The run that an earlier search left behind, with its answer judged again.
+
+    Parameters
+    ----------
+    method : Algorithm or Search
+    question : AskedRun
+    trace, position, evaluations
+        As the attributes of `Run`.
+
+    Returns
+    -------
+    Run
+
+    Raises
+    ------
+    TrajgapError
+        As `run`, or if this is not what a search can leave: the objective gives the position
+        another total than the trace ends with, to the last bit, or the trace is no best so far.
+    """
+    judge = judge_of(question.problem, method.penalty, question.handling)
+    if position.shape != (question.problem.segments,) or trace.shape != (method.iterations + 1,):
+        raise TrajgapError("run: its position or trace is of another size")
+    total = float(judge(position[None])[0])
+    ended = total if total < method.penalty else np.inf
+    if ended != trace[-1] or not (trace[1:] <= trace[:-1]).all():
+        raise TrajgapError(f"run: its trace does not go down to {ended} s")
+    return _answered(method, question, judge, trace, position, evaluations)
+
+
 def _answered(
-    method: Method, one: AskedRun, start: Start, trace: Array, position: Array, evaluations: int
+    method: Method, one: AskedRun, judge: Judge, trace: Array, position: Array, evaluations: int
 ) -> Run:
     trace[trace >= method.penalty] = np.inf
     return Run(
@@ -162,7 +194,7 @@ def _answered(
         problem=one.problem.name,
         seed=one.seed,
         stream=one.stream,
-        durations=start.judge.decode(position[None])[0],
+        durations=judge.decode(position[None])[0],
         reported_time=float(trace[-1]),
         trace=trace,
         evaluations=evaluations,
@@ -255,8 +287,20 @@ def run_per_joint(
     return _joints_seeds(algorithm, problem, iterations, objective, (root,))[0]
 
 
-def _joined(problem: Problem, seed: int, runs: tuple[Run, ...]) -> JointRuns:
-    """Runs of the joints as one: every segment takes the longest of them."""
+def joined_runs(problem: Problem, seed: int, runs: tuple[Run, ...]) -> JointRuns:
+    """Runs of the joints as one: every segment takes the longest of them.
+
+    Parameters
+    ----------
+    problem : Problem
+        With all joints.
+    seed : int
+    runs : tuple of Run, one per joint
+
+    Returns
+    -------
+    JointRuns
+    """
     durations = np.max([one.durations for one in runs], axis=0)
     feasible = all(one.feasible for one in runs)
     return JointRuns(
@@ -318,7 +362,7 @@ def _joints_seeds(
     asked = [AskedRun(one, s, (j,), objective) for j, one in enumerate(joints) for s in seeds]
     runs = run_asked(record, asked)
     count = len(seeds)
-    return tuple(_joined(problem, s, tuple(runs[i::count])) for i, s in enumerate(seeds))
+    return tuple(joined_runs(problem, s, tuple(runs[i::count])) for i, s in enumerate(seeds))
 
 
 def run_many(

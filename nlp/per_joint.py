@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import itertools
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -38,15 +39,36 @@ OPTIONS = IPOPT_OPTIONS | {"ipopt.mu_init": 1e-4, "ipopt.tol": 1e-9}
 """Options of IPOPT, begun near a solution: with a small barrier."""
 
 
-def nearby(
-    problems: list[Problem], starts: list[Array], caps: list[float], weights: Array | None
-) -> list[Array]:
-    """Durations of some joints, each within its limits and its cap, at which an objective is least.
+class Near(NamedTuple):
+    """A question near known optima: durations of some joints at which an objective is least.
 
-    By rounds of the NLP near the starts, which are returned where nothing better was found: they
-    keep the limits and the caps on each joint's total, s. The objective is the weighted durations
-    of one joint, or without weights Σ_k max_j h_jk.
+    Each joint stays within its limits and its cap.
     """
+
+    problems: list[Problem]
+    """Of the joints, one for each."""
+    starts: list[Array]
+    """Durations that keep the limits and the caps, s."""
+    caps: list[float]
+    """Largest total of each joint, s."""
+    weights: Array | None
+    """Of the durations of the one joint in the objective; None for Σ_k max_j h_jk."""
+
+
+def nearby(question: Near) -> list[Array]:
+    """Durations of the joints, found by rounds of the NLP near the starts.
+
+    These are returned where nothing better was found.
+
+    Parameters
+    ----------
+    question : Near
+
+    Returns
+    -------
+    list of ndarray
+    """
+    problems, starts, caps, weights = question
     unit = float(np.mean(starts))
     programs = [Program(problem, unit, np.zeros(problem.segments)) for problem in problems]
     h, radius = starts, REGION
@@ -115,8 +137,15 @@ def _round(
     return found
 
 
+def _all_nearby(questions: list[Near]) -> Sequence[list[Array]]:
+    return [nearby(one) for one in questions]
+
+
 def longest_per_segment_range(
-    problems: list[Problem], optima: list[Array], slack: float
+    problems: list[Problem],
+    optima: list[Array],
+    slack: float,
+    search: Callable[[list[Near]], Sequence[list[Array]]] = _all_nearby,
 ) -> tuple[float, float]:
     """Lowest and highest Σ_k max_j h_jk, s, each joint within ``slack`` s of its optimum.
 
@@ -125,17 +154,21 @@ def longest_per_segment_range(
     """
     caps = [float(h.sum()) + slack for h in optima]
     given = float(np.max(optima, axis=0).sum())
-    lowest = float(np.max(nearby(problems, optima, caps, None), axis=0).sum())
     n = problems[0].segments
     every = tuple(range(n))
+    subsets = [some for size in range(1, n) for some in itertools.combinations(every, size)]
+    parts = [(j, subset) for subset in subsets for j in range(len(problems))]
+    questions = [Near(problems, optima, caps, None)]
+    questions += [
+        Near([problems[j]], [optima[j]], [caps[j]], -np.isin(every, subset).astype(np.float64))
+        for j, subset in parts
+    ]
+    least, *most = search(questions)
+    lowest = float(np.max(least, axis=0).sum())
     reach = {(j, every): cap for j, cap in enumerate(caps)}
-    for size in range(1, n):
-        for j, subset in itertools.product(
-            range(len(problems)), itertools.combinations(every, size)
-        ):
-            chosen = np.isin(every, subset)
-            (h,) = nearby([problems[j]], [optima[j]], [caps[j]], -chosen.astype(np.float64))
-            reach[j, subset] = float(max(optima[j][chosen].sum(), h[chosen].sum()))
+    for (j, subset), (h,) in zip(parts, most, strict=True):
+        chosen = np.isin(every, subset)
+        reach[j, subset] = float(max(optima[j][chosen].sum(), h[chosen].sum()))
     highest = max(
         sum(reach[j, tuple(k for k in every if setting[k] == j)] for j in set(setting))
         for setting in itertools.product(range(len(problems)), repeat=n)
@@ -224,6 +257,7 @@ def solve_per_joint(
     *,
     slacks: tuple[float, ...] = (OPTIMUM_SLACK,),
     solver: Callable[[Problem], Solution] = solve,
+    search: Callable[[list[Near]], Sequence[list[Array]]] = _all_nearby,
 ) -> PerJointSolution:
     """Optimise each joint by itself and take the longest duration of each segment.
 
@@ -239,6 +273,8 @@ def solve_per_joint(
         is reported; none for an empty tuple.
     solver : callable
         Answers the problem of one joint.
+    search : callable
+        Answers the questions behind the ranges, as `nearby` does each.
 
     Returns
     -------
@@ -283,7 +319,7 @@ def solve_per_joint(
             why = "ranges need an attained optimum of every joint"
         else:
             ranges = [
-                Range(slack, *longest_per_segment_range(singles, answers, slack))
+                Range(slack, *longest_per_segment_range(singles, answers, slack, search))
                 for slack in slacks
             ]
     seconds = time.perf_counter() - began

@@ -239,8 +239,9 @@ def audit(
     draft : bool
         Whether to say, for each case, what its author can change before submitting.
     cache : bool or Path
-        Whether proofs that the audit finds are kept for later ones, and those that were kept are
-        used once they are proved again: in the user's cache folder, or in the folder given.
+        Whether proofs that the audit finds, and replays, are kept for later ones, and those that
+        were kept are used once they are proved or judged again: in the user's cache folder, or in
+        the folder given.
 
     Returns
     -------

@@ -12,7 +12,8 @@ from ...nlp import PerJointSolution, Solution, printed_problem_or_none
 from ...problem import Case, Printed
 from ...problem.cases import AnyClaim
 from ..documents import Edit
-from .study import Pair, Replays, Study
+from .kept_replays import Replays
+from .study import Pair, Study
 
 CLAIM, READINGS = "claim", "readings"
 """Keys of edits that are no key of a claim: it is left out, or the text says what is meant."""

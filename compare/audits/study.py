@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from copy import copy
 from dataclasses import replace
 from pathlib import Path
@@ -16,10 +15,7 @@ from ...heuristics import (
     Algorithm,
     DeathPenalty,
     JointRuns,
-    Run,
     from_settings,
-    run_many,
-    run_many_per_joint,
 )
 from ...nlp import (
     OPTIMUM_SLACK,
@@ -35,6 +31,7 @@ from ...nlp import (
     with_other_route,
 )
 from ...nlp.optimum import free_values, solve
+from ...nlp.proofs import KeptNearby
 from ...problem import (
     Array,
     Case,
@@ -49,20 +46,16 @@ from ...problem import (
 from ...problem.cases import AnyClaim, Claim, DurationsClaim, MotionValueClaim, TimeClaim
 from ..documents import capital, noted
 from .intervals import Intervals
+from .kept_replays import KeptReplays, Replays
 from .replay_settings import LISTED, spread_settings
 from .stated import in_words, in_words_among, printed_total, prints_durations
 
 T = TypeVar("T")
 SEEDS = 100
 """Seeds of a replay by default: independent runs enough for a probability to a few per cent."""
-Replays = tuple[Run, ...] | tuple[JointRuns, ...]
-"""Runs of one algorithm, one for each seed: of all joints, or of each joint by itself."""
 SPREAD_SEEDS = 3
 """Seeds under each of the spread settings, of which there are sixteen: enough to see a median
 move across them."""
-WORTH_PROCESSES = 50_000
-"""Iterations of all seeds of a replay from which further processes pay: fewer take some seconds
-side by side, and each process takes two to import what it needs."""
 
 
 class Pair(NamedTuple):
@@ -118,6 +111,9 @@ class Study:
         """What the study was kept to, and given beside; None where it was not."""
         self._progress = progress or (lambda _: None)
         self._kept: dict[tuple[Any, ...], Any] = {}
+        self.cache = cache
+        self.kept_replays = KeptReplays(cache)
+        self._kept_nearby = KeptNearby(cache)
         self.intervals = Intervals(certificates, certify_seconds, self._progress, cache)
 
     def progress(self, doing: str) -> None:
@@ -263,20 +259,21 @@ class Study:
             return ()
         return self.once(
             ("runs", algorithm_id, pair),
-            lambda: self._replay(algorithm, algorithm_id, pair, self.seeds),
+            lambda: self._replayed(pair, algorithm_id, {LISTED: algorithm}, self.seeds)[LISTED],
         )
 
-    def _replay(self, algorithm: Algorithm[Any], name: str, pair: Pair, seeds: int) -> Replays:
-        problem = self.problem(pair)
-        called = next((a.name for a in self.case.algorithms if a.id == name), name)
-        self.progress(f"{seeds} replays of {called}; {in_words(self.case, *pair)}")
-        workers = self.workers
-        if workers is None:
-            long = seeds * algorithm.iterations >= WORTH_PROCESSES
-            workers = (os.cpu_count() or 1) if long else 1
-        if problem.coupling is Coupling.PER_JOINT and len(problem.joints) > 1:
-            return run_many_per_joint(algorithm, problem, range(seeds), workers)
-        return run_many(algorithm, problem, range(seeds), workers)
+    def _replayed(
+        self, pair: Pair, name: str, settings: Mapping[str, Algorithm[Any]], seeds: int
+    ) -> dict[str, Replays]:
+        """Replays of an algorithm under some settings, each under its words."""
+        where = in_words(self.case, *pair)
+        return self.kept_replays.replayed(
+            self.problem(pair),
+            settings,
+            seeds,
+            self.workers,
+            lambda words: self.progress(f"{seeds} replays of {name}, {words}; {where}"),
+        )
 
     def settings(self, algorithm_id: str) -> dict[str, Algorithm[Any]]:
         """The algorithm as listed, and under settings spread over all that the paper leaves open.
@@ -295,13 +292,9 @@ class Study:
             return {}
 
         def compute() -> dict[str, Replays]:
-            few = min(SPREAD_SEEDS, self.seeds)
-            return {
-                name: self.runs(algorithm_id, pair)
-                if name == LISTED
-                else self._replay(algorithm, f"{algorithm_id}, {name}", pair, few)
-                for name, algorithm in self.settings(algorithm_id).items()
-            }
+            others = {n: one for n, one in self.settings(algorithm_id).items() if n != LISTED}
+            few = self._replayed(pair, algorithm_id, others, min(SPREAD_SEEDS, self.seeds))
+            return {LISTED: self.runs(algorithm_id, pair), **few}
 
         return self.once(("spread", algorithm_id, pair), compute)
 
@@ -362,7 +355,10 @@ class Study:
             problem = self.problem(pair)
             try:
                 return solve_per_joint(
-                    problem, slacks=slacks, solver=lambda one: self.optimum(pair, one.joints[0])
+                    problem,
+                    slacks=slacks,
+                    solver=lambda one: self.optimum(pair, one.joints[0]),
+                    search=self._kept_nearby,
                 )
             except TrajgapError as error:
                 joints = tuple(self.optimum(pair, label) for label in problem.joints)

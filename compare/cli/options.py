@@ -82,8 +82,8 @@ NoCache = Annotated[
     bool,
     typer.Option(
         "--no-cache",
-        help="Neither keep proofs for later runs nor use those that earlier ones kept; each of "
-        "these is proved again before it counts.",
+        help="Neither keep proofs and replays for later runs nor use those that earlier ones kept; "
+        "each of these is proved or judged again before it counts.",
     ),
 ]
 Crate = Annotated[

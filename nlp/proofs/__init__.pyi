@@ -17,7 +17,9 @@ from .evidence import (
     with_interval,
 )
 from .exact import ExactProblem, decimal, exact_problem, printed_problem
-from .kept import cache_folder
+from .kept import search_code
+from .kept_files import KeptFiles, as_text, cache_folder, code_hash, folder_of, from_text
+from .kept_nearby import KeptNearby
 from .outcome import Certified, Outcome, Progress
 from .proven_optimum import solve
 from .state import StateFile, read_state, state_document
@@ -25,25 +27,32 @@ from .state import StateFile, read_state, state_document
 __all__ = [
     "Certified",
     "ExactProblem",
+    "KeptFiles",
+    "KeptNearby",
     "Outcome",
     "Progress",
     "ProvedInterval",
     "StateFile",
     "allowance",
+    "as_text",
     "cache_folder",
     "certificate",
     "certificate_text",
     "certify",
+    "code_hash",
     "covered",
     "decimal",
     "exact_problem",
     "fits",
+    "folder_of",
+    "from_text",
     "interval_of",
     "printed_problem",
     "printed_problem_or_none",
     "problem_seal",
     "proved",
     "read_state",
+    "search_code",
     "shipped",
     "shipped_file",
     "solve",

@@ -21,7 +21,7 @@ from .certifier import Certifier
 from .crew import ProofCrew
 from .exact import MOVING, ExactProblem, exact_problem
 from .judged import judged, why_too_large
-from .kept import KeptProofs, cache_folder
+from .kept import KeptProofs
 from .outcome import GAP, Certified, Progress, Request
 from .state import resumed
 
@@ -211,8 +211,7 @@ def certify(
     if boxes is None:
         boxes = MINUTE * certifier.allowance(exact) if seconds is None else math.inf
     clock = RunClock(math.inf if seconds is None else seconds)
-    where = None if resume is not None or cache is False else cache
-    kept = KeptProofs(cache_folder() if where is True else where)
+    kept = KeptProofs(False if resume is not None else cache)
     with ProofCrew(workers, executor) as crew:
         earlier = kept.taken(exact, subject, gap, seed, clock, crew)
         if earlier is not None:

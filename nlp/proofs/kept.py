@@ -6,59 +6,19 @@ of the very question that is asked is used, and only if it reaches the gap that 
 
 from __future__ import annotations
 
-import importlib.metadata
-import inspect
-import json
-import os
-import sys
-from contextlib import suppress
 from dataclasses import replace
 from fractions import Fraction
-from functools import cache
 from pathlib import Path
 from typing import Any
 
-from ...problem import TrajgapError, replace_file
-from ...verify import (
-    CertifiedQuestion,
-    Refused,
-    Subject,
-    read_document,
-    seal,
-    verify_certificate,
-)
+from ...problem import TrajgapError
+from ...verify import CertifiedQuestion, Refused, Subject, verify_certificate
 from ..clock import RunClock
 from .crew import ProofCrew
 from .document import certificate, fits, problem_document
 from .exact import ExactProblem
+from .kept_files import UNREADABLE, KeptFiles, code_hash, folder_of
 from .outcome import Certified, Outcome, claimed
-
-VARIABLE = "TRAJGAP_CACHE"
-"""Environment variable with another folder for what is kept; empty for none."""
-FORMAT = "trajgap kept proof 1"
-"""Of the files; what begins with anything else is none of them."""
-MOST_KEPT = 256 * 2**20
-"""Bytes of all files together: thousands of proofs of usual size. The oldest make way."""
-_ODD = (OSError, LookupError, TypeError, ValueError, ArithmeticError, RecursionError)
-"""What a file of any content may raise while it is read; `Refused` is a `ValueError`."""
-_LIBRARIES = ("casadi", "numba", "numpy", "scipy")
-"""What searches compute with: another version may find another proof of the same question."""
-
-
-def cache_folder() -> Path | None:
-    """The folder where proofs are kept; None where the environment says that none are.
-
-    Returns
-    -------
-    Path or None
-        ``proofs`` in what `VARIABLE` names, or in the system's usual place for caches.
-    """
-    named = os.environ.get(VARIABLE)
-    if named is not None:
-        return Path(named) / "proofs" if named else None
-    from platformdirs import user_cache_path
-
-    return user_cache_path("trajgap", appauthor=False) / "proofs"
 
 
 class KeptProofs:
@@ -66,12 +26,12 @@ class KeptProofs:
 
     Parameters
     ----------
-    folder : Path or None
-        Made when something is kept; None keeps nothing and knows nothing.
+    where : bool or Path
+        As `KeptFiles` takes it.
     """
 
-    def __init__(self, folder: Path | None) -> None:
-        self._folder = folder
+    def __init__(self, where: bool | Path) -> None:
+        self._files = KeptFiles(where, "proof")
 
     def taken(
         self,
@@ -101,12 +61,10 @@ class KeptProofs:
         Certified or None
             None where nothing is kept, or what is kept does not prove it in that time.
         """
-        file = self._file(problem, subject, gap, seed)
-        if file is None:
+        if not self._files.used:
             return None
         try:
-            kept = read_document(file)
-            document, nodes = _parts(kept)
+            document, nodes = _parts(self._files.read(_asked(problem, subject, gap, seed)))
             if not fits(document, problem, subject):
                 return None
             left, spread = clock.left, None if crew is None else crew.spread
@@ -117,7 +75,7 @@ class KeptProofs:
                 return None  # words that no run has put there
             found = claimed(problem, document, verdict, gap, subject)
             found = replace(found, nodes=nodes, kept=True)
-        except _ODD:
+        except UNREADABLE:
             return None
         return found if _settled(found, gap) else None
 
@@ -131,47 +89,35 @@ class KeptProofs:
         gap : float
         seed : int
         """
-        if found.verdict is None or not found.verdict.proves or not _settled(found, gap):
+        if (
+            not self._files.used
+            or found.verdict is None
+            or not found.verdict.proves
+            or not _settled(found, gap)
+        ):
             return
-        file = self._file(found.problem, found.subject, gap, seed)
-        if file is None:
-            return
-        kept = {"format": FORMAT, "nodes": found.nodes, "certificate": certificate(found)}
-        # A full disk, a folder that is read-only: the next run takes as long as this one.
-        with suppress(OSError, TrajgapError):
-            replace_file(file, json.dumps(kept, separators=(",", ":")) + "\n")
-            self._make_room()
-
-    def _file(self, problem: ExactProblem, subject: Subject, gap: float, seed: int) -> Path | None:
-        if self._folder is None:
-            return None
-        asked = {
-            "problem": problem_document(problem),
-            "subject": str(subject),
-            "gap": repr(float(gap)),
-            "seed": seed,
-            "code": _code(),
-        }
-        return self._folder / f"{seal(asked)}.json"
-
-    def _make_room(self) -> None:
-        """Remove the oldest files until the rest is small enough."""
-        assert self._folder is not None
-        files = [(file, file.stat()) for file in self._folder.glob("*.json")]
-        total = sum(status.st_size for _, status in files)
-        for file, status in sorted(files, key=lambda one: one[1].st_mtime):
-            if total <= MOST_KEPT:
-                return
-            file.unlink(missing_ok=True)
-            total -= status.st_size
+        self._files.write(
+            _asked(found.problem, found.subject, gap, seed),
+            {"nodes": found.nodes, "certificate": certificate(found)},
+        )
 
 
-def _parts(kept: Any) -> tuple[dict[str, Any], int]:
+def _asked(problem: ExactProblem, subject: Subject, gap: float, seed: int) -> dict[str, Any]:
+    return {
+        "problem": problem_document(problem),
+        "subject": str(subject),
+        "gap": repr(float(gap)),
+        "seed": seed,
+        "code": search_code(),
+    }
+
+
+def _parts(kept: dict[str, Any]) -> tuple[dict[str, Any], int]:
     """Certificate and number of boxes of a file that was read; raises if it is of another form."""
-    if type(kept) is not dict or set(kept) != {"format", "nodes", "certificate"}:
+    if set(kept) != {"nodes", "certificate"}:
         raise ValueError("no kept proof")
     document, nodes = kept["certificate"], kept["nodes"]
-    if kept["format"] != FORMAT or type(document) is not dict or document.get("proof") is None:
+    if type(document) is not dict or document.get("proof") is None:
         raise ValueError("no kept proof")
     if type(nodes) is not int or not 0 <= nodes < 2**53:
         raise ValueError("no number of boxes")
@@ -189,13 +135,7 @@ def _settled(found: Certified, gap: float) -> bool:
     return found.upper - found.lower <= Fraction(gap) * found.upper
 
 
-@cache
-def _code() -> str:
-    """Hash of all that a search consists of: our files, and versions of what they compute with."""
-    hashed = [f"python {'.'.join(map(str, sys.version_info[:3]))}"]
-    hashed += [f"{name} {importlib.metadata.version(name)}" for name in _LIBRARIES]
-    for known in (Certified, TrajgapError, Refused):
-        folder = Path(inspect.getfile(known)).parent
-        folder = folder.parent if known is Certified else folder
-        hashed += [seal(file.read_text("utf-8")) for file in sorted(folder.rglob("*.py"))]
-    return seal(hashed)
+def search_code() -> str:
+    """Hash of the exact side, of the problem and of the verifier."""
+    own = folder_of(Certified).parent
+    return code_hash(own, folder_of(TrajgapError), folder_of(Refused))

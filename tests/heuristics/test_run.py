@@ -34,6 +34,7 @@ from trajgap.heuristics import (
     dual_annealing,
     from_settings,
     run,
+    run_as_left,
     run_asked,
     run_many,
     run_many_per_joint,
@@ -308,3 +309,27 @@ def test_an_interrupt_is_answered_by_the_parent_alone(tmp_path: Path) -> None:
     os.killpg(process.pid, signal.SIGINT)
     _, err = process.communicate(timeout=60)
     assert (process.returncode, err) == (130, "")
+
+
+def test_a_run_that_was_left_is_judged_again() -> None:
+    swarm, question = PSO(iterations=20), AskedRun(PROBLEM, 3)
+    (own,) = run_asked(swarm, [question])
+
+    def left(trace: np.ndarray = own.trace, position: np.ndarray = own.position) -> Run:
+        return run_as_left(swarm, question, trace.copy(), position.copy(), own.evaluations)
+
+    again = left()
+    assert again.reported_time == own.reported_time
+    assert (again.durations == own.durations).all()
+    assert (again.trace == own.trace).all()
+    for wrong in ({"trace": own.trace[:-1]}, {"position": own.position[:-1]}):
+        with pytest.raises(TrajgapError, match="another size"):
+            left(**wrong)
+    for wrong in (
+        {"trace": own.trace[::-1]},
+        {"position": own.position * (1 + 1e-15)},
+        {"position": own.position * 0.5},
+        {"trace": np.append(own.trace[:-1], np.nextafter(own.trace[-1], 0))},
+    ):
+        with pytest.raises(TrajgapError, match="does not go down to"):
+            left(**wrong)

@@ -11,7 +11,7 @@ from trajgap.nlp import Evidence, PerJointSolution, Status, solve_per_joint
 from trajgap.nlp.clock import stopping_after
 from trajgap.nlp.optimum import solve
 from trajgap.nlp.optimum.limit_rows import exact_rows
-from trajgap.nlp.per_joint import nearby
+from trajgap.nlp.per_joint import Near, nearby
 from trajgap.problem import Array, Limits, Problem, check, load_case, piecewise, rest_to_rest
 
 
@@ -88,7 +88,7 @@ def test_durations_within_a_slack_meet_the_conditions_of_an_optimum(family: str)
         optimum = solve(problem).durations
         cap, n = float(optimum.sum()) * (1.0 + slack), problem.segments
         for weights in (*-np.eye(n), np.eye(n)[0] - 1.0):
-            (h,) = nearby([problem], [optimum], [cap], weights)
+            (h,) = nearby(Near([problem], [optimum], [cap], weights))
             assert check(problem, h).stretch <= 1.0 + 1e-8
             assert h.sum() <= cap * (1.0 + 1e-8)
             assert weights @ h <= weights @ optimum * (1 - 1e-9)
@@ -103,8 +103,8 @@ def test_a_range_that_is_known_in_closed_form() -> None:
     least = solve(problem).durations
     cap = float(least.sum()) + 0.01
     for k in range(3):
-        found = nearby([problem], [least], [cap], -np.eye(3)[k])
+        found = nearby(Near([problem], [least], [cap], -np.eye(3)[k]))
         assert found[0] == pytest.approx(least + 0.01 * np.eye(3)[k], abs=1e-9)
     bounded = replace(problem, duration_upper=least + np.array([0.004, 1.0, 1.0]))
-    found = nearby([bounded], [least], [cap], -np.eye(3)[0])
+    found = nearby(Near([bounded], [least], [cap], -np.eye(3)[0]))
     assert found[0][0] == pytest.approx(least[0] + 0.004, abs=1e-9)

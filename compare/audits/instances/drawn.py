@@ -6,13 +6,13 @@ import os
 from collections.abc import Callable, Iterable
 from contextlib import ExitStack, closing
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any, cast
 
 import numpy as np
 
 from ....heuristics import Algorithm, AskedRun, Run, compile_judge, in_processes, run_asked
 from ....nlp import Solution
-from ....nlp.optimum import solve
 from ....problem import (
     TOLERANCE,
     Array,
@@ -27,7 +27,9 @@ from ....problem import (
 from ....problem.cases import Claim, ImprovementClaim, InstancesBlock, instance_waypoints
 from ...documents import Procedure
 from ...gaps import SETTLED, settled_at
+from ..kept_replays import AskedReplay, KeptReplays
 from ..study import Study
+from .kept_optima import AskedOptimum, KeptOptima
 from .result import InstancesResult, Optimum, Sample
 
 STARTS = 2
@@ -50,6 +52,8 @@ class Task:
     """Of the slower and of the faster procedure."""
     runs: int
     objectives: tuple[str, ...]
+    replays: KeptReplays
+    optima: KeptOptima
 
 
 def examine(
@@ -101,7 +105,8 @@ def _of_task(task: Task) -> tuple[Sample, ...]:
         for problem, algorithm in each
         for objective in task.objectives
     ]
-    _run_all(kept, asked, task.runs)
+    _run_all(kept, asked, task.runs, task.replays)
+    _solve_all(kept, [problem for each in routes for problem, _ in each], task.optima)
     found = []
     for reading, each in zip(task.readings, routes, strict=True):
         totals = np.empty((len(task.objectives), _ROUTES, task.runs))
@@ -120,8 +125,8 @@ def _of_task(task: Task) -> tuple[Sample, ...]:
                 step=task.step,
                 index=task.index,
                 waypoints=task.waypoints,
-                slower=_optimum(kept, one),
-                faster=_optimum(kept, other),
+                slower=kept[_key(one)],
+                faster=kept[_key(other)],
                 totals=totals,
                 settled=settled,
             )
@@ -149,7 +154,12 @@ def _key(problem: Problem) -> tuple[object, ...]:
     return (problem.curve, *(array.tobytes() for array in arrays))
 
 
-def _run_all(kept: Kept, asked: Iterable[tuple[Problem, Algorithm[Any], str]], runs: int) -> None:
+def _run_all(
+    kept: Kept,
+    asked: Iterable[tuple[Problem, Algorithm[Any], str]],
+    runs: int,
+    replays: KeptReplays,
+) -> None:
     """Keep what every run gives, each once: all runs of an algorithm are moved side by side."""
     todo: dict[Algorithm[Any], dict[tuple[object, ...], AskedRun]] = {}
     for problem, algorithm, objective in asked:
@@ -159,7 +169,9 @@ def _run_all(kept: Kept, asked: Iterable[tuple[Problem, Algorithm[Any], str]], r
             one = AskedRun(problem, seed, (), objective)
             todo.setdefault(algorithm, {}).setdefault(key, one)
     for algorithm, questions in todo.items():
-        ran = run_asked(algorithm, list(questions.values()))
+        together = list(questions.values())
+        named = [AskedReplay(algorithm, one) for one in together]
+        ran = replays.runs(named, partial(run_asked, algorithm, together))
         for (key, question), done in zip(questions.items(), ran, strict=True):
             kept[key] = _judged(question.problem, done)
 
@@ -172,14 +184,15 @@ def _judged(problem: Problem, done: Run) -> tuple[float, int]:
     return total, settled_at(done.trace, SETTLED * total)
 
 
-def _optimum(kept: Kept, problem: Problem) -> Optimum:
-    key = _key(problem)
-    if key not in kept:
+def _solve_all(kept: Kept, problems: Iterable[Problem], optima: KeptOptima) -> None:
+    """Keep the optimum of every problem, each once."""
+    asked: dict[tuple[object, ...], AskedOptimum] = {}
+    for problem in problems:
         polynomials = as_piecewise(problem.curve)
         alone = polynomials is not None and set(polynomials.continuity) <= {0}
-        kept[key] = _ended(solve(problem, starts=1 if alone else STARTS))
-    known: Optimum = kept[key]
-    return known
+        asked.setdefault(_key(problem), AskedOptimum(problem, 1 if alone else STARTS))
+    solved = optima.solved(list(asked.values()))
+    kept.update(zip(asked, map(_ended, solved), strict=True))
 
 
 def _ended(solution: Solution) -> Optimum:
@@ -299,6 +312,8 @@ def _examined(study: Study, block: InstancesBlock) -> InstancesResult:
             algorithms=(first, last),
             runs=block.runs,
             objectives=block.objectives,
+            replays=study.kept_replays,
+            optima=KeptOptima(study.cache),
         )
         for step, instances in zip(block.lengths, drawn, strict=True)
         for index, points in enumerate(instances)

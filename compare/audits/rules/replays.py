@@ -30,10 +30,11 @@ from ...gaps import (
     share_of_pairs,
     spread,
 )
+from ..kept_replays import Replays
 from ..printed_row import rows_under
 from ..replay_settings import LISTED
 from ..stated import other_objective
-from ..study import Pair, Replays, Study
+from ..study import Pair, Study
 from .rule_group import INFORMS, Explained, rule_group
 
 _TOLERANCES = (SETTLED, 5 * SETTLED)

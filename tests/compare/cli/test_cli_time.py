@@ -97,7 +97,7 @@ CERTIFY = ("solve", "mine.toml", "--certify", "--gap", "1e-2", "--json")
 def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A cache folder of the test's own, which does not exist yet."""
     monkeypatch.setenv("TRAJGAP_CACHE", str(tmp_path / "cache"))
-    return tmp_path / "cache" / "proofs"
+    return tmp_path / "cache" / "kept"
 
 
 def timeless(text: str) -> Any:

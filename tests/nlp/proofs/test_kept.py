@@ -12,8 +12,9 @@ import pytest
 from support.certificate_kinds import KINDS
 from support.small_certificates import sealed
 from trajgap.nlp import Outcome, certificate, certify
-from trajgap.nlp.proofs import cache_folder, kept, state_document
-from trajgap.nlp.proofs.kept import VARIABLE, KeptProofs
+from trajgap.nlp.proofs import cache_folder, kept, kept_files, state_document
+from trajgap.nlp.proofs.kept import KeptProofs
+from trajgap.nlp.proofs.kept_files import VARIABLE
 from trajgap.problem import Limits, Problem, three_five_three
 from trajgap.verify import Subject
 
@@ -88,12 +89,12 @@ def test_without_a_folder_nothing_is_kept(tmp_path, searches, monkeypatch):
 
 def test_the_folder_is_the_systems_own_or_the_one_that_is_named(tmp_path, searches, monkeypatch):
     monkeypatch.setenv(VARIABLE, str(tmp_path))
-    assert cache_folder() == tmp_path / "proofs"
+    assert cache_folder() == tmp_path / "kept"
     assert not certify(shifted_problem(), gap=GAP, cache=True).kept
     assert certify(shifted_problem(), gap=GAP, cache=True).kept
     monkeypatch.delenv(VARIABLE)
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "own"))
-    assert cache_folder() == tmp_path / "own" / "trajgap" / "proofs"
+    assert cache_folder() == tmp_path / "own" / "trajgap" / "kept"
 
 
 def test_another_question_is_searched(tmp_path, searches):
@@ -108,7 +109,7 @@ def test_another_question_is_searched(tmp_path, searches):
 
 def test_what_another_version_kept_is_not_looked_at(tmp_path, searches, monkeypatch):
     certify(shifted_problem(), gap=GAP, cache=tmp_path)
-    monkeypatch.setattr(kept, "_code", lambda: "another version")
+    monkeypatch.setattr(kept, "search_code", lambda: "another version")
     assert not certify(shifted_problem(), gap=GAP, cache=tmp_path).kept
     assert len(list(tmp_path.glob("*.json"))) == 2
 
@@ -219,7 +220,7 @@ def test_where_nothing_can_be_written_the_answer_is_the_same(tmp_path, monkeypat
     def full(path, text):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(kept, "replace_file", full)
+    monkeypatch.setattr(kept_files, "replace_file", full)
     assert alike(cold, certify(shifted_problem(), gap=GAP, cache=tmp_path / "full"))
     assert not (tmp_path / "full").exists()
 
@@ -260,7 +261,7 @@ def test_the_oldest_proofs_make_way(tmp_path, monkeypatch):
         aged = time.time() - 100 + seed
         os.utime(file, (aged, aged))
         if not seed:
-            monkeypatch.setattr(kept, "MOST_KEPT", int(2.5 * file.stat().st_size))
+            monkeypatch.setattr(kept_files, "MOST_KEPT", int(2.5 * file.stat().st_size))
     assert len(list(tmp_path.glob("*.json"))) == 2
     clock = kept.RunClock(9.0)
     assert store.taken(found.problem, found.subject, GAP, 3, clock) is not None

@@ -1,0 +1,94 @@
+"""Optima of drawn problems: what an earlier audit left is what the search finds, or is not used."""
+
+import json
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+from trajgap.compare.audits.instances import kept_optima
+from trajgap.compare.audits.instances.drawn import _ended
+from trajgap.compare.audits.instances.kept_optima import AskedOptimum, KeptOptima
+from trajgap.nlp import Solution, problem_seal
+from trajgap.nlp.optimum import solve
+from trajgap.problem import Limits, Problem, rest_to_rest, three_five_three
+from trajgap.verify import seal
+
+WAYPOINTS = [[0.1, 0.5], [0.7, 0.2], [1.2, -0.4], [0.9, 0.3]]
+PROBLEM = Problem(WAYPOINTS, Limits(6.0, 8.0, joints=2), three_five_three())
+ASKED = [
+    AskedOptimum(PROBLEM, 2),
+    AskedOptimum(replace(PROBLEM, curve=rest_to_rest(3, 3)), 1),
+    # No durations within the bounds keep the limits.
+    AskedOptimum(replace(PROBLEM, duration_lower=0.01, duration_upper=0.02), 1),
+    # Nothing is limited: the total falls to 0.
+    AskedOptimum(replace(PROBLEM, limits=Limits(joints=2)), 1),
+]
+
+
+@pytest.fixture
+def made(monkeypatch: pytest.MonkeyPatch) -> list[Problem]:
+    """The problems that were solved since the test began."""
+    begun: list[Problem] = []
+
+    def counting(problem: Problem, **asked: Any) -> Solution:
+        begun.append(problem)
+        return solve(problem, **asked)
+
+    monkeypatch.setattr(kept_optima, "solve", counting)
+    return begun
+
+
+def said(found: Any) -> list[Any]:
+    """What an audit says of the answers."""
+    return [_ended(one) for one in found]
+
+
+def test_kept_optima_are_what_the_search_finds(tmp_path: Path, made: list[Problem]) -> None:
+    plain = said(KeptOptima(False).solved(ASKED))
+    cold = said(KeptOptima(tmp_path).solved(ASKED))
+    assert len(made) == 2 * len(ASKED)
+    warm = said(KeptOptima(tmp_path).solved(ASKED))
+    assert len(made) == 2 * len(ASKED) + 1  # one of them made again
+    assert plain == cold == warm
+    KeptOptima(tmp_path).solved([ASKED[0]._replace(starts=3)])
+    assert len(made) == 2 * len(ASKED) + 2
+
+
+def stretched(left: list[Any], share: float) -> None:
+    left[0][2] = " ".join(repr(float(word) * share) for word in left[0][2].split(" "))
+
+
+SPOILED: dict[str, Callable[[list[Any]], object]] = {
+    "no optimum": lambda left: stretched(left, 1.01),
+    "beyond a limit": lambda left: stretched(left, 0.99),
+    "dropped": lambda left: left.pop(),
+    "fewer durations": lambda left: left[0].__setitem__(2, "1.0 1.0"),
+    "a bound": lambda left: left[0].__setitem__(4, "0.5"),
+    "another word": lambda left: left[0].__setitem__(0, "best"),
+    "no number": lambda left: left[0].__setitem__(2, "nan nan nan"),
+}
+
+
+@pytest.mark.parametrize("name", SPOILED)
+def test_a_spoiled_file_is_searched_over_and_replaced(
+    tmp_path: Path, made: list[Problem], name: str
+) -> None:
+    asked = ASKED[:2]
+    cold = said(KeptOptima(tmp_path).solved(asked))
+    (file,) = tmp_path.glob("*.json")
+    own = file.read_bytes()
+    stored = json.loads(own)
+    question = {
+        "problems": [[problem_seal(p), repr(p.curve), starts] for p, starts in asked],
+        "code": kept_optima.search_code(),
+    }
+    assert stored["seal"] == seal([question, stored["answers"]])
+    SPOILED[name](stored["answers"])
+    stored["seal"] = seal([question, stored["answers"]])
+    file.write_text(json.dumps(stored))
+    made.clear()
+    assert said(KeptOptima(tmp_path).solved(asked)) == cold
+    assert len(made) >= len(asked)
+    assert file.read_bytes() == own
