@@ -45,8 +45,6 @@ _NEAR = (1e-12, 1e-9, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 0.03, 0.5)
 _STILL = Fraction(1, 10**6)
 """Share of a joint's largest speed below which it may count as standing."""
 
-# --- limits ---------------------------------------------------------------------------------------
-
 
 def excess(given: JointLimits, curves: list[Curve], still: Fraction, slower: Fraction) -> Fraction:
     """Largest peak over its limit, less 1; of positions over half of their range."""
@@ -118,9 +116,6 @@ def _limits(rng: Rng, curves: list[Curve], factor: Fraction) -> JointLimits | No
             lower[j, 2] = -upper[j, 2]
     names = tuple(f"j{k + 1}" for k in range(count))
     return JointLimits(names, lower, upper, braking)
-
-
-# --- the trial ------------------------------------------------------------------------------------
 
 
 def _scaled(curves: list[Curve], factor: Fraction) -> list[Curve]:

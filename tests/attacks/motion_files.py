@@ -73,9 +73,6 @@ def through(rows: list[Row], how: str) -> Curve:
     return hermite(rows, DEGREES[how])
 
 
-# --- files ----------------------------------------------------------------------------------------
-
-
 def _form(rng: Rng, reader: str) -> str:
     if reader in ("parquet", "bag"):
         return ""

@@ -36,9 +36,6 @@ _MARGIN = 1e-12
 """Relative: what a bound as float may be off by."""
 
 
-# --- alterations ----------------------------------------------------------------------------------
-
-
 def _number(rng: Rng, document: Document, *parts: str) -> str:
     """A number of the document, or of some of its parts, is another."""
     every = [p for p in places(document) if not parts or p[0] in parts]
@@ -170,9 +167,6 @@ def altered(rng: Rng, document: Document, other: Document) -> str:
         lambda: _infeasible(document),
     )
     return ways[rng.integers(len(ways))]()
-
-
-# --- trials ---------------------------------------------------------------------------------------
 
 
 @lru_cache(maxsize=1)

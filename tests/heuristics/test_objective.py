@@ -214,9 +214,6 @@ def test_handlings_by_name() -> None:
         run(PSO(), wide(), 0, 1, objective="streched")
 
 
-# --- uniform rescaling, tight by the checker ------------------------------------------------------
-
-
 @pytest.mark.parametrize(
     "limits",
     [
@@ -277,8 +274,6 @@ def test_where_nothing_is_limited_the_bounds_are_the_answer() -> None:
     found = uniform_rescaling(two_joints(Limits(joints=2), duration_lower=0.4))
     np.testing.assert_array_equal(found, [0.4, 0.4, 0.4])
 
-
-# --- under position limits ------------------------------------------------------------------------
 
 SWARM = PSO(particles=20, iterations=60, position_initial=(0.2, 4.0))
 

@@ -229,9 +229,6 @@ def test_what_must_be_whole(
             call(value)
 
 
-# --- side by side: each run gives the bits that it gives alone -----------------------------------
-
-
 SLOWER = Problem(WAYPOINTS, Limits([2.0, 1.5], [8.0, 3.0]), quintic_spline(3), 0.1, 4.0)
 STOPPING = Problem(WAYPOINTS, Limits([2.0, 1.5], [8.0, 3.0]), rest_to_rest(3, 5), 0.1, 4.0)
 

@@ -70,8 +70,6 @@ def test_a_guide_can_be_followed(path, tmp_path, monkeypatch, capsys):
     capsys.readouterr()
 
 
-# --- snippets -------------------------------------------------------------------------------------
-
 README_PROBLEM = "puma560-mnam-pso-353"
 """The case whose problem the README solves; a snippet's `problem` is that one."""
 DOCUMENTS = sorted(

@@ -17,9 +17,6 @@ from support.house_files import MAY_IMPORT, source_modules
 SOLVERS = {"casadi", "toppra", "scipy.optimize"}
 
 
-# --- one-way flow ---------------------------------------------------------------------------------
-
-
 def imports(source: str, package: str) -> set[str]:
     """Dotted names that a module of ``package`` reaches, however it spells the import."""
     tree = ast.parse(source)
@@ -101,9 +98,6 @@ def test_flow_check_sees_every_spelling_and_no_more(source: str, target: str | N
     assert seen == ([target] if target else [])
 
 
-# --- faces ----------------------------------------------------------------------------------------
-
-
 @cache
 def packages() -> list[str]:
     return sorted(
@@ -182,9 +176,6 @@ def test_no_module_is_named_like_a_public_function() -> None:
 def test_faces_import_nothing_heavy() -> None:
     heavy = {"casadi", "numba", "numpy", "scipy", "pydantic", "matplotlib", "toppra", "typer"}
     assert loaded_by(packages()) & heavy == set()
-
-
-# --- kinds of curve -------------------------------------------------------------------------------
 
 
 def kinds() -> str:

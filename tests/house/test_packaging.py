@@ -50,9 +50,6 @@ def tracked_files() -> list[Path]:
     return sorted(path for path in found if not path.is_symlink())
 
 
-# --- packaging ------------------------------------------------------------------------------------
-
-
 def package_folders() -> dict[str, Path]:
     return {
         name: ROOT.joinpath(*name.split(".")[1:])
@@ -142,9 +139,6 @@ def test_version_is_one() -> None:
     cited = re.search(r"^version: (\S+)$", (ROOT / "CITATION.cff").read_text(), re.MULTILINE)
     assert cited
     assert cited[1] == PYPROJECT["project"]["version"]
-
-
-# --- documents ------------------------------------------------------------------------------------
 
 
 def fences(text: str) -> list[tuple[str, str]]:

@@ -66,8 +66,6 @@ def test_no_two_classes_share_a_name() -> None:
     assert all(f"`{name}`" in words for name in BY_ROOM)
 
 
-# --- tests mirror the folders of the source, and no test leans on another -------------------------
-
 TESTS = ROOT / "tests"
 
 # Folders of tests that mirror no folder of the source.
@@ -124,8 +122,6 @@ def test_no_test_imports_another_test() -> None:
         assert leaning(source)
     assert not leaning("from support.samples import sample_problem")
 
-
-# --- compiled functions are named after all their sources, so that no stale one is loaded ---------
 
 KERNELS = "trajgap.problem.curves.kernel"
 """The module that names the kernels; they call no compiled function of other files."""

@@ -110,9 +110,6 @@ def test_steps_beyond_the_errors_on_both_sides_are_jumps(pieces: int) -> None:
         assert len(expected) > 0 or pieces < 3
 
 
-# --- the batched evaluation beside the checker ---------------------------------------------------
-
-
 def test_evaluate_overflow_is_infinite() -> None:
     problem, _ = sample_problem(three_five_three(), 1)
     ratios = evaluate(problem, [[1e-200, 1.0, 1.0], [1.0, 1e-300, 1.0], [5e-324, 1.0, 1.0]]).ratios
@@ -137,9 +134,6 @@ def test_evaluate_shapes() -> None:
     for wrong in ("abc", [[1.0, "x", 2.0]], [[1.0, 2.0, 3.0], [1.0]]):
         with pytest.raises(TrajgapError, match=r"durations: not numbers; give seconds"):
             evaluate(problem, wrong)
-
-
-# --- verdicts -------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
@@ -254,9 +248,6 @@ def test_nothing_limited_or_nothing_moves(limited: bool) -> None:
     assert result.tight_time is None
     assert result.tight_why == "nothing moves or nothing is limited; the total time can shrink to 0"
     assert not evaluate(problem, [h]).ratios.any()
-
-
-# --- repairs and their reasons -------------------------------------------------------------------
 
 
 def test_what_rounding_hides_has_no_repair() -> None:

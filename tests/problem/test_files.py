@@ -28,9 +28,6 @@ def names(folder: Path) -> list[str]:
     return sorted(path.name for path in folder.iterdir())
 
 
-# --- stopped anywhere -----------------------------------------------------------------------------
-
-
 OLD = {"index": "old", "deep/one": "old"}
 NEW = {"index": "new", "deep/two": "new"}
 WRITES = {
@@ -123,9 +120,6 @@ def test_whoever_is_stopped_anywhere_leaves_the_old_or_the_new(
     assert seen[-1] == new
 
 
-# --- one file -------------------------------------------------------------------------------------
-
-
 def test_a_new_file_is_complete_or_absent(tmp_path: Path) -> None:
     with new_file(tmp_path / "a") as write:
         (draft,) = names(tmp_path)
@@ -204,9 +198,6 @@ def test_a_name_that_cannot_be_is_refused_before_computing(tmp_path: Path, name:
         pytest.fail("computes")
 
 
-# --- one folder -----------------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize("exchange", [True, False])
 def test_a_folder_is_replaced_as_a_whole(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, exchange: bool
@@ -243,9 +234,6 @@ def test_whether_a_folder_can_be_written_is_known_before(tmp_path: Path) -> None
 def test_a_read_only_folder_is_known_before() -> None:
     with pytest.raises(OSError, match=r"."):
         try_writing_in(Path("/proc/self"))
-
-
-# --- reading --------------------------------------------------------------------------------------
 
 
 def test_only_regular_files_are_read(tmp_path: Path) -> None:

@@ -189,9 +189,6 @@ def test_problem_refuses(changes: dict[str, object], message: str) -> None:
     assert "\n" not in str(refusal.value)
 
 
-# --- sides that differ ----------------------------------------------------------------------------
-
-
 def test_a_side_of_zero_forbids_that_side_alone() -> None:
     rising, curve = np.array([[0.0], [1.0]]), rest_to_rest(1, 3)
     forward = Limits(velocity=[[0, 2]])
@@ -207,9 +204,6 @@ def test_a_side_of_zero_forbids_that_side_alone() -> None:
     # At -1 rad/s all the way, nothing lies on the limited side.
     steady = check(Problem(-rising, free, piecewise((1,), 0, ())), [1.0])
     assert (steady.verdict, steady.peaks[0].ratio) == (Verdict.PASS, 0.0)
-
-
-# --- ratios of durations --------------------------------------------------------------------------
 
 
 Q = np.array([[0.2, -1.0], [0.5, -0.6], [0.5, 0.6]])

@@ -10,15 +10,7 @@ import pytest
 from hypothesis import given, strategies as st
 from trajgap.problem.errors import CaseError, TrajgapError
 from trajgap.problem.printed import Printed, down, read_float, up
-from trajgap.problem.units import (
-    CHOICES,
-    Scale,
-    check_unit,
-    from_si,
-    is_linear,
-    scale,
-    to_si,
-)
+from trajgap.problem.units import CHOICES, Scale, check_unit, from_si, is_linear, scale, to_si
 
 decimals = st.decimals(
     min_value=-1000, max_value=1000, allow_nan=False, allow_infinity=False, places=9
@@ -160,9 +152,6 @@ def test_a_slip_is_a_digit_the_point_or_the_sign(text, more):
     number = Printed(text)
     one_off = {other.text for other in number.one_digit_off()}
     assert {other.text for other in number.slips()} - one_off == more
-
-
-# --- units ----------------------------------------------------------------------------------------
 
 
 texts = st.decimals(min_value=-400, max_value=400, places=4).map(str)

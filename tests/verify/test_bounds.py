@@ -19,9 +19,6 @@ def exact(values: Any) -> list[Fraction]:
     return [Fraction(float(x)) for x in values]
 
 
-# --- any curve ------------------------------------------------------------------------------------
-
-
 def motion(rng: np.random.Generator, v: float, a: float) -> tuple[float, float, float, float]:
     """Duration, way and end speeds of a motion within |v| and |a|, in some steps at random."""
     speeds, times = [rng.uniform(-v, v)], rng.uniform(0.05, 1.0, rng.integers(1, 5))

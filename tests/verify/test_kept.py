@@ -54,9 +54,6 @@ def test_a_kind_whose_leaves_leave_something_behind_is_not_handed_out(
     assert handed != []
 
 
-# --- just inside ----------------------------------------------------------------------------------
-
-
 def stays(data: Document) -> None:
     """Joint 2 stays at 5, which is both of its position limits."""
     for row in data["problem"]["waypoints"]:

@@ -82,9 +82,6 @@ def test_exact_elimination_ends_with_the_time(kind: str, looks: Any) -> None:
     assert 20 < next(looks) < 30
 
 
-# --- tables ---------------------------------------------------------------------------------------
-
-
 def table(entry: list[Any]) -> list[Any]:
     """What is malformed comes last: whoever reads the whole table refuses it.
 
@@ -141,9 +138,6 @@ def test_each_entry_costs_a_look(looks: Any) -> None:
     with pytest.raises(OutOfTime):
         seen.extend(clock.each(range(100)))
     assert seen == list(range(10))
-
-
-# --- files ----------------------------------------------------------------------------------------
 
 
 def test_a_file_that_cannot_be_read_in_time_is_not_begun(tmp_path: Path) -> None:

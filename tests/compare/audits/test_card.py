@@ -92,8 +92,6 @@ def test_a_total_that_is_too_short_is_not_called_longer() -> None:
     assert card.errors == ("The total in Table 2 is shorter than any motion within the limits.",)
 
 
-# --- causes made by hand --------------------------------------------------------------------------
-
 SWAPPED = Explanation(change="Two columns may be swapped.", effect="Then all is well.")
 SAYS = "In row {} the printed number is not what the numbers beside it allow."
 
@@ -158,8 +156,6 @@ def test_an_explanation_takes_the_room_that_is_left(
 ) -> None:
     assert _explanation([made(1, *explanations)], room) == said
 
-
-# --- no sentence drops its reading ----------------------------------------------------------------
 
 CASE = load_case(POLISH)
 IDS = tuple(reading.id for reading in CASE.readings)

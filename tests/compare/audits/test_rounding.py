@@ -123,9 +123,6 @@ def test_mean_speed_decides_where_nothing_else_does():
     assert place.lower_bound < ways.max() / 0.01
 
 
-# --- bounds, positions, and limits that leave nothing to move -------------------------------------
-
-
 def near(h: np.ndarray, half: float = 5e-4) -> RoundingBox:
     return RoundingBox(h, h - half, h + half)
 

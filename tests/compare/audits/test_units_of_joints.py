@@ -133,8 +133,6 @@ def test_clues_are_shown_in_their_unit() -> None:
     assert "0.167 to 1 times" in found["sheet", "deg-s"][1]
 
 
-# --- identities -----------------------------------------------------------------------------------
-
 ROWS = (("-20.3", "12.0"), ("15.2", "85.0"), ("40.9", "140.0"), ("95.5", "30.0"))
 
 
@@ -171,9 +169,6 @@ def test_millimetres_and_metres_are_the_same_paper() -> None:
     said = [[[getattr(f, k) for k in keys] for f in findings(*c)] for c in ((), METRES)]
     assert said[0] == said[1]
     assert "0.107564 ± 0.0002 m/s" in message("velocities", "rpm", *METRES)
-
-
-# --- what is shown --------------------------------------------------------------------------------
 
 
 def test_certificates_state_each_joint_in_its_unit() -> None:

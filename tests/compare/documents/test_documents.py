@@ -131,9 +131,6 @@ def test_quantities_of_claims_are_those_of_case_files() -> None:
     assert tuple(claims["quantity"]["enum"]) == QUANTITY_KINDS
 
 
-# --- solve ----------------------------------------------------------------------------------------
-
-
 def solved(*answer: Any) -> Any:
     document = plain(SolveDocument(results=(solve_result("c", "p", "r", *answer),)))
     assert_valid(document, "solve")
@@ -236,9 +233,6 @@ def test_what_has_no_number_has_its_reason(answer: Any, paths: list[Any], wanted
         assert result["total_time"] > result["infimum"]
 
 
-# --- check ----------------------------------------------------------------------------------------
-
-
 def checked(problem: Problem, durations: Any, half: float = 5e-4) -> Any:
     value = np.array(durations)
     box = RoundingBox(value, value - half, value + half)
@@ -291,9 +285,6 @@ def test_a_check_of_long_durations(problem: Problem, wanted: Any, worst: Any) ->
     assert {key: result["worst"][key] for key in worst} == worst
     if result["verdict"] == "pass" and result["worst"]:
         assert result["rounding"]["exhibit"]["segment_durations"] == [5.0, 6.0, 7.0]
-
-
-# --- cases, show, audit ---------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("name", published_ids())

@@ -59,9 +59,6 @@ def row(trace: list[tuple[int, float]], evaluations: int, verdict: str | None = 
     )  # fmt: skip
 
 
-# --- against hand numbers and printed ones --------------------------------------------------------
-
-
 @pytest.mark.parametrize(
     ("hits", "spent", "expected"),
     [
@@ -206,9 +203,6 @@ def test_percent(gap: float, shown: str) -> None:
     assert percent(gap) == shown
 
 
-# --- on a problem with a closed-form optimum ------------------------------------------------------
-
-
 @pytest.fixture(scope="module")
 def runs() -> Runs:
     return bench(TOY, ["pso", optimizers.fair], seeds=6, budget=900, name="toy")
@@ -277,9 +271,6 @@ def test_what_cannot_take_part_is_refused_before_anything_runs() -> None:
         plan_bench(TOY, lambda fun, bounds, budget, rng: None)
 
 
-# --- what optimisers do wrong ---------------------------------------------------------------------
-
-
 def test_an_optimiser_that_always_fails_stands_last_with_its_message() -> None:
     """Every fault by itself: test_optimizers and test_trials."""
     failing = "support.optimizers:raises"
@@ -305,9 +296,6 @@ def test_failing_is_not_cheap() -> None:
         {"half": rows}, float(EXACT.sum()), problem="", reading="", budget=1000, seeds=2
     )
     assert found.standings[0].targets[-1].evaluations == 8 + 1000
-
-
-# --- what is written ------------------------------------------------------------------------------
 
 
 def test_the_page_the_picture_and_the_rows(runs: Runs, tmp_path: Path) -> None:

@@ -134,9 +134,6 @@ def test_checkpoints_are_log_spaced_and_end_at_the_last_evaluation() -> None:
     assert (late[1:] / late[:-1] < 1.09).all()
 
 
-# --- kept -----------------------------------------------------------------------------------------
-
-
 def test_a_row_is_kept_and_read_again(path: Path, row: Row) -> None:
     with Store(path) as store:
         assert store.status(row.key) is None
@@ -270,9 +267,6 @@ def test_two_processes_write_one_store(path: Path, row: Row) -> None:
     names |= {f"{name}-{i}" for name in "ab" for i in range(150) if i % 3}
     assert {one.key for one in rows} == names
     assert {replace(one, key="") for one in rows} == {replace(row, key="")}
-
-
-# --- exported -------------------------------------------------------------------------------------
 
 
 @pytest.fixture(scope="module")

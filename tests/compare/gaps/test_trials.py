@@ -138,9 +138,6 @@ def test_where_an_optimiser_comes_from(tmp_path: Path, monkeypatch: pytest.Monke
     assert origin_of("nowhere_at_all:f").startswith("trajgap ")
 
 
-# --- processes ------------------------------------------------------------------------------------
-
-
 def of_one_child() -> Iterator[Crew]:
     found = Crew()
     yield found

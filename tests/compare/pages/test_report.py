@@ -30,9 +30,6 @@ def flat(text: str) -> str:
     return " ".join(text.split())
 
 
-# --- safe and self-contained ----------------------------------------------------------------------
-
-
 @pytest.mark.parametrize("name", ["index", "glossary", ID])
 def test_a_page_fetches_nothing_but_its_own_pictures(folder: Path, name: str) -> None:
     text = (folder / f"{name}.html").read_text(encoding="utf-8")
@@ -129,9 +126,6 @@ def test_tables_in_markdown_have_as_many_cells_as_columns(folder: Path) -> None:
             rows += 1
         width = cells
     assert rows > 40
-
-
-# --- complete -------------------------------------------------------------------------------------
 
 
 def test_every_claim_stands_with_its_digits_and_verdict(

@@ -68,9 +68,6 @@ def far(stretches: list[tuple[float, float]], times: Array, off: float = 1e-3) -
     return np.asarray((np.abs(times[:, None] - ends) > off).all(axis=1))
 
 
-# --- motions --------------------------------------------------------------------------------------
-
-
 def test_what_breaks_a_limit_is_red_at_the_times_of_the_file() -> None:
     motion = swing()
     limits = held(motion, velocity=2.0, acceleration=[8.0, 9.0], jerk=20.0, position=(-1.0, 2.0))
@@ -221,9 +218,6 @@ def test_units_are_those_of_the_file() -> None:
     assert max(heights[1]) == pytest.approx(2000.0)
 
 
-# --- samples --------------------------------------------------------------------------------------
-
-
 def test_samples_are_dots_with_what_neighbours_prove() -> None:
     time = START + np.linspace(0.0, 2.0, 41)
     position = np.column_stack([np.sin(time), 2 * np.sin(time)])
@@ -282,9 +276,6 @@ def test_two_samples_have_no_jerk() -> None:
     _, _, grid = drawn(samples, JointLimits.from_values(("one",), velocity=2.0, jerk=1.0))
     assert spans(grid[0][1], RED) == [(0.5, 0.5)]
     assert grid[0][3].get_title(loc="right") == ""
-
-
-# --- parts ----------------------------------------------------------------------------------------
 
 
 def test_stretches_are_joined_and_taken_away() -> None:

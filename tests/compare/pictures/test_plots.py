@@ -26,9 +26,6 @@ HOSTILE = '$\\frac{1}{ </title><script>alert("x")</script> --> 轨迹 \x07 _x'
 NAMES = ("curves", "jerk", "waterfall", "convergence", "joints", "endings", "landscape")
 
 
-# --- SVG ------------------------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize("name", NAMES)
 def test_every_picture_is_sound(pictures: dict[str, Picture], name: str) -> None:
     sound(lambda: pictures[name])
@@ -119,9 +116,6 @@ def _hidden_ticks(axes: matplotlib.axes.Axes) -> list[Text]:
     if not axes.axison:
         hidden += [axes.xaxis.label, axes.yaxis.label]
     return hidden
-
-
-# --- motions --------------------------------------------------------------------------------------
 
 
 def test_peaks_stand_at_their_exact_places(problem: Problem, pictures: dict[str, Picture]) -> None:

@@ -116,9 +116,6 @@ def test_faults(options, message):
         workspace_picture(CLOUD, **options)
 
 
-# --- the pictures in the documents show what the code computes today ------------------------------
-
-
 def described(svg: str) -> str:
     found = re.search(r"<desc[^>]*>(.*?)</desc>", svg, re.DOTALL)
     return found[1]

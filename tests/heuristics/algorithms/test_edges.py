@@ -49,9 +49,6 @@ def test_the_edges_of_the_wheel() -> None:
     assert roulette(np.full(10, 0.1), np.array([np.nextafter(1.0, 0.0)]))[0] == 9
 
 
-# --- (12) to (15) of irb1600-ga-cubic-bspline ----------------------------------------------------
-
-
 @pytest.mark.parametrize("q", [0.01, 0.2, 0.9])
 @pytest.mark.parametrize("count", [2, 50])
 def test_equation_12_is_a_distribution(q: float, count: int) -> None:
@@ -92,9 +89,6 @@ def test_rates_of_a_population() -> None:
     for count in range(2, 60):  # the mean of equal numbers may round to above them
         crossing, mutating = record.rates(np.full(count, 0.1))
         assert (crossing, mutating) == pytest.approx((0.0, 0.05), abs=1e-7)
-
-
-# --- whales: not shift-invariant ------------------------------------------------------------------
 
 
 def bowl(x: np.ndarray, shift: float) -> np.ndarray:
@@ -155,8 +149,6 @@ def test_against_mealpy(shift: float) -> None:
     assert mannwhitneyu(finals(record, shift, 40), theirs).pvalue > 0.01
 
 
-# --- numerical hazards, each shown by running it --------------------------------------------------
-
 WAY = np.random.default_rng(0).uniform(-2, 2, (8, 6))
 SIX_JOINTS = Problem(WAY, Limits(2.0, 5.0), quintic_spline(7), 0.0, 5.0)
 
@@ -203,9 +195,6 @@ def test_negative_durations_inside_the_palletisers_bounds() -> None:
     assert found.box_share == 1 - 2.0**-7
     assert found.not_positive > found.judged / 10
     assert found.zero == 0
-
-
-# --- the tent map: by hand, in rational numbers, and its end in double precision ------------------
 
 
 def test_equation_23_by_hand() -> None:

@@ -48,9 +48,6 @@ def held(record: Any, x: Vector) -> Vector:
     return list(map(clamp, x, low, high))
 
 
-# --- swarms ---------------------------------------------------------------------------------------
-
-
 def inertia(record: Any, n: int, fitness: Vector, i: int) -> float:
     if record.kind == "pso":
         return float(record.inertia)
@@ -148,9 +145,6 @@ def swarm(record: Any, before: Any, rng: Any, judge: Judge) -> dict[str, Any]:
     return led(record, rng, judge, after, before.best, before.best_fitness)  # type: ignore[no-any-return]
 
 
-# --- whales ---------------------------------------------------------------------------------------
-
-
 def whales(record: Any, before: Any, rng: Any, judge: Judge) -> dict[str, Any]:
     count, improved = record.whales, record.kind == "improved-woa"
     if before is None:
@@ -206,9 +200,6 @@ def whales(record: Any, before: Any, rng: Any, judge: Judge) -> dict[str, Any]:
         fits.append(old if stays else f)
     best, f = leader(positions, fits, before.best, before.best_fitness)
     return {"positions": positions, "fitness": fits, "best": best, "best_fitness": f}
-
-
-# --- genes ----------------------------------------------------------------------------------------
 
 
 def wheel(weights: Vector, place: float) -> int:
@@ -333,8 +324,6 @@ def generation(record: Any, before: Any, rng: Any, judge: Judge) -> dict[str, An
     best, f = leader(pool, fits, before.best, before.best_fitness)
     return {"positions": pool, "fitness": fits, "best": best, "best_fitness": f}
 
-
-# --- beside the package ---------------------------------------------------------------------------
 
 LOOPS = {"pso": swarm, "mnam-pso": swarm, "constrained-pso": swarm, "woa": whales,
          "improved-woa": whales, "ga": generation, "improved-ga": generation}  # fmt: skip

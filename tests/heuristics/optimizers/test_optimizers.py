@@ -155,9 +155,6 @@ def test_a_function_of_the_working_folder(tmp_path: Path, monkeypatch: pytest.Mo
     assert found.durations.tolist() == [3.0, 3.0, 3.0]
 
 
-# --- what an optimiser must not do ----------------------------------------------------------------
-
-
 @pytest.mark.parametrize(("function", "said"), optimizers.FAULTS.items())
 def test_each_fault_has_its_message(function: object, said: str) -> None:
     with pytest.raises((TrajgapError, ZeroDivisionError), match=said):
@@ -267,8 +264,6 @@ def test_a_problem_whose_box_cannot_be_found() -> None:
     with pytest.raises(TrajgapError, match="random: needs finite duration bounds"):
         find_optimizer("random", 10).search(bounds, generator(0), lambda x: x.sum(axis=1))
 
-
-# --- searches that own their loop: same objective, same account, same budget ----------------------
 
 SCIPY = (differential_evolution(), dual_annealing(iterations=40), shgo())
 

@@ -15,12 +15,7 @@ from support.checkout import ROOT
 from trajgap.nlp import Status, random_starts
 from trajgap.nlp.optimum import solve
 from trajgap.nlp.optimum.starts import equal_start
-from trajgap.problem import (
-    Verdict,
-    evaluate,
-    load_case,
-    quintic_spline,
-)
+from trajgap.problem import Verdict, evaluate, load_case, quintic_spline
 
 
 @pytest.fixture

@@ -8,13 +8,7 @@ import pytest
 from support.b_splines import clamped, uniform
 from trajgap.nlp import Status, random_starts, solve_per_joint
 from trajgap.nlp.optimum import solve
-from trajgap.problem import (
-    Limits,
-    Verdict,
-    evaluate,
-    load_case,
-    solve_in_closed_form,
-)
+from trajgap.problem import Limits, Verdict, evaluate, load_case, solve_in_closed_form
 
 POLISH = "irb1600-ga-cubic-bspline"
 BEST = {

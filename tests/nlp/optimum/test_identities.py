@@ -149,9 +149,6 @@ def test_sensitivities_are_the_differences_of_totals(name: str) -> None:
         assert name == "moving cubic" or weighted == pytest.approx(found.total_time, rel=1e-7)
 
 
-# --- the NLP and the descent, which share no search and no derivative -----------------------------
-
-
 SAME = 1e-8
 """Relative difference of the two totals: both are a local optimum to some 1e-10."""
 

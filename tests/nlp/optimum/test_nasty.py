@@ -277,9 +277,6 @@ def test_what_is_no_line_or_is_limited_is_searched(other: Problem) -> None:
     assert straight_shares(other) is None
 
 
-# --- way-points that nearly coincide: a second optimum, decades away in one duration --------------
-
-
 FOUND = ("three joints", "one joint", "twice", "entering")
 ONCE_LONGER = ("a four thousandth", "billionths", "natural", "two near", "boxed")
 """Of these a search once gave longer durations, and called them converged."""

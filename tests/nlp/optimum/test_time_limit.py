@@ -7,11 +7,7 @@ import pytest
 from support.proof_runs import Ticking
 from trajgap.nlp import Solution, Status, certify, clock, stopping_after
 from trajgap.nlp.clock import time_up
-from trajgap.nlp.optimum import (
-    closed_forms,
-    rounds,
-    solve,
-)
+from trajgap.nlp.optimum import closed_forms, rounds, solve
 from trajgap.nlp.optimum.program import Program
 from trajgap.nlp.optimum.rounds import STAGES, begun, solve_round
 from trajgap.nlp.proofs import session

@@ -4,13 +4,7 @@ import numpy as np
 import pytest
 from trajgap.nlp import Status
 from trajgap.nlp.optimum import solve
-from trajgap.problem import (
-    Interpolant,
-    Limits,
-    Problem,
-    cubic_spline,
-    rest_to_rest,
-)
+from trajgap.problem import Interpolant, Limits, Problem, cubic_spline, rest_to_rest
 
 
 def test_a_motion_that_never_turns_back_may_be_forbidden_to() -> None:

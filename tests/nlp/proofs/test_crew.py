@@ -122,9 +122,6 @@ def test_a_program_without_a_guard_may_ask_for_processes(tmp_path: Path) -> None
     assert not ran.stderr
 
 
-# --- proofs ---------------------------------------------------------------------------------------
-
-
 def proof(found: Certified) -> Any:
     assert found.outcome is Outcome.CERTIFIED
     return certificate(found)["proof"], found.lower, found.upper

@@ -51,9 +51,6 @@ from trajgap.verify.cubic import least
 Patches = tuple[tuple[Any, str, Any], ...]
 
 
-# --- dense searches -------------------------------------------------------------------------------
-
-
 @dataclass(frozen=True)
 class Drawn:
     """Random problems of a kind, which a search looks at that shares nothing with the proofs."""
@@ -110,9 +107,6 @@ def test_dense_search_never_leaves_the_interval_of_two_hundred_problems(name: st
     decided = outcomes.count(Outcome.CERTIFIED) + outcomes.count(Outcome.INFEASIBLE)
     assert decided >= kind.decided
     assert outcomes.count(None) <= kind.uncovered
-
-
-# --- unlucky answers and broken rows --------------------------------------------------------------
 
 
 def _high(*given: Any) -> Any:
@@ -190,9 +184,6 @@ def test_a_worse_local_answer_is_replaced(name: str, monkeypatch: pytest.MonkeyP
     assert float(found.upper or 0) == pytest.approx(float(best.upper or 0), rel=1e-6)
 
 
-# --- infeasible -----------------------------------------------------------------------------------
-
-
 def shortened(problem: Problem, k: int = 0) -> Problem:
     """An upper bound on one duration a little below what the problem asks of it."""
     upper = np.full(problem.segments, 99.0)
@@ -243,9 +234,6 @@ def test_what_no_durations_keep_is_proved_infeasible(name: str) -> None:
     assert verdict.upper is None
     document["problem"] |= easier
     assert not verify_certificate(document).proves
-
-
-# --- stops ----------------------------------------------------------------------------------------
 
 
 FEW_BOXES: Patches = ((verified_boxes, "_LEAVES", 16), (search.Curves, "part", 16))
@@ -306,9 +294,6 @@ def test_a_stopped_run_goes_on_where_it_stopped(name: str, monkeypatch: pytest.M
     state["proof"]["total"] = str((second.upper or 0) * 2)
     with pytest.raises(TrajgapError, match="the state is not proved"):
         certify(problem, subject=subject, resume=state)
-
-
-# --- what no proof covers -------------------------------------------------------------------------
 
 
 def through(curve: Curve, limits: Limits | None = None, **more: Any) -> Problem:

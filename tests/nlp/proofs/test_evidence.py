@@ -36,14 +36,7 @@ from trajgap.nlp.optimum.solution import WIDEST
 from trajgap.nlp.proofs import interval_of, printed_problem_or_none
 from trajgap.nlp.proofs.evidence import _proved_answer
 from trajgap.nlp.proofs.exact import exact_problem, printed_problem
-from trajgap.problem import (
-    Limits,
-    Problem,
-    check,
-    cubic_spline,
-    load_case,
-    rest_to_rest,
-)
+from trajgap.problem import Limits, Problem, check, cubic_spline, load_case, rest_to_rest
 from trajgap.verify import Subject
 
 evidence_module = import_module("trajgap.nlp.proofs.evidence")

@@ -26,9 +26,6 @@ from trajgap.problem import (
     uniform_cubic_b_spline,
 )
 
-# --- paths of known answers -----------------------------------------------------------------------
-
-
 MOTION = puma(three_five_three(), PUMA_353)
 THERE_AND_BACK = [[0.3], [1.7], [0.9]], [1.5, 1.2]
 STRAIGHT = [[0.2, -1.0, 3.0], [1.1, 1.5, 2.3]], [2.0]
@@ -105,9 +102,6 @@ def test_no_order_where_there_is_none(durations: list[float]) -> None:
     assert abs(limit - durations[2]) <= error
 
 
-# --- the one-sided inequality ---------------------------------------------------------------------
-
-
 @pytest.mark.parametrize("seed", range(24))
 def test_retiming_never_takes_longer_than_a_feasible_trajectory(seed: int) -> None:
     generator = np.random.default_rng(seed)
@@ -161,9 +155,6 @@ def test_many_segments_get_more_cells() -> None:
     assert found.error < 0.01 * found.extrapolated
 
 
-# --- identities -----------------------------------------------------------------------------------
-
-
 def test_a_path_from_rest_to_rest_has_a_speed_in_between() -> None:
     (piece,), _ = pieces(fit(rest_to_rest(1, 5), [[0.0, 0.0], [3.0, 4.0]], [2.0]))
     sampled = sample(piece, measure(piece), 40)
@@ -196,9 +187,6 @@ def test_a_path_whose_parameter_is_not_linear_in_time_is_a_path_as_any_other() -
     assert own.extrapolated == pytest.approx(again.extrapolated, rel=1e-6)
 
 
-# --- where retiming applies -----------------------------------------------------------------------
-
-
 @pytest.mark.parametrize("dress", [*DRESSES[1:], OWN_UNITS])
 def test_another_dress_changes_no_time(dress: str) -> None:
     limits = Limits(np.linspace(2, 4, 6), np.linspace(5, 9, 6))
@@ -226,9 +214,6 @@ def test_each_joint_on_its_own_path() -> None:
         assert close(found, expected)
         assert len(found.cuts) == len(values)
     assert max(f.extrapolated for f in each) < retime(MOTION, limits).extrapolated
-
-
-# --- cutting, sampling ----------------------------------------------------------------------------
 
 
 def test_a_standstill_without_reversal_is_a_cut_too() -> None:
@@ -265,9 +250,6 @@ def test_samples_against_finite_differences() -> None:
     # The grid is graded at the rest ends, where q″ grows like s^(−2/3): s ~ τ³.
     share = np.log(path.s[8] / path.s[4]) / np.log(2)
     assert 2.7 < share < 3.3
-
-
-# --- where it does not apply ----------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
@@ -326,9 +308,6 @@ def test_arguments_that_make_no_sense() -> None:
         retime(MOTION, PUMA_LIMITS, end_speeds=(-1.0, 0.0))
     with pytest.raises(TrajgapError, match="limits: given for 2 joints, trajectory has 6"):
         retime(MOTION, Limits(1.0, 1.0, joints=2))
-
-
-# --- manners --------------------------------------------------------------------------------------
 
 
 def test_toppra_stays_quiet_and_its_logger_as_it_was(caplog: pytest.LogCaptureFixture) -> None:

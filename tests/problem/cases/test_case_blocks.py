@@ -108,9 +108,6 @@ def test_a_list_of_one_unit_is_that_unit():
     assert other.limits.velocity == pytest.approx([np.pi / 3] * 2, rel=1e-15)
 
 
-# --- limits that differ by side -------------------------------------------------------------------
-
-
 PAIRED = BASE.replace('velocity = [100, "95.0"]', 'velocity = [["-90.0", "100.0"], 95]').replace(
     "acceleration = 60", "acceleration = [[-inf, 60], [-40, 40]]"
 )
@@ -131,9 +128,6 @@ def test_each_side_has_its_own_digits(digits, velocity, loose) -> None:
     np.testing.assert_allclose(np.degrees(limits.ends("velocity")), velocity, rtol=loose)
     ends = [[-np.inf, -40], [60, 40]]
     np.testing.assert_allclose(np.degrees(limits.ends("acceleration")), ends, rtol=1e-14)
-
-
-# --- ratios of durations --------------------------------------------------------------------------
 
 
 CASE = case_text(
@@ -235,9 +229,6 @@ def test_readings_are_called_by_their_ratios() -> None:
     assert ratio_words((1,) * 7) == "durations in the ratios as listed"
     # Where problems say it, a reading that is silent says nothing of its own.
     assert "total-chosen" in case('"equal"').labels["total-chosen"]
-
-
-# --- way-points on a straight line of the robot's end ---------------------------------------------
 
 
 FIRST = [0.1, -0.6, 0.4, 0.2, 0.5, 0.1]

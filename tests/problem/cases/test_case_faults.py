@@ -213,9 +213,6 @@ def test_one_refusal_tells_a_handful_and_counts_the_rest():
     assert message.endswith("also claims[7].id: is missing; add it (and 3 more)")
 
 
-# --- cases that ask for too much ------------------------------------------------------------------
-
-
 ABSENT = 'not_printed = "x"\ncount = {}\n'
 
 

@@ -42,9 +42,6 @@ def test_each_fault_has_its_line(one: Refusal) -> None:
     one.said_by(lambda: parse_case(one.text(HEAD), "four.toml"), "four.toml: ")
 
 
-# --- knots ----------------------------------------------------------------------------------------
-
-
 def test_the_whole_vector_is_read_on_its_own_scale() -> None:
     whole = (0, 0, 0, 0, 0, 0.25, 0.5, 0.8, 1, 1, 1, 1, 1)
     assert curve(TIMED + WHOLE) == ClampedBSpline(4, 4, "given", "times", knot_vector=whole)
@@ -86,9 +83,6 @@ def test_states_at_the_ends_are_those_of_each_end_and_joint_with_their_digits() 
     velocities = [[[1] * 3, [2, 1.95, 2.1], [3] * 3], [[0] * 3, [0, -0.1, 0.1], [-4] * 3]]
     np.testing.assert_allclose(found[:, :, 0], velocities, atol=1e-12)
     assert not found[:, :, 1].any()
-
-
-# --- breaks without a way-point -------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(

@@ -5,12 +5,7 @@ import pytest
 from support.case_texts import case_text
 from trajgap.nlp import Status
 from trajgap.nlp.optimum import solve
-from trajgap.problem import (
-    Problem,
-    Verdict,
-    check,
-    parse_case,
-)
+from trajgap.problem import Problem, Verdict, check, parse_case
 from trajgap.problem.cases import declaration
 
 WAYPOINTS = ((0.3, -1.0), (0.9, -0.55), (0.2, 0.35), (-0.45, 0.1))

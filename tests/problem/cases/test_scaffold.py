@@ -212,9 +212,6 @@ def test_settings_are_bare_and_what_may_be_rounded_is_quoted(table, unit, rows, 
     assert remark is None or remark in text
 
 
-# --- names that papers give to curves -------------------------------------------------------------
-
-
 @pytest.fixture
 def declared(table):
     """The curve of a case that `scaffold` writes for so many way-points under a name."""
@@ -326,9 +323,6 @@ def test_a_case_file_that_names_a_curve_as_papers_do_is_shown_how_to_write_it(ta
             parse_case(text.replace('"cubic-spline"', f'"{name}"'), "x")
         ((field, reason),) = caught.value.faults
         assert (field, reason) == ("interpolant.family", f"{name!r} is not allowed; {written}")
-
-
-# --- blocks of claims, once their blanks are filled in --------------------------------------------
 
 
 PRINTED = {

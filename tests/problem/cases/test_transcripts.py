@@ -54,8 +54,6 @@ def test_entries_are_matched_by_their_ids() -> None:
     assert found[0].second == found[1].first == "(absent)"
 
 
-# --- examples of others' numbers, typed twice ----------------------------------------------------
-
 FIRST = ROOT / "docs" / "examples"
 SECOND = sorted((ROOT / "tests" / "support" / "second_transcriptions").glob("*.toml"))
 

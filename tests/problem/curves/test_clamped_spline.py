@@ -75,9 +75,6 @@ def independent(problem: Problem, h: Array, joint: int) -> tuple[BSpline, Array]
     return interpolated(sites, q[:, [joint]], curve.degree, inner), sites
 
 
-# --- counts ---------------------------------------------------------------------------------------
-
-
 def test_the_count_decides_which_readings_are_determined() -> None:
     found = {(r.degree, r.knots, r.parameters, r.time): r for r in clamped_readings(8)}
     assert len(found) == 5 * 3 * 5
@@ -145,9 +142,6 @@ def test_few_waypoints() -> None:
     q, t = np.array([[0.3], [1.5]]), np.linspace(0, 2, 21)
     mine, quintic = fit(two, q, [2.0]), fit(quintic_spline(1), q, [2.0])
     np.testing.assert_allclose(mine(t), quintic(t), rtol=0, atol=1e-14)
-
-
-# --- curves ---------------------------------------------------------------------------------------
 
 
 @each
@@ -247,9 +241,6 @@ def test_segments_that_are_stretched_by_themselves_are_not_smooth():
     for time, order in ((Timing.TIMED, 3), (Timing.STRETCHED, 0)):
         curve = ClampedBSpline(5, 4, Knots.CONTINUED, Parameters.CHORD, time)
         assert curve.smooth_order(2) == order
-
-
-# --- what is refused ------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("printed_vector", [False, True])

@@ -122,8 +122,6 @@ def test_cubic_splines_are_named_by_what_holds_at_their_ends(
     assert cubic_spline(5, ends).name == name
 
 
-# --- ends that differ between joints --------------------------------------------------------------
-
 FIRST, LAST = (0.5, -0.2, 0.0), (-0.3, 0.4, 0.7)
 APART = cubic_spline(3, ((1, FIRST),), finish=((1, LAST),))
 

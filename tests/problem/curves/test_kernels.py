@@ -68,9 +68,6 @@ def test_no_vector_looks_at_another(name: str, monkeypatch: pytest.MonkeyPatch) 
     np.testing.assert_array_equal(curve.batch_reach(values, h, asked), found)
 
 
-# --- what may not be written into -----------------------------------------------------------------
-
-
 Q = np.array([[0.15, -1.0], [0.9, -0.55], [0.2, 0.35], [-0.45, 0.1]])
 
 
@@ -96,9 +93,6 @@ def test_no_question_compiles_the_kernel_again() -> None:
     assert evaluate(Problem(Q, uneven, curve), h[:1]).positions.shape == (1, 2)
     evaluate(Problem(Q, limits, curve), np.tile(h, (3000, 1)))
     assert len(kernel.batch_peaks.signatures) == 1
-
-
-# --- numba is imported late, and its cache is looked for ------------------------------------------
 
 
 QUESTION = """

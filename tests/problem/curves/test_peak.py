@@ -12,13 +12,7 @@ import pytest
 from hypothesis import example, given, strategies as st
 from numpy.polynomial import Chebyshev, Polynomial as Power
 from support import exact_route
-from trajgap.problem import (
-    Interpolant,
-    Limits,
-    Problem,
-    check,
-    evaluate,
-)
+from trajgap.problem import Interpolant, Limits, Problem, check, evaluate
 from trajgap.problem.curves import derived, roots_in_unit
 
 

@@ -7,13 +7,7 @@ import numpy as np
 import pytest
 from support.b_splines import uniform
 from support.samples import DECLARATIONS, long_curves, long_problem, sample_problem
-from trajgap.problem import (
-    Problem,
-    check,
-    extrema,
-    fit,
-    rest_to_rest,
-)
+from trajgap.problem import Problem, check, extrema, fit, rest_to_rest
 from trajgap.problem.curves import Trajectory, furthest, peak
 
 NAMES = ("3-5-3", "cubic", "quintic", "rest 7", "4-2-3", "lines", "uneven")

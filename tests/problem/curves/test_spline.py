@@ -139,9 +139,6 @@ def test_coefficients_against_rational_arithmetic(name: str, spread: float) -> N
             assert not plain[k, len(piece) :, j].any()
 
 
-# --- error bounds, and systems that are singular --------------------------------------------------
-
-
 LONG = {
     "cubic": cubic_spline(16),
     "quintic": quintic_spline(12),

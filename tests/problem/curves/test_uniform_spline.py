@@ -6,12 +6,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from support.b_splines import (
-    NATURAL,
-    ByScipy,
-    spline_by_scipy,
-    uniform,
-)
+from support.b_splines import NATURAL, ByScipy, spline_by_scipy, uniform
 from trajgap.problem import (
     CurveError,
     Limits,
@@ -28,8 +23,6 @@ from trajgap.problem import (
 )
 from trajgap.problem.curves.uniform import vertex_matrix
 
-# --- control vertices -----------------------------------------------------------------------------
-
 
 @pytest.mark.parametrize("natural", [False, True])
 @pytest.mark.parametrize("count", [2, 3, 5, 10])
@@ -45,9 +38,6 @@ def test_vertices_meet_the_waypoint_equations_exactly(count: int, natural: bool)
     if natural:
         return
     assert max(sum(map(abs, row)) for row in v) <= 3
-
-
-# --- both readings --------------------------------------------------------------------------------
 
 
 def test_declarations_are_checked() -> None:
@@ -70,9 +60,6 @@ def test_declarations_are_checked() -> None:
         Problem([[0.0], [1.0]], Limits(1.0), "rest-to-rest")
 
 
-# --- (a) stretched --------------------------------------------------------------------------------
-
-
 def test_closed_form_with_a_limit_of_zero_and_with_nothing_that_moves() -> None:
     curve = uniform_cubic_b_spline(3, "stretched")
     assert (solve_in_closed_form(curve, np.full((3, 1), 0.4), [[1.0, 2.0, 3.0]]) == 0).all()
@@ -80,9 +67,6 @@ def test_closed_form_with_a_limit_of_zero_and_with_nothing_that_moves() -> None:
     assert np.isinf(moving).all()
     with pytest.raises(TrajgapError, match="needs 3 rows"):
         solve_in_closed_form(curve, np.ones((4, 1)), [[1.0, 1.0, 1.0]])
-
-
-# --- (b) timed ------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("time", ["timed", NATURAL])

@@ -120,9 +120,6 @@ def test_no_motion_may_pass_both_acceleration_and_deceleration():
     assert check_samples(samples, less).verdict is Verdict.VIOLATED
 
 
-# --- divided differences --------------------------------------------------------------------------
-
-
 NOISE = np.array([0.0, 3e-4])
 ROUNDING = Fraction(1, 10**10)
 """Of values up to 45 at times with steps of 1e-2: what the error may have beyond the noise."""

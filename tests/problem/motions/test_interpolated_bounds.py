@@ -114,9 +114,6 @@ def test_lines_that_may_bend_within_their_noise_do_not_pass():
                 assert found.verdict is (Verdict.DISCONTINUOUS if shaken else Verdict.PASS)
 
 
-# --- what the digits of a file leave open ---------------------------------------------------------
-
-
 ROWS = "time,a,b,a velocity,b velocity\n"
 
 

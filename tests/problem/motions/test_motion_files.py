@@ -270,9 +270,6 @@ def test_a_bag_holds_a_trajectory_and_is_readable(tmp_path, monkeypatch):
         read_motion(bag)
 
 
-# --- Parquet --------------------------------------------------------------------------------------
-
-
 pyarrow = pytest.importorskip("pyarrow")
 parquet = pytest.importorskip("pyarrow.parquet")
 

@@ -126,9 +126,6 @@ def test_a_name_with_a_comma_is_no_column():
         csv_text(sampled(motion(), 0.1, ("a,b", "c")))
 
 
-# --- objects of other libraries -------------------------------------------------------------------
-
-
 WAYS = np.array([[0.3, 1.0], [1.0, -0.5], [0.2, 0.4], [1.5, 2.0]])
 
 

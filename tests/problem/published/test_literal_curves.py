@@ -22,9 +22,6 @@ PUMA, IRB = "puma560-mnam-pso-353", "irb460-pso-353"
 POLISH = "irb1600-ga-cubic-bspline"
 
 
-# --- 3-5-3 polynomials: puma560 (1)-(9), irb460 (20)-(23) -----------------------------------------
-
-
 def value_353(a: Array, h: Numbers, t: float, order: int) -> float:
     """A derivative of the three segments, each in its own time."""
     start = 0.0
@@ -51,9 +48,6 @@ def test_the_14_conditions_give_the_curve(case_id: str, claim: str) -> None:
             for order in range(3):
                 value = value_353(a, h, float(t), order)
                 assert motion([t], order)[0, joint] == pytest.approx(value, abs=1e-11)
-
-
-# --- uniform cubic B-splines: irb1600 (1)-(9) -----------------------------------------------------
 
 
 def vertices(w: Numbers) -> Numbers:
@@ -116,9 +110,6 @@ def test_vertices_speeds_and_the_golden_section() -> None:
                     exact[one.segment] = max(exact[one.segment], abs(one.value))
                 np.testing.assert_array_less(found, np.array(exact) * (1 + 1e-9) + 1e-12)
                 assert max(found) == pytest.approx(max(exact), rel=1e-9)
-
-
-# --- jtraj: the baseline of irb460 and z1 ---------------------------------------------------------
 
 
 def test_the_quintic_at_rest_of_the_toolbox() -> None:

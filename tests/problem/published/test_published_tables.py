@@ -9,12 +9,7 @@ from itertools import product
 import numpy as np
 import pytest
 from support.checkout import ROOT
-from trajgap.problem import (
-    CaseError,
-    jtraj,
-    quintic_spline,
-    uniform_cubic_b_spline,
-)
+from trajgap.problem import CaseError, jtraj, quintic_spline, uniform_cubic_b_spline
 from trajgap.problem.cases import StatementClaim
 from trajgap.problem.cases.load import load_case, parse_case, published_ids
 from trajgap.problem.printed import Printed
@@ -239,9 +234,6 @@ def test_everything_left_open_has_a_choice(case_id):
         (FOLDER / f"{case_id}.toml").read_text(encoding="utf-8"), parse_float=Decimal
     )
     assert not any(isinstance(v, Decimal) for claim in document["claims"] for v in claim.values())
-
-
-# --- the table of claim kinds in the docs ---------------------------------------------------------
 
 
 _PAGE = ROOT / "docs" / "reference" / "claim-checklist.md"

@@ -217,9 +217,6 @@ def test_faults_of_a_point(point, held, message):
         proximity(PLANAR, point, held)
 
 
-# --- distance to a point over free joints ---------------------------------------------------------
-
-
 RING = Chain(Convention.STANDARD, a=[0.7, 0.4], alpha=[0, 0], d=[0, 0])
 NAN = np.nan
 

@@ -6,13 +6,7 @@ from functools import cache
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-from trajgap.problem import (
-    fit,
-    jtraj,
-    parse_case,
-    rest_to_rest,
-    scaffold,
-)
+from trajgap.problem import fit, jtraj, parse_case, rest_to_rest, scaffold
 from trajgap.problem.cases.robot_file import load_robot
 from trajgap.problem.errors import TrajgapError
 from trajgap.problem.robots import workspace
@@ -112,9 +106,6 @@ def test_faults(change, message):
         waypoint_sequences(CLOUD, **{"step": 0.1, "count": 1, "seed": 0, **change})
     with pytest.raises(TrajgapError, match="count: 0 samples; give at least 1"):
         sample_workspace(PUMA, 0, 1)
-
-
-# --- straight-line moves --------------------------------------------------------------------------
 
 
 START = np.array([0.1, -0.6, 0.4, 0.2, 0.5, 0.1])

@@ -40,9 +40,6 @@ LARGEST_SUITE = 15_000_000
 """Bytes that the certificates may take together."""
 
 
-# --- what is there --------------------------------------------------------------------------------
-
-
 def test_the_suite_is_as_large_and_as_mixed_as_it_says() -> None:
     found = list_instances()
     assert len(found) >= 100
@@ -170,9 +167,6 @@ def test_instances_with_several_basins_have_them() -> None:
     assert minima_over_directions("353-puma560") == 1
 
 
-# --- the bounds -----------------------------------------------------------------------------------
-
-
 def question(one: BenchmarkInstance) -> Any:
     """What an instance asks, as its digits stand in the case file."""
     case = one.case()
@@ -265,9 +259,6 @@ def test_the_command_of_a_row_makes_its_certificate() -> None:
     assert one.command.startswith("trajgap solve suite:septic-fang2020-task1 --certify --gap ")
     found = certify(question(one), gap=one.gap_asked)
     assert float(found.lower) == pytest.approx(one.lower, rel=1e-10)
-
-
-# --- without trajgap ------------------------------------------------------------------------------
 
 
 def loaded(one: BenchmarkInstance, folder: Path) -> tuple[dict[str, Any], dict[str, Any]]:

@@ -157,8 +157,6 @@ def judged(forgery: Forgery, folder: Path, patch: pytest.MonkeyPatch) -> Certifi
     return verify_certificate(source, spread=forgery.spread)
 
 
-# --- the checks -----------------------------------------------------------------------------------
-
 Place = tuple[str, int, int]
 """Path in the folder, line and column."""
 

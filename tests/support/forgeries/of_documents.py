@@ -19,9 +19,6 @@ NOT_QUINTIC = f"{QUINTIC}declaration not covered: no C4 quintic spline at rest a
 DECLARED = "declared.DeclaredCurve.read: "
 
 
-# --- the walk through a tree ----------------------------------------------------------------------
-
-
 def _no_numpy(*_: Any) -> Any:
     raise ImportError("No module named 'numpy'")
 
@@ -51,9 +48,6 @@ def _deep(data: Document) -> None:
     """1500 cuts, one below the other; all but one of the parts are empty."""
     data["proof"]["tree"] = [*[["/", 0, 1]] * 1500, *[["."]] * 1501]
     data["claim"] |= {"durations": None, "upper": None}
-
-
-# --- the curve and its proof ----------------------------------------------------------------------
 
 
 def _still(data: Document) -> None:

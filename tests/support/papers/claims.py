@@ -43,9 +43,6 @@ _ALONE = ("3-5-3", "clamped cubic", "rest 3", "rest 5", "C4 quintic", "4-3-4")
 """Families of which papers also take each joint by itself."""
 
 
-# --- what is printed of them ----------------------------------------------------------------------
-
-
 def time_text(draft: Draft, seconds: float, how: str | None = None, fewer: int = 0) -> str:
     """A time in the unit of the paper."""
     number = seconds / TIMES[draft.units["time"]]

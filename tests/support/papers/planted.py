@@ -66,9 +66,6 @@ def planted(fault: str, seed: int) -> Planted:
     )
 
 
-# --- what the digits say, by this route -----------------------------------------------------------
-
-
 def read(draft: Draft, name: str = "fast") -> tuple[Array, Array]:
     """Way-points and durations as printed, rad and s."""
     points = np.array([[float(t) for t in row] for row in draft.points]).T * draft.si(0)
@@ -157,9 +154,6 @@ def _totals(draft: Draft, claim: dict) -> tuple[str, str]:
     if None in found:
         raise UnfitError
     return found[0], found[1]
-
-
-# --- the faults -----------------------------------------------------------------------------------
 
 
 def _sum(rng: np.random.Generator, draft: Draft) -> Planted:

@@ -42,9 +42,6 @@ def row_paper(kind: str, seed: int) -> Paper:
     return first_fit(kind, lambda rng: make(rng, seed), 20261124, number, seed)
 
 
-# --- parts ----------------------------------------------------------------------------------------
-
-
 def _plain(rng: np.random.Generator, seed: int, families: tuple[str, ...] = HELD) -> Draft:
     draft = problem(rng, seed, str(rng.choice(families)))
     draft.other_reading = False
@@ -89,9 +86,6 @@ def _coarse(rng: np.random.Generator, seed: int) -> tuple[Draft, Answer]:
     best = shortest(draft)
     assert best is not None
     return draft, best
-
-
-# --- honest ---------------------------------------------------------------------------------------
 
 
 def _before(rng: np.random.Generator, seed: int) -> Paper:
@@ -157,9 +151,6 @@ HONEST: dict[str, Callable[[np.random.Generator, int], Paper]] = {
     "a known distance": _longer,
 }
 """Kinds of papers in which nothing is wrong."""
-
-
-# --- faulty ---------------------------------------------------------------------------------------
 
 
 def _said(rng: np.random.Generator, seed: int) -> Paper:

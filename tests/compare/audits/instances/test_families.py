@@ -65,9 +65,6 @@ def result() -> InstancesResult:
     return examined()
 
 
-# --- what is drawn --------------------------------------------------------------------------------
-
-
 def drawn(*changes: tuple[str, str]) -> np.ndarray:
     case = small(*changes)
     chain = case.chain()
@@ -101,9 +98,6 @@ def test_a_step_that_nothing_reaches_is_named() -> None:
     study = Study(case, seeds=2, certify_seconds=0)
     with pytest.raises(TrajgapError, match=r"^small\.toml: families\.drawn: step: none of the 50"):
         examine_once(study, examinable(study)[0])
-
-
-# --- what is computed -----------------------------------------------------------------------------
 
 
 def test_time_scaled_by_two_leaves_every_reduction_as_it_was(result: InstancesResult) -> None:
@@ -167,9 +161,6 @@ def test_an_answer_that_the_checker_does_not_pass_is_none(monkeypatch: pytest.Mo
     monkeypatch.setattr(family_study, "TOLERANCE", -2.0)
     found = examined(("instances = 2", "instances = 1"), ("[0.3, 0.9]", "[0.3]"))
     assert np.isinf([s.totals for s in found.samples]).all()
-
-
-# --- what is said ---------------------------------------------------------------------------------
 
 
 def made(before: list[float], after: list[float], printed: tuple[float, float]) -> InstancesResult:
@@ -261,9 +252,6 @@ def test_one_problem_or_reading_selects() -> None:
     assert examine_once(study, examinable(study)[0]).readings == ("joined",)
     unknown = small(('kind = "woa"', 'kind = "not-written"'))
     assert examinable(Study(unknown, seeds=2, certify_seconds=0)) == ()
-
-
-# --- page, document, picture ----------------------------------------------------------------------
 
 
 @pytest.fixture(scope="module")

@@ -149,8 +149,6 @@ def test_a_sentence_on_several_rows_speaks_of_this_one_too(
     assert words["rest"] == words["smooth"] == OPEN
 
 
-# --- blends against Craig's example and motions integrated in time --------------------------------
-
 Array = NDArray[np.float64]
 
 

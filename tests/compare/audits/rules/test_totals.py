@@ -146,8 +146,6 @@ def test_a_total_is_set_beside_the_place_that_prints_the_other() -> None:
     assert said in plainly(found.case, cause)[0]
 
 
-# --- improvements, beside an enumeration of all that prints alike ---------------------------------
-
 SHARES = {"slower": lambda a, b: 100 * (a - b) / a, "faster": lambda a, b: 100 * (a - b) / b}
 PAIRS = [("1.2", "0.8"), ("3.1", "2.9"), ("0.9", "0.8"), ("2.25", "2.10"), ("1.05", "0.95")]
 

@@ -24,8 +24,6 @@ from trajgap.problem import (
     three_five_three,
 )
 
-# --- closed forms ---------------------------------------------------------------------------------
-
 
 def with_ends(q: list[float], first: float, last: float, limits: Limits) -> Problem:
     return Problem(
@@ -159,9 +157,6 @@ def test_reachable_displacements_have_a_curve(v0: float, v1: float, h: float, sh
     assert up == pytest.approx(np.trapezoid(top, times), abs=1e-5)
 
 
-# --- beside splines -------------------------------------------------------------------------------
-
-
 def test_same_seed_same_bits() -> None:
     one, two = (estimate_any_curve(PUMA_PROBLEM, starts=3, seed=5) for _ in range(2))
     assert one.total_time == two.total_time
@@ -201,9 +196,6 @@ def test_repeated_waypoints_are_passed_in_no_time() -> None:
     held = estimate_any_curve(spline_problem(q, 9.0, 4.0, duration_lower=0.3))
     assert held.attained
     assert held.durations[1] >= 0.3
-
-
-# --- no value, and the reason ---------------------------------------------------------------------
 
 
 TURNING = with_ends([0.2, 0.2], 0.5, -0.3, Limits(5.0, 4.0))

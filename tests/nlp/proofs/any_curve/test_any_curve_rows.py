@@ -4,13 +4,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from support.any_curve_proofs import (
-    certify_any,
-    interval,
-    proved,
-    random_problem,
-    spline_problem,
-)
+from support.any_curve_proofs import certify_any, interval, proved, random_problem, spline_problem
 from support.shipped_problems import printed_problems
 from trajgap.nlp.proofs import evidence
 from trajgap.nlp.proofs.any_curve.estimate import estimate_any_curve
@@ -20,12 +14,7 @@ from trajgap.nlp.proofs.any_curve.tangents import KINDS, matrix
 from trajgap.nlp.proofs.document import certificate
 from trajgap.nlp.proofs.exact import exact_problem
 from trajgap.nlp.proofs.outcome import Outcome
-from trajgap.problem import (
-    ClampedBSpline,
-    Knots,
-    Limits,
-    Problem,
-)
+from trajgap.problem import ClampedBSpline, Knots, Limits, Problem
 from trajgap.verify import TANGENT_UNIT, Subject, verify_certificate as verify
 
 
@@ -44,9 +33,6 @@ def test_too_short_upper_bounds_are_infeasible() -> None:
     half = certify_any(spline_problem([0.0, 1.0, 0.0], 1.0, 2.0, duration_upper=[1.2, np.inf]))
     assert half.outcome is Outcome.OPEN
     assert half.proof is None
-
-
-# --- rows -----------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("seed", range(40))

@@ -22,9 +22,6 @@ from trajgap.nlp.proofs.outcome import Outcome
 from trajgap.problem import Limits, Problem, TrajgapError
 from trajgap.verify import Subject, verify_certificate as verify
 
-# --- attacks --------------------------------------------------------------------------------------
-
-
 ATTACKED = spline_problem([[0.0, 0.0], [0.25, 1.0], [3.0, 1.125]], [3.0, 1.5], [2.0, 4.0])
 
 
@@ -103,9 +100,6 @@ def test_a_joint_that_stays_where_it_must_not_be_has_no_answer(key: str, bound: 
     found = certify_any(problem)
     assert found.upper is None
     assert proved(found).lower is not None
-
-
-# --- what is not covered, and stopping ------------------------------------------------------------
 
 
 def test_jerk_and_position_limits_keep_the_lower_bound_alone() -> None:

@@ -93,8 +93,6 @@ def test_an_estimate_knows_the_ends_of_each_joint() -> None:
     assert fast.why == "the velocity prescribed at the start exceeds the limit of joint b"
 
 
-# --- what is said, and printed digits -------------------------------------------------------------
-
 CASE = """
 format = 1
 id = "moving"

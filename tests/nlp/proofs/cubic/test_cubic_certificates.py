@@ -20,16 +20,8 @@ from trajgap.nlp.proofs.cubic.tree import Prover
 from trajgap.nlp.proofs.document import certificate, problem_document
 from trajgap.nlp.proofs.exact import exact_problem, printed_problem
 from trajgap.nlp.proofs.outcome import Certified, Outcome, Progress, Request
-from trajgap.problem import (
-    Limits,
-    Problem,
-    TrajgapError,
-    cubic_spline,
-    load_case,
-)
+from trajgap.problem import Limits, Problem, TrajgapError, cubic_spline, load_case
 from trajgap.verify import MOST_INTEGER, TICKS, read_problem, verify_certificate as verify
-
-# --- closed forms and identities ------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
@@ -55,9 +47,6 @@ def test_a_natural_spline_along_a_line_has_constant_speed() -> None:
     found = certify(problem, gap=1e-4)
     assert found.outcome is Outcome.CERTIFIED
     assert float(found.lower) <= 4.5 / 1.5 <= float(found.upper or 0) * (1 + 1e-12)
-
-
-# --- solver and verifier --------------------------------------------------------------------------
 
 
 def prover_of(problem: Problem, total: Fraction | None = None) -> Prover:
@@ -100,9 +89,6 @@ def test_weights_without_the_target_prove_nothing_about_it() -> None:
 
 
 EXAMPLE = ROOT / "docs" / "examples" / "gasparetto-zanotto2008.toml"
-
-
-# --- attacks --------------------------------------------------------------------------------------
 
 
 @lru_cache(maxsize=1)

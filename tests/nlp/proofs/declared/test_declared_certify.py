@@ -168,9 +168,6 @@ def test_a_segment_in_which_nothing_moves_needs_a_bound() -> None:
             judged(one, found, dense_best(one))
 
 
-# --- states ---------------------------------------------------------------------------------------
-
-
 def stopped_at(name: str, monkeypatch: pytest.MonkeyPatch) -> Certified:
     """A run that was stopped with a proved lower bound and with open boxes."""
     # However fast boxes are, something is said after every few of them.
