@@ -33,7 +33,6 @@ def test_derivatives_are_within_their_bounds_of_exact_ones(name: str, spread: fl
     curve = ENDS[name]
     q, h = drawn(curve, spread, 4)
     found = tridiagonal_fit(curve.ends, q, h)
-    assert found is not None
     scaled, times = found.trajectory.scaled, [Fraction(x) for x in h]
     for j in range(2):
         own = curve.for_joint(q, j)
@@ -64,8 +63,6 @@ def test_a_solution_that_is_off_is_bounded_all_the_same(
 
     monkeypatch.setattr(lapack, "dptsv", off)
     found = tridiagonal_fit(curve.ends, q, h)
-    assert found is not None
-    assert right is not None
     away = np.abs(found.trajectory.scaled - right.trajectory.scaled)[:, 1] / h[:, None]
     assert (away <= found.error[:, 1] + right.error[:, 1]).all()
     assert (found.error[:, 1, 0] < 3e-3).all()
@@ -76,7 +73,6 @@ def test_a_joint_that_stands_still_has_no_blur() -> None:
     q, h = drawn(curve, 1.0, 3)
     q[:, 1] = 2.5
     found = tridiagonal_fit(curve.ends, q, h)
-    assert found is not None
     assert not found.trajectory.scaled[:, 1:, 1].any()
     assert found.error[:, 1:, 1].max() < 1e-230
 
@@ -85,7 +81,6 @@ def test_positions_far_from_zero_keep_their_rounding() -> None:
     curve = cubic_spline(120)
     q, h = drawn(curve, 0.3, 3)
     found = tridiagonal_fit(curve.ends, q + 1e9, h)
-    assert found is not None
     assert (found.error[:, 0] > 1e-8).all()
 
 

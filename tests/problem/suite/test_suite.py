@@ -97,7 +97,6 @@ def test_the_docs_count_what_is_there() -> None:
 def test_success_rates_are_shares_of_the_runs_that_were_made() -> None:
     for one in list_instances():
         hard = one.hardness
-        assert hard is not None
         assert bool(hard.baselines) == bool(hard.baseline_runs) == bool(hard.baseline_budget)
         for name, rate in hard.baselines.items():
             runs = 1 if name == "rescale" else hard.baseline_runs
@@ -239,7 +238,6 @@ def test_every_instance_is_proved_again(name: str) -> None:
 def test_a_certificate_of_another_instance_is_no_evidence() -> None:
     one, other = load_instance("353-puma560"), load_instance("353-puma560-joint-1")
     file = other.certificate_file()
-    assert file is not None
     assert not fits(json.loads(file.read_text("utf-8")), question(one), Subject.DECLARED)
 
 
@@ -247,7 +245,6 @@ def test_a_solver_finds_the_certificate_of_an_instance() -> None:
     one = load_instance("353-irb460")
     exact = question(one)
     found = proved(exact)
-    assert found is not None
     assert found.upper is not None
     assert Fraction(repr(one.lower)) <= found.lower <= found.upper <= Fraction(repr(one.upper))
     assert shipped_file(exact) == Path(str(one.certificate_file()))
