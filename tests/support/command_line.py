@@ -5,7 +5,6 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -102,7 +101,6 @@ def interrupted(program: str, *arguments: str, after: str) -> tuple[int, str, st
     )
     assert process.stderr.readline() == f"{after}\n"
     assert any(p.name.startswith(".trajgap") for p in Path().iterdir()), "a draft is reserved"
-    time.sleep(1.0)
     process.send_signal(signal.SIGINT)
     out, err = process.communicate(timeout=60)
     return process.returncode, out, err

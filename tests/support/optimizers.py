@@ -207,6 +207,10 @@ def raises_at_times(fun: Any, bounds: Any, budget: int, rng: Any) -> None:
         raise ZeroDivisionError("at times")
 
 
+def generator_of(rng: Any) -> None:
+    """Takes too little."""
+
+
 def anything(*given: Any, **settings: Any) -> None:
     """Takes whatever it gets."""
 

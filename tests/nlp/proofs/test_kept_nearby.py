@@ -7,8 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from trajgap.nlp import solve, solve_per_joint
-from trajgap.nlp.optimum import per_joint
+from trajgap.nlp import per_joint, solve, solve_per_joint
 from trajgap.nlp.proofs import KeptNearby, kept_nearby
 from trajgap.problem import Array, Limits, Problem, three_five_three
 from trajgap.verify import seal
