@@ -303,7 +303,7 @@ class PrintedRow(Generic[C]):
     def total_excluded(self) -> bool:
         """Whether no motion within the limits takes the claim's total or less.
 
-        Proved for every value that rounds to the printed digits or is cut off to them.
+        Proved however the digits were rounded or cut off.
         """
         return self.once("excluded", self._excludes_total)
 

@@ -1,4 +1,4 @@
-"""A printed solution judged for every value that rounds to the printed digits."""
+"""A printed solution judged however its digits were rounded."""
 
 from __future__ import annotations
 
@@ -180,7 +180,7 @@ def judge_rounding(
     loosest: Problem | None = None,
     loose_ends: bool = False,
 ) -> RoundingVerdict:
-    """Judge a printed solution over every value that rounds to the printed digits.
+    """Judge a printed solution however its digits were rounded.
 
     Parameters
     ----------

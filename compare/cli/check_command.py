@@ -237,7 +237,7 @@ def check_result(
     found : Check
         The durations judged at the printed point, with all joints.
     rounding : RoundingVerdict
-        Judged for every value that rounds to the printed digits.
+        Judged however the digits were rounded.
     durations : sequence of float
         s.
     joints : iterable of (str, Check, RoundingVerdict), optional

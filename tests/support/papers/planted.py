@@ -21,7 +21,7 @@ Made = TypeVar("Made")
 ATTEMPTS = 400
 """Papers drawn until one has what the fault needs."""
 HELD = ("3-5-3", "4-3-4", "clamped cubic", "C4 quintic", "rest 5", "rest 7", "virtual cubic")
-"""Families on which a broken limit can be proved for every value that rounds to the digits."""
+"""Families on which a broken limit can be proved however the digits were rounded."""
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ time-optimal." Is that so?
 
 # %%
 # A case file holds what the paper prints. ``scaffold`` writes it from a table of way-points; the
-# digits stay as printed, because each number may be anything that rounds to them.
+# digits stay as printed, because they say how precise each number is.
 
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -53,8 +53,8 @@ of = ["durations"]
 case = parse_case(text, "paper.toml")
 
 # %%
-# The audit judges every claim against the exact optimum of the same problem. An error holds for
-# every value that rounds to the printed digits.
+# The audit judges every claim against the exact optimum of the same problem. It refutes a claim
+# only if the claim is wrong however the digits were rounded.
 
 report = tg.audit(case)
 print(report)
