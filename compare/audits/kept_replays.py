@@ -71,14 +71,8 @@ class KeptReplays:
         -------
         tuple of Run
         """
-        if not (self._files.used and asked):
-            return tuple(compute())
-        try:
-            question = _question(asked)
-        except TrajgapError:  # a curve that no exact problem has
-            return tuple(compute())
         return self._files.answers(
-            question,
+            lambda: _question(asked),
             len(asked),
             compute,
             _left,

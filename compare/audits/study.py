@@ -266,13 +266,14 @@ class Study:
         self, pair: Pair, name: str, settings: Mapping[str, Algorithm[Any]], seeds: int
     ) -> dict[str, Replays]:
         """Replays of an algorithm under some settings, each under its words."""
+        which = f"{seeds} replays of {self.called(name)}"
         where = in_words(self.case, *pair)
         return self.kept_replays.replayed(
             self.problem(pair),
             settings,
             seeds,
             self.workers,
-            lambda words: self.progress(f"{seeds} replays of {name}, {words}; {where}"),
+            lambda words: self.progress(f"{which}, {words}; {where}"),
         )
 
     def settings(self, algorithm_id: str) -> dict[str, Algorithm[Any]]:

@@ -33,7 +33,6 @@ from ..documents import (
     json_text,
     known,
 )
-from ..pictures import KINDS, checked_picture, picture_bytes
 from .input import naming
 from .motion_results import checked_motion, shown_check
 from .output import emit, new_output
@@ -188,6 +187,8 @@ def motion_document(
 
 def _kind_of_picture(path: Path) -> str:
     """The format that the name of a picture ends with."""
+    from ..pictures import KINDS  # a third of a second, and most commands draw nothing
+
     kind = path.suffix.lower().removeprefix(".")
     if kind not in KINDS:
         known = ", ".join(f".{one}" for one in KINDS)
@@ -204,6 +205,8 @@ def _picture(
     kind: str,
 ) -> bytes:
     """The motion as it was judged, as the content of a file."""
+    from ..pictures import checked_picture, picture_bytes
+
     content = read.content
     if isinstance(content, Samples) and how is not None and how is not Interpolation.NONE:
         content = interpolated(content, how)

@@ -29,7 +29,8 @@ SMALLEST_STEP = 1e-10
 GAIN = 1e-13
 """Relative gain below which a descent ends: rounding of the total."""
 SLOW, PATIENCE = 1e-9, 6
-"""A descent that gains less than this (relative) in so many steps creeps, and ends."""
+"""A descent that gains less than this (relative) in so many steps creeps. It goes on with a new
+Hessian, and ends if it has gained no more since the last one."""
 GOOD = 0.5
 """Share of the expected gain from which the trust region grows."""
 PULL = 1e-3

@@ -119,7 +119,7 @@ class KeptFiles:
 
     def answers(
         self,
-        question: object,
+        question: Callable[[], object],
         count: int,
         compute: Callable[[], Iterable[A]],
         left: Callable[[A], Any],
@@ -128,13 +128,15 @@ class KeptFiles:
     ) -> tuple[A, ...]:
         """The answers of some searches: what earlier ones left, or else found now and kept.
 
-        Nothing proves what a search finds but the same search. So each answer is judged again, a
-        few of the searches are made again, and one bit that differs discards all of them.
+        Nothing proves what a search finds but the same search. So each answer is judged again and
+        must leave the same, a few of the searches are made again, and one bit that differs discards
+        all of them.
 
         Parameters
         ----------
-        question : object
-            As in `read`.
+        question : callable
+            What the answers depend on, as in `read`; not asked for if nothing is kept. It raises
+            `TrajgapError` if that cannot be stated.
         count : int
             Number of the searches.
         compute : callable
@@ -151,14 +153,20 @@ class KeptFiles:
         -------
         tuple
         """
-        if not self.used:
+        if self._folder is None or count == 0:
             return tuple(compute())
         try:
-            kept = self.read(question)
+            asked = question()
+        except TrajgapError:
+            return tuple(compute())
+        try:
+            kept = self.read(asked)
             parts = kept["answers"]
-            if kept["seal"] != seal([question, parts]) or len(parts) != count:
+            if kept["seal"] != seal([asked, parts]) or len(parts) != count:
                 raise ValueError("altered")
             found = tuple(judged(at, part) for at, part in enumerate(parts))
+            if [left(one) for one in found] != parts:
+                raise ValueError("judged to be another answer")
             rng = np.random.default_rng(int(kept["seal"], 16))
             for at in rng.choice(count, -(-count // AGAIN), replace=False).tolist():
                 if left(again(at)) != parts[at]:
@@ -166,7 +174,7 @@ class KeptFiles:
         except UNREADABLE:
             found = tuple(compute())
             parts = [left(one) for one in found]
-            self.write(question, {"answers": parts, "seal": seal([question, parts])})
+            self.write(asked, {"answers": parts, "seal": seal([asked, parts])})
         return found
 
     def _file(self, asked: object) -> Path:

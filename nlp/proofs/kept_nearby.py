@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from ...problem import TOLERANCE, Array, check
+from ...problem import Array, Verdict, check
 from ..per_joint import LEFT, Near, nearby
 from .document import problem_seal
 from .kept import search_code
@@ -37,11 +37,8 @@ class KeptNearby:
         sequence of list of ndarray
             One list for each question, in it the durations of each joint.
         """
-        if not self._files.used:
-            return [nearby(one) for one in questions]
-        asked = {"questions": [_words(one) for one in questions], "code": search_code()}
         return self._files.answers(
-            asked,
+            lambda: {"questions": [_words(one) for one in questions], "code": search_code()},
             len(questions),
             lambda: [nearby(one) for one in questions],
             lambda found: [as_text(h) for h in found],
@@ -66,6 +63,6 @@ def _judged(question: Near, left: list[str]) -> list[Array]:
     for problem, h, cap in zip(question.problems, found, question.caps, strict=True):
         if h.shape != (problem.segments,) or h.sum() > cap * (1 + LEFT):
             raise ValueError("no durations within the cap")
-        if check(problem, h).max_violation > TOLERANCE:
+        if check(problem, h).limits is not Verdict.PASS:
             raise ValueError("durations that break a limit")
     return found

@@ -178,6 +178,11 @@ def test_faces_import_nothing_heavy() -> None:
     assert loaded_by(packages()) & heavy == set()
 
 
+def test_commands_that_draw_nothing_load_no_pictures() -> None:
+    commands = [f"trajgap.compare.cli.{name}_command" for name in ("check", "new", "solve")]
+    assert "matplotlib" not in loaded_by(commands)
+
+
 def kinds() -> str:
     """Pattern of the names of every kind of curve and trajectory."""
     face = importlib.import_module("trajgap.problem.curves")

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 from ....nlp import Solution, Status, kkt, problem_seal
 from ....nlp.optimum import KKT_TOLERANCE, solve
 from ....nlp.proofs import KeptFiles, as_text, from_text, search_code
-from ....problem import TOLERANCE, Problem, check
+from ....problem import Problem, Verdict, check
 
 
 class AskedOptimum(NamedTuple):
@@ -44,18 +44,15 @@ class KeptOptima:
         sequence of Solution
             Of what was kept: status, durations with their check, and infimum.
         """
-        if not self._files.used:
-            return [_solved(one) for one in asked]
-        question = {
-            "problems": [[problem_seal(p), repr(p.curve), starts] for p, starts in asked],
-            "code": search_code(),
-        }
         return self._files.answers(
-            question,
+            lambda: {
+                "problems": [[problem_seal(p), repr(p.curve), starts] for p, starts in asked],
+                "code": search_code(),
+            },
             len(asked),
             lambda: map(_solved, asked),
             _left,
-            lambda at, left: _judged(asked[at].problem, *left),
+            lambda at, left: _judged(asked[at], *left),
             lambda at: _solved(asked[at]),
         )
 
@@ -69,24 +66,17 @@ def _left(found: Solution) -> list[Any]:
     return [str(found.status), found.why, durations, repr(found.infimum), repr(found.lower_bound)]
 
 
-def _judged(
-    problem: Problem,
-    status: str,
-    why: str | None,
-    durations: str | None,
-    infimum: str,
-    lower_bound: str,
-) -> Solution:
-    """The answer that left this; raises if its durations do not bear out its status."""
-    if lower_bound != "None":
-        raise ValueError("a bound that nothing here proves")
-    limit = None if infimum == "None" else float(infimum)
-    if durations is None:
-        return Solution(problem, Status(status), why, infimum=limit)
-    h = from_text(durations)
+def _judged(asked: AskedOptimum, status: str, why: str | None, durations: str, *_: str) -> Solution:
+    """The answer that left this; raises if its durations do not bear out its status.
+
+    What no durations bear out, such as that there are none, is searched for again.
+    """
+    if status not in (Status.CONVERGED, Status.FEASIBLE):
+        return _solved(asked)
+    problem, h = asked.problem, from_text(durations)
     verdict = check(problem, h)
-    if h.shape != (problem.segments,) or verdict.max_violation > TOLERANCE:
+    if verdict.limits is not Verdict.PASS:
         raise ValueError("durations that break a limit")
-    if status in (Status.CONVERGED, Status.OPTIMAL) and kkt(problem, h).residual > KKT_TOLERANCE:
+    if status == Status.CONVERGED and kkt(problem, h).residual > KKT_TOLERANCE:
         raise ValueError("no optimum")
-    return Solution(problem, Status(status), why, h, verdict, infimum=limit)
+    return Solution(problem, Status(status), why, h, verdict)

@@ -223,7 +223,6 @@ def test_the_least_point_meets_its_conditions() -> None:
         hessian, slope = root @ root.T + 0.1 * np.eye(4), generator.normal(size=4)
         rows, room = generator.normal(size=(7, 4)), generator.uniform(0.0, 1.0, 7)
         found = least_point(hessian, slope, rows, room)
-        assert found is not None
         step, weights = found
         slack = room - rows @ step
         assert (slack >= -1e-9).all()

@@ -118,9 +118,7 @@ def test_a_run_that_is_cut_short_or_goes_on_keeps_nothing(tmp_path, searches):
     open_run = certify(shifted_problem(), gap=0.0, seconds=0.2, cache=tmp_path)
     assert open_run.outcome is not Outcome.CERTIFIED
     assert not list(tmp_path.iterdir())
-    state = state_document(open_run)
-    assert state is not None
-    certify(shifted_problem(), gap=GAP, resume=state, cache=tmp_path)
+    certify(shifted_problem(), gap=GAP, resume=state_document(open_run), cache=tmp_path)
     assert not list(tmp_path.iterdir())
 
 
