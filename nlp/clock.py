@@ -11,6 +11,7 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
+from copy import copy
 
 
 class RunClock:
@@ -47,8 +48,10 @@ class RunClock:
         return max(self.least, self.seconds + self.spare - self.used)
 
     def share(self, part: float) -> RunClock:
-        """A clock for a part of what is left, from now on."""
-        return RunClock(part * self.left)
+        """A clock that began with this one and ends after a part of what is left."""
+        ends = copy(self)
+        ends.seconds = self.used + part * self.left
+        return ends
 
 
 _LIMIT: ContextVar[RunClock] = ContextVar("limit")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from typing import ClassVar
 
 from ...verify import OutOfTime, Subject
 from .exact import ExactProblem
@@ -42,7 +43,14 @@ class Certifier:
         within the larger of both, which is sound and wider.
     moving : bool
         Whether derivatives may be prescribed other than 0.
+    first : Certifier or None
+        Another kind, which a run begins with where it covers the problem and the gap is below
+        `narrow`: there it closes most problems sooner, and some not at all.
     """
+
+    narrow: ClassVar[float] = 1e-3
+    """Seven segments of cubics took boxes of durations 1.1 to 1.5 times as many for a gap of 1e-6
+    as for 1e-2, and the kind of their own 4 to 300 times."""
 
     family: str
     declares: Callable[[ExactProblem], bool]
@@ -54,6 +62,7 @@ class Certifier:
     prepares: bool = False
     sided: bool = False
     moving: bool = False
+    first: Certifier | None = None
 
     def allowance(self, exact: ExactProblem) -> int:
         """Boxes that an audit allows a problem by default.
@@ -75,10 +84,27 @@ class Certifier:
             return self._run_wider(exact, request)
         session = Session(exact, request)
         try:
-            complete = self.prove(session)
+            complete = self._begun(session) or self.prove(session)
         except (KeyboardInterrupt, OutOfTime):
             complete = False
         return session.result(complete, self.subject)
+
+    def _begun(self, session: Session) -> bool:
+        """Whether the kind that a run begins with leaves nothing to do.
+
+        It has half of the time, and of the boxes that an audit allows it the share that the run has
+        of its own. A run that goes on from a state leaves it out: what the state proposes is of the
+        kind behind.
+        """
+        exact, request, first = session.exact, session.request, self.first
+        if first is None or request.resume is not None or request.gap >= self.narrow:
+            return False
+        if not first.declares(exact):
+            return False
+        share = min(1.0, request.boxes / self.allowance(exact))
+        with session.part(share * first.allowance(exact), 0.5):
+            return first.prove(session)
+        return False
 
     def _run_wider(self, exact: ExactProblem, request: Request) -> Certified:
         """A bound proved within the larger size of both sides, and an answer that keeps both.

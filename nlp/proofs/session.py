@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from contextlib import AbstractContextManager
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TypeVar
 
@@ -196,6 +196,23 @@ class Session:
         if self._unsearched and self.left_out is None:
             self.left_out = BOXED if boxed else UNBOUNDED if self.proof is None else BARE
         raise OutOfTime
+
+    @contextmanager
+    def part(self, boxes: float, share: float) -> Iterator[None]:
+        """Within, so many boxes and a share of the time are allowed; then what was allowed before.
+
+        The end of a part is no end of the run; the boxes of a part are not counted against it.
+        """
+        request, clock, before = self.request, self.clock, self.nodes
+        self.request = replace(request, boxes=before + boxes)
+        self.clock = clock.share(share)
+        try:
+            yield
+        except OutOfTime:
+            self.left_out = None
+        finally:
+            self.request = replace(request, boxes=request.boxes + self.nodes - before)
+            self.clock = clock
 
     def searching(self) -> AbstractContextManager[None]:
         """Within, `time_up` says when a search is to end that does not ask the session."""

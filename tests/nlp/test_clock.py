@@ -139,7 +139,7 @@ def test_a_share_of_the_time_is_a_clock_of_its_own(ticks: Ticking) -> None:
     whole = RunClock(100.0)
     ticks.now = 20.0
     part = whole.share(0.5)
-    assert (part.seconds, part.left) == (40.0, 40.0)
+    assert (part.used, part.left) == (20.0, 40.0)
     ticks.now += 30.0
     assert (whole.left, part.left) == (50.0, 10.0)
 

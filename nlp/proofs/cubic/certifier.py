@@ -11,6 +11,7 @@ import numpy as np
 from ....problem import Array
 from ....verify import OutOfTime, Refused
 from ..certifier import Certifier
+from ..declared import WITHOUT_VIRTUAL
 from ..document import stated_problem
 from ..driver import grow
 from ..exact import ExactProblem
@@ -126,6 +127,11 @@ def _missing(problem: ExactProblem) -> str | None:
 
 
 CUBIC = Certifier(
-    "C2 cubic splines (clamped, natural, virtual)", declares, _missing, _prove, boxes=16
+    "C2 cubic splines (clamped, natural, virtual)",
+    declares,
+    _missing,
+    _prove,
+    boxes=16,
+    first=WITHOUT_VIRTUAL,
 )
 """The ends that the verifier knows: only for them are the equations derived."""

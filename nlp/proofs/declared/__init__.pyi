@@ -1,6 +1,7 @@
 from .certifier import (
     DECLARED as DECLARED,
     FEW_SEGMENTS as FEW_SEGMENTS,
+    WITHOUT_VIRTUAL as WITHOUT_VIRTUAL,
     BoxStages as BoxStages,
     Tree as Tree,
 )

@@ -259,14 +259,20 @@ DECLARED = Certifier(
 )
 """Of any degrees, continuity and rest: 3-5-3, 4-3-4, septic splines and the like."""
 
-FEW_SEGMENTS = replace(
+WITHOUT_VIRTUAL = replace(
     DECLARED,
     declares=lambda problem: (
-        _declares(problem)
-        and problem.segments <= _FEW.get(max(problem.piecewise.degrees), 0)
-        and not problem.piecewise.virtual
-        and _missing(problem) is None
+        _declares(problem) and not problem.piecewise.virtual and _missing(problem) is None
     ),
 )
-"""Stands in front of the kinds for cubic and quintic splines, and leaves them what they alone do:
-virtual way-points near the others, and segments in which nothing moves."""
+"""Leaves other kinds what they alone do: virtual way-points near the others, and segments in which
+nothing moves."""
+
+FEW_SEGMENTS = replace(
+    WITHOUT_VIRTUAL,
+    declares=lambda problem: (
+        WITHOUT_VIRTUAL.declares(problem)
+        and problem.segments <= _FEW.get(max(problem.piecewise.degrees), 0)
+    ),
+)
+"""Stands in front of the kinds for cubic and quintic splines."""

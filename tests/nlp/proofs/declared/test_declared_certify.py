@@ -15,6 +15,7 @@ from support.intervals import dense_best, judged
 from support.proof_runs import answering, state_of, stopped
 from support.shipped_problems import COVERED_PROBLEMS
 from trajgap.nlp.proofs.certifiers import certify
+from trajgap.nlp.proofs.cubic import CUBIC
 from trajgap.nlp.proofs.declared.certifier import DECLARED
 from trajgap.nlp.proofs.declared.simplex import best_weights
 from trajgap.nlp.proofs.document import certificate, problem_document, shipped, shipped_folder
@@ -25,6 +26,7 @@ from trajgap.problem import (
     Limits,
     Problem,
     TrajgapError,
+    cubic_spline,
     evaluate,
     piecewise,
     rest_to_rest,
@@ -206,6 +208,33 @@ def test_a_bad_state_is_refused(part: str, change: dict[str, Any], reason: str) 
     state[part] |= change
     with pytest.raises(TrajgapError, match=reason):
         certify(IRB, resume=state)
+
+
+SPLINE = Problem(
+    np.random.default_rng(0).uniform(-1.5, 1.5, (7, 3)),
+    Limits(1.5, 2.0, 6.0, joints=3),
+    cubic_spline(6),
+)
+
+
+def test_long_cubic_splines_begin_with_boxes_of_durations() -> None:
+    found = certify(SPLINE)
+    assert found.outcome is Outcome.CERTIFIED
+    assert verify(certificate(found)).proves
+    assert certificate(found)["proof"]["kind"] == "declared"
+    assert certificate(certify(SPLINE, gap=0.1))["proof"]["kind"] == "cubic"
+
+
+def test_what_they_leave_goes_to_its_own_kind() -> None:
+    """With few boxes for each, the better bound of both is left."""
+    few = certify(SPLINE, boxes=1)
+    assert few.outcome is Outcome.INTERVAL
+    assert few.nodes > 1
+    alone = certify(SPLINE, boxes=1, certifier=replace(CUBIC, first=None))
+    assert few.lower >= alone.lower > 0
+    begun = state_of(stopped(SPLINE, lambda now: True))
+    again = certify(SPLINE, resume=begun, gap=0.01)
+    assert certificate(again)["proof"]["kind"] == "cubic"
 
 
 def test_what_is_no_state_is_refused() -> None:
