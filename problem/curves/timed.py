@@ -12,7 +12,6 @@ from numpy.typing import ArrayLike, NDArray
 from ..arrays import Array
 from ..errors import CurveError, TrajgapError
 from .kind import Asked, Enclosed, are_durations
-from .peak import Extremum
 from .polynomials import (
     MAX_COEFFICIENTS,
     Numbers,
@@ -262,11 +261,11 @@ def _errors(found: ClockedTrajectory, error: Array, clock_error: Array) -> Array
     return bounds
 
 
-def value_at(q: Numbers, t: Numbers, e: Extremum) -> Numbers:
-    """Derivatives at the place of an extremum, for coefficients along the first axis."""
-    if e.order == 0:
-        return np.asarray(valued(q, e.s))
-    return in_time(numerators(q, t, e.order)[-1], derived(t, 1), e.order, e.s)
+def values_at(q: Numbers, t: Numbers, order: int, places: Array) -> Numbers:
+    """Derivatives in time at places of q(e) and t(e); coefficients lead."""
+    if order == 0:
+        return valued(q, places)
+    return in_time(numerators(q, t, order)[-1], derived(t, 1), order, places)
 
 
 def runs_forwards(nodes: Array, durations: Array) -> tuple[Array, NDArray[np.bool_]]:

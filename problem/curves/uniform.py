@@ -15,7 +15,7 @@ from ..errors import TrajgapError
 from .kind import STEP, Asked, Curve, Enclosed, Shape, Timing, as_batch, masked
 from .peak import Extremum
 from .stretched import StretchedCurve
-from .timed import clocked_reach, combined, enclosed_with_clock, runs_forwards, value_at
+from .timed import clocked_reach, combined, enclosed_with_clock, runs_forwards, values_at
 
 _SIXTH = Fraction(1, 6)
 """Weight of either neighbour in (2); exact, so that the matrices are."""
@@ -200,10 +200,16 @@ class TimedUniformBSpline(UniformBSpline):
         """By complex steps: every number is a rational function of the durations."""
         scaled = shape_matrix(self.waypoints).astype(np.float64) @ waypoints
         nodes = self.clock.astype(np.float64)
-        clock, found = nodes @ durations, np.empty((len(points), self.segments))
-        for i, e in enumerate(points):
-            steps = clock[e.segment, :, None] + 1j * STEP * nodes[e.segment]
-            found[i] = value_at(scaled[e.segment, :, e.joint, None], steps, e).imag / STEP
+        marks = [(e.segment, e.joint, e.order) for e in points]
+        piece, joint, orders = np.array(marks, dtype=np.int64).reshape(-1, 3).T
+        q = scaled[piece, :, joint].T[:, :, None]
+        t = ((nodes @ durations)[piece, :, None] + 1j * STEP * nodes[piece]).transpose(1, 0, 2)
+        places = np.array([e.s for e in points])[:, None]
+        found = np.empty((len(points), self.segments))
+        for order in set(orders.tolist()):
+            own = orders == order
+            moved = values_at(q[:, own], t[:, own], order, places[own])
+            found[own] = moved.imag / STEP
         return found
 
 
