@@ -38,7 +38,6 @@ from .repair import Handling, Stretch, compile_judge, judge_of
 from .result import JointRuns, Run
 from .search_boxes import search_box
 from .within_budget import BudgetedRun, run_within
-from .workers import in_processes, kept_processes
 
 __all__ = [
     "BASELINES",
@@ -73,10 +72,8 @@ __all__ = [
     "evaluations_of",
     "find_optimizer",
     "from_settings",
-    "in_processes",
     "joined_runs",
     "judge_of",
-    "kept_processes",
     "one_by_one",
     "open_choices",
     "optimizer_name",

@@ -10,7 +10,7 @@ from typing import Annotated, Any, TypeVar, cast
 
 import numpy as np
 
-from ..problem import Array, Problem, TrajgapError
+from ..problem import Array, Problem, TrajgapError, in_processes
 from .algorithm import Algorithm, S, Search, State
 from .budget import searched
 from .objective import Bounds, Counted, Objective
@@ -18,7 +18,6 @@ from .repair import Handling, Judge, compile_judge, judge_of
 from .result import JointRuns, Run
 from .settings import checked, whole
 from .side_by_side import TOGETHER, Start, moves_together, stepped_together
-from .workers import in_processes
 
 
 def states(
@@ -382,9 +381,8 @@ def run_many(
     problem : Problem
     seeds : iterable of int
     workers : int
-        Processes. More than one costs about a second to start, and a script that asks for them
-        must guard its entry point with ``if __name__ == "__main__":``. The work of a process that
-        is killed is done again, once.
+        Processes. More than one costs about a second to start. The work of a process that is
+        killed is done again, once.
     iterations : int, optional
         Replaces the algorithm's own.
     progress : callable, optional

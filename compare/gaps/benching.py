@@ -28,8 +28,7 @@ from .engines import Engine, outcomes
 from .rows import Row, RowStatus, Trial, against, canonical
 from .standings import bench_result
 from .store import Store
-from .trial_process import TrialOutcome
-from .trials import DESCENT, origin_of, run_trial
+from .trials import DESCENT, TrialOutcome, origin_of, run_trial
 
 SEEDS = 30
 """Runs of each optimiser by default: as many as papers of this field report."""

@@ -6,12 +6,13 @@ import pickle
 import time
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import CancelledError, Executor, Future, wait
+from concurrent.futures import CancelledError, Executor, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass
+from functools import lru_cache, partial
 from types import TracebackType
 from typing import Any
 
-from .processes import Processes, ProcessGone, packed, worked
+from ...problem import ProcessError, Processes
 
 
 @dataclass(eq=False)
@@ -36,7 +37,7 @@ class ProofPiece:
     work: Callable[..., Any]
     common: Common
     arguments: tuple[Any, ...]
-    future: Future[bytes] | None = None
+    future: Future[Any] | None = None
     done: bool = False
     value: Any = None
     error: Exception | None = None
@@ -69,6 +70,18 @@ class Common:
         return self._packed
 
 
+def worked(work: bytes, common: bytes) -> Any:
+    """Do a piece of work elsewhere: ``function(common, *arguments)``, both packed."""
+    function, arguments = pickle.loads(work)
+    return function(_unpacked(common), *arguments)
+
+
+@lru_cache(maxsize=4)  # those of search and judging, and some to spare
+def _unpacked(common: bytes) -> Any:
+    """What pieces have in common is unpacked once: tables that are kept for it are found again."""
+    return pickle.loads(common)
+
+
 class ProofCrew:
     """Who works on the pieces of one run; what comes out does not depend on it.
 
@@ -99,6 +112,7 @@ class ProofCrew:
     def __init__(self, workers: int = 1, executor: Executor | None = None) -> None:
         self.workers, self._executor = workers, executor
         self._processes: Processes | None = None
+        self._threads: Executor | None = None
         self._answered = False
         self._waiting: deque[ProofPiece] = deque()
         self._began = time.perf_counter()
@@ -114,6 +128,8 @@ class ProofCrew:
     ) -> None:
         if self._processes is not None:
             self._processes.end()
+        if self._threads is not None:
+            self._threads.shutdown()
 
     @property
     def processes(self) -> int:
@@ -180,14 +196,15 @@ class ProofCrew:
         """Give pieces to others, if there are others."""
         late = time.perf_counter() - self._began >= self.worth
         if self.workers > 1 and self._executor is None and late and len(self._waiting) > 1:
-            self._processes = self._processes or Processes(self.workers)
-        others = self._executor or self._processes
+            self._processes = self._processes or Processes()
+            self._threads = self._threads or ThreadPoolExecutor(self.workers)
+        others = self._executor or self._threads
         if others is None:
             return
+        run = worked if self._processes is None else partial(self._processes.run, worked)
         for piece in self._waiting:
             if piece.future is None and not piece.done:
-                work = packed(piece.work, piece.arguments)
-                run = worked if self._processes is None else self._processes.run
+                work = pickle.dumps((piece.work, piece.arguments))
                 piece.future = others.submit(run, work, piece.common.packed)
 
     def _mine(self, piece: ProofPiece) -> ProofPiece | None:
@@ -198,17 +215,15 @@ class ProofCrew:
         return next((one for one in (piece, *ahead) if one.taken_back()), None)
 
     def _collect(self, piece: ProofPiece) -> None:
-        """Take what came back; a piece whose process is gone is done here."""
+        """Take what came back; a piece that no process finished is done here."""
         assert piece.future is not None
         try:
-            finished, value = pickle.loads(piece.future.result())
-        except (ProcessGone, CancelledError):
+            piece.value = piece.future.result()
+        except (ProcessError, CancelledError):
             piece.run()
             return
-        if finished:
-            piece.value = value
-        else:
-            piece.error = value
+        except Exception as error:
+            piece.error = error
         piece.done = self._answered = True
 
     def _forget(self, piece: ProofPiece) -> None:

@@ -11,7 +11,7 @@ from typing import Any, cast
 
 import numpy as np
 
-from ....heuristics import Algorithm, AskedRun, Run, compile_judge, in_processes, run_asked
+from ....heuristics import Algorithm, AskedRun, Run, compile_judge, run_asked
 from ....nlp import Solution
 from ....problem import (
     TOLERANCE,
@@ -23,6 +23,7 @@ from ....problem import (
     TrajgapError,
     as_piecewise,
     check,
+    in_processes,
 )
 from ....problem.cases import Claim, ImprovementClaim, InstancesBlock, instance_waypoints
 from ...documents import Procedure

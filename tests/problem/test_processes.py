@@ -1,18 +1,33 @@
 """Work in processes that are really killed: done again once, in order, and never a hang."""
 
-import multiprocessing
 import os
 import signal
+import subprocess
+import sys
+import threading
 import time
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from importlib import import_module
 from pathlib import Path
 
 import numpy as np
 import pytest
-from trajgap.heuristics import PSO, Run, in_processes, kept_processes, run_many
-from trajgap.problem import CaseError, Limits, Problem, TrajgapError, load_case, three_five_three
+from trajgap.heuristics import PSO, Run, run_many
+from trajgap.problem import (
+    CaseError,
+    Limits,
+    LostWork,
+    Problem,
+    Processes,
+    ProcessError,
+    in_processes,
+    kept_processes,
+    load_case,
+    processes,
+    three_five_three,
+)
 
 WAYPOINTS = [[0.1, 0.5], [0.7, 0.2], [1.2, -0.4], [0.9, 0.3]]
 PROBLEM = Problem(WAYPOINTS, Limits(6.0, 8.0, joints=2), three_five_three())
@@ -30,12 +45,13 @@ def no_hang() -> Iterator[None]:
     yield
     signal.alarm(0)
     signal.signal(signal.SIGALRM, before)
-    assert multiprocessing.active_children() == []
+    assert children() == set()
 
 
-def kill_one() -> None:
-    """Kill a process of ours as the system does when memory runs out."""
-    os.kill(multiprocessing.active_children()[-1].pid or 0, signal.SIGKILL)
+def children() -> set[int]:
+    """Processes that this one has started; one that has ended and was not waited for counts."""
+    lists = Path("/proc/self/task").glob("*/children")
+    return {int(pid) for one in lists for pid in one.read_text().split()}
 
 
 def test_results_come_in_the_order_of_the_items() -> None:
@@ -51,7 +67,7 @@ def test_runs_are_the_same_after_a_worker_was_killed() -> None:
     def progress(done: Run) -> None:
         if not killed:
             killed.append(done.seed)
-            kill_one()
+            os.kill(max(children()), signal.SIGKILL)  # as the system does without memory
 
     wanted = run_many(PSO(), PROBLEM, range(6), iterations=40)
     found = run_many(PSO(), PROBLEM, range(6), 2, 40, progress)
@@ -97,7 +113,7 @@ def test_a_killed_worker_costs_its_own_work_alone(
 def test_work_that_kills_twice_ends_in_one_line_after_what_finished() -> None:
     results = in_processes(signal.raise_signal, [signal.SIGCONT, signal.SIGKILL], 1)
     assert next(results) is None
-    with pytest.raises(TrajgapError) as caught:
+    with pytest.raises(LostWork) as caught:
         next(results)
     assert str(caught.value) == (
         "workers: 2 processes ended at the same piece of work (SIGKILL); "
@@ -106,7 +122,7 @@ def test_work_that_kills_twice_ends_in_one_line_after_what_finished() -> None:
 
 
 def test_a_worker_that_leaves_by_itself_is_gone_too() -> None:
-    with pytest.raises(TrajgapError, match=r"same piece of work \(exit code 3\)"):
+    with pytest.raises(LostWork, match=r"same piece of work \(exit code 3\)"):
         list(in_processes(os._exit, [3], 2))
 
 
@@ -121,25 +137,103 @@ def test_exceptions_arrive_as_they_are() -> None:
 def test_kept_processes_work_again_and_end() -> None:
     with kept_processes():
         assert list(in_processes(partial(pow, 2), [3, 1], 2)) == [8, 2]
-        before = {p.pid for p in multiprocessing.active_children()}
-        assert len(before) == 2
+        before = children()
         with pytest.raises(ZeroDivisionError):
             list(in_processes(partial(divmod, 1), [0], 2))
-        assert {p.pid for p in multiprocessing.active_children()} == before
+        assert children() == before
         # One that was killed while it waited costs no try of the work that it would have got.
-        gone = multiprocessing.active_children()[0]
-        gone.kill()
-        gone.join()
-        assert list(in_processes(partial(divmod, 7), [2, 3], 2)) == [(3, 1), (2, 1)]
-        after = {p.pid for p in multiprocessing.active_children()}
-        assert len(after) == 2
-        assert len(after & before) == 1
+        os.kill(min(before), signal.SIGKILL)
+        assert list(in_processes(partial(divmod, 7), [2, 3], 1)) == [(3, 1), (2, 1)]
         # Work that is given up ends its process: nobody waits for the answer.
         results = in_processes(time.sleep, [0.0, 600.0], 2)
         next(results)
         results.close()
-        assert len(multiprocessing.active_children()) == 1
-    assert multiprocessing.active_children() == []
+        assert len(children()) == 1
+        # What is left behind in it ends later.
+        late = in_processes(partial(pow, 2), [3, 1], 1)
+        assert next(late) == 8
+    late.close()
+    assert children() == set()
+
+
+def test_work_that_takes_too_long_is_ended() -> None:
+    with Processes() as some:
+        with pytest.raises(LostWork, match=r"^workers: a piece of work took too long; raise"):
+            some.run(time.sleep, 600, seconds=0.2)
+        assert children() == set()
+        assert some.run(pow, 2, 3, seconds=600) == 8
+
+
+def test_a_process_that_cannot_start_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
+    with Processes() as some:
+        monkeypatch.setattr(processes, "_PROGRAM", "raise SystemExit(3)")
+        ends = r'^workers: a process ends at once \(exit code 3\); see why: \S+ -c "import time"$'
+        with pytest.raises(ProcessError, match=ends):
+            some.run(time.sleep, 0)
+        monkeypatch.setattr(sys, "executable", "/no/such/python")
+        with pytest.raises(ProcessError, match=r"^workers: a process cannot be started \("):
+            some.run(time.sleep, 0)
+
+
+@pytest.mark.parametrize("when", ["while it starts", "while it works"])
+def test_no_process_outlives_the_end(when: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    begun = threading.Event()
+    ready, answer = processes._Process.ready, processes._Process.answer
+
+    def starts(process: processes._Process, module: str) -> bool:
+        if when == "while it starts":
+            begun.set()
+        return ready(process, module)
+
+    def works(process: processes._Process, work: bytes, seconds: float = 600.0) -> bytes | None:
+        if seconds < 600.0:
+            begun.set()
+        return answer(process, work, seconds)
+
+    monkeypatch.setattr(processes._Process, "ready", starts)
+    monkeypatch.setattr(processes._Process, "answer", works)
+    with ThreadPoolExecutor(1) as threads, Processes() as some:
+        result = threads.submit(some.run, time.sleep, 600, seconds=500.0)
+        begun.wait()
+        some.end()
+        with pytest.raises(ProcessError, match=r"^workers: stopped$"):
+            result.result()
+        with pytest.raises(ProcessError, match=r"^workers: stopped$"):
+            some.run(time.sleep, 0)
+
+
+PROGRAM = """
+from trajgap.problem import in_processes
+print("once")
+def own(number):
+    return -number
+print(list(in_processes({function}, [4, 9], 2)))
+"""
+
+
+@pytest.mark.parametrize(
+    ("program", "out", "error"),
+    [
+        (PROGRAM.format(function="abs"), "once\n[4, 9]\n", ""),
+        # Only what the program itself defines makes processes load it.
+        (PROGRAM.format(function="own"), "once\n", "guard its entry point with `if __name__"),
+        (
+            PROGRAM.format(function="own").replace(
+                "print(list", "if __name__ == '__main__':\n    print(list"
+            ),
+            "once\n[-4, -9]\n",
+            "once\nonce\n",
+        ),
+    ],
+)
+def test_a_program_needs_no_guard(tmp_path: Path, program: str, out: str, error: str) -> None:
+    (tmp_path / "bare.py").write_text(program)
+    ran = subprocess.run(
+        [sys.executable, tmp_path / "bare.py"], capture_output=True, text=True, check=False
+    )
+    assert ran.stdout == out
+    assert error in ran.stderr
+    assert bool(error) or not ran.stderr
 
 
 def test_results_that_cannot_be_sent_are_named() -> None:
