@@ -18,7 +18,6 @@ from trajgap.nlp.proofs.crew import ProofCrew
 from trajgap.nlp.proofs.cubic import CUBIC
 from trajgap.nlp.proofs.document import certificate
 from trajgap.nlp.proofs.outcome import Certified, Outcome
-from trajgap.nlp.proofs.processes import Processes, ProcessGone
 from trajgap.problem import Limits, Problem, cubic_spline
 from trajgap.verify import Subject, verify_certificate
 
@@ -158,10 +157,3 @@ def test_no_other_proof_does(problem: Problem, subject: Subject, gap: float) -> 
     shared = certify(problem, subject=subject, gap=gap, workers=3)
     assert proof(shared) == proof(alone)
     assert (shared.nodes, shared.durations) == (alone.nodes, alone.durations)
-
-
-def test_no_process_begins_once_the_run_is_over() -> None:
-    processes = Processes(1)
-    processes.end()
-    with pytest.raises(ProcessGone, match="no process can be started"):
-        processes.run(b"", b"")
