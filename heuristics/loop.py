@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import ExitStack, closing
+from contextlib import closing
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Annotated, Any, TypeVar, cast
@@ -332,12 +332,10 @@ def _each(
     size = most if workers == 1 else max(1, min(most, len(clean) // (_SHARES * workers)))
     parts = [tuple(clean[i : i + size]) for i in range(0, len(clean), size)]
     collected: list[R] = []
-    with ExitStack() as stack:
-        results: Iterable[tuple[R, ...]] = map(some, parts)
-        if workers > 1:
-            compile_first()
-            # Threads would be slower than one: half of each iteration holds the interpreter.
-            results = stack.enter_context(closing(in_processes(some, parts, workers)))
+    if workers > 1:
+        compile_first()
+    # Threads would be slower than one: half of each iteration holds the interpreter.
+    with closing(in_processes(some, parts, workers)) as results:
         for part in results:
             for result in part:
                 collected.append(result)

@@ -159,7 +159,7 @@ def in_processes(
         Picklable, as are the items and results.
     items : sequence
     workers : int
-        Processes at a time; no more are started than there are items.
+        Processes at a time; no more are started than there are items. With 1 this process works.
 
     Yields
     ------
@@ -171,8 +171,11 @@ def in_processes(
     ProcessError, Exception
         As `Processes.run`.
     """
-    threads = ThreadPoolExecutor(max(1, min(workers, len(items))), thread_name_prefix="workers")
-    with threads, Processes() as processes:
+    if min(workers, len(items)) < 2:
+        yield from map(one, items)
+        return
+    # The processes end first: a thread that waits for an answer could not be joined.
+    with ThreadPoolExecutor(min(workers, len(items))) as threads, Processes() as processes:
         yield from threads.map(partial(processes.run, one), items)
 
 
@@ -314,19 +317,18 @@ class _Idle:
 
 _KEPT: ContextVar[_Idle | None] = ContextVar("_KEPT", default=None)
 """Of the innermost `kept_processes` that is open; each thread has its own."""
-
-
 _LOADS = threading.Event()
 """Set in a process while it loads the program that asks."""
 
 
 def _main() -> dict[str, str]:
-    """Where a process finds the program that runs here, as `multiprocessing` says it."""
+    """Where a process finds the program that runs here, as `multiprocessing.spawn` takes it."""
     main = sys.modules["__main__"]
-    name, path = getattr(main.__spec__, "name", ""), getattr(main, "__file__", None)
-    if name:
-        return {"init_main_from_name": name}
-    return {"init_main_from_path": os.path.abspath(path)} if path else {}
+    found = {
+        "init_main_from_name": getattr(getattr(main, "__spec__", None), "name", None),
+        "init_main_from_path": getattr(main, "__file__", None),
+    }
+    return {key: str(where) for key, where in found.items() if where}
 
 
 def _send(pipe: IO[bytes], message: bytes) -> None:

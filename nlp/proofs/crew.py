@@ -8,8 +8,7 @@ from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import CancelledError, Executor, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass
-from functools import lru_cache, partial
-from types import TracebackType
+from functools import cached_property, lru_cache, partial
 from typing import Any
 
 from ...problem import ProcessError, Processes
@@ -26,48 +25,41 @@ class ProofPiece:
     common : Common
     arguments : tuple
     future : Future or None
-        Of the answer from elsewhere.
-    done : bool
-    value : Any
-        Once it is done.
-    error : Exception or None
-        Raised instead of a result.
+        Of the answer, once somebody has the piece.
+    here : bool
+        Whether it was done in this process.
     """
 
     work: Callable[..., Any]
     common: Common
     arguments: tuple[Any, ...]
     future: Future[Any] | None = None
-    done: bool = False
-    value: Any = None
-    error: Exception | None = None
+    here: bool = False
 
-    def run(self) -> None:
+    def run(self) -> Future[Any]:
         """Do it here."""
+        self.future, self.here = Future(), True
         try:
-            self.value = self.work(self.common.value, *self.arguments)
+            self.future.set_result(self.work(self.common.value, *self.arguments))
         except Exception as error:
-            self.error = error
-        self.done = True
+            self.future.set_exception(error)
+        return self.future
 
     def taken_back(self) -> bool:
         """Whether nobody has begun it, and nobody else will."""
-        return not self.done and (self.future is None or self.future.cancel())
+        return self.future is None or self.future.cancel()
 
 
+@dataclass(eq=False)
 class Common:
     """What many pieces have in common: packed once, and unpacked once by each process."""
 
-    def __init__(self, value: Any) -> None:
-        self.value = value
-        self._packed: bytes | None = None
+    value: Any
 
-    @property
+    @cached_property
     def packed(self) -> bytes:
         """As a message."""
-        if self._packed is None:
-            self._packed = pickle.dumps(self.value)
-        return self._packed
+        return pickle.dumps(self.value)
 
 
 def worked(work: bytes, common: bytes) -> Any:
@@ -120,12 +112,7 @@ class ProofCrew:
     def __enter__(self) -> ProofCrew:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *error: object) -> None:
         if self._processes is not None:
             self._processes.end()
         if self._threads is not None:
@@ -157,19 +144,20 @@ class ProofCrew:
         Exception
             Whatever its work raises.
         """
-        while not piece.done:
-            self._hand_out()
+        self._hand_out()
+        while piece.future is None or not piece.future.done():
             mine = self._mine(piece)
             if mine is not None:
                 mine.run()
             elif piece.future is not None and not wait([piece.future], self.look).done:
                 watch()
-            elif piece.future is not None:
-                self._collect(piece)
+            self._hand_out()
         self._forget(piece)
-        if piece.error is not None:
-            raise piece.error
-        return piece.value
+        self._answered |= not piece.here
+        try:
+            return piece.future.result()
+        except (ProcessError, CancelledError):  # no process has finished it
+            return piece.run().result()
 
     def drop(self, pieces: Iterable[ProofPiece]) -> None:
         """Give up what nobody has begun."""
@@ -203,7 +191,7 @@ class ProofCrew:
             return
         run = worked if self._processes is None else partial(self._processes.run, worked)
         for piece in self._waiting:
-            if piece.future is None and not piece.done:
+            if piece.future is None:
                 work = pickle.dumps((piece.work, piece.arguments))
                 piece.future = others.submit(run, work, piece.common.packed)
 
@@ -213,18 +201,6 @@ class ProofCrew:
             return None
         ahead = (other for other in self._waiting if other is not piece)
         return next((one for one in (piece, *ahead) if one.taken_back()), None)
-
-    def _collect(self, piece: ProofPiece) -> None:
-        """Take what came back; a piece that no process finished is done here."""
-        assert piece.future is not None
-        try:
-            piece.value = piece.future.result()
-        except (ProcessError, CancelledError):
-            piece.run()
-            return
-        except Exception as error:
-            piece.error = error
-        piece.done = self._answered = True
 
     def _forget(self, piece: ProofPiece) -> None:
         if piece in self._waiting:

@@ -10,14 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from support.small_studies import small_problem, small_trial
-from trajgap.compare.gaps import (
-    RowStatus,
-    canonical,
-    engines,
-    origin_of,
-    run_apart,
-    run_trial,
-)
+from trajgap.compare.gaps import RowStatus, canonical, engines, origin_of, run_apart, run_trial
 from trajgap.heuristics import KINDS, PSO, run
 from trajgap.problem import Processes, check
 
@@ -167,10 +160,8 @@ def test_a_run_whose_process_dies_is_done_again(processes: Processes, tmp_path: 
 
 
 def test_what_an_optimiser_prints_and_reads_is_not_ours(going_on: Processes) -> None:
-    assert (
-        run_apart(small_trial("support.optimizers:prints"), going_on).row.status
-        is RowStatus.FINISHED
-    )
+    row = run_apart(small_trial("support.optimizers:prints"), going_on).row
+    assert row.status is RowStatus.FINISHED
 
 
 def test_a_run_at_which_two_processes_die_is_reported(going_on: Processes) -> None:

@@ -2,10 +2,8 @@
 
 import os
 import signal
-import subprocess
 import sys
 from concurrent.futures import Executor
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -103,22 +101,6 @@ def test_no_process_is_started_below_a_second(monkeypatch: pytest.MonkeyPatch) -
     monkeypatch.setattr(crew.ProofCrew, "worth", 0.0)
     assert certify(ROUGH, certifier=CUBIC, gap=0.1, workers=2).outcome is Outcome.CERTIFIED
     assert [one.processes for one in crews] == [0, 2]
-
-
-def test_a_program_without_a_guard_may_ask_for_processes(tmp_path: Path) -> None:
-    program = tmp_path / "bare.py"
-    program.write_text(
-        "from trajgap.nlp.proofs import crew\n"
-        "crew.ProofCrew.worth = 0.0\n"
-        "print('once')\n"
-        "import math\n"
-        "with crew.ProofCrew(2) as some:\n"
-        "    print(list(some.spread(math.gcd, 12, [(8,), (9,), (18,)])), some.processes)\n",
-        encoding="utf-8",
-    )
-    ran = subprocess.run([sys.executable, program], capture_output=True, text=True, check=True)
-    assert ran.stdout.split("\n") == ["once", "[4, 3, 6] 2", ""]
-    assert not ran.stderr
 
 
 def proof(found: Certified) -> Any:
