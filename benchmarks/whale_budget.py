@@ -24,7 +24,7 @@ from trajgap.heuristics import (
     WOA,
     ImprovedGA,
     ImprovedWOA,
-    differential_evolution,
+    find_optimizer,
     run,
     uniform_rescaling,
 )
@@ -105,7 +105,13 @@ def main():
         PSO(iterations=ITERATIONS, position_initial=SPAN),
         replace(GA(), population=32, iterations=generations, position_range=SPAN),
         replace(ImprovedGA(), population=32, iterations=generations, position_range=SPAN),
-        differential_evolution(ITERATIONS, MEMBERS, tol=0.0),
+        replace(
+            find_optimizer(
+                "scipy:differential_evolution", tol=0.0, vectorized=True, updating="deferred"
+            ),
+            iterations=ITERATIONS,
+            per_iteration=MEMBERS,
+        ),
     )
     run(WOA(iterations=1), problem, 0)
     usual, theirs, ours = [], [], {}

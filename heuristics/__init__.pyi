@@ -1,4 +1,3 @@
-from .adapters import External, differential_evolution, dual_annealing, one_by_one, shgo
 from .algorithm import Algorithm, Search, State
 from .algorithms import (
     GA,
@@ -55,7 +54,6 @@ __all__ = [
     "ConstrainedPSO",
     "Counted",
     "DeathPenalty",
-    "External",
     "Handling",
     "ImprovedGA",
     "ImprovedWOA",
@@ -67,14 +65,11 @@ __all__ = [
     "Stretch",
     "TentCollapse",
     "compile_judge",
-    "differential_evolution",
-    "dual_annealing",
     "evaluations_of",
     "find_optimizer",
     "from_settings",
     "joined_runs",
     "judge_of",
-    "one_by_one",
     "open_choices",
     "optimizer_name",
     "run",
@@ -85,7 +80,6 @@ __all__ = [
     "run_per_joint",
     "run_within",
     "search_box",
-    "shgo",
     "states",
     "tent_collapse",
     "uniform_rescaling",

@@ -16,6 +16,7 @@ from .budget import searched
 from .objective import Bounds, Counted, Objective
 from .repair import Handling, Judge, compile_judge, judge_of
 from .result import JointRuns, Run
+from .search_boxes import looked_in
 from .settings import checked, whole
 from .side_by_side import TOGETHER, Start, moves_together, stepped_together
 
@@ -101,16 +102,17 @@ class AskedRun:
 
 
 def _started(method: Method, questions: Sequence[AskedRun]) -> list[Start]:
-    judges: dict[tuple[Problem, str], Judge] = {}
+    known: dict[tuple[Problem, str], tuple[Judge, Bounds]] = {}
     starts = []
     for one in questions:
         key = (one.problem, one.handling)
-        if key not in judges:
-            judges[key] = judge_of(one.problem, method.penalty, one.handling)
+        if key not in known:
+            judge = judge_of(one.problem, method.penalty, one.handling)
+            known[key] = judge, looked_in(method, one.problem)
         # Named, not numpy's default, which may change: the same seed must give the same bits.
         sequence = np.random.SeedSequence(one.seed, spawn_key=one.stream)
         rng = np.random.Generator(np.random.PCG64(sequence))
-        starts.append(Start(judges[key], Bounds.of(one.problem), rng))
+        starts.append(Start(*known[key], rng))
     return starts
 
 
