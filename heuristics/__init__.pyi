@@ -27,6 +27,7 @@ from .loop import (
 from .objective import Bounds, Counted, DeathPenalty, Objective
 from .optimizers import (
     BASELINES,
+    BUDGET,
     Borrowed,
     BorrowedTask,
     evaluations_of,
@@ -40,6 +41,7 @@ from .within_budget import BudgetedRun, run_within
 
 __all__ = [
     "BASELINES",
+    "BUDGET",
     "GA",
     "KINDS",
     "MNAMPSO",

@@ -33,6 +33,8 @@ from ..documents import (
     overall_cells,
 )
 from ..gaps import (
+    SECONDS,
+    SEEDS,
     BenchPlan,
     Runs,
     Store,
@@ -109,7 +111,7 @@ def bench(
     ] = True,
     seconds: Annotated[
         float, typer.Option("--time", metavar="SECONDS", min=0.001, help="Limit of each run.")
-    ] = 300.0,
+    ] = SECONDS,
     workers: Annotated[int, run_workers()] = 1,
     as_json: Annotated[
         bool, typer.Option("--json", help="Print JSON; write a page only where --out says.")
@@ -190,8 +192,6 @@ def bench(
     return NEVER_RAN if any(one.failed == one.runs for one in every) else 0
 
 
-SEEDS = 30
-"""Runs of each optimiser by default: as many as papers of this field report."""
 BENCH_FOLDER = Path("trajgap-bench")
 """Where the page goes, unless the command line says otherwise."""
 

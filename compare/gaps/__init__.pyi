@@ -1,4 +1,6 @@
 from .benching import (
+    SECONDS as SECONDS,
+    SEEDS as SEEDS,
     BenchPlan as BenchPlan,
     Entrant as Entrant,
     Runs as Runs,
