@@ -1,4 +1,3 @@
-from .adapters import External, differential_evolution, dual_annealing, one_by_one, shgo
 from .algorithm import Algorithm, Search, State
 from .algorithms import (
     GA,
@@ -28,6 +27,7 @@ from .loop import (
 from .objective import Bounds, Counted, DeathPenalty, Objective
 from .optimizers import (
     BASELINES,
+    BUDGET,
     Borrowed,
     BorrowedTask,
     evaluations_of,
@@ -38,10 +38,10 @@ from .repair import Handling, Stretch, compile_judge, judge_of
 from .result import JointRuns, Run
 from .search_boxes import search_box
 from .within_budget import BudgetedRun, run_within
-from .workers import in_processes, kept_processes
 
 __all__ = [
     "BASELINES",
+    "BUDGET",
     "GA",
     "KINDS",
     "MNAMPSO",
@@ -56,7 +56,6 @@ __all__ = [
     "ConstrainedPSO",
     "Counted",
     "DeathPenalty",
-    "External",
     "Handling",
     "ImprovedGA",
     "ImprovedWOA",
@@ -68,16 +67,11 @@ __all__ = [
     "Stretch",
     "TentCollapse",
     "compile_judge",
-    "differential_evolution",
-    "dual_annealing",
     "evaluations_of",
     "find_optimizer",
     "from_settings",
-    "in_processes",
     "joined_runs",
     "judge_of",
-    "kept_processes",
-    "one_by_one",
     "open_choices",
     "optimizer_name",
     "run",
@@ -88,7 +82,6 @@ __all__ = [
     "run_per_joint",
     "run_within",
     "search_box",
-    "shgo",
     "states",
     "tent_collapse",
     "uniform_rescaling",

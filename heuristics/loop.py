@@ -3,22 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import ExitStack, closing
+from contextlib import closing
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Annotated, Any, TypeVar, cast
 
 import numpy as np
 
-from ..problem import Array, Problem, TrajgapError
+from ..problem import Array, Problem, TrajgapError, in_processes
 from .algorithm import Algorithm, S, Search, State
 from .budget import searched
 from .objective import Bounds, Counted, Objective
 from .repair import Handling, Judge, compile_judge, judge_of
 from .result import JointRuns, Run
+from .search_boxes import looked_in
 from .settings import checked, whole
 from .side_by_side import TOGETHER, Start, moves_together, stepped_together
-from .workers import in_processes
 
 
 def states(
@@ -102,16 +102,17 @@ class AskedRun:
 
 
 def _started(method: Method, questions: Sequence[AskedRun]) -> list[Start]:
-    judges: dict[tuple[Problem, str], Judge] = {}
+    known: dict[tuple[Problem, str], tuple[Judge, Bounds]] = {}
     starts = []
     for one in questions:
         key = (one.problem, one.handling)
-        if key not in judges:
-            judges[key] = judge_of(one.problem, method.penalty, one.handling)
+        if key not in known:
+            judge = judge_of(one.problem, method.penalty, one.handling)
+            known[key] = judge, looked_in(method, one.problem)
         # Named, not numpy's default, which may change: the same seed must give the same bits.
         sequence = np.random.SeedSequence(one.seed, spawn_key=one.stream)
         rng = np.random.Generator(np.random.PCG64(sequence))
-        starts.append(Start(judges[key], Bounds.of(one.problem), rng))
+        starts.append(Start(*known[key], rng))
     return starts
 
 
@@ -333,12 +334,10 @@ def _each(
     size = most if workers == 1 else max(1, min(most, len(clean) // (_SHARES * workers)))
     parts = [tuple(clean[i : i + size]) for i in range(0, len(clean), size)]
     collected: list[R] = []
-    with ExitStack() as stack:
-        results: Iterable[tuple[R, ...]] = map(some, parts)
-        if workers > 1:
-            compile_first()
-            # Threads would be slower than one: half of each iteration holds the interpreter.
-            results = stack.enter_context(closing(in_processes(some, parts, workers)))
+    if workers > 1:
+        compile_first()
+    # Threads would be slower than one: half of each iteration holds the interpreter.
+    with closing(in_processes(some, parts, workers)) as results:
         for part in results:
             for result in part:
                 collected.append(result)
@@ -382,9 +381,8 @@ def run_many(
     problem : Problem
     seeds : iterable of int
     workers : int
-        Processes. More than one costs about a second to start, and a script that asks for them
-        must guard its entry point with ``if __name__ == "__main__":``. The work of a process that
-        is killed is done again, once.
+        Processes. More than one costs about a second to start. The work of a process that is
+        killed is done again, once.
     iterations : int, optional
         Replaces the algorithm's own.
     progress : callable, optional

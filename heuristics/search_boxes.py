@@ -3,15 +3,22 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 
 from ..problem import Problem, TrajgapError
+from .algorithm import Algorithm, Search
 from .baseline import uniform_rescaling
 from .objective import Bounds
 
 _DIGITS = 3
 """Significant digits of a bound that is found: rounded up, so that it still holds."""
+
+
+def looked_in(method: Algorithm[Any] | Search, problem: Problem) -> Bounds:
+    """Where a method looks: algorithms of papers, run as printed, within stated bounds alone."""
+    return search_box(problem) if isinstance(method, Search) else Bounds.of(problem)
 
 
 def search_box(problem: Problem) -> Bounds:

@@ -11,9 +11,8 @@ from ..problem import Array, Problem, TrajgapError
 from .algorithm import Algorithm, Search
 from .budget import Budgeted, BudgetSpent
 from .loop import states
-from .objective import Bounds
 from .repair import Handling, judge_of
-from .search_boxes import search_box
+from .search_boxes import looked_in
 from .settings import checked, whole
 from .time_limit import TimeSpent, time_limit
 
@@ -100,8 +99,7 @@ def run_within(
     """
     budget = checked(_COUNT, "budget", budget)
     judge = judge_of(problem, method.penalty, objective)
-    # The papers' algorithms run as printed, within the stated bounds alone.
-    bounds = search_box(problem) if isinstance(method, Search) else Bounds.of(problem)
+    bounds = looked_in(method, problem)
     # The same stream as `run`: the same seed gives the same search.
     sequence = np.random.SeedSequence(checked(_SEED, "seed", seed), spawn_key=stream)
     rng = np.random.Generator(np.random.PCG64(sequence))

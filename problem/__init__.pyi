@@ -77,6 +77,7 @@ from .jumps import Jump
 from .limits import QUANTITIES, Limits, half_range
 from .printed import Interval, Printed, down, read_float, up
 from .problem import Coupling, Problem
+from .processes import LostWork, Processes, in_processes, kept_processes
 from .robots import (
     CartesianLine,
     Chain,
@@ -138,6 +139,7 @@ __all__ = [
     "Knots",
     "LimitPair",
     "Limits",
+    "LostWork",
     "Measured",
     "PackageError",
     "Parameters",
@@ -146,6 +148,7 @@ __all__ = [
     "Printed",
     "Problem",
     "ProcessError",
+    "Processes",
     "Proximity",
     "Quantity",
     "RatiosError",
@@ -182,10 +185,12 @@ __all__ = [
     "from_si",
     "geometric_jacobian",
     "half_range",
+    "in_processes",
     "inverse_kinematics",
     "is_linear",
     "jtraj",
     "keeps_limits",
+    "kept_processes",
     "link_frames",
     "load_case",
     "load_robot",

@@ -10,13 +10,13 @@ from functools import cached_property, partial
 from pathlib import Path
 from typing import Any
 
-from ...heuristics import kept_processes
 from ...problem import (
     Case,
     CaseError,
     InNotebooks,
     ProcessError,
     TrajgapError,
+    kept_processes,
     load_case,
     published_ids,
 )

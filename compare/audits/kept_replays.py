@@ -9,7 +9,6 @@ import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import fields
 from itertools import islice
-from pathlib import Path
 from typing import Any, NamedTuple, cast
 
 import numpy as np
@@ -43,17 +42,10 @@ class AskedReplay(NamedTuple):
     question: AskedRun
 
 
-class KeptReplays:
-    """The replays that are kept in one folder.
+class KeptReplays(KeptFiles):
+    """The replays that are kept in one folder."""
 
-    Parameters
-    ----------
-    where : bool or Path
-        As `KeptFiles` takes it.
-    """
-
-    def __init__(self, where: bool | Path) -> None:
-        self._files = KeptFiles(where, "runs")
+    kind = "runs"
 
     def runs(
         self, asked: Sequence[AskedReplay], compute: Callable[[], Iterable[Run]]
@@ -71,7 +63,7 @@ class KeptReplays:
         -------
         tuple of Run
         """
-        return self._files.answers(
+        return self.answers(
             lambda: _question(asked),
             len(asked),
             compute,

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import multiprocessing
 import os
 import signal
 import sys
@@ -223,8 +222,6 @@ def _end(signum: int, frame: FrameType | None) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     from ...problem import remove_drafts
 
-    for process in multiprocessing.active_children():
-        process.terminate()
     remove_drafts()
     # A progress bar hides the cursor.
     restored = "\x1b[?25h\r\x1b[K" if sys.stderr.isatty() else ""

@@ -33,6 +33,8 @@ from ..documents import (
     overall_cells,
 )
 from ..gaps import (
+    SECONDS,
+    SEEDS,
     BenchPlan,
     Runs,
     Store,
@@ -42,7 +44,7 @@ from ..gaps import (
     run_bench,
 )
 from .input import Selected, naming, read_case, select
-from .options import MOST, ProblemId
+from .options import MOST, ONE_BY_ONE, ProblemId, run_store, run_workers
 from .output import NEVER_RAN, Columns, emit, line, progress, say
 
 
@@ -109,10 +111,8 @@ def bench(
     ] = True,
     seconds: Annotated[
         float, typer.Option("--time", metavar="SECONDS", min=0.001, help="Limit of each run.")
-    ] = 300.0,
-    workers: Annotated[
-        int, typer.Option(min=1, max=MOST, help="Processes; the rows do not depend on it.")
-    ] = 1,
+    ] = SECONDS,
+    workers: Annotated[int, run_workers()] = 1,
     as_json: Annotated[
         bool, typer.Option("--json", help="Print JSON; write a page only where --out says.")
     ] = False,
@@ -131,13 +131,7 @@ def bench(
             metavar="leaderboard", help="Show where the optimisers stand among committed results."
         ),
     ] = None,
-    store: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="FILE",
-            help="Keep every run in this file as it ends; what it holds is not run again.",
-        ),
-    ] = None,
+    store: Annotated[Path | None, run_store()] = None,
 ) -> int:
     """Show how far optimisers end from the optimum of a case or suite."""
     chosen = [optimizer_name(name) for text in optimizer for name in text.split(",") if name]
@@ -198,10 +192,6 @@ def bench(
     return NEVER_RAN if any(one.failed == one.runs for one in every) else 0
 
 
-_ONE_BY_ONE = 6
-"""Problems up to which each has a table of its own on the terminal; the page and JSON have all."""
-SEEDS = 30
-"""Runs of each optimiser by default: as many as papers of this field report."""
 BENCH_FOLDER = Path("trajgap-bench")
 """Where the page goes, unless the command line says otherwise."""
 
@@ -343,7 +333,7 @@ def _tables(document: BenchDocument) -> list[RenderableType]:
         columns = tuple(f">{name}" if i else name for i, name in enumerate(OVERALL_COLUMNS))
         parts.append(Columns(columns, [overall_cells(one) for one in document.overall]))
         parts.append(line(""))
-    for result in document.results if len(document.results) <= _ONE_BY_ONE else ():
+    for result in document.results if len(document.results) <= ONE_BY_ONE else ():
         parts.append(line(result.title, "bold"))
         parts.append(line(result.verdict))
         parts += [line(pages.optimum_said(result.optimum)), line("")]

@@ -34,6 +34,8 @@ INTERRUPTED = 130
 """Exit code: what a shell says of SIGINT."""
 MOST = 10_000
 """Largest number of starts, seeds and workers: what they make is kept in memory."""
+ONE_BY_ONE = 6
+"""Problems up to which `bench` and `study` print a table for each; of more there is one."""
 
 # Arguments and options that several commands share.
 Source = Annotated[
@@ -104,6 +106,18 @@ MotionSource = Annotated[
         "published case, suite:NAME, or a case file.",
     ),
 ]
+
+
+def run_workers(usual: str | bool = True) -> Any:
+    """The option of `bench` and `study` that says how many processes run; and its default."""
+    said = "Processes; the rows do not depend on it."
+    return typer.Option("--workers", min=1, max=MOST, help=said, show_default=usual)
+
+
+def run_store(usual: str | bool = True) -> Any:
+    """The option of both that says where runs are kept; and its default."""
+    said = "Where finished runs are kept; what it holds is not run again."
+    return typer.Option("--store", metavar="FILE", help=said, show_default=usual)
 
 
 def _limit(name: str, what: str) -> Any:

@@ -47,7 +47,7 @@ from ..gaps import (
     summed_up,
 )
 from .committed_board import board_table
-from .options import INTERRUPTED, MOST
+from .options import INTERRUPTED, ONE_BY_ONE, run_store, run_workers
 from .output import NEVER_RAN, Columns, line, progress, rendered, say
 
 
@@ -59,23 +59,8 @@ def study(
             help="See docs/reference/studies.md; leaderboard is the study behind the leaderboard.",
         ),
     ],
-    store: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="FILE",
-            help="Where finished runs are kept; what it holds is not run again.",
-            show_default="FILE.sqlite",
-        ),
-    ] = None,
-    workers: Annotated[
-        int | None,
-        typer.Option(
-            min=1,
-            max=MOST,
-            help="Processes; the rows do not depend on it.",
-            show_default="one for each core",
-        ),
-    ] = None,
+    store: Annotated[Path | None, run_store("FILE.sqlite")] = None,
+    workers: Annotated[int | None, run_workers("one for each core")] = None,
     dask: Annotated[
         str | None,
         typer.Option(metavar="ADDRESS", help="Run on the Dask cluster of this scheduler instead."),
@@ -146,9 +131,6 @@ def study(
 
 _ENDING = ".sqlite"
 """Of the store beside a study file."""
-_ONE_BY_ONE = 6
-"""Problems up to which each has a table of its own, as in `bench`; of more there is one, in which
-they are called as in the exports."""
 _COLUMNS = ("optimiser", "~settings", "handling", ">budget", ">runs", ">failed", ">feasible",
             ">best gap %", ">median gap %")  # fmt: skip
 """What a table says of the runs of one optimiser under one settings."""
@@ -249,7 +231,7 @@ def _tables(
     plan: StudyPlan, found: Mapping[tuple[str, str], Sequence[Cells]]
 ) -> list[RenderableType]:
     """What the runs on each problem came to, with what was chosen for it."""
-    if len(plan.problems) > _ONE_BY_ONE:
+    if len(plan.problems) > ONE_BY_ONE:
         rows = [(*ids, *cells) for ids, own in found.items() for cells in own]
         notes = dict.fromkeys(
             [

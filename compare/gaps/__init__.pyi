@@ -1,4 +1,6 @@
 from .benching import (
+    SECONDS as SECONDS,
+    SEEDS as SEEDS,
     BenchPlan as BenchPlan,
     Entrant as Entrant,
     Runs as Runs,
@@ -12,6 +14,7 @@ from .engines import (
     on_dask as on_dask,
     on_this_machine as on_this_machine,
     outcomes as outcomes,
+    run_apart as run_apart,
 )
 from .exports import (
     COLUMNS as COLUMNS,
@@ -100,12 +103,9 @@ from .targets import (
     share_within as share_within,
     success_interval as success_interval,
 )
-from .trial_process import (
-    TrialOutcome as TrialOutcome,
-    run_apart as run_apart,
-)
 from .trials import (
     DESCENT as DESCENT,
+    TrialOutcome as TrialOutcome,
     origin_of as origin_of,
     run_trial as run_trial,
 )

@@ -11,6 +11,7 @@ import numpy as np
 
 from ...heuristics import (
     BASELINES,
+    BUDGET,
     KINDS,
     Bounds,
     Handling,
@@ -28,13 +29,10 @@ from .engines import Engine, outcomes
 from .rows import Row, RowStatus, Trial, against, canonical
 from .standings import bench_result
 from .store import Store
-from .trial_process import TrialOutcome
-from .trials import DESCENT, origin_of, run_trial
+from .trials import DESCENT, TrialOutcome, origin_of, run_trial
 
 SEEDS = 30
 """Runs of each optimiser by default: as many as papers of this field report."""
-BUDGET = 6000
-"""Evaluations of what counts no iterations, by default: as many as 30 particles take in 200."""
 SECONDS = 300.0
 """Time limit of one run by default: thousands of times what the budget usually takes."""
 

@@ -2,20 +2,63 @@
 
 from __future__ import annotations
 
+import atexit
+import time
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExecutor, wait
-from contextlib import ExitStack, contextmanager
+from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import lru_cache, partial
 from typing import Any
 
-from ...problem import ProcessError, TrajgapError
+from ...problem import LostWork, ProcessError, Processes, TrajgapError
 from .rows import Trial, failed
-from .trial_process import Crew, TrialOutcome, run_apart
+from .trials import TrialOutcome, measured_trial
 
+_GRACE = 5.0
+"""Seconds after its time limit in which a process may end a trial by itself."""
 _AHEAD = 2
 """Trials handed out for each worker: the next one is there when it ends one."""
 _PATIENCE = 30
 """Seconds in which a scheduler must answer."""
+
+
+@lru_cache(maxsize=1)
+def _processes() -> Processes:
+    """For whoever calls `run_apart` itself, such as a worker of Dask."""
+    found = Processes()
+    atexit.register(found.end)
+    return found
+
+
+def run_apart(trial: Trial, processes: Processes | None = None) -> TrialOutcome:
+    """Run a trial in another process, which is kept for the next one.
+
+    Parameters
+    ----------
+    trial : Trial
+    processes : Processes, optional
+
+    Returns
+    -------
+    TrialOutcome
+        A run whose process ends is done again, once, in a fresh process. The row is a failed one
+        if that ends too, or if the run takes longer than the trial allows.
+
+    Raises
+    ------
+    ProcessError
+        If no process can be started.
+    """
+    begun = time.monotonic()
+    limit = trial.seconds + _GRACE
+    try:
+        return (processes or _processes()).run(measured_trial, trial, seconds=limit)
+    except LostWork as lost:
+        why = f"took longer than {trial.seconds:g} s; raise the time limit, or look where it hangs"
+        if lost.ended:
+            why = f"its process ended 2 times ({lost.ended})"
+    return TrialOutcome(failed(trial, f"{trial.optimizer}: {why}"), time.monotonic() - begun)
 
 
 @dataclass(frozen=True)
@@ -43,22 +86,15 @@ class Engine:
 def on_this_machine(workers: int) -> Iterator[Engine]:
     """Run trials in processes of this machine.
 
-    Each worker is a thread that owns a process, so that the death of one process loses nothing
-    but its trial, which is done again.
-
     Parameters
     ----------
     workers : int
         1 runs one trial after another, in a process of its own all the same.
     """
-    with ExitStack() as stack:
-        crew = Crew()
-        # The processes end first: a thread that waits for an answer could not be joined.
-        pool = ThreadPoolExecutor(workers, thread_name_prefix="trial")
-        stack.callback(pool.shutdown, wait=True, cancel_futures=True)
-        stack.callback(crew.end)
-        processes = "process" if workers == 1 else "processes"
-        yield Engine(pool, lambda: workers, f"{workers} {processes}", crew.run)
+    name = f"{workers} {'process' if workers == 1 else 'processes'}"
+    # The processes end first: a thread that waits for an answer could not be joined.
+    with ThreadPoolExecutor(workers, thread_name_prefix="trial") as threads, Processes() as own:
+        yield Engine(threads, lambda: workers, name, partial(run_apart, processes=own))
 
 
 @contextmanager

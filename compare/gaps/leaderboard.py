@@ -14,15 +14,14 @@ import numpy as np
 from ...problem import Array
 from ...problem.suite import load_instance
 from ..documents import percent
-from .statistics import quantiles
+from .statistics import SAMPLES, interval, quantiles
 from .studies import StudyPlan, parse_study
 from .summaries import LADDER, SOLVED, Summary, read_summaries
+from .targets import running_times
 from .trials import DESCENT
 
 LEADERBOARD = "leaderboard"
 """The word by which commands know the shipped study and its results."""
-_SAMPLES = 2000
-"""Samples of problems behind an interval: its ends move by about 1 % of its width with the seed."""
 BOARD_COLUMNS = ("place", "optimiser", "runs within 1 %", "within 0.1 %", "within 0.01 %",
                  "median gap", "evaluations to 1 %", "to 0.1 %", "to 0.01 %", "failed")  # fmt: skip
 """What a row of a board says; a terminal has room for the first six."""
@@ -177,8 +176,8 @@ def _ranked(label: str, rows: Sequence[Summary]) -> Ranked:
     at = [LADDER.index(gap) for gap in SOLVED]
     shares = within / runs[:, None]
     rng = np.random.Generator(np.random.PCG64(0))
-    drawn = rng.integers(len(rows), size=(_SAMPLES, len(rows)))
-    expected = _running_times(spent[drawn].sum(axis=1), within[drawn][:, :, at].sum(axis=1))
+    drawn = rng.integers(len(rows), size=(SAMPLES, len(rows)))
+    expected = running_times(spent[drawn].sum(axis=1), within[drawn][:, :, at].sum(axis=1))
     return Ranked(
         optimizer=label,
         problems=len(rows),
@@ -187,20 +186,13 @@ def _ranked(label: str, rows: Sequence[Summary]) -> Ranked:
         median=float(quantiles(np.array([one.median for one in rows]), [0.5])[0]),
         within=shares.mean(axis=0),
         solved=_with_ends(shares.mean(axis=0)[at], shares[drawn][:, :, at].mean(axis=1)),
-        expected=_with_ends(_running_times(spent.sum(axis=0), within[:, at].sum(axis=0)), expected),
+        expected=_with_ends(running_times(spent.sum(axis=0), within[:, at].sum(axis=0)), expected),
     )
-
-
-def _running_times(spent: Array, hits: Array) -> Array:
-    """Evaluations for each hit; inf where there is none."""
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return np.asarray(np.where(hits > 0, spent / hits, np.inf), dtype=np.float64)
 
 
 def _with_ends(values: Array, samples: Array) -> tuple[tuple[float, float, float], ...]:
     """Values with the 95 % interval of their samples, shape (samples, values)."""
-    # Quantiles that are samples: between a number and infinity there is no mean.
-    low, high = np.quantile(samples, (0.025, 0.975), axis=0, method="inverted_cdf")
+    low, high = interval(samples)
     return tuple(
         (float(value), float(one), float(other))
         for value, one, other in zip(values, low, high, strict=True)

@@ -246,6 +246,11 @@ class Row:
         """Whether `check` passed the durations."""
         return self.verdict == Verdict.PASS
 
+    @property
+    def spent(self) -> int:
+        """Evaluations of the run; a failed one counts its budget, so that failing is not cheap."""
+        return self.budget if self.status is RowStatus.FAILED else self.evaluations
+
     def text(self) -> str:
         """The row as one line of canonical JSON: the same bytes for the same run."""
         return canonical(asdict(self))

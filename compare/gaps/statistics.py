@@ -151,7 +151,7 @@ def settled_at(trace: Array, tolerance: float) -> int:
     return int(np.argmax(close)) if np.isfinite(trace[-1]) else trace.size
 
 
-_SAMPLES = 2000
+SAMPLES = 2000
 """Bootstrap samples of an interval: its ends move by about 1 % of its width with the seed."""
 LEAST_RUNS = 5
 """Runs of each from which on two optimisers are compared: below it the smallest p-value of the
@@ -234,6 +234,13 @@ def compare_pairs(totals: Mapping[str, Array]) -> tuple[PairCompared, ...]:
     return tuple(found)
 
 
+def interval(samples: Array) -> tuple[Array, Array]:
+    """95 % intervals by bootstrap samples, shape (samples, ...), some of which may be infinite."""
+    # Quantiles that are samples: between a number and infinity there is no mean.
+    low, high = np.quantile(samples, (0.025, 0.975), axis=0, method="inverted_cdf")
+    return low, high
+
+
 def corrected(p_values: Sequence[float]) -> tuple[float, ...]:
     """p-values of several tests made at once, after Holm (1979).
 
@@ -278,5 +285,5 @@ def _p_value(a: Array, b: Array) -> float:
 
 def _weights(rng: np.random.Generator, count: int) -> Array:
     """How often each run is drawn in each bootstrap sample, as shares."""
-    shares: Array = rng.multinomial(count, np.full(count, 1 / count), size=_SAMPLES) / count
+    shares: Array = rng.multinomial(count, np.full(count, 1 / count), size=SAMPLES) / count
     return shares

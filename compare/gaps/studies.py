@@ -11,7 +11,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from ...heuristics import Bounds, DeathPenalty, Handling, Stretch, find_optimizer, search_box
+from ...heuristics import Bounds, Handling, find_optimizer, judge_of, search_box
 from ...problem import (
     Case,
     CaseError,
@@ -307,7 +307,7 @@ def _of_case(
             try:
                 box = search_box(one)
                 for handling in handlings:
-                    _check_judged(one, handling)
+                    judge_of(one, float("inf"), handling)  # refused before anything is run
             except TrajgapError as error:
                 raise CaseError(file, field, f"{pid}, {rid}{label}: {error}") from None
             yield StudyProblem(
@@ -346,11 +346,3 @@ def _pairs(case: Case, block: ProblemsBlock) -> list[tuple[str, str]]:
     if not stated:
         raise CaseError(case.file, "", "states no problem in full; name another case")
     return stated
-
-
-def _check_judged(problem: Problem, handling: Handling) -> None:
-    """Find out whether the objective can judge a problem before anything is run."""
-    if handling is Handling.DEATH_PENALTY:
-        DeathPenalty(problem)
-    else:
-        Stretch(problem)

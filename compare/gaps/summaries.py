@@ -77,10 +77,7 @@ def summary_of(label: str, rows: Sequence[Row]) -> Summary:
     optimum = first.reference_upper
     assert optimum is not None
     hits = np.array([[hit(row, optimum * (1 + gap)) for row in rows] for gap in LADDER])
-    # A failed run says no longer what it spent: all of its budget, so that failing is not cheap.
-    ended = np.array(
-        [row.budget if row.status is RowStatus.FAILED else row.evaluations for row in rows]
-    )
+    ended = np.array([row.spent for row in rows])
     gaps = quantiles(totals_of(rows) / optimum - 1, _QUANTILES)
     low, median, high = (float(f"{gap:.4g}") for gap in gaps)
     asked = [LADDER.index(gap) for gap in SOLVED]

@@ -9,14 +9,12 @@ import numpy as np
 
 from ...problem import Array
 from .rows import Row
-from .statistics import quantiles
+from .statistics import SAMPLES, interval, quantiles
 
 TARGETS = (0.1, 0.01, 1e-3, 1e-4, 1e-6)
 """Relative gaps that are asked for: 10 % is a poor answer, 1 % and 0.1 % are what papers' printed
 digits can tell apart, 0.01 % is below them, 1e-6 is a solver's answer."""
 
-_SAMPLES = 2000
-"""Bootstrap samples of an interval: its ends move by about 1 % of its width with the seed."""
 CURVE_TARGETS = tuple(float(g) for g in np.logspace(0, -6, 61))
 """Targets of the share of targets reached, ten for every tenfold: from twice the optimum to a
 millionth above it."""
@@ -58,9 +56,13 @@ def expected_running_time(hits: Array, evaluations: Array) -> float:
     450.0
     """
     reached = np.isfinite(hits)
-    if not reached.any():
-        return float("inf")
-    return float(np.where(reached, hits, evaluations).sum() / reached.sum())
+    return float(running_times(np.where(reached, hits, evaluations).sum(), reached.sum()))
+
+
+def running_times(spent: Array, hits: Array) -> Array:
+    """Evaluations of all runs over the number of hits; inf where there is none."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.asarray(np.where(hits > 0, spent / hits, np.inf), dtype=np.float64)
 
 
 def running_time_interval(hits: Array, evaluations: Array) -> tuple[float, float]:
@@ -69,14 +71,11 @@ def running_time_interval(hits: Array, evaluations: Array) -> tuple[float, float
     Percentiles of 2,000 samples, with a fixed seed.
     """
     rng = np.random.Generator(np.random.PCG64(0))
-    drawn = rng.integers(hits.size, size=(_SAMPLES, hits.size))
+    drawn = rng.integers(hits.size, size=(SAMPLES, hits.size))
     reached = np.isfinite(hits)
     spent = np.where(reached, hits, evaluations)[drawn].sum(axis=1)
     count = reached[drawn].sum(axis=1)
-    with np.errstate(divide="ignore", invalid="ignore"):  # both where a sample has no hit
-        times = np.where(count > 0, spent / count, np.inf)
-    # Quantiles that are samples: between a number and infinity there is no mean.
-    low, high = np.quantile(times, (0.025, 0.975), method="inverted_cdf")
+    low, high = interval(running_times(spent, count))
     return float(low), float(high)
 
 

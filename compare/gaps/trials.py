@@ -8,9 +8,11 @@ import json
 import math
 import os
 import random
+import time
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from hashlib import sha256
 from pathlib import Path
@@ -19,7 +21,7 @@ from typing import Any
 import numpy as np
 
 from ...heuristics import KINDS, Algorithm, BudgetedRun, Search, find_optimizer, run_within
-from ...problem import TrajgapError, check, visible
+from ...problem import Problem, TrajgapError, check, visible
 from .rows import Row, Trial, failed, settings_of, trace_of
 
 _LONGEST_MESSAGE = 300
@@ -31,6 +33,26 @@ LIBRARIES = {"scipy": "scipy", "mealpy": "mealpy", "pymoo": "pymoo", "pygmo": "p
 DESCENT = "descent"
 """What a study calls this package's own solver: it is no optimiser that a paper could use, since it
 knows the derivatives of the limits, and stands beside them as a reference."""
+
+_MOST_PROBLEMS = 64
+"""Problems that a process remembers."""
+_PROBLEMS: dict[str, Problem] = {}
+"""By their hashes: what is compiled for a curve belongs to its object."""
+
+
+@dataclass(frozen=True)
+class TrialOutcome:
+    """A row, and what is measured beside it and differs from run to run.
+
+    Attributes
+    ----------
+    row : Row
+    seconds : float
+        That the run took.
+    """
+
+    row: Row
+    seconds: float
 
 
 @lru_cache(maxsize=256)
@@ -137,6 +159,20 @@ def run_trial(trial: Trial) -> Row:
     if os.getpid() != own:
         os._exit(0)  # an optimiser forked, and this is not the process that was asked
     return row
+
+
+def measured_trial(trial: Trial) -> TrialOutcome:
+    """Run a trial in a process that is there for trials, so that what it prints goes nowhere."""
+    nothing = os.open(os.devnull, os.O_WRONLY)
+    for stream in (1, 2):
+        os.dup2(nothing, stream)
+    os.close(nothing)
+    if len(_PROBLEMS) >= _MOST_PROBLEMS:
+        _PROBLEMS.clear()
+    known = replace(trial, problem=_PROBLEMS.setdefault(trial.problem_sha256, trial.problem))
+    begun = time.monotonic()
+    row = run_trial(known)
+    return TrialOutcome(row, time.monotonic() - begun)
 
 
 def _said(error: BaseException) -> str:

@@ -6,12 +6,12 @@ import pickle
 import time
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import CancelledError, Executor, Future, wait
+from concurrent.futures import CancelledError, Executor, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass
-from types import TracebackType
+from functools import cached_property, lru_cache, partial
 from typing import Any
 
-from .processes import Processes, ProcessGone, packed, worked
+from ...problem import ProcessError, Processes
 
 
 @dataclass(eq=False)
@@ -25,48 +25,53 @@ class ProofPiece:
     common : Common
     arguments : tuple
     future : Future or None
-        Of the answer from elsewhere.
-    done : bool
-    value : Any
-        Once it is done.
-    error : Exception or None
-        Raised instead of a result.
+        Of the answer, once somebody has the piece.
+    here : bool
+        Whether it was done in this process.
     """
 
     work: Callable[..., Any]
     common: Common
     arguments: tuple[Any, ...]
-    future: Future[bytes] | None = None
-    done: bool = False
-    value: Any = None
-    error: Exception | None = None
+    future: Future[Any] | None = None
+    here: bool = False
 
-    def run(self) -> None:
+    def run(self) -> Future[Any]:
         """Do it here."""
+        self.future, self.here = Future(), True
         try:
-            self.value = self.work(self.common.value, *self.arguments)
+            self.future.set_result(self.work(self.common.value, *self.arguments))
         except Exception as error:
-            self.error = error
-        self.done = True
+            self.future.set_exception(error)
+        return self.future
 
     def taken_back(self) -> bool:
         """Whether nobody has begun it, and nobody else will."""
-        return not self.done and (self.future is None or self.future.cancel())
+        return self.future is None or self.future.cancel()
 
 
+@dataclass(eq=False)
 class Common:
     """What many pieces have in common: packed once, and unpacked once by each process."""
 
-    def __init__(self, value: Any) -> None:
-        self.value = value
-        self._packed: bytes | None = None
+    value: Any
 
-    @property
+    @cached_property
     def packed(self) -> bytes:
         """As a message."""
-        if self._packed is None:
-            self._packed = pickle.dumps(self.value)
-        return self._packed
+        return pickle.dumps(self.value)
+
+
+def worked(work: bytes, common: bytes) -> Any:
+    """Do a piece of work elsewhere: ``function(common, *arguments)``, both packed."""
+    function, arguments = pickle.loads(work)
+    return function(_unpacked(common), *arguments)
+
+
+@lru_cache(maxsize=4)  # those of search and judging, and some to spare
+def _unpacked(common: bytes) -> Any:
+    """What pieces have in common is unpacked once: tables that are kept for it are found again."""
+    return pickle.loads(common)
 
 
 class ProofCrew:
@@ -99,6 +104,7 @@ class ProofCrew:
     def __init__(self, workers: int = 1, executor: Executor | None = None) -> None:
         self.workers, self._executor = workers, executor
         self._processes: Processes | None = None
+        self._threads: Executor | None = None
         self._answered = False
         self._waiting: deque[ProofPiece] = deque()
         self._began = time.perf_counter()
@@ -106,14 +112,11 @@ class ProofCrew:
     def __enter__(self) -> ProofCrew:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *error: object) -> None:
         if self._processes is not None:
             self._processes.end()
+        if self._threads is not None:
+            self._threads.shutdown()
 
     @property
     def processes(self) -> int:
@@ -141,19 +144,20 @@ class ProofCrew:
         Exception
             Whatever its work raises.
         """
-        while not piece.done:
-            self._hand_out()
+        self._hand_out()
+        while piece.future is None or not piece.future.done():
             mine = self._mine(piece)
             if mine is not None:
                 mine.run()
             elif piece.future is not None and not wait([piece.future], self.look).done:
                 watch()
-            elif piece.future is not None:
-                self._collect(piece)
+            self._hand_out()
         self._forget(piece)
-        if piece.error is not None:
-            raise piece.error
-        return piece.value
+        self._answered |= not piece.here
+        try:
+            return piece.future.result()
+        except (ProcessError, CancelledError):  # no process has finished it
+            return piece.run().result()
 
     def drop(self, pieces: Iterable[ProofPiece]) -> None:
         """Give up what nobody has begun."""
@@ -180,14 +184,15 @@ class ProofCrew:
         """Give pieces to others, if there are others."""
         late = time.perf_counter() - self._began >= self.worth
         if self.workers > 1 and self._executor is None and late and len(self._waiting) > 1:
-            self._processes = self._processes or Processes(self.workers)
-        others = self._executor or self._processes
+            self._processes = self._processes or Processes()
+            self._threads = self._threads or ThreadPoolExecutor(self.workers)
+        others = self._executor or self._threads
         if others is None:
             return
+        run = worked if self._processes is None else partial(self._processes.run, worked)
         for piece in self._waiting:
-            if piece.future is None and not piece.done:
-                work = packed(piece.work, piece.arguments)
-                run = worked if self._processes is None else self._processes.run
+            if piece.future is None:
+                work = pickle.dumps((piece.work, piece.arguments))
                 piece.future = others.submit(run, work, piece.common.packed)
 
     def _mine(self, piece: ProofPiece) -> ProofPiece | None:
@@ -196,20 +201,6 @@ class ProofCrew:
             return None
         ahead = (other for other in self._waiting if other is not piece)
         return next((one for one in (piece, *ahead) if one.taken_back()), None)
-
-    def _collect(self, piece: ProofPiece) -> None:
-        """Take what came back; a piece whose process is gone is done here."""
-        assert piece.future is not None
-        try:
-            finished, value = pickle.loads(piece.future.result())
-        except (ProcessGone, CancelledError):
-            piece.run()
-            return
-        if finished:
-            piece.value = value
-        else:
-            piece.error = value
-        piece.done = self._answered = True
 
     def _forget(self, piece: ProofPiece) -> None:
         if piece in self._waiting:

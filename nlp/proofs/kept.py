@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
-from pathlib import Path
 from typing import Any
 
 from ...problem import TrajgapError
@@ -21,17 +20,10 @@ from .kept_files import UNREADABLE, KeptFiles, code_hash, folder_of
 from .outcome import Certified, Outcome, claimed
 
 
-class KeptProofs:
-    """The proofs that are kept in one folder.
+class KeptProofs(KeptFiles):
+    """The proofs that are kept in one folder."""
 
-    Parameters
-    ----------
-    where : bool or Path
-        As `KeptFiles` takes it.
-    """
-
-    def __init__(self, where: bool | Path) -> None:
-        self._files = KeptFiles(where, "proof")
+    kind = "proof"
 
     def taken(
         self,
@@ -61,10 +53,10 @@ class KeptProofs:
         Certified or None
             None where nothing is kept, or what is kept does not prove it in that time.
         """
-        if not self._files.used:
+        if not self.used:
             return None
         try:
-            document, nodes = _parts(self._files.read(_asked(problem, subject, gap, seed)))
+            document, nodes = _parts(self.read(_asked(problem, subject, gap, seed)))
             if not fits(document, problem, subject):
                 return None
             left, spread = clock.left, None if crew is None else crew.spread
@@ -90,13 +82,13 @@ class KeptProofs:
         seed : int
         """
         if (
-            not self._files.used
+            not self.used
             or found.verdict is None
             or not found.verdict.proves
             or not _settled(found, gap)
         ):
             return
-        self._files.write(
+        self.write(
             _asked(found.problem, found.subject, gap, seed),
             {"nodes": found.nodes, "certificate": certificate(found)},
         )

@@ -15,7 +15,7 @@ from collections.abc import Callable, Iterable
 from contextlib import suppress
 from functools import cache
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, ClassVar, TypeVar
 
 import numpy as np
 
@@ -61,13 +61,14 @@ class KeptFiles:
     where : bool or Path
         The folder, made when something is kept; True for `cache_folder`. False keeps nothing and
         knows nothing.
-    kind : str
-        What begins with another kind is none of these files.
     """
 
-    def __init__(self, where: bool | Path, kind: str) -> None:
+    kind: ClassVar[str]
+    """What begins with another kind is none of these files."""
+
+    def __init__(self, where: bool | Path) -> None:
         self._folder = cache_folder() if where is True else (where or None)
-        self._format = f"trajgap kept {kind} 1"
+        self._format = f"trajgap kept {self.kind} 1"
 
     @property
     def used(self) -> bool:

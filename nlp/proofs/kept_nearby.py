@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any
 
 from ...problem import Array, Verdict, check
@@ -13,17 +12,10 @@ from .kept import search_code
 from .kept_files import KeptFiles, as_text, from_text
 
 
-class KeptNearby:
-    """Answers questions as `nearby` does, with what earlier runs left in one folder.
+class KeptNearby(KeptFiles):
+    """Answers questions as `nearby` does, with what earlier runs left in one folder."""
 
-    Parameters
-    ----------
-    where : bool or Path
-        As `KeptFiles` takes it.
-    """
-
-    def __init__(self, where: bool | Path) -> None:
-        self._files = KeptFiles(where, "durations")
+    kind = "durations"
 
     def __call__(self, questions: list[Near]) -> Sequence[list[Array]]:
         """Answers of the questions, a group that is kept and discarded as a whole.
@@ -37,7 +29,7 @@ class KeptNearby:
         sequence of list of ndarray
             One list for each question, in it the durations of each joint.
         """
-        return self._files.answers(
+        return self.answers(
             lambda: {"questions": [_words(one) for one in questions], "code": search_code()},
             len(questions),
             lambda: [nearby(one) for one in questions],

@@ -30,8 +30,7 @@ from trajgap.heuristics import (
     Run,
     Search,
     Stretch,
-    differential_evolution,
-    dual_annealing,
+    find_optimizer,
     from_settings,
     run,
     run_as_left,
@@ -39,7 +38,6 @@ from trajgap.heuristics import (
     run_many,
     run_many_per_joint,
     run_per_joint,
-    shgo,
     states,
 )
 from trajgap.heuristics.repair import judge_of
@@ -78,9 +76,10 @@ SEARCHES = (
     ImprovedWOA(position_initial=(0.3, 3.0)),
     GA(population=32, position_range=(0.05, 3.0)),
     ImprovedGA(population=32, position_range=(0.05, 3.0)),
-    differential_evolution(),
-    dual_annealing(),
-    shgo(),
+    *(
+        replace(find_optimizer(f"scipy:{name}"), per_iteration=30)
+        for name in ("differential_evolution", "dual_annealing", "shgo")
+    ),
 )
 ALGORITHMS = tuple(replace(one, iterations=200) for one in SEARCHES[:7])
 each_algorithm = pytest.mark.parametrize("algorithm", ALGORITHMS, ids=lambda a: a.kind)
@@ -122,7 +121,7 @@ def same_bits(a: Run, b: Run) -> None:
     ("algorithm", "handling"),
     [
         (MNAMPSO(), "death-penalty"),
-        (differential_evolution(), "death-penalty"),
+        (SEARCHES[7], "death-penalty"),
         pytest.param(WOA(), "stretch", marks=pytest.mark.slow),
     ],
 )

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable
-from contextlib import ExitStack, closing
+from contextlib import closing
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, cast
 
 import numpy as np
 
-from ....heuristics import Algorithm, AskedRun, Run, compile_judge, in_processes, run_asked
+from ....heuristics import Algorithm, AskedRun, Run, compile_judge, run_asked
 from ....nlp import Solution
 from ....problem import (
     TOLERANCE,
@@ -23,6 +23,7 @@ from ....problem import (
     TrajgapError,
     as_piecewise,
     check,
+    in_processes,
 )
 from ....problem.cases import Claim, ImprovementClaim, InstancesBlock, instance_waypoints
 from ...documents import Procedure
@@ -75,12 +76,10 @@ def examine(
     todo = list(tasks)
     workers = max(1, min(workers, len(todo)))
     found: list[Sample] = []
-    with ExitStack() as stack:
-        results: Iterable[tuple[Sample, ...]] = map(_of_task, todo)
-        if workers > 1:
-            for problem in (todo[0].slower[0], todo[0].faster[0]):
-                compile_judge(_fast_form(problem), todo[0].objectives[0])
-            results = stack.enter_context(closing(in_processes(_of_task, todo, workers)))
+    if workers > 1:
+        for problem in (todo[0].slower[0], todo[0].faster[0]):
+            compile_judge(_fast_form(problem), todo[0].objectives[0])
+    with closing(in_processes(_of_task, todo, workers)) as results:
         for done, samples in enumerate(results, start=1):
             found += samples
             if progress is not None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any, NamedTuple
 
 from ....nlp import Solution, Status, kkt, problem_seal
@@ -19,17 +18,10 @@ class AskedOptimum(NamedTuple):
     starts: int
 
 
-class KeptOptima:
-    """The optima that are kept in one folder.
+class KeptOptima(KeptFiles):
+    """The optima that are kept in one folder."""
 
-    Parameters
-    ----------
-    where : bool or Path
-        As `KeptFiles` takes it.
-    """
-
-    def __init__(self, where: bool | Path) -> None:
-        self._files = KeptFiles(where, "optima")
+    kind = "optima"
 
     def solved(self, asked: Sequence[AskedOptimum]) -> Sequence[Solution]:
         """Answers of `solve`: those of an earlier audit, or else found now and kept.
@@ -44,7 +36,7 @@ class KeptOptima:
         sequence of Solution
             Of what was kept: status, durations with their check, and infimum.
         """
-        return self._files.answers(
+        return self.answers(
             lambda: {
                 "problems": [[problem_seal(p), repr(p.curve), starts] for p, starts in asked],
                 "code": search_code(),

@@ -2,21 +2,17 @@
 
 import os
 import random
-import signal
 import sys
-import threading
 import time
 from collections.abc import Iterator
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
 import pytest
 from support.small_studies import small_problem, small_trial
-from trajgap.compare.gaps import RowStatus, canonical, origin_of, run_trial, trial_process
-from trajgap.compare.gaps.trial_process import Crew
+from trajgap.compare.gaps import RowStatus, canonical, engines, origin_of, run_apart, run_trial
 from trajgap.heuristics import KINDS, PSO, run
-from trajgap.problem import ProcessError, check
+from trajgap.problem import Processes, check
 
 
 @pytest.mark.parametrize("handling", ["death-penalty", "stretch", "rescale"])
@@ -138,79 +134,72 @@ def test_where_an_optimiser_comes_from(tmp_path: Path, monkeypatch: pytest.Monke
     assert origin_of("nowhere_at_all:f").startswith("trajgap ")
 
 
-def of_one_child() -> Iterator[Crew]:
-    found = Crew()
-    yield found
-    found.end()
+def of_one_child() -> Iterator[Processes]:
+    with Processes() as found:
+        yield found
 
 
-crew = pytest.fixture(of_one_child)
+processes = pytest.fixture(of_one_child)
 going_on = pytest.fixture(of_one_child, scope="module")
 """For the tests after which it can run trials as before: to start costs a second."""
 
 
-def test_a_trial_gives_the_same_row_in_a_process_of_its_own(going_on: Crew) -> None:
-    outcome = going_on.run(small_trial())
+def test_a_trial_gives_the_same_row_in_a_process_of_its_own(going_on: Processes) -> None:
+    outcome = run_apart(small_trial(), going_on)
     assert outcome.row == run_trial(small_trial())
     assert outcome.row.status is RowStatus.FINISHED
     assert outcome.seconds > 0
 
 
-def test_one_process_runs_many_trials(going_on: Crew) -> None:
-    going_on.run(small_trial())
-    first = going_on._own.child
-    going_on.run(small_trial("support.optimizers:raises"))
-    assert going_on._own.child is first
-
-
 @pytest.mark.slow
-def test_a_run_whose_process_dies_is_done_again(crew: Crew, tmp_path: Path) -> None:
+def test_a_run_whose_process_dies_is_done_again(processes: Processes, tmp_path: Path) -> None:
     settings = canonical({"mark": str(tmp_path / "mark")})
-    row = crew.run(small_trial("support.optimizers:dies_once", settings=settings)).row
+    row = run_apart(small_trial("support.optimizers:dies_once", settings=settings), processes).row
     assert row.status is RowStatus.FINISHED
     assert row.durations == run_trial(small_trial("support.optimizers:draws")).durations
 
 
-def test_what_an_optimiser_prints_and_reads_is_not_ours(going_on: Crew) -> None:
-    assert going_on.run(small_trial("support.optimizers:prints")).row.status is RowStatus.FINISHED
+def test_what_an_optimiser_prints_and_reads_is_not_ours(going_on: Processes) -> None:
+    row = run_apart(small_trial("support.optimizers:prints"), going_on).row
+    assert row.status is RowStatus.FINISHED
 
 
-def test_a_run_at_which_two_processes_die_is_reported(going_on: Crew) -> None:
-    row = going_on.run(small_trial("support.optimizers:dies")).row
+def test_a_run_at_which_two_processes_die_is_reported(going_on: Processes) -> None:
+    row = run_apart(small_trial("support.optimizers:dies"), going_on).row
     assert row.status is RowStatus.FAILED
     assert row.message == "support.optimizers:dies: its process ended 2 times (SIGKILL)"
-    assert going_on.run(small_trial()).row.status is RowStatus.FINISHED
+    assert run_apart(small_trial(), going_on).row.status is RowStatus.FINISHED
 
 
-def test_a_run_that_forks_answers_once(going_on: Crew) -> None:
+def test_a_run_that_forks_answers_once(going_on: Processes) -> None:
     honest = run_trial(small_trial("support.optimizers:draws"))
     for seed in (3, 4):
-        row = going_on.run(small_trial("support.optimizers:forks", seed=seed)).row
+        row = run_apart(small_trial("support.optimizers:forks", seed=seed), going_on).row
         assert (row.optimizer, row.seed) == ("support.optimizers:forks", seed)
         assert (row.durations == honest.durations) == (seed == 3)
-    assert going_on.run(small_trial()).row == run_trial(small_trial())
+    assert run_apart(small_trial(), going_on).row == run_trial(small_trial())
 
 
-def test_what_a_run_leaves_behind_holds_nothing_up(going_on: Crew, tmp_path: Path) -> None:
+def test_what_a_run_leaves_behind_holds_nothing_up(going_on: Processes, tmp_path: Path) -> None:
     mark = tmp_path / "mark"
     settings = canonical({"mark": str(mark)})
     trial = small_trial("support.optimizers:forks_and_leaves", settings=settings, seconds=60)
-    row = going_on.run(trial).row
+    row = run_apart(trial, going_on).row
     assert row.message.endswith("its process ended 2 times (SIGKILL)")
     left = int(mark.read_text(encoding="utf-8"))
-    assert going_on.run(small_trial()).row.status is RowStatus.FINISHED
+    assert run_apart(small_trial(), going_on).row.status is RowStatus.FINISHED
     assert is_gone(left)
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="other systems know no subreaper")
-@pytest.mark.parametrize("how", ["the crew ends", "the trial dies", "the parent is gone"])
+@pytest.mark.parametrize("how", ["the pool ends", "the trial dies", "the parent is gone"])
 def test_a_grandchild_in_a_session_of_its_own_ends_too(
-    crew: Crew, tmp_path: Path, how: str
+    processes: Processes, tmp_path: Path, how: str
 ) -> None:
     mark = tmp_path / "mark"
     settings = canonical({"mark": str(mark), "dies": how == "the trial dies"})
     trial = small_trial("support.optimizers:leaves_a_grandchild", settings=settings, seconds=60)
-    row = crew.run(trial).row
+    row = run_apart(trial, processes).row
     left = [int(line) for line in mark.read_text(encoding="utf-8").split()]
     if how == "the trial dies":
         assert row.message.endswith("its process ended 2 times (SIGKILL)")
@@ -218,10 +207,10 @@ def test_a_grandchild_in_a_session_of_its_own_ends_too(
     else:
         assert row.status is RowStatus.FINISHED
         os.kill(left[0], 0)  # it lives as long as the process that ran the trial
-        if how == "the crew ends":
-            crew.end()
+        if how == "the pool ends":
+            processes.end()
         else:
-            crew._own.child._process.stdin.close()
+            processes._idle._waiting[0]._process.stdin.close()
     assert all(map(is_gone, left))
 
 
@@ -240,54 +229,10 @@ def is_gone(pid: int) -> bool:
 
 
 def test_a_search_that_catches_everything_is_ended_from_outside(
-    going_on: Crew, monkeypatch: pytest.MonkeyPatch
+    going_on: Processes, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(trial_process, "_GRACE", 0.5)
-    row = going_on.run(small_trial("support.optimizers:hangs", seconds=0.5)).row
+    monkeypatch.setattr(engines, "_GRACE", 0.5)
+    row = run_apart(small_trial("support.optimizers:hangs", seconds=0.5), going_on).row
     assert row.status is RowStatus.FAILED
     assert row.message.startswith("support.optimizers:hangs: took longer than 0.5 s; raise")
-    assert going_on.run(small_trial()).row.status is RowStatus.FINISHED
-
-
-def test_a_process_that_cannot_start_is_reported(
-    crew: Crew, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(trial_process, "_PROGRAM", "raise SystemExit(3)")
-    with pytest.raises(ProcessError, match=r"^workers: a process ends at once; see why: python"):
-        crew.run(small_trial())
-    monkeypatch.setattr(sys, "executable", "/no/such/python")
-    with pytest.raises(ProcessError, match=r"^workers: a process cannot be started \("):
-        crew.run(small_trial())
-
-
-def test_a_crew_that_has_ended_starts_nothing(crew: Crew) -> None:
-    crew.run(small_trial())
-    child = crew._own.child
-    crew.end()
-    assert child._process.returncode == -signal.SIGKILL
-    with pytest.raises(ProcessError, match=r"workers: stopped"):
-        crew.run(small_trial())
-
-
-def test_a_process_that_begins_while_the_crew_ends_ends_too(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    crew, beginning, may_begin = Crew(), threading.Event(), threading.Event()
-    begun: list[trial_process._Child] = []
-
-    class Slow(trial_process._Child):
-        def __init__(self) -> None:
-            beginning.set()
-            may_begin.wait()
-            super().__init__()
-            begun.append(self)
-
-    monkeypatch.setattr(trial_process, "_Child", Slow)
-    with ThreadPoolExecutor(1) as pool:
-        row = pool.submit(crew.run, small_trial())
-        beginning.wait()
-        crew.end()
-        may_begin.set()
-    with pytest.raises(ProcessError, match=r"^workers: stopped$"):
-        row.result()
-    assert [child._process.poll() is None for child in begun] == [False]
+    assert run_apart(small_trial(), going_on).row.status is RowStatus.FINISHED

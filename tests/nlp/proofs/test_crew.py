@@ -2,10 +2,8 @@
 
 import os
 import signal
-import subprocess
 import sys
 from concurrent.futures import Executor
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -18,7 +16,6 @@ from trajgap.nlp.proofs.crew import ProofCrew
 from trajgap.nlp.proofs.cubic import CUBIC
 from trajgap.nlp.proofs.document import certificate
 from trajgap.nlp.proofs.outcome import Certified, Outcome
-from trajgap.nlp.proofs.processes import Processes, ProcessGone
 from trajgap.problem import Limits, Problem, cubic_spline
 from trajgap.verify import Subject, verify_certificate
 
@@ -106,22 +103,6 @@ def test_no_process_is_started_below_a_second(monkeypatch: pytest.MonkeyPatch) -
     assert [one.processes for one in crews] == [0, 2]
 
 
-def test_a_program_without_a_guard_may_ask_for_processes(tmp_path: Path) -> None:
-    program = tmp_path / "bare.py"
-    program.write_text(
-        "from trajgap.nlp.proofs import crew\n"
-        "crew.ProofCrew.worth = 0.0\n"
-        "print('once')\n"
-        "import math\n"
-        "with crew.ProofCrew(2) as some:\n"
-        "    print(list(some.spread(math.gcd, 12, [(8,), (9,), (18,)])), some.processes)\n",
-        encoding="utf-8",
-    )
-    ran = subprocess.run([sys.executable, program], capture_output=True, text=True, check=True)
-    assert ran.stdout.split("\n") == ["once", "[4, 3, 6] 2", ""]
-    assert not ran.stderr
-
-
 def proof(found: Certified) -> Any:
     assert found.outcome is Outcome.CERTIFIED
     return certificate(found)["proof"], found.lower, found.upper
@@ -158,10 +139,3 @@ def test_no_other_proof_does(problem: Problem, subject: Subject, gap: float) -> 
     shared = certify(problem, subject=subject, gap=gap, workers=3)
     assert proof(shared) == proof(alone)
     assert (shared.nodes, shared.durations) == (alone.nodes, alone.durations)
-
-
-def test_no_process_begins_once_the_run_is_over() -> None:
-    processes = Processes(1)
-    processes.end()
-    with pytest.raises(ProcessGone, match="no process can be started"):
-        processes.run(b"", b"")

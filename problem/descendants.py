@@ -18,18 +18,21 @@ from pathlib import Path
 
 KEEPS = sys.platform == "linux"
 """Whether there are keepers: no other system hands orphans to a process that asks for them."""
+SIGNALLED = 128
+"""What shells, and keepers, add to the number of the signal that ended a process."""
 _SET_CHILD_SUBREAPER, _SET_PDEATHSIG = 36, 1
 """Numbers of the two calls of prctl, from linux/prctl.h."""
 _PATIENCE = 3.0
 """Seconds in which a keeper kills: a process that outlives SIGKILL waits for a device, and the
-study waits five seconds for the keeper."""
+parent waits five seconds for the keeper."""
 
 
 def keep() -> None:
     """Go on in a child that ends with all its descendants, as does this process with the child.
 
     They end when the child does, when this process gets SIGTERM, and when the other end of its
-    standard input is closed. This process ends as the child did. Without keepers nothing happens.
+    standard input is closed. This process ends with the exit code of the child, which is 128 and
+    its number for a signal. Without keepers nothing happens.
     """
     if not KEEPS:
         return
@@ -67,7 +70,9 @@ def keep() -> None:
         with suppress(BlockingIOError):
             os.read(woken, select.PIPE_BUF)
         status, _ = _waited(child)
-    _end_like(_ended(child, status))
+    status = _ended(child, status)
+    code = -signal.SIGKILL if status is None else os.waitstatus_to_exitcode(status)
+    os._exit(code if code >= 0 else SIGNALLED - code)
 
 
 def _prctl(call: int, argument: int) -> None:
@@ -119,16 +124,3 @@ def _descendants() -> list[int]:
     for process in found:
         found += children.get(process, [])
     return found[1:]
-
-
-def _end_like(status: int | None) -> None:
-    """End this process as another one ended."""
-    code = -signal.SIGKILL if status is None else os.waitstatus_to_exitcode(status)
-    if code < 0:
-        import resource  # which not every system has
-
-        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-        with suppress(OSError):  # of some signals nothing can be set
-            signal.signal(-code, signal.SIG_DFL)
-        os.kill(os.getpid(), -code)
-    os._exit(code if code >= 0 else 1)
