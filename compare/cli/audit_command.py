@@ -8,12 +8,12 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import RenderableType
 
 from ...nlp import Evidence
 from ...problem import Case, published_ids
 from .. import audits
 from ..audits import Study, in_words
+from ..blocks import Block, Prose, card_shown, reached_table, table
 from ..documents import (
     OPTIMA_STEPS,
     OPTIMUM_RETIMED,
@@ -31,16 +31,14 @@ from ..documents import (
     capital,
     counted,
     facts,
-    more_errors,
     qualified,
-    reached_cells,
     tally,
     worth_little,
 )
 from .certifying import read_certificates
 from .input import read_cases
 from .options import MOST, Crate, NoCache, ProblemId, ReadingId, Workers
-from .output import Columns, check_folder, emit, kept_proofs, line, new_output, progress, say
+from .output import check_folder, emit, kept_proofs, new_output, progress, say
 from .result_tables import seconds
 
 AUDIT_FOLDER = Path("trajgap-audit")
@@ -146,16 +144,13 @@ def audit(
     return 1 if strict and report.errors else 0
 
 
-def audited(document: AuditDocument, cases: Sequence[Case]) -> list[RenderableType]:
+def audited(document: AuditDocument, cases: Sequence[Case]) -> list[Block]:
     """Summary of the `audit` document: for each case the card, claims, causes, where time goes."""
-    parts: list[RenderableType] = []
+    parts: list[Block] = []
     for case, asked in zip(document.cases, cases, strict=True):
-        below = [line(case.case, "dim")] if case.case != case.title else []
-        parts += [line(case.title, "bold"), *below, line("")]
-        card = case.card
-        against = {*card.errors, *([more_errors(card.more)] if card.more else [])}
-        parts += [line(said, "bold red" if said in against else "") for said in card.sentences]
-        parts.append(line(tally(case.verdicts), "dim"))
+        below = [Prose(case.case, "note")] if case.case != case.title else []
+        parts += [Prose(case.title, "heading"), *below, Prose("")]
+        parts.append(card_shown(case.card, tally(case.verdicts)))
         counts = Counter(v.verdict for v in case.verdicts)
         beside = worth_little(case.verdicts)
         worth = {ClaimVerdict.SUPPORTED: f" ({beside})" if beside else ""}
@@ -165,25 +160,24 @@ def audited(document: AuditDocument, cases: Sequence[Case]) -> list[RenderableTy
             if counts[word]
         )
         many = "1 claim" if len(case.verdicts) == 1 else f"{len(case.verdicts)} claims"
-        parts += [line(""), line(f"{many}: {said or 'none to judge'}")]
+        parts += [Prose(""), Prose(f"{many}: {said or 'none to judge'}")]
         rows = _rows(case)
         if rows:
-            parts.append(Columns(("verdict", "readings", "~claim and its place"), rows))
-        parts += [line(said, "dim") for said in _unchecked(case)]
+            parts.append(table(("verdict", "readings", "~claim and its place"), rows))
+        parts += [Prose(said, "note") for said in _unchecked(case)]
         advice = () if isinstance(case.advice, Why) else case.advice
-        parts += _advised(advice) if advice else [line(one) for one in _causes(case)]
-        parts += [line(""), *_time_goes(case.waterfalls, asked)]
+        parts += _advised(advice) if advice else [Prose(one) for one in _causes(case)]
+        parts += [Prose(""), *_time_goes(case.waterfalls, asked)]
         searches = list(by_search(case.reached).items())
         for title, runs in searches[:_SEARCHES]:
-            shown = [(*one[:3], one[5]) for one in map(reached_cells, runs)]
             parts += [
-                line(""),
-                line(f"How near its algorithms get: {title}"),
-                Columns(_RUNS, shown),
+                Prose(""),
+                Prose(f"How near its algorithms get: {title}"),
+                reached_table(runs).without(*_NO_ROOM),
             ]
         more = len(searches) - _SEARCHES
-        parts += [line(f"{more} more searches on the pages.", "dim")] if more > 0 else []
-        parts += [line(f"{words}: {value}", "dim") for words, value in facts(case)]
+        parts += [Prose(f"{more} more searches on the pages.", "note")] if more > 0 else []
+        parts += [Prose(f"{words}: {value}", "note") for words, value in facts(case)]
     return parts
 
 
@@ -202,8 +196,8 @@ def _rows(case: AuditedCase) -> list[tuple[str, str, str]]:
 
 _SEARCHES = 2
 """Searches that a terminal shows, such as that of each joint by itself and of all together."""
-_RUNS = ("~algorithm", "limits broken", ">median, its gap", ">no answer")
-"""Of the columns that a page has, those that fit a terminal."""
+_NO_ROOM = (3, 4, 6)
+"""Columns of a page that do not fit a terminal: best, quartiles, evaluations."""
 _REASONS = 3
 """Reasons that a terminal shows for claims that cannot be checked: enough for a first case, while
 those of a long one fill a page."""
@@ -234,12 +228,15 @@ def _unchecked(case: AuditedCase) -> list[str]:
     return lines + rest
 
 
-def _advised(advice: Sequence[Advice]) -> list[RenderableType]:
+def _advised(advice: Sequence[Advice]) -> list[Block]:
     """What to change, each with its place; what is found first, then how to fix it."""
-    parts: list[RenderableType] = [line(""), line("Before you submit", "bold")]
+    parts: list[Block] = [Prose(""), Prose("Before you submit", "heading")]
     for one in advice:
-        style = "bold red" if one.urgency is Urgency.CONTRADICTED else ""
-        parts += [line(f"{one.urgency}, {one.where}: {one.says}", style), line(f"  → {one.change}")]
+        style = "against" if one.urgency is Urgency.CONTRADICTED else ""
+        parts += [
+            Prose(f"{one.urgency}, {one.where}: {one.says}", style),
+            Prose(f"  → {one.change}"),
+        ]
     return parts
 
 
@@ -266,7 +263,7 @@ def _causes(case: AuditedCase) -> list[str]:
     return found
 
 
-def _time_goes(waterfalls: Sequence[Waterfall], case: Case) -> list[RenderableType]:
+def _time_goes(waterfalls: Sequence[Waterfall], case: Case) -> list[Block]:
     """Where the time goes, for each problem under its first reading."""
     first: dict[str, Waterfall] = {}
     for waterfall in waterfalls:
@@ -278,18 +275,18 @@ def _time_goes(waterfalls: Sequence[Waterfall], case: Case) -> list[RenderableTy
                if (whys := [one[name].time for one in steps if name in one])
                if all(isinstance(why, Why) for why in whys)}  # fmt: skip
     several = len(case.problems) > 1 or len(case.readings) > 1
-    parts: list[RenderableType] = []
+    parts: list[Block] = []
     for pid, one in first.items():
         rows = [(step.name, *_step(step)) for step in one.steps if step.name not in unknown]
         if rows:
             under = f"; {in_words(case, pid, one.reading)}" if several else ""
-            parts.append(line(f"Where the time goes{under}"))
-            parts.append(Columns(("step", ">time s", "evidence"), rows))
+            parts.append(Prose(f"Where the time goes{under}"))
+            parts.append(table(("step", ">time s", "evidence"), rows))
     notes = dict.fromkeys(said for one in first.values() for said in one.without_optimum)
     notes |= dict.fromkeys(
         f"{capital(name)}: {why}." for name, why in unknown.items() if name != OPTIMUM_RETIMED
     )
-    return [*parts, *(line(said, "dim") for said in notes)]
+    return [*parts, *(Prose(said, "note") for said in notes)]
 
 
 def _step(step: Step) -> tuple[str, str]:

@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import RenderableType
 
 from ...problem import Case, Check, Coupling, Peak, check as judge, published_ids
 from ..audits import Point, RoundingBox, RoundingVerdict, in_words, judge_rounding
+from ..blocks import Block, Prose
 from ..documents import (
     BrokenPlace,
     CheckDocument,
@@ -60,7 +60,7 @@ from .options import (
     UrdfFile,
     VelocityLimit,
 )
-from .output import emit, line, new_output, progress
+from .output import emit, new_output, progress
 from .result_tables import by_result, place, reasons, seconds
 
 
@@ -297,7 +297,7 @@ _COLUMNS = ("verdict", "rounding", ">total s", ">feasible s", ">tight s", ">wors
 """What the table says of each result, or of each of its joints."""
 
 
-def _tables(document: CheckDocument, case: Case) -> list[RenderableType]:
+def _tables(document: CheckDocument, case: Case) -> list[Block]:
     results = document.results
     shown = " ".join(f"{d:.6g}" for d in results[0].segment_durations)
     note = (
@@ -305,9 +305,9 @@ def _tables(document: CheckDocument, case: Case) -> list[RenderableType]:
         "rounded."
     )
     return [
-        line(f"{results[0].case}: durations {shown} s", "bold"),
+        Prose(f"{results[0].case}: durations {shown} s", "heading"),
         *by_result(results, _COLUMNS, _cells, "all", case),
-        line(note, "dim"),
+        Prose(note, "note"),
         *reasons(results, _missing, case),
     ]
 

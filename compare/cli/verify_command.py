@@ -10,14 +10,8 @@ from typing import Annotated, Any
 import typer
 
 from ...nlp import ExactProblem
-from ...nlp.proofs import (
-    unlike,
-)
-from ...problem import (
-    Case,
-    Coupling,
-    check_regular,
-)
+from ...nlp.proofs import unlike
+from ...problem import Case, Coupling, check_regular
 from ...verify import (
     CertificateVerdict,
     CertifiedQuestion,
@@ -40,13 +34,7 @@ from ..documents import (
 from .certifying import Question, questions_of
 from .input import read_case, select
 from .options import AsJson, Out
-from .output import (
-    emit,
-    new_output,
-    plain,
-    progress,
-    say,
-)
+from .output import emit, new_output, plain, progress, say
 
 
 def verify(

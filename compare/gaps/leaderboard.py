@@ -13,7 +13,6 @@ import numpy as np
 
 from ...problem import Array
 from ...problem.suite import load_instance
-from ..documents import percent
 from .statistics import quantiles
 from .studies import StudyPlan, parse_study
 from .summaries import LADDER, SOLVED, Summary, read_summaries
@@ -23,9 +22,6 @@ LEADERBOARD = "leaderboard"
 """The word by which commands know the shipped study and its results."""
 _SAMPLES = 2000
 """Samples of problems behind an interval: its ends move by about 1 % of its width with the seed."""
-BOARD_COLUMNS = ("place", "optimiser", "runs within 1 %", "within 0.1 %", "within 0.01 %",
-                 "median gap", "evaluations to 1 %", "to 0.1 %", "to 0.01 %", "failed")  # fmt: skip
-"""What a row of a board says; a terminal has room for the first six."""
 SIZES = ("1 to 3 segments", "4 to 6 segments", "7 to 10 segments")
 """Classes of instances by their number of segments: half of the suite has three."""
 
@@ -95,28 +91,6 @@ class Board:
     def place(self, one: Ranked) -> int | None:
         """The place of an optimiser among the searches, from 1; None for the reference."""
         return self.searches.index(one) + 1 if one.optimizer != DESCENT else None
-
-
-def board_cells(board: Board, one: Ranked) -> tuple[tuple[str, str], ...]:
-    """The row of an optimiser, as `BOARD_COLUMNS`: each value, and its interval or nothing."""
-    place = board.place(one)
-    return (
-        (str(place or "–"), ""),
-        (one.optimizer if place else f"{one.optimizer} (reference, no black box)", ""),
-        *(
-            (f"{100 * s:.0f} %", f"{100 * low:.0f} to {100 * high:.0f}")
-            for s, low, high in one.solved
-        ),
-        (percent(one.median) if np.isfinite(one.median) else "no answer", ""),
-        *(_evaluations(ends) if place else ("–", "") for ends in one.expected),
-        (str(one.failed), ""),
-    )
-
-
-def _evaluations(ends: tuple[float, float, float]) -> tuple[str, str]:
-    """Expected evaluations with their interval; an end without bound is ∞."""
-    value, low, high = ("∞" if np.isinf(end) else f"{end:.0f}" for end in ends)
-    return ("–", "") if value == "∞" else (value, f"{low} to {high}")
 
 
 def leaderboard_study() -> StudyPlan:

@@ -3,8 +3,6 @@ from .benches import (
     bench_picture as bench_picture,
     check_bench_folder as check_bench_folder,
     ends_picture as ends_picture,
-    most_solved as most_solved,
-    optimum_said as optimum_said,
     write_bench as write_bench,
 )
 from .crate import (

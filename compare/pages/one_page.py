@@ -9,8 +9,8 @@ from typing import Any
 from jinja2 import FileSystemLoader
 
 from ..audits import CaseAudit
+from ..blocks import GLOSSARY, Page
 from ..pictures import themed
-from .blocks import GLOSSARY, Page
 from .environment import environment, style
 from .glossary import glossary
 from .writer import case_page, page_text

@@ -20,10 +20,10 @@ from ...problem import (
     replace_folder,
 )
 from ..audits import AuditReport, CaseAudit, package_version
-from ..documents import AuditDocument, ClaimVerdict, Why, json_text, more_errors, tally
+from ..blocks import GLOSSARY, Block, Folded, Page, Prose, Section, Terms, card_shown
+from ..documents import AuditDocument, ClaimVerdict, Why, json_text, tally
 from ..pictures import themed
 from . import motions_shown as report_pictures
-from .blocks import GLOSSARY, Block, CardShown, Folded, Page, Prose, Section, Terms
 from .claims import advised, against, folded_claims
 from .environment import environment, style
 from .exhibits import exhibits_of_motion, exhibits_of_search
@@ -125,25 +125,27 @@ def foreign(out: Path) -> str | None:
 def report_files(report: AuditReport) -> dict[str, str]:
     """Every file of a report, by its path in the folder."""
     document = report.document
-    shapes = environment()
     files: dict[str, str] = {}
     for one in report.cases:
         page = case_page(one)
         name = page.file
-        files[f"{name}.html"] = shapes.get_template("case.html").render(page=page, style=style())
+        files[f"{name}.html"] = page_text(page)
         files[f"{name}.md"] = markdown(page)
         files[f"{name}.json"] = json_text(AuditDocument(cases=(one.document,)))
         for picture in page.pictures:
             files[page.picture(picture)] = themed(picture.document)
-    index = shapes.get_template(_INDEX)
-    files[_INDEX] = index.render(
-        rows=[_row(one) for one in report.cases],
-        verdicts=[str(v) for v in ClaimVerdict],
-        version=package_version("trajgap"),
-        style=style(),
+    files[_INDEX] = (
+        environment()
+        .get_template(_INDEX)
+        .render(
+            rows=[_row(one) for one in report.cases],
+            verdicts=[str(v) for v in ClaimVerdict],
+            version=package_version("trajgap"),
+            style=style(),
+        )
     )
     words = Page("glossary", "How to read a verdict", (glossary(),))
-    files[GLOSSARY] = shapes.get_template("case.html").render(page=words, style=style())
+    files[GLOSSARY] = page_text(words)
     files[MARK] = json_text(document)
     return files
 
@@ -206,13 +208,7 @@ def case_page(one: CaseAudit) -> Page:
 
 
 def _card(one: CaseAudit) -> Section:
-    card = one.card
-    lines = [card.limits, card.optimum]
-    lines += [card.reached] if isinstance(card.reached, str) else []
-    lines += [card.improvement] if isinstance(card.improvement, str) else []
-    errors = (*card.errors, *([more_errors(card.more)] if card.more else []))
-    beside = card.explanation if isinstance(card.explanation, str) else ""
-    shown = CardShown(tuple(lines), errors, beside, card_picture(one), tally(one.judgements))
+    shown = card_shown(one.card, tally(one.judgements), card_picture(one))
     return Section("card", "Verdict", (shown,))
 
 

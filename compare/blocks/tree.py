@@ -1,16 +1,16 @@
-"""What a report page is made of, before it becomes HTML or Markdown."""
+"""What a document is laid out as, before it becomes HTML, Markdown, a page of the site or text."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from html import unescape
 from typing import ClassVar, TypeAlias
 from urllib.parse import quote
 
 from ...problem import file_name
-from ..documents import Caveat
+from ..documents import Caveat, Why
 
 GLOSSARY = "glossary.html"
 """The page that explains every word, once for a report."""
@@ -25,68 +25,128 @@ class Cell:
     text : str
         Lines are separated by line feeds.
     mark : str
-        Word of the vocabulary that the cell consists of, such as "refuted"; empty for free text.
-    number : bool
-        Whether it is set right, in digits of equal width.
-    anchor : str
-        Name under which other cells point here; empty for none.
+        Word of the vocabulary that the first line consists of, such as "refuted"; empty for free
+        text.
     target : str
-        Name of the cell or section that it points to; empty for none.
+        Name of the claim, word, file or page that it points to; empty for none.
+    code : bool
+        Whether it is taken letter by letter: an id, a file, a command.
     """
 
     text: str
     mark: str = ""
-    number: bool = False
-    anchor: str = ""
     target: str = ""
+    code: bool = False
 
 
 @dataclass(frozen=True)
 class Prose:
-    """A paragraph; a lead is set larger, a note smaller."""
+    """A paragraph; its weight is lead, heading, note, against, warning, source, or none."""
 
     text: str
     weight: str = ""
+    word: str = ""
+    """Of the vocabulary, in front of the text; empty for none."""
+    doi: str = ""
+    """Of what the text names, behind it; empty for none."""
+
+    @property
+    def doi_link(self) -> str:
+        """Address of what it names."""
+        return doi_link(self.doi)
+
     kind: ClassVar[str] = "prose"
 
 
 @dataclass(frozen=True)
 class Grid:
-    """A table.
+    """A table, as `table` makes it.
 
     Attributes
     ----------
     columns : tuple of str
     rows : tuple of tuple of Cell
     caption : str
+    marks : tuple of str
+        Of each column: > for numbers, ~ for prose, which gets the room, … for what may be cut off
+        where there is none; empty for other text.
+    styles : tuple of str
+        What a page of the site adds to it, such as "sortable".
     """
 
     columns: tuple[str, ...]
     rows: tuple[tuple[Cell, ...], ...]
     caption: str = ""
-    prose: bool = False
-    """Whether the last column is prose and gets the room."""
+    marks: tuple[str, ...] = ()
+    styles: tuple[str, ...] = ()
     kind: ClassVar[str] = "grid"
+
+    def mark(self, column: int) -> str:
+        """What kind of text a column holds."""
+        return self.marks[column] if self.marks else ""
+
+    def texts(self, row: Sequence[Cell]) -> list[str]:
+        """What a page shows of a row: numbers have a true minus sign."""
+        return [
+            cell.text.replace("-", "−") if self.mark(i) == ">" else cell.text
+            for i, cell in enumerate(row)
+        ]
 
     @property
     def filled(self) -> Grid:
         """The same table without columns in which every cell is empty."""
-        kept = [i for i in range(len(self.columns)) if any(row[i].text for row in self.rows)]
+        return self.without(
+            *(i for i in range(len(self.columns)) if not any(row[i].text for row in self.rows))
+        )
+
+    def without(self, *columns: int) -> Grid:
+        """The same table without some columns."""
+        kept = [i for i in range(len(self.columns)) if i not in columns]
         return replace(
             self,
             columns=tuple(self.columns[i] for i in kept),
+            marks=tuple(self.mark(i) for i in kept),
             rows=tuple(tuple(row[i] for i in kept) for row in self.rows),
         )
+
+
+def table(
+    columns: Sequence[str], rows: Iterable[Sequence[object]], caption: str = "", *styles: str
+) -> Grid:
+    """A table of cells and plain values.
+
+    Parameters
+    ----------
+    columns : sequence of str
+        Names, each behind one of the marks of `Grid` or none.
+    rows : iterable of sequence
+        A value that is None, or has a reason in its place, is shown as empty.
+    caption : str
+    *styles : str
+    """
+    marks = tuple(name[0] if name[0:1] in (">", "~", "…") else "" for name in columns)
+    return Grid(
+        tuple(name.removeprefix(mark) for name, mark in zip(columns, marks, strict=True)),
+        tuple(tuple(map(text, row)) for row in rows),
+        caption,
+        marks,
+        styles,
+    )
 
 
 @dataclass(frozen=True)
 class Terms:
     """Words and what they mean, or names and their values."""
 
-    pairs: tuple[tuple[str, str], ...]
+    pairs: tuple[tuple[str, str | Cell], ...]
     anchored: bool = False
     """Whether each word can be pointed to."""
     kind: ClassVar[str] = "terms"
+
+    @property
+    def cells(self) -> tuple[tuple[str, Cell], ...]:
+        """Names with their values as cells."""
+        return tuple((name, text(value)) for name, value in self.pairs)
 
 
 @dataclass(frozen=True)
@@ -146,6 +206,13 @@ class CardShown:
     """How many claims have which word, and how that is known."""
     kind: ClassVar[str] = "card"
 
+    @property
+    def sentences(self) -> tuple[tuple[str, str], ...]:
+        """Everything that it says, in order, with the weight of each; no empty ones."""
+        own = [*((line, "") for line in self.lines), *((line, "against") for line in self.errors)]
+        own += [(self.beside, "beside"), (self.tally, "tally")]
+        return tuple(one for one in own if one[0])
+
 
 @dataclass(frozen=True)
 class Claimed:
@@ -159,7 +226,7 @@ class Claimed:
         Under which readings, and what the verdict rests on.
     why : tuple of str
     more : tuple of str
-        The rest of the reasons, for a fold.
+        All reasons in full, for a fold; empty where nothing was left out.
     caveats : tuple of Caveat
         Each begins and ends as a sentence does.
     answer : str
@@ -181,9 +248,16 @@ class Claimed:
     anchor: str
     id: str
     answer: str = ""
+    beside: tuple[str, ...] = ()
+    """What else is said of it, such as an innocent explanation."""
     also: tuple[str, ...] = ()
     """Anchors of claims of the same words in other places, which this one stands for."""
     kind: ClassVar[str] = "claimed"
+
+    @property
+    def fold(self) -> str:
+        """The line above all reasons."""
+        return "The whole reason" if len(self.more) == 1 else f"All {len(self.more)} reasons"
 
 
 @dataclass(frozen=True)
@@ -269,7 +343,12 @@ class Page:
     @property
     def doi_link(self) -> str:
         """Address of the paper; empty where the DOI is none."""
-        return f"https://doi.org/{quote(self.doi, '/')}" if _DOI.fullmatch(self.doi) else ""
+        return doi_link(self.doi)
+
+
+def doi_link(doi: str) -> str:
+    """Address of a paper; empty where the DOI is none."""
+    return f"https://doi.org/{quote(doi, '/')}" if _DOI.fullmatch(doi) else ""
 
 
 _DOI = re.compile(r"10\.[0-9]{4,9}/[^\s<>\"]+")
@@ -287,22 +366,31 @@ def _drawn(blocks: Sequence[Block]) -> Iterator[Drawn]:
 
 
 def link(target: str) -> str:
-    """Where a cell's target leads: words to the report's glossary, others within the page."""
+    """Where a cell's target leads: words to the report's glossary, claims within the page."""
+    if target.endswith(".html"):
+        return target
     return f"{GLOSSARY}#{target}" if target.startswith("word-") else f"#{target}"
 
 
 def text(value: object) -> Cell:
-    """Cell of free text; None is shown as empty."""
-    return Cell("" if value is None else str(value))
+    """A value as a cell; None, and a reason in the place of a value, is shown as empty."""
+    if isinstance(value, Cell):
+        return value
+    return Cell("" if value is None or isinstance(value, Why) else str(value))
 
 
-def number(value: object) -> Cell:
-    """Cell of digits, with a true minus sign; None is shown as empty."""
-    return Cell("" if value is None else str(value).replace("-", "−"), number=True)
+def code(value: object) -> Cell:
+    """Cell of an id, a file or a command."""
+    return Cell(str(value), code=True)
+
+
+def badge(value: str) -> Cell:
+    """Cell of a word from the vocabulary."""
+    return Cell(value, mark=slug(value))
 
 
 def word(value: str) -> Cell:
-    """Cell of a word from the vocabulary, linked to its meaning in the glossary."""
+    """Cell of a word from the vocabulary, linked to its meaning in the glossary of a report."""
     return Cell(value, mark=slug(value), target=f"word-{slug(value)}")
 
 

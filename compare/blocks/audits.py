@@ -1,0 +1,74 @@
+"""What the tables and the card of an audit say, wherever they are shown."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from ..documents import Gap, Reached, TargetReached, VerdictCard, Waterfall, Why
+from .tree import CardShown, Drawn, Grid, table, word
+
+_NO_BREAK = "\N{NO-BREAK SPACE}"
+"""The unit stays with its number on the narrowest screen."""
+_NONE = "–"
+"""A cell without a value."""
+
+
+def card_shown(card: VerdictCard, tally: str = "", drawn: Drawn | None = None) -> CardShown:
+    """A card, with a tally below it and a picture beside it."""
+    beside = card.explanation if isinstance(card.explanation, str) else ""
+    return CardShown(card.lines, card.against, beside, drawn, tally)
+
+
+def steps_table(waterfall: Waterfall) -> Grid:
+    """Each step with its time, what stands behind it, and its note."""
+    rows = [(s.name, s.total(), s.known and word(s.known), s.note) for s in waterfall.steps]
+    return table(("step", ">total", "evidence", "~note"), rows, "", "steps")
+
+
+REACHED_MEANING = (
+    "Each row is one algorithm at the paper's own budget, run from different seeds under the "
+    "choices that the case lists. A vector of durations that breaks a limit gets a penalty "
+    "(death penalty), counts with the shortest uniform stretch that keeps every limit (stretch), "
+    "or is scaled until one limit is tight (rescale). Every total is that of a motion that keeps "
+    "its limits. Gaps are measured from the proven interval of the optimum where there is one. "
+    "Evaluations are those of a run, and those that restarts need on average until one run comes "
+    "so near; where each joint is planned by itself, until every joint is so near its own optimum, "
+    "all joints counted. "
+    "Operators and seeds are not printed, so these runs inform and refute nothing."
+)
+"""What the table means."""
+_COLUMNS = ("~algorithm", "limits broken in the search", ">median, its gap", ">best, its gap",
+            ">quartiles, s", ">no answer", ">evaluations; until 1 %; 0.1 %")  # fmt: skip
+"""What a table says of each algorithm."""
+
+
+def reached_table(runs: Iterable[Reached], title: str = "") -> Grid:
+    """A row for each algorithm."""
+    rows = [
+        (
+            one.name,
+            one.handling.replace("-", " "),
+            _with_gap(one.median, one.gap),
+            _with_gap(one.best, one.best_gap),
+            f"{_seconds(one.lower_quartile)} to {_seconds(one.upper_quartile)}",
+            f"{one.unanswered} of {one.runs}",
+            "; ".join([f"{one.budget:,}", *(_evaluations(target) for target in one.within)]),
+        )
+        for one in runs
+    ]
+    return table(_COLUMNS, rows, title)
+
+
+def _with_gap(total: float | Why, gap: Gap | Why) -> str:
+    beside = "" if isinstance(gap, Why) else f" s, {gap.percent.replace(' %', _NO_BREAK + '%')}"
+    return f"{_seconds(total)}{beside}"
+
+
+def _seconds(total: float | Why) -> str:
+    return _NONE if isinstance(total, Why) else f"{total:.4f}"
+
+
+def _evaluations(target: TargetReached) -> str:
+    if isinstance(target.evaluations, Why):
+        return "never"
+    return f"{target.evaluations:,.0f}"
