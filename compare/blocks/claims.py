@@ -10,6 +10,7 @@ from ...problem import file_name
 from ..documents import (
     AuditedCase,
     Caveat,
+    CaveatKind,
     ClaimVerdict,
     Confidence,
     Judgement,
@@ -20,16 +21,21 @@ from ..documents import (
     capital,
     grouped,
     in_full,
+    opened,
     qualified,
     same_reason,
 )
 from .tree import Claimed, word
+
+_POINTS = (CaveatKind.POINTS, CaveatKind.SOME_POINTS)
+"""Caveats of doubted way-points."""
 
 
 def claims_shown(
     found: AuditedCase,
     chosen: Iterable[Judgement],
     beside: Mapping[str, Sequence[str]] | None = None,
+    words: int | None = None,
 ) -> Iterator[Claimed]:
     """Claims with their verdicts, each reason and each long caveat once.
 
@@ -40,17 +46,24 @@ def claims_shown(
         Verdicts of this case, in the order in which they are shown.
     beside : mapping of str to sequence of str, optional
         What else is said of a claim, by its id.
+    words : int, optional
+        Of a reason that stand in the open, where there is less room than the opening needs.
     """
     stated = {one.claim: one for one in found.claims}
     more = beside or {}
-    own = [_claimed(found, stated[j.claim], j, more.get(j.claim, ())) for j in chosen]
-    return shown_once(own)
+    own = [_claimed(found, stated[j.claim], j, words) for j in chosen]
+    return shown_once([replace(one, beside=tuple(more.get(one.id, ()))) for one in own])
 
 
 def _claimed(
-    found: AuditedCase, claim: StatedClaim, judgement: Judgement, beside: Sequence[str]
+    found: AuditedCase, claim: StatedClaim, judgement: Judgement, words: int | None
 ) -> Claimed:
-    reason, every = _reasons(found, judgement)
+    reason, every = _reasons(found, judgement, words)
+    # Of doubted way-points the word has said so, or a short line does, where there is no room.
+    doubts = () if words is None else [c for c in judgement.caveats if c.kind in _POINTS]
+    short = [replace(c, why="") for c in doubts if c.kind is CaveatKind.SOME_POINTS]
+    shown = [*short, *(c for c in judgement.caveats if c not in doubts)]
+    title = "The whole reason" if len(every) == 1 else f"All {len(every)} reasons"
     verdict = word(judgement.verdict)
     return Claimed(
         text=claim.text,
@@ -59,16 +72,18 @@ def _claimed(
         verdict=replace(verdict, text=qualified(judgement.verdict, judgement.beside)),
         holds=_holds(judgement),
         why=(reason,),
-        more=every,
-        beside=tuple(beside),
-        caveats=tuple(map(_sentence, judgement.caveats)),
+        more=(*every, *(str(_sentence(c)) for c in doubts)),
+        caveats=tuple(map(_sentence, shown)),
+        fold=title if words is None else "Read on",
         anchor=file_name("claim", claim.claim),
         id=claim.claim,
         answer=answered(claim),
     )
 
 
-def _reasons(found: AuditedCase, judgement: Judgement) -> tuple[str, tuple[str, ...]]:
+def _reasons(
+    found: AuditedCase, judgement: Judgement, words: int | None
+) -> tuple[str, tuple[str, ...]]:
     """The opening of what decides, and all of it in full where that is more."""
     named, computed = names(found), tuple(judgement.readings)
     said = [
@@ -79,10 +94,13 @@ def _reasons(found: AuditedCase, judgement: Judgement) -> tuple[str, tuple[str, 
     reasons = grouped(said, computed, named)
     depends = judgement.verdict is ClaimVerdict.DEPENDS
     every = [line for one in reasons for line in in_full(one, computed, named, word=depends)]
-    opening = judgement.opening or judgement.why
-    if judgement.opening is None and len(every) == len(reasons):
-        return opening, ()
-    return opening, tuple(every) if len(every) > 1 else (judgement.why,)
+    opening = judgement.opening
+    if words is not None:
+        shown, rest = opened(judgement.sentences, words)
+        opening = " ".join(shown) if rest else None
+    if opening is None and len(every) == len(reasons):
+        return judgement.why, ()
+    return opening or judgement.why, tuple(every) if len(every) > 1 else (judgement.why,)
 
 
 def names(found: AuditedCase) -> Named:

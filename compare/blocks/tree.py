@@ -226,7 +226,7 @@ class Claimed:
         Under which readings, and what the verdict rests on.
     why : tuple of str
     more : tuple of str
-        All reasons in full, for a fold; empty where nothing was left out.
+        What is left out of that, for a fold.
     caveats : tuple of Caveat
         Each begins and ends as a sentence does.
     answer : str
@@ -252,12 +252,9 @@ class Claimed:
     """What else is said of it, such as an innocent explanation."""
     also: tuple[str, ...] = ()
     """Anchors of claims of the same words in other places, which this one stands for."""
+    fold: str = "Read on"
+    """The line above what a fold holds."""
     kind: ClassVar[str] = "claimed"
-
-    @property
-    def fold(self) -> str:
-        """The line above all reasons."""
-        return "The whole reason" if len(self.more) == 1 else f"All {len(self.more)} reasons"
 
 
 @dataclass(frozen=True)

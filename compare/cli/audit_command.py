@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -173,7 +174,7 @@ def audited(document: AuditDocument, cases: Sequence[Case]) -> list[Block]:
             parts += [
                 Prose(""),
                 Prose(f"How near its algorithms get: {title}"),
-                reached_table(runs).without(*_NO_ROOM),
+                replace(reached_table(runs).without(*_NO_ROOM), columns=_RUNS),
             ]
         more = len(searches) - _SEARCHES
         parts += [Prose(f"{more} more searches on the pages.", "note")] if more > 0 else []
@@ -198,6 +199,8 @@ _SEARCHES = 2
 """Searches that a terminal shows, such as that of each joint by itself and of all together."""
 _NO_ROOM = (3, 4, 6)
 """Columns of a page that do not fit a terminal: best, quartiles, evaluations."""
+_RUNS = ("algorithm", "limits broken", "median, its gap", "no answer")
+"""The others, in words that fit one."""
 _REASONS = 3
 """Reasons that a terminal shows for claims that cannot be checked: enough for a first case, while
 those of a long one fill a page."""

@@ -31,7 +31,7 @@ _OPEN_WORDS = 30
 def against(one: CaseAudit) -> Section:
     """Claims that are refuted, contradicted or depend on the reading, and what lies behind."""
     chosen = [j for verdict in _AGAINST for j in one.judgements if j.verdict is verdict]
-    blocks: list[Block] = [*claims_shown(one.document, chosen)]
+    blocks: list[Block] = [*claims_shown(one.document, chosen, words=_OPEN_WORDS)]
     causes = [c for c in one.causes if not _covered(one, c)]
     if causes:
         blocks += [Prose("The causes", "heading"), *(_behind(one, c) for c in causes)]
@@ -49,7 +49,7 @@ def folded_claims(one: CaseAudit) -> Iterator[Section]:
         beside = worth_little(own)
         title = f"{len(own)} claim{'' if len(own) == 1 else 's'} {verdict}"
         title += f": {beside}" if beside else ""
-        found = tuple(claims_shown(one.document, own))
+        found = tuple(claims_shown(one.document, own, words=_OPEN_WORDS))
         yield Section(f"claims-{slug(verdict)}", title, found, folded=True)
 
 

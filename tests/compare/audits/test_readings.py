@@ -17,6 +17,7 @@ from trajgap.compare.audits.case_audit import AuditReport, CaseAudit
 from trajgap.compare.audits.readings import answers, holding, segments
 from trajgap.compare.audits.rules.continuous_time import judge_motions
 from trajgap.compare.audits.study import Study
+from trajgap.compare.blocks import Page
 from trajgap.compare.cli.audit_command import audited
 from trajgap.compare.documents import (
     AuditDocument,
@@ -34,7 +35,6 @@ from trajgap.compare.documents import (
     Waterfall,
     Why,
 )
-from trajgap.compare.pages.blocks import Page
 from trajgap.compare.pages.markdown_text import markdown
 from trajgap.compare.pages.readings import side_by_side
 from trajgap.nlp import Evidence

@@ -10,8 +10,8 @@ from support.drawn import sketched
 from support.findings import report_of
 from support.made_up import entry, paper, row
 from trajgap.compare import write_report
+from trajgap.compare.blocks import Cell, Grid, Page, Prose, Section, Terms
 from trajgap.compare.pages import foreign
-from trajgap.compare.pages.blocks import Cell, Grid, Page, Prose, Section, Terms
 from trajgap.compare.pages.markdown_text import markdown
 from trajgap.problem import file_name, parse_case
 

@@ -13,6 +13,17 @@ from support.toml_text import Bare
 from trajgap.compare.audits import KEPT
 from trajgap.compare.audits.case_audit import CaseAudit
 from trajgap.compare.audits.study import Study
+from trajgap.compare.blocks import (
+    Cell,
+    Claimed,
+    Folded,
+    Grid,
+    Page,
+    Prose,
+    Section,
+    shown_once,
+    word,
+)
 from trajgap.compare.documents import (
     Caveat,
     CaveatKind,
@@ -22,8 +33,6 @@ from trajgap.compare.documents import (
     Waterfall,
     Why,
 )
-from trajgap.compare.pages.blocks import Cell, Claimed, Folded, Grid, Page, Prose, Section, word
-from trajgap.compare.pages.claims import shown_once
 from trajgap.compare.pages.environment import environment, style
 from trajgap.compare.pages.markdown_text import markdown
 from trajgap.compare.pages.motions_shown import _totals
@@ -192,8 +201,7 @@ FIGURE_6 = replace(FIGURE_5, where="Figure 6", why=("Both print 2.289 s.",), anc
 def test_equal_words_in_two_places_are_one_claim_with_both_anchors() -> None:
     (one,) = shown_once([FIGURE_5, FIGURE_6])
     assert one.where == "Figure 5; Figure 6"
-    assert one.why == ("Both print 3.298 s.",)
-    assert one.more == ("Figure 6: Both print 2.289 s.",)
+    assert one.why == ("Both print 3.298 s.", "Figure 6: Both print 2.289 s.")
     assert (one.anchor, one.also) == ("claim-1", ("claim-2",))
 
 

@@ -17,8 +17,8 @@ from support.findings import report_of
 from support.hostile import ID, hostile_case
 from support.studies import source
 from trajgap.compare import AuditReport, write_report
+from trajgap.compare.blocks import Cell, Drawn, Grid, Page, Prose, Section, Terms, table
 from trajgap.compare.pages import crate_of
-from trajgap.compare.pages.blocks import Cell, Drawn, Grid, Page, Prose, Section, Terms
 from trajgap.compare.pages.markdown_text import markdown
 from trajgap.compare.pages.writer import MARK, report_files
 from trajgap.problem import TrajgapError, load_case
@@ -113,7 +113,7 @@ def test_what_would_share_names_or_lie_over_files_is_refused(
 
 
 def test_markdown_of_every_block() -> None:
-    grid = Grid(("a|b", "n"), ((Cell("x\ny"), Cell("−1", number=True)),), "caption")
+    grid = table(("a|b", ">n"), [("x\ny", -1)], "caption")
     section = Section(
         "s",
         "S <1>",

@@ -1,12 +1,13 @@
 """Reasons of a verdict on a page, the words of claims, and the table of the suite."""
 
+from types import SimpleNamespace
+
 import pytest
-from docutils import nodes
 from support.checkout import ROOT
-from trajgap.compare.documents import ClaimVerdict
+from trajgap.compare.blocks import Grid, Prose, claims_shown
+from trajgap.compare.documents import ClaimVerdict, Judgement, Why
 from trajgap.compare.sphinx import Results
-from trajgap.compare.sphinx.directives import readings_of
-from trajgap.compare.sphinx.reasons import reasons, wanted_words
+from trajgap.compare.sphinx.directives import readings_of, wanted_words
 from trajgap.compare.sphinx.suite import instances_of
 from trajgap.problem import TrajgapError
 from trajgap.problem.suite import list_instances, select_curve
@@ -14,15 +15,20 @@ from trajgap.problem.suite import list_instances, select_curve
 
 def finding(reading: str | None, message: str, verdict: str = "refuted", **changes: object):
     one = {"claim": "c", "decides": True, "verdict": verdict, "reading": reading, "rule": "TG201"}
-    return {**one, "kind": message, "message": message, **changes}
+    return SimpleNamespace(**{**one, "kind": message, "sentences": (message,), **changes})
 
 
-VERDICT = {
-    "claim": "c",
-    "verdict": "depends on the reading",
-    "why": "all of it",
-    "readings": dict.fromkeys("abcd", "refuted"),
-}
+def reasons(why: str, opening: str, found: list, labels: dict[str, str] | None = None):
+    """The reasons of the one claim of a case."""
+    said = SimpleNamespace(labels=labels or {}, implausible={}, default="b")
+    stated = SimpleNamespace(claim="c", text="t", where="w", printed="", answer=Why(""))
+    case = SimpleNamespace(claims=[stated], findings=found, readings=said if labels else Why(""))
+    verdict = Judgement(
+        claim="c", verdict="depends on the reading", scope="some", evidence="none", why=why,
+        opening=opening, readings=dict.fromkeys("abcd", "refuted"),
+    )  # fmt: skip
+    (shown,) = claims_shown(case, [verdict])
+    return shown
 
 
 def test_of_many_reasons_the_default_stands_first_and_the_others_are_folded() -> None:
@@ -36,56 +42,46 @@ def test_of_many_reasons_the_default_stands_first_and_the_others_are_folded() ->
         finding("a", "says nothing.", "not checkable"),
     ]
     labels = {"a": "angles in degrees", "b": "angles in radians"}
-    case = {"readings": {"default": "b", "labels": labels}, "findings": found}
-    lead, opening, folded, closing = reasons(case, {**VERDICT, "opening": "all of it"})
-    assert lead.astext() == "all of it"
-    assert opening.astext() == "<details><summary>All 3 reasons</summary>"
-    assert [one.astext() for one in folded.findall(nodes.paragraph)] == [
+    shown = reasons("all of it", "all of it", found, labels)
+    assert (shown.why, shown.fold) == (("all of it",), "All 3 reasons")
+    assert shown.more == (
         "Refuted under “angles in radians” and “c”: two.",
         "Refuted under “angles in degrees”: one.",
         "Supported under “d”: kept.",
-    ]
-    assert closing.astext() == "</details>"
+    )
 
 
 @pytest.mark.parametrize("name", ["irb1600-ga-cubic-bspline", "irb460-pso-353"])
 def test_a_place_that_every_row_shares_is_said_once(name):
-    case = Results(ROOT / "docs" / "results").case(name)
-    parts = readings_of(case)
-    tables = [table for part in parts for table in part.findall(nodes.table)]
-    said = [part for part in parts if isinstance(part, nodes.paragraph)]
-    # The default reading's rows stand in the open where there are many; ids come last.
-    *_, shown, _ = tables
-    assert len(tables) == (2 if len(case["readings"]["outcomes"]) <= 8 else 3)
-    rows = list(shown.findall(nodes.row))
-    outcomes = case["readings"]["outcomes"]
-    claims = {one["claim"] for one in outcomes}
-    places = [c["where"] for c in case["claims"] if c["claim"] in claims]
-    assert len(rows) == len(outcomes) + 1
-    counts = [sum(place in part.astext() for part in (*said, *rows)) for place in places]
+    case = Results(ROOT / "docs" / "results").audited(name)
+    *said, shown, ids = readings_of(case)
+    outcomes = case.readings.outcomes
+    assert ids.title == "Ids of the readings"
+    # The default reading's rows stand in the open where there are many.
+    grid = shown if isinstance(shown, Grid) else shown.blocks[0]
+    assert isinstance(shown, Grid) == (len(outcomes) <= 8)
+    claims = {one.claim for one in outcomes}
+    places = [c.where for c in case.claims if c.claim in claims]
+    assert len(grid.rows) == len(outcomes)
+    counts = [sum(row[1].text == place for row in grid.rows) for place in places]
     if len(places) == 1:
-        assert counts == [1]
-        assert said[-1].astext() == f"Durations judged: {places[0]}."
+        assert Prose(f"Durations judged: {places[0]}.") in said
     else:
         assert counts == [
-            sum(one["claim"] == claim for one in outcomes) for claim in sorted(claims, reverse=True)
+            sum(one.claim == claim for one in outcomes) for claim in sorted(claims, reverse=True)
         ]
-    wide = {len(list(row.findall(nodes.entry))) for row in rows}
-    assert wide == {5 if len(places) == 1 else 6}
+    assert len(grid.columns) == (5 if len(places) == 1 else 6)
 
 
 def test_a_long_reason_is_cut_at_a_sentence_and_in_full_a_fold_away() -> None:
     long = "It breaks a limit. Then more. The end."
-    case = {"readings": None, "findings": [finding("a", long)]}
-    verdict = {**VERDICT, "why": long, "opening": "It breaks a limit."}
-    lead, opening, folded, _ = reasons(case, verdict)
-    assert lead.astext() == "It breaks a limit."
-    assert opening.astext() == "<details><summary>The whole reason</summary>"
-    assert folded.astext() == long
+    shown = reasons(long, "It breaks a limit.", [finding("a", long)])
+    assert (shown.why, shown.fold) == (("It breaks a limit.",), "The whole reason")
+    assert shown.more == (long,)
     many = [finding(reading, f"{reading}: {long}") for reading in "abc"]
-    lead, opening, folded, _ = reasons({"readings": {"default": "a"}, "findings": many}, verdict)
-    assert opening.astext() == "<details><summary>All 3 reasons</summary>"
-    assert folded.astext().count("The end.") == 3
+    shown = reasons(long, "It breaks a limit.", many)
+    assert shown.fold == "All 3 reasons"
+    assert " ".join(shown.more).count("The end.") == 3
 
 
 @pytest.mark.parametrize(
