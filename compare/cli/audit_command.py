@@ -36,10 +36,11 @@ from ..documents import (
     tally,
     worth_little,
 )
+from ..pages import check_report_folder
 from .certifying import read_certificates
 from .input import read_cases
 from .options import MOST, Crate, NoCache, ProblemId, ReadingId, Workers
-from .output import check_folder, emit, kept_proofs, new_output, progress, say
+from .output import emit, kept_proofs, new_output, progress, say
 from .result_tables import seconds
 
 AUDIT_FOLDER = Path("trajgap-audit")
@@ -104,7 +105,7 @@ def audit(
     given = [] if certificates is None else read_certificates(certificates)
     folder = out if out is not None or as_json else AUDIT_FOLDER
     if folder is not None:
-        check_folder(folder, chosen)
+        check_report_folder(folder, chosen)
     if crate is not None:
         from ..pages import crate_library
 

@@ -25,14 +25,7 @@ from ...problem.motions import (
     interpolated,
     read_motion,
 )
-from ..documents import (
-    MotionCheckDocument,
-    OrWhy,
-    RepairedMotion,
-    Why,
-    json_text,
-    known,
-)
+from ..documents import MotionCheckDocument, OrWhy, RepairedMotion, Why, json_text, known
 from .input import naming
 from .motion_results import checked_motion, shown_check
 from .output import emit, new_output

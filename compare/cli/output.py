@@ -6,7 +6,7 @@ import io
 import os
 import re
 import sys
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import TypeVar
@@ -18,15 +18,7 @@ from rich.measure import Measurement
 from rich.table import Table
 from rich.text import Text
 
-from ...problem import (
-    Case,
-    CaseError,
-    new_file,
-    recover_folder,
-    replace_file,
-    try_writing_in,
-    visible,
-)
+from ...problem import CaseError, new_file, replace_file, try_writing_in, visible
 from ..blocks import Block, CardShown, Grid, Prose, Terms, table
 from ..documents import Document, json_text
 
@@ -246,36 +238,6 @@ def replace_output(path: Path, text: str) -> None:
     """
     with _writing(str(path), "--certificates"):
         replace_file(path, text)
-
-
-def check_folder(path: Path, cases: Sequence[Case]) -> None:
-    """Find out whether a report can be written before computing what goes into it.
-
-    Raises
-    ------
-    CaseError
-        If the folder holds anything but an earlier report or cannot be written, or if the id of
-        a case is the name of another page.
-    """
-    from ..pages import RESERVED, foreign
-
-    name = str(path)
-    for case in cases:
-        if case.id in RESERVED:
-            raise CaseError(case.file, "id", f"{case.id!r} is the name of another page; rename it")
-    with _writing(name, "--out"):
-        recover_folder(path)
-        if os.path.lexists(path) and not path.is_dir():
-            raise CaseError(name, "--out", "is a file; name a folder")
-        found = foreign(path)
-        if found is not None:
-            raise CaseError(
-                name, "--out", f"holds {found}, which is no audit; name a new or an empty folder"
-            )
-        if path.name in ("", "..") or path.is_mount():
-            raise CaseError(name, "--out", "cannot be replaced as a whole; name a folder in it")
-        path.parent.mkdir(parents=True, exist_ok=True)
-        try_writing_in(path.parent)
 
 
 def check_certificates(folder: Path) -> None:

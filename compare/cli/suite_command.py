@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import os
 import shlex
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from importlib.resources import files
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from ...problem import CaseError, TrajgapError, replace_folder
+from ...problem import CaseError
 from ...problem.suite import (
     LOADER,
     BenchmarkInstance,
@@ -105,7 +104,7 @@ def export(out: Folder) -> int:
             if certificate is not None:
                 text = certificate.read_text(encoding="utf-8")
                 found[f"certificates/{one.name}.json"] = text
-    _write(out, found)
+    written.write_folder(out, found, _foreign, "suite", "FOLDER")
     say(f"{len(instances)} instances: {out}\n")
     return 0
 
@@ -116,7 +115,8 @@ def pages(out: Folder) -> int:
     instances = list_instances()
     with progress("pages", len(instances)) as step:
         found = written.suite_pages(instances, step)
-    _write(out, {**found, _MARK: json_text(suite_document(instances))})
+    files = {**found, _MARK: json_text(suite_document(instances))}
+    written.write_folder(out, files, _foreign, "suite", "FOLDER")
     say(f"pages: {out / 'index.html'}\n")
     return 0
 
@@ -153,25 +153,5 @@ def _shown(document: SuiteShowDocument, one: BenchmarkInstance) -> list[Block]:
     ]
 
 
-def _write(out: Path, found: Mapping[str, str]) -> None:
-    """Write a folder at once; only an empty one or one that was written so is replaced.
-
-    Raises
-    ------
-    CaseError
-        If it holds anything else, or cannot be written.
-    """
-    name = str(out)
-    if os.path.lexists(out) and (not out.is_dir() or out.is_symlink()):
-        raise CaseError(name, "FOLDER", "is no folder; name a new one")
-    try:
-        other = list(out.iterdir()) if out.exists() else []
-        if other and not (out / _MARK).is_file():
-            held = min(p.name for p in other)
-            raise CaseError(name, "FOLDER", f"holds {held}; name a new or an empty folder")
-        replace_folder(out, found)
-    except TrajgapError:
-        raise
-    except OSError as error:
-        reason = error.strerror or type(error).__name__
-        raise CaseError(name, "FOLDER", f"cannot be written ({reason}); name another") from None
+def _foreign(_: Path, there: list[str]) -> str | None:
+    return None if _MARK in there else there[0]

@@ -9,6 +9,7 @@ from .crate import (
     crate_library as crate_library,
     crate_of as crate_of,
 )
+from .folders import write_folder as write_folder
 from .glossary import word_groups as word_groups
 from .one_page import (
     fill_template as fill_template,
@@ -17,8 +18,6 @@ from .one_page import (
 from .plotting import plot as plot
 from .suite_report import suite_pages as suite_pages
 from .writer import (
-    MARK as MARK,
-    RESERVED as RESERVED,
-    foreign as foreign,
+    check_report_folder as check_report_folder,
     write_report as write_report,
 )

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
-from ...problem import Array, CaseError, file_name, recover_folder, replace_folder
+from ...problem import Array, file_name
 from ..audits import package_version
 from ..blocks import (
     Drawn,
@@ -48,10 +47,13 @@ from ..gaps import (
     totals_of,
 )
 from ..pictures import Anytime, Picture, gap_picture, profile_picture, svg, themed
+from .folders import check_folder, write_folder
 from .writer import page_text
 
 _QUARTILES = (0.25, 0.5, 0.75)
 """Of the runs, in the picture of the gaps."""
+_WHAT = "bench"
+"""What its folder is called in messages."""
 _PAGE = "index.html"
 """The page; like the next three a file of a bench, and a folder that holds others is kept."""
 _MARK = "bench.json"
@@ -80,7 +82,6 @@ def write_bench(results: Sequence[tuple[BenchResult, Runs]], out: Path) -> None:
     CaseError
         If the folder holds anything else, or cannot be written.
     """
-    check_bench_folder(out)
     page = _page(results)
     files = {
         _PAGE: page_text(page),
@@ -89,10 +90,7 @@ def write_bench(results: Sequence[tuple[BenchResult, Runs]], out: Path) -> None:
     }
     for drawn in page.pictures:
         files[page.picture(drawn)] = themed(drawn.document)
-    try:
-        replace_folder(Path(out), files)
-    except OSError as error:
-        raise _unwritten(out, error) from None
+    write_folder(Path(out), files, _foreign, _WHAT)
 
 
 def bench_document(results: Sequence[tuple[BenchResult, Runs]]) -> BenchDocument:
@@ -109,25 +107,13 @@ def check_bench_folder(out: Path) -> None:
     CaseError
         If it holds anything but an earlier bench.
     """
-    try:
-        recover_folder(out)
-        if os.path.lexists(out) and not out.is_dir():
-            raise CaseError(str(out), "--out", "is a file; name a folder")
-        there = sorted(p.relative_to(out).as_posix() for p in out.rglob("*") if not p.is_dir())
-    except OSError as error:
-        raise _unwritten(out, error) from None
-    for name in there:
-        if name not in (_PAGE, _MARK, _ROWS) and not name.startswith(_PICTURES):
-            raise CaseError(
-                str(out), "--out", f"holds {name}, which is no bench; name a new or an empty folder"
-            )
-    if there and _MARK not in there:
-        raise CaseError(str(out), "--out", "holds no bench; name a new or an empty folder")
+    check_folder(out, _foreign, _WHAT)
 
 
-def _unwritten(out: Path, error: OSError) -> CaseError:
-    reason = error.strerror or type(error).__name__
-    return CaseError(str(out), "--out", f"cannot be written ({reason}); name another place")
+def _foreign(_: Path, there: list[str]) -> str | None:
+    own = (_PAGE, _MARK, _ROWS)
+    others = [name for name in there if name not in own and not name.startswith(_PICTURES)]
+    return next(iter(others), None if _MARK in there else there[0])
 
 
 def _rows(result: BenchResult, runs: Runs) -> Iterator[Row]:

@@ -2,23 +2,15 @@
 
 from __future__ import annotations
 
-import os
 from collections import Counter
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from pydantic import BaseModel, Field
 
 from ...nlp.optimum import KKT_TOLERANCE, SAME, STARTS
-from ...problem import (
-    LONGEST_NAME,
-    TOLERANCE,
-    TrajgapError,
-    file_name,
-    read_regular,
-    recover_folder,
-    replace_folder,
-)
+from ...problem import LONGEST_NAME, TOLERANCE, Case, CaseError, file_name, read_regular
 from ..audits import AuditReport, CaseAudit, package_version
 from ..blocks import GLOSSARY, Block, Folded, Page, Prose, Section, Terms, card_shown
 from ..documents import AuditDocument, ClaimVerdict, Why, json_text, tally
@@ -27,6 +19,7 @@ from . import motions_shown as report_pictures
 from .claims import advised, against, folded_claims
 from .environment import environment, style
 from .exhibits import exhibits_of_motion, exhibits_of_search
+from .folders import check_folder, write_folder
 from .glossary import glossary
 from .instances import other_instances
 from .markdown_text import markdown
@@ -38,6 +31,8 @@ MARK = "audit.json"
 """The file by which the folder of an earlier report is known."""
 _LARGEST_MARK = 1_000_000_000
 """Bytes that are read to know an earlier report: hundreds of times the largest one shipped."""
+_WHAT = "audit"
+"""What the folder is called in messages."""
 _INDEX = "index.html"
 """The page that leads to those of the cases."""
 RESERVED = (Path(_INDEX).stem, Path(MARK).stem, Path(GLOSSARY).stem)
@@ -69,38 +64,40 @@ def write_report(report: AuditReport, out: Path) -> None:
 
     Raises
     ------
-    TrajgapError
+    CaseError
         If the folder holds anything else, two cases would share a file, or it cannot be written.
     """
-    out = Path(out)
-    names = [one.case.id for one in report.cases]
-    for name in names:
-        if names.count(name) > 1:
-            raise TrajgapError(f"{out}: two cases are called {name!r}; give each an id of its own")
-        if name in RESERVED:
-            raise TrajgapError(f"{out}: a case cannot be called {name!r}; rename it")
-    try:
-        recover_folder(out)
-        other = foreign(out)
-        if other is not None:
-            raise TrajgapError(
-                f"{out}: {other} is not part of a trajgap report; name a new or an empty folder"
-            )
-        replace_folder(out, report_files(report))
-    except OSError as error:
-        reason = error.strerror or type(error).__name__
-        raise TrajgapError(f"{out}: cannot be written ({reason}); name another place") from None
+    check_report_folder(Path(out), [one.case for one in report.cases], option="")
+    write_folder(Path(out), report_files(report), _foreign, _WHAT, option="")
 
 
-def foreign(out: Path) -> str | None:
-    """Name of the first thing in a folder that no report has written; None if there is none."""
-    if not os.path.lexists(out):
-        return None
-    if not out.is_dir() or out.is_symlink():
-        return "what is there"
-    there = sorted(p.relative_to(out).as_posix() for p in out.rglob("*") if not p.is_dir())
-    if not there:
-        return None
+def check_report_folder(out: Path, cases: Sequence[Case] = (), option: str = "--out") -> None:
+    """Find out whether a report can be written, before computing what goes into it.
+
+    Parameters
+    ----------
+    out : Path
+    cases : sequence of Case
+        Those that it is about.
+    option : str
+        What names the folder, for messages.
+
+    Raises
+    ------
+    CaseError
+        If the folder holds anything but an earlier report or cannot be written, or if the id of
+        a case is that of another one or the name of another page.
+    """
+    names = [case.id for case in cases]
+    for case in cases:
+        taken = "another page" if case.id in RESERVED else "another case"
+        if case.id in RESERVED or names.count(case.id) > 1:
+            raise CaseError(case.file, "id", f"{case.id!r} is the name of {taken}; rename it")
+    check_folder(out, _foreign, _WHAT, option)
+
+
+def _foreign(out: Path, there: list[str]) -> str | None:
+    """The first file that no report has written; None if there is none."""
     try:
         mark = _Mark.model_validate_json(read_regular(out / MARK, _LARGEST_MARK, "name another"))
     except (OSError, ValueError):
@@ -116,10 +113,8 @@ def foreign(out: Path) -> str | None:
         *(f"{page}.{end}" for page in pages for end in ("html", "md", "json")),
     }
     drawn = tuple(f"pictures/{f'{case}-'[:LONGEST_NAME]}" for case in cases)
-    for name in there:
-        if name not in known and not (name.startswith(drawn) and name.endswith(".svg")):
-            return name
-    return None
+    others = (name for name in there if name not in known)
+    return next((n for n in others if not (n.startswith(drawn) and n.endswith(".svg"))), None)
 
 
 def report_files(report: AuditReport) -> dict[str, str]:
