@@ -1,6 +1,8 @@
 from .audits import (
     REACHED_MEANING as REACHED_MEANING,
     card_shown as card_shown,
+    counts_said as counts_said,
+    distances_table as distances_table,
     reached_table as reached_table,
     steps_table as steps_table,
 )

@@ -2,21 +2,78 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections import Counter
+from collections.abc import Iterable, Sequence
 
-from ..documents import Gap, Reached, TargetReached, VerdictCard, Waterfall, Why
+from ..documents import (
+    OPTIMA_STEPS,
+    OPTIMUM_RETIMED,
+    THIRD_ORDER,
+    ClaimVerdict,
+    Gap,
+    Judgement,
+    Reached,
+    TargetReached,
+    VerdictCard,
+    Waterfall,
+    Why,
+    counted,
+    noted,
+    worth_little,
+)
 from .tree import CardShown, Drawn, Grid, table, word
 
 _NO_BREAK = "\N{NO-BREAK SPACE}"
 """The unit stays with its number on the narrowest screen."""
 _NONE = "–"
 """A cell without a value."""
+_MANY = 10
+"""Distance, as a share, beyond which a multiple says more than a percentage."""
+_SAME = 5e-4
+"""Distance, as a share, whose one decimal is 0, so that its sign would say nothing."""
+_NOTED = (*OPTIMA_STEPS, OPTIMUM_RETIMED, THIRD_ORDER)
+"""Steps whose note stands in the open: the optimum, its proof and routes, and its cross-check."""
 
 
 def card_shown(card: VerdictCard, tally: str = "", drawn: Drawn | None = None) -> CardShown:
     """A card, with a tally below it and a picture beside it."""
     beside = card.explanation if isinstance(card.explanation, str) else ""
     return CardShown(card.lines, card.against, beside, drawn, tally)
+
+
+def counts_said(judgements: Sequence[Judgement]) -> str:
+    """How many claims have which verdict, in a sentence."""
+    counts = Counter(one.verdict for one in judgements)
+    beside = worth_little(judgements)
+    said = ", ".join(
+        noted(counted(word, counts[word]), beside if word is ClaimVerdict.SUPPORTED else "")
+        for word in ClaimVerdict
+        if counts[word]
+    )
+    many = "1 claim" if len(judgements) == 1 else f"{len(judgements)} claims"
+    return f"{many}: {said or 'none to judge'}"
+
+
+def distances_table(waterfall: Waterfall, caption: str = "") -> Grid:
+    """Each step in seconds, and how far the first one lies above it."""
+    known = [step for step in waterfall.steps if not isinstance(step.time, Why)]
+    rows = [
+        (s.name, s.total(), _above(known[0].value, s.value), s.known and word(s.known),
+         s.note if s.name in _NOTED else None)
+        for s in known
+    ]  # fmt: skip
+    columns = ("step", ">total", ">the first against this", "evidence", "found how")
+    return table(columns, rows, caption)
+
+
+def _above(first: float, time: float) -> str | None:
+    if time <= 0 or first == time:
+        return None
+    if abs(first / time - 1) < _SAME:
+        return f"0.0{_NO_BREAK}%"
+    if first / time > 1 + _MANY:
+        return f"{first / time:.1f} times"
+    return f"{100 * (first / time - 1):+.1f}{_NO_BREAK}%"
 
 
 def steps_table(waterfall: Waterfall) -> Grid:

@@ -302,6 +302,8 @@ class Section:
     blocks: tuple[Block, ...]
     folded: bool = False
     """Whether the reader opens it."""
+    target: str = ""
+    """File that its title leads to; empty for none."""
 
 
 @dataclass(frozen=True)

@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from ...nlp import Evidence
 from ...problem import Case, published_ids
 from .. import audits
 from ..audits import Study, in_words
-from ..blocks import Block, Prose, card_shown, reached_table, table
+from ..blocks import Block, Prose, card_shown, counts_said, distances_table, reached_table, table
 from ..documents import (
     OPTIMA_STEPS,
     OPTIMUM_RETIMED,
@@ -24,24 +22,20 @@ from ..documents import (
     ClaimVerdict,
     Judgement,
     Scope,
-    Step,
     Urgency,
     Waterfall,
     Why,
     by_search,
     capital,
-    counted,
     facts,
     qualified,
     tally,
-    worth_little,
 )
 from ..pages import check_report_folder
 from .certifying import read_certificates
 from .input import read_cases
 from .options import MOST, Crate, NoCache, ProblemId, ReadingId, Workers
 from .output import emit, kept_proofs, new_output, progress, say
-from .result_tables import seconds
 
 AUDIT_FOLDER = Path("trajgap-audit")
 """Where the pages go, unless the command line says otherwise."""
@@ -153,16 +147,7 @@ def audited(document: AuditDocument, cases: Sequence[Case]) -> list[Block]:
         below = [Prose(case.case, "note")] if case.case != case.title else []
         parts += [Prose(case.title, "heading"), *below, Prose("")]
         parts.append(card_shown(case.card, tally(case.verdicts)))
-        counts = Counter(v.verdict for v in case.verdicts)
-        beside = worth_little(case.verdicts)
-        worth = {ClaimVerdict.SUPPORTED: f" ({beside})" if beside else ""}
-        said = ", ".join(
-            f"{counted(word, counts[word])}{worth.get(word, '')}"
-            for word in ClaimVerdict
-            if counts[word]
-        )
-        many = "1 claim" if len(case.verdicts) == 1 else f"{len(case.verdicts)} claims"
-        parts += [Prose(""), Prose(f"{many}: {said or 'none to judge'}")]
+        parts += [Prose(""), Prose(counts_said(case.verdicts))]
         rows = _rows(case)
         if rows:
             parts.append(table(("verdict", "readings", "~claim and its place"), rows))
@@ -267,32 +252,25 @@ def _causes(case: AuditedCase) -> list[str]:
     return found
 
 
-def _time_goes(waterfalls: Sequence[Waterfall], case: Case) -> list[Block]:
+def _time_goes(waterfalls: Sequence[Waterfall], case: Case) -> Iterator[Block]:
     """Where the time goes, for each problem under its first reading."""
-    first: dict[str, Waterfall] = {}
-    for waterfall in waterfalls:
-        first.setdefault(waterfall.problem, waterfall)
-    steps = [{step.name: step for step in one.steps} for one in first.values()]
-    names = dict.fromkeys(name for one in steps for name in one)
-    # The optimum keeps its row: distances are counted from it.
-    unknown = {name: whys[0] for name in names if name not in OPTIMA_STEPS
-               if (whys := [one[name].time for one in steps if name in one])
-               if all(isinstance(why, Why) for why in whys)}  # fmt: skip
+    first = {one.problem: one for one in reversed(waterfalls)}
     several = len(case.problems) > 1 or len(case.readings) > 1
-    parts: list[Block] = []
-    for pid, one in first.items():
-        rows = [(step.name, *_step(step)) for step in one.steps if step.name not in unknown]
-        if rows:
-            under = f"; {in_words(case, pid, one.reading)}" if several else ""
-            parts.append(Prose(f"Where the time goes{under}"))
-            parts.append(table(("step", ">time s", "evidence"), rows))
-    notes = dict.fromkeys(said for one in first.values() for said in one.without_optimum)
-    notes |= dict.fromkeys(
-        f"{capital(name)}: {why}." for name, why in unknown.items() if name != OPTIMUM_RETIMED
-    )
-    return [*parts, *(Prose(said, "note") for said in notes)]
+    notes: dict[str, None] = {}
+    for pid in dict.fromkeys(one.problem for one in waterfalls):
+        one = first[pid]
+        under = f"; {in_words(case, pid, one.reading)}" if several else ""
+        grid = distances_table(one, f"Where the time goes{under}")
+        if grid.rows:
+            yield grid.without(_HOW)
+        notes |= dict.fromkeys(one.without_optimum)
+        notes |= dict.fromkeys(
+            f"{capital(step.name)}: {step.time}."
+            for step in one.steps
+            if isinstance(step.time, Why) and step.name not in (*OPTIMA_STEPS, OPTIMUM_RETIMED)
+        )
+    yield from (Prose(said, "note") for said in notes)
 
 
-def _step(step: Step) -> tuple[str, str]:
-    """Time of a step, and the word for what stands behind it, if any does."""
-    return seconds(step.time), "" if step.evidence is Evidence.NONE else str(step.evidence)
+_HOW = 4
+"""Column of what was found how, which has no room on a terminal."""

@@ -5,21 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Literal
 
-from ...problem.cases import (
-    AnyClaim,
-    Case,
-    ConvergenceClaim,
-    DurationsClaim,
-    ImprovementClaim,
-    MaximumClaim,
-    MotionValueClaim,
-    PhasesClaim,
-    Reading,
-    Statement,
-    TotalTimeClaim,
-    ratio_words,
-    with_unit,
-)
+from ...problem.cases import Case, Reading, Statement, ratio_words, with_unit
 from ..audits import claim_text
 from ..blocks import Block, Prose, table
 from ..documents import ShowDocument, capital, json_text, quoted, show_document
@@ -73,7 +59,10 @@ def _tables(document: ShowDocument, case: Case) -> list[Block]:
         table(("reading", "~what it means, and why it is admissible"), readings),
     ]
     if document.claims:
-        claims = [(c.id, _digits(c), f"{claim_text(case, c)} ({c.where})") for c in document.claims]
+        claims = [
+            (c.id, digits_of(case, c), f"{claim_text(case, c)} ({c.where})")
+            for c in document.claims
+        ]
         parts.append(table(("claim", "printed", "~what is said, and where"), claims))
     if document.assumptions:
         choices = [(str(k), f"{a.text} {a.choice}") for k, a in enumerate(document.assumptions, 1)]
@@ -146,24 +135,3 @@ def _limit(one: Statement, quantity: Literal["velocity", "acceleration", "jerk"]
     if len(numbers) == 1 and isinstance(units, tuple):
         units = one.unit(quantity)
     return f"{quantity} {' '.join(with_unit(numbers, units))}"
-
-
-def _digits(claim: AnyClaim) -> str:
-    """The printed digits of a claim."""
-    match claim:
-        case DurationsClaim() | MaximumClaim():
-            total = "" if claim.total is None else f", total {claim.total}"
-            return " ".join(map(str, claim.durations)) + total
-        case TotalTimeClaim():
-            return str(claim.value)
-        case PhasesClaim():
-            return " ".join(map(str, claim.phases))
-        case MotionValueClaim():
-            return " ".join(map(str, claim.printed))
-        case ImprovementClaim(percent=percent) if percent is not None:
-            return f"{percent} %"
-        case ImprovementClaim(seconds=seconds) if seconds is not None:
-            return str(seconds)
-        case ConvergenceClaim():
-            return str(claim.iterations)
-    return ""

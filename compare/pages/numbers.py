@@ -19,6 +19,7 @@ from ..blocks import (
     Grid,
     Prose,
     Section,
+    distances_table,
     listed,
     reached_table,
     seconds,
@@ -26,28 +27,12 @@ from ..blocks import (
     table,
     word,
 )
-from ..documents import (
-    OPTIMA_STEPS,
-    OPTIMUM_RETIMED,
-    THIRD_ORDER,
-    Gap,
-    Step,
-    Waterfall,
-    Why,
-    by_search,
-    ranged,
-)
+from ..documents import Gap, Waterfall, Why, by_search, ranged
 from ..gaps import gap, reference_of, spread
 from ..pictures import reached_picture, svg, waterfall_picture
 
 _ON_A_LINE = 2
 """Durations on each line of a cell: nine on one would push the table off the page."""
-_MANY = 10
-"""Distance, as a share, beyond which a multiple says more than a percentage."""
-_SAME = 5e-4
-"""Distance, as a share, whose one decimal is 0, so that its sign would say nothing."""
-_NOTED = (*OPTIMA_STEPS, OPTIMUM_RETIMED, THIRD_ORDER)
-"""Steps whose note stands in the open: the optimum, its proof and routes, and its cross-check."""
 _FEW = 3
 """Other readings of a problem that still get a picture each, and searches that stand open."""
 
@@ -80,7 +65,7 @@ def where_time_goes(one: CaseAudit) -> Section:
         for waterfall in own:
             shown = problem_name(one, pid, waterfall.reading)
             if waterfall.reading == main:
-                blocks.append(_distances(waterfall, shown))
+                blocks.append(distances_table(waterfall, shown).filled)
                 notes = [Prose(said, "note") for said in waterfall.without_optimum]
                 blocks += [one for one in notes if one not in blocks]
                 inside = _drawn(one, waterfall), steps_table(waterfall)
@@ -108,35 +93,6 @@ def reached_runs(one: CaseAudit) -> Section:
         meaning = Folded("How to read this", (Prose(REACHED_MEANING, "note"),))
         blocks = [Prose(str(one.reached[0]), "lead"), *blocks, meaning]
     return Section("reached", "How near the paper's algorithms get", tuple(blocks))
-
-
-def _distances(waterfall: Waterfall, caption: str) -> Grid:
-    """Each step in seconds, and how far the first one lies above it."""
-    first = next((s.time for s in waterfall.steps if not isinstance(s.time, Why)), None)
-    rows = tuple(
-        (
-            s.name,
-            s.total(),
-            _above(first, s),
-            s.known and word(s.known),
-            (s.note if s.name in _NOTED else None),
-        )
-        for s in waterfall.steps
-        if not isinstance(s.time, Why)
-    )
-    names = ("step", ">total", ">the first against this", "evidence", "found how")
-    return table(names, rows, caption).filled
-
-
-def _above(first: float | None, step: Step) -> str | None:
-    if first is None or isinstance(step.time, Why) or step.time <= 0 or first == step.time:
-        return None
-    if abs(first / step.time - 1) < _SAME:
-        return "0.0\N{NO-BREAK SPACE}%"
-    if first / step.time > 1 + _MANY:
-        return f"{first / step.time:.1f} times"
-    # The unit stays with its number on the narrowest screen.
-    return f"{100 * (first / step.time - 1):+.1f}\N{NO-BREAK SPACE}%"
 
 
 def problem_cell(case: Case, pid: str) -> str:

@@ -5,14 +5,25 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 from pydantic import BaseModel, Field
 
 from ...nlp.optimum import KKT_TOLERANCE, SAME, STARTS
 from ...problem import LONGEST_NAME, TOLERANCE, Case, CaseError, file_name, read_regular
 from ..audits import AuditReport, CaseAudit, package_version
-from ..blocks import GLOSSARY, Block, Folded, Page, Prose, Section, Terms, card_shown
+from ..blocks import (
+    GLOSSARY,
+    Block,
+    Cell,
+    Folded,
+    Page,
+    Prose,
+    Section,
+    Terms,
+    card_shown,
+    counts_said,
+    table,
+)
 from ..documents import AuditDocument, ClaimVerdict, Why, json_text, tally
 from ..pictures import themed
 from . import motions_shown as report_pictures
@@ -129,16 +140,7 @@ def report_files(report: AuditReport) -> dict[str, str]:
         files[f"{name}.json"] = json_text(AuditDocument(cases=(one.document,)))
         for picture in page.pictures:
             files[page.picture(picture)] = themed(picture.document)
-    files[_INDEX] = (
-        environment()
-        .get_template(_INDEX)
-        .render(
-            rows=[_row(one) for one in report.cases],
-            verdicts=[str(v) for v in ClaimVerdict],
-            version=package_version("trajgap"),
-            style=style(),
-        )
-    )
+    files[_INDEX] = page_text(_index(report))
     words = Page("glossary", "How to read a verdict", (glossary(),))
     files[GLOSSARY] = page_text(words)
     files[MARK] = json_text(document)
@@ -150,17 +152,31 @@ def page_text(page: Page) -> str:
     return environment().get_template("case.html").render(page=page, style=style())
 
 
-def _row(one: CaseAudit) -> dict[str, Any]:
-    counts = Counter(str(j.verdict) for j in one.judgements)
-    return {
-        "id": one.case.id,
-        "file": file_name(one.case.id),
-        "title": one.case.title,
-        "card": one.card,
-        "claims": len(one.judgements),
-        "counts": counts,
-        "errors": one.errors,
-    }
+def _index(report: AuditReport) -> Page:
+    """The page that leads to those of the cases: counts of all, and the card of each."""
+    rows = []
+    for one in report.cases:
+        counts = Counter(j.verdict for j in one.judgements)
+        name = Cell(one.case.title, target=f"{file_name(one.case.id)}.html")
+        every = (counts[verdict] for verdict in ClaimVerdict)
+        rows.append((name, len(one.judgements), *every, one.errors))
+    columns = ("case", ">claims", *(f">{verdict}" for verdict in ClaimVerdict), ">errors")
+    cards = [
+        Section(
+            file_name("case", one.case.id),
+            one.case.title,
+            (card_shown(one.card), Prose(counts_said(one.judgements), "note")),
+            target=f"{file_name(one.case.id)}.html",
+        )
+        for one in report.cases
+    ]
+    return Page(
+        "index",
+        "Audit of published trajectories",
+        (Section("cases", "Verdicts on claims", (table(columns, rows),)), *cards),
+        trail=f"trajgap {package_version('trajgap')}",
+        links=(("Glossary", GLOSSARY), ("JSON", MARK)),
+    )
 
 
 def case_page(one: CaseAudit) -> Page:
