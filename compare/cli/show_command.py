@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Literal
 
 from ...problem.cases import Case, Reading, Statement, ratio_words, with_unit
-from ..audits import claim_text
+from ..audits import claim_text, digits_of
 from ..blocks import Block, Prose, table
 from ..documents import ShowDocument, capital, json_text, quoted, show_document
 from .input import read_case
