@@ -105,10 +105,8 @@ def judge_motion(
 
     Parameters
     ----------
-    fields : mapping of str to str
     name : str
         Of the file: its ending says what it is.
-    content : bytes
 
     Returns
     -------

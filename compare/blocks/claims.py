@@ -41,7 +41,6 @@ def claims_shown(
 
     Parameters
     ----------
-    found : AuditedCase
     chosen : iterable of Judgement
         Verdicts of this case, in the order in which they are shown.
     beside : mapping of str to sequence of str, optional

@@ -25,7 +25,6 @@ def suite_table(
 
     Parameters
     ----------
-    instances : iterable of BenchmarkInstance
     place : str
         What the name of an instance points to, with {} for the name.
     digits : int, optional

@@ -64,9 +64,6 @@ class Grid:
 
     Attributes
     ----------
-    columns : tuple of str
-    rows : tuple of tuple of Cell
-    caption : str
     marks : tuple of str
         Of each column: > for numbers, ~ for prose, which gets the room, … for what may be cut off
         where there is none; empty for other text.
@@ -121,8 +118,6 @@ def table(
         Names, each behind one of the marks of `Grid` or none.
     rows : iterable of sequence
         A value that is None, or has a reason in its place, is shown as empty.
-    caption : str
-    *styles : str
     """
     marks = tuple(name[0] if name[0:1] in (">", "~", "…") else "" for name in columns)
     return Grid(
@@ -159,7 +154,6 @@ class Drawn:
         Made by `file_name`; unique in the page.
     document : str
         SVG.
-    title, caption : str
     """
 
     name: str
@@ -192,10 +186,8 @@ class CardShown:
     ----------
     lines : tuple of str
         Limits, optimum, improvement.
-    errors : tuple of str
     beside : str
         The most charitable explanation; empty for none.
-    drawn : Drawn or None
     """
 
     lines: tuple[str, ...]
@@ -220,11 +212,8 @@ class Claimed:
 
     Attributes
     ----------
-    text, where, printed : str
-    verdict : Cell
     holds : str
         Under which readings, and what the verdict rests on.
-    why : tuple of str
     more : tuple of str
         What is left out of that, for a fold.
     caveats : tuple of Caveat
@@ -265,8 +254,6 @@ class Behind:
     ----------
     weight : Cell
         Its severity.
-    says : str
-    explanations : tuple of str
     follows : tuple of Cell
         Claims that fall with it, as links.
     """

@@ -233,7 +233,6 @@ def check_result(
     ----------
     case, problem, reading : str
         Ids.
-    coupling : Coupling
     found : Check
         The durations judged at the printed point, with all joints.
     rounding : RoundingVerdict

@@ -60,11 +60,8 @@ def stand_against(
         Optimisers.
     settings : mapping
         By optimiser.
-    seeds, budget : int
-    handling : str
     seconds : float
         Limit of each run.
-    workers : int
     store : Path or None
         Where runs are kept.
 

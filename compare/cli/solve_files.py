@@ -38,8 +38,6 @@ def points_case(
     ----------
     source : str
         CSV, as `scaffold` reads it.
-    options : MotionOptions
-    family : str or None
     degree : int or None
         As in `scaffold`.
 

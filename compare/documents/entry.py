@@ -67,7 +67,6 @@ def known(value: T | None, why: str | None = None) -> T | Why:
 
     Parameters
     ----------
-    value : object or None
     why : str, optional
         Why it is None.
     """

@@ -122,7 +122,6 @@ def show_document(
 
     Parameters
     ----------
-    case : Case
     problem, reading : str, optional
         Keep only this one, and the claims that speak about it.
 

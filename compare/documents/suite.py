@@ -105,7 +105,6 @@ def instance_document(one: BenchmarkInstance, file: str | None) -> SuiteShowDocu
 
     Parameters
     ----------
-    one : BenchmarkInstance
     file : str or None
         Where its certificate lies.
     """

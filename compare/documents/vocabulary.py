@@ -267,7 +267,6 @@ class Words:
     ----------
     key : str
         As docs/reference/command-line.md names it.
-    enums : tuple of type
     table : str
         Name of the table in the docs that explains them; empty where the list of keys does.
     """

@@ -23,8 +23,6 @@ class Said:
 
     Attributes
     ----------
-    verdict, rule, kind : str
-    sentences : tuple of str
     reading : str or None
         None where it depends on none.
     """
@@ -65,7 +63,6 @@ class Reason:
 
     Attributes
     ----------
-    verdict, rule : str
     each : tuple of (tuple of str, tuple of str)
         Sentences, with the readings under which they are these to the digit.
     """
@@ -94,7 +91,6 @@ def grouped(said: Iterable[Said], computed: Sequence[str], named: Named = NAMELE
         Of one claim.
     computed : sequence of str
         The readings that were computed.
-    named : Named
 
     Returns
     -------
@@ -159,10 +155,8 @@ def with_readings(
 
     Parameters
     ----------
-    one : Reason
     computed : sequence of str
         The readings that were computed.
-    named : Named
     word : bool
         Whether its word stands in front: where readings give different ones.
     why : bool
@@ -217,10 +211,8 @@ def under(
 
     Parameters
     ----------
-    readings : sequence of str
     computed : sequence of str
         All readings that were computed.
-    named : Named
     most : int
         Readings that are named; of more the number is given, and the exceptions if they are few.
     why : bool
@@ -259,7 +251,6 @@ def among(readings: Sequence[str], count: int, far: Iterable[str] = ()) -> str:
 
     Parameters
     ----------
-    readings : sequence of str
     count : int
         Of all readings.
     far : iterable of str

@@ -101,7 +101,6 @@ class BenchPlan:
         As stated.
     name, reading : str
         What rows call it.
-    entrants : tuple of Entrant
     trials : tuple of Trial
         By entrant, then by seed.
     budget, seeds : int
@@ -149,8 +148,6 @@ def bench(
 
     Parameters
     ----------
-    problem : Problem
-    optimizers : str, callable, or iterable of them
     engine : Engine, optional
         Where the runs are made, such as `on_this_machine`; by default here, one by one.
     progress : callable, optional
@@ -313,7 +310,6 @@ def measure_gaps(runs: Runs, optimum: Solution | Reference | float) -> BenchResu
 
     Parameters
     ----------
-    runs : Runs
     optimum : Solution, Reference or float
         Of the same problem: what `solve` returned, or its total, s.
 

@@ -24,7 +24,6 @@ class Engine:
 
     Attributes
     ----------
-    executor : concurrent.futures.Executor
     slots : callable
         Number of workers at the moment.
     name : str
@@ -105,7 +104,6 @@ def outcomes(trials: Iterable[Trial], engine: Engine) -> Iterator[TrialOutcome]:
     ----------
     trials : iterable of Trial
         Read as workers become free.
-    engine : Engine
 
     Raises
     ------

@@ -34,7 +34,6 @@ class Ranked:
     ----------
     optimizer : str
         Label in the study.
-    problems, runs, failed : int
     median : float
         Median over the problems of the median gap, relative; inf without an answer.
     within : ndarray, shape (gaps,)
@@ -67,8 +66,6 @@ class Board:
 
     Attributes
     ----------
-    budget : int
-    handling : str
     problems : tuple of str
         On which each of them has all its runs.
     standings : tuple of Ranked

@@ -97,7 +97,6 @@ class Trial:
         Its settings as `canonical` JSON.
     handling : str
         What happens to vectors that break a limit; see `Handling`.
-    seed : int
     budget : int
         Evaluations; the objective enforces it.
     stream : tuple of int
@@ -165,7 +164,6 @@ class Row:
         Of the trial; ``problem`` is its name.
     segments : int
         Number of durations.
-    status : RowStatus
     message : str
         Why it failed; empty otherwise.
     evaluations : int

@@ -51,8 +51,6 @@ def unfinished(study: StudyPlan, store: Store, retry: bool = False) -> Iterator[
 
     Parameters
     ----------
-    study : StudyPlan
-    store : Store
     retry : bool
         Whether those with a failed row are among them.
     """
@@ -76,9 +74,6 @@ def run_study(
 
     Parameters
     ----------
-    study : StudyPlan
-    store : Store
-    engine : Engine
     retry : bool
         Run the failed ones again.
     progress : callable

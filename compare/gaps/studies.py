@@ -85,9 +85,6 @@ class StudyPlan:
 
     Attributes
     ----------
-    file : str
-    document : StudyFile
-    problems : tuple of StudyProblem
     missing : tuple of str
         Why optimisers were left out.
     """

@@ -36,7 +36,6 @@ class Summary:
         As rows call it.
     optimizer : str
         Label of the optimiser in its study.
-    handling : str
     budget : int
         Evaluations of each run.
     runs, failed : int

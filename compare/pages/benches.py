@@ -130,7 +130,6 @@ def bench_picture(result: BenchResult, runs: Runs) -> Picture:
     ----------
     result : BenchResult
         What `measure_gaps` returned for the runs.
-    runs : Runs
     """
     upper, lower = result.optimum.upper, value_or_none(result.optimum.lower)
     return gap_picture(

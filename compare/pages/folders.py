@@ -18,8 +18,6 @@ def check_folder(out: Path, foreign: Foreign, what: str, option: str = "--out") 
 
     Parameters
     ----------
-    out : Path
-    foreign : callable
     what : str
         What the folder is to be, such as "bench".
     option : str

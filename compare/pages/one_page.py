@@ -21,7 +21,6 @@ def page_files(one: CaseAudit, links: tuple[tuple[str, str], ...]) -> dict[str, 
 
     Parameters
     ----------
-    one : CaseAudit
     links : tuple of (str, str)
         Words and addresses at the head of the page.
 
@@ -40,7 +39,6 @@ def fill_template(path: Path, **values: Any) -> str:
 
     Parameters
     ----------
-    path : Path
     **values
         What it names; ``style`` is the style sheet.
 

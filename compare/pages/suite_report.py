@@ -21,7 +21,6 @@ def suite_pages(
 
     Parameters
     ----------
-    instances : sequence of BenchmarkInstance
     step : callable
         Told the name of each instance before its page.
 

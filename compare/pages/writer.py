@@ -66,7 +66,6 @@ def write_report(report: AuditReport, out: Path) -> None:
 
     Parameters
     ----------
-    report : AuditReport
     out : Path
         A new or an empty folder, or one with an earlier report, which is replaced. It gets
         ``index.html``, ``glossary.html`` and ``audit.json``, and for each case ``CASE.html``,
@@ -87,7 +86,6 @@ def check_report_folder(out: Path, cases: Sequence[Case] = (), option: str = "--
 
     Parameters
     ----------
-    out : Path
     cases : sequence of Case
         Those that it is about.
     option : str

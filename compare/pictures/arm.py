@@ -68,7 +68,6 @@ def arm_picture(
         rad; drawn where the end of the arm stands.
     name : str
         Unique in the page: letters, digits and dashes.
-    title : str
 
     Returns
     -------

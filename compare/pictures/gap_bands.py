@@ -43,14 +43,12 @@ class Anytime:
 
     Attributes
     ----------
-    label : str
     evaluations : ndarray, shape (points,)
     gaps : ndarray, shape (3, points)
         Lower quartile, median and upper quartile over the runs, relative; inf where that many
         know no answer.
     steps, shares : ndarray
         Share of pairs of run and target that are reached, from each step on.
-    runs : int
     """
 
     label: str
@@ -75,7 +73,6 @@ def gap_picture(
     ----------
     optimisers : sequence of Anytime
         Their order determines colours and line styles.
-    title : str
     uncertainty : float or None
         Relative width of the optimum's certified interval, drawn below zero; None where no lower
         bound is certified.
@@ -207,7 +204,6 @@ def profile_picture(profiles: Mapping[str, tuple[Array, Array]], *, title: str) 
     ----------
     profiles : mapping of str to (ratios, shares)
         Of each optimiser, as `share_within` gives them; colours and line styles in this order.
-    title : str
     """
     description = "; ".join(
         f"{label}: {100 * float(shares[ratios <= 1.01].max(initial=0.0)):.0f} % of runs end within "

@@ -40,7 +40,6 @@ class BoardPanel:
 
     Attributes
     ----------
-    title : str
     marked : mapping of str to ndarray, shape (gaps,)
         Share of runs within each gap, of optimisers that are told apart, by what they are called.
     others : sequence of ndarray, shape (gaps,)
@@ -59,10 +58,8 @@ def leaderboard_picture(
 
     Parameters
     ----------
-    panels : sequence of BoardPanel
     gaps : sequence of float
         Relative, falling.
-    title : str
     """
     description = "; ".join(
         f"{panel.title}: {label}, " + ", ".join(

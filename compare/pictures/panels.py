@@ -41,7 +41,6 @@ class Mark:
         Value to limit.
     both : bool
         Whether the limit is the same on the other side.
-    colour : str
     """
 
     time: float
@@ -72,7 +71,6 @@ class Line:
     ----------
     quantity : str
         "position", "velocity" and so on.
-    unit : (str, float)
     times, values : ndarray
         s, and rad or m; NaN where the curve jumps.
     limits : sequence of float

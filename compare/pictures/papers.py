@@ -22,7 +22,6 @@ class PaperBar:
 
     Attributes
     ----------
-    label : str
     lowest, highest : float
         Printed total over the optimum; an interval where the optimum is one.
     said : str

@@ -36,10 +36,8 @@ class TentScatter:
     start : str
         Decimal digits of the first point, drawn from seed 0; the double orbit starts at the
         double beside it.
-    beta : Fraction
     lower, upper : float
         Range of every coordinate.
-    orbit : TentCollapse
     exact, doubles : ndarray, shape (members, dimensions)
         Filled by that one orbit, member by member.
     apart_exact, apart_doubles : ndarray, shape (members, dimensions)
@@ -78,7 +76,6 @@ def tent_scatter(
 
     Parameters
     ----------
-    members, dimensions : int
     bounds : tuple of float
         Range to which [0, 1] is scaled.
     beta : float
@@ -128,10 +125,8 @@ def tent_picture(scatter: TentScatter, *, unit: str, title: str) -> Picture:
 
     Parameters
     ----------
-    scatter : TentScatter
     unit : str
         Of the coordinates.
-    title : str
     """
     zero = scatter.orbit.zero_at
     rest = f"exactly 0 from step {zero} on" if zero is not None else "never exactly 0"

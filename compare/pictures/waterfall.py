@@ -40,8 +40,6 @@ def waterfall_picture(waterfall: Waterfall, *, title: str, narrow: bool = False)
 
     Parameters
     ----------
-    waterfall : Waterfall
-    title : str
     narrow : bool
         For half a page: without steps that have no value, and seconds without their interval.
 

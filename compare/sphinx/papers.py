@@ -56,7 +56,6 @@ class Distance:
     least : float or None
         How far above its optimum the total is at least, however the digits were rounded: 0 where
         rounding may explain all of it, None where nothing bounds it.
-    evidence : str
     broken : bool
         Whether the printed motion breaks a limit.
     timed : bool
@@ -108,7 +107,6 @@ class PaperRow:
     ----------
     name : str
         Of its result.
-    cited, title : str
     distance : Distance or None
         None where no problem is complete, or no total is printed.
     reached : str
@@ -149,7 +147,6 @@ def paper_rows(results: Results, kinds: str = "") -> tuple[PaperRow, ...]:
 
     Parameters
     ----------
-    results : Results
     kinds : str
         Kinds of source, separated by spaces; all if empty.
     """
@@ -163,13 +160,7 @@ def paper_rows(results: Results, kinds: str = "") -> tuple[PaperRow, ...]:
 
 
 def paper_row(name: str, case: AuditedCase) -> PaperRow:
-    """One audited case as a row of the table.
-
-    Parameters
-    ----------
-    name : str
-    case : AuditedCase
-    """
+    """One audited case as a row of the table."""
     counts = Counter(one.verdict for one in case.verdicts)
     decided = counts.total() - counts[_OPEN]
     against = decided > counts[ClaimVerdict.SUPPORTED]
