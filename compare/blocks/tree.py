@@ -18,25 +18,17 @@ GLOSSARY = "glossary.html"
 
 @dataclass(frozen=True)
 class Cell:
-    """One cell of a table.
-
-    Attributes
-    ----------
-    text : str
-        Lines are separated by line feeds.
-    mark : str
-        Word of the vocabulary that the first line consists of, such as "refuted"; empty for free
-        text.
-    target : str
-        Name of the claim, word, file or page that it points to; empty for none.
-    code : bool
-        Whether it is taken letter by letter: an id, a file, a command.
-    """
+    """One cell of a table."""
 
     text: str
+    """Lines are separated by line feeds."""
     mark: str = ""
+    """Word of the vocabulary that the first line consists of, such as "refuted"; empty for free
+    text."""
     target: str = ""
+    """Name of the claim, word, file or page that it points to; empty for none."""
     code: bool = False
+    """Whether it is taken letter by letter: an id, a file, a command."""
 
 
 @dataclass(frozen=True)
@@ -60,22 +52,16 @@ class Prose:
 
 @dataclass(frozen=True)
 class Grid:
-    """A table, as `table` makes it.
-
-    Attributes
-    ----------
-    marks : tuple of str
-        Of each column: > for numbers, ~ for prose, which gets the room, … for what may be cut off
-        where there is none; empty for other text.
-    styles : tuple of str
-        What a page of the site adds to it, such as "sortable".
-    """
+    """A table, as `table` makes it."""
 
     columns: tuple[str, ...]
     rows: tuple[tuple[Cell, ...], ...]
     caption: str = ""
     marks: tuple[str, ...] = ()
+    """Of each column: > for numbers, ~ for prose, which gets the room, … for what may be cut off
+    where there is none; empty for other text."""
     styles: tuple[str, ...] = ()
+    """What a page of the site adds to it, such as "sortable"."""
     kind: ClassVar[str] = "grid"
 
     def mark(self, column: int) -> str:
@@ -146,18 +132,12 @@ class Terms:
 
 @dataclass(frozen=True)
 class Drawn:
-    """A picture.
-
-    Attributes
-    ----------
-    name : str
-        Made by `file_name`; unique in the page.
-    document : str
-        SVG.
-    """
+    """A picture."""
 
     name: str
+    """Made by `file_name`; unique in the page."""
     document: str
+    """SVG."""
     title: str
     caption: str = ""
     inside: bool = False
@@ -180,19 +160,13 @@ class Drawn:
 
 @dataclass(frozen=True)
 class CardShown:
-    """The verdict card, with the picture beside it.
-
-    Attributes
-    ----------
-    lines : tuple of str
-        Limits, optimum, improvement.
-    beside : str
-        The most charitable explanation; empty for none.
-    """
+    """The verdict card, with the picture beside it."""
 
     lines: tuple[str, ...]
+    """Limits, optimum, improvement."""
     errors: tuple[str, ...]
     beside: str = ""
+    """The most charitable explanation; empty for none."""
     drawn: Drawn | None = None
     tally: str = ""
     """How many claims have which word, and how that is known."""
@@ -208,35 +182,25 @@ class CardShown:
 
 @dataclass(frozen=True)
 class Claimed:
-    """One claim: its words, place and digits, the verdict, and why.
-
-    Attributes
-    ----------
-    holds : str
-        Under which readings, and what the verdict rests on.
-    more : tuple of str
-        What is left out of that, for a fold.
-    caveats : tuple of Caveat
-        Each begins and ends as a sentence does.
-    answer : str
-        What the authors say; empty where they were not asked.
-    anchor : str
-        Name under which others point here.
-    id : str
-        Of the claim in the case file.
-    """
+    """One claim: its words, place and digits, the verdict, and why."""
 
     text: str
     where: str
     printed: str
     verdict: Cell
     holds: str
+    """Under which readings, and what the verdict rests on."""
     why: tuple[str, ...]
     more: tuple[str, ...]
+    """What is left out of that, for a fold."""
     caveats: tuple[Caveat, ...]
+    """Each begins and ends as a sentence does."""
     anchor: str
+    """Name under which others point here."""
     id: str
+    """Of the claim in the case file."""
     answer: str = ""
+    """What the authors say; empty where they were not asked."""
     beside: tuple[str, ...] = ()
     """What else is said of it, such as an innocent explanation."""
     also: tuple[str, ...] = ()
@@ -248,20 +212,14 @@ class Claimed:
 
 @dataclass(frozen=True)
 class Behind:
-    """What lies behind findings: one cause, what would explain it, and what follows.
-
-    Attributes
-    ----------
-    weight : Cell
-        Its severity.
-    follows : tuple of Cell
-        Claims that fall with it, as links.
-    """
+    """What lies behind findings: one cause, what would explain it, and what follows."""
 
     weight: Cell
+    """Its severity."""
     says: str
     explanations: tuple[str, ...]
     follows: tuple[Cell, ...]
+    """Claims that fall with it, as links."""
     kind: ClassVar[str] = "behind"
 
 

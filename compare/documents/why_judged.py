@@ -19,38 +19,26 @@ _FEW = 2
 
 @dataclass(frozen=True)
 class Said:
-    """What one deciding finding says of a claim.
-
-    Attributes
-    ----------
-    reading : str or None
-        None where it depends on none.
-    """
+    """What one deciding finding says of a claim."""
 
     verdict: str
     rule: str
     kind: str
     sentences: tuple[str, ...]
     reading: str | None = None
+    """None where it depends on none."""
 
 
 @dataclass(frozen=True)
 class Named:
-    """What the readings of a case are called.
-
-    Attributes
-    ----------
-    labels : mapping of str to str
-        What each means in words.
-    implausible : mapping of str to str
-        Why some are implausible, in numbers.
-    default : str
-        The reading whose numbers are shown where several give the same reason.
-    """
+    """What the readings of a case are called."""
 
     labels: Mapping[str, str] = field(default_factory=dict)
+    """What each means in words."""
     implausible: Mapping[str, str] = field(default_factory=dict)
+    """Why some are implausible, in numbers."""
     default: str = ""
+    """The reading whose numbers are shown where several give the same reason."""
 
 
 NAMELESS = Named()
@@ -59,17 +47,12 @@ NAMELESS = Named()
 
 @dataclass(frozen=True)
 class Reason:
-    """What decides, once for all readings under which it is the same but for its numbers.
-
-    Attributes
-    ----------
-    each : tuple of (tuple of str, tuple of str)
-        Sentences, with the readings under which they are these to the digit.
-    """
+    """What decides, once for all readings under which it is the same but for its numbers."""
 
     verdict: str
     rule: str
     each: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...]
+    """Sentences, with the readings under which they are these to the digit."""
 
     @property
     def sentences(self) -> tuple[str, ...]:

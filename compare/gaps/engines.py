@@ -20,22 +20,15 @@ _PATIENCE = 30
 
 @dataclass(frozen=True)
 class Engine:
-    """An executor, and how many trials it runs at a time.
-
-    Attributes
-    ----------
-    slots : callable
-        Number of workers at the moment.
-    name : str
-        Words for people.
-    run : callable
-        What the executor is given with each trial.
-    """
+    """An executor, and how many trials it runs at a time."""
 
     executor: Executor
     slots: Callable[[], int]
+    """Number of workers at the moment."""
     name: str
+    """Words for people."""
     run: Callable[[Trial], TrialOutcome] = run_apart
+    """What the executor is given with each trial."""
 
 
 @contextmanager

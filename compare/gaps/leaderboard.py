@@ -30,20 +30,6 @@ SIZES = ("1 to 3 segments", "4 to 6 segments", "7 to 10 segments")
 class Ranked:
     """One optimiser over all problems of a leaderboard, each counting alike.
 
-    Attributes
-    ----------
-    optimizer : str
-        Label in the study.
-    median : float
-        Median over the problems of the median gap, relative; inf without an answer.
-    within : ndarray, shape (gaps,)
-        Share of runs that come within each gap of `LADDER`.
-    solved : tuple of (float, float, float)
-        For each gap of `SOLVED` the share of runs within it, with its 95 % interval.
-    expected : tuple of (float, float, float)
-        For each gap of `SOLVED` the evaluations of all runs over the number of hits, with its 95 %
-        interval; inf without a hit.
-
     Notes
     -----
     Intervals come from resampling the problems: they say how far the numbers depend on the choice
@@ -51,34 +37,33 @@ class Ranked:
     """
 
     optimizer: str
+    """Label in the study."""
     problems: int
     runs: int
     failed: int
     median: float
+    """Median over the problems of the median gap, relative; inf without an answer."""
     within: Array
+    """Share of runs that come within each gap of `LADDER`; shape (gaps,)."""
     solved: tuple[tuple[float, float, float], ...]
+    """For each gap of `SOLVED` the share of runs within it, with its 95 % interval."""
     expected: tuple[tuple[float, float, float], ...]
+    """For each gap of `SOLVED` the evaluations of all runs over the number of hits, with its 95 %
+    interval; inf without a hit."""
 
 
 @dataclass(frozen=True, eq=False)
 class Board:
-    """Optimisers with the same budget and handling on the same problems.
-
-    Attributes
-    ----------
-    problems : tuple of str
-        On which each of them has all its runs.
-    standings : tuple of Ranked
-        The largest share of runs within 0.1 % first, then within 0.01 %, then within 1 %.
-    missing : tuple of str
-        Optimisers whose runs are not complete on these problems.
-    """
+    """Optimisers with the same budget and handling on the same problems."""
 
     budget: int
     handling: str
     problems: tuple[str, ...]
+    """On which each of them has all its runs."""
     standings: tuple[Ranked, ...]
+    """The largest share of runs within 0.1 % first, then within 0.01 %, then within 1 %."""
     missing: tuple[str, ...]
+    """Optimisers whose runs are not complete on these problems."""
 
     @property
     def searches(self) -> tuple[Ranked, ...]:

@@ -39,23 +39,17 @@ _STYLES: tuple[tuple[str, Line], ...] = (
 
 @dataclass(frozen=True, eq=False)
 class Anytime:
-    """What one optimiser's runs know after so many evaluations.
-
-    Attributes
-    ----------
-    evaluations : ndarray, shape (points,)
-    gaps : ndarray, shape (3, points)
-        Lower quartile, median and upper quartile over the runs, relative; inf where that many
-        know no answer.
-    steps, shares : ndarray
-        Share of pairs of run and target that are reached, from each step on.
-    """
+    """What one optimiser's runs know after so many evaluations."""
 
     label: str
     evaluations: Array
+    """Shape (points,)."""
     gaps: Array
+    """Lower quartile, median and upper quartile over the runs, relative; inf where that many know
+    no answer; shape (3, points)."""
     steps: Array
     shares: Array
+    """Share of pairs of run and target that are reached, from each step on."""
     runs: int
 
 

@@ -29,34 +29,26 @@ _BEYOND = 12
 
 @dataclass(frozen=True, eq=False)
 class TentScatter:
-    """Populations of the tent map in exact and in double arithmetic.
-
-    Attributes
-    ----------
-    start : str
-        Decimal digits of the first point, drawn from seed 0; the double orbit starts at the
-        double beside it.
-    lower, upper : float
-        Range of every coordinate.
-    exact, doubles : ndarray, shape (members, dimensions)
-        Filled by that one orbit, member by member.
-    apart_exact, apart_doubles : ndarray, shape (members, dimensions)
-        Filled by one orbit for each coordinate, starts drawn from seed 0.
-    collapsed : dict of TentRule to int
-        Members with a coordinate of exactly 0 before scaling, in double precision, under each
-        rule of filling the population, starts from seed 0.
-    """
+    """Populations of the tent map in exact and in double arithmetic."""
 
     start: str
+    """Decimal digits of the first point, drawn from seed 0; the double orbit starts at the double
+    beside it."""
     beta: Fraction
     lower: float
     upper: float
+    """Range of every coordinate."""
     orbit: TentCollapse
     exact: Array
     doubles: Array
+    """Filled by that one orbit, member by member; shape (members, dimensions)."""
     apart_exact: Array
     apart_doubles: Array
+    """Filled by one orbit for each coordinate, starts drawn from seed 0; shape (members,
+    dimensions)."""
     collapsed: dict[TentRule, int]
+    """Members with a coordinate of exactly 0 before scaling, in double precision, under each rule
+    of filling the population, starts from seed 0."""
 
     @property
     def at_zero(self) -> int:

@@ -43,33 +43,23 @@ COLUMNS = (
 
 @dataclass(frozen=True)
 class Distance:
-    """A printed total beside the optimum of its own problem, at the printed digits.
-
-    Attributes
-    ----------
-    printed : float
-        s.
-    interval : tuple of float
-        All totals that round to its digits, s.
-    lowest, highest : float
-        The optimum, s; an interval where each joint is planned by itself.
-    least : float or None
-        How far above its optimum the total is at least, however the digits were rounded: 0 where
-        rounding may explain all of it, None where nothing bounds it.
-    broken : bool
-        Whether the printed motion breaks a limit.
-    timed : bool
-        Whether time alone was minimised, so that the distance is one from the optimum.
-    """
+    """A printed total beside the optimum of its own problem, at the printed digits."""
 
     printed: float
+    """s."""
     interval: tuple[float, float]
+    """All totals that round to its digits, s."""
     lowest: float
     highest: float
+    """The optimum, s; an interval where each joint is planned by itself."""
     least: float | None
+    """How far above its optimum the total is at least, however the digits were rounded: 0 where
+    rounding may explain all of it, None where nothing bounds it."""
     evidence: str
     broken: bool
+    """Whether the printed motion breaks a limit."""
     timed: bool
+    """Whether time alone was minimised, so that the distance is one from the optimum."""
 
     @property
     def shares(self) -> tuple[float, float]:
@@ -101,32 +91,22 @@ class Distance:
 
 @dataclass(frozen=True)
 class PaperRow:
-    """One audited paper.
-
-    Attributes
-    ----------
-    name : str
-        Of its result.
-    distance : Distance or None
-        None where no problem is complete, or no total is printed.
-    reached : str
-        Median gap of the paper's algorithm in its own way of searching.
-    found : str
-        What the audit found, in one sentence.
-    decided : int
-        Claims on which there is a verdict.
-    against : bool
-        Whether something printed is refuted, contradicted or depends on the reading.
-    """
+    """One audited paper."""
 
     name: str
+    """Of its result."""
     cited: str
     title: str
     distance: Distance | None
+    """None where no problem is complete, or no total is printed."""
     reached: str
+    """Median gap of the paper's algorithm in its own way of searching."""
     found: str
+    """What the audit found, in one sentence."""
     decided: int
+    """Claims on which there is a verdict."""
     against: bool
+    """Whether something printed is refuted, contradicted or depends on the reading."""
 
     @property
     def order(self) -> tuple[bool, bool, int, str]:

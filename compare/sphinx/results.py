@@ -20,15 +20,10 @@ LOCK = "lock.json"
 
 @dataclass(frozen=True)
 class Results:
-    """A folder of JSON documents that `trajgap` printed.
-
-    Attributes
-    ----------
-    folder : Path
-        Holds ``NAME.json``, one document each: what `trajgap audit --json` prints for one case.
-    """
+    """A folder of JSON documents that `trajgap` printed."""
 
     folder: Path
+    """Holds ``NAME.json``, one document each: what `trajgap audit --json` prints for one case."""
 
     @cached_property
     def names(self) -> tuple[str, ...]:
