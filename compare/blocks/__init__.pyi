@@ -43,7 +43,6 @@ from .tree import (
     code as code,
     doi_link as doi_link,
     link as link,
-    listed as listed,
     seconds as seconds,
     slug as slug,
     table as table,

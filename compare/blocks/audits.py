@@ -21,7 +21,7 @@ from ..documents import (
     noted,
     worth_little,
 )
-from .tree import CardShown, Drawn, Grid, table, word
+from .tree import CardShown, Drawn, Grid, seconds, table, word
 
 _NO_BREAK = "\N{NO-BREAK SPACE}"
 """The unit stays with its number on the narrowest screen."""
@@ -107,7 +107,7 @@ def reached_table(runs: Iterable[Reached], title: str = "") -> Grid:
             one.handling.replace("-", " "),
             _with_gap(one.median, one.gap),
             _with_gap(one.best, one.best_gap),
-            f"{_seconds(one.lower_quartile)} to {_seconds(one.upper_quartile)}",
+            " to ".join(seconds(end, 4, _NONE) for end in (one.lower_quartile, one.upper_quartile)),
             f"{one.unanswered} of {one.runs}",
             "; ".join([f"{one.budget:,}", *(_evaluations(target) for target in one.within)]),
         )
@@ -118,11 +118,7 @@ def reached_table(runs: Iterable[Reached], title: str = "") -> Grid:
 
 def _with_gap(total: float | Why, gap: Gap | Why) -> str:
     beside = "" if isinstance(gap, Why) else f" s, {gap.percent.replace(' %', _NO_BREAK + '%')}"
-    return f"{_seconds(total)}{beside}"
-
-
-def _seconds(total: float | Why) -> str:
-    return _NONE if isinstance(total, Why) else f"{total:.4f}"
+    return f"{seconds(total, 4, _NONE)}{beside}"
 
 
 def _evaluations(target: TargetReached) -> str:

@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from html import unescape
+from math import isfinite
 from typing import ClassVar, TypeAlias
 from urllib.parse import quote
 
@@ -343,11 +344,7 @@ def slug(value: str) -> str:
     return "-".join("".join(c if c.isascii() and c.isalnum() else " " for c in value).split())
 
 
-def seconds(value: float | None) -> str | None:
-    """Time with six decimals; None stays."""
-    return None if value is None else f"{value:.6f} s"
-
-
-def listed(values: Sequence[float], digits: int = 6) -> str:
-    """Numbers in a row."""
-    return ", ".join(f"{v:.{digits}f}" for v in values)
+def seconds(value: float | Why, places: int = 6, none: str = "none") -> str:
+    """A time without its unit; a word in place of one that is missing or unbounded."""
+    known = not isinstance(value, Why) and isfinite(value)
+    return f"{value:.{places}f}" if known else none

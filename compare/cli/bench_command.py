@@ -20,7 +20,7 @@ from ...problem.suite import instance_of, select_instances
 from .. import pages
 from ..audits import asked_as
 from ..blocks import Block, Prose, bench_blocks, overall_blocks
-from ..documents import SHOWN_GAPS, BenchDocument, BenchResult, Reference, known, noted
+from ..documents import BenchDocument, BenchResult, Reference, known, noted
 from ..gaps import BenchPlan, Runs, Store, measure_gaps, on_this_machine, plan_bench, run_bench
 from .input import Selected, naming, read_case, select
 from .options import MOST, ProblemId
@@ -307,21 +307,11 @@ _RESTARTS = (
 """Said under a table with such a number."""
 
 
-def _beyond_one_run(result: BenchResult) -> bool:
-    """Whether a number of evaluations in the table exceeds what one run has."""
-    return any(
-        isinstance(target.evaluations, float) and target.evaluations > result.budget
-        for one in result.standings
-        for target in one.targets
-        if target.gap in SHOWN_GAPS
-    )
-
-
 def _tables(document: BenchDocument) -> list[Block]:
     parts: list[Block] = []
     if document.overall:
         parts += overall_blocks(document.overall)
     for result in document.results if len(document.results) <= _ONE_BY_ONE else ():
         parts += [Prose(result.title, "heading"), *bench_blocks(result)]
-        parts += [Prose(_RESTARTS, "note"), Prose("")] if _beyond_one_run(result) else [Prose("")]
+        parts += [Prose(_RESTARTS, "note"), Prose("")]
     return parts

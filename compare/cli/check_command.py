@@ -11,7 +11,7 @@ import typer
 
 from ...problem import Case, Check, Coupling, Peak, check as judge, published_ids
 from ..audits import Point, RoundingBox, RoundingVerdict, in_words, judge_rounding
-from ..blocks import Block, Prose
+from ..blocks import Block, Prose, seconds
 from ..documents import (
     BrokenPlace,
     CheckDocument,
@@ -61,7 +61,7 @@ from .options import (
     VelocityLimit,
 )
 from .output import emit, new_output, progress
-from .result_tables import by_result, place, reasons, seconds
+from .result_tables import by_result, place, reasons
 
 
 class MissingOption(typer.BadParameter):

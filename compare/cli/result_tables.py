@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, Protocol, TypeVar
 
@@ -84,11 +83,6 @@ def reasons(
         for name, why in missing(result).items()
         if why
     ]
-
-
-def seconds(value: float | Why) -> str:
-    """A time, or none."""
-    return "none" if isinstance(value, Why) or not math.isfinite(value) else f"{value:.6f}"
 
 
 def place(at: ActiveLimit | WorstPeak) -> str:

@@ -23,7 +23,7 @@ from ...nlp.retiming import Retiming, retime
 from ...problem import Case, Coupling, Problem, fit, shown_bound
 from ...verify import Subject
 from ..audits import Pair, Study, in_words
-from ..blocks import Block, Prose, table
+from ..blocks import Block, Prose, seconds, table
 from ..documents import (
     Answer,
     SolveDocument,
@@ -62,7 +62,7 @@ from .options import (
     VelocityLimit,
 )
 from .output import emit, new_output, progress
-from .result_tables import by_result, place, reasons, seconds
+from .result_tables import by_result, place, reasons
 from .solve_files import (
     AskedSamples,
     asked_samples,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from functools import lru_cache
 from pathlib import Path
+from typing import Any
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
@@ -46,3 +47,19 @@ def _visible(value: object) -> object:
     if isinstance(value, str) and not isinstance(value, Markup):
         return visible(value, keep="\n")
     return value
+
+
+def fill_template(path: Path, **values: Any) -> str:
+    """Fill a template that lies elsewhere, with the style and the safety of all pages.
+
+    Parameters
+    ----------
+    **values
+        What it names; ``style`` is the style sheet.
+
+    Returns
+    -------
+    str
+    """
+    shapes = environment().overlay(loader=FileSystemLoader(path.parent))
+    return shapes.get_template(path.name).render(style=style(), **values)

@@ -20,14 +20,12 @@ from ..blocks import (
     Prose,
     Section,
     distances_table,
-    listed,
     reached_table,
-    seconds,
     steps_table,
     table,
     word,
 )
-from ..documents import Gap, Waterfall, Why, by_search, ranged
+from ..documents import Waterfall, Why, by_search, ranged
 from ..gaps import gap, reference_of, spread
 from ..pictures import reached_picture, svg, waterfall_picture
 
@@ -101,6 +99,11 @@ def problem_cell(case: Case, pid: str) -> str:
     return title if len(case.problems) > 1 else ""
 
 
+def asked_cells(study: Study, pair: Pair) -> tuple[str, str]:
+    """What a table calls a problem and its reading."""
+    return problem_cell(study.case, pair.problem), study.case.labels[pair.reading]
+
+
 def problem_name(one: CaseAudit, pid: str, reading: str | None = None) -> str:
     """What a reader calls a problem: its title, and the reading where there are several."""
     title = next((p.title for p in one.case.problems if p.id == pid), "") or pid
@@ -164,7 +167,8 @@ _ANSWER = ("status", ">total", "by", "evidence", ">durations, s", "check", ">KKT
 
 def _durations(values: list[float]) -> str:
     """Durations, a few on each line."""
-    lines = [listed(values[i : i + _ON_A_LINE]) for i in range(0, len(values), _ON_A_LINE)]
+    shown = [f"{value:.6f}" for value in values]
+    lines = [", ".join(shown[i : i + _ON_A_LINE]) for i in range(0, len(shown), _ON_A_LINE)]
     return ",\n".join(lines)
 
 
@@ -174,7 +178,7 @@ def _answer(solution: Solution) -> tuple[object, ...]:
         return (why, *(None for _ in _ANSWER[1:]))
     check = solution.check
     residual = solution.kkt_residual
-    total = None if not solution.found else seconds(solution.total_time)
+    total = f"{solution.total_time:.6f} s" if solution.found else None
     if solution.infimum is not None:
         called = "infimum" if solution.approach_proved else "approached"
         total = f"{solution.infimum:.6f} s ({called})"
@@ -198,27 +202,13 @@ def optima(one: CaseAudit) -> Section:
     blocks: list[Block] = []
     without: defaultdict[str, list[str]] = defaultdict(list)
     for pair in study.pairs:
-        own = study.optimum(pair)
-        rows.append(
-            (
-                problem_cell(study.case, pair.problem),
-                study.case.labels[pair.reading],
-                f"printed curve, shared durations{at_ratios(own.problem)}",
-                *_answer(own),
-            )
-        )
-        relaxed = study.relaxed(pair)
-        if not relaxed.found:
-            without[relaxed.why or str(relaxed.status)].append(pair.reading)
+        own, relaxed = study.optimum(pair), study.relaxed(pair)
+        solved = {f"printed curve, shared durations{at_ratios(own.problem)}": own}
+        if relaxed.found:
+            solved["relaxed family"] = relaxed
         else:
-            rows.append(
-                (
-                    problem_cell(study.case, pair.problem),
-                    study.case.labels[pair.reading],
-                    "relaxed family",
-                    *_answer(relaxed),
-                )
-            )
+            without[relaxed.why or str(relaxed.status)].append(pair.reading)
+        rows += [(*asked_cells(study, pair), name, *_answer(one)) for name, one in solved.items()]
         if _by_joint(study, pair):
             blocks += _joints(study, pair)
     if not rows:
@@ -255,7 +245,8 @@ def _joints(study: Study, pair: Pair) -> Iterator[Block]:
             if total is not None and reference is not None:
                 shown.setdefault(total.shown, []).append(claim.where)
                 row = PrintedRow(study, claim, pair)
-                gaps.append(_gap_text(gap(total.interval, reference, feasible=row.kept)))
+                far = gap(total.interval, reference, feasible=row.kept)
+                gaps.append(f"{far.percent} ({far.kind})")
         rows.append(
             (
                 label,
@@ -269,10 +260,6 @@ def _joints(study: Study, pair: Pair) -> Iterator[Block]:
     yield Prose(f"Each joint by itself: {named}{only_under(study, pair.reading)}", "heading")
     yield table(names, rows)
     yield Prose(_procedure(answer), "note")
-
-
-def _gap_text(distance: Gap) -> str:
-    return f"{distance.percent} ({distance.kind})"
 
 
 def _procedure(answer: PerJointSolution) -> str:
@@ -296,8 +283,6 @@ def _procedure(answer: PerJointSolution) -> str:
 def sensitivities(one: CaseAudit) -> Section:
     """What 10 % more of each active limit buys, to first order."""
     title = "What 10 % more of a limit buys"
-    if not one.study.has_problems:
-        return Section("sensitivities", title, ())
     rows = []
     for pair in one.study.pairs:
         solution = one.study.optimum(pair)
@@ -309,8 +294,7 @@ def sensitivities(one: CaseAudit) -> Section:
             change = sum(changes)
             rows.append(
                 (
-                    problem_cell(one.case, pair.problem),
-                    one.case.labels[pair.reading],
+                    *asked_cells(one.study, pair),
                     where,
                     quantity,
                     len(changes),
@@ -326,7 +310,8 @@ def sensitivities(one: CaseAudit) -> Section:
     names = ("problem", "reading", "limit of", "quantity", ">peaks at it", ">changes the total",
              ">by")  # fmt: skip
     body: Block = table(names, rows).filled if rows else Prose("No limit is reached.")
-    return Section("sensitivities", title, (note, body), folded=True)
+    shown = (note, body) if one.study.has_problems else ()
+    return Section("sensitivities", title, shown, folded=True)
 
 
 # --- replays --------------------------------------------------------------------------------------
@@ -348,7 +333,7 @@ def replay_rows(study: Study, pair: Pair) -> list[tuple[object, ...]]:
                     s.runs,
                     s.failed,
                     *(
-                        (seconds(x) if np.isfinite(x) else None)
+                        f"{x:.6f} s" if np.isfinite(x) else None
                         for x in (s.lowest, s.median, s.highest)
                     ),
                     away,

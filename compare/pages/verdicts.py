@@ -12,7 +12,7 @@ from ...problem.cases import Statement
 from ..audits import RULES, CaseAudit, Study, place
 from ..blocks import Block, Cell, Folded, Grid, Prose, Section, Terms, table, word
 from ..documents import ClaimVerdict, Finding, Gap, Severity, Why, facts
-from .numbers import problem_cell
+from .numbers import asked_cells, problem_cell
 from .units import both_units, one_unit
 
 _TITLES = {rule.id: rule.title for rule in RULES}
@@ -42,8 +42,7 @@ def _problems(study: Study) -> Grid:
         how = "shared durations" if p.coupling is Coupling.SHARED else "each joint by itself"
         rows.append(
             (
-                problem_cell(study.case, pair.problem),
-                study.case.labels[pair.reading],
+                *asked_cells(study, pair),
                 f"{len(p.joints)} × {p.waypoints.shape[0]}",
                 p.curve.name,
                 _limits(p, study.case.statement(*pair)),

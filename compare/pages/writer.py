@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from pydantic import BaseModel, Field
@@ -143,6 +144,24 @@ def report_files(report: AuditReport) -> dict[str, str]:
     files[GLOSSARY] = page_text(words)
     files[MARK] = json_text(document)
     return files
+
+
+def page_files(one: CaseAudit, links: tuple[tuple[str, str], ...]) -> dict[str, str]:
+    """The page of a case, its pictures and the glossary, by their paths; the page comes first.
+
+    Parameters
+    ----------
+    links : tuple of (str, str)
+        Words and addresses at the head of the page.
+
+    Returns
+    -------
+    dict of str to str
+    """
+    page = replace(case_page(one), links=links)
+    words = replace(Page("glossary", "How to read a verdict", (glossary(),)), links=links[:1])
+    pictures = {page.picture(drawn): themed(drawn.document) for drawn in page.pictures}
+    return {f"{page.file}.html": page_text(page), GLOSSARY: page_text(words), **pictures}
 
 
 def page_text(page: Page) -> str:
