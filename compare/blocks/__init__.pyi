@@ -8,11 +8,9 @@ from .audits import (
 )
 from .benches import (
     bench_blocks as bench_blocks,
-    overall_blocks as overall_blocks,
-)
-from .boards import (
     board_table as board_table,
     brief_board as brief_board,
+    overall_blocks as overall_blocks,
 )
 from .claims import (
     answered as answered,

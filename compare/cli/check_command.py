@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from ...problem import Case, Check, Coupling, Peak, check as judge, published_ids
+from ...problem import Case, Check, Coupling, check as judge, published_ids
 from ..audits import Point, RoundingBox, RoundingVerdict, in_words, judge_rounding
 from ..blocks import Block, Prose, seconds
 from ..documents import (
@@ -18,7 +18,6 @@ from ..documents import (
     CheckedJoint,
     CheckResult,
     Judged,
-    Limited,
     PassingPoint,
     RoundingExhibit,
     Why,
@@ -255,29 +254,18 @@ def check_result(
 
 
 def _judged(found: Check, rounding: RoundingVerdict) -> Judged:
-    return Judged(
-        verdict=found.verdict,
+    worst = found.worst
+    time = known(worst and worst.time, "a bound on the whole duration")
+    return Judged.of(
+        found,
         rounding_verdict=rounding.verdict,
-        total_time=found.total_time,
-        worst=Why("nothing is limited") if found.worst is None else _worst(found.worst),
+        worst=known(worst and WorstPeak.of(worst, time=time), "nothing is limited"),
         feasible_time=known(found.feasible_time, found.feasible_why),
         tight_time=known(found.tight_time, found.tight_why),
         rounding=RoundingExhibit(
             exhibit=_exhibit(rounding),
             worst_ratio_at_least=known(rounding.lower_bound_of_worst, "no bound was needed"),
         ),
-    )
-
-
-def _worst(worst: Peak) -> WorstPeak:
-    return WorstPeak(
-        joint=worst.joint,
-        quantity=Limited(worst.quantity),
-        segment=worst.segment,
-        time=known(worst.time, "a bound on the whole duration"),
-        value=worst.value,
-        limit=worst.limit,
-        ratio=worst.ratio,
     )
 
 
@@ -289,7 +277,7 @@ def _exhibit(rounding: RoundingVerdict) -> PassingPoint | BrokenPlace | None:
         )
     if shown is None:
         return None
-    return BrokenPlace(joint=shown.joint, quantity=Limited(shown.quantity), segment=shown.segment)
+    return BrokenPlace.of(shown)
 
 
 _COLUMNS = ("verdict", "rounding", ">total s", ">feasible s", ">tight s", ">worst", "…where")

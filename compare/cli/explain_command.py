@@ -60,14 +60,7 @@ def _document(asked: Sequence[str]) -> ExplainDocument:
 
 def _rules() -> Iterator[ExplainedRule]:
     for rule in RULES:
-        explained = EXPLAINED[rule.id]
-        yield ExplainedRule(
-            id=rule.id,
-            title=rule.title,
-            asks=explained.asks,
-            concludes=explained.concludes,
-            example=explained.example,
-        )
+        yield ExplainedRule.of(EXPLAINED[rule.id], id=rule.id, title=rule.title)
 
 
 def _words() -> Iterator[ExplainedWord]:

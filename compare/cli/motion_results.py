@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 
 from ...problem import Verdict, from_si, shown_bound
-from ...problem.motions import Floor, Interpolation, MotionCheck, MotionPeak, unstated_words
+from ...problem.motions import Interpolation, MotionCheck, MotionPeak, unstated_words
 from ..blocks import Block, Prose, table
 from ..documents import (
     CheckedMotion,
@@ -24,51 +24,27 @@ from ..documents import (
 
 def checked_motion(found: MotionCheck) -> CheckedMotion:
     """The entry of a verdict on a motion."""
-    return CheckedMotion(
-        verdict=found.verdict,
+    return CheckedMotion.of(
+        found,
         limits_verdict=found.limits,
         not_judged=tuple(
             NotJudged(joint=joint, quantity=MotionQuantity(quantity))
             for joint, quantity in found.not_judged
         ),
-        tolerance=found.tolerance,
-        total_time=found.total_time,
         worst=Why("nothing is limited") if found.worst is None else _peak(found.worst),
         slow_down=found.stretch,
         feasible_time=known(found.feasible_time, found.feasible_why),
-        floor=known(None if found.floor is None else _floor(found.floor), found.floor_why),
-        peaks=tuple(map(_peak, found.peaks)),
-        jumps=tuple(
-            MotionJumpShown(
-                joint=one.joint,
-                quantity=MotionQuantity(one.quantity),
-                time=one.time,
-                size=one.size,
-                breaks=one.count,
-            )
-            for one in found.jumps
+        floor=known(
+            found.floor and MotionFloor.of(found.floor, standstills=found.floor.stops),
+            found.floor_why,
         ),
-        concluded=found.concluded,
-        open=found.open,
+        peaks=tuple(map(_peak, found.peaks)),
+        jumps=tuple(MotionJumpShown.of(one, breaks=one.count) for one in found.jumps),
     )
-
-
-def _floor(one: Floor) -> MotionFloor:
-    return MotionFloor(time=one.time, standstills=one.stops, waiting=one.waiting, above=one.above)
 
 
 def _peak(one: MotionPeak) -> MotionPeakShown:
-    return MotionPeakShown(
-        joint=one.joint,
-        quantity=MotionQuantity(one.quantity),
-        time=one.time,
-        value=one.value,
-        limit=one.limit,
-        ratio=one.ratio,
-        ratio_at_least=one.least_ratio,
-        ratio_at_most=one.most_ratio,
-        source=one.source,
-    )
+    return MotionPeakShown.of(one, ratio_at_least=one.least_ratio, ratio_at_most=one.most_ratio)
 
 
 _POWERS = {

@@ -1,54 +1,14 @@
-"""Reasons of a verdict on a page, the words of claims, and the table of the suite."""
-
-from types import SimpleNamespace
+"""Words of claims that a page asks for, its readings, and the table of the suite."""
 
 import pytest
 from support.checkout import ROOT
-from trajgap.compare.blocks import Grid, Prose, claims_shown
-from trajgap.compare.documents import ClaimVerdict, Judgement, Why
+from trajgap.compare.blocks import Grid, Prose
+from trajgap.compare.documents import ClaimVerdict
 from trajgap.compare.sphinx import Results
 from trajgap.compare.sphinx.directives import readings_of, wanted_words
 from trajgap.compare.sphinx.suite import instances_of
 from trajgap.problem import TrajgapError
 from trajgap.problem.suite import list_instances, select_curve
-
-
-def finding(reading: str | None, message: str, verdict: str = "refuted", **changes: object):
-    one = {"claim": "c", "decides": True, "verdict": verdict, "reading": reading, "rule": "TG201"}
-    return SimpleNamespace(**{**one, "kind": message, "sentences": (message,), **changes})
-
-
-def reasons(why: str, opening: str, found: list, labels: dict[str, str] | None = None):
-    """The reasons of the one claim of a case."""
-    said = SimpleNamespace(labels=labels or {}, implausible={}, default="b")
-    stated = SimpleNamespace(claim="c", text="t", where="w", printed="", answer=Why(""))
-    case = SimpleNamespace(claims=[stated], findings=found, readings=said if labels else Why(""))
-    verdict = Judgement(
-        claim="c", verdict="depends on the reading", scope="some", evidence="none", why=why,
-        opening=opening, readings=dict.fromkeys("abcd", "refuted"),
-    )  # fmt: skip
-    (shown,) = claims_shown(case, [verdict])
-    return shown
-
-
-def test_of_many_reasons_the_default_stands_first_and_the_others_are_folded() -> None:
-    found = [
-        finding("d", "kept.", "supported"),
-        finding("a", "one."),
-        finding("b", "two."),
-        finding("c", "two."),
-        finding("a", "of another claim.", claim="other"),
-        finding("a", "decides nothing.", decides=False),
-        finding("a", "says nothing.", "not checkable"),
-    ]
-    labels = {"a": "angles in degrees", "b": "angles in radians"}
-    shown = reasons("all of it", "all of it", found, labels)
-    assert (shown.why, shown.fold) == (("all of it",), "All 3 reasons")
-    assert shown.more == (
-        "Refuted under “angles in radians” and “c”: two.",
-        "Refuted under “angles in degrees”: one.",
-        "Supported under “d”: kept.",
-    )
 
 
 @pytest.mark.parametrize("name", ["irb1600-ga-cubic-bspline", "irb460-pso-353"])
@@ -71,17 +31,6 @@ def test_a_place_that_every_row_shares_is_said_once(name):
             sum(one.claim == claim for one in outcomes) for claim in sorted(claims, reverse=True)
         ]
     assert len(grid.columns) == (5 if len(places) == 1 else 6)
-
-
-def test_a_long_reason_is_cut_at_a_sentence_and_in_full_a_fold_away() -> None:
-    long = "It breaks a limit. Then more. The end."
-    shown = reasons(long, "It breaks a limit.", [finding("a", long)])
-    assert (shown.why, shown.fold) == (("It breaks a limit.",), "The whole reason")
-    assert shown.more == (long,)
-    many = [finding(reading, f"{reading}: {long}") for reading in "abc"]
-    shown = reasons(long, "It breaks a limit.", many)
-    assert shown.fold == "All 3 reasons"
-    assert " ".join(shown.more).count("The end.") == 3
 
 
 @pytest.mark.parametrize(
