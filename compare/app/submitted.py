@@ -43,10 +43,6 @@ def case_of(fields: Mapping[str, str]) -> tuple[str, Case]:
     fields : mapping of str to str
         What the form holds, by the names of its fields.
 
-    Returns
-    -------
-    (str, Case)
-
     Raises
     ------
     FormError

@@ -4,6 +4,7 @@ from .audits import (
     counts_said as counts_said,
     distances_table as distances_table,
     reached_table as reached_table,
+    reference as reference,
     steps_table as steps_table,
 )
 from .benches import (

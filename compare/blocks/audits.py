@@ -13,15 +13,17 @@ from ..documents import (
     Gap,
     Judgement,
     Reached,
+    StatedSource,
     TargetReached,
     VerdictCard,
     Waterfall,
     Why,
     counted,
     noted,
+    value_or_none,
     worth_little,
 )
-from .tree import CardShown, Drawn, Grid, seconds, table, word
+from .tree import CardShown, Drawn, Grid, Prose, seconds, table, word
 
 _NO_BREAK = "\N{NO-BREAK SPACE}"
 """The unit stays with its number on the narrowest screen."""
@@ -33,6 +35,16 @@ _SAME = 5e-4
 """Distance, as a share, whose one decimal is 0, so that its sign would say nothing."""
 _NOTED = (*OPTIMA_STEPS, OPTIMUM_RETIMED, THIRD_ORDER)
 """Steps whose note stands in the open: the optimum, its proof and routes, and its cross-check."""
+
+
+def reference(source: StatedSource) -> Prose:
+    """A source in full, with its DOI; what the text lacks is said."""
+    parts = (source.authors, source.title, source.journal, value_or_none(source.year))
+    printed = ", ".join(str(one) for one in parts if one)
+    said = f"{printed}." if printed else "The text that was read names neither authors nor title."
+    if printed and not source.authors:
+        said += " The text that was read names no authors."
+    return Prose(said, "note", doi=source.doi)
 
 
 def card_shown(card: VerdictCard, tally: str = "", drawn: Drawn | None = None) -> CardShown:

@@ -89,7 +89,7 @@ def rendered(blocks: Iterable[Block]) -> str:
     parts = [part for block in blocks for part in _parts(block)]
     bounded = [part for part in parts if not _unbroken(part)]
     needed = (Measurement.get(console, unbounded, part).minimum for part in bounded)
-    console.width = max(console.width, *needed)
+    console.width = max([console.width, *needed])
     for part in parts:
         console.print(part, soft_wrap=_unbroken(part))
     page.seek(0)

@@ -56,10 +56,6 @@ def fill_template(path: Path, **values: Any) -> str:
     ----------
     **values
         What it names; ``style`` is the style sheet.
-
-    Returns
-    -------
-    str
     """
     shapes = environment().overlay(loader=FileSystemLoader(path.parent))
     return shapes.get_template(path.name).render(style=style(), **values)

@@ -23,9 +23,10 @@ from ..blocks import (
     Terms,
     card_shown,
     counts_said,
+    reference,
     table,
 )
-from ..documents import AuditDocument, ClaimVerdict, Why, json_text, tally
+from ..documents import AuditDocument, ClaimVerdict, json_text, tally
 from ..pictures import themed
 from . import motions_shown as report_pictures
 from .claims import advised, against, folded_claims
@@ -153,10 +154,6 @@ def page_files(one: CaseAudit, links: tuple[tuple[str, str], ...]) -> dict[str, 
     ----------
     links : tuple of (str, str)
         Words and addresses at the head of the page.
-
-    Returns
-    -------
-    dict of str to str
     """
     page = replace(case_page(one), links=links)
     words = replace(Page("glossary", "How to read a verdict", (glossary(),)), links=links[:1])
@@ -199,11 +196,6 @@ def _index(report: AuditReport) -> Page:
 def case_page(one: CaseAudit) -> Page:
     """Everything that the page of one case says, in order."""
     source, made = one.document.source, one.document.provenance
-    printed = ", ".join(
-        str(p)
-        for p in (source.authors, source.title, source.journal, source.year)
-        if p and not isinstance(p, Why)
-    )
     audited = f"Audited {made.date} with trajgap {made.trajgap}"
     return Page(
         one.case.id,
@@ -230,7 +222,7 @@ def case_page(one: CaseAudit) -> Page:
             *foundations(one),
             _reproduced(one),
         ),
-        trail=f"{printed or 'Source not named in the text'}. {audited}.",
+        trail=f"{reference(source).text} {audited}.",
         doi=source.doi,
     ).filled
 

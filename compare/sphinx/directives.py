@@ -28,6 +28,7 @@ from ..blocks import (
     claims_shown,
     code,
     reached_table,
+    reference,
     steps_table,
     table,
 )
@@ -49,7 +50,7 @@ from ..documents import (
 from ..pictures import reached_picture, svg, waterfall_picture
 from .docutils_nodes import nodes_of
 from .leaderboard import Leaderboard
-from .papers import COLUMNS, PaperRow, paper_rows, papers_drawn, reference
+from .papers import COLUMNS, PaperRow, paper_rows, papers_drawn
 from .proofs import proof_said, proved_again
 from .results import Results
 from .suite import InstanceShown, SuiteTable

@@ -8,7 +8,6 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from ...nlp import Evidence
-from ..blocks import Prose
 from ..documents import (
     OWN_OPTIMA,
     PUBLISHED,
@@ -183,16 +182,6 @@ def cited(source: StatedSource) -> str:
     many = len(plain) > 2 or "et al." in authors
     who = f"{plain[0]} et al." if many else " and ".join(plain)
     return f"{who} {year}" if year else who
-
-
-def reference(source: StatedSource) -> Prose:
-    """A source in full, with its DOI; what the text lacks is said."""
-    parts = (source.authors, source.title, source.journal, value_or_none(source.year))
-    printed = ", ".join(str(one) for one in parts if one)
-    said = f"{printed}." if printed else "The text that was read names neither authors nor title."
-    if printed and not source.authors:
-        said += " The text that was read names no authors."
-    return Prose(said, "note", doi=source.doi)
 
 
 def reached_of(case: AuditedCase) -> str:

@@ -2,9 +2,10 @@
 
 import pytest
 from support.checkout import ROOT
+from trajgap.compare.blocks import reference
 from trajgap.compare.documents import StatedSource, Why, known
 from trajgap.compare.sphinx import Results, paper_row, paper_rows, papers_drawn
-from trajgap.compare.sphinx.papers import Distance, cited, reference
+from trajgap.compare.sphinx.papers import Distance, cited
 
 RESULTS = Results(ROOT / "docs" / "results")
 
