@@ -8,7 +8,7 @@ from toppra import SplineInterpolator
 from toppra.algorithm import TOPPRA
 from toppra.constraint import JointAccelerationConstraint, JointVelocityConstraint
 from trajgap.compare.audits.study import Study
-from trajgap.compare.pages.blocks import Drawn
+from trajgap.compare.blocks import Drawn
 from trajgap.compare.pages.exhibits import exhibits_of_motion, exhibits_of_search
 from trajgap.compare.pictures import ArmMotion, arm_picture
 from trajgap.compare.pictures.drawing import svg, themed

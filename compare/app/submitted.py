@@ -43,10 +43,6 @@ def case_of(fields: Mapping[str, str]) -> tuple[str, Case]:
     fields : mapping of str to str
         What the form holds, by the names of its fields.
 
-    Returns
-    -------
-    (str, Case)
-
     Raises
     ------
     FormError
@@ -105,10 +101,8 @@ def judge_motion(
 
     Parameters
     ----------
-    fields : mapping of str to str
     name : str
         Of the file: its ending says what it is.
-    content : bytes
 
     Returns
     -------

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import RenderableType
 
-from ...nlp import Evidence
 from ...problem import Case, published_ids
 from .. import audits
 from ..audits import Study, in_words
+from ..blocks import Block, Prose, card_shown, counts_said, distances_table, reached_table, table
 from ..documents import (
     OPTIMA_STEPS,
     OPTIMUM_RETIMED,
@@ -23,25 +22,20 @@ from ..documents import (
     ClaimVerdict,
     Judgement,
     Scope,
-    Step,
     Urgency,
     Waterfall,
     Why,
     by_search,
     capital,
-    counted,
     facts,
-    more_errors,
     qualified,
-    reached_cells,
     tally,
-    worth_little,
 )
+from ..pages import check_report_folder
 from .certifying import read_certificates
 from .input import read_cases
 from .options import MOST, Crate, NoCache, ProblemId, ReadingId, Workers
-from .output import Columns, check_folder, emit, kept_proofs, line, new_output, progress, say
-from .result_tables import seconds
+from .output import emit, kept_proofs, new_output, progress, say
 
 AUDIT_FOLDER = Path("trajgap-audit")
 """Where the pages go, unless the command line says otherwise."""
@@ -105,7 +99,7 @@ def audit(
     given = [] if certificates is None else read_certificates(certificates)
     folder = out if out is not None or as_json else AUDIT_FOLDER
     if folder is not None:
-        check_folder(folder, chosen)
+        check_report_folder(folder, chosen)
     if crate is not None:
         from ..pages import crate_library
 
@@ -146,44 +140,31 @@ def audit(
     return 1 if strict and report.errors else 0
 
 
-def audited(document: AuditDocument, cases: Sequence[Case]) -> list[RenderableType]:
+def audited(document: AuditDocument, cases: Sequence[Case]) -> list[Block]:
     """Summary of the `audit` document: for each case the card, claims, causes, where time goes."""
-    parts: list[RenderableType] = []
+    parts: list[Block] = []
     for case, asked in zip(document.cases, cases, strict=True):
-        below = [line(case.case, "dim")] if case.case != case.title else []
-        parts += [line(case.title, "bold"), *below, line("")]
-        card = case.card
-        against = {*card.errors, *([more_errors(card.more)] if card.more else [])}
-        parts += [line(said, "bold red" if said in against else "") for said in card.sentences]
-        parts.append(line(tally(case.verdicts), "dim"))
-        counts = Counter(v.verdict for v in case.verdicts)
-        beside = worth_little(case.verdicts)
-        worth = {ClaimVerdict.SUPPORTED: f" ({beside})" if beside else ""}
-        said = ", ".join(
-            f"{counted(word, counts[word])}{worth.get(word, '')}"
-            for word in ClaimVerdict
-            if counts[word]
-        )
-        many = "1 claim" if len(case.verdicts) == 1 else f"{len(case.verdicts)} claims"
-        parts += [line(""), line(f"{many}: {said or 'none to judge'}")]
+        below = [Prose(case.case, "note")] if case.case != case.title else []
+        parts += [Prose(case.title, "heading"), *below, Prose("")]
+        parts.append(card_shown(case.card, tally(case.verdicts)))
+        parts += [Prose(""), Prose(counts_said(case.verdicts))]
         rows = _rows(case)
         if rows:
-            parts.append(Columns(("verdict", "readings", "~claim and its place"), rows))
-        parts += [line(said, "dim") for said in _unchecked(case)]
+            parts.append(table(("verdict", "readings", "~claim and its place"), rows))
+        parts += [Prose(said, "note") for said in _unchecked(case)]
         advice = () if isinstance(case.advice, Why) else case.advice
-        parts += _advised(advice) if advice else [line(one) for one in _causes(case)]
-        parts += [line(""), *_time_goes(case.waterfalls, asked)]
+        parts += _advised(advice) if advice else [Prose(one) for one in _causes(case)]
+        parts += [Prose(""), *_time_goes(case.waterfalls, asked)]
         searches = list(by_search(case.reached).items())
         for title, runs in searches[:_SEARCHES]:
-            shown = [(*one[:3], one[5]) for one in map(reached_cells, runs)]
             parts += [
-                line(""),
-                line(f"How near its algorithms get: {title}"),
-                Columns(_RUNS, shown),
+                Prose(""),
+                Prose(f"How near its algorithms get: {title}"),
+                replace(reached_table(runs).without(*_NO_ROOM), columns=_RUNS),
             ]
         more = len(searches) - _SEARCHES
-        parts += [line(f"{more} more searches on the pages.", "dim")] if more > 0 else []
-        parts += [line(f"{words}: {value}", "dim") for words, value in facts(case)]
+        parts += [Prose(f"{more} more searches on the pages.", "note")] if more > 0 else []
+        parts += [Prose(f"{words}: {value}", "note") for words, value in facts(case)]
     return parts
 
 
@@ -202,8 +183,10 @@ def _rows(case: AuditedCase) -> list[tuple[str, str, str]]:
 
 _SEARCHES = 2
 """Searches that a terminal shows, such as that of each joint by itself and of all together."""
-_RUNS = ("~algorithm", "limits broken", ">median, its gap", ">no answer")
-"""Of the columns that a page has, those that fit a terminal."""
+_NO_ROOM = (3, 4, 6)
+"""Columns of a page that do not fit a terminal: best, quartiles, evaluations."""
+_RUNS = ("algorithm", "limits broken", "median, its gap", "no answer")
+"""The others, in words that fit one."""
 _REASONS = 3
 """Reasons that a terminal shows for claims that cannot be checked: enough for a first case, while
 those of a long one fill a page."""
@@ -234,12 +217,15 @@ def _unchecked(case: AuditedCase) -> list[str]:
     return lines + rest
 
 
-def _advised(advice: Sequence[Advice]) -> list[RenderableType]:
+def _advised(advice: Sequence[Advice]) -> list[Block]:
     """What to change, each with its place; what is found first, then how to fix it."""
-    parts: list[RenderableType] = [line(""), line("Before you submit", "bold")]
+    parts: list[Block] = [Prose(""), Prose("Before you submit", "heading")]
     for one in advice:
-        style = "bold red" if one.urgency is Urgency.CONTRADICTED else ""
-        parts += [line(f"{one.urgency}, {one.where}: {one.says}", style), line(f"  → {one.change}")]
+        style = "against" if one.urgency is Urgency.CONTRADICTED else ""
+        parts += [
+            Prose(f"{one.urgency}, {one.where}: {one.says}", style),
+            Prose(f"  → {one.change}"),
+        ]
     return parts
 
 
@@ -266,32 +252,25 @@ def _causes(case: AuditedCase) -> list[str]:
     return found
 
 
-def _time_goes(waterfalls: Sequence[Waterfall], case: Case) -> list[RenderableType]:
+def _time_goes(waterfalls: Sequence[Waterfall], case: Case) -> Iterator[Block]:
     """Where the time goes, for each problem under its first reading."""
-    first: dict[str, Waterfall] = {}
-    for waterfall in waterfalls:
-        first.setdefault(waterfall.problem, waterfall)
-    steps = [{step.name: step for step in one.steps} for one in first.values()]
-    names = dict.fromkeys(name for one in steps for name in one)
-    # The optimum keeps its row: distances are counted from it.
-    unknown = {name: whys[0] for name in names if name not in OPTIMA_STEPS
-               if (whys := [one[name].time for one in steps if name in one])
-               if all(isinstance(why, Why) for why in whys)}  # fmt: skip
+    first = {one.problem: one for one in reversed(waterfalls)}
     several = len(case.problems) > 1 or len(case.readings) > 1
-    parts: list[RenderableType] = []
-    for pid, one in first.items():
-        rows = [(step.name, *_step(step)) for step in one.steps if step.name not in unknown]
-        if rows:
-            under = f"; {in_words(case, pid, one.reading)}" if several else ""
-            parts.append(line(f"Where the time goes{under}"))
-            parts.append(Columns(("step", ">time s", "evidence"), rows))
-    notes = dict.fromkeys(said for one in first.values() for said in one.without_optimum)
-    notes |= dict.fromkeys(
-        f"{capital(name)}: {why}." for name, why in unknown.items() if name != OPTIMUM_RETIMED
-    )
-    return [*parts, *(line(said, "dim") for said in notes)]
+    notes: dict[str, None] = {}
+    for pid in dict.fromkeys(one.problem for one in waterfalls):
+        one = first[pid]
+        under = f"; {in_words(case, pid, one.reading)}" if several else ""
+        grid = distances_table(one, f"Where the time goes{under}")
+        if grid.rows:
+            yield grid.without(_HOW)
+        notes |= dict.fromkeys(one.without_optimum)
+        notes |= dict.fromkeys(
+            f"{capital(step.name)}: {step.time}."
+            for step in one.steps
+            if isinstance(step.time, Why) and step.name not in (*OPTIMA_STEPS, OPTIMUM_RETIMED)
+        )
+    yield from (Prose(said, "note") for said in notes)
 
 
-def _step(step: Step) -> tuple[str, str]:
-    """Time of a step, and the word for what stands behind it, if any does."""
-    return seconds(step.time), "" if step.evidence is Evidence.NONE else str(step.evidence)
+_HOW = 4
+"""Column of what was found how, which has no room on a terminal."""

@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import typer
-from rich.console import RenderableType
 
 from ...heuristics import KINDS, optimizer_name
 from ...nlp import Evidence, Solution, printed_problem_or_none, solve
@@ -20,18 +19,8 @@ from ...problem.cases import SUITE_PREFIX
 from ...problem.suite import instance_of, select_instances
 from .. import pages
 from ..audits import asked_as
-from ..documents import (
-    BENCH_COLUMNS,
-    OVERALL_COLUMNS,
-    SHOWN_GAPS,
-    BenchDocument,
-    BenchResult,
-    Reference,
-    bench_cells,
-    known,
-    noted,
-    overall_cells,
-)
+from ..blocks import Block, Prose, bench_blocks, overall_blocks
+from ..documents import BenchDocument, BenchResult, Reference, known, noted
 from ..gaps import (
     SECONDS,
     SEEDS,
@@ -45,7 +34,7 @@ from ..gaps import (
 )
 from .input import Selected, naming, read_case, select
 from .options import MOST, ONE_BY_ONE, ProblemId, run_store, run_workers
-from .output import NEVER_RAN, Columns, emit, line, progress, say
+from .output import NEVER_RAN, emit, progress, say
 
 
 def bench(
@@ -316,34 +305,11 @@ _RESTARTS = (
 """Said under a table with such a number."""
 
 
-def _beyond_one_run(result: BenchResult) -> bool:
-    """Whether a number of evaluations in the table exceeds what one run has."""
-    return any(
-        isinstance(target.evaluations, float) and target.evaluations > result.budget
-        for one in result.standings
-        for target in one.targets
-        if target.gap in SHOWN_GAPS
-    )
-
-
-def _tables(document: BenchDocument) -> list[RenderableType]:
-    parts: list[RenderableType] = []
+def _tables(document: BenchDocument) -> list[Block]:
+    parts: list[Block] = []
     if document.overall:
-        parts += [line(pages.most_solved(document.overall)), line("")]
-        columns = tuple(f">{name}" if i else name for i, name in enumerate(OVERALL_COLUMNS))
-        parts.append(Columns(columns, [overall_cells(one) for one in document.overall]))
-        parts.append(line(""))
+        parts += overall_blocks(document.overall)
     for result in document.results if len(document.results) <= ONE_BY_ONE else ():
-        parts.append(line(result.title, "bold"))
-        parts.append(line(result.verdict))
-        parts += [line(pages.optimum_said(result.optimum)), line("")]
-        columns = tuple(f">{name}" if i else name for i, name in enumerate(BENCH_COLUMNS))
-        parts.append(Columns(columns, [bench_cells(one) for one in result.standings]))
-        parts += [
-            line(f"{one.optimizer}: {message}", "yellow")
-            for one in result.standings
-            for message in one.messages
-        ]
-        remarks = (*result.notes, _RESTARTS) if _beyond_one_run(result) else result.notes
-        parts += [line(note, "dim") for note in remarks] + [line("")]
-    return parts[:-1]
+        parts += [Prose(result.title, "heading"), *bench_blocks(result)]
+        parts += [Prose(_RESTARTS, "note"), Prose("")]
+    return parts

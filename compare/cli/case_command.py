@@ -5,13 +5,13 @@ from __future__ import annotations
 from typing import Annotated
 
 import typer
-from rich.console import RenderableType
 
 from ...problem import compare_transcriptions
+from ..blocks import Block, Prose, table
 from ..documents import CaseDiffDocument, diff_document, json_text
 from .input import read_case
 from .options import ENDS, AsJson, Out, Source
-from .output import Columns, emit, line, new_output
+from .output import emit, new_output
 
 # Commands on case files.
 case = typer.Typer(
@@ -46,8 +46,8 @@ def diff(
     return 1 if document.differences else 0
 
 
-def _table(document: CaseDiffDocument) -> list[RenderableType]:
+def _table(document: CaseDiffDocument) -> list[Block]:
     if not document.differences:
-        return [line("The two transcriptions agree.")]
+        return [Prose("The two transcriptions agree.")]
     rows = [(one.field, one.first, one.second) for one in document.differences]
-    return [Columns(("field", "~first", "~second"), rows)]
+    return [table(("field", "~first", "~second"), rows)]

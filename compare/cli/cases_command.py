@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from rich.console import RenderableType
-
 from ...problem import published_ids
+from ..blocks import Block, table
 from ..documents import CasesDocument, cases_document, json_text
 from .input import read_case
 from .options import AsJson, Out
-from .output import Columns, emit, new_output
+from .output import emit, new_output
 
 
 def cases(as_json: AsJson = False, out: Out = None) -> int:
@@ -20,9 +19,9 @@ def cases(as_json: AsJson = False, out: Out = None) -> int:
     return 0
 
 
-def _table(document: CasesDocument) -> list[RenderableType]:
+def _table(document: CasesDocument) -> list[Block]:
     rows = [
         (one.id, one.title, len(one.problems), len(one.readings), one.claims)
         for one in document.cases
     ]
-    return [Columns(("case", "~title", ">problems", ">readings", ">claims"), rows)]
+    return [table(("case", "~title", ">problems", ">readings", ">claims"), rows)]

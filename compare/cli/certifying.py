@@ -14,25 +14,9 @@ from pathlib import Path
 from types import FrameType
 from typing import Any
 
-from rich.console import RenderableType
-
 from ...nlp import Certified, ExactProblem, Outcome, Progress, certify, printed_problem
-from ...nlp.proofs import (
-    StateFile,
-    certificate_text,
-    covered,
-    fits,
-    read_state,
-    state_document,
-)
-from ...problem import (
-    Case,
-    CaseError,
-    Coupling,
-    TrajgapError,
-    file_name,
-    shown_bound,
-)
+from ...nlp.proofs import StateFile, certificate_text, covered, fits, read_state, state_document
+from ...problem import Case, CaseError, Coupling, TrajgapError, file_name, shown_bound
 from ...problem.cases import case_files
 from ...verify import (
     CERTIFICATE_FORMAT,
@@ -47,20 +31,14 @@ from ...verify import (
     verify_certificate,
 )
 from ..audits import in_words
-from ..documents import (
-    CertifiedResult,
-    CertifyDocument,
-    Why,
-    certify_result,
-    json_text,
-)
+from ..blocks import Block, Prose
+from ..documents import CertifiedResult, CertifyDocument, Why, certify_result, json_text
 from .input import Selected, naming, select
 from .output import (
     Steps,
     check_certificates,
     emit,
     kept_proofs,
-    line,
     new_output,
     progress,
     replace_output,
@@ -390,22 +368,22 @@ _COLUMNS = (">lower s", ">upper s", ">gap", ">nodes", ">open", ">seconds", "outc
 """What the table says of each interval."""
 
 
-def _certified(document: CertifyDocument, case: Case) -> list[RenderableType]:
+def _certified(document: CertifyDocument, case: Case) -> list[Block]:
     """Summary of the `solve --certify` document."""
     results = document.intervals
     if not results:
-        return [line("nothing was begun", "dim")]
+        return [Prose("nothing was begun", "note")]
     apart = any(r.joint is not None for r in results)
     rows: dict[tuple[str, str], list[Sequence[object]]] = {}
     for r in results:
         row = ((r.joint or "all",) if apart else ()) + _cells(r)
         rows.setdefault((r.problem, r.reading), []).append(row)
     columns = (("joint",) if apart else ()) + _COLUMNS
-    parts: list[RenderableType] = [line(results[0].case, "bold")]
+    parts: list[Block] = [Prose(results[0].case, "heading")]
     parts += by_question(rows, columns, apart, case)
     reasons = dict.fromkeys(r.outcome_why for r in results if r.outcome_why)
-    parts += [line(reason, "dim") for reason in reasons]
-    return parts + [line(f"go on with --resume {r.state}") for r in results if r.state]
+    parts += [Prose(reason, "note") for reason in reasons]
+    return parts + [Prose(f"go on with --resume {r.state}") for r in results if r.state]
 
 
 def _cells(result: CertifiedResult) -> tuple[object, ...]:

@@ -8,17 +8,16 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import RenderableType
 
-from ...problem import Case, Check, Coupling, Peak, check as judge, published_ids
+from ...problem import Case, Check, Coupling, check as judge, published_ids
 from ..audits import Point, RoundingBox, RoundingVerdict, in_words, judge_rounding
+from ..blocks import Block, Prose, seconds
 from ..documents import (
     BrokenPlace,
     CheckDocument,
     CheckedJoint,
     CheckResult,
     Judged,
-    Limited,
     PassingPoint,
     RoundingExhibit,
     Why,
@@ -60,8 +59,8 @@ from .options import (
     UrdfFile,
     VelocityLimit,
 )
-from .output import emit, line, new_output, progress
-from .result_tables import by_result, place, reasons, seconds
+from .output import emit, new_output, progress
+from .result_tables import by_result, place, reasons
 
 
 class MissingOption(typer.BadParameter):
@@ -233,7 +232,6 @@ def check_result(
     ----------
     case, problem, reading : str
         Ids.
-    coupling : Coupling
     found : Check
         The durations judged at the printed point, with all joints.
     rounding : RoundingVerdict
@@ -256,29 +254,18 @@ def check_result(
 
 
 def _judged(found: Check, rounding: RoundingVerdict) -> Judged:
-    return Judged(
-        verdict=found.verdict,
+    worst = found.worst
+    time = known(worst and worst.time, "a bound on the whole duration")
+    return Judged.of(
+        found,
         rounding_verdict=rounding.verdict,
-        total_time=found.total_time,
-        worst=Why("nothing is limited") if found.worst is None else _worst(found.worst),
+        worst=known(worst and WorstPeak.of(worst, time=time), "nothing is limited"),
         feasible_time=known(found.feasible_time, found.feasible_why),
         tight_time=known(found.tight_time, found.tight_why),
         rounding=RoundingExhibit(
             exhibit=_exhibit(rounding),
             worst_ratio_at_least=known(rounding.lower_bound_of_worst, "no bound was needed"),
         ),
-    )
-
-
-def _worst(worst: Peak) -> WorstPeak:
-    return WorstPeak(
-        joint=worst.joint,
-        quantity=Limited(worst.quantity),
-        segment=worst.segment,
-        time=known(worst.time, "a bound on the whole duration"),
-        value=worst.value,
-        limit=worst.limit,
-        ratio=worst.ratio,
     )
 
 
@@ -290,14 +277,14 @@ def _exhibit(rounding: RoundingVerdict) -> PassingPoint | BrokenPlace | None:
         )
     if shown is None:
         return None
-    return BrokenPlace(joint=shown.joint, quantity=Limited(shown.quantity), segment=shown.segment)
+    return BrokenPlace.of(shown)
 
 
 _COLUMNS = ("verdict", "rounding", ">total s", ">feasible s", ">tight s", ">worst", "…where")
 """What the table says of each result, or of each of its joints."""
 
 
-def _tables(document: CheckDocument, case: Case) -> list[RenderableType]:
+def _tables(document: CheckDocument, case: Case) -> list[Block]:
     results = document.results
     shown = " ".join(f"{d:.6g}" for d in results[0].segment_durations)
     note = (
@@ -305,9 +292,9 @@ def _tables(document: CheckDocument, case: Case) -> list[RenderableType]:
         "rounded."
     )
     return [
-        line(f"{results[0].case}: durations {shown} s", "bold"),
+        Prose(f"{results[0].case}: durations {shown} s", "heading"),
         *by_result(results, _COLUMNS, _cells, "all", case),
-        line(note, "dim"),
+        Prose(note, "note"),
         *reasons(results, _missing, case),
     ]
 

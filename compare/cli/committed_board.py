@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Container, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -12,8 +12,8 @@ from typing import Any
 from ...problem import CaseError
 from ...problem.cases import SUITE_PREFIX
 from ...problem.suite import select_instances
+from ..blocks import Prose, brief_board
 from ..gaps import (
-    BOARD_COLUMNS,
     LEADERBOARD,
     SOLVED,
     Board,
@@ -21,7 +21,6 @@ from ..gaps import (
     Store,
     StudyPlan,
     StudySession,
-    board_cells,
     boards,
     leaderboard_rows,
     on_this_machine,
@@ -29,14 +28,12 @@ from ..gaps import (
     run_study,
     summed_up,
 )
-from .output import NEVER_RAN, Columns, line, progress, rendered, say
+from .output import NEVER_RAN, progress, rendered, say
 
 BUDGET, SEEDS = 1000, 15
 """Evaluations and seeds of a run against the leaderboard: those of its first table."""
 _MIDDLE = SOLVED.index(1e-3)
 """Place of the target by which the leaderboard is sorted: 0.1 %."""
-_ROOM = 6
-"""Columns of a leaderboard that fit a terminal."""
 
 
 def stand_against(
@@ -63,11 +60,8 @@ def stand_against(
         Optimisers.
     settings : mapping
         By optimiser.
-    seeds, budget : int
-    handling : str
     seconds : float
         Limit of each run.
-    workers : int
     store : Path or None
         Where runs are kept.
 
@@ -103,10 +97,10 @@ def stand_against(
     standing = [one for one in found.standings if one.optimizer in labels]
     many = f"{len(found.problems)} instance{'s' * (len(found.problems) > 1)}"
     say(rendered([
-        *(line(_said(one, found), "bold") for one in standing),
-        line(""),
-        board_table(found, labels),
-        line(
+        *(Prose(_said(one, found), "heading") for one in standing),
+        Prose(""),
+        brief_board(found, labels),
+        Prose(
             f"{handling}, {budget:,} evaluations, {many}. Rows "
             "with * were run now; the others are the committed ones of the leaderboard."
         ),
@@ -177,13 +171,3 @@ def _said(one: Ranked, board: Board) -> str:
         f"{one.optimizer}: place {board.place(one)} of {len(board.searches)}; {share:.0f} % of "
         f"{one.runs} runs come within 0.1 % of the optimum."
     )
-
-
-def board_table(board: Board, marked: Container[str] = ()) -> Columns:
-    """A board on the terminal, without what has no room there; some optimisers are marked."""
-    columns = [f">{name}" if name != "optimiser" else name for name in BOARD_COLUMNS[:_ROOM]]
-    rows = [
-        [f"* {said}" if said in marked else said for said, _ in board_cells(board, one)[:_ROOM]]
-        for one in board.standings
-    ]
-    return Columns(columns, rows)

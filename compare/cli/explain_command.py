@@ -7,14 +7,14 @@ from difflib import get_close_matches
 from typing import Annotated
 
 import typer
-from rich.console import RenderableType
 
 from ...problem import CaseError
 from .. import pages
 from ..audits import EXPLAINED, RULES
+from ..blocks import Block, Prose, table
 from ..documents import ExplainDocument, ExplainedRule, ExplainedWord, json_text
 from .options import AsJson, Out
-from .output import Columns, emit, line, new_output
+from .output import emit, new_output
 
 
 def explain(
@@ -60,14 +60,7 @@ def _document(asked: Sequence[str]) -> ExplainDocument:
 
 def _rules() -> Iterator[ExplainedRule]:
     for rule in RULES:
-        explained = EXPLAINED[rule.id]
-        yield ExplainedRule(
-            id=rule.id,
-            title=rule.title,
-            asks=explained.asks,
-            concludes=explained.concludes,
-            example=explained.example,
-        )
+        yield ExplainedRule.of(EXPLAINED[rule.id], id=rule.id, title=rule.title)
 
 
 def _words() -> Iterator[ExplainedWord]:
@@ -76,22 +69,22 @@ def _words() -> Iterator[ExplainedWord]:
             yield ExplainedWord(word=word, about=about, meaning=meaning)
 
 
-def _in_full(document: ExplainDocument) -> list[RenderableType]:
-    parts: list[RenderableType] = []
+def _in_full(document: ExplainDocument) -> list[Block]:
+    parts: list[Block] = []
     for rule in document.rules:
         parts += [
-            line(f"{rule.id}: {rule.title}", "bold"),
-            line(rule.asks),
-            line(f"What it may say: {rule.concludes}"),
-            line(f"Example: {rule.example}"),
-            line(""),
+            Prose(f"{rule.id}: {rule.title}", "heading"),
+            Prose(rule.asks),
+            Prose(f"What it may say: {rule.concludes}"),
+            Prose(f"Example: {rule.example}"),
+            Prose(""),
         ]
     for one in document.words:
-        parts += [line(f"{one.word} ({one.about})", "bold"), line(one.meaning), line("")]
+        parts += [Prose(f"{one.word} ({one.about})", "heading"), Prose(one.meaning), Prose("")]
     return parts[:-1]
 
 
-def _listed(document: ExplainDocument) -> list[RenderableType]:
+def _listed(document: ExplainDocument) -> list[Block]:
     rows = [(rule.id, rule.title) for rule in document.rules]
     words = ", ".join(dict.fromkeys(one.word for one in document.words))
-    return [Columns(("rule", "~looks at"), rows), line(""), line(f"Words: {words}.")]
+    return [table(("rule", "~looks at"), rows), Prose(""), Prose(f"Words: {words}.")]

@@ -110,7 +110,6 @@ def select(
 
     Parameters
     ----------
-    case : Case
     problem, reading : str, optional
         Keep only these; all by default.
     coupling : str, optional

@@ -25,14 +25,7 @@ from ...problem.motions import (
     interpolated,
     read_motion,
 )
-from ..documents import (
-    MotionCheckDocument,
-    OrWhy,
-    RepairedMotion,
-    Why,
-    json_text,
-    known,
-)
+from ..documents import MotionCheckDocument, OrWhy, RepairedMotion, Why, json_text, known
 from .input import naming
 from .motion_results import checked_motion, shown_check
 from .output import emit, new_output
@@ -222,10 +215,8 @@ def stated_limits(joints: Sequence[str], factors: Array, options: MotionOptions)
 
     Parameters
     ----------
-    joints : sequence of str
     factors : ndarray, shape (joints,)
         What a number of a flag is in rad or m.
-    options : MotionOptions
 
     Raises
     ------
@@ -298,10 +289,8 @@ def repaired(
 
     Parameters
     ----------
-    read : ForeignFile
     found : MotionCheck
         What was found about it.
-    out : Path
     check : callable
         Reads a file as this one was read, and judges it.
     write : callable

@@ -5,10 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 
-from rich.console import RenderableType
-
 from ...problem import Verdict, from_si, shown_bound
-from ...problem.motions import Floor, Interpolation, MotionCheck, MotionPeak, unstated_words
+from ...problem.motions import Interpolation, MotionCheck, MotionPeak, unstated_words
+from ..blocks import Block, Prose, table
 from ..documents import (
     CheckedMotion,
     MotionCheckDocument,
@@ -21,56 +20,31 @@ from ..documents import (
     known,
     value_or_none,
 )
-from .output import Columns, line
 
 
 def checked_motion(found: MotionCheck) -> CheckedMotion:
     """The entry of a verdict on a motion."""
-    return CheckedMotion(
-        verdict=found.verdict,
+    return CheckedMotion.of(
+        found,
         limits_verdict=found.limits,
         not_judged=tuple(
             NotJudged(joint=joint, quantity=MotionQuantity(quantity))
             for joint, quantity in found.not_judged
         ),
-        tolerance=found.tolerance,
-        total_time=found.total_time,
         worst=Why("nothing is limited") if found.worst is None else _peak(found.worst),
         slow_down=found.stretch,
         feasible_time=known(found.feasible_time, found.feasible_why),
-        floor=known(None if found.floor is None else _floor(found.floor), found.floor_why),
-        peaks=tuple(map(_peak, found.peaks)),
-        jumps=tuple(
-            MotionJumpShown(
-                joint=one.joint,
-                quantity=MotionQuantity(one.quantity),
-                time=one.time,
-                size=one.size,
-                breaks=one.count,
-            )
-            for one in found.jumps
+        floor=known(
+            found.floor and MotionFloor.of(found.floor, standstills=found.floor.stops),
+            found.floor_why,
         ),
-        concluded=found.concluded,
-        open=found.open,
+        peaks=tuple(map(_peak, found.peaks)),
+        jumps=tuple(MotionJumpShown.of(one, breaks=one.count) for one in found.jumps),
     )
-
-
-def _floor(one: Floor) -> MotionFloor:
-    return MotionFloor(time=one.time, standstills=one.stops, waiting=one.waiting, above=one.above)
 
 
 def _peak(one: MotionPeak) -> MotionPeakShown:
-    return MotionPeakShown(
-        joint=one.joint,
-        quantity=MotionQuantity(one.quantity),
-        time=one.time,
-        value=one.value,
-        limit=one.limit,
-        ratio=one.ratio,
-        ratio_at_least=one.least_ratio,
-        ratio_at_most=one.most_ratio,
-        source=one.source,
-    )
+    return MotionPeakShown.of(one, ratio_at_least=one.least_ratio, ratio_at_most=one.most_ratio)
 
 
 _POWERS = {
@@ -83,7 +57,7 @@ _POWERS = {
 """What follows the unit of positions."""
 
 
-def shown_check(document: MotionCheckDocument) -> list[RenderableType]:
+def shown_check(document: MotionCheckDocument) -> list[Block]:
     """Lines and the table that `check` prints for a motion."""
     result = document.result
     units = dict(zip(document.joints, document.units, strict=True))
@@ -95,16 +69,16 @@ def shown_check(document: MotionCheckDocument) -> list[RenderableType]:
         f"{document.rows:,} {'breaks' if how is None else 'samples'}{between}, "
         f"{result.total_time:.6g} s"
     )
-    parts: list[RenderableType] = [line(head, "bold"), *_verdict(document, units)]
+    parts: list[Block] = [Prose(head, "heading"), *_verdict(document, units)]
     if result.not_judged:
-        parts.append(line(_STATE_IT, "dim"))
+        parts.append(Prose(_STATE_IT, "note"))
     written = value_or_none(document.repaired)
     if written is not None:
         slower = f"{written.slow_down:.6f} times slower" if written.slow_down > 1 else "as it is"
         said = f"{written.file}: the motion {slower}, as {written.form}"
-        parts.append(line(f"{said}; read back: {written.result.verdict}"))
+        parts.append(Prose(f"{said}; read back: {written.result.verdict}"))
     if document.picture is not None:
-        parts.append(line(f"{document.picture}: the motion with its limits"))
+        parts.append(Prose(f"{document.picture}: the motion with its limits"))
     rows = [
         (
             one.joint,
@@ -119,7 +93,7 @@ def shown_check(document: MotionCheckDocument) -> list[RenderableType]:
         for one in result.peaks
     ]
     columns = ("joint", "quantity", ">nearest", ">limit", "unit", ">ratio", ">at s", "~from")
-    return [*parts, Columns(columns, rows)] if rows else parts
+    return [*parts, table(columns, rows)] if rows else parts
 
 
 def _ratio(one: MotionPeakShown, samples_alone: bool) -> str:
@@ -135,16 +109,16 @@ def _ratio(one: MotionPeakShown, samples_alone: bool) -> str:
     return f"{least} to {shown_bound(high, 'upper', digits=4)}"
 
 
-def _verdict(document: MotionCheckDocument, units: Mapping[str, str]) -> list[RenderableType]:
+def _verdict(document: MotionCheckDocument, units: Mapping[str, str]) -> list[Block]:
     result = document.result
-    parts: list[RenderableType] = [
-        line(f"{result.verdict}: {_sentence(result, tuple(units))}", "bold"),
+    parts: list[Block] = [
+        Prose(f"{result.verdict}: {_sentence(result, tuple(units))}", "heading"),
     ]
     worst = value_or_none(result.worst)
     if worst is not None:
         unit = units[worst.joint] + _POWERS[worst.quantity]
         parts.append(
-            line(
+            Prose(
                 f"worst: joint {worst.joint}, {worst.quantity} "
                 f"{_number(worst.value, units[worst.joint])} {unit} against "
                 f"{_number(worst.limit, units[worst.joint])} {unit} at {worst.time:.6g} s"
@@ -154,7 +128,7 @@ def _verdict(document: MotionCheckDocument, units: Mapping[str, str]) -> list[Re
     for one in _gravest(result):
         unit = units[one.joint] + _POWERS[one.quantity]
         parts.append(
-            line(
+            Prose(
                 f"jump: {one.quantity} of joint {one.joint} by "
                 f"{_number(one.size, units[one.joint])} {unit} at {one.time:.6g} s; "
                 f"it jumps at {one.breaks} break{'s' * (one.breaks > 1)}"
@@ -162,26 +136,26 @@ def _verdict(document: MotionCheckDocument, units: Mapping[str, str]) -> list[Re
         )
     repaired = value_or_none(result.feasible_time)
     if repaired is None:
-        parts.append(line(f"repair: none, {document.repaired}"))
+        parts.append(Prose(f"repair: none, {document.repaired}"))
     elif result.slow_down > 1 + result.tolerance:
         slower = shown_bound(result.slow_down, "upper", places=6)
         whole = shown_bound(repaired, "upper", places=6)
-        parts.append(line(f"repair: {slower} times slower keeps the limits, {whole} s"))
+        parts.append(Prose(f"repair: {slower} times slower keeps the limits, {whole} s"))
     floor = value_or_none(result.floor)
     if floor is None:
-        parts.append(line(f"floor: none, {result.floor}", "dim"))
+        parts.append(Prose(f"floor: none, {result.floor}", "note"))
     else:
         least = shown_bound(floor.time, "lower", places=6)
         above = shown_bound(100 * floor.above, "upper", places=1)
         way = "(way-points that it passes without stopping do not count)"
         here = f"is at most {above} % above {way}" if floor.above >= 0 else "is too fast"
         parts.append(
-            line(
+            Prose(
                 f"floor: no motion within the limits takes less than {least} s between the same "
                 f"{floor.standstills} standstills; this one {here}"
             )
         )
-    parts += [line(text, "dim") for text in (*result.concluded, *result.open)]
+    parts += [Prose(text, "note") for text in (*result.concluded, *result.open)]
     return parts
 
 

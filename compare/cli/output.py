@@ -6,10 +6,10 @@ import io
 import os
 import re
 import sys
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
 from rich import box
 from rich.cells import cell_len
@@ -18,20 +18,9 @@ from rich.measure import Measurement
 from rich.table import Table
 from rich.text import Text
 
-from ...problem import (
-    Case,
-    CaseError,
-    new_file,
-    recover_folder,
-    replace_file,
-    try_writing_in,
-    visible,
-)
+from ...problem import CaseError, new_file, replace_file, try_writing_in, visible
+from ..blocks import Block, CardShown, Grid, Prose, Terms, table
 from ..documents import Document, json_text
-
-if TYPE_CHECKING:
-    from rich.console import RenderableType
-
 
 D = TypeVar("D", bound=Document)
 
@@ -42,7 +31,7 @@ _PIPE_WIDTH = 120
 """Columns where nobody's window limits them."""
 
 
-def emit(document: D, summary: Callable[[D], Sequence[RenderableType]], as_json: bool) -> None:
+def emit(document: D, summary: Callable[[D], Iterable[Block]], as_json: bool) -> None:
     """Print a document, as JSON or as its summary for reading."""
     if as_json:
         # Standard output may not be able to carry more than ASCII.
@@ -79,11 +68,11 @@ def say(text: str) -> None:
         ) from None
 
 
-def rendered(parts: Sequence[RenderableType]) -> str:
-    """Text of tables and lines, coloured only on a terminal and without NO_COLOR."""
-    from rich.console import Console
-    from rich.measure import Measurement
+def rendered(blocks: Iterable[Block]) -> str:
+    """Text of what stands open in blocks, coloured only on a terminal and without NO_COLOR.
 
+    Pictures and what is folded are for pages.
+    """
     terminal, encoding = sys.stdout.isatty(), sys.stdout.encoding or "utf-8"
     page = io.TextIOWrapper(io.BytesIO(), encoding, errors="replace", newline="")
     console = Console(
@@ -97,13 +86,35 @@ def rendered(parts: Sequence[RenderableType]) -> str:
     )
     # In a narrow window a table is wider than it: cut digits would be other digits.
     unbounded = console.options.update(max_width=10_000)
-    bounded = [part for part in parts if not unbroken(part)]
+    parts = [part for block in blocks for part in _parts(block)]
+    bounded = [part for part in parts if not _unbroken(part)]
     needed = (Measurement.get(console, unbounded, part).minimum for part in bounded)
-    console.width = max(console.width, *needed)
+    console.width = max([console.width, *needed])
     for part in parts:
-        console.print(part, soft_wrap=unbroken(part))
+        console.print(part, soft_wrap=_unbroken(part))
     page.seek(0)
-    return "\n".join(line.rstrip() for line in page.read().split("\n"))
+    lines = "\n".join(line.rstrip() for line in page.read().split("\n"))
+    return re.sub(r"\n{3,}", "\n\n", lines)
+
+
+def _parts(block: Block) -> Iterator[Text | Columns]:
+    """What rich prints of a block."""
+    if isinstance(block, Prose):
+        # A command that is broken in two cannot be copied.
+        command = block.weight == "source"
+        said = " ".join(filter(None, (block.word, block.text, block.doi)))
+        yield Text(plain(said), style=_WEIGHTS.get(block.weight, ""), no_wrap=command)
+    elif isinstance(block, Grid):
+        yield from _parts(Prose(block.caption)) if block.caption else ()
+        yield Columns(block)
+    elif isinstance(block, Terms):
+        yield Columns(table(("", "~"), block.cells))
+    elif isinstance(block, CardShown):
+        yield from (part for one in block.sentences for part in _parts(Prose(*one)))
+
+
+def _unbroken(part: object) -> bool:
+    return isinstance(part, Text) and part.no_wrap is True
 
 
 class Steps:
@@ -140,7 +151,6 @@ def progress(label: str, total: int | None = None, rate: bool = False) -> Iterat
     if not sys.stderr.isatty():
         yield Steps()
         return
-    from rich.console import Console
     from rich.progress import (
         BarColumn,
         MofNCompleteColumn,
@@ -151,7 +161,6 @@ def progress(label: str, total: int | None = None, rate: bool = False) -> Iterat
         TimeElapsedColumn,
         TimeRemainingColumn,
     )
-    from rich.text import Text
 
     class Rate(ProgressColumn):
         def render(self, task: Task) -> Text:
@@ -231,36 +240,6 @@ def replace_output(path: Path, text: str) -> None:
         replace_file(path, text)
 
 
-def check_folder(path: Path, cases: Sequence[Case]) -> None:
-    """Find out whether a report can be written before computing what goes into it.
-
-    Raises
-    ------
-    CaseError
-        If the folder holds anything but an earlier report or cannot be written, or if the id of
-        a case is the name of another page.
-    """
-    from ..pages import RESERVED, foreign
-
-    name = str(path)
-    for case in cases:
-        if case.id in RESERVED:
-            raise CaseError(case.file, "id", f"{case.id!r} is the name of another page; rename it")
-    with _writing(name, "--out"):
-        recover_folder(path)
-        if os.path.lexists(path) and not path.is_dir():
-            raise CaseError(name, "--out", "is a file; name a folder")
-        found = foreign(path)
-        if found is not None:
-            raise CaseError(
-                name, "--out", f"holds {found}, which is no audit; name a new or an empty folder"
-            )
-        if path.name in ("", "..") or path.is_mount():
-            raise CaseError(name, "--out", "cannot be replaced as a whole; name a folder in it")
-        path.parent.mkdir(parents=True, exist_ok=True)
-        try_writing_in(path.parent)
-
-
 def check_certificates(folder: Path) -> None:
     """Find out before computing whether certificates can be written into a folder.
 
@@ -303,6 +282,14 @@ _NARROWEST = 16
 """Columns that prose keeps in the narrowest window."""
 _GAP = 2
 """Columns between two columns of a table."""
+_WEIGHTS = {
+    "heading": "bold",
+    "note": "dim",
+    "tally": "dim",
+    "against": "bold red",
+    "warning": "yellow",
+}
+"""Style of a paragraph, by its weight."""
 _STYLES = {
     "pass": "green",
     "keeps": "green",
@@ -331,32 +318,16 @@ def plain(text: object) -> str:
     return visible(" ".join(re.split(r"[\n\t]", str(text))))
 
 
-def line(text: object, style: str = "") -> Text:
-    """One line in a style of rich."""
-    return Text(plain(text), style=style)
-
-
-def command(text: object) -> Text:
-    """A command on one line, however narrow the window: broken in two it could not be copied."""
-    return Text(plain(text), no_wrap=True)
-
-
-def unbroken(part: object) -> bool:
-    """Whether a part of a summary is a `command`."""
-    return isinstance(part, Text) and part.no_wrap is True
-
-
 class Columns:
     """Table in which columns of prose share what the window leaves.
 
-    Before a column's name, > aligns right, ~ lets its prose wrap, … lets it be cut off. Whatever
-    else is cut off would say something else, so a table may be wider than the window.
+    Whatever else is cut off would say something else, so a table may be wider than the window.
     """
 
-    def __init__(self, columns: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
-        self._kinds = [c[0] if c[0] in ">~…" else "" for c in columns]
-        self._names = [c.removeprefix(k) for c, k in zip(columns, self._kinds, strict=True)]
-        self._rows = [[plain(cell) for cell in row] for row in rows]
+    def __init__(self, grid: Grid) -> None:
+        self._names = grid.columns
+        self._kinds = [grid.mark(i) for i in range(len(grid.columns))]
+        self._rows = [[plain(cell.text) for cell in row] for row in grid.rows]
         lines = [self._names, *self._rows]
         self._widths = [max(map(cell_len, column)) for column in zip(*lines, strict=True)]
 
@@ -384,9 +355,15 @@ class Columns:
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
         widths = self._shared(options.max_width)
-        table = Table(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False, padding=(0, 1, 0, 0))
+        shape = Table(
+            box=box.SIMPLE_HEAD,
+            show_edge=False,
+            pad_edge=False,
+            padding=(0, 1, 0, 0),
+            show_header=any(self._names),
+        )
         for name, kind, width in zip(self._names, self._kinds, widths, strict=True):
-            table.add_column(
+            shape.add_column(
                 name,
                 justify="right" if kind == ">" else "left",
                 no_wrap=kind != "~",
@@ -394,8 +371,8 @@ class Columns:
                 width=width,
             )
         for row in self._rows:
-            table.add_row(*(Text(cell, style=_STYLES.get(cell, "")) for cell in row))
-        yield table
+            shape.add_row(*(Text(cell, style=_STYLES.get(cell, "")) for cell in row))
+        yield shape
         yield Text()
 
 

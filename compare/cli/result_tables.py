@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, Protocol, TypeVar
 
-from rich.console import RenderableType
-from rich.text import Text
-
 from ...problem import Case
 from ..audits import asked_as, in_words
+from ..blocks import Block, Prose, table
 from ..documents import ActiveLimit, Why, WorstPeak
-from .output import Columns, line
 
 
 class Result(Protocol):
@@ -35,7 +31,7 @@ Rows = Sequence[Sequence[object]]
 
 def by_result(
     results: Sequence[Result], columns: Sequence[str], cells: Cells, whole: str, case: Case
-) -> list[RenderableType]:
+) -> list[Block]:
     """One table of all results, or one for each where the joints stand by themselves."""
     rows: dict[tuple[str, str], Rows] = {}
     apart = any(result.joints for result in results)
@@ -48,24 +44,24 @@ def by_result(
 
 def by_question(
     rows: Mapping[tuple[str, str], Rows], columns: Sequence[str], apart: bool, case: Case
-) -> list[RenderableType]:
+) -> list[Block]:
     """What is said of each problem and reading, which are called by words; an id stands once.
 
     One table of them all, or one for each where they are set apart or there is only one.
     """
     if not apart and len(rows) > 1:
         joined = [(in_words(case, *ids), *row) for ids, own in rows.items() for row in own]
-        return [Columns(("~problem", *columns), joined), *_ids(rows, case)]
-    parts: list[RenderableType] = []
+        return [table(("~problem", *columns), joined), *_ids(rows, case)]
+    parts: list[Block] = []
     for ids, own in rows.items():
         words = asked_as(case, *ids)
         # The tables stand below the case's id.
-        parts += [line(words)] if words != case.id else []
-        parts.append(Columns(columns, own))
+        parts += [Prose(words)] if words != case.id else []
+        parts.append(table(columns, own))
     return parts
 
 
-def _ids(asked: Iterable[tuple[str, str]], case: Case) -> list[RenderableType]:
+def _ids(asked: Iterable[tuple[str, str]], case: Case) -> list[Block]:
     """What a command has to be given so that it takes one problem or one reading alone."""
     problems, readings = (dict.fromkeys(ids) for ids in zip(*asked, strict=True))
     titles = {p.id: p.title or p.id for p in case.problems}
@@ -73,25 +69,20 @@ def _ids(asked: Iterable[tuple[str, str]], case: Case) -> list[RenderableType]:
         *((f"--problem {one}", titles[one]) for one in problems if len(titles) > 1),
         *((f"--reading {one}", case.labels[one]) for one in readings if len(case.readings) > 1),
     ]
-    return [Columns(("for one alone", "~which"), rows)]
+    return [table(("for one alone", "~which"), rows)]
 
 
 def reasons(
     results: Iterable[R], missing: Callable[[R], Mapping[str, str | None]], case: Case
-) -> list[Text]:
+) -> list[Prose]:
     """Why a number is missing, for each result without joints of its own."""
     return [
-        line(f"{name}: {why} ({in_words(case, result.problem, result.reading)})", "dim")
+        Prose(f"{name}: {why} ({in_words(case, result.problem, result.reading)})", "note")
         for result in results
         if not result.joints
         for name, why in missing(result).items()
         if why
     ]
-
-
-def seconds(value: float | Why) -> str:
-    """A time, or none."""
-    return "none" if isinstance(value, Why) or not math.isfinite(value) else f"{value:.6f}"
 
 
 def place(at: ActiveLimit | WorstPeak) -> str:

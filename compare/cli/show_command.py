@@ -5,28 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Literal
 
-from rich.console import RenderableType
-
-from ...problem.cases import (
-    AnyClaim,
-    Case,
-    ConvergenceClaim,
-    DurationsClaim,
-    ImprovementClaim,
-    MaximumClaim,
-    MotionValueClaim,
-    PhasesClaim,
-    Reading,
-    Statement,
-    TotalTimeClaim,
-    ratio_words,
-    with_unit,
-)
-from ..audits import claim_text
+from ...problem.cases import Case, Reading, Statement, ratio_words, with_unit
+from ..audits import claim_text, digits_of
+from ..blocks import Block, Prose, table
 from ..documents import ShowDocument, capital, json_text, quoted, show_document
 from .input import read_case
 from .options import AsJson, Out, ProblemId, ReadingId, Source
-from .output import Columns, emit, line, new_output
+from .output import emit, new_output
 
 
 def show(
@@ -49,7 +34,7 @@ _UNTITLED = "as stated below"
 """What a problem is called that has no title: the next table states it."""
 
 
-def _tables(document: ShowDocument, case: Case) -> list[RenderableType]:
+def _tables(document: ShowDocument, case: Case) -> list[Block]:
     source, robot = document.source, document.robot
     named = (source.authors, source.title, source.journal, source.year, source.doi)
     objective = case.document.objective
@@ -66,19 +51,22 @@ def _tables(document: ShowDocument, case: Case) -> list[RenderableType]:
     readings = [
         (r.id + (" (default)" if r.default else ""), _meaning(r, labels)) for r in document.readings
     ]
-    parts: list[RenderableType] = [
-        line(document.id, "bold"),
-        *(line(said) for said in lines),
-        Columns(("problem", "~title"), problems),
+    parts: list[Block] = [
+        Prose(document.id, "heading"),
+        *(Prose(said) for said in lines),
+        table(("problem", "~title"), problems),
         *_asked(document, case),
-        Columns(("reading", "~what it means, and why it is admissible"), readings),
+        table(("reading", "~what it means, and why it is admissible"), readings),
     ]
     if document.claims:
-        claims = [(c.id, _digits(c), f"{claim_text(case, c)} ({c.where})") for c in document.claims]
-        parts.append(Columns(("claim", "printed", "~what is said, and where"), claims))
+        claims = [
+            (c.id, digits_of(case, c), f"{claim_text(case, c)} ({c.where})")
+            for c in document.claims
+        ]
+        parts.append(table(("claim", "printed", "~what is said, and where"), claims))
     if document.assumptions:
         choices = [(str(k), f"{a.text} {a.choice}") for k, a in enumerate(document.assumptions, 1)]
-        parts.append(Columns(("choice", "~what is left open, and what was chosen"), choices))
+        parts.append(table(("choice", "~what is left open, and what was chosen"), choices))
     return parts
 
 
@@ -89,7 +77,7 @@ def _meaning(reading: Reading, labels: Mapping[str, str]) -> str:
     return " ".join([*said, capital(reading.why)]).strip()
 
 
-def _asked(document: ShowDocument, case: Case) -> list[RenderableType]:
+def _asked(document: ShowDocument, case: Case) -> list[Block]:
     """Curve, angles and limits of each problem, in the digits and units that are read."""
     reading = next((r.id for r in document.readings if r.default), document.readings[0].id)
     rows, slides = [], False
@@ -110,7 +98,7 @@ def _asked(document: ShowDocument, case: Case) -> list[RenderableType]:
     given = "positions in" if slides else "angles in"
     names = (*first, "curve", "way-points × joints", given, "~limits")
     under = f" under {quoted(reading, case.labels)}" if len(document.readings) > 1 else ""
-    return [line(f"Curve, units and limits{under}:"), Columns(names, rows)]
+    return [Prose(f"Curve, units and limits{under}:"), table(names, rows)]
 
 
 _SPLINES = ("quintic-spline", "septic-spline")
@@ -147,24 +135,3 @@ def _limit(one: Statement, quantity: Literal["velocity", "acceleration", "jerk"]
     if len(numbers) == 1 and isinstance(units, tuple):
         units = one.unit(quantity)
     return f"{quantity} {' '.join(with_unit(numbers, units))}"
-
-
-def _digits(claim: AnyClaim) -> str:
-    """The printed digits of a claim."""
-    match claim:
-        case DurationsClaim() | MaximumClaim():
-            total = "" if claim.total is None else f", total {claim.total}"
-            return " ".join(map(str, claim.durations)) + total
-        case TotalTimeClaim():
-            return str(claim.value)
-        case PhasesClaim():
-            return " ".join(map(str, claim.phases))
-        case MotionValueClaim():
-            return " ".join(map(str, claim.printed))
-        case ImprovementClaim(percent=percent) if percent is not None:
-            return f"{percent} %"
-        case ImprovementClaim(seconds=seconds) if seconds is not None:
-            return str(seconds)
-        case ConvergenceClaim():
-            return str(claim.iterations)
-    return ""

@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import RenderableType
 
 from ...nlp import (
     OPTIMUM_SLACK,
@@ -24,6 +23,7 @@ from ...nlp.retiming import Retiming, retime
 from ...problem import Case, Coupling, Problem, fit, shown_bound
 from ...verify import Subject
 from ..audits import Pair, Study, in_words
+from ..blocks import Block, Prose, seconds, table
 from ..documents import (
     Answer,
     SolveDocument,
@@ -61,8 +61,8 @@ from .options import (
     UrdfFile,
     VelocityLimit,
 )
-from .output import Columns, emit, line, new_output, progress
-from .result_tables import by_result, place, reasons, seconds
+from .output import emit, new_output, progress
+from .result_tables import by_result, place, reasons
 from .solve_files import (
     AskedSamples,
     asked_samples,
@@ -306,11 +306,11 @@ _COLUMNS = ("status", ">total s", ">proved ≥ s", "evidence", "durations s", "K
 """What the table says of each result, or of each of its joints."""
 
 
-def _tables(document: SolveDocument, case: Case) -> list[RenderableType]:
+def _tables(document: SolveDocument, case: Case) -> list[Block]:
     results = document.results
-    parts: list[RenderableType] = [line(results[0].case, "bold")]
+    parts: list[Block] = [Prose(results[0].case, "heading")]
     parts += by_result(results, _COLUMNS, _cells, "longest", case)
-    parts += [line(said) for result in results for said in _procedure(result, case)]
+    parts += [Prose(said) for result in results for said in _procedure(result, case)]
     active = [
         (name, place(a), f"{a.multiplier:.6g}", f"{a.sensitivity:+.4f}")
         for r, name in ((r, in_words(case, r.problem, r.reading)) for r in results)
@@ -319,15 +319,15 @@ def _tables(document: SolveDocument, case: Case) -> list[RenderableType]:
     if active:
         limits = ("limit reached", ">multiplier s", ">10 % more changes s")
         parts.append(
-            Columns(("~problem", *limits), _without_repeats(active, 1))
+            table(("~problem", *limits), _without_repeats(active, 1))
             if len(results) > 1
-            else Columns(limits, [row[1:] for row in active])
+            else table(limits, [row[1:] for row in active])
         )
     parts += reasons(results, lambda r: {"status": r.status_why, "toppra": reason(r.toppra)}, case)
     build, solve = sum(r.build_seconds for r in results), sum(r.solve_seconds for r in results)
     if document.written is not None:
-        parts += [line(said) for said in written_lines(document.written, case)]
-    return [*parts, line(f"build {build:.2f} s, solve {solve:.2f} s", "dim")]
+        parts += [Prose(said) for said in written_lines(document.written, case)]
+    return [*parts, Prose(f"build {build:.2f} s, solve {solve:.2f} s", "note")]
 
 
 def _cells(result: Answer) -> tuple[object, ...]:

@@ -9,14 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from ...nlp import Solution, retimed_motion
-from ...problem import (
-    Case,
-    CaseError,
-    FileLimits,
-    TrajgapError,
-    parse_case,
-    scaffold,
-)
+from ...problem import Case, CaseError, FileLimits, TrajgapError, parse_case, scaffold
 from ...problem.limit_files import read_urdf
 from ...problem.motions import (
     Evaluated,
@@ -45,8 +38,6 @@ def points_case(
     ----------
     source : str
         CSV, as `scaffold` reads it.
-    options : MotionOptions
-    family : str or None
     degree : int or None
         As in `scaffold`.
 

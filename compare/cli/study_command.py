@@ -19,10 +19,10 @@ from typing import Annotated
 
 import numpy as np
 import typer
-from rich.console import RenderableType
 
 from ...problem import CaseError, replace_file
 from ..audits import in_words
+from ..blocks import Block, Prose, brief_board, table
 from ..documents import noted
 from ..gaps import (
     LEADERBOARD,
@@ -46,9 +46,8 @@ from ..gaps import (
     summaries_text,
     summed_up,
 )
-from .committed_board import board_table
 from .options import INTERRUPTED, ONE_BY_ONE, run_store, run_workers
-from .output import NEVER_RAN, Columns, line, progress, rendered, say
+from .output import NEVER_RAN, progress, rendered, say
 
 
 def study(
@@ -190,7 +189,7 @@ def _summary(
     path: Path,
     exports: Sequence[Path],
     again: Sequence[str],
-) -> tuple[list[RenderableType], bool]:
+) -> tuple[list[Block], bool]:
     """What the runs came to, and whether all of some optimiser on some problem failed."""
     found: dict[tuple[str, str], list[Cells]] = {}
     messages, failed, never_ran = dict[str, int](), 0, False
@@ -207,29 +206,27 @@ def _summary(
         named = optimizer, _readable(settings), handling, f"{budget:,}"
         cells = (*named, len(runs), len(bad), passed, *_gaps(runs))
         found.setdefault((problem, reading), []).append(cells)
-    parts: list[RenderableType] = [
-        line(f"{path}: {session.run:,} runs done now, {session.resumed:,} were there", "bold"),
+    parts: list[Block] = [
+        Prose(f"{path}: {session.run:,} runs done now, {session.resumed:,} were there", "heading"),
         *(_boards(plan, kept) if plan.file == LEADERBOARD else _tables(plan, found)),
-        line("A gap is that of the feasible time, (T − U)/U against the best known total U."),
+        Prose("A gap is that of the feasible time, (T − U)/U against the best known total U."),
     ]
     for message, count in sorted(messages.items(), key=lambda one: -one[1])[:_MESSAGES]:
-        parts.append(line(f"failed, {count:,} times: {message}", "yellow"))
+        parts.append(Prose(f"failed, {count:,} times: {message}", "warning"))
     if len(messages) > _MESSAGES:
-        parts.append(line(f"and {len(messages) - _MESSAGES:,} other messages, in the exports"))
+        parts.append(Prose(f"and {len(messages) - _MESSAGES:,} other messages, in the exports"))
     if session.run:
-        parts.append(line(f"{session.seconds / session.run:.3g} s a run", "dim"))
-    parts += [line(f"written: {one}") for one in exports]
+        parts.append(Prose(f"{session.seconds / session.run:.3g} s a run", "note"))
+    parts += [Prose(f"written: {one}") for one in exports]
     if failed:
-        parts.append(line(f"run the failed ones again: {shlex.join([*again, '--retry'])}"))
+        parts.append(Prose(f"run the failed ones again: {shlex.join([*again, '--retry'])}"))
     if not exports:
         name = f"{Path(plan.file).stem}.csv"
-        parts.append(line(f"next: {shlex.join([*again, '--export', name])}"))
+        parts.append(Prose(f"next: {shlex.join([*again, '--export', name])}"))
     return parts, never_ran
 
 
-def _tables(
-    plan: StudyPlan, found: Mapping[tuple[str, str], Sequence[Cells]]
-) -> list[RenderableType]:
+def _tables(plan: StudyPlan, found: Mapping[tuple[str, str], Sequence[Cells]]) -> list[Block]:
     """What the runs on each problem came to, with what was chosen for it."""
     if len(plan.problems) > ONE_BY_ONE:
         rows = [(*ids, *cells) for ids, own in found.items() for cells in own]
@@ -239,27 +236,27 @@ def _tables(
                 *(f"{_words(one)}: {note}" for one in plan.problems for note in one.notes),
             ]
         )
-        return [Columns(("problem", "reading", *_COLUMNS), rows), *map(line, notes)]
-    parts: list[RenderableType] = []
+        return [table(("problem", "reading", *_COLUMNS), rows), *map(Prose, notes)]
+    parts: list[Block] = []
     for one in plan.problems:
         ids = (one.name, one.reading)
-        parts.append(line(noted(_words(one), ", ".join(ids))))
-        parts.append(Columns(_COLUMNS, found.get(ids, ())))
-        parts += [line(note, "dim") for note in (*plan.notes, *one.notes)] + [line("")]
+        parts.append(Prose(noted(_words(one), ", ".join(ids))))
+        parts.append(table(_COLUMNS, found.get(ids, ())))
+        parts += [Prose(note, "note") for note in (*plan.notes, *one.notes)] + [Prose("")]
     return parts
 
 
-def _boards(plan: StudyPlan, kept: Store) -> list[RenderableType]:
+def _boards(plan: StudyPlan, kept: Store) -> list[Block]:
     """Where each optimiser stands over all problems: their own lines would be thousands."""
-    parts: list[RenderableType] = []
+    parts: list[Block] = []
     for board in boards(summed_up(plan, kept)):
         head = f"{board.handling}, {board.budget:,} evaluations, {len(board.problems)} instances"
-        parts.append(line(head, "bold"))
-        parts.append(board_table(board))
+        parts.append(Prose(head, "heading"))
+        parts.append(brief_board(board))
         if board.missing:
-            parts.append(line(f"not complete: {', '.join(board.missing)}"))
-        parts.append(line(""))
-    return [*parts, *(line(note, "dim") for note in plan.notes)]
+            parts.append(Prose(f"not complete: {', '.join(board.missing)}"))
+        parts.append(Prose(""))
+    return [*parts, *(Prose(note, "note") for note in plan.notes)]
 
 
 def _words(one: StudyProblem) -> str:

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import os
 import shlex
-from collections.abc import Mapping
+from collections.abc import Sequence
 from importlib.resources import files
 from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import RenderableType
 
-from ...problem import CaseError, TrajgapError, replace_folder
+from ...problem import CaseError
 from ...problem.suite import (
     LOADER,
     BenchmarkInstance,
@@ -22,6 +20,7 @@ from ...problem.suite import (
     select_curve,
 )
 from .. import pages as written
+from ..blocks import Block, Prose, instance_terms, suite_table
 from ..documents import (
     SuiteDocument,
     SuiteShowDocument,
@@ -31,7 +30,7 @@ from ..documents import (
     value_or_none,
 )
 from .options import ENDS, AsJson, Out
-from .output import Columns, command, emit, line, new_output, progress, say
+from .output import emit, new_output, progress, say
 
 # Commands of the suite.
 suite = typer.Typer(
@@ -66,7 +65,7 @@ def _suite(
     with new_output(out) as write:
         document = suite_document(chosen)
         write(json_text(document))
-    emit(document, _table, as_json)
+    emit(document, lambda shown: _table(shown, chosen), as_json)
     return 0
 
 
@@ -83,7 +82,7 @@ def show(
         one = load_instance(name)
         document = instance_document(one, _certificate(one))
         write(json_text(document))
-    emit(document, _shown, as_json)
+    emit(document, lambda shown: _shown(shown, one), as_json)
     return 0
 
 
@@ -105,7 +104,7 @@ def export(out: Folder) -> int:
             if certificate is not None:
                 text = certificate.read_text(encoding="utf-8")
                 found[f"certificates/{one.name}.json"] = text
-    _write(out, found)
+    written.write_folder(out, found, _foreign, "suite", "FOLDER")
     say(f"{len(instances)} instances: {out}\n")
     return 0
 
@@ -116,7 +115,8 @@ def pages(out: Folder) -> int:
     instances = list_instances()
     with progress("pages", len(instances)) as step:
         found = written.suite_pages(instances, step)
-    _write(out, {**found, _MARK: json_text(suite_document(instances))})
+    files = {**found, _MARK: json_text(suite_document(instances))}
+    written.write_folder(out, files, _foreign, "suite", "FOLDER")
     say(f"pages: {out / 'index.html'}\n")
     return 0
 
@@ -125,27 +125,12 @@ _MARK = "suite.json"
 """The file by which a folder that was written so is known."""
 
 
-def _table(document: SuiteDocument) -> list[RenderableType]:
-    rows = [
-        (
-            one.name,
-            one.curve,
-            one.joints,
-            one.segments,
-            ", ".join(word[0] for word in one.tight),
-            repr(one.lower),
-            repr(one.upper),
-            f"{one.width:.1e}",
-            one.evidence,
-        )
-        for one in document.instances
-    ]
-    names = ("instance", "curve", ">joints", ">segments", "tight in", ">lower (s)", ">upper (s)")
-    narrow = sum(one.evidence == "certified" for one in document.instances)
-    summary = (
-        f"suite {document.version}: {len(rows)} instances, {narrow} certified to 1 % or better"
+def _table(document: SuiteDocument, chosen: Sequence[BenchmarkInstance]) -> list[Block]:
+    certified = sum(one.evidence == "certified" for one in chosen)
+    said = (
+        f"suite {document.version}: {len(chosen)} instances, {certified} certified to 1 % or better"
     )
-    return [Columns((*names, ">width", "evidence"), rows), line(summary)]
+    return [suite_table(chosen, brief=True), Prose(said)]
 
 
 def _certificate(one: BenchmarkInstance) -> str | None:
@@ -154,65 +139,19 @@ def _certificate(one: BenchmarkInstance) -> str | None:
     return None if file is None else shlex.quote(str(file))
 
 
-def _shown(document: SuiteShowDocument) -> list[RenderableType]:
-    one, hard = document.instance, value_or_none(document.instance.hardness)
-    facts = [
-        ("curve", f"{one.curve}, {one.segments} segments, {one.joints} joints"),
-        ("source", document.source),
-        ("optimum", f"between {one.lower!r} and {one.upper!r} s, width {one.width:.1e}"),
-        ("evidence", one.evidence),
-        ("lower bound over", one.lower_subject),
-        ("best known", ", ".join(f"{h:.9g}" for h in one.segment_durations) + " s"),
-        ("tight in", ", ".join(one.tight)),
-        ("certificate", str(one.certificate)),
-    ]
+def _shown(document: SuiteShowDocument, one: BenchmarkInstance) -> list[Block]:
     verify = value_or_none(document.verify)
-    if verify is None:
-        facts.append(("verify", str(document.verify)))
-    if hard is not None:
-        facts += [
-            ("basins", f"{hard.basins} found by {hard.starts} random starts; "
-             f"{hard.best_basin_share:.0%} of them reach the best"),
-            ("feasible share", f"{hard.feasible_share:.2%} of durations drawn within the bounds"),
-        ]  # fmt: skip
-        if hard.baselines:
-            rates = ", ".join(f"{name} {rate:.0%}" for name, rate in hard.baselines.items())
-            facts.append(
-                (
-                    "baselines",
-                    f"{rates} of {hard.baseline_runs} runs of {hard.baseline_budget} evaluations "
-                    "end within 1 %",
-                )
-            )
     return [
-        line(one.name, "bold"),
-        line(document.title),
-        Columns(("what", "~of this instance"), facts),
-        line("made by:"),
-        command(one.command),
-        *([] if verify is None else [line("verify it:"), command(verify)]),
+        Prose(one.name, "heading"),
+        Prose(document.title),
+        Prose(f"Source: {document.source}"),
+        instance_terms(one),
+        Prose("made by:"),
+        Prose(one.command, "source"),
+        Prose("verify it:" if verify else str(document.verify)),
+        *([Prose(verify, "source")] if verify else []),
     ]
 
 
-def _write(out: Path, found: Mapping[str, str]) -> None:
-    """Write a folder at once; only an empty one or one that was written so is replaced.
-
-    Raises
-    ------
-    CaseError
-        If it holds anything else, or cannot be written.
-    """
-    name = str(out)
-    if os.path.lexists(out) and (not out.is_dir() or out.is_symlink()):
-        raise CaseError(name, "FOLDER", "is no folder; name a new one")
-    try:
-        other = list(out.iterdir()) if out.exists() else []
-        if other and not (out / _MARK).is_file():
-            held = min(p.name for p in other)
-            raise CaseError(name, "FOLDER", f"holds {held}; name a new or an empty folder")
-        replace_folder(out, found)
-    except TrajgapError:
-        raise
-    except OSError as error:
-        reason = error.strerror or type(error).__name__
-        raise CaseError(name, "FOLDER", f"cannot be written ({reason}); name another") from None
+def _foreign(_: Path, there: list[str]) -> str | None:
+    return None if _MARK in there else there[0]

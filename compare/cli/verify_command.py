@@ -10,14 +10,8 @@ from typing import Annotated, Any
 import typer
 
 from ...nlp import ExactProblem
-from ...nlp.proofs import (
-    unlike,
-)
-from ...problem import (
-    Case,
-    Coupling,
-    check_regular,
-)
+from ...nlp.proofs import unlike
+from ...problem import Case, Coupling, check_regular
 from ...verify import (
     CertificateVerdict,
     CertifiedQuestion,
@@ -28,6 +22,7 @@ from ...verify import (
     verify_certificate,
 )
 from ..audits import asked_as, in_words
+from ..blocks import Prose
 from ..documents import (
     UNNAMED,
     AskedQuestion,
@@ -40,13 +35,7 @@ from ..documents import (
 from .certifying import Question, questions_of
 from .input import read_case, select
 from .options import AsJson, Out
-from .output import (
-    emit,
-    new_output,
-    plain,
-    progress,
-    say,
-)
+from .output import emit, new_output, progress
 
 
 def verify(
@@ -91,10 +80,7 @@ def verify(
                 verdicts.append((str(path), *_verdict(path, seconds, asked)))
         document = verify_document(verdicts)
         write(json_text(document))
-    if as_json:
-        emit(document, lambda _: (), as_json)
-    else:
-        say(_verified(document, stated))
+    emit(document, lambda shown: _verified(shown, stated), as_json)
     good = all(verdict.proves and not isinstance(about, str) for _, verdict, about in verdicts)
     return 0 if good else 1
 
@@ -130,8 +116,8 @@ def _about(
     return f"its problem differs in {named[0]}" if named else "no problem of the case is this one"
 
 
-def _verified(document: VerifyDocument, case: Case | None) -> str:
-    """Text of the `verify` document: a line a file, whatever the window, and what was asked.
+def _verified(document: VerifyDocument, case: Case | None) -> list[Prose]:
+    """What `verify` prints: a line a file, whatever the window, and what was asked.
 
     A file's problem has the ids that the file names; in the case it is called by words, with ids
     only where the file names other ones.
@@ -146,7 +132,7 @@ def _verified(document: VerifyDocument, case: Case | None) -> str:
             lines.append(f"    the same problem as in the case: {found}")
         elif one.in_case.reason not in (UNNAMED, one.worth):
             lines.append(f"    not in the case: {one.in_case.reason}")
-    return "".join(f"{plain(line)}\n" for line in lines)
+    return [Prose(line, "source") for line in lines]
 
 
 def _found(found: AskedQuestion, named: AskedQuestion, case: Case | None) -> str:

@@ -14,7 +14,6 @@ from .audited import (
 )
 from .benched import (
     BENCH_COLUMNS as BENCH_COLUMNS,
-    OVERALL_COLUMNS as OVERALL_COLUMNS,
     SHOWN_GAPS as SHOWN_GAPS,
     BenchDocument as BenchDocument,
     BenchResult as BenchResult,
@@ -26,7 +25,6 @@ from .benched import (
     bench_cells as bench_cells,
     closest as closest,
     gap_cell as gap_cell,
-    overall_cells as overall_cells,
     percent as percent,
 )
 from .card import (
@@ -122,12 +120,9 @@ from .lookups import (
     show_document as show_document,
 )
 from .reached import (
-    REACHED_COLUMNS as REACHED_COLUMNS,
-    REACHED_MEANING as REACHED_MEANING,
     Reached as Reached,
     apart as apart,
     by_search as by_search,
-    reached_cells as reached_cells,
 )
 from .remarks import (
     DOUBTED as DOUBTED,

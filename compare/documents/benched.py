@@ -107,7 +107,8 @@ class BenchResult(Entry):
         return closest(self.standings)
 
     def __str__(self) -> str:
-        table = [BENCH_COLUMNS, *(bench_cells(one) for one in self.standings)]
+        names = [name.lstrip(">") for name in BENCH_COLUMNS]
+        table = [names, *(bench_cells(one) for one in self.standings)]
         widths = [max(map(len, column)) for column in zip(*table, strict=True)]
         lines = [
             "  ".join(
@@ -155,29 +156,9 @@ class BenchDocument(Document):
     """Over all problems, the largest share of runs within 1 % first; empty for one problem."""
 
 
-OVERALL_COLUMNS = (
-    "optimizer", "median of median gaps", "worst", "first on", "runs ≤ 1 %", "runs ≤ 0.01 %",
-    "solved to 1 %", "solved to 0.01 %",
-)  # fmt: skip
-"""What a table says of each optimiser over all problems."""
-
-
-def overall_cells(standing: OverallStanding) -> tuple[str, ...]:
-    """The row of an optimiser over all problems, as `OVERALL_COLUMNS`."""
-    shown = [t for t in standing.targets if t.gap in SHOWN_GAPS]
-    return (
-        standing.optimizer,
-        gap_cell(standing.median),
-        gap_cell(standing.worst),
-        str(standing.first),
-        *(f"{100 * target.rate:.0f} %" for target in shown),
-        *(f"{target.solved} of {standing.problems}" for target in shown),
-    )
-
-
 BENCH_COLUMNS = (
-    "optimizer", "median gap", "quartiles", "best", "feasible", "≤ 1 %", "≤ 0.01 %",
-    "evaluations to 1 %", "evaluations to 0.01 %",
+    "optimizer", ">median gap", ">quartiles", ">best", ">feasible", ">≤ 1 %", ">≤ 0.01 %",
+    ">evaluations to 1 %", ">evaluations to 0.01 %",
 )  # fmt: skip
 """What a table says of each optimiser. Of the five targets two are shown: what a paper's digits can
 tell apart, and what they cannot; the JSON has all."""

@@ -35,12 +35,19 @@ class VerdictCard(Entry):
     @property
     def sentences(self) -> tuple[str, ...]:
         """Everything that the card says, in order."""
-        found = [self.limits, self.optimum]
-        found += [self.reached] if isinstance(self.reached, str) else []
-        found += [self.improvement] if isinstance(self.improvement, str) else []
-        found += self.errors
-        found += [more_errors(self.more)] if self.more else []
-        return (*found, *([self.explanation] if isinstance(self.explanation, str) else []))
+        beside = [self.explanation] if isinstance(self.explanation, str) else []
+        return (*self.lines, *self.against, *beside)
+
+    @property
+    def lines(self) -> tuple[str, ...]:
+        """What it says of limits, optimum, algorithm and improvement."""
+        last = [one for one in (self.reached, self.improvement) if isinstance(one, str)]
+        return (self.limits, self.optimum, *last)
+
+    @property
+    def against(self) -> tuple[str, ...]:
+        """The errors, and how many more there are."""
+        return (*self.errors, *([more_errors(self.more)] if self.more else []))
 
     @property
     def words(self) -> int:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import asdict
 from fractions import Fraction
 
 from ...nlp import Certified, Outcome
@@ -213,19 +212,15 @@ def _verified(
     file: str, verdict: CertificateVerdict, about: CertifiedQuestion | str | None
 ) -> VerifiedFile:
     why = "none is claimed" if verdict.proves else str(worth(verdict))
-    return VerifiedFile(
+    return VerifiedFile.of(
+        verdict,
         file=file,
         worth=worth(verdict),
-        reason=verdict.reason,
         subject=verdict.subject if verdict.proves else None,
-        infeasible=verdict.infeasible,
         lower=outwards(verdict.lower, why, -1),
         upper=outwards(verdict.upper, why, 1),
-        question=_asked(verdict.question),
-        problem_hash=verdict.problem_hash,
-        in_case=_asked(about) if isinstance(about, CertifiedQuestion) else Why(about or UNNAMED),
+        question=AskedQuestion.of(verdict.question),
+        in_case=AskedQuestion.of(about)
+        if isinstance(about, CertifiedQuestion)
+        else Why(about or UNNAMED),
     )
-
-
-def _asked(question: CertifiedQuestion) -> AskedQuestion:
-    return AskedQuestion(**asdict(question))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 from dataclasses import dataclass
-from typing import Annotated, Any, Literal, TypeAlias, TypeVar
+from typing import Annotated, Any, Literal, Self, TypeAlias, TypeVar
 
 from pydantic import (
     ConfigDict,
@@ -67,7 +67,6 @@ def known(value: T | None, why: str | None = None) -> T | Why:
 
     Parameters
     ----------
-    value : object or None
     why : str, optional
         Why it is None.
     """
@@ -97,6 +96,12 @@ class Entry(Described, InNotebooks):
         populate_by_name=True,
         protected_namespaces=(),
     )
+
+    @classmethod
+    def of(cls, source: object, **others: Any) -> Self:
+        """An entry with some keys, and for each other one what a value has under its name."""
+        names = (name for name in cls.model_fields if name not in others and hasattr(source, name))
+        return cls(**{name: getattr(source, name) for name in names}, **others)
 
     @model_serializer(mode="wrap")
     def _in_json(self, write: SerializerFunctionWrapHandler) -> dict[str, Any]:

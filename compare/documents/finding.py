@@ -213,9 +213,12 @@ class CaveatKind(Enum):
 
 @dataclass(frozen=True)
 class Caveat:
-    """What goes with a word: its kind for the code; what it says, and why, for the reader."""
+    """What goes with a word: its kind for the code; what it says, and why, for the reader.
 
-    kind: CaveatKind
+    JSON has its words alone, so that one that was read from there has no kind.
+    """
+
+    kind: CaveatKind | None
     says: str
     why: str = ""
 

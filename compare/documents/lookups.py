@@ -48,9 +48,8 @@ def cases_document(cases: Iterable[Case]) -> CasesDocument:
     """Document of `cases`: what is shipped."""
     return CasesDocument(
         cases=tuple(
-            ListedCase(
-                id=case.id,
-                title=case.title,
+            ListedCase.of(
+                case,
                 problems=tuple(p.id for p in case.problems),
                 readings=tuple(r.id for r in case.readings),
                 claims=len(case.claims),
@@ -122,7 +121,6 @@ def show_document(
 
     Parameters
     ----------
-    case : Case
     problem, reading : str, optional
         Keep only this one, and the claims that speak about it.
 
@@ -135,11 +133,8 @@ def show_document(
     problems = {pid for pid, _ in pairs}
     readings = {rid for _, rid in pairs}
     default = case.default_reading.id
-    return ShowDocument(
-        id=case.id,
-        title=case.title,
-        source=case.source,
-        robot=case.robot,
+    return ShowDocument.of(
+        case,
         problems=tuple(p for p in case.problems if p.id in problems),
         readings=tuple(
             r.model_copy(update={"default": r.id == default})
@@ -147,11 +142,7 @@ def show_document(
             if r.id in readings
         ),
         claims=tuple(c for c in case.claims if c.problem is None or c.problem in problems),
-        assumptions=case.assumptions,
-        algorithms=case.algorithms,
         families=case.instances,
-        tables=case.tables,
-        not_checkable=case.not_checkable,
     )
 
 
@@ -179,8 +170,8 @@ class CaseDiffDocument(Document):
 
 def diff_document(first: str, second: str, found: Iterable[Difference]) -> CaseDiffDocument:
     """Document of `case diff`: what was found between two files."""
-    differing = (DifferingField(field=d.field, first=d.first, second=d.second) for d in found)
-    return CaseDiffDocument(first=first, second=second, differences=tuple(differing))
+    differing = tuple(map(DifferingField.of, found))
+    return CaseDiffDocument(first=first, second=second, differences=differing)
 
 
 class ExplainedRule(Entry):

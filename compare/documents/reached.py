@@ -8,11 +8,6 @@ from .benched import TargetReached
 from .entry import Count, Entry, OrWhy, Why
 from .finding import Gap, percent_digits
 
-NO_BREAK = "\N{NO-BREAK SPACE}"
-"""The unit stays with its number on the narrowest screen."""
-_NONE = "–"
-"""A cell without a value."""
-
 
 class Reached(Entry):
     """Where the runs of one algorithm end, under one handling of vectors that break a limit."""
@@ -81,55 +76,3 @@ def by_search(runs: Iterable[Reached]) -> dict[str, list[Reached]]:
     for one in runs:
         found.setdefault(f"{one.searched[:1].upper()}{one.searched[1:]}", []).append(one)
     return found
-
-
-REACHED_MEANING = (
-    "Each row is one algorithm at the paper's own budget, run from different seeds under the "
-    "choices that the case lists. A vector of durations that breaks a limit gets a penalty "
-    "(death penalty), counts with the shortest uniform stretch that keeps every limit (stretch), "
-    "or is scaled until one limit is tight (rescale). Every total is that of a motion that keeps "
-    "its limits. Gaps are measured from the proven interval of the optimum where there is one. "
-    "Evaluations are those of a run, and those that restarts need on average until one run comes "
-    "so near; where each joint is planned by itself, until every joint is so near its own optimum, "
-    "all joints counted. "
-    "Operators and seeds are not printed, so these runs inform and refute nothing."
-)
-"""What the table means."""
-REACHED_COLUMNS = (
-    "algorithm",
-    "limits broken in the search",
-    "median, its gap",
-    "best, its gap",
-    "quartiles, s",
-    "no answer",
-    "evaluations; until 1 %; 0.1 %",
-)
-"""What a table says of each algorithm."""
-
-
-def reached_cells(one: Reached) -> tuple[str, ...]:
-    """The row of an algorithm, as `REACHED_COLUMNS`."""
-    return (
-        one.name,
-        one.handling.replace("-", " "),
-        _with_gap(one.median, one.gap),
-        _with_gap(one.best, one.best_gap),
-        f"{_seconds(one.lower_quartile)} to {_seconds(one.upper_quartile)}",
-        f"{one.unanswered} of {one.runs}",
-        "; ".join([f"{one.budget:,}", *(_evaluations(target) for target in one.within)]),
-    )
-
-
-def _with_gap(total: float | Why, gap: Gap | Why) -> str:
-    beside = "" if isinstance(gap, Why) else f" s, {gap.percent.replace(' %', NO_BREAK + '%')}"
-    return f"{_seconds(total)}{beside}"
-
-
-def _seconds(total: float | Why) -> str:
-    return _NONE if isinstance(total, Why) else f"{total:.4f}"
-
-
-def _evaluations(target: TargetReached) -> str:
-    if isinstance(target.evaluations, Why):
-        return "never"
-    return f"{target.evaluations:,.0f}"

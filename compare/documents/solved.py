@@ -188,8 +188,8 @@ def _solution(answer: Solution, path: Retiming | str = NOT_ASKED) -> Answer:
     none = boundless or none
     there = answer.found and boundless is None
     toppra, extrapolated = _toppra(path)
-    return Answer(
-        status=answer.status,
+    return Answer.of(
+        answer,
         status_why=boundless or answer.why,
         total_time=answer.total_time if there else Why(none),
         segment_durations=_durations(answer, none) if there else Why(none),
@@ -205,11 +205,7 @@ def _solution(answer: Solution, path: Retiming | str = NOT_ASKED) -> Answer:
         other_route_total=known(
             answer.other_total if there else None, NO_OTHER_ROUTE if there else none
         ),
-        active=tuple(_active(a) for a in answer.active),
-        starts=answer.starts,
-        starts_at_best=answer.starts_at_best,
-        build_seconds=answer.build_seconds,
-        solve_seconds=answer.solve_seconds,
+        active=tuple(map(_active, answer.active)),
         toppra=toppra,
         toppra_extrapolated=extrapolated,
     )
@@ -221,15 +217,14 @@ def _procedure(answer: PerJointSolution) -> Answer:
     named = zip(answer.problem.joints, joints, strict=True)
     unsettled = [f"joint {label}: {s.why}" for label, s in named if s.why]
     residuals = [s.kkt_residual for s in joints if s.kkt_residual is not None]
-    return Answer(
-        status=answer.status,
+    return Answer.of(
+        answer,
         status_why="; ".join(unsettled)
         or "of the joints' own optima; the total is what their longest durations add up to",
         total_time=answer.total_time if answer.check else Why(none),
         segment_durations=Why("each joint has durations of its own, see joints"),
         infimum=Why("the longest durations of a procedure, not an optimum"),
         lower_bound=UNCERTIFIED,
-        evidence=answer.evidence,
         max_violation=answer.check.max_violation if answer.check else Why(none),
         kkt_residual=max(residuals) if len(residuals) == len(joints) else Why(none),
         route=Why("each joint has a route of its own, see joints"),
@@ -258,22 +253,13 @@ def _longest(answer: PerJointSolution) -> LongestPerSegment:
         total_time=found.total_time if found else Why(none),
         feasible_time=known(found.feasible_time, found.feasible_why) if found else Why(none),
         tight_time=known(found.tight_time, found.tight_why) if found else Why(none),
-        ranges=tuple(
-            Span(slack=r.slack, lowest=r.lowest, highest=r.highest) for r in answer.ranges
-        ),
+        ranges=tuple(map(Span.of, answer.ranges)),
         ranges_why=None if answer.ranges else none,
     )
 
 
 def _active(active: Active) -> ActiveLimit:
-    return ActiveLimit(
-        joint=active.joint,
-        quantity=Limited(active.quantity),
-        segment=active.segment,
-        time=known(active.time, "a bound on the whole duration"),
-        multiplier=active.multiplier,
-        sensitivity=active.sensitivity,
-    )
+    return ActiveLimit.of(active, time=known(active.time, "a bound on the whole duration"))
 
 
 def _toppra(

@@ -79,19 +79,14 @@ class SuiteShowDocument(Document):
 
 
 def _entry(one: BenchmarkInstance) -> SuiteInstance:
-    kept = set(SuiteInstance.model_fields) & set(BenchmarkInstance.model_fields) - {"hardness"}
     large = "too large to ship; `command` makes it"
-    hardness = one.hardness and MeasuredHardness(**one.hardness.model_dump())
-    same = {key: getattr(one, key) for key in kept}
-    return SuiteInstance(
-        **{
-            **same,
-            "segment_durations": one.durations,
-            "certificate": known(one.certificate, large),
-            "certificate_sha256": known(one.certificate_sha256, "nothing is proved"),
-            "command": one.command,
-            "hardness": known(hardness, "not measured yet"),
-        }
+    hardness = one.hardness and MeasuredHardness.of(one.hardness)
+    return SuiteInstance.of(
+        one,
+        segment_durations=one.durations,
+        certificate=known(one.certificate, large),
+        certificate_sha256=known(one.certificate_sha256, "nothing is proved"),
+        hardness=known(hardness, "not measured yet"),
     )
 
 
@@ -105,7 +100,6 @@ def instance_document(one: BenchmarkInstance, file: str | None) -> SuiteShowDocu
 
     Parameters
     ----------
-    one : BenchmarkInstance
     file : str or None
         Where its certificate lies.
     """

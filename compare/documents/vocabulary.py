@@ -261,20 +261,13 @@ def meaning(words: type[StrEnum]) -> str:
 
 @dataclass(frozen=True)
 class Words:
-    """Words that one key of the documents may hold.
-
-    Attributes
-    ----------
-    key : str
-        As docs/reference/command-line.md names it.
-    enums : tuple of type
-    table : str
-        Name of the table in the docs that explains them; empty where the list of keys does.
-    """
+    """Words that one key of the documents may hold."""
 
     key: str
+    """As docs/reference/command-line.md names it."""
     enums: tuple[type[StrEnum], ...]
     table: str = ""
+    """Name of the table in the docs that explains them; empty where the list of keys does."""
 
 
 VOCABULARY = (

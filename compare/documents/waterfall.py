@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from typing import Self
 
 from ...nlp import Evidence
-from .entry import Entry, OrLeftOut, OrWhy, Why
+from ...problem import shown_bound
+from .entry import Entry, OrLeftOut, OrWhy, Why, value_or_none
 from .vocabulary import Keeping
 
 EXACT = Why("a single value, not an interval")
@@ -48,6 +50,49 @@ class Step(Entry):
     note: str = ""
     keeping: OrLeftOut[Keeping] = None
     """Whether the motion of a printed total keeps the limits; left out where nothing was judged."""
+
+    def total(self, ends: bool = True) -> str:
+        """The value, with the ends of its interval where it is one.
+
+        Parameters
+        ----------
+        ends : bool
+            Whether there is room for them.
+
+        Returns
+        -------
+        str
+            Such as "3.3595 s (3.3324 to 3.4128)", or "not computed".
+        """
+        if isinstance(self.time, Why):
+            return "not computed"
+        digits = 4 if self.time >= 0.1 else 6
+        text = f"{self.time:.{digits}f} s"
+        low, high = self.low, self.high
+        if ends and not isinstance(low, Why) and not isinstance(high, Why):
+            width = high - low
+            if width > 1e-9:
+                digits = min(9, max(digits, math.ceil(1 - math.log10(width))))
+                least = shown_bound(low, "lower", places=digits)
+                text += f" ({least} to {shown_bound(high, 'upper', places=digits)})"
+        return text
+
+    @property
+    def value(self) -> float:
+        """The time of a step that has one, s."""
+        assert not isinstance(self.time, Why)
+        return self.time
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """The ends of its interval, s; the value itself where it is none."""
+        low, high = (value_or_none(end) or self.value for end in (self.low, self.high))
+        return low, high
+
+    @property
+    def known(self) -> str:
+        """What stands behind the value; empty for what is printed or derived."""
+        return "" if self.evidence is Evidence.NONE else str(self.evidence)
 
     @classmethod
     def missing(cls, name: str, note: str) -> Self:

@@ -19,40 +19,26 @@ _FEW = 2
 
 @dataclass(frozen=True)
 class Said:
-    """What one deciding finding says of a claim.
-
-    Attributes
-    ----------
-    verdict, rule, kind : str
-    sentences : tuple of str
-    reading : str or None
-        None where it depends on none.
-    """
+    """What one deciding finding says of a claim."""
 
     verdict: str
     rule: str
     kind: str
     sentences: tuple[str, ...]
     reading: str | None = None
+    """None where it depends on none."""
 
 
 @dataclass(frozen=True)
 class Named:
-    """What the readings of a case are called.
-
-    Attributes
-    ----------
-    labels : mapping of str to str
-        What each means in words.
-    implausible : mapping of str to str
-        Why some are implausible, in numbers.
-    default : str
-        The reading whose numbers are shown where several give the same reason.
-    """
+    """What the readings of a case are called."""
 
     labels: Mapping[str, str] = field(default_factory=dict)
+    """What each means in words."""
     implausible: Mapping[str, str] = field(default_factory=dict)
+    """Why some are implausible, in numbers."""
     default: str = ""
+    """The reading whose numbers are shown where several give the same reason."""
 
 
 NAMELESS = Named()
@@ -61,18 +47,12 @@ NAMELESS = Named()
 
 @dataclass(frozen=True)
 class Reason:
-    """What decides, once for all readings under which it is the same but for its numbers.
-
-    Attributes
-    ----------
-    verdict, rule : str
-    each : tuple of (tuple of str, tuple of str)
-        Sentences, with the readings under which they are these to the digit.
-    """
+    """What decides, once for all readings under which it is the same but for its numbers."""
 
     verdict: str
     rule: str
     each: tuple[tuple[tuple[str, ...], tuple[str, ...]], ...]
+    """Sentences, with the readings under which they are these to the digit."""
 
     @property
     def sentences(self) -> tuple[str, ...]:
@@ -94,7 +74,6 @@ def grouped(said: Iterable[Said], computed: Sequence[str], named: Named = NAMELE
         Of one claim.
     computed : sequence of str
         The readings that were computed.
-    named : Named
 
     Returns
     -------
@@ -159,10 +138,8 @@ def with_readings(
 
     Parameters
     ----------
-    one : Reason
     computed : sequence of str
         The readings that were computed.
-    named : Named
     word : bool
         Whether its word stands in front: where readings give different ones.
     why : bool
@@ -217,10 +194,8 @@ def under(
 
     Parameters
     ----------
-    readings : sequence of str
     computed : sequence of str
         All readings that were computed.
-    named : Named
     most : int
         Readings that are named; of more the number is given, and the exceptions if they are few.
     why : bool
@@ -259,7 +234,6 @@ def among(readings: Sequence[str], count: int, far: Iterable[str] = ()) -> str:
 
     Parameters
     ----------
-    readings : sequence of str
     count : int
         Of all readings.
     far : iterable of str

@@ -23,12 +23,10 @@ from .exports import (
     rows_text as rows_text,
 )
 from .leaderboard import (
-    BOARD_COLUMNS as BOARD_COLUMNS,
     LEADERBOARD as LEADERBOARD,
     SIZES as SIZES,
     Board as Board,
     Ranked as Ranked,
-    board_cells as board_cells,
     boards as boards,
     curve_of as curve_of,
     leaderboard_rows as leaderboard_rows,

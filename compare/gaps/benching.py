@@ -53,24 +53,16 @@ Named = str | Callable[..., object]
 
 @dataclass(frozen=True)
 class Entrant:
-    """An optimiser as it takes part.
-
-    Attributes
-    ----------
-    optimizer : str
-        As `find_optimizer` takes it.
-    settings : mapping
-        What is set; the rest has its default.
-    handling : str
-        What happens to vectors that break a limit.
-    label : str
-        Its name in tables and pictures.
-    """
+    """An optimiser as it takes part."""
 
     optimizer: str
+    """As `find_optimizer` takes it."""
     settings: Mapping[str, Any]
+    """What is set; the rest has its default."""
     handling: str
+    """What happens to vectors that break a limit."""
     label: str
+    """Its name in tables and pictures."""
 
     @property
     def identity(self) -> tuple[str, str, str]:
@@ -91,31 +83,21 @@ class Entrant:
 
 @dataclass(frozen=True, eq=False)
 class BenchPlan:
-    """The runs of a bench before they are made.
-
-    Attributes
-    ----------
-    problem : Problem
-        As stated.
-    name, reading : str
-        What rows call it.
-    entrants : tuple of Entrant
-    trials : tuple of Trial
-        By entrant, then by seed.
-    budget, seeds : int
-        Evaluations of a run of what has no iterations of its own; seeds of each optimiser.
-    notes : tuple of str
-        What was chosen so that the optimisers can run.
-    """
+    """The runs of a bench before they are made."""
 
     problem: Problem
+    """As stated."""
     name: str
     reading: str
+    """What rows call it."""
     entrants: tuple[Entrant, ...]
     trials: tuple[Trial, ...]
+    """By entrant, then by seed."""
     budget: int
     seeds: int
+    """Evaluations of a run of what has no iterations of its own; seeds of each optimiser."""
     notes: tuple[str, ...]
+    """What was chosen so that the optimisers can run."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,8 +129,6 @@ def bench(
 
     Parameters
     ----------
-    problem : Problem
-    optimizers : str, callable, or iterable of them
     engine : Engine, optional
         Where the runs are made, such as `on_this_machine`; by default here, one by one.
     progress : callable, optional
@@ -311,7 +291,6 @@ def measure_gaps(runs: Runs, optimum: Solution | Reference | float) -> BenchResu
 
     Parameters
     ----------
-    runs : Runs
     optimum : Solution, Reference or float
         Of the same problem: what `solve` returned, or its total, s.
 

@@ -63,23 +63,15 @@ def run_apart(trial: Trial, processes: Processes | None = None) -> TrialOutcome:
 
 @dataclass(frozen=True)
 class Engine:
-    """An executor, and how many trials it runs at a time.
-
-    Attributes
-    ----------
-    executor : concurrent.futures.Executor
-    slots : callable
-        Number of workers at the moment.
-    name : str
-        Words for people.
-    run : callable
-        What the executor is given with each trial.
-    """
+    """An executor, and how many trials it runs at a time."""
 
     executor: Executor
     slots: Callable[[], int]
+    """Number of workers at the moment."""
     name: str
+    """Words for people."""
     run: Callable[[Trial], TrialOutcome] = run_apart
+    """What the executor is given with each trial."""
 
 
 @contextmanager
@@ -141,7 +133,6 @@ def outcomes(trials: Iterable[Trial], engine: Engine) -> Iterator[TrialOutcome]:
     ----------
     trials : iterable of Trial
         Read as workers become free.
-    engine : Engine
 
     Raises
     ------

@@ -13,7 +13,6 @@ import numpy as np
 
 from ...problem import Array
 from ...problem.suite import load_instance
-from ..documents import percent
 from .statistics import SAMPLES, interval, quantiles
 from .studies import StudyPlan, parse_study
 from .summaries import LADDER, SOLVED, Summary, read_summaries
@@ -22,9 +21,6 @@ from .trials import DESCENT
 
 LEADERBOARD = "leaderboard"
 """The word by which commands know the shipped study and its results."""
-BOARD_COLUMNS = ("place", "optimiser", "runs within 1 %", "within 0.1 %", "within 0.01 %",
-                 "median gap", "evaluations to 1 %", "to 0.1 %", "to 0.01 %", "failed")  # fmt: skip
-"""What a row of a board says; a terminal has room for the first six."""
 SIZES = ("1 to 3 segments", "4 to 6 segments", "7 to 10 segments")
 """Classes of instances by their number of segments: half of the suite has three."""
 
@@ -33,21 +29,6 @@ SIZES = ("1 to 3 segments", "4 to 6 segments", "7 to 10 segments")
 class Ranked:
     """One optimiser over all problems of a leaderboard, each counting alike.
 
-    Attributes
-    ----------
-    optimizer : str
-        Label in the study.
-    problems, runs, failed : int
-    median : float
-        Median over the problems of the median gap, relative; inf without an answer.
-    within : ndarray, shape (gaps,)
-        Share of runs that come within each gap of `LADDER`.
-    solved : tuple of (float, float, float)
-        For each gap of `SOLVED` the share of runs within it, with its 95 % interval.
-    expected : tuple of (float, float, float)
-        For each gap of `SOLVED` the evaluations of all runs over the number of hits, with its 95 %
-        interval; inf without a hit.
-
     Notes
     -----
     Intervals come from resampling the problems: they say how far the numbers depend on the choice
@@ -55,36 +36,33 @@ class Ranked:
     """
 
     optimizer: str
+    """Label in the study."""
     problems: int
     runs: int
     failed: int
     median: float
+    """Median over the problems of the median gap, relative; inf without an answer."""
     within: Array
+    """Share of runs that come within each gap of `LADDER`; shape (gaps,)."""
     solved: tuple[tuple[float, float, float], ...]
+    """For each gap of `SOLVED` the share of runs within it, with its 95 % interval."""
     expected: tuple[tuple[float, float, float], ...]
+    """For each gap of `SOLVED` the evaluations of all runs over the number of hits, with its 95 %
+    interval; inf without a hit."""
 
 
 @dataclass(frozen=True, eq=False)
 class Board:
-    """Optimisers with the same budget and handling on the same problems.
-
-    Attributes
-    ----------
-    budget : int
-    handling : str
-    problems : tuple of str
-        On which each of them has all its runs.
-    standings : tuple of Ranked
-        The largest share of runs within 0.1 % first, then within 0.01 %, then within 1 %.
-    missing : tuple of str
-        Optimisers whose runs are not complete on these problems.
-    """
+    """Optimisers with the same budget and handling on the same problems."""
 
     budget: int
     handling: str
     problems: tuple[str, ...]
+    """On which each of them has all its runs."""
     standings: tuple[Ranked, ...]
+    """The largest share of runs within 0.1 % first, then within 0.01 %, then within 1 %."""
     missing: tuple[str, ...]
+    """Optimisers whose runs are not complete on these problems."""
 
     @property
     def searches(self) -> tuple[Ranked, ...]:
@@ -94,28 +72,6 @@ class Board:
     def place(self, one: Ranked) -> int | None:
         """The place of an optimiser among the searches, from 1; None for the reference."""
         return self.searches.index(one) + 1 if one.optimizer != DESCENT else None
-
-
-def board_cells(board: Board, one: Ranked) -> tuple[tuple[str, str], ...]:
-    """The row of an optimiser, as `BOARD_COLUMNS`: each value, and its interval or nothing."""
-    place = board.place(one)
-    return (
-        (str(place or "–"), ""),
-        (one.optimizer if place else f"{one.optimizer} (reference, no black box)", ""),
-        *(
-            (f"{100 * s:.0f} %", f"{100 * low:.0f} to {100 * high:.0f}")
-            for s, low, high in one.solved
-        ),
-        (percent(one.median) if np.isfinite(one.median) else "no answer", ""),
-        *(_evaluations(ends) if place else ("–", "") for ends in one.expected),
-        (str(one.failed), ""),
-    )
-
-
-def _evaluations(ends: tuple[float, float, float]) -> tuple[str, str]:
-    """Expected evaluations with their interval; an end without bound is ∞."""
-    value, low, high = ("∞" if np.isinf(end) else f"{end:.0f}" for end in ends)
-    return ("–", "") if value == "∞" else (value, f"{low} to {high}")
 
 
 def leaderboard_study() -> StudyPlan:

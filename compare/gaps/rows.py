@@ -35,18 +35,12 @@ class RowStatus(StrEnum):
 
 @dataclass(frozen=True)
 class Bracket:
-    """Where the optimum lies, s.
-
-    Attributes
-    ----------
-    upper : float
-        Total of a feasible trajectory.
-    lower : float or None
-        Certified lower bound; None where there is none.
-    """
+    """Where the optimum lies, s."""
 
     upper: float
+    """Total of a feasible trajectory."""
     lower: float | None = None
+    """Certified lower bound; None where there is none."""
 
     def __post_init__(self) -> None:
         if not 0 < self.upper < float("inf"):
@@ -97,7 +91,6 @@ class Trial:
         Its settings as `canonical` JSON.
     handling : str
         What happens to vectors that break a limit; see `Handling`.
-    seed : int
     budget : int
         Evaluations; the objective enforces it.
     stream : tuple of int
@@ -155,46 +148,12 @@ class Trial:
 
 @dataclass(frozen=True)
 class Row:
-    """What one run leaves behind; nothing is clipped, and no clock enters.
-
-    Attributes
-    ----------
-    key : str
-        Of the trial.
-    problem, reading, problem_sha256, optimizer, settings, origin, handling, seed, stream, budget
-        Of the trial; ``problem`` is its name.
-    segments : int
-        Number of durations.
-    status : RowStatus
-    message : str
-        Why it failed; empty otherwise.
-    evaluations : int
-        Duration vectors judged, at most the budget.
-    durations : tuple of float or None
-        What the best position stands for, s; None if nothing feasible was judged.
-    reported_time : float or None
-        Its total by the objective, s.
-    verdict : str or None
-        Of `trajgap.problem.check` on the durations.
-    worst_ratio : float or None
-        Largest ratio of a value to its limit; None if nothing is limited.
-    feasible_time : float or None
-        T·max(1, c*) as `check` finds it, s.
-    feasible_why : str
-        Why there is none; empty otherwise.
-    reference_upper, reference_lower : float or None
-        What the gaps are set against, s.
-    reported_gap, feasible_gap : (float, float) or None
-        Of either time, [(T − U)/U, (T − L)/L]. That of the reported time is an optimality gap
-        only if the verdict is "pass", else a difference of reported time.
-    trace : tuple of (int, float)
-        Best total by the objective after so many evaluations, s, at log-spaced numbers of them
-        and only where it changed: the last entry at or before an evaluation holds there, and
-        before the first nothing feasible was known.
-    """
+    """What one run leaves behind; nothing is clipped, and no clock enters."""
 
     key: str
+    """Of the trial, as all up to `budget` are."""
     problem: str
+    """Its name."""
     reading: str
     problem_sha256: str
     optimizer: str
@@ -205,20 +164,35 @@ class Row:
     stream: tuple[int, ...]
     budget: int
     segments: int
+    """Number of durations."""
     status: RowStatus = RowStatus.FINISHED
     message: str = ""
+    """Why it failed; empty otherwise."""
     evaluations: int = 0
+    """Duration vectors judged, at most the budget."""
     durations: tuple[float, ...] | None = None
+    """What the best position stands for, s; None if nothing feasible was judged."""
     reported_time: float | None = None
+    """Its total by the objective, s."""
     verdict: str | None = None
+    """Of `trajgap.problem.check` on the durations."""
     worst_ratio: float | None = None
+    """Largest ratio of a value to its limit; None if nothing is limited."""
     feasible_time: float | None = None
+    """T·max(1, c*) as `check` finds it, s."""
     feasible_why: str = ""
+    """Why there is none; empty otherwise."""
     reference_upper: float | None = None
     reference_lower: float | None = None
+    """What the gaps are set against, s."""
     reported_gap: tuple[float, float] | None = None
     feasible_gap: tuple[float, float] | None = None
+    """Of either time, [(T − U)/U, (T − L)/L]. That of the reported time is an optimality gap only
+    if the verdict is "pass", else a difference of reported time."""
     trace: tuple[tuple[int, float], ...] = field(default=())
+    """Best total by the objective after so many evaluations, s, at log-spaced numbers of them and
+    only where it changed: the last entry at or before an evaluation holds there, and before the
+    first nothing feasible was known."""
 
     @classmethod
     def begun(cls, trial: Trial, **known: Any) -> Row:

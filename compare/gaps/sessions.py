@@ -18,27 +18,18 @@ _SOFTWARE = ("trajgap", "numpy", "scipy", "casadi", "numba")
 
 @dataclass(frozen=True)
 class StudySession:
-    """How a session stands.
-
-    Attributes
-    ----------
-    total : int
-        Trials of the study.
-    resumed : int
-        Of them in the store before the session began.
-    run : int
-        Of them run since then.
-    failed : int
-        Runs of this session that failed.
-    seconds : float
-        That the runs of this session took together.
-    """
+    """How a session stands."""
 
     total: int
+    """Trials of the study."""
     resumed: int
+    """Of them in the store before the session began."""
     run: int = 0
+    """Of them run since then."""
     failed: int = 0
+    """Runs of this session that failed."""
     seconds: float = 0.0
+    """That the runs of this session took together."""
 
     @property
     def left(self) -> int:
@@ -51,8 +42,6 @@ def unfinished(study: StudyPlan, store: Store, retry: bool = False) -> Iterator[
 
     Parameters
     ----------
-    study : StudyPlan
-    store : Store
     retry : bool
         Whether those with a failed row are among them.
     """
@@ -76,9 +65,6 @@ def run_study(
 
     Parameters
     ----------
-    study : StudyPlan
-    store : Store
-    engine : Engine
     retry : bool
         Run the failed ones again.
     progress : callable

@@ -65,10 +65,6 @@ def bench_result(
     ----------
     rows : mapping of str to sequence of Row
         Of each optimiser, by its label.
-    optimum : Solution, Reference or float
-    problem, reading : str
-    budget, seeds : int
-    notes : tuple of str
     """
     reference = gap(1.0, optimum).reference
     standings = [_standing(label, one, reference) for label, one in rows.items()]

@@ -108,7 +108,6 @@ def share_interval(slower: Array, faster: Array, reduction: float) -> tuple[floa
     ----------
     slower, faster : ndarray
         Totals, s; at least two each.
-    reduction : float
 
     Returns
     -------

@@ -125,7 +125,6 @@ class Store:
 
         Parameters
         ----------
-        row : Row
         seconds : float
             That the run took.
 

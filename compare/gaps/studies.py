@@ -43,59 +43,38 @@ from .trials import DESCENT, origin_of
 
 @dataclass(frozen=True, eq=False)
 class StudyProblem:
-    """One problem of a study.
-
-    Attributes
-    ----------
-    name, reading : str
-        As rows state them.
-    case : Case
-        Where it is stated.
-    problem_id : str
-        Its id there.
-    joint : str or None
-        The joint that is searched by itself; None for all together.
-    problem : Problem
-        As stated.
-    box : Bounds
-        Where searches look for durations.
-    stream : tuple of int
-        Part of the spawn key of its random numbers: (j,) for joint j of several.
-    solve : callable
-        Finds where the optimum of the problem as stated lies.
-    notes : tuple of str
-        What was chosen so that optimisers can search it.
-    """
+    """One problem of a study."""
 
     name: str
     reading: str
+    """As rows state them."""
     case: Case
+    """Where it is stated."""
     problem_id: str
+    """Its id there."""
     joint: str | None
+    """The joint that is searched by itself; None for all together."""
     problem: Problem
+    """As stated."""
     box: Bounds
+    """Where searches look for durations."""
     stream: tuple[int, ...]
+    """Part of the spawn key of its random numbers: (j,) for joint j of several."""
     solve: Callable[[], Bracket | None]
+    """Finds where the optimum of the problem as stated lies."""
     notes: tuple[str, ...]
+    """What was chosen so that optimisers can search it."""
 
 
 @dataclass(frozen=True, eq=False)
 class StudyPlan:
-    """What a study file asks for.
-
-    Attributes
-    ----------
-    file : str
-    document : StudyFile
-    problems : tuple of StudyProblem
-    missing : tuple of str
-        Why optimisers were left out.
-    """
+    """What a study file asks for."""
 
     file: str
     document: StudyFile
     problems: tuple[StudyProblem, ...]
     missing: tuple[str, ...] = ()
+    """Why optimisers were left out."""
 
     def __len__(self) -> int:
         """Number of its trials."""

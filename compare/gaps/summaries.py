@@ -28,39 +28,27 @@ _QUANTILES = (0.25, 0.5, 0.75)
 
 @dataclass(frozen=True)
 class Summary:
-    """What the runs of one optimiser on one problem came to, whatever their seeds.
-
-    Attributes
-    ----------
-    problem : str
-        As rows call it.
-    optimizer : str
-        Label of the optimiser in its study.
-    handling : str
-    budget : int
-        Evaluations of each run.
-    runs, failed : int
-        Number of runs, and of those that raised, hung or broke the rules.
-    lower_quartile, median, upper_quartile : float
-        Gap of the feasible time to the upper end of the optimum, relative; inf if so many runs have
-        no feasible answer.
-    within : tuple of int
-        Number of runs that come within each gap of `LADDER`.
-    spent : tuple of int
-        For each gap of `SOLVED`, evaluations of all runs up to their hits.
-    """
+    """What the runs of one optimiser on one problem came to, whatever their seeds."""
 
     problem: str
+    """As rows call it."""
     optimizer: str
+    """Label of the optimiser in its study."""
     handling: str
     budget: int
+    """Evaluations of each run."""
     runs: int
     failed: int
+    """Number of runs, and of those that raised, hung or broke the rules."""
     lower_quartile: float
     median: float
     upper_quartile: float
+    """Gap of the feasible time to the upper end of the optimum, relative; inf if so many runs have
+    no feasible answer."""
     within: tuple[int, ...]
+    """Number of runs that come within each gap of `LADDER`."""
     spent: tuple[int, ...]
+    """For each gap of `SOLVED`, evaluations of all runs up to their hits."""
 
 
 def summary_of(label: str, rows: Sequence[Row]) -> Summary:

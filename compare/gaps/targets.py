@@ -122,7 +122,6 @@ def share_within(totals: Array, optimum: float) -> tuple[Array, Array]:
     ----------
     totals : ndarray, shape (runs,)
         s; inf for a run without answer.
-    optimum : float
 
     Returns
     -------

@@ -3,24 +3,19 @@ from .benches import (
     bench_picture as bench_picture,
     check_bench_folder as check_bench_folder,
     ends_picture as ends_picture,
-    most_solved as most_solved,
-    optimum_said as optimum_said,
     write_bench as write_bench,
 )
 from .crate import (
     crate_library as crate_library,
     crate_of as crate_of,
 )
+from .environment import fill_template as fill_template
+from .folders import write_folder as write_folder
 from .glossary import word_groups as word_groups
-from .one_page import (
-    fill_template as fill_template,
-    page_files as page_files,
-)
 from .plotting import plot as plot
 from .suite_report import suite_pages as suite_pages
 from .writer import (
-    MARK as MARK,
-    RESERVED as RESERVED,
-    foreign as foreign,
+    check_report_folder as check_report_folder,
+    page_files as page_files,
     write_report as write_report,
 )

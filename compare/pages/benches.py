@@ -2,27 +2,33 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
-from ...problem import Array, CaseError, file_name, recover_folder, replace_folder, shown_bound
+from ...problem import Array, file_name
 from ..audits import package_version
+from ..blocks import (
+    Drawn,
+    Folded,
+    Grid,
+    Page,
+    Prose,
+    Section,
+    Terms,
+    bench_blocks,
+    overall_blocks,
+    table,
+)
 from ..documents import (
-    BENCH_COLUMNS,
-    OVERALL_COLUMNS,
     BenchDocument,
     BenchResult,
     OverallStanding,
     PairCompared,
-    Reference,
     Standing,
     TargetReached,
     Why,
-    bench_cells,
     gap_cell,
     json_text,
-    overall_cells,
     percent,
     value_or_none,
 )
@@ -41,11 +47,13 @@ from ..gaps import (
     totals_of,
 )
 from ..pictures import Anytime, Picture, gap_picture, profile_picture, svg, themed
-from .blocks import Block, Cell, Drawn, Folded, Grid, Page, Prose, Section, Terms, number, text
+from .folders import check_folder, write_folder
 from .writer import page_text
 
 _QUARTILES = (0.25, 0.5, 0.75)
 """Of the runs, in the picture of the gaps."""
+_WHAT = "bench"
+"""What its folder is called in messages."""
 _PAGE = "index.html"
 """The page; like the next three a file of a bench, and a folder that holds others is kept."""
 _MARK = "bench.json"
@@ -54,8 +62,6 @@ _ROWS = "rows.csv"
 """Every run, as an export of a study has it."""
 _ONE_BY_ONE = 6
 """Problems up to which each has its own tables and pictures on the page; JSON and CSV have all."""
-_LEADING_GAP = 0.01
-"""Gap of the sentence that leads over many problems: what a paper's digits can tell apart."""
 _PICTURES = "pictures/bench-"
 """What its pictures begin with."""
 
@@ -76,7 +82,6 @@ def write_bench(results: Sequence[tuple[BenchResult, Runs]], out: Path) -> None:
     CaseError
         If the folder holds anything else, or cannot be written.
     """
-    check_bench_folder(out)
     page = _page(results)
     files = {
         _PAGE: page_text(page),
@@ -85,10 +90,7 @@ def write_bench(results: Sequence[tuple[BenchResult, Runs]], out: Path) -> None:
     }
     for drawn in page.pictures:
         files[page.picture(drawn)] = themed(drawn.document)
-    try:
-        replace_folder(Path(out), files)
-    except OSError as error:
-        raise _unwritten(out, error) from None
+    write_folder(Path(out), files, _foreign, _WHAT)
 
 
 def bench_document(results: Sequence[tuple[BenchResult, Runs]]) -> BenchDocument:
@@ -105,25 +107,13 @@ def check_bench_folder(out: Path) -> None:
     CaseError
         If it holds anything but an earlier bench.
     """
-    try:
-        recover_folder(out)
-        if os.path.lexists(out) and not out.is_dir():
-            raise CaseError(str(out), "--out", "is a file; name a folder")
-        there = sorted(p.relative_to(out).as_posix() for p in out.rglob("*") if not p.is_dir())
-    except OSError as error:
-        raise _unwritten(out, error) from None
-    for name in there:
-        if name not in (_PAGE, _MARK, _ROWS) and not name.startswith(_PICTURES):
-            raise CaseError(
-                str(out), "--out", f"holds {name}, which is no bench; name a new or an empty folder"
-            )
-    if there and _MARK not in there:
-        raise CaseError(str(out), "--out", "holds no bench; name a new or an empty folder")
+    check_folder(out, _foreign, _WHAT)
 
 
-def _unwritten(out: Path, error: OSError) -> CaseError:
-    reason = error.strerror or type(error).__name__
-    return CaseError(str(out), "--out", f"cannot be written ({reason}); name another place")
+def _foreign(_: Path, there: list[str]) -> str | None:
+    own = (_PAGE, _MARK, _ROWS)
+    others = [name for name in there if name not in own and not name.startswith(_PICTURES)]
+    return next(iter(others), None if _MARK in there else there[0])
 
 
 def _rows(result: BenchResult, runs: Runs) -> Iterator[Row]:
@@ -140,7 +130,6 @@ def bench_picture(result: BenchResult, runs: Runs) -> Picture:
     ----------
     result : BenchResult
         What `measure_gaps` returned for the runs.
-    runs : Runs
     """
     upper, lower = result.optimum.upper, value_or_none(result.optimum.lower)
     return gap_picture(
@@ -228,8 +217,7 @@ def _all_sections(results: Sequence[tuple[BenchResult, Runs]]) -> list[Section]:
             "overall",
             head,
             (
-                Prose(most_solved(standings), "lead"),
-                _overall_table(standings),
+                *overall_blocks(standings),
                 _drawn("all", "gaps", gaps),
                 Folded("Where runs end", (_drawn("all", "profile", profile),)),
                 *(Folded(head, blocks) for head, blocks in said if blocks),
@@ -244,28 +232,6 @@ def _width(result: BenchResult) -> float:
     return 0.0 if lower is None else 1 - lower / result.optimum.upper
 
 
-def most_solved(standings: Sequence[OverallStanding]) -> str:
-    """Which optimiser comes within 1 % most often, in a sentence."""
-    first = standings[0]
-    target = next(one for one in first.targets if one.gap == _LEADING_GAP)
-    said = (
-        f"Within 1 % of the optimum most often: {first.optimizer}, in {100 * target.rate:.0f} % of "
-        f"its runs over {first.problems} problems"
-    )
-    if len(standings) > 1:
-        second = next(one for one in standings[1].targets if one.gap == _LEADING_GAP)
-        said += f"; next {standings[1].optimizer} with {100 * second.rate:.0f} %"
-    return f"{said}."
-
-
-def _overall_table(standings: Sequence[OverallStanding]) -> Grid:
-    rows = tuple(
-        tuple(text(cell) if i == 0 else number(cell) for i, cell in enumerate(overall_cells(one)))
-        for one in standings
-    )
-    return Grid(OVERALL_COLUMNS, rows)
-
-
 def _by_problem(
     results: Sequence[tuple[BenchResult, Runs]], standings: Sequence[OverallStanding]
 ) -> Grid:
@@ -276,27 +242,19 @@ def _by_problem(
         width = f"{_width(result):.1e}" if _width(result) else "no bound"
         rows.append(
             (
-                text(result.title),
-                number(f"{result.optimum.upper:.6g}"),
-                number(width),
-                *(number(medians[name]) for name in names),
+                result.title,
+                f"{result.optimum.upper:.6g}",
+                width,
+                *(medians[name] for name in names),
             )
         )
-    columns = ("problem", "optimum (s)", "its width", *names)
-    return Grid(columns, tuple(rows), "Median gap of each optimiser")
+    columns = ("problem", ">optimum (s)", ">its width", *(f">{name}" for name in names))
+    return table(columns, rows, "Median gap of each optimiser")
 
 
 def _section(at: int, head: str, result: BenchResult, runs: Runs) -> Section:
     """What the runs on one problem say; a problem that heads the page is not named again."""
-    blocks: list[Block] = [Prose(result.verdict, "lead"), Prose(optimum_said(result.optimum))]
-    blocks.append(_table(result.standings))
-    blocks.append(_drawn(at, "gaps", bench_picture(result, runs)))
-    blocks += [Prose(note, "note") for note in result.notes]
-    blocks += [
-        Prose(f"{one.optimizer}: {message}", "note")
-        for one in result.standings
-        for message in one.messages
-    ]
+    blocks = [*bench_blocks(result), _drawn(at, "gaps", bench_picture(result, runs))]
     blocks.append(Folded("Where runs end", (_drawn(at, "profile", ends_picture(result, runs)),)))
     blocks.append(Folded("Every target", (_targets(result.standings),)))
     if result.pairs:
@@ -305,73 +263,45 @@ def _section(at: int, head: str, result: BenchResult, runs: Runs) -> Section:
     return Section(f"result-{at}", head or "Where each optimiser ends", tuple(blocks))
 
 
-def optimum_said(optimum: Reference) -> str:
-    """What is known of the optimum, in a sentence."""
-    lower = value_or_none(optimum.lower)
-    if lower is None:
-        return f"Optimum: {optimum.upper:.6f} s, {optimum.evidence}; true gaps may be larger."
-    width = percent(1 - lower / optimum.upper)
-    far = width.replace("<", "less than") if width.startswith("<") else f"up to {width}"
-    return (
-        f"Optimum: {shown_bound(lower, 'lower', places=7)} to "
-        f"{shown_bound(optimum.upper, 'upper', places=7)} s, {optimum.evidence}; it may lie {far} "
-        "below the value that gaps are set against."
-    )
-
-
-def _table(standings: Sequence[Standing]) -> Grid:
-    rows = tuple(
-        tuple(text(cell) if i == 0 else number(cell) for i, cell in enumerate(bench_cells(one)))
-        for one in standings
-    )
-    return Grid(BENCH_COLUMNS, rows)
-
-
 def _targets(standings: Sequence[Standing]) -> Grid:
     rows = tuple(
-        (text(one.optimizer), number(percent(target.gap)), *_target(one, target))
+        (one.optimizer, percent(target.gap), *_target(one, target))
         for one in standings
         for target in one.targets
     )
-    columns = (
-        "optimizer",
-        "gap",
-        "runs",
-        "rate, 95 % interval",
-        "expected evaluations",
-        "interval",
-    )
-    return Grid(columns, rows, "Expected evaluations with restarts, until the gap is reached")
+    columns = ("optimizer", ">gap", ">runs", ">rate, 95 % interval", ">expected evaluations",
+               ">interval")  # fmt: skip
+    return table(columns, rows, "Expected evaluations with restarts, until the gap is reached")
 
 
-def _target(one: Standing, target: TargetReached) -> tuple[Cell, ...]:
+def _target(one: Standing, target: TargetReached) -> tuple[object, ...]:
     low, high = 100 * target.rate_lowest, 100 * target.rate_highest
     ends = (target.evaluations_lowest, target.evaluations_highest)
     shown = " to ".join("∞" if isinstance(end, Why) else f"{end:.0f}" for end in ends)
     never = isinstance(target.evaluations, Why)
     return (
-        number(f"{target.reached} of {one.runs}"),
-        number(f"{low:.0f} to {high:.0f} %"),
-        number("never" if isinstance(target.evaluations, Why) else f"{target.evaluations:.0f}"),
-        number("" if never else shown),
+        f"{target.reached} of {one.runs}",
+        f"{low:.0f} to {high:.0f} %",
+        ("never" if isinstance(target.evaluations, Why) else f"{target.evaluations:.0f}"),
+        ("" if never else shown),
     )
 
 
 def _pairs(pairs: Sequence[PairCompared]) -> Grid:
     rows = tuple(
         (
-            text(one.first),
-            text(one.second),
-            number(f"{100 * one.first_shorter:.0f} %"),
-            number(f"{100 * one.equal:.0f} %"),
-            number(f"{one.vargha_delaney:.3f}"),
-            number(f"{one.lowest:.3f} to {one.highest:.3f}"),
-            number(f"{one.p_value:.2g}"),
+            one.first,
+            one.second,
+            f"{100 * one.first_shorter:.0f} %",
+            f"{100 * one.equal:.0f} %",
+            f"{one.vargha_delaney:.3f}",
+            f"{one.lowest:.3f} to {one.highest:.3f}",
+            f"{one.p_value:.2g}",
         )
         for one in pairs
     )
-    columns = ("first", "second", "first is shorter", "tie", "A₁₂", "95 % interval", "p, Holm")
-    return Grid(columns, rows)
+    columns = ("first", "second", ">first is shorter", ">tie", ">A₁₂", ">95 % interval", ">p, Holm")
+    return table(columns, rows)
 
 
 def _settings(standings: Sequence[Standing]) -> Terms:

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from pathlib import Path
+from typing import Any
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 from ...problem import visible
+from ..blocks import link, slug
 from ..pictures import embedded
-from .blocks import link, slug
 
 _TEMPLATES = Path(__file__).parent / "templates"
 """Where the pages' templates and style lie, as package data."""
@@ -20,6 +22,7 @@ def style() -> str:
     return (_TEMPLATES / "style.css").read_text(encoding="utf-8")
 
 
+@lru_cache(maxsize=1)
 def environment() -> Environment:
     """The templates, with what they call."""
     found = Environment(
@@ -31,6 +34,7 @@ def environment() -> Environment:
         keep_trailing_newline=True,
         finalize=_visible,
     )
+    found.globals["zip"] = zip
     found.filters["slug"] = slug
     found.filters["link"] = link
     found.filters["inline"] = lambda drawn: Markup(embedded(drawn.document, drawn.name))
@@ -43,3 +47,15 @@ def _visible(value: object) -> object:
     if isinstance(value, str) and not isinstance(value, Markup):
         return visible(value, keep="\n")
     return value
+
+
+def fill_template(path: Path, **values: Any) -> str:
+    """Fill a template that lies elsewhere, with the style and the safety of all pages.
+
+    Parameters
+    ----------
+    **values
+        What it names; ``style`` is the style sheet.
+    """
+    shapes = environment().overlay(loader=FileSystemLoader(path.parent))
+    return shapes.get_template(path.name).render(style=style(), **values)

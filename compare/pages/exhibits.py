@@ -13,6 +13,7 @@ from ...problem.cases import ControlVerticesClaim, DurationsClaim, MaximumClaim
 from ...problem.robots import Chain, DhTable, proximity, sample_workspace
 from ..audits import PrintedRow, Study, place
 from ..audits.rules import has_vertices, vertices
+from ..blocks import Block, Drawn, Folded, Section, table
 from ..pictures import (
     Picture,
     jump_picture,
@@ -23,7 +24,6 @@ from ..pictures import (
     velocity_jumps,
     workspace_picture,
 )
-from .blocks import Block, Drawn, Folded, Grid, Section, number, text
 from .motions_shown import alike, whole_rows
 from .numbers import noted, only_under
 from .units import both_units, paper_units
@@ -92,10 +92,10 @@ def _jumps_of(
     yield _drawn(file_name("jumps", problem, first.id), picture, caption)
     grid = tuple(
         (
-            text(jump.joint),
-            number(jump.break_index),
-            number(f"{jump.time:.3f} s"),
-            number(
+            jump.joint,
+            jump.break_index,
+            f"{jump.time:.3f} s",
+            (
                 both_units(
                     statement,
                     "velocity",
@@ -107,9 +107,9 @@ def _jumps_of(
         )
         for jump in velocity_jumps(posed, durations)
     )
-    columns = ("joint", "break", "time", "velocity after less before")
+    columns = ("joint", ">break", ">time", ">velocity after less before")
     yield Folded(
-        f"All {len(grid)} jumps: {names}{only_under(study, row.reading)}", (Grid(columns, grid),)
+        f"All {len(grid)} jumps: {names}{only_under(study, row.reading)}", (table(columns, grid),)
     )
 
 
@@ -284,15 +284,15 @@ def _tents(study: Study) -> Iterator[Block]:
         }
         rows = tuple(
             (
-                text(f"{rule}" + (" (listed choice)" if rule is built.tent_rule else "")),
-                number(lengths[rule]),
-                number(f"{scatter.collapsed[rule]} of {built.whales}"),
+                (f"{rule}" + (" (listed choice)" if rule is built.tent_rule else "")),
+                lengths[rule],
+                f"{scatter.collapsed[rule]} of {built.whales}",
             )
             for rule in TentRule
         )
         columns = (
             "orbits by",
-            "points of an orbit",
-            "members with a duration of exactly 0 (seed 0)",
+            ">points of an orbit",
+            ">members with a duration of exactly 0 (seed 0)",
         )
-        yield Grid(columns, rows)
+        yield table(columns, rows)

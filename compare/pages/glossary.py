@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from ...nlp import Evidence
 from ...problem import Verdict
 from ..audits import EXPLAINED, RULES
+from ..blocks import Block, Prose, Section, Terms
 from ..documents import (
     TERMS,
     TIMES,
@@ -20,7 +21,6 @@ from ..documents import (
     meaning,
     meanings,
 )
-from .blocks import Block, Prose, Section, Terms
 
 SCOPES = f"{', '.join(Scope)} readings"
 """The term that explains how many readings agree."""

@@ -10,20 +10,9 @@ from ...problem import Case, file_name
 from ..audits import CaseAudit, Study, place
 from ..audits.instances import STARTS, InstancesResult, examinable, examined, percent_range
 from ..audits.rules import HANDLED, attributed, placed
+from ..blocks import Block, Drawn, Folded, Grid, Prose, Section, Terms, table
 from ..documents import Effect, ExaminedInstances, Procedure, Reduction, Why
 from ..pictures import instances_picture, svg
-from .blocks import (
-    Block,
-    Cell,
-    Drawn,
-    Folded,
-    Grid,
-    Prose,
-    Section,
-    Terms,
-    number,
-    text,
-)
 
 
 def other_instances(one: CaseAudit) -> tuple[Section, ...]:
@@ -55,11 +44,11 @@ def _examined(study: Study, result: InstancesResult, entry: ExaminedInstances) -
         ),
         Terms(_design(study, result)),
         Drawn(file_name("family", block.id), svg(picture), title, caption),
-        Grid(_COLUMNS, _rows(entry, result, None), "Reductions of the total, in %"),
+        table(_COLUMNS, _rows(entry, result, None), "Reductions of the total, in %"),
         Folded(
             "Reductions by step length",
             tuple(
-                Grid(_COLUMNS, _rows(entry, result, step), f"Steps of {step:g} {block.unit}")
+                table(_COLUMNS, _rows(entry, result, step), f"Steps of {step:g} {block.unit}")
                 for step in block.lengths
             ),
         ),
@@ -99,28 +88,18 @@ def _procedure(case: Case, one: Procedure) -> str:
     return f"{names[one.algorithm]} (“{called}”)"
 
 
-_COLUMNS = (
-    "reading",
-    "due to",
-    "pairs",
-    "least",
-    "quarter",
-    "median",
-    "three quarters",
-    "most",
-    "shorter",
-    "as printed or more",
-)
+_COLUMNS = ("reading", "due to", ">pairs", ">least", ">quarter", ">median", ">three quarters",
+            ">most", ">shorter", ">as printed or more")  # fmt: skip
 """Columns of the reductions."""
 
 
 def _rows(
     entry: ExaminedInstances, result: InstancesResult, step: float | None
-) -> tuple[tuple[Cell, ...], ...]:
+) -> tuple[tuple[object, ...], ...]:
     return tuple(_row(one, result) for one in entry.reductions if one.step == step)
 
 
-def _row(found: Reduction, result: InstancesResult) -> tuple[Cell, ...]:
+def _row(found: Reduction, result: InstancesResult) -> tuple[object, ...]:
     reached = None
     if result.printed is not None and found.effect is Effect.BOTH and found.objective is not None:
         at = result.block.objectives.index(found.objective)
@@ -137,12 +116,12 @@ def _row(found: Reduction, result: InstancesResult) -> tuple[Cell, ...]:
     )
     missing = f"\n{found.missing} without answer" if found.missing else ""
     return (
-        text(result.label(found.reading)),
-        text(found.effect + (f", {found.objective}" if found.objective else "")),
-        number(f"{found.pairs}{missing}"),
-        *(number(None if isinstance(x, Why) else f"{100 * x:.1f}") for x in quantiles),
-        number(None if isinstance(found.shorter, Why) else f"{100 * found.shorter:.3g} %"),
-        number(reached),
+        result.label(found.reading),
+        (found.effect + (f", {found.objective}" if found.objective else "")),
+        f"{found.pairs}{missing}",
+        *((None if isinstance(x, Why) else f"{100 * x:.1f}") for x in quantiles),
+        (None if isinstance(found.shorter, Why) else f"{100 * found.shorter:.3g} %"),
+        reached,
     )
 
 
@@ -152,26 +131,24 @@ def _instances(entry: ExaminedInstances, labels: Mapping[str, str]) -> Grid:
     for one in entry.instances:
         for own in one.readings:
             cells = [
-                text(labels.get(own.reading, own.reading)),
-                number(f"{one.step:g}"),
-                number(one.instance + 1),
+                labels.get(own.reading, own.reading),
+                f"{one.step:g}",
+                one.instance + 1,
             ]
             for optimum in (own.slower_optimum, own.faster_optimum):
                 total = optimum.total_time
-                cells.append(
-                    text(optimum.status) if isinstance(total, Why) else number(f"{total:.4f}")
-                )
+                cells.append(optimum.status if isinstance(total, Why) else f"{total:.4f}")
             for runs in own.totals:
                 for totals in (runs.slower, runs.slower_algorithm_on_faster_curve, runs.faster):
                     said = ("none" if t is None else f"{t:.3f}" for t in totals)
-                    cells.append(number("\n".join(said)))
+                    cells.append("\n".join(said))
             rows.append(tuple(cells))
     names = (
         "reading",
-        f"step, {entry.unit}",
-        "instance",
-        "optimum of the slower curve",
-        "optimum of the faster curve",
-        *(f"{route}, {objective}" for objective in entry.objectives for route in routes),
+        f">step, {entry.unit}",
+        ">instance",
+        ">optimum of the slower curve",
+        ">optimum of the faster curve",
+        *(f">{route}, {objective}" for objective in entry.objectives for route in routes),
     )
-    return Grid(names, tuple(rows), "Totals in s, one line for each run")
+    return table(names, tuple(rows), "Totals in s, one line for each run")

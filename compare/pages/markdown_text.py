@@ -5,18 +5,7 @@ from __future__ import annotations
 import re
 
 from ...problem import visible
-from .blocks import (
-    Behind,
-    Block,
-    CardShown,
-    Claimed,
-    Drawn,
-    Folded,
-    Grid,
-    Page,
-    Prose,
-    Terms,
-)
+from ..blocks import Behind, Block, CardShown, Claimed, Drawn, Folded, Grid, Page, Prose, Terms
 
 _SPECIAL = re.compile(r"([\\`*_\[\]<>#|~$&])")
 """Characters that may begin markup anywhere."""
@@ -49,9 +38,13 @@ def plain(text: str) -> str:
 
 def _block(page: Page, block: Block) -> str:
     if isinstance(block, Prose):
-        return f"### {plain(block.text)}" if block.weight == "heading" else plain(block.text)
+        if block.weight == "heading":
+            return f"### {plain(block.text)}"
+        word = f"**{plain(block.word)}** " if block.word else ""
+        link = f" [{plain(block.doi)}]({block.doi_link})" if block.doi_link else ""
+        return f"{word}{plain(block.text)}{link}"
     if isinstance(block, Terms):
-        return "\n".join(f"- **{plain(name)}**: {_line(meaning)}" for name, meaning in block.pairs)
+        return "\n".join(f"- **{plain(name)}**: {_line(said.text)}" for name, said in block.cells)
     if isinstance(block, Drawn):
         link = f"![{_line(block.title)}]({page.picture(block)})"
         return link + (f"\n\n{plain(block.caption)}" if block.caption else "")
@@ -59,9 +52,7 @@ def _block(page: Page, block: Block) -> str:
         inner = [_block(page, one) for one in block.blocks]
         return "\n\n".join([f"### {plain(block.title)}", *inner])
     if isinstance(block, CardShown):
-        last = [one for one in (block.beside, block.tally) if one]
-        lines = (*block.lines, *block.errors, *last)
-        card = "\n".join(f"- {_line(line)}" for line in lines)
+        card = "\n".join(f"- {_line(line)}" for line, _ in block.sentences)
         return card if block.drawn is None else f"{card}\n\n{_block(page, block.drawn)}"
     if isinstance(block, Claimed):
         return _claimed(block)
@@ -76,7 +67,7 @@ def _claimed(block: Claimed) -> str:
     place = "; ".join(x for x in (block.where, block.printed, block.holds) if x)
     head = f"- **{plain(block.verdict.text)}**: {_line(block.text)} ({_line(place)})"
     answer = [block.answer] if block.answer else []
-    reasons = (*block.why, *block.more, *map(str, block.caveats), *answer)
+    reasons = (*block.why, *block.more, *block.beside, *map(str, block.caveats), *answer)
     return "\n".join([head, *(f"  - {_line(reason)}" for reason in reasons)])
 
 
@@ -84,7 +75,7 @@ def _grid(grid: Grid) -> str:
     rows = [
         "| " + " | ".join(_line(name) for name in grid.columns) + " |",
         "|" + "---|" * len(grid.columns),
-        *("| " + " | ".join(_line(cell.text) for cell in row) + " |" for row in grid.rows),
+        *("| " + " | ".join(map(_line, grid.texts(row))) + " |" for row in grid.rows),
     ]
     return (f"{plain(grid.caption)}\n\n" if grid.caption else "") + "\n".join(rows)
 

@@ -11,9 +11,9 @@ from ...nlp import Solution, weakest
 from ...problem import Array, Problem, TrajgapError, file_name
 from ...problem.cases import DurationsClaim, MaximumClaim, TotalTimeClaim
 from ..audits import CaseAudit, Pair, PrintedRow, Study, at_ratios, place, planned_apart
+from ..blocks import Block, Drawn, Folded, Prose, Section, table
 from ..documents import OWN_OPTIMA
 from ..pictures import Picture, Runs, convergence, endings, landscape, motion_picture, svg
-from .blocks import Block, Drawn, Folded, Grid, Prose, Section
 from .numbers import REPLAY_COLUMNS, noted, problem_name, replay_rows
 from .units import paper_units
 
@@ -110,16 +110,16 @@ def _tables_by_joint(study: Study, pair: Pair) -> list[tuple[str, list[_Row]]]:
     if len(joints) == 1:
         return []
     found: dict[tuple[tuple[str, ...], ...], tuple[list[str], list[_Row]]] = {}
-    for table in study.case.tables:
+    for printed in study.case.tables:
         rows = {
             c.joint: PrintedRow(study, c, pair)
-            for c in study.case.table_claims(table.id)
+            for c in study.case.table_claims(printed.id)
             if isinstance(c, DurationsClaim) and study.fits(c, pair)
         }
         if all(label in rows for label in joints):
             own: list[_Row] = [rows[label] for label in joints]
             digits = tuple(tuple(map(str, row.claim.durations)) for row in own)
-            found.setdefault(digits, ([], own))[0].append(table.where)
+            found.setdefault(digits, ([], own))[0].append(printed.where)
     return [(", ".join(tables), own) for tables, own in found.values()]
 
 
@@ -166,7 +166,7 @@ def searches(one: CaseAudit) -> Section:
                 caption,
             )
         )
-        grid = Grid(REPLAY_COLUMNS, tuple(replay_rows(study, pair)))
+        grid = table(REPLAY_COLUMNS, replay_rows(study, pair))
         blocks.append(Folded(f"Spread over seeds and open choices: {name}", (grid,)))
     lead = Prose(
         f"Each algorithm was run with seeds 0 to {study.seeds - 1} under the choices listed below, "

@@ -7,49 +7,30 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from ...nlp import Evidence, PerJointSolution, Solution
+from ...nlp import PerJointSolution, Solution
 from ...problem import Case, Coupling, file_name, shown_bound
 from ...problem.cases import DurationsClaim
 from ..audits import CaseAudit, Pair, PrintedRow, Study, at_ratios, place, routes, searched_for
-from ..documents import (
-    OPTIMA_STEPS,
-    OPTIMUM_RETIMED,
-    REACHED_COLUMNS,
+from ..blocks import (
     REACHED_MEANING,
-    THIRD_ORDER,
-    Gap,
-    Step,
-    Waterfall,
-    Why,
-    by_search,
-    ranged,
-    reached_cells,
-)
-from ..gaps import gap, reference_of, spread
-from ..pictures import reached_picture, seconds as interval, svg, waterfall_picture
-from .blocks import (
     Block,
-    Cell,
     Drawn,
     Folded,
     Grid,
     Prose,
     Section,
-    listed,
-    number,
-    seconds,
-    text,
+    distances_table,
+    reached_table,
+    steps_table,
+    table,
     word,
 )
+from ..documents import Waterfall, Why, by_search, ranged
+from ..gaps import gap, reference_of, spread
+from ..pictures import reached_picture, svg, waterfall_picture
 
 _ON_A_LINE = 2
 """Durations on each line of a cell: nine on one would push the table off the page."""
-_MANY = 10
-"""Distance, as a share, beyond which a multiple says more than a percentage."""
-_SAME = 5e-4
-"""Distance, as a share, whose one decimal is 0, so that its sign would say nothing."""
-_NOTED = (*OPTIMA_STEPS, OPTIMUM_RETIMED, THIRD_ORDER)
-"""Steps whose note stands in the open: the optimum, its proof and routes, and its cross-check."""
 _FEW = 3
 """Other readings of a problem that still get a picture each, and searches that stand open."""
 
@@ -82,13 +63,13 @@ def where_time_goes(one: CaseAudit) -> Section:
         for waterfall in own:
             shown = problem_name(one, pid, waterfall.reading)
             if waterfall.reading == main:
-                blocks.append(_distances(waterfall, shown))
+                blocks.append(distances_table(waterfall, shown).filled)
                 notes = [Prose(said, "note") for said in waterfall.without_optimum]
                 blocks += [one for one in notes if one not in blocks]
-                inside = _drawn(one, waterfall), _steps(waterfall)
+                inside = _drawn(one, waterfall), steps_table(waterfall)
                 blocks.append(Folded(f"Picture and notes: {shown}", inside))
             elif len(others) <= _FEW:
-                inside = _drawn(one, waterfall), _steps(waterfall)
+                inside = _drawn(one, waterfall), steps_table(waterfall)
                 blocks.append(Folded(f"Other reading: {shown}", inside))
         if len(others) > _FEW:
             title = f"Other readings, step by step: {problem_name(one, pid)}"
@@ -100,10 +81,9 @@ def reached_runs(one: CaseAudit) -> Section:
     """How near each of the paper's algorithms gets, with every run between optimum and print."""
     blocks: list[Block] = []
     for at, (title, runs) in enumerate(by_search(one.reached).items()):
-        rows = tuple((text(own[0]), *map(number, own[1:])) for own in map(reached_cells, runs))
         picture = reached_picture(runs, one.waterfalls, title=title)
         own = (
-            Grid(REACHED_COLUMNS, rows, title),
+            reached_table(runs, title),
             Drawn(file_name("reached", str(at)), svg(picture), title),
         )
         blocks += own if at < _FEW else [Folded(title, own)]
@@ -113,44 +93,15 @@ def reached_runs(one: CaseAudit) -> Section:
     return Section("reached", "How near the paper's algorithms get", tuple(blocks))
 
 
-def _distances(waterfall: Waterfall, caption: str) -> Grid:
-    """Each step in seconds, and how far the first one lies above it."""
-    first = next((s.time for s in waterfall.steps if not isinstance(s.time, Why)), None)
-    rows = tuple(
-        (
-            text(s.name),
-            number(interval(s)),
-            number(_above(first, s)),
-            _evidence(s),
-            text(s.note if s.name in _NOTED else None),
-        )
-        for s in waterfall.steps
-        if not isinstance(s.time, Why)
-    )
-    names = ("step", "total", "the first against this", "evidence", "found how")
-    return Grid(names, rows, caption).filled
-
-
-def _above(first: float | None, step: Step) -> str | None:
-    if first is None or isinstance(step.time, Why) or step.time <= 0 or first == step.time:
-        return None
-    if abs(first / step.time - 1) < _SAME:
-        return "0.0\N{NO-BREAK SPACE}%"
-    if first / step.time > 1 + _MANY:
-        return f"{first / step.time:.1f} times"
-    # The unit stays with its number on the narrowest screen.
-    return f"{100 * (first / step.time - 1):+.1f}\N{NO-BREAK SPACE}%"
-
-
-def _evidence(step: Step) -> Cell:
-    """The word for a reference value; empty for what is printed, which has none."""
-    return text(None) if step.evidence is Evidence.NONE else word(step.evidence)
-
-
 def problem_cell(case: Case, pid: str) -> str:
     """What a table calls a problem: its title; nothing where it is the only one."""
     title = next((p.title for p in case.problems if p.id == pid), "") or pid
     return title if len(case.problems) > 1 else ""
+
+
+def asked_cells(study: Study, pair: Pair) -> tuple[str, str]:
+    """What a table calls a problem and its reading."""
+    return problem_cell(study.case, pair.problem), study.case.labels[pair.reading]
 
 
 def problem_name(one: CaseAudit, pid: str, reading: str | None = None) -> str:
@@ -194,24 +145,14 @@ def _side_by_side(one: CaseAudit, pid: str, waterfalls: Sequence[Waterfall]) -> 
     rows = []
     for waterfall in waterfalls:
         steps = {s.name: s for s in waterfall.steps}
-        cells = [_step(steps.get(name)) for name in names]
-        rows.append((text(one.case.labels.get(waterfall.reading, waterfall.reading)), *cells))
+        cells = [
+            "" if (step := steps.get(name)) is None or isinstance(step.time, Why)
+            else "\n".join(filter(None, (step.total(), step.known)))
+            for name in names
+        ]  # fmt: skip
+        rows.append((one.case.labels.get(waterfall.reading, waterfall.reading), *cells))
     caption = f"{problem_name(one, pid)}; an empty cell was not computed"
-    return Grid(("reading", *names), tuple(rows), caption).filled
-
-
-def _step(step: Step | None) -> Cell:
-    if step is None or isinstance(step.time, Why):
-        return number(None)
-    evidence = "" if step.evidence is Evidence.NONE else f"\n{step.evidence}"
-    return number(interval(step) + evidence)
-
-
-def _steps(waterfall: Waterfall) -> Grid:
-    rows = tuple(
-        (text(s.name), number(interval(s)), _evidence(s), text(s.note)) for s in waterfall.steps
-    )
-    return Grid(("step", "total", "evidence", "note"), rows)
+    return table(("reading", *(f">{name}" for name in names)), rows, caption).filled
 
 
 # --- optima ---------------------------------------------------------------------------------------
@@ -220,67 +161,54 @@ _OPTIMA = "Optimum of each formulation"
 """Title of the section."""
 NINE = 9
 """Nine decimals of a proved bound, as the certificates' tables have them."""
-_ANSWER = ("status", "total", "by", "evidence", "durations, s", "check", "KKT residual")
+_ANSWER = ("status", ">total", "by", "evidence", ">durations, s", "check", ">KKT residual")
 """Columns that say how a solve ended."""
 
 
 def _durations(values: list[float]) -> str:
     """Durations, a few on each line."""
-    lines = [listed(values[i : i + _ON_A_LINE]) for i in range(0, len(values), _ON_A_LINE)]
+    shown = [f"{value:.6f}" for value in values]
+    lines = [", ".join(shown[i : i + _ON_A_LINE]) for i in range(0, len(shown), _ON_A_LINE)]
     return ",\n".join(lines)
 
 
-def _answer(solution: Solution) -> tuple[Cell, ...]:
+def _answer(solution: Solution) -> tuple[object, ...]:
     if solution.boundless is not None:
-        why = text(f"{solution.status}\n{solution.boundless}")
-        return (why, *(text(None) for _ in _ANSWER[1:]))
+        why = f"{solution.status}\n{solution.boundless}"
+        return (why, *(None for _ in _ANSWER[1:]))
     check = solution.check
     residual = solution.kkt_residual
-    total = None if not solution.found else seconds(solution.total_time)
+    total = f"{solution.total_time:.6f} s" if solution.found else None
     if solution.infimum is not None:
         called = "infimum" if solution.approach_proved else "approached"
         total = f"{solution.infimum:.6f} s ({called})"
     if total is not None and solution.lower_bound is not None:
         total += f"\nat least {shown_bound(solution.lower_bound, 'lower', places=NINE)} s,\nproved"
     return (
-        text(solution.status + (f"\n{solution.why}" if solution.why else "")),
-        number(total),
-        text(None if solution.route is None else "\n".join(routes(solution))),
+        (solution.status + (f"\n{solution.why}" if solution.why else "")),
+        total,
+        (None if solution.route is None else "\n".join(routes(solution))),
         word(solution.evidence),
-        number(None if not solution.found else _durations(list(solution.durations))),
-        word(check.verdict) if check is not None else text(None),
-        number(None if residual is None else f"{residual:.1e}"),
+        (None if not solution.found else _durations(list(solution.durations))),
+        word(check.verdict) if check is not None else None,
+        (None if residual is None else f"{residual:.1e}"),
     )
 
 
 def optima(one: CaseAudit) -> Section:
     """Optimum of each formulation, then each joint by itself where the text does that."""
     study = one.study
-    rows: list[tuple[Cell, ...]] = []
+    rows: list[tuple[object, ...]] = []
     blocks: list[Block] = []
     without: defaultdict[str, list[str]] = defaultdict(list)
     for pair in study.pairs:
-        own = study.optimum(pair)
-        rows.append(
-            (
-                text(problem_cell(study.case, pair.problem)),
-                text(study.case.labels[pair.reading]),
-                text(f"printed curve, shared durations{at_ratios(own.problem)}"),
-                *_answer(own),
-            )
-        )
-        relaxed = study.relaxed(pair)
-        if not relaxed.found:
-            without[relaxed.why or str(relaxed.status)].append(pair.reading)
+        own, relaxed = study.optimum(pair), study.relaxed(pair)
+        solved = {f"printed curve, shared durations{at_ratios(own.problem)}": own}
+        if relaxed.found:
+            solved["relaxed family"] = relaxed
         else:
-            rows.append(
-                (
-                    text(problem_cell(study.case, pair.problem)),
-                    text(study.case.labels[pair.reading]),
-                    text("relaxed family"),
-                    *_answer(relaxed),
-                )
-            )
+            without[relaxed.why or str(relaxed.status)].append(pair.reading)
+        rows += [(*asked_cells(study, pair), name, *_answer(one)) for name, one in solved.items()]
         if _by_joint(study, pair):
             blocks += _joints(study, pair)
     if not rows:
@@ -292,9 +220,7 @@ def optima(one: CaseAudit) -> Section:
         for why, found in without.items()
     ]
     names = ("problem", "reading", "formulation", *_ANSWER)
-    return Section(
-        "optima", _OPTIMA, (Grid(names, tuple(rows)).filled, *notes, *blocks), folded=True
-    )
+    return Section("optima", _OPTIMA, (table(names, rows).filled, *notes, *blocks), folded=True)
 
 
 def _by_joint(study: Study, pair: Pair) -> bool:
@@ -319,24 +245,21 @@ def _joints(study: Study, pair: Pair) -> Iterator[Block]:
             if total is not None and reference is not None:
                 shown.setdefault(total.shown, []).append(claim.where)
                 row = PrintedRow(study, claim, pair)
-                gaps.append(_gap_text(gap(total.interval, reference, feasible=row.kept)))
+                far = gap(total.interval, reference, feasible=row.kept)
+                gaps.append(f"{far.percent} ({far.kind})")
         rows.append(
             (
-                text(label),
+                label,
                 *_answer(solution),
-                text("\n".join(f"{t} ({'; '.join(where)})" for t, where in shown.items())),
-                text("\n".join(dict.fromkeys(gaps))),
+                "\n".join(f"{t} ({'; '.join(where)})" for t, where in shown.items()),
+                "\n".join(dict.fromkeys(gaps)),
             )
         )
     names = ("joint", *_ANSWER, "printed", "gap")
     named = problem_cell(study.case, pair.problem) or "each segment takes the longest duration"
     yield Prose(f"Each joint by itself: {named}{only_under(study, pair.reading)}", "heading")
-    yield Grid(names, tuple(rows))
+    yield table(names, rows)
     yield Prose(_procedure(answer), "note")
-
-
-def _gap_text(distance: Gap) -> str:
-    return f"{distance.percent} ({distance.kind})"
 
 
 def _procedure(answer: PerJointSolution) -> str:
@@ -360,8 +283,6 @@ def _procedure(answer: PerJointSolution) -> str:
 def sensitivities(one: CaseAudit) -> Section:
     """What 10 % more of each active limit buys, to first order."""
     title = "What 10 % more of a limit buys"
-    if not one.study.has_problems:
-        return Section("sensitivities", title, ())
     rows = []
     for pair in one.study.pairs:
         solution = one.study.optimum(pair)
@@ -373,13 +294,12 @@ def sensitivities(one: CaseAudit) -> Section:
             change = sum(changes)
             rows.append(
                 (
-                    text(problem_cell(one.case, pair.problem)),
-                    text(one.case.labels[pair.reading]),
-                    text(where),
-                    text(quantity),
-                    number(len(changes)),
-                    number(f"{change:+.6f} s"),
-                    number(f"{100 * change / solution.total_time:+.3f} %"),
+                    *asked_cells(one.study, pair),
+                    where,
+                    quantity,
+                    len(changes),
+                    f"{change:+.6f} s",
+                    f"{100 * change / solution.total_time:+.3f} %",
                 )
             )
     note = Prose(
@@ -387,18 +307,20 @@ def sensitivities(one: CaseAudit) -> Section:
         "from the multipliers of the optimum with shared durations.",
         "note",
     )
-    names = ("problem", "reading", "limit of", "quantity", "peaks at it", "changes the total", "by")
-    body: Block = Grid(names, tuple(rows)).filled if rows else Prose("No limit is reached.")
-    return Section("sensitivities", title, (note, body), folded=True)
+    names = ("problem", "reading", "limit of", "quantity", ">peaks at it", ">changes the total",
+             ">by")  # fmt: skip
+    body: Block = table(names, rows).filled if rows else Prose("No limit is reached.")
+    shown = (note, body) if one.study.has_problems else ()
+    return Section("sensitivities", title, shown, folded=True)
 
 
 # --- replays --------------------------------------------------------------------------------------
 
 
-def replay_rows(study: Study, pair: Pair) -> list[tuple[Cell, ...]]:
+def replay_rows(study: Study, pair: Pair) -> list[tuple[object, ...]]:
     """Totals of every algorithm over its seeds, under the listed choices and spread settings."""
     reference = searched_for(study, pair)
-    rows = []
+    rows: list[tuple[object, ...]] = []
     for algorithm in study.case.algorithms:
         for name, runs in study.spread_runs(algorithm.id, pair).items():
             s = spread(np.array([r.reported_time for r in runs]))
@@ -406,15 +328,15 @@ def replay_rows(study: Study, pair: Pair) -> list[tuple[Cell, ...]]:
             away = gap(s.median, reference).percent if known and reference is not None else None
             rows.append(
                 (
-                    text(algorithm.name),
-                    text(name),
-                    number(s.runs),
-                    number(s.failed),
+                    algorithm.name,
+                    name,
+                    s.runs,
+                    s.failed,
                     *(
-                        number(seconds(x) if np.isfinite(x) else None)
+                        f"{x:.6f} s" if np.isfinite(x) else None
                         for x in (s.lowest, s.median, s.highest)
                     ),
-                    number(away),
+                    away,
                 )
             )
     return rows
@@ -423,11 +345,11 @@ def replay_rows(study: Study, pair: Pair) -> list[tuple[Cell, ...]]:
 REPLAY_COLUMNS = (
     "algorithm",
     "choices",
-    "runs",
-    "without answer",
-    "shortest",
-    "median",
-    "longest",
-    "gap of the median",
+    ">runs",
+    ">without answer",
+    ">shortest",
+    ">median",
+    ">longest",
+    ">gap of the median",
 )
 """Columns of `replay_rows`."""

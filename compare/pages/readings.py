@@ -9,19 +9,8 @@ from ...problem import Case
 from ...problem.cases import Statement
 from ...problem.curves import ClampedBSpline, Knots, Parameters, clamped_readings
 from ..audits import CaseAudit, answers, place, segments
+from ..blocks import Block, Cell, Folded, Grid, Plain, Prose, Section, table, word
 from ..documents import ClaimVerdict, Keeping, ReadingOutcome, ReadingsSummary, Why, capital
-from .blocks import (
-    Block,
-    Cell,
-    Folded,
-    Grid,
-    Plain,
-    Prose,
-    Section,
-    number,
-    text,
-    word,
-)
 from .numbers import problem_cell
 from .units import both_units
 
@@ -59,10 +48,10 @@ def _argued(one: CaseAudit, summary: ReadingsSummary) -> Iterator[Block]:
         found.setdefault(key, []).append(clue.reading)
     rows = tuple(
         (
-            text(f"{where}\n{said}"),
-            text("; ".join(summary.labels[reading] for reading in readings)),
-            text(speaks),
-            text(computed),
+            f"{where}\n{said}",
+            "; ".join(summary.labels[reading] for reading in readings),
+            speaks,
+            computed,
         )
         for (where, said, computed, speaks), readings in found.items()
     )
@@ -74,9 +63,9 @@ def _argued(one: CaseAudit, summary: ReadingsSummary) -> Iterator[Block]:
         for reading, why in summary.implausible.items()
     ]
     if rows:
-        columns = ("printed or known", "readings", "speaks", "computed under them")
+        columns = ("printed or known", "readings", "speaks", "~computed under them")
         note = "None of this decides a verdict: an implausible reading stays admissible."
-        blocks += [Grid(columns, rows, prose=True), Prose(note, "note")]
+        blocks += [table(columns, rows), Prose(note, "note")]
     if blocks:
         yield Folded("What speaks for and against the readings", tuple(blocks))
     held = [o for o in summary.outcomes if not isinstance(o.held, Why)]
@@ -100,20 +89,20 @@ def _held(one: CaseAudit, outcomes: list[ReadingOutcome]) -> tuple[Block, ...]:
         )
         rows.append(
             (
-                text(whose),
-                text(one.case.labels[outcome.reading]),
-                number(f"{held.everywhere:.4g}"),
-                number(f"{held.sampled:.4g}"),
-                number(vertices),
+                whose,
+                one.case.labels[outcome.reading],
+                f"{held.everywhere:.4g}",
+                f"{held.sampled:.4g}",
+                vertices,
             )
         )
-    columns = ("durations", "reading", "for all t", "at samples", "on control vertices")
+    columns = ("durations", "reading", ">for all t", ">at samples", ">on control vertices")
     note = (
         "Largest ratio of the printed durations to a limit; above 1 it is broken. Every verdict "
         f"means all t. Samples: {steps} steps a segment. Control vertices bound velocity and "
         "acceleration of a B-spline from outside, so that limits on them are stricter."
     )
-    return Grid(columns, tuple(rows)).filled, Prose(note, "note")
+    return table(columns, rows).filled, Prose(note, "note")
 
 
 def _outcomes(one: CaseAudit, summary: ReadingsSummary) -> list[Block]:
@@ -122,12 +111,12 @@ def _outcomes(one: CaseAudit, summary: ReadingsSummary) -> list[Block]:
     printed: dict[tuple[str | None, str], list[ReadingOutcome]] = {}
     for outcome in summary.outcomes:
         printed.setdefault((outcome.claim, outcome.problem), []).append(outcome)
-    names = ("reading", "limits", "over a limit", "× to limits", "optimum", "printed total")
+    names = ("reading", "limits", "over a limit", ">× to limits", ">optimum", "printed total")
     grids: list[Block] = []
     for (claim, problem), own in printed.items():
         rows = tuple(_row(outcome, default, summary) for outcome in own)
         where = place(one.case.claim(claim)) if claim else problem_cell(one.case, problem)
-        grids.append(Grid(names, rows, where).filled)
+        grids.append(table(names, rows, where).filled)
     note = (
         "Limits are judged for all the ways in which the digits may have been rounded or cut off; "
         "jumps and the segments over a limit are those of the printed point. × to limits: all "
@@ -137,7 +126,7 @@ def _outcomes(one: CaseAudit, summary: ReadingsSummary) -> list[Block]:
     return [*grids, Folded("How to read this table", (Prose(note, "note"),))]
 
 
-def _row(outcome: ReadingOutcome, default: str, summary: ReadingsSummary) -> tuple[Cell, ...]:
+def _row(outcome: ReadingOutcome, default: str, summary: ReadingsSummary) -> tuple[object, ...]:
     mark = "\n(default)" if outcome.reading == default else ""
     mark += "\n(implausible)" if outcome.reading in summary.implausible else ""
     optimum = stretch = gap = None
@@ -155,19 +144,19 @@ def _row(outcome: ReadingOutcome, default: str, summary: ReadingsSummary) -> tup
         over = f"segment{plural} {segments(outcome.excesses)}\n{whose}, ratio {worst.ratio:.4g}"
     several = "s" if outcome.jumps > 1 else ""
     jumps = f"\n{outcome.jumps} velocity jump{several}" if outcome.jumps else ""
-    limits = text(None)
+    limits = Cell("")
     if not isinstance(outcome.keeping, Why):
         limits = word(outcome.keeping)
         if outcome.keeping in _OPEN:
             # The word that the claim has under this reading; its reason is behind the link.
             limits = replace(limits, text=str(ClaimVerdict.NOT_CHECKABLE))
     return (
-        text(summary.labels[outcome.reading] + mark),
+        summary.labels[outcome.reading] + mark,
         replace(limits, text=limits.text + jumps),
-        text(over),
-        number(stretch),
-        number(optimum),
-        text(gap),
+        over,
+        stretch,
+        optimum,
+        gap,
     )
 
 
@@ -182,17 +171,17 @@ def _without_problems(one: CaseAudit) -> Grid:
         slides |= any(statement.linear)
         rows.append(
             (
-                text(one.case.labels[rid]),
-                text(problem_cell(one.case, pid)),
-                text(curve.name),
-                text(_listed(statement, "velocity", limits.velocity)),
-                text(_listed(statement, "acceleration", limits.acceleration)),
+                one.case.labels[rid],
+                problem_cell(one.case, pid),
+                curve.name,
+                _listed(statement, "velocity", limits.velocity),
+                _listed(statement, "acceleration", limits.acceleration),
             )
         )
     units = ("", "") if slides else (", rad/s", ", rad/s²")
     limited = (f"velocity limits{units[0]}", f"acceleration limits{units[1]}")
     names = ("reading", "problem", "curve", *limited)
-    return Grid(names, tuple(rows), "What each reading poses, way-points apart").filled
+    return table(names, rows, "What each reading poses, way-points apart").filled
 
 
 def _listed(statement: Statement, quantity: str, limits: Iterable[float]) -> str:
@@ -213,11 +202,11 @@ def _determined(case: Case) -> list[Block]:
         return []
     count = len(curve.waypoint_breaks)
     rows = tuple(
-        (number(r.degree), text(str(r.knots)), text(str(r.count)), text(r.words))
+        (r.degree, str(r.knots), str(r.count), r.words)
         for r in clamped_readings(count, curve.end_orders)
         if r.parameters is Parameters.TIMES
     )
-    grid = Grid(("degree", "knots", "count", "what holds"), rows, prose=True)
+    grid = table((">degree", "knots", "count", "~what holds"), rows)
     return [
         Folded(f"Degrees and knots through {count} way-points, and what they determine", (grid,))
     ]

@@ -4,20 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from typing import Any
 
 from ...problem import QUANTITIES, Limits, Problem, visible
-from ...problem.suite import BenchmarkInstance, Hardness, plain_text, suite_version
-from .blocks import Block, Cell, Grid, Page, Prose, Section, Terms, number, text
-from .environment import environment, style
+from ...problem.suite import BenchmarkInstance, plain_text, suite_version
+from ..blocks import Block, Cell, Page, Prose, Section, Terms, instance_terms, suite_table, table
+from .writer import page_text
 
 _TITLE = "Suite of certified instances"
 """Heading of the index."""
-
-_COLUMNS = ("curve", "joints", "segments", "tight", "lower", "upper", "width", "evidence")
-"""Columns of the index beside the name."""
-_NUMBERS = ("joints", "segments", "lower", "upper", "width")
-"""Those that hold numbers."""
 
 
 def suite_pages(
@@ -27,7 +21,6 @@ def suite_pages(
 
     Parameters
     ----------
-    instances : sequence of BenchmarkInstance
     step : callable
         Told the name of each instance before its page.
 
@@ -36,24 +29,15 @@ def suite_pages(
     dict
         ``index.html``, and ``NAME.html`` and ``NAME.toml``, the plain file, for each instance.
     """
-    shapes = environment()
     found: dict[str, str] = {}
     for one in instances:
         step(one.name)
-        page = instance_page(one)
-        found[f"{one.name}.html"] = shapes.get_template("case.html").render(
-            page=page, style=style()
-        )
+        found[f"{one.name}.html"] = page_text(instance_page(one))
         found[f"{one.name}.toml"] = plain_text(one)
-    found["index.html"] = shapes.get_template("suite.html").render(
-        title=f"{_TITLE} {suite_version()}",
-        columns=("instance", *_COLUMNS),
-        numbers=_NUMBERS,
-        rows=[_row(one) for one in instances],
-        counts=_counts(instances),
-        style=style(),
-    )
-    return found
+    rows = Section("instances", "Instances", (suite_table(instances, "{}.html"),))
+    title = f"{_TITLE} {suite_version()}"
+    index = Page("suite", title, (rows,), _counts(instances), links=(("JSON", "suite.json"),))
+    return {**found, "index.html": page_text(index)}
 
 
 def _counts(instances: Sequence[BenchmarkInstance]) -> str:
@@ -65,20 +49,6 @@ def _counts(instances: Sequence[BenchmarkInstance]) -> str:
     )
 
 
-def _row(one: BenchmarkInstance) -> dict[str, Any]:
-    return {
-        "name": one.name,
-        "curve": one.curve,
-        "joints": one.joints,
-        "segments": one.segments,
-        "tight": ", ".join(one.tight),
-        "lower": repr(one.lower),
-        "upper": repr(one.upper),
-        "width": f"{one.width:.1e}",
-        "evidence": str(one.evidence),
-    }
-
-
 def instance_page(one: BenchmarkInstance) -> Page:
     """Everything that the page of one instance says, in order."""
     case = one.case()
@@ -87,29 +57,14 @@ def instance_page(one: BenchmarkInstance) -> Page:
         one.name,
         one.name,
         (
-            Section("bounds", "What is known", (_bounds(one),)),
+            Section("bounds", "What is known", (instance_terms(one),)),
             Section("verify", "Verify in 60 seconds with one file", _verified(one)),
-            Section("hardness", "How hard it is", _hardness(one)),
-            Section("problem", "The problem", (_size(one), _question(problem), _limits(problem))),
+            Section("problem", "The problem", (_question(problem), _limits(problem))),
             Section("source", "Where it comes from", (Prose(case.source.title),)),
             Section("use", "Use it", _used(one)),
         ),
         trail=f"{visible(case.title)}. Suite {suite_version()}.",
         links=(("All instances", "index.html"), ("Plain file", f"{one.name}.toml")),
-    )
-
-
-def _bounds(one: BenchmarkInstance) -> Block:
-    over = "" if one.lower_subject == "the declared curve" else "; proved over all curves"
-    answer = "proved feasible" if one.upper_proved else "feasible by trajgap's check"
-    return Terms(
-        (
-            ("no total is below", f"{one.lower!r} s{over}"),
-            ("best known total", f"{one.upper!r} s, {answer}"),
-            ("relative width", f"{one.width:.2e}: {one.evidence}"),
-            ("its durations", ", ".join(f"{h!r}" for h in one.durations) + " s"),
-            ("limits that it reaches", ", ".join(one.tight)),
-        )
     )
 
 
@@ -127,51 +82,15 @@ def _verified(one: BenchmarkInstance) -> tuple[Block, ...]:
             (
                 ("certificate, SHA-256", str(one.certificate_sha256)),
                 ("case file, SHA-256", one.case_sha256),
-                ("made by", one.command),
             )
         ),
-    )
-
-
-def _hardness(one: BenchmarkInstance) -> tuple[Block, ...]:
-    hard = one.hardness
-    if hard is None:
-        return (Prose("Not measured yet."),)
-    return (
-        Terms(
-            (
-                ("basins", f"{hard.basins} found by {hard.starts} descents from random starts"),
-                ("ends in the best", f"{hard.best_basin_share:.0%} of these descents"),
-                ("feasible share", f"{hard.feasible_share:.2%} of {hard.drawn} durations drawn "
-                 "uniformly within their bounds"),
-                *_rates(hard),
-            )
-        ),
-    )  # fmt: skip
-
-
-def _rates(hard: Hardness) -> tuple[tuple[str, str], ...]:
-    """How often each baseline succeeds."""
-    ending = f"of {hard.baseline_runs} runs of {hard.baseline_budget} evaluations end within 1 %"
-    return tuple((f"baseline {n}", f"{r:.0%} {ending}") for n, r in hard.baselines.items())
-
-
-def _size(one: BenchmarkInstance) -> Block:
-    return Terms(
-        (
-            ("curve", one.curve),
-            ("size", f"{one.segments} segments between way-points, {one.joints} joints"),
-        )
     )
 
 
 def _question(problem: Problem) -> Block:
-    columns = ("way-point", *(f"joint {label} (rad)" for label in problem.joints))
-    rows = [
-        (Cell(str(k)), *(number(f"{q:.6g}") for q in row))
-        for k, row in enumerate(problem.waypoints)
-    ]
-    return Grid(columns, tuple(rows))
+    columns = ("way-point", *(f">joint {label} (rad)" for label in problem.joints))
+    rows = [(Cell(str(k)), *(f"{q:.6g}" for q in row)) for k, row in enumerate(problem.waypoints)]
+    return table(columns, rows)
 
 
 def _sizes(limits: Limits, quantity: str) -> list[str]:
@@ -186,10 +105,10 @@ def _sizes(limits: Limits, quantity: str) -> list[str]:
 def _limits(problem: Problem) -> Block:
     limits = problem.limits
     rows = [
-        (text(f"{name} (rad/s{power})"), *(number(x) for x in _sizes(limits, name)))
+        (f"{name} (rad/s{power})", *(x for x in _sizes(limits, name)))
         for name, power in zip(QUANTITIES, ("", "²", "³"), strict=True)
     ]
-    return Grid(("limit", *(f"joint {label}" for label in problem.joints)), tuple(rows))
+    return table(("limit", *(f">joint {label}" for label in problem.joints)), rows)
 
 
 def _used(one: BenchmarkInstance) -> tuple[Block, ...]:

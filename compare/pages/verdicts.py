@@ -10,9 +10,9 @@ import numpy as np
 from ...problem import QUANTITIES, Case, Coupling, Problem, file_name
 from ...problem.cases import Statement
 from ..audits import RULES, CaseAudit, Study, place
+from ..blocks import Block, Cell, Folded, Grid, Prose, Section, Terms, table, word
 from ..documents import ClaimVerdict, Finding, Gap, Severity, Why, facts
-from .blocks import Block, Cell, Folded, Grid, Prose, Section, Terms, text, word
-from .numbers import problem_cell
+from .numbers import asked_cells, problem_cell
 from .units import both_units, one_unit
 
 _TITLES = {rule.id: rule.title for rule in RULES}
@@ -42,27 +42,19 @@ def _problems(study: Study) -> Grid:
         how = "shared durations" if p.coupling is Coupling.SHARED else "each joint by itself"
         rows.append(
             (
-                text(problem_cell(study.case, pair.problem)),
-                text(study.case.labels[pair.reading]),
-                text(f"{len(p.joints)} × {p.waypoints.shape[0]}"),
-                text(p.curve.name),
-                text(_limits(p, study.case.statement(*pair))),
-                text(_bounds(p)),
-                text(how),
+                *asked_cells(study, pair),
+                f"{len(p.joints)} × {p.waypoints.shape[0]}",
+                p.curve.name,
+                _limits(p, study.case.statement(*pair)),
+                _bounds(p),
+                how,
             )
         )
-    names = (
-        "problem",
-        "reading",
-        "joints × way-points",
-        "curve",
-        "limits",
-        "durations",
-        "coupling",
-    )
+    names = ("problem", "reading", "joints × way-points", "curve", "limits", "durations",
+             "coupling")  # fmt: skip
     base = "rad, m and s" if slides else "rad and s"
     caption = f"Problems posed; in brackets {base} where the paper has other units"
-    return Grid(names, tuple(rows), caption).filled
+    return table(names, rows, caption).filled
 
 
 def _limits(problem: Problem, statement: Statement) -> str:
@@ -144,15 +136,15 @@ def _finding_grid(case: Case, found: list[Finding], readings: int) -> Grid:
                     "\n".join(x for x in under if x),
                     target=file_name("claim", about) if about else "",
                 ),
-                text(f.printed),
-                text(f.computed),
-                text(_gap(f)),
+                f.printed,
+                f.computed,
+                _gap(f),
                 replace(word(f.verdict), text=f"{_word(f)}\nbasis: {f.basis}"),
-                text(f.message),
+                f.message,
             )
         )
-    columns = ("rule", "claim", "printed", "computed", "gap", "says", "finding")
-    return Grid(columns, tuple(rows), prose=True).filled
+    columns = ("rule", "claim", "printed", "computed", "gap", "says", "~finding")
+    return table(columns, rows).filled
 
 
 def _gap(finding: Finding) -> str | None:
@@ -176,19 +168,19 @@ def foundations(one: CaseAudit) -> list[Section]:
     )
     assumed = tuple(
         (
-            text(a.text),
-            text(a.choice),
-            text("; ".join(dict.fromkeys(_affected(case, one) for one in a.affects))),
+            a.text,
+            a.choice,
+            "; ".join(dict.fromkeys(_affected(case, one) for one in a.affects)),
         )
         for a in case.assumptions
     )
-    lost = tuple((text(n.where), text(n.what), text(n.why)) for n in case.not_checkable)
+    lost = tuple((n.where, n.what, n.why) for n in case.not_checkable)
     opened = [
         Folded(f"Left open for {a.name}", (Terms(_numbered(a.open)),))
         for a in case.algorithms
         if a.open
     ]
-    choices = (Grid(("left open", "chosen", "affects"), assumed),) if assumed else ()
+    choices = (table(("left open", "chosen", "affects"), assumed),) if assumed else ()
     return [
         Section(
             "readings",
@@ -205,7 +197,7 @@ def foundations(one: CaseAudit) -> list[Section]:
         Section(
             "not-checkable",
             "Not checkable from the text",
-            (Grid(("where", "what", "why"), lost),) if lost else (),
+            (table(("where", "what", "why"), lost),) if lost else (),
             folded=True,
         ),
     ]

@@ -2,31 +2,37 @@
 
 from __future__ import annotations
 
-import os
 from collections import Counter
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 from pydantic import BaseModel, Field
 
 from ...nlp.optimum import KKT_TOLERANCE, SAME, STARTS
-from ...problem import (
-    LONGEST_NAME,
-    TOLERANCE,
-    TrajgapError,
-    file_name,
-    read_regular,
-    recover_folder,
-    replace_folder,
-)
+from ...problem import LONGEST_NAME, TOLERANCE, Case, CaseError, file_name, read_regular
 from ..audits import AuditReport, CaseAudit, package_version
-from ..documents import AuditDocument, ClaimVerdict, Why, json_text, more_errors, tally
+from ..blocks import (
+    GLOSSARY,
+    Block,
+    Cell,
+    Folded,
+    Page,
+    Prose,
+    Section,
+    Terms,
+    card_shown,
+    counts_said,
+    reference,
+    table,
+)
+from ..documents import AuditDocument, ClaimVerdict, json_text, tally
 from ..pictures import themed
 from . import motions_shown as report_pictures
-from .blocks import GLOSSARY, Block, CardShown, Folded, Page, Prose, Section, Terms
 from .claims import advised, against, folded_claims
 from .environment import environment, style
 from .exhibits import exhibits_of_motion, exhibits_of_search
+from .folders import check_folder, write_folder
 from .glossary import glossary
 from .instances import other_instances
 from .markdown_text import markdown
@@ -38,6 +44,8 @@ MARK = "audit.json"
 """The file by which the folder of an earlier report is known."""
 _LARGEST_MARK = 1_000_000_000
 """Bytes that are read to know an earlier report: hundreds of times the largest one shipped."""
+_WHAT = "audit"
+"""What the folder is called in messages."""
 _INDEX = "index.html"
 """The page that leads to those of the cases."""
 RESERVED = (Path(_INDEX).stem, Path(MARK).stem, Path(GLOSSARY).stem)
@@ -60,7 +68,6 @@ def write_report(report: AuditReport, out: Path) -> None:
 
     Parameters
     ----------
-    report : AuditReport
     out : Path
         A new or an empty folder, or one with an earlier report, which is replaced. It gets
         ``index.html``, ``glossary.html`` and ``audit.json``, and for each case ``CASE.html``,
@@ -69,38 +76,39 @@ def write_report(report: AuditReport, out: Path) -> None:
 
     Raises
     ------
-    TrajgapError
+    CaseError
         If the folder holds anything else, two cases would share a file, or it cannot be written.
     """
-    out = Path(out)
-    names = [one.case.id for one in report.cases]
-    for name in names:
-        if names.count(name) > 1:
-            raise TrajgapError(f"{out}: two cases are called {name!r}; give each an id of its own")
-        if name in RESERVED:
-            raise TrajgapError(f"{out}: a case cannot be called {name!r}; rename it")
-    try:
-        recover_folder(out)
-        other = foreign(out)
-        if other is not None:
-            raise TrajgapError(
-                f"{out}: {other} is not part of a trajgap report; name a new or an empty folder"
-            )
-        replace_folder(out, report_files(report))
-    except OSError as error:
-        reason = error.strerror or type(error).__name__
-        raise TrajgapError(f"{out}: cannot be written ({reason}); name another place") from None
+    check_report_folder(Path(out), [one.case for one in report.cases], option="")
+    write_folder(Path(out), report_files(report), _foreign, _WHAT, option="")
 
 
-def foreign(out: Path) -> str | None:
-    """Name of the first thing in a folder that no report has written; None if there is none."""
-    if not os.path.lexists(out):
-        return None
-    if not out.is_dir() or out.is_symlink():
-        return "what is there"
-    there = sorted(p.relative_to(out).as_posix() for p in out.rglob("*") if not p.is_dir())
-    if not there:
-        return None
+def check_report_folder(out: Path, cases: Sequence[Case] = (), option: str = "--out") -> None:
+    """Find out whether a report can be written, before computing what goes into it.
+
+    Parameters
+    ----------
+    cases : sequence of Case
+        Those that it is about.
+    option : str
+        What names the folder, for messages.
+
+    Raises
+    ------
+    CaseError
+        If the folder holds anything but an earlier report or cannot be written, or if the id of
+        a case is that of another one or the name of another page.
+    """
+    names = [case.id for case in cases]
+    for case in cases:
+        taken = "another page" if case.id in RESERVED else "another case"
+        if case.id in RESERVED or names.count(case.id) > 1:
+            raise CaseError(case.file, "id", f"{case.id!r} is the name of {taken}; rename it")
+    check_folder(out, _foreign, _WHAT, option)
+
+
+def _foreign(out: Path, there: list[str]) -> str | None:
+    """The first file that no report has written; None if there is none."""
     try:
         mark = _Mark.model_validate_json(read_regular(out / MARK, _LARGEST_MARK, "name another"))
     except (OSError, ValueError):
@@ -116,36 +124,41 @@ def foreign(out: Path) -> str | None:
         *(f"{page}.{end}" for page in pages for end in ("html", "md", "json")),
     }
     drawn = tuple(f"pictures/{f'{case}-'[:LONGEST_NAME]}" for case in cases)
-    for name in there:
-        if name not in known and not (name.startswith(drawn) and name.endswith(".svg")):
-            return name
-    return None
+    others = (name for name in there if name not in known)
+    return next((n for n in others if not (n.startswith(drawn) and n.endswith(".svg"))), None)
 
 
 def report_files(report: AuditReport) -> dict[str, str]:
     """Every file of a report, by its path in the folder."""
     document = report.document
-    shapes = environment()
     files: dict[str, str] = {}
     for one in report.cases:
         page = case_page(one)
         name = page.file
-        files[f"{name}.html"] = shapes.get_template("case.html").render(page=page, style=style())
+        files[f"{name}.html"] = page_text(page)
         files[f"{name}.md"] = markdown(page)
         files[f"{name}.json"] = json_text(AuditDocument(cases=(one.document,)))
         for picture in page.pictures:
             files[page.picture(picture)] = themed(picture.document)
-    index = shapes.get_template(_INDEX)
-    files[_INDEX] = index.render(
-        rows=[_row(one) for one in report.cases],
-        verdicts=[str(v) for v in ClaimVerdict],
-        version=package_version("trajgap"),
-        style=style(),
-    )
+    files[_INDEX] = page_text(_index(report))
     words = Page("glossary", "How to read a verdict", (glossary(),))
-    files[GLOSSARY] = shapes.get_template("case.html").render(page=words, style=style())
+    files[GLOSSARY] = page_text(words)
     files[MARK] = json_text(document)
     return files
+
+
+def page_files(one: CaseAudit, links: tuple[tuple[str, str], ...]) -> dict[str, str]:
+    """The page of a case, its pictures and the glossary, by their paths; the page comes first.
+
+    Parameters
+    ----------
+    links : tuple of (str, str)
+        Words and addresses at the head of the page.
+    """
+    page = replace(case_page(one), links=links)
+    words = replace(Page("glossary", "How to read a verdict", (glossary(),)), links=links[:1])
+    pictures = {page.picture(drawn): themed(drawn.document) for drawn in page.pictures}
+    return {f"{page.file}.html": page_text(page), GLOSSARY: page_text(words), **pictures}
 
 
 def page_text(page: Page) -> str:
@@ -153,27 +166,36 @@ def page_text(page: Page) -> str:
     return environment().get_template("case.html").render(page=page, style=style())
 
 
-def _row(one: CaseAudit) -> dict[str, Any]:
-    counts = Counter(str(j.verdict) for j in one.judgements)
-    return {
-        "id": one.case.id,
-        "file": file_name(one.case.id),
-        "title": one.case.title,
-        "card": one.card,
-        "claims": len(one.judgements),
-        "counts": counts,
-        "errors": one.errors,
-    }
+def _index(report: AuditReport) -> Page:
+    """The page that leads to those of the cases: counts of all, and the card of each."""
+    rows = []
+    for one in report.cases:
+        counts = Counter(j.verdict for j in one.judgements)
+        name = Cell(one.case.title, target=f"{file_name(one.case.id)}.html")
+        every = (counts[verdict] for verdict in ClaimVerdict)
+        rows.append((name, len(one.judgements), *every, one.errors))
+    columns = ("case", ">claims", *(f">{verdict}" for verdict in ClaimVerdict), ">errors")
+    cards = [
+        Section(
+            file_name("case", one.case.id),
+            one.case.title,
+            (card_shown(one.card), Prose(counts_said(one.judgements), "note")),
+            target=f"{file_name(one.case.id)}.html",
+        )
+        for one in report.cases
+    ]
+    return Page(
+        "index",
+        "Audit of published trajectories",
+        (Section("cases", "Verdicts on claims", (table(columns, rows),)), *cards),
+        trail=f"trajgap {package_version('trajgap')}",
+        links=(("Glossary", GLOSSARY), ("JSON", MARK)),
+    )
 
 
 def case_page(one: CaseAudit) -> Page:
     """Everything that the page of one case says, in order."""
     source, made = one.document.source, one.document.provenance
-    printed = ", ".join(
-        str(p)
-        for p in (source.authors, source.title, source.journal, source.year)
-        if p and not isinstance(p, Why)
-    )
     audited = f"Audited {made.date} with trajgap {made.trajgap}"
     return Page(
         one.case.id,
@@ -200,19 +222,13 @@ def case_page(one: CaseAudit) -> Page:
             *foundations(one),
             _reproduced(one),
         ),
-        trail=f"{printed or 'Source not named in the text'}. {audited}.",
+        trail=f"{reference(source).text} {audited}.",
         doi=source.doi,
     ).filled
 
 
 def _card(one: CaseAudit) -> Section:
-    card = one.card
-    lines = [card.limits, card.optimum]
-    lines += [card.reached] if isinstance(card.reached, str) else []
-    lines += [card.improvement] if isinstance(card.improvement, str) else []
-    errors = (*card.errors, *([more_errors(card.more)] if card.more else []))
-    beside = card.explanation if isinstance(card.explanation, str) else ""
-    shown = CardShown(tuple(lines), errors, beside, card_picture(one), tally(one.judgements))
+    shown = card_shown(one.card, tally(one.judgements), card_picture(one))
     return Section("card", "Verdict", (shown,))
 
 

@@ -45,7 +45,6 @@ from .tent import (
 )
 from .totals_map import landscape as landscape
 from .waterfall import (
-    seconds as seconds,
     waterfall_picture as waterfall_picture,
 )
 from .workspace import workspace_picture as workspace_picture

@@ -27,21 +27,14 @@ _COLOURS = (ORANGE, BLUE, GREEN, RED)
 
 @dataclass(frozen=True, eq=False)
 class ArmMotion:
-    """A motion as samples over time.
-
-    Attributes
-    ----------
-    label : str
-        Such as "as printed".
-    times : ndarray, shape (samples,)
-        Ascending from 0, s; the last one is the total.
-    angles : ndarray, shape (samples, joints)
-        rad.
-    """
+    """A motion as samples over time."""
 
     label: str
+    """Such as "as printed"."""
     times: Array
+    """Ascending from 0, s; the last one is the total; shape (samples,)."""
     angles: Array
+    """rad; shape (samples, joints)."""
 
     def at(self, times: Array) -> Array:
         """Angles at some times, shape (times, joints); after its end the arm stands still."""
@@ -68,7 +61,6 @@ def arm_picture(
         rad; drawn where the end of the arm stands.
     name : str
         Unique in the page: letters, digits and dashes.
-    title : str
 
     Returns
     -------

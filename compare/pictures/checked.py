@@ -46,7 +46,6 @@ def checked_picture(
         For the same joints in the same order.
     found : MotionCheck
         The verdict on this motion, or on every motion through these samples.
-    title : str
     units : sequence of str
         Of positions, one for all joints or one each: rad, deg, m, cm or mm.
 

@@ -132,7 +132,6 @@ def shown(text: str, width: int | None = None, lines: int = 1) -> str:
 
     Parameters
     ----------
-    text : str
     width : int, optional
         Largest number of characters in a line; what does not fit is cut with an ellipsis.
     lines : int
@@ -255,7 +254,6 @@ def picture_bytes(figure: Figure, kind: str) -> bytes:
 
     Parameters
     ----------
-    figure : Figure
     kind : str
         One of `KINDS`.
     """

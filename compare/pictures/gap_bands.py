@@ -39,25 +39,17 @@ _STYLES: tuple[tuple[str, Line], ...] = (
 
 @dataclass(frozen=True, eq=False)
 class Anytime:
-    """What one optimiser's runs know after so many evaluations.
-
-    Attributes
-    ----------
-    label : str
-    evaluations : ndarray, shape (points,)
-    gaps : ndarray, shape (3, points)
-        Lower quartile, median and upper quartile over the runs, relative; inf where that many
-        know no answer.
-    steps, shares : ndarray
-        Share of pairs of run and target that are reached, from each step on.
-    runs : int
-    """
+    """What one optimiser's runs know after so many evaluations."""
 
     label: str
     evaluations: Array
+    """Shape (points,)."""
     gaps: Array
+    """Lower quartile, median and upper quartile over the runs, relative; inf where that many know
+    no answer; shape (3, points)."""
     steps: Array
     shares: Array
+    """Share of pairs of run and target that are reached, from each step on."""
     runs: int
 
 
@@ -75,7 +67,6 @@ def gap_picture(
     ----------
     optimisers : sequence of Anytime
         Their order determines colours and line styles.
-    title : str
     uncertainty : float or None
         Relative width of the optimum's certified interval, drawn below zero; None where no lower
         bound is certified.
@@ -207,7 +198,6 @@ def profile_picture(profiles: Mapping[str, tuple[Array, Array]], *, title: str) 
     ----------
     profiles : mapping of str to (ratios, shares)
         Of each optimiser, as `share_within` gives them; colours and line styles in this order.
-    title : str
     """
     description = "; ".join(
         f"{label}: {100 * float(shares[ratios <= 1.01].max(initial=0.0)):.0f} % of runs end within "

@@ -26,7 +26,6 @@ def instances_picture(result: InstancesResult, *, title: str) -> Picture:
     ----------
     result : InstancesResult
         Its first two objectives are drawn.
-    title : str
 
     Returns
     -------

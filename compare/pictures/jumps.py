@@ -31,7 +31,6 @@ def velocity_jumps(problem: Problem, durations: ArrayLike) -> tuple[Jump, ...]:
 
     Parameters
     ----------
-    problem : Problem
     durations : array_like, shape (segments,)
         s.
 
@@ -51,10 +50,8 @@ def jump_picture(
 
     Parameters
     ----------
-    problem : Problem
     durations : array_like, shape (segments,)
         Shared by all joints, s.
-    title : str
     units : mapping, optional
         Those of the paper, as for `motion_picture`; SI by default.
 

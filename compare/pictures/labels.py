@@ -27,7 +27,6 @@ def place_labels(axes: Axes, points: Array, labels: Sequence[str]) -> None:
 
     Parameters
     ----------
-    axes : Axes
     points : ndarray, shape (points, 2)
         In the panel's coordinates.
     labels : sequence of str

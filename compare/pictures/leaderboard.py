@@ -36,20 +36,14 @@ _MARKED: tuple[tuple[str, Line], ...] = (
 
 @dataclass(frozen=True, eq=False)
 class BoardPanel:
-    """Optimisers under one handling.
-
-    Attributes
-    ----------
-    title : str
-    marked : mapping of str to ndarray, shape (gaps,)
-        Share of runs within each gap, of optimisers that are told apart, by what they are called.
-    others : sequence of ndarray, shape (gaps,)
-        Those that are drawn in grey.
-    """
+    """Optimisers under one handling."""
 
     title: str
     marked: dict[str, Array]
+    """Share of runs within each gap, of optimisers that are told apart, by what they are called;
+    shape (gaps,)."""
     others: Sequence[Array]
+    """Those that are drawn in grey; shape (gaps,)."""
 
 
 def leaderboard_picture(
@@ -59,10 +53,8 @@ def leaderboard_picture(
 
     Parameters
     ----------
-    panels : sequence of BoardPanel
     gaps : sequence of float
         Relative, falling.
-    title : str
     """
     description = "; ".join(
         f"{panel.title}: {label}, " + ", ".join(

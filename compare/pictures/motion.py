@@ -36,10 +36,8 @@ def motion_picture(
 
     Parameters
     ----------
-    problem : Problem
     durations : array_like, shape (segments,) or (joints, segments)
         Segment durations, s, shared by all joints or of each joint by itself.
-    title : str
     check : Check, optional
         Its verdict is written below the picture.
     note : str

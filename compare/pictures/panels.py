@@ -29,26 +29,17 @@ _DOTS = {60: 5.0, 10**9: 2.0}
 
 @dataclass(frozen=True)
 class Mark:
-    """A value of a curve that is marked and written above its panel.
-
-    Attributes
-    ----------
-    time, value : float
-        s, and rad or m with the powers of s that belong to it.
-    limit : float
-        On the side of the value; infinite if it has none.
-    ratio : float
-        Value to limit.
-    both : bool
-        Whether the limit is the same on the other side.
-    colour : str
-    """
+    """A value of a curve that is marked and written above its panel."""
 
     time: float
     value: float
+    """s, and rad or m with the powers of s that belong to it."""
     limit: float
+    """On the side of the value; infinite if it has none."""
     ratio: float
+    """Value to limit."""
     both: bool
+    """Whether the limit is the same on the other side."""
     colour: str = INK
 
     def words(self, one: float) -> str:
@@ -66,45 +57,31 @@ class Mark:
 
 @dataclass(frozen=True, eq=False)
 class Line:
-    """One quantity of one joint over time.
-
-    Attributes
-    ----------
-    quantity : str
-        "position", "velocity" and so on.
-    unit : (str, float)
-    times, values : ndarray
-        s, and rad or m; NaN where the curve jumps.
-    limits : sequence of float
-        All that hold on either side; infinite ones are none.
-    marks : sequence of Mark
-        The gravest first.
-    points : (ndarray, ndarray)
-        Times and values of way-points or samples.
-    breaks : ndarray
-        Times of lines that stand behind the curve.
-    broken, unsure : sequence of (float, float)
-        Stretches that are beyond a limit, and those that may be.
-    jumps : bool
-        Whether jumps are marked as faults.
-    dots : bool
-        Whether nothing is known between the times.
-    """
+    """One quantity of one joint over time."""
 
     joint: str
     quantity: str
+    """"position", "velocity" and so on."""
     linear: bool
     unit: Unit
     times: Array
     values: Array
+    """s, and rad or m; NaN where the curve jumps."""
     limits: Sequence[float]
+    """All that hold on either side; infinite ones are none."""
     marks: Sequence[Mark] = ()
+    """The gravest first."""
     points: tuple[Array, Array] = (np.empty(0), np.empty(0))
+    """Times and values of way-points or samples."""
     breaks: Array = field(default_factory=lambda: np.empty(0))
+    """Times of lines that stand behind the curve."""
     broken: Stretches = ()
     unsure: Stretches = ()
+    """Stretches that are beyond a limit, and those that may be."""
     jumps: bool = False
+    """Whether jumps are marked as faults."""
     dots: bool = False
+    """Whether nothing is known between the times."""
 
     @property
     def described(self) -> str:

@@ -18,27 +18,18 @@ _ROOM = 2.0
 
 @dataclass(frozen=True)
 class PaperBar:
-    """One paper: what its printed total is of the optimum.
-
-    Attributes
-    ----------
-    label : str
-    lowest, highest : float
-        Printed total over the optimum; an interval where the optimum is one.
-    said : str
-        The distance in words.
-    proven : bool
-        Whether the optimum is certified.
-    sure : bool
-        Whether the distance holds however the digits were rounded.
-    """
+    """One paper: what its printed total is of the optimum."""
 
     label: str
     lowest: float
     highest: float
+    """Printed total over the optimum; an interval where the optimum is one."""
     said: str
+    """The distance in words."""
     proven: bool
+    """Whether the optimum is certified."""
     sure: bool = True
+    """Whether the distance holds however the digits were rounded."""
 
 
 def papers_picture(bars: Sequence[PaperBar], *, title: str) -> Picture:

@@ -44,7 +44,6 @@ def polygon_picture(
         In the unit in which they are printed.
     vertices : sequence of Vertex
         Printed vertices with the intervals that the way-points allow, joint after joint.
-    title : str
     quantity : str
         What the way-points are: "position" where some joint slides.
 

@@ -59,7 +59,6 @@ def convergence(
         Reference total, s; one per joint for searches of single joints.
     printed : mapping of str to float or sequence of float
         Printed totals by label, s; one per joint (nan where none) for searches of single joints.
-    title : str
     rounding : float
         Half the width of the interval that printed digits stand for, s; drawn as a band.
     evidence : str
@@ -266,7 +265,6 @@ def endings(
         Totals by name, s; inf for a run without a feasible answer.
     references, printed : mapping of str to float
         Totals by label, s.
-    title : str
 
     Returns
     -------
@@ -326,7 +324,6 @@ def reached_picture(
         Of one search.
     waterfalls : iterable of Waterfall
         Of the case, which have its printed totals.
-    title : str
     """
     ends = {
         f"{one.handling.replace('-', ' ')}: {one.name}": np.array(

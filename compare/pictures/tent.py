@@ -29,36 +29,26 @@ _BEYOND = 12
 
 @dataclass(frozen=True, eq=False)
 class TentScatter:
-    """Populations of the tent map in exact and in double arithmetic.
-
-    Attributes
-    ----------
-    start : str
-        Decimal digits of the first point, drawn from seed 0; the double orbit starts at the
-        double beside it.
-    beta : Fraction
-    lower, upper : float
-        Range of every coordinate.
-    orbit : TentCollapse
-    exact, doubles : ndarray, shape (members, dimensions)
-        Filled by that one orbit, member by member.
-    apart_exact, apart_doubles : ndarray, shape (members, dimensions)
-        Filled by one orbit for each coordinate, starts drawn from seed 0.
-    collapsed : dict of TentRule to int
-        Members with a coordinate of exactly 0 before scaling, in double precision, under each
-        rule of filling the population, starts from seed 0.
-    """
+    """Populations of the tent map in exact and in double arithmetic."""
 
     start: str
+    """Decimal digits of the first point, drawn from seed 0; the double orbit starts at the double
+    beside it."""
     beta: Fraction
     lower: float
     upper: float
+    """Range of every coordinate."""
     orbit: TentCollapse
     exact: Array
     doubles: Array
+    """Filled by that one orbit, member by member; shape (members, dimensions)."""
     apart_exact: Array
     apart_doubles: Array
+    """Filled by one orbit for each coordinate, starts drawn from seed 0; shape (members,
+    dimensions)."""
     collapsed: dict[TentRule, int]
+    """Members with a coordinate of exactly 0 before scaling, in double precision, under each rule
+    of filling the population, starts from seed 0."""
 
     @property
     def at_zero(self) -> int:
@@ -78,7 +68,6 @@ def tent_scatter(
 
     Parameters
     ----------
-    members, dimensions : int
     bounds : tuple of float
         Range to which [0, 1] is scaled.
     beta : float
@@ -128,10 +117,8 @@ def tent_picture(scatter: TentScatter, *, unit: str, title: str) -> Picture:
 
     Parameters
     ----------
-    scatter : TentScatter
     unit : str
         Of the coordinates.
-    title : str
     """
     zero = scatter.orbit.zero_at
     rest = f"exactly 0 from step {zero} on" if zero is not None else "never exactly 0"

@@ -70,7 +70,6 @@ def landscape(
         Label and printed durations, shape (3,), s.
     ends : mapping of str to array_like
         Durations that each heuristic ended with, shape (runs, 3), s.
-    title : str
 
     Returns
     -------
@@ -173,7 +172,6 @@ def tight_total(problem: Problem, shares: Array) -> Array:
 
     Parameters
     ----------
-    problem : Problem
     shares : ndarray, shape (points, segments)
         Positive, summing to 1.
 

@@ -28,7 +28,6 @@ def sampled(trajectory: Trajectory, column: int, order: int) -> tuple[Array, Arr
 
     Parameters
     ----------
-    trajectory : Trajectory
     column, order : int
         Joint and derivative.
 
@@ -90,7 +89,6 @@ def beyond(
 
     Parameters
     ----------
-    trajectory : Trajectory
     column, order : int
         Joint and derivative.
     low, high : float

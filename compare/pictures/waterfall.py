@@ -2,27 +2,14 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 from matplotlib.axes import Axes
 from matplotlib.patches import Patch
 
 from ...nlp import Evidence
-from ...problem import shown_bound
 from ..documents import Step, Waterfall, Why, value_or_none
-from .drawing import (
-    BLUE,
-    GRID,
-    INK,
-    MUTED,
-    ORANGE,
-    PAPER,
-    Picture,
-    drawing,
-    finish,
-    shown,
-)
+from .drawing import BLUE, GRID, INK, MUTED, ORANGE, PAPER, Picture, drawing, finish, shown
 
 _HEADING = "the first against this"
 """Above the column that sets the first step beside each: one percentage per distance."""
@@ -53,8 +40,6 @@ def waterfall_picture(waterfall: Waterfall, *, title: str, narrow: bool = False)
 
     Parameters
     ----------
-    waterfall : Waterfall
-    title : str
     narrow : bool
         For half a page: without steps that have no value, and seconds without their interval.
 
@@ -71,7 +56,7 @@ def waterfall_picture(waterfall: Waterfall, *, title: str, narrow: bool = False)
     width = 6.2 if narrow else 9.6
     ends = [x for s in steps for x in (s.time, s.high) if not isinstance(x, Why)]
     top = max(ends, default=1.0) or 1.0
-    description = "; ".join(f"{s.name}: {seconds(s)}, {_evidence(s)}" for s in steps)
+    description = "; ".join(f"{s.name}: {s.total()}, {_evidence(s)}" for s in steps)
     with drawing():
         figure = Picture(title, description, width, 1.1 + 0.5 * max(1, len(steps)))
         axes = figure.subplots()
@@ -114,34 +99,6 @@ def _evidence(step: Step) -> str:
     return step.note if isinstance(step.time, Why) else _WORDS[step.evidence]
 
 
-def seconds(step: Step, ends: bool = True) -> str:
-    """A step's value, with the ends of its interval where it is one.
-
-    Parameters
-    ----------
-    step : Step
-    ends : bool
-        Whether there is room for them.
-
-    Returns
-    -------
-    str
-        Such as "3.3595 s (3.3324 to 3.4128)", or "not computed".
-    """
-    if isinstance(step.time, Why):
-        return "not computed"
-    digits = 4 if step.time >= 0.1 else 6
-    text = f"{step.time:.{digits}f} s"
-    low, high = step.low, step.high
-    if ends and not isinstance(low, Why) and not isinstance(high, Why):
-        width = high - low
-        if width > 1e-9:
-            digits = min(9, max(digits, math.ceil(1 - math.log10(width))))
-            least = shown_bound(low, "lower", places=digits)
-            text += f" ({least} to {shown_bound(high, 'upper', places=digits)})"
-    return text
-
-
 def _bar(axes: Axes, row: int, step: Step, top: float, narrow: bool) -> None:
     if isinstance(step.time, Why):
         note = shown(step.note or "not computed", 100, 2)
@@ -157,7 +114,7 @@ def _bar(axes: Axes, row: int, step: Step, top: float, narrow: bool) -> None:
     axes.text(
         0.015 * top if step.time > 0.5 * top else end + 0.015 * top,
         row,
-        seconds(step, ends=not narrow),
+        step.total(ends=not narrow),
         va="center",
         weight="bold",
         zorder=5,

@@ -49,14 +49,12 @@ def workspace_picture(
 
     Parameters
     ----------
-    workspace : Workspace
     waypoints : array_like, shape (way-points, 3), optional
         Positions in the base, m, joined by straight lines in order over the cloud.
     labels : sequence of str, optional
         Names of the way-points.
     missed : sequence of bool, optional
         Which way-points the end cannot reach; they are drawn as red crosses.
-    title : str, optional
 
     Returns
     -------

@@ -8,7 +8,7 @@ from typing import Any
 
 from ...problem import file_name
 from ..pictures import Picture, embedded, svg
-from .parts import framed
+from .docutils_nodes import framed
 
 SAVED = "_trajgap_saved"
 """Name under which an example keeps the pictures that stand on its page already."""

@@ -13,8 +13,8 @@ from docutils.parsers.rst import directives
 from sphinx.util.docutils import SphinxDirective
 
 from ...heuristics import KINDS
+from ..blocks import Block, Drawn, Grid, Prose, board_table, table
 from ..gaps import (
-    BOARD_COLUMNS,
     DESCENT,
     LADDER,
     SIZES,
@@ -22,15 +22,14 @@ from ..gaps import (
     Board,
     Ranked,
     Summary,
-    board_cells,
     boards,
     curve_of,
     leaderboard_rows,
     size_of,
     success_interval,
 )
-from ..pictures import BoardPanel, Picture, leaderboard_picture
-from .parts import paragraph, picture, table
+from ..pictures import BoardPanel, Picture, leaderboard_picture, svg
+from .docutils_nodes import nodes_of
 
 _HANDLINGS = {
     "death-penalty": "Death penalty: a motion beyond a limit is rejected",
@@ -124,15 +123,6 @@ def _panel(board: Board) -> BoardPanel:
     )
 
 
-def _with_interval(said: str, interval: str) -> nodes.Node | str:
-    """A value, with its interval in brackets where it has one."""
-    if not interval:
-        return said
-    found = nodes.inline("", said)
-    found += nodes.inline("", f" ({interval})", classes=["trajgap-beside"])
-    return found
-
-
 class Leaderboard(SphinxDirective):
     """``{trajgap-leaderboard} said|picture|table|curves|sizes``, of one budget and handling."""
 
@@ -150,31 +140,26 @@ class Leaderboard(SphinxDirective):
         match self.arguments[0]:
             case "said":
                 found = nodes.bullet_list()
-                found += [nodes.list_item("", paragraph(one)) for one in said(*both)]
+                found += [nodes.list_item("", *nodes_of([Prose(one)])) for one in said(*both)]
                 return [found]
             case "picture":
                 made = boards_drawn(both)
-                return picture(made, "leaderboard", paragraph(made.description))
+                return nodes_of([Drawn("leaderboard", svg(made), made.title)])
             case "table":
-                return self._table(board_of(handling, budget))
+                return nodes_of(self._table(board_of(handling, budget)))
             case "curves":
-                return [self._parts(board_of(handling, budget), curve_of, str)]
+                return nodes_of([self._parts(board_of(handling, budget), curve_of, str)])
             case "sizes":
-                return [self._parts(board_of(handling, budget), size_of, SIZES.index)]
+                return nodes_of([self._parts(board_of(handling, budget), size_of, SIZES.index)])
         raise self.error("trajgap-leaderboard: say said, picture, table, curves or sizes")
 
-    def _table(self, board: Board) -> list[nodes.Node]:
-        rows = [
-            [_with_interval(*cell) for cell in board_cells(board, one)] for one in board.standings
-        ]
-        found: list[nodes.Node] = [table(BOARD_COLUMNS, rows, "trajgap-sortable")]
-        if board.missing:
-            found.append(paragraph(f"Not complete yet: {', '.join(board.missing)}."))
-        return found
+    def _table(self, board: Board) -> list[Block]:
+        missing = f"Not complete yet: {', '.join(board.missing)}."
+        return [board_table(board), *([Prose(missing)] if board.missing else [])]
 
     def _parts(
         self, board: Board, part_of: Callable[[str], str], order: Callable[[str], Any]
-    ) -> nodes.table:
+    ) -> Grid:
         """Share of runs within 0.1 % in each class of instances."""
         classes = {problem: part_of(problem) for problem in board.problems}
         parts = sorted(set(classes.values()), key=order)
@@ -189,12 +174,12 @@ class Leaderboard(SphinxDirective):
         ]
         counts = Counter(classes.values())
         heads = [f"{part} ({counts[part]})" for part in parts]
-        return table(("optimiser", *heads), rows, "trajgap-sortable")
+        return table(("optimiser", *heads), rows, "", "sortable")
 
 
-def _share_of(rows: Sequence[Summary]) -> nodes.Node | str:
+def _share_of(rows: Sequence[Summary]) -> str:
     """Share of the runs within 0.1 %, each problem counting alike, with Wilson's interval."""
     at, runs = LADDER.index(SOLVED[_MIDDLE]), sum(row.runs for row in rows)
     share = float(np.mean([row.within[at] / row.runs for row in rows]))
     low, high = success_interval(round(share * runs), runs)
-    return _with_interval(f"{100 * share:.0f} %", f"{100 * low:.0f} to {100 * high:.0f}")
+    return f"{100 * share:.0f} %\n({100 * low:.0f} to {100 * high:.0f})"

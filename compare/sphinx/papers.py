@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Any
 
 from ...nlp import Evidence
 from ..documents import (
@@ -14,14 +13,16 @@ from ..documents import (
     PUBLISHED,
     RATIOS_OPTIMUM,
     SHARED_OPTIMUM,
+    AuditedCase,
     ClaimVerdict,
     Keeping,
-    Reached,
+    StatedSource,
     Why,
     at_least_percent,
+    value_or_none,
 )
 from ..pictures import PaperBar, Picture, papers_picture
-from .results import Results, revived
+from .results import Results
 
 _NONE = "–"
 """A cell without a value."""
@@ -41,34 +42,23 @@ COLUMNS = (
 
 @dataclass(frozen=True)
 class Distance:
-    """A printed total beside the optimum of its own problem, at the printed digits.
-
-    Attributes
-    ----------
-    printed : float
-        s.
-    interval : tuple of float
-        All totals that round to its digits, s.
-    lowest, highest : float
-        The optimum, s; an interval where each joint is planned by itself.
-    least : float or None
-        How far above its optimum the total is at least, however the digits were rounded: 0 where
-        rounding may explain all of it, None where nothing bounds it.
-    evidence : str
-    broken : bool
-        Whether the printed motion breaks a limit.
-    timed : bool
-        Whether time alone was minimised, so that the distance is one from the optimum.
-    """
+    """A printed total beside the optimum of its own problem, at the printed digits."""
 
     printed: float
+    """s."""
     interval: tuple[float, float]
+    """All totals that round to its digits, s."""
     lowest: float
     highest: float
+    """The optimum, s; an interval where each joint is planned by itself."""
     least: float | None
+    """How far above its optimum the total is at least, however the digits were rounded: 0 where
+    rounding may explain all of it, None where nothing bounds it."""
     evidence: str
     broken: bool
+    """Whether the printed motion breaks a limit."""
     timed: bool
+    """Whether time alone was minimised, so that the distance is one from the optimum."""
 
     @property
     def shares(self) -> tuple[float, float]:
@@ -100,33 +90,22 @@ class Distance:
 
 @dataclass(frozen=True)
 class PaperRow:
-    """One audited paper.
-
-    Attributes
-    ----------
-    name : str
-        Of its result.
-    cited, title : str
-    distance : Distance or None
-        None where no problem is complete, or no total is printed.
-    reached : str
-        Median gap of the paper's algorithm in its own way of searching.
-    found : str
-        What the audit found, in one sentence.
-    decided : int
-        Claims on which there is a verdict.
-    against : bool
-        Whether something printed is refuted, contradicted or depends on the reading.
-    """
+    """One audited paper."""
 
     name: str
+    """Of its result."""
     cited: str
     title: str
     distance: Distance | None
+    """None where no problem is complete, or no total is printed."""
     reached: str
+    """Median gap of the paper's algorithm in its own way of searching."""
     found: str
+    """What the audit found, in one sentence."""
     decided: int
+    """Claims on which there is a verdict."""
     against: bool
+    """Whether something printed is refuted, contradicted or depends on the reading."""
 
     @property
     def order(self) -> tuple[bool, bool, int, str]:
@@ -147,35 +126,27 @@ def paper_rows(results: Results, kinds: str = "") -> tuple[PaperRow, ...]:
 
     Parameters
     ----------
-    results : Results
     kinds : str
         Kinds of source, separated by spaces; all if empty.
     """
-    cases = {n: results.case(n) for n in results.names if "cases" in results.document(n)}
+    cases = {n: results.audited(n) for n in results.names if "cases" in results.document(n)}
     chosen = (
         paper_row(name, case)
         for name, case in cases.items()
-        if case["source"]["kind"] in (kinds.split() or [case["source"]["kind"]])
+        if not kinds or case.source.kind in kinds.split()
     )
     return tuple(sorted(chosen, key=lambda row: row.order))
 
 
-def paper_row(name: str, case: Mapping[str, Any]) -> PaperRow:
-    """One audited case as a row of the table.
-
-    Parameters
-    ----------
-    name : str
-    case : mapping
-        As `Results.case` returns it.
-    """
-    counts = Counter(ClaimVerdict(one["verdict"]) for one in case["verdicts"])
+def paper_row(name: str, case: AuditedCase) -> PaperRow:
+    """One audited case as a row of the table."""
+    counts = Counter(one.verdict for one in case.verdicts)
     decided = counts.total() - counts[_OPEN]
     against = decided > counts[ClaimVerdict.SUPPORTED]
     return PaperRow(
         name,
-        cited(case["source"]),
-        case["title"],
+        cited(case.source),
+        case.title,
         distance_of(case),
         reached_of(case),
         _found(case, counts, against),
@@ -184,11 +155,11 @@ def paper_row(name: str, case: Mapping[str, Any]) -> PaperRow:
     )
 
 
-def _found(case: Mapping[str, Any], counts: Counter[ClaimVerdict], against: bool) -> str:
+def _found(case: AuditedCase, counts: Counter[ClaimVerdict], against: bool) -> str:
     """The gravest thing that was found, in one sentence."""
     supported, every = counts[ClaimVerdict.SUPPORTED], counts.total()
-    if case["card"]["errors"]:
-        return str(case["card"]["errors"][0])
+    if case.card.errors:
+        return case.card.errors[0]
     if against:
         found = every - supported - counts[_OPEN]
         return f"{found} of {every} claims do not hold as printed or depend on the reading."
@@ -199,9 +170,9 @@ def _found(case: Mapping[str, Any], counts: Counter[ClaimVerdict], against: bool
     return f"{supported} of {every} claims are supported; the others cannot be checked."
 
 
-def cited(source: Mapping[str, Any]) -> str:
+def cited(source: StatedSource) -> str:
     """A source as a sentence cites it, such as "Fan and Tang 2024"; empty without authors."""
-    authors, year = source["authors"], source["year"]
+    authors, year = source.authors, value_or_none(source.year)
     if not authors:
         return ""
     names = [one.strip() for one in re.split(r",| and ", authors) if one.strip()]
@@ -213,62 +184,44 @@ def cited(source: Mapping[str, Any]) -> str:
     return f"{who} {year}" if year else who
 
 
-def reference(source: Mapping[str, Any]) -> str:
-    """A source in full, without its DOI; what the text lacks is said."""
-    parts = (source["authors"], source["title"], source["journal"], source["year"])
-    printed = ", ".join(str(one) for one in parts if one)
-    if not printed:
-        return "The text that was read names neither authors nor title."
-    lacks = "" if source["authors"] else " The text that was read names no authors."
-    return f"{printed}.{lacks}"
-
-
-def reached_of(case: Mapping[str, Any]) -> str:
+def reached_of(case: AuditedCase) -> str:
     """Median gap of a paper's algorithm in its own way of searching; a dash without runs."""
-    if not case["reached"]:
+    if not case.reached:
         return _NONE
-    first = revived(Reached, case["reached"][0])
-    return "no answer" if isinstance(first.gap, Why) else first.gap.percent
+    gap = case.reached[0].gap
+    return "no answer" if isinstance(gap, Why) else gap.percent
 
 
-def distance_of(case: Mapping[str, Any]) -> Distance | None:
+def distance_of(case: AuditedCase) -> Distance | None:
     """The printed total of the first problem beside its optimum.
 
     The optimum is that of shared durations; where the paper plans each joint by itself, it is what
     the joints' own optima give.
-
-    Parameters
-    ----------
-    case : mapping
-        As `Results.case` returns it.
 
     Returns
     -------
     Distance or None
         None where no problem is complete, or no total is printed.
     """
-    otherwise = {c["claim"] for c in case["claims"] if c.get("objective")}
-    for entry in case["waterfalls"]:
-        steps = {step["name"]: step for step in entry["steps"] if step["time"] is not None}
+    otherwise = {c.claim for c in case.claims if not isinstance(c.objective, Why)}
+    for entry in case.waterfalls:
+        steps = {step.name: step for step in entry.steps if not isinstance(step.time, Why)}
         own = next((n for n in (SHARED_OPTIMUM, RATIOS_OPTIMUM) if n in steps), None)
         if PUBLISHED not in steps or own is None:
             continue
         printed, best = steps[PUBLISHED], steps.get(OWN_OPTIMA, steps[own])
         # A certified interval is narrower than what is shown; that of the joints' optima is not.
-        ends = [best.get(end) or best["time"] for end in ("low", "high")]
-        own_optima = OWN_OPTIMA in steps
-        low, high = ends if own_optima else [best["time"]] * 2
-        longest = None if own_optima else entry["longest_optimum"]
-        interval = tuple(printed.get(end) or printed["time"] for end in ("low", "high"))
+        low, high = best.ends if OWN_OPTIMA in steps else (best.value, best.value)
+        longest = None if OWN_OPTIMA in steps else value_or_none(entry.longest_optimum)
         return Distance(
-            printed["time"],
-            interval,
+            printed.value,
+            printed.ends,
             low,
             high,
-            None if longest is None else max(0.0, interval[0] / longest - 1),
-            best["evidence"],
-            printed.get("keeping") == Keeping.BREAKS,
-            entry["claim"] not in otherwise,
+            None if longest is None else max(0.0, printed.ends[0] / longest - 1),
+            best.evidence,
+            printed.keeping is Keeping.BREAKS,
+            entry.claim not in otherwise,
         )
     return None
 

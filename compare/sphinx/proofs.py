@@ -7,6 +7,8 @@ from pathlib import Path
 
 from ...problem import TrajgapError
 from ...verify import CertificateVerdict, Refused, read_document, verify_certificate
+from ..blocks import Prose
+from ..documents import capital, worth
 
 
 def proved_again(path: Path, sha256: str | None = None) -> CertificateVerdict:
@@ -40,3 +42,11 @@ def proved_again(path: Path, sha256: str | None = None) -> CertificateVerdict:
     if not verdict.proves:
         raise TrajgapError(f"{path}: is not proved: {verdict.reason}")
     return verdict
+
+
+def proof_said(path: Path, sha256: str | None = None, name: str = "") -> Prose:
+    """What a certificate proves, in a paragraph; parameters as there, and its name if not empty."""
+    verdict = proved_again(path, sha256)
+    shown = f" ({name})" if name else ""
+    said = f"{capital(verdict.reason)}. Proved again when this page was built{shown}."
+    return Prose(said, word=worth(verdict))

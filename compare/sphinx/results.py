@@ -7,28 +7,23 @@ import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from math import inf
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 from ...problem import TrajgapError
-from ..documents import Entry, Waterfall, Why
+from ..documents import AuditedCase, Caveat, Why
 
-Shown = TypeVar("Shown", bound=Entry)
 LOCK = "lock.json"
 """File beside the results with the hash of each, and of what they were made from."""
 
 
 @dataclass(frozen=True)
 class Results:
-    """A folder of JSON documents that `trajgap` printed.
-
-    Attributes
-    ----------
-    folder : Path
-        Holds ``NAME.json``, one document each: what `trajgap audit --json` prints for one case.
-    """
+    """A folder of JSON documents that `trajgap` printed."""
 
     folder: Path
+    """Holds ``NAME.json``, one document each: what `trajgap audit --json` prints for one case."""
 
     @cached_property
     def names(self) -> tuple[str, ...]:
@@ -72,6 +67,10 @@ class Results:
         found: dict[str, Any] = cases[0]
         return found
 
+    def audited(self, name: str) -> AuditedCase:
+        """The same as the audit had it before it was printed."""
+        return AuditedCase.model_validate(_read(self.case(name)))
+
     def value(self, key: str) -> Any:
         """One value, such as ``"puma560-mnam-pso-353:card.optimum"``.
 
@@ -113,24 +112,21 @@ def _inside(here: Any, part: str, key: str) -> Any:
         raise TrajgapError(f"{key}: nothing stands at {part!r}; look into the JSON") from None
 
 
-def waterfall_of(entry: Mapping[str, Any]) -> Waterfall:
-    """A waterfall as it was before it was printed."""
-    return revived(Waterfall, entry)
-
-
-def revived(kind: type[Shown], entry: Mapping[str, Any]) -> Shown:
-    """An entry of a document as it was before it was printed, reasons in the place of values."""
-    return kind.model_validate(_with_reasons(entry))
-
-
-def _with_reasons(value: Any) -> Any:
+def _read(value: Any) -> Any:
+    """A part of a document as it was before it was printed."""
     if isinstance(value, list):
-        return [_with_reasons(one) for one in value]
+        return [_read(one) for one in value]
     if not isinstance(value, Mapping):
         return value
-    whys = {key: value[f"{key}_why"] for key in value if f"{key}_why" in value}
-    return {
-        key: Why(whys[key]) if one is None and key in whys else _with_reasons(one)
-        for key, one in value.items()
-        if not (key.endswith("_why") and key.removesuffix("_why") in whys)
+    whys = {
+        key: value[f"{key}_why"] for key in value if value[key] is None and f"{key}_why" in value
     }
+    found = {key: _read(one) for key, one in value.items() if key.removesuffix("_why") not in whys}
+    for key, why in whys.items():
+        found[key] = inf if why == "unbounded" else Why(why)
+    if "message" in value:  # of a finding; JSON has its sentences in one text
+        found["sentences"] = (value["message"],)
+    if "caveats" in value:
+        pairs = zip(value["caveats"], value["caveats_in_short"], strict=True)
+        found["caveats"] = [Caveat(None, says, whole[len(says) + 2 :]) for whole, says in pairs]
+    return found

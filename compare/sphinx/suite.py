@@ -8,14 +8,13 @@ from typing import Any, ClassVar
 
 from docutils import nodes
 from docutils.parsers.rst import directives
-from sphinx.addnodes import pending_xref
 from sphinx.util.docutils import SphinxDirective
 
-from ...problem import TrajgapError, shown_bound
+from ...problem import TrajgapError
 from ...problem.suite import BenchmarkInstance, list_instances, load_instance, select_curve
-from ..documents import worth
-from .parts import badge, paragraph, table
-from .proofs import proved_again
+from ..blocks import Prose, instance_terms, suite_table
+from .docutils_nodes import nodes_of
+from .proofs import proof_said
 
 PROVED_WITHIN = 0.25
 """s: a certificate whose proof took at most so long, as the suite's table says, is proved again by
@@ -55,39 +54,15 @@ class SuiteTable(SphinxDirective):
             chosen = instances_of(curve)
         except TrajgapError as error:
             raise self.error(str(error)) from None
-        columns = ["instance", "curve", "segments", "joints", "tight in", "lower, s", "upper, s",
-                   "width", "evidence", "basins", "feasible"]  # fmt: skip
-        rows = [self._row(one) for one in chosen]
-        if curve in {one.curve for one in chosen}:  # the page says it already
-            place = columns.index("curve")
-            for cells in (columns, *rows):
-                del cells[place]
-        return [table(columns, rows, "trajgap-sortable")]
-
-    def _row(self, one: BenchmarkInstance) -> list[nodes.Node | str]:
-        hard = one.hardness
-        return [
-            self._named(one.name),
-            one.curve,
-            str(one.segments),
-            str(one.joints),
-            ", ".join(one.tight),
-            shown_bound(one.lower, "lower", digits=9),
-            shown_bound(one.upper, "upper", digits=9),
-            f"{one.width:.1e}",
-            badge(str(one.evidence)),
-            "" if hard is None else str(hard.basins),
-            "" if hard is None else f"{hard.feasible_share:.2%}",
-        ]
-
-    def _named(self, name: str) -> nodes.Node:
         labels = self.options.get("labels")
-        if labels is None:
-            return nodes.inline("", name)
-        return pending_xref(
-            "", nodes.inline("", name), refdomain="std", reftype="ref",
-            reftarget=f"{labels}{name}".lower(), refexplicit=True, refwarn=True,
-        )  # fmt: skip
+        place = "" if labels is None else f"ref:{labels}{{}}".lower()
+        grid = suite_table(chosen, place, digits=9)
+        said = curve in {one.curve for one in chosen}  # the page says it already
+        return nodes_of([grid.without(_CURVE) if said else grid])
+
+
+_CURVE = 1
+"""Column of the curve."""
 
 
 class InstanceShown(SphinxDirective):
@@ -102,40 +77,17 @@ class InstanceShown(SphinxDirective):
             said = self._proof(one)
         except TrajgapError as error:
             raise self.error(str(error)) from None
-        durations = ", ".join(f"{h:.9g}" for h in one.durations)
-        rows = [
-            ["curve", f"{one.curve}, {one.segments} segments, {one.joints} joints"],
-            ["optimum, s", f"between {one.lower!r} and {one.upper!r}"],
-            ["lower bound over", one.lower_subject],
-            ["best known durations, s", durations],
-            ["tight in", ", ".join(one.tight)],
-            ["made by", nodes.literal("", one.command)],
-        ]
-        hard = one.hardness
-        if hard is not None:
-            rows += [
-                ["basins", f"{hard.basins} found by {hard.starts} random starts; "
-                 f"{hard.best_basin_share:.0%} of them reach the best"],
-                ["feasible share", f"{hard.feasible_share:.2%} of durations drawn in the box"],
-                *([f"success of {name}", f"{rate:.0%}"] for name, rate in hard.baselines.items()),
-            ]  # fmt: skip
-        return [said, table(("what", "value"), rows, "trajgap-facts")]
+        return nodes_of([said, instance_terms(one)])
 
-    def _proof(self, one: BenchmarkInstance) -> nodes.paragraph:
+    def _proof(self, one: BenchmarkInstance) -> Prose:
         file = one.certificate_file()
         if file is None:
-            return paragraph(f"No certificate is shipped; make it with {one.command}.")
+            return Prose(f"No certificate is shipped; make it with {one.command}.")
         path = Path(str(file))
         self.env.note_dependency(str(path))
-        head = nodes.paragraph()
         if one.verify_seconds is not None and one.verify_seconds > PROVED_WITHIN:
-            head += badge(str(one.evidence))
-            head += nodes.Text(
-                f" Its proof takes {one.verify_seconds:g} s and was not made again by this build."
+            later = (
+                f"Its proof takes {one.verify_seconds:g} s and was not made again by this build."
             )
-            return head
-        verdict = proved_again(path, one.certificate_sha256)
-        head += badge(worth(verdict))
-        said = f"{verdict.reason[:1].upper()}{verdict.reason[1:]}"
-        head += nodes.Text(f" {said}. Proved again when this page was built.")
-        return head
+            return Prose(later, word=str(one.evidence))
+        return proof_said(path, one.certificate_sha256)

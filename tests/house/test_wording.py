@@ -28,7 +28,7 @@ from trajgap.compare.documents import (
     said_beside,
     under,
 )
-from trajgap.compare.sphinx.reasons import none_said
+from trajgap.compare.sphinx.directives import none_said
 from trajgap.problem import parse_case
 from trajgap.problem.cases import Nature
 

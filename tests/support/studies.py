@@ -16,7 +16,7 @@ from support.findings import OwnCurve
 from trajgap.compare.audits.case_audit import CaseAudit, audit_case
 from trajgap.compare.audits.reworded import Reworded
 from trajgap.compare.audits.study import Study
-from trajgap.compare.pages.blocks import Page
+from trajgap.compare.blocks import Page
 from trajgap.compare.pages.writer import case_page
 from trajgap.problem import Case, parse_case, published_ids
 from trajgap.problem.cases.load import check_case

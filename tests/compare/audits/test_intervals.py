@@ -14,6 +14,7 @@ from trajgap.compare.audits.case_audit import CaseAudit
 from trajgap.compare.audits.intervals import Intervals
 from trajgap.compare.audits.study import Study
 from trajgap.compare.audits.waterfall import waterfalls
+from trajgap.compare.blocks import Prose
 from trajgap.compare.cli.audit_command import audited
 from trajgap.compare.documents import AuditDocument, Why, facts
 from trajgap.compare.pages.verdicts import problems_audited
@@ -75,9 +76,8 @@ def test_what_the_budget_leaves_out_is_said() -> None:
     assert facts(one.document) == [("not certified", said)]
     (terms, *_) = problems_audited(one).blocks
     assert ("not certified", said) in terms.pairs  # page and Markdown
-    assert f"not certified: {said}" in map(
-        str, audited(AuditDocument(cases=(one.document,)), [stated()])
-    )
+    shown = audited(AuditDocument(cases=(one.document,)), [stated()])
+    assert Prose(f"not certified: {said}", "note") in shown
 
 
 def test_boxes_are_counted_unless_seconds_are_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:

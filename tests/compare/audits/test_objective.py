@@ -1,13 +1,11 @@
 """A paper that minimises something else than time alone is not held to the shortest time."""
 
-import json
-
 import pytest
 from support.findings import audited_text, verdicts
 from support.made_up import entry, paper, row, sentence
 from trajgap.compare.audits import Pair
 from trajgap.compare.audits.case_audit import CaseAudit
-from trajgap.compare.documents import ClaimVerdict, Severity, json_text
+from trajgap.compare.documents import ClaimVerdict, Severity
 from trajgap.compare.sphinx import paper_row
 
 AIM = "time and jerk, weighted"
@@ -74,9 +72,9 @@ def test_the_shortest_time_is_given_as_information(weighted: CaseAudit, plain: C
 
 
 def test_the_table_of_papers_shows_no_distance(weighted: CaseAudit, plain: CaseAudit) -> None:
-    shown, best, share = paper_row("", json.loads(json_text(weighted.document))).cells[:3]
+    shown, best, share = paper_row("", weighted.document).cells[:3]
     assert (shown, share) == ("18", "–")
-    own = paper_row("", json.loads(json_text(plain.document)))
+    own = paper_row("", plain.document)
     assert own.cells[:2] == (shown, best)
     assert own.distance.shares == pytest.approx([0.36, 0.36], abs=0.0005)
 

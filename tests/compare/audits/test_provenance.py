@@ -14,6 +14,7 @@ from trajgap.compare.audits.judging import judge
 from trajgap.compare.audits.provenance import certificate_files, commit, provenance, today
 from trajgap.compare.audits.stated import claim_text, digits_of, place, stated_claims, stated_source
 from trajgap.compare.audits.study import Study
+from trajgap.compare.blocks import answered
 from trajgap.compare.documents import (
     UNDECIDED,
     Basis,
@@ -24,7 +25,6 @@ from trajgap.compare.documents import (
     Why,
     tally,
 )
-from trajgap.compare.pages.claims import answered
 from trajgap.nlp import Evidence
 from trajgap.nlp.proofs.document import shipped_folder
 from trajgap.problem import TrajgapError, load_case, parse_case, published_ids
@@ -184,16 +184,16 @@ def test_an_answer_of_the_authors_is_carried_and_shown() -> None:
     case = parse_case(asked(ANSWER), "asked.toml")
     first, second, *_ = stated_claims(case)
     shown = "Authors asked 2026-01-31, answered 2026-02-14: A slip in print."
-    assert answered(case.claims[0]) == shown
+    assert answered(first) == shown
     assert first.model_dump()["answer"] == {
         "sent": "2026-01-31",
         "answered": "2026-02-14",
         "outcome": "A slip in print.",
     }
     assert second.model_dump()["answer_why"] == "the authors were not asked"
-    assert answered(case.claims[1]) == ""
+    assert answered(second) == ""
     waiting = parse_case(asked('answer = { sent = "2026-01-31" }'), "asked.toml")
-    assert answered(waiting.claims[0]) == "Authors asked 2026-01-31, no answer so far."
+    assert answered(stated_claims(waiting)[0]) == "Authors asked 2026-01-31, no answer so far."
 
 
 def test_who_typed_the_numbers_stands_with_the_source() -> None:

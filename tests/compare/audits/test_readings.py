@@ -1,6 +1,5 @@
 """The readings side by side: limits, segments, fit, optimum, and what holds under all or some."""
 
-import io
 from functools import cache
 from itertools import pairwise
 from math import exp, log, pi
@@ -8,7 +7,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from rich.console import Console
 from support.documents import assert_reasons, assert_valid, plain
 from support.findings import study_of
 from support.made_up import TWO_UNITS, one_joint, paper, readings, row
@@ -17,7 +15,9 @@ from trajgap.compare.audits.case_audit import AuditReport, CaseAudit
 from trajgap.compare.audits.readings import answers, holding, segments
 from trajgap.compare.audits.rules.continuous_time import judge_motions
 from trajgap.compare.audits.study import Study
+from trajgap.compare.blocks import Page
 from trajgap.compare.cli.audit_command import audited
+from trajgap.compare.cli.output import rendered
 from trajgap.compare.documents import (
     AuditDocument,
     Cause,
@@ -34,7 +34,6 @@ from trajgap.compare.documents import (
     Waterfall,
     Why,
 )
-from trajgap.compare.pages.blocks import Page
 from trajgap.compare.pages.markdown_text import markdown
 from trajgap.compare.pages.readings import side_by_side
 from trajgap.nlp import Evidence
@@ -182,15 +181,11 @@ def test_the_page_has_a_row_for_each_reading() -> None:
     assert "segments 1, 3<br>joint 2 velocity, ratio 1.665" in page
 
 
-def terminal(document: AuditDocument, width: int = 400) -> list[str]:
-    out = io.StringIO()
-    console = Console(file=out, width=width)
-    for part in audited(document, [five().case]):
-        console.print(part)
-    return [line.rstrip() for line in out.getvalue().splitlines()]
+def test_the_terminal_says_once_what_many_readings_say(monkeypatch: pytest.MonkeyPatch) -> None:
+    def terminal(document: AuditDocument, width: int = 400) -> list[str]:
+        monkeypatch.setenv("COLUMNS", str(width))
+        return rendered(audited(document, [five().case])).splitlines()
 
-
-def test_the_terminal_says_once_what_many_readings_say() -> None:
     case = five().document
     nothing: Any = {"explanations": (), "consequences": ()}
     said = {"says": "Not shortest: 0.5 s. More of it.", "readings": ("timed", "tight", "both")}

@@ -18,7 +18,7 @@ from support.command_line import CASE, START, Run, assert_refused
 from support.drawn import sketched
 from support.refusals import Refusal, refusals
 from support.small_studies import HEAD
-from trajgap.compare.pages import foreign
+from trajgap.compare.pages import check_report_folder
 
 ALGORITHM = '[[algorithms]]\nid = "a"\nname = "A"\nkind = "pso"\nsettings = { particles = -3 }\n'
 FILES = {
@@ -217,4 +217,4 @@ def test_labels_and_ids_of_any_length(run: Run) -> None:
         assert run("audit", "long.toml", "--certify-seconds", "0", "--out", "pages")[0] == 0
     assert (Path("pages") / "index.html").is_file()
     # The earlier report is known as one, whatever its names.
-    assert foreign(Path("pages")) is None
+    check_report_folder(Path("pages"))

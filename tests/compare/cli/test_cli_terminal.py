@@ -12,6 +12,7 @@ from rich.cells import cell_len
 from support.checkout import ROOT
 from support.command_line import CASE, IRB, ONE, START, Run, interrupted, on_terminal, strict
 from support.documents import SCHEMA
+from trajgap.compare.blocks import table
 from trajgap.compare.cli import main, output as cli_output
 
 ROWS = 'waypoint_rows = [["0.3", "-1.0"], ["1.1", "0.4"], ["0.9", "1.7"], ["2.0", "1.2"]]'
@@ -80,7 +81,7 @@ def test_no_digit_is_cut_off_in_a_narrow_window(monkeypatch: pytest.MonkeyPatch)
     rows = [("name", "3.296695", "prose " * 40)]
     for width in (20, 40, 200):
         monkeypatch.setenv("COLUMNS", str(width))
-        text = cli_output.rendered([cli_output.Columns(("a", ">total s", "…why"), rows)])
+        text = cli_output.rendered([table(("a", ">total s", "…why"), rows)])
         assert "name" in text
         assert "3.296695" in text
         assert "…" in text
@@ -91,7 +92,7 @@ def test_prose_shares_what_the_window_leaves() -> None:
     """A narrow column of prose takes what it needs, one that would be cut off comes first."""
     words, cut = "some words of prose " * 5, "c" * 50
     rows = [("x" * 10, words, "short prose", cut)]
-    text = cli_output.rendered([cli_output.Columns(("firm", "~long", "~short", "…cut"), rows)])
+    text = cli_output.rendered([table(("firm", "~long", "~short", "…cut"), rows)])
     # Tests have a window of 120 columns.
     assert max(map(len, text.splitlines())) == 120
     assert cut in text

@@ -50,7 +50,7 @@ def test_show_says_how_to_verify_and_the_command_does(
 ) -> None:
     out = run.done("suite", "show", "353-irb460")
     one = load_instance("353-irb460")
-    assert f"between {one.lower!r} and {one.upper!r} s" in out
+    assert f"between {one.lower!r} and {one.upper!r}" in out
     file = one.certificate_file()
     # A command stands on one line, so that it can be copied from the narrowest window.
     monkeypatch.setenv("COLUMNS", "60")
@@ -126,9 +126,9 @@ def test_pages_of_every_instance(run: Run, folder: Path) -> None:
     for one in list_instances():
         assert f'href="{one.name}.html"' in index
         page = (there / f"{one.name}.html").read_text("utf-8")
-        assert f"{one.lower!r} s" in page
+        assert f"between {one.lower!r} and {one.upper!r}" in page
         assert one.case_sha256 in page or one.certificate is None
-        assert f"{one.segments} segments between way-points, {one.joints} joints" in page
+        assert f"{one.segments} segments, {one.joints} joints" in page
         took = f" It took {one.verify_seconds or 0:g} s here."
         assert (took in page) == (one.certificate is not None)
         assert page.count("evaluations end within 1 %") == len(one.hardness.baselines)

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from support.small_studies import small_trial
+from trajgap.compare.blocks import brief_board
 from trajgap.compare.gaps import (
     DESCENT,
     LADDER,
@@ -15,7 +16,6 @@ from trajgap.compare.gaps import (
     Bracket,
     Row,
     Summary,
-    board_cells,
     boards,
     leaderboard_rows,
     leaderboard_study,
@@ -97,7 +97,7 @@ def test_the_reference_takes_no_place_of_an_optimiser() -> None:
         ("good", 1),
         ("bad", 2),
     ]
-    shown = [[said for said, _ in board_cells(board, one)[:2]] for one in board.standings]
+    shown = [[cell.text for cell in row[:2]] for row in brief_board(board).rows]
     assert shown == [
         ["–", f"{DESCENT} (reference, no black box)"], ["1", "good"], ["2", "bad"],
     ]  # fmt: skip

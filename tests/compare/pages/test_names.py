@@ -10,8 +10,8 @@ from support.drawn import sketched
 from support.findings import report_of
 from support.made_up import entry, paper, row
 from trajgap.compare import write_report
-from trajgap.compare.pages import foreign
-from trajgap.compare.pages.blocks import Cell, Grid, Page, Prose, Section, Terms
+from trajgap.compare.blocks import Cell, Grid, Page, Prose, Section, Terms
+from trajgap.compare.pages import check_report_folder
 from trajgap.compare.pages.markdown_text import markdown
 from trajgap.problem import file_name, parse_case
 
@@ -76,10 +76,10 @@ def test_every_waterfall_has_its_picture(folder: Path) -> None:
                     page = (folder / f"{case}.{end}").read_text(encoding="utf-8")
                     assert f"pictures/{file.name}" in page
     assert len(files) >= 2 * 4
-    assert foreign(folder) is None
+    check_report_folder(folder)
     known = folder / "pictures" / "dash-waterfall-a-b-c.svg"  # as pictures were called once
     known.write_text("<svg/>", encoding="utf-8")
-    assert foreign(folder) is None
+    check_report_folder(folder)
     known.unlink()
 
 

@@ -13,17 +13,21 @@ from support.toml_text import Bare
 from trajgap.compare.audits import KEPT
 from trajgap.compare.audits.case_audit import CaseAudit
 from trajgap.compare.audits.study import Study
+from trajgap.compare.blocks import (
+    Cell,
+    Folded,
+    Grid,
+    Page,
+    Prose,
+    Section,
+)
 from trajgap.compare.documents import (
-    Caveat,
-    CaveatKind,
     ClaimVerdict,
     Keeping,
     Step,
     Waterfall,
     Why,
 )
-from trajgap.compare.pages.blocks import Cell, Claimed, Folded, Grid, Page, Prose, Section, word
-from trajgap.compare.pages.claims import shown_once
 from trajgap.compare.pages.environment import environment, style
 from trajgap.compare.pages.markdown_text import markdown
 from trajgap.compare.pages.motions_shown import _totals
@@ -172,46 +176,6 @@ def test_what_is_open_about_limits_is_called_as_the_claim_is() -> None:
     open_words = {k: KEPT[k] for k in (Keeping.DISCONTINUOUS, Keeping.UNDECIDED)}
     assert all(said.startswith(str(ClaimVerdict.NOT_CHECKABLE)) for said in open_words.values())
     assert len(set(KEPT.values())) == len(KEPT) == len(Keeping)
-
-
-FIGURE_5 = Claimed(
-    text="It is better.",
-    where="Figure 5",
-    printed="",
-    verdict=word("inconsistent"),
-    holds="under both readings",
-    why=("Both print 3.298 s.",),
-    more=(),
-    caveats=(Caveat(CaveatKind.DOUBTED, "Rests on doubt", "two tables are alike."),),
-    anchor="claim-1",
-    id="better-1",
-)
-FIGURE_6 = replace(FIGURE_5, where="Figure 6", why=("Both print 2.289 s.",), anchor="claim-2")
-
-
-def test_equal_words_in_two_places_are_one_claim_with_both_anchors() -> None:
-    (one,) = shown_once([FIGURE_5, FIGURE_6])
-    assert one.where == "Figure 5; Figure 6"
-    assert one.why == ("Both print 3.298 s.",)
-    assert one.more == ("Figure 6: Both print 2.289 s.",)
-    assert (one.anchor, one.also) == ("claim-1", ("claim-2",))
-
-
-def test_equal_words_with_another_verdict_stay_two() -> None:
-    refuted = replace(FIGURE_6, verdict=word("refuted"))
-    assert [one.where for one in shown_once([FIGURE_5, refuted])] == ["Figure 5", "Figure 6"]
-
-
-def test_a_reason_and_a_long_caveat_are_given_once() -> None:
-    again = replace(FIGURE_5, text="It is faster.", where="Figure 7")
-    first, second = shown_once([FIGURE_5, again])
-    assert first == FIGURE_5
-    assert second.why == ("For the reason given at Figure 5.",)
-    here = replace(again, where="Figure 5")
-    assert list(shown_once([FIGURE_5, here]))[1].why == (
-        "For the reason given for “It is better”.",
-    )
-    assert list(map(str, second.caveats)) == ["Rests on doubt (see above)."]
 
 
 def test_the_papers_unit_comes_first() -> None:

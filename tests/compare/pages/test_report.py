@@ -11,6 +11,7 @@ from support.drawn import sketched
 from support.hostile import ID, IMAGE
 from support.page_tree import Tree
 from trajgap.compare import AuditReport
+from trajgap.compare.blocks import Claimed, Page, slug
 from trajgap.compare.documents import (
     CARD_WORDS,
     Basis,
@@ -20,7 +21,6 @@ from trajgap.compare.documents import (
     Keeping,
     qualified,
 )
-from trajgap.compare.pages.blocks import Claimed, Page, slug
 from trajgap.compare.pages.markdown_text import plain
 from trajgap.compare.pages.writer import case_page
 from trajgap.nlp import Evidence

@@ -17,8 +17,8 @@ from support.findings import report_of
 from support.hostile import ID, hostile_case
 from support.studies import source
 from trajgap.compare import AuditReport, write_report
+from trajgap.compare.blocks import Cell, Drawn, Grid, Page, Prose, Section, Terms, table
 from trajgap.compare.pages import crate_of
-from trajgap.compare.pages.blocks import Cell, Drawn, Grid, Page, Prose, Section, Terms
 from trajgap.compare.pages.markdown_text import markdown
 from trajgap.compare.pages.writer import MARK, report_files
 from trajgap.problem import TrajgapError, load_case
@@ -85,7 +85,7 @@ def test_a_folder_with_other_files_is_left_alone(
     elif mark is not None:
         (out / MARK).write_text(mark, encoding="utf-8")
     before = content(out)
-    refuses(NOTHING, out, f"{re.escape(named)} is not part of a trajgap report; name a new or an")
+    refuses(NOTHING, out, f"holds {re.escape(named)}, which is no audit; name a new or an empty")
     assert content(out) == before
 
 
@@ -102,18 +102,18 @@ def test_what_would_share_names_or_lie_over_files_is_refused(
         for name in ("index", "audit", "glossary")
     ]
     for made, place, said in (
-        (NOTHING, "audit", r"pictures/mine\.png is not part of a trajgap report"),
-        (report, "file", "what is there is not part of a trajgap report"),
-        (report, "link", "what is there is not part of a trajgap report"),
+        (NOTHING, "audit", r"holds pictures/mine\.png, which is no audit"),
+        (report, "file", "is no folder; name a new or an empty one"),
+        (report, "link", "is no folder; name a new or an empty one"),
         (NOTHING, "file/audit", r"cannot be written \(.+\); name another place"),
-        (AuditReport(report.cases * 2), "out", f"two cases are called '{ID}'; give each an id"),
-        *((one, "out", f"a case cannot be called '{name}'; rename it") for one, name in named),
+        (AuditReport(report.cases * 2), "out", f"'{ID}' is the name of another case; rename it"),
+        *((one, "out", f"'{name}' is the name of another page; rename it") for one, name in named),
     ):
         refuses(made, tmp_path / place, said)
 
 
 def test_markdown_of_every_block() -> None:
-    grid = Grid(("a|b", "n"), ((Cell("x\ny"), Cell("−1", number=True)),), "caption")
+    grid = table(("a|b", ">n"), [("x\ny", -1)], "caption")
     section = Section(
         "s",
         "S <1>",

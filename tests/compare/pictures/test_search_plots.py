@@ -12,7 +12,7 @@ from trajgap.compare.documents import Step, Why
 from trajgap.compare.pictures.drawing import DARK, THEME, Picture, svg
 from trajgap.compare.pictures.searches import convergence, endings
 from trajgap.compare.pictures.totals_map import landscape, tight_total
-from trajgap.compare.pictures.waterfall import seconds, waterfall_picture
+from trajgap.compare.pictures.waterfall import waterfall_picture
 from trajgap.heuristics import JointRuns, Run
 from trajgap.nlp import Solution, Status, solve
 from trajgap.problem import Limits, Problem, TrajgapError, check, cubic_spline, quintic_spline
@@ -27,7 +27,7 @@ def test_the_waterfall_shows_every_value_its_evidence_and_every_reason(
 ) -> None:
     text = words(pictures["waterfall"])
     for step in STEPS:
-        assert (step.note if isinstance(step.time, Why) else seconds(step)) in text
+        assert (step.note if isinstance(step.time, Why) else step.total()) in text
     # The first step, 1.9 s, beside 2.1 s, 1.5 s and 0.012 s.
     for said in ("1.9000 s (1.8950 to 1.9050)", "−0.2000 s", "−9.5 %", "+0.4000 s", "+26.7 %",
                  "158.3 ×"):  # fmt: skip

@@ -1,17 +1,18 @@
 """The table and the picture of all papers: citation, order, distance, what was found."""
 
-from typing import Any
-
 import pytest
 from support.checkout import ROOT
+from trajgap.compare.blocks import reference
+from trajgap.compare.documents import StatedSource, Why, known
 from trajgap.compare.sphinx import Results, paper_row, paper_rows, papers_drawn
-from trajgap.compare.sphinx.papers import Distance, cited, reference
+from trajgap.compare.sphinx.papers import Distance, cited
 
 RESULTS = Results(ROOT / "docs" / "results")
 
 
-def source(authors: str, year: int | None = 2024, **more: str) -> dict[str, Any]:
-    return {"authors": authors, "year": year, "title": "On time", "journal": "", **more}
+def source(authors: str, year: int | None = 2024, title: str = "On time") -> StatedSource:
+    told = {"kind": "paper", "journal": "", "doi": "", "note": "", "transcribed_by": Why("")}
+    return StatedSource(authors=authors, year=known(year), title=title, checked_by=Why(""), **told)
 
 
 @pytest.mark.parametrize(
@@ -31,9 +32,9 @@ def test_a_paper_is_called_as_a_sentence_cites_it(authors: str, shown: str) -> N
 
 
 def test_what_the_text_lacks_is_said() -> None:
-    assert reference(source("Fan K.")) == "Fan K., On time, 2024."
-    assert reference(source("", None)).endswith("names no authors.")
-    assert "neither authors nor title" in reference(source("", None, title=""))
+    assert reference(source("Fan K.")).text == "Fan K., On time, 2024."
+    assert reference(source("", None)).text.endswith("names no authors.")
+    assert "neither authors nor title" in reference(source("", None, title="")).text
 
 
 def test_what_is_worth_reading_stands_first() -> None:
@@ -60,17 +61,17 @@ def test_what_is_worth_reading_stands_first() -> None:
     ],
 )
 def test_a_row_of_the_table(name: str, shown: tuple[str, ...]) -> None:
-    assert paper_row(name, RESULTS.case(name)).cells[: len(shown)] == shown
+    assert paper_row(name, RESULTS.audited(name)).cells[: len(shown)] == shown
 
 
 def test_a_distance_that_rounding_may_explain_says_so() -> None:
     """Published digits: 3.7341 s beside 3.5956 s, through way-points of two decimals."""
     name = "yu2022-aubo-b-spline"
-    row = paper_row(name, RESULTS.case(name))
+    row = paper_row(name, RESULTS.audited(name))
     assert row.cells[2] == "3.9 %, which rounding may explain"
     name = "irb460-pso-353"
     (steps,) = (w["steps"] for w in RESULTS.case(name)["waterfalls"][:1])
-    row = paper_row(name, RESULTS.case(name))
+    row = paper_row(name, RESULTS.audited(name))
     assert 0 < row.distance.least < 1.869 / 1.8175 - 1
     assert row.cells[2].startswith("at least ")
     assert steps[0]["time"] == row.distance.printed

@@ -1,16 +1,17 @@
-"""What a report page is made of, before it becomes HTML or Markdown."""
+"""What a document is laid out as, before it becomes HTML, Markdown, a page of the site or text."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from html import unescape
+from math import isfinite
 from typing import ClassVar, TypeAlias
 from urllib.parse import quote
 
 from ...problem import file_name
-from ..documents import Caveat
+from ..documents import Caveat, Why
 
 GLOSSARY = "glossary.html"
 """The page that explains every word, once for a report."""
@@ -18,92 +19,126 @@ GLOSSARY = "glossary.html"
 
 @dataclass(frozen=True)
 class Cell:
-    """One cell of a table.
-
-    Attributes
-    ----------
-    text : str
-        Lines are separated by line feeds.
-    mark : str
-        Word of the vocabulary that the cell consists of, such as "refuted"; empty for free text.
-    number : bool
-        Whether it is set right, in digits of equal width.
-    anchor : str
-        Name under which other cells point here; empty for none.
-    target : str
-        Name of the cell or section that it points to; empty for none.
-    """
+    """One cell of a table."""
 
     text: str
+    """Lines are separated by line feeds."""
     mark: str = ""
-    number: bool = False
-    anchor: str = ""
+    """Word of the vocabulary that the first line consists of, such as "refuted"; empty for free
+    text."""
     target: str = ""
+    """Name of the claim, word, file or page that it points to; empty for none."""
+    code: bool = False
+    """Whether it is taken letter by letter: an id, a file, a command."""
 
 
 @dataclass(frozen=True)
 class Prose:
-    """A paragraph; a lead is set larger, a note smaller."""
+    """A paragraph; its weight is lead, heading, note, against, warning, source, or none."""
 
     text: str
     weight: str = ""
+    word: str = ""
+    """Of the vocabulary, in front of the text; empty for none."""
+    doi: str = ""
+    """Of what the text names, behind it; empty for none."""
+
+    @property
+    def doi_link(self) -> str:
+        """Address of what it names."""
+        return doi_link(self.doi)
+
     kind: ClassVar[str] = "prose"
 
 
 @dataclass(frozen=True)
 class Grid:
-    """A table.
-
-    Attributes
-    ----------
-    columns : tuple of str
-    rows : tuple of tuple of Cell
-    caption : str
-    """
+    """A table, as `table` makes it."""
 
     columns: tuple[str, ...]
     rows: tuple[tuple[Cell, ...], ...]
     caption: str = ""
-    prose: bool = False
-    """Whether the last column is prose and gets the room."""
+    marks: tuple[str, ...] = ()
+    """Of each column: > for numbers, ~ for prose, which gets the room, … for what may be cut off
+    where there is none; empty for other text."""
+    styles: tuple[str, ...] = ()
+    """What a page of the site adds to it, such as "sortable"."""
     kind: ClassVar[str] = "grid"
+
+    def mark(self, column: int) -> str:
+        """What kind of text a column holds."""
+        return self.marks[column] if self.marks else ""
+
+    def texts(self, row: Sequence[Cell]) -> list[str]:
+        """What a page shows of a row: numbers have a true minus sign."""
+        return [
+            cell.text.replace("-", "−") if self.mark(i) == ">" else cell.text
+            for i, cell in enumerate(row)
+        ]
 
     @property
     def filled(self) -> Grid:
         """The same table without columns in which every cell is empty."""
-        kept = [i for i in range(len(self.columns)) if any(row[i].text for row in self.rows)]
+        return self.without(
+            *(i for i in range(len(self.columns)) if not any(row[i].text for row in self.rows))
+        )
+
+    def without(self, *columns: int) -> Grid:
+        """The same table without some columns."""
+        kept = [i for i in range(len(self.columns)) if i not in columns]
         return replace(
             self,
             columns=tuple(self.columns[i] for i in kept),
+            marks=tuple(self.mark(i) for i in kept),
             rows=tuple(tuple(row[i] for i in kept) for row in self.rows),
         )
+
+
+def table(
+    columns: Sequence[str], rows: Iterable[Sequence[object]], caption: str = "", *styles: str
+) -> Grid:
+    """A table of cells and plain values.
+
+    Parameters
+    ----------
+    columns : sequence of str
+        Names, each behind one of the marks of `Grid` or none.
+    rows : iterable of sequence
+        A value that is None, or has a reason in its place, is shown as empty.
+    """
+    marks = tuple(name[0] if name[0:1] in (">", "~", "…") else "" for name in columns)
+    return Grid(
+        tuple(name.removeprefix(mark) for name, mark in zip(columns, marks, strict=True)),
+        tuple(tuple(map(text, row)) for row in rows),
+        caption,
+        marks,
+        styles,
+    )
 
 
 @dataclass(frozen=True)
 class Terms:
     """Words and what they mean, or names and their values."""
 
-    pairs: tuple[tuple[str, str], ...]
+    pairs: tuple[tuple[str, str | Cell], ...]
     anchored: bool = False
     """Whether each word can be pointed to."""
     kind: ClassVar[str] = "terms"
 
+    @property
+    def cells(self) -> tuple[tuple[str, Cell], ...]:
+        """Names with their values as cells."""
+        return tuple((name, text(value)) for name, value in self.pairs)
+
 
 @dataclass(frozen=True)
 class Drawn:
-    """A picture.
-
-    Attributes
-    ----------
-    name : str
-        Made by `file_name`; unique in the page.
-    document : str
-        SVG.
-    title, caption : str
-    """
+    """A picture."""
 
     name: str
+    """Made by `file_name`; unique in the page."""
     document: str
+    """SVG."""
     title: str
     caption: str = ""
     inside: bool = False
@@ -126,84 +161,66 @@ class Drawn:
 
 @dataclass(frozen=True)
 class CardShown:
-    """The verdict card, with the picture beside it.
-
-    Attributes
-    ----------
-    lines : tuple of str
-        Limits, optimum, improvement.
-    errors : tuple of str
-    beside : str
-        The most charitable explanation; empty for none.
-    drawn : Drawn or None
-    """
+    """The verdict card, with the picture beside it."""
 
     lines: tuple[str, ...]
+    """Limits, optimum, improvement."""
     errors: tuple[str, ...]
     beside: str = ""
+    """The most charitable explanation; empty for none."""
     drawn: Drawn | None = None
     tally: str = ""
     """How many claims have which word, and how that is known."""
     kind: ClassVar[str] = "card"
 
+    @property
+    def sentences(self) -> tuple[tuple[str, str], ...]:
+        """Everything that it says, in order, with the weight of each; no empty ones."""
+        own = [*((line, "") for line in self.lines), *((line, "against") for line in self.errors)]
+        own += [(self.beside, "beside"), (self.tally, "tally")]
+        return tuple(one for one in own if one[0])
+
 
 @dataclass(frozen=True)
 class Claimed:
-    """One claim: its words, place and digits, the verdict, and why.
-
-    Attributes
-    ----------
-    text, where, printed : str
-    verdict : Cell
-    holds : str
-        Under which readings, and what the verdict rests on.
-    why : tuple of str
-    more : tuple of str
-        The rest of the reasons, for a fold.
-    caveats : tuple of Caveat
-        Each begins and ends as a sentence does.
-    answer : str
-        What the authors say; empty where they were not asked.
-    anchor : str
-        Name under which others point here.
-    id : str
-        Of the claim in the case file.
-    """
+    """One claim: its words, place and digits, the verdict, and why."""
 
     text: str
     where: str
     printed: str
     verdict: Cell
     holds: str
+    """Under which readings, and what the verdict rests on."""
     why: tuple[str, ...]
     more: tuple[str, ...]
+    """What is left out of that, for a fold."""
     caveats: tuple[Caveat, ...]
+    """Each begins and ends as a sentence does."""
     anchor: str
+    """Name under which others point here."""
     id: str
+    """Of the claim in the case file."""
     answer: str = ""
+    """What the authors say; empty where they were not asked."""
+    beside: tuple[str, ...] = ()
+    """What else is said of it, such as an innocent explanation."""
     also: tuple[str, ...] = ()
     """Anchors of claims of the same words in other places, which this one stands for."""
+    fold: str = "Read on"
+    """The line above what a fold holds."""
     kind: ClassVar[str] = "claimed"
 
 
 @dataclass(frozen=True)
 class Behind:
-    """What lies behind findings: one cause, what would explain it, and what follows.
-
-    Attributes
-    ----------
-    weight : Cell
-        Its severity.
-    says : str
-    explanations : tuple of str
-    follows : tuple of Cell
-        Claims that fall with it, as links.
-    """
+    """What lies behind findings: one cause, what would explain it, and what follows."""
 
     weight: Cell
+    """Its severity."""
     says: str
     explanations: tuple[str, ...]
     follows: tuple[Cell, ...]
+    """Claims that fall with it, as links."""
     kind: ClassVar[str] = "behind"
 
 
@@ -231,6 +248,8 @@ class Section:
     blocks: tuple[Block, ...]
     folded: bool = False
     """Whether the reader opens it."""
+    target: str = ""
+    """File that its title leads to; empty for none."""
 
 
 @dataclass(frozen=True)
@@ -269,7 +288,12 @@ class Page:
     @property
     def doi_link(self) -> str:
         """Address of the paper; empty where the DOI is none."""
-        return f"https://doi.org/{quote(self.doi, '/')}" if _DOI.fullmatch(self.doi) else ""
+        return doi_link(self.doi)
+
+
+def doi_link(doi: str) -> str:
+    """Address of a paper; empty where the DOI is none."""
+    return f"https://doi.org/{quote(doi, '/')}" if _DOI.fullmatch(doi) else ""
 
 
 _DOI = re.compile(r"10\.[0-9]{4,9}/[^\s<>\"]+")
@@ -287,22 +311,31 @@ def _drawn(blocks: Sequence[Block]) -> Iterator[Drawn]:
 
 
 def link(target: str) -> str:
-    """Where a cell's target leads: words to the report's glossary, others within the page."""
+    """Where a cell's target leads: words to the report's glossary, claims within the page."""
+    if target.endswith(".html"):
+        return target
     return f"{GLOSSARY}#{target}" if target.startswith("word-") else f"#{target}"
 
 
 def text(value: object) -> Cell:
-    """Cell of free text; None is shown as empty."""
-    return Cell("" if value is None else str(value))
+    """A value as a cell; None, and a reason in the place of a value, is shown as empty."""
+    if isinstance(value, Cell):
+        return value
+    return Cell("" if value is None or isinstance(value, Why) else str(value))
 
 
-def number(value: object) -> Cell:
-    """Cell of digits, with a true minus sign; None is shown as empty."""
-    return Cell("" if value is None else str(value).replace("-", "−"), number=True)
+def code(value: object) -> Cell:
+    """Cell of an id, a file or a command."""
+    return Cell(str(value), code=True)
+
+
+def badge(value: str) -> Cell:
+    """Cell of a word from the vocabulary."""
+    return Cell(value, mark=slug(value))
 
 
 def word(value: str) -> Cell:
-    """Cell of a word from the vocabulary, linked to its meaning in the glossary."""
+    """Cell of a word from the vocabulary, linked to its meaning in the glossary of a report."""
     return Cell(value, mark=slug(value), target=f"word-{slug(value)}")
 
 
@@ -311,11 +344,7 @@ def slug(value: str) -> str:
     return "-".join("".join(c if c.isascii() and c.isalnum() else " " for c in value).split())
 
 
-def seconds(value: float | None) -> str | None:
-    """Time with six decimals; None stays."""
-    return None if value is None else f"{value:.6f} s"
-
-
-def listed(values: Sequence[float], digits: int = 6) -> str:
-    """Numbers in a row."""
-    return ", ".join(f"{v:.{digits}f}" for v in values)
+def seconds(value: float | Why, places: int = 6, none: str = "none") -> str:
+    """A time without its unit; a word in place of one that is missing or unbounded."""
+    known = not isinstance(value, Why) and isfinite(value)
+    return f"{value:.{places}f}" if known else none

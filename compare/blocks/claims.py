@@ -1,0 +1,181 @@
+"""Claims with verdict and why, as every page lays them out: each thing said once."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
+
+from ...nlp import Evidence
+from ...problem import file_name
+from ..documents import (
+    AuditedCase,
+    Caveat,
+    CaveatKind,
+    ClaimVerdict,
+    Confidence,
+    Judgement,
+    Named,
+    Said,
+    StatedClaim,
+    Why,
+    capital,
+    grouped,
+    in_full,
+    opened,
+    qualified,
+    same_reason,
+)
+from .tree import Claimed, word
+
+_POINTS = (CaveatKind.POINTS, CaveatKind.SOME_POINTS)
+"""Caveats of doubted way-points."""
+
+
+def claims_shown(
+    found: AuditedCase,
+    chosen: Iterable[Judgement],
+    beside: Mapping[str, Sequence[str]] | None = None,
+    words: int | None = None,
+) -> Iterator[Claimed]:
+    """Claims with their verdicts, each reason and each long caveat once.
+
+    Parameters
+    ----------
+    chosen : iterable of Judgement
+        Verdicts of this case, in the order in which they are shown.
+    beside : mapping of str to sequence of str, optional
+        What else is said of a claim, by its id.
+    words : int, optional
+        Of a reason that stand in the open, where there is less room than the opening needs.
+    """
+    stated = {one.claim: one for one in found.claims}
+    more = beside or {}
+    own = [_claimed(found, stated[j.claim], j, words) for j in chosen]
+    return shown_once([replace(one, beside=tuple(more.get(one.id, ()))) for one in own])
+
+
+def _claimed(
+    found: AuditedCase, claim: StatedClaim, judgement: Judgement, words: int | None
+) -> Claimed:
+    reason, every = _reasons(found, judgement, words)
+    # Of doubted way-points the word has said so, or a short line does, where there is no room.
+    doubts = () if words is None else [c for c in judgement.caveats if c.kind in _POINTS]
+    short = [replace(c, why="") for c in doubts if c.kind is CaveatKind.SOME_POINTS]
+    shown = [*short, *(c for c in judgement.caveats if c not in doubts)]
+    title = "The whole reason" if len(every) == 1 else f"All {len(every)} reasons"
+    verdict = word(judgement.verdict)
+    return Claimed(
+        text=claim.text,
+        where=claim.where,
+        printed=claim.printed,
+        verdict=replace(verdict, text=qualified(judgement.verdict, judgement.beside)),
+        holds=_holds(judgement),
+        why=(reason,),
+        more=(*every, *(str(_sentence(c)) for c in doubts)),
+        caveats=tuple(map(_sentence, shown)),
+        fold=title if words is None else "Read on",
+        anchor=file_name("claim", claim.claim),
+        id=claim.claim,
+        answer=answered(claim),
+    )
+
+
+def _reasons(
+    found: AuditedCase, judgement: Judgement, words: int | None
+) -> tuple[str, tuple[str, ...]]:
+    """The opening of what decides, and all of it in full where that is more."""
+    named, computed = names(found), tuple(judgement.readings)
+    said = [
+        Said(f.verdict, f.rule, f.kind, f.sentences, f.reading)
+        for f in found.findings
+        if f.claim == judgement.claim and f.decides
+    ]
+    reasons = grouped(said, computed, named)
+    depends = judgement.verdict is ClaimVerdict.DEPENDS
+    every = [line for one in reasons for line in in_full(one, computed, named, word=depends)]
+    opening = judgement.opening
+    if words is not None:
+        shown, rest = opened(judgement.sentences, words)
+        opening = " ".join(shown) if rest else None
+    if opening is None and len(every) == len(reasons):
+        return judgement.why, ()
+    return opening or judgement.why, tuple(every) if len(every) > 1 else (judgement.why,)
+
+
+def names(found: AuditedCase) -> Named:
+    """What the readings of a case are called."""
+    said = found.readings
+    return Named() if isinstance(said, Why) else Named(said.labels, said.implausible, said.default)
+
+
+def _holds(judgement: Judgement) -> str:
+    """Under how many readings the word holds, its reference, and how that is known."""
+    words = list(judgement.readings.values())
+    each = [f"{one} under {words.count(one)}" for one in dict.fromkeys(words)]
+    undecided = set(words) == {ClaimVerdict.NOT_CHECKABLE}
+    parts = [f"{', '.join(each)} of {len(words)} readings"] * (len(words) > 1 and not undecided)
+    if judgement.evidence is not Evidence.NONE:
+        parts.append(f"reference {judgement.evidence}")
+    parts += [judgement.confidence] if isinstance(judgement.confidence, Confidence) else []
+    return capital("; ".join(parts))
+
+
+def _sentence(caveat: Caveat) -> Caveat:
+    """A caveat that begins and ends as a sentence does."""
+    if caveat.why:
+        return Caveat(caveat.kind, capital(caveat.says), f"{caveat.why.rstrip('.')}.")
+    return Caveat(caveat.kind, f"{capital(caveat.says).rstrip('.')}.")
+
+
+def answered(claim: StatedClaim) -> str:
+    """What the authors say of a claim, or that they were asked; empty where they were not."""
+    answer = claim.answer
+    if isinstance(answer, Why):
+        return ""
+    came = answer.answered if isinstance(answer.answered, Why) else f"answered {answer.answered}"
+    said = f"Authors asked {answer.sent}, {came}"
+    return f"{said}: {answer.outcome}" if answer.outcome else f"{said}."
+
+
+def shown_once(found: Sequence[Claimed]) -> Iterator[Claimed]:
+    """Claims in order, without what an earlier one has said.
+
+    Returns
+    -------
+    iterator of Claimed
+        Claims of the same words and the same verdict are one with several places. A reason that an
+        earlier claim gave is named, and a long caveat is given in full once.
+    """
+    groups: dict[tuple[str, ...], list[Claimed]] = {}
+    for one in found:
+        groups.setdefault((one.text, one.verdict.text, one.holds), []).append(one)
+    first: dict[tuple[str, ...], Claimed] = {}
+    seen: set[Caveat] = set()
+    for group in groups.values():
+        one = _joined(group)
+        before = first.setdefault((*one.why, *one.more), one)
+        if before is not one:
+            one = replace(one, why=(same_reason(before.text, before.where, one.where),), more=())
+        caveats = tuple(
+            Caveat(c.kind, f"{c.says} (see above).") if c in seen else c for c in one.caveats
+        )
+        seen.update(caveat for caveat in one.caveats if caveat.why)
+        yield replace(one, caveats=caveats)
+
+
+def _joined(group: Sequence[Claimed]) -> Claimed:
+    """Claims of the same words as one, with the other reasons of the others."""
+    one, *others = group
+    if not others:
+        return one
+    why = [f"{other.where}: {' '.join(other.why)}" for other in others if other.why != one.why]
+    return replace(
+        one,
+        where="; ".join(dict.fromkeys(c.where for c in group)),
+        printed="; ".join(dict.fromkeys(c.printed for c in group if c.printed)),
+        why=(*one.why, *why),
+        beside=tuple(dict.fromkeys(said for c in group for said in c.beside)),
+        caveats=tuple(dict.fromkeys(caveat for c in group for caveat in c.caveats)),
+        answer=" ".join(dict.fromkeys(c.answer for c in group if c.answer)),
+        also=tuple(c.anchor for c in others),
+    )
