@@ -28,9 +28,8 @@ from ...nlp import (
     printed_problem_or_none,
     solve_per_joint,
     with_interval,
-    with_other_route,
 )
-from ...nlp.optimum import free_values, solve
+from ...nlp.optimum import free_values
 from ...nlp.proofs import KeptNearby
 from ...problem import (
     Array,
@@ -46,6 +45,7 @@ from ...problem import (
 from ...problem.cases import AnyClaim, Claim, DurationsClaim, MotionValueClaim, TimeClaim
 from ..documents import capital, noted
 from .intervals import Intervals
+from .kept_optima import AskedOptimum, KeptOptima
 from .kept_replays import KeptReplays, Replays
 from .replay_settings import LISTED, spread_settings
 from .stated import in_words, in_words_among, printed_total, prints_durations
@@ -113,6 +113,7 @@ class Study:
         self._kept: dict[tuple[Any, ...], Any] = {}
         self.cache = cache
         self.kept_replays = KeptReplays(cache)
+        self.kept_optima = KeptOptima(cache)
         self._kept_nearby = KeptNearby(cache)
         self.intervals = Intervals(certificates, certify_seconds, self._progress, cache)
 
@@ -312,10 +313,12 @@ class Study:
             interval = None if exact is None else self._proved(pair, exact)
             lower = 0.0 if interval is None else float(interval.lower)
             try:
-                found = solve(one, known=self.known_motions(pair, joint), lower=lower)
+                known = self.known_motions(pair, joint)
+                asked = AskedOptimum(one, known=known, lower=lower, other_route=True)
+                found = self.kept_optima.optimum(asked)
             except TrajgapError as error:
                 return Solution(one, Status.FAILED, str(error))
-            return with_interval(with_other_route(found), interval)
+            return with_interval(found, interval)
 
         if joint is not None and len(self.problem(pair).joints) == 1:
             joint = None
@@ -412,11 +415,12 @@ class Study:
                 )
                 return Solution(relaxed, Status.FAILED, why)
             member = self.freed(pair)
-            if not member.found or given.free:
-                return solve(relaxed)
-            curve = fit(given, problem.waypoints, member.durations)
-            nodal = free_values(family, curve)[None]
-            return solve(relaxed, known=member.durations, known_nodal=nodal)
+            asked = AskedOptimum(relaxed)
+            if member.found and not given.free:
+                curve = fit(given, problem.waypoints, member.durations)
+                nodal = free_values(family, curve)[None]
+                asked = asked._replace(known=member.durations, known_nodal=nodal)
+            return self.kept_optima.optimum(asked)
 
         return self.once(("relaxed", pair), compute)
 
@@ -431,7 +435,7 @@ class Study:
             known = np.vstack([known, own.durations]) if own.found else known
             one = replace(problem, ratios=None)
             try:
-                return solve(one, known=known)
+                return self.kept_optima.optimum(AskedOptimum(one, known=known))
             except TrajgapError as error:
                 return Solution(one, Status.FAILED, str(error))
 
