@@ -327,7 +327,7 @@ def _examined(study: Study, block: InstancesBlock) -> InstancesResult:
         iterations=last.iterations,
         samples=examine(
             tasks,
-            study.workers or os.cpu_count() or 1,
+            study.options.workers or os.cpu_count() or 1,
             lambda done: study.progress(f"{what}, {done}"),
         ),
         printed_totals=_printed_totals(study, block, readings[0]),
