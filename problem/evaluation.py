@@ -125,7 +125,7 @@ def keeps_limits(problem: Problem, durations: Array, tolerance: float) -> NDArra
     if problem.limits.uneven:
         ratios = _uneven_ratios(problem, durations)
     else:
-        ratios = _ratios(problem, _fixed_question(problem), durations)
+        ratios = _ratios(problem, _capped_question(problem, tolerance), durations)
     # One axis is gone through far quicker than two.
     kept = np.asarray((ratios <= 1 + tolerance).reshape(len(ratios), -1).all(axis=1))
     return _within_positions(problem, durations, kept, tolerance)
@@ -223,6 +223,14 @@ def _question(problem: Problem, nodal: Array | None) -> _Question:
 def _fixed_question(problem: Problem) -> _Question:
     """Keyed by the problem's identity: a swarm asks the same problem thousands of times."""
     return _question(problem, None)
+
+
+@lru_cache(maxsize=64)
+def _capped_question(problem: Problem, tolerance: float) -> _Question:
+    """The same for what only asks whether limits are kept."""
+    values, divisors, asked, plain = _fixed_question(problem)
+    caps = np.where(asked.wanted, (1 + tolerance) * divisors, np.inf)
+    return values, divisors, replace(asked, caps=caps) if plain else asked, plain
 
 
 def reachable_total(

@@ -1,6 +1,7 @@
 from .card_errors import plainly
 from .case_audit import AuditReport, CaseAudit, audit
 from .fixed_ratios import at_ratios, planned_apart
+from .options import AuditOptions
 from .paper_runs import searched_for
 from .printed_row import PrintedRow, printed_rows
 from .provenance import certificate_files, package_version
@@ -15,6 +16,7 @@ __all__ = [
     "EXPLAINED",
     "KEPT",
     "RULES",
+    "AuditOptions",
     "AuditReport",
     "CaseAudit",
     "Pair",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from datetime import date
 from functools import cached_property, partial
 from pathlib import Path
@@ -47,6 +47,7 @@ from .draft import advise
 from .explanations import explained
 from .instances import examinable, examined, examined_entry
 from .judging import judge, rested, weigh
+from .options import USUAL, AuditOptions
 from .paper_runs import reached
 from .printed_row import PrintedRow, printed_rows
 from .provenance import provenance
@@ -54,7 +55,7 @@ from .readings import readings_summary
 from .revision import revise
 from .rules import GROUPS, NOT_COMPUTED
 from .stated import stated_claims, stated_source
-from .study import SEEDS, Study
+from .study import Study
 from .waterfall import waterfalls
 
 _Group = Callable[[Study], Iterator[Finding]]
@@ -82,14 +83,16 @@ class CaseAudit(InNotebooks):
     day: date | None = None
     """Of the audit; that on which its document is made if None."""
 
-    draft: bool = False
-    """Whether the case is its author's draft, who wants to know what to change."""
-
     made: VerdictCard | None = None
     """The card, where it was made by hand; otherwise `card` makes it."""
 
     made_waterfalls: tuple[Waterfall, ...] | None = None
     """The waterfalls, where they were made by hand; otherwise `waterfalls` computes them."""
+
+    @property
+    def draft(self) -> bool:
+        """Whether the case is its author's draft, who wants to know what to change."""
+        return self.study.options.draft
 
     @cached_property
     def waterfalls(self) -> tuple[Waterfall, ...]:
@@ -202,17 +205,8 @@ class AuditReport(InNotebooks):
 
 def audit(
     cases: Iterable[str | Path | Case] | str | Path | Case | None = None,
-    *,
-    seeds: int = SEEDS,
-    workers: int | None = 1,
-    problem: str | None = None,
-    reading: str | None = None,
-    progress: Callable[[str], None] | None = None,
-    certify_seconds: float | None = None,
-    certificates: Sequence[dict[str, Any]] = (),
-    certificates_folder: str | None = None,
-    draft: bool = False,
-    cache: bool | Path = False,
+    options: AuditOptions = USUAL,
+    **given: Any,
 ) -> AuditReport:
     """Audit published claims against the exact optimum of the very problems they state.
 
@@ -220,28 +214,9 @@ def audit(
     ----------
     cases : str, Path, Case, or iterable of these, optional
         Ids of shipped cases or case files; all shipped cases by default.
-    seeds : int
-        Seeds of each replay.
-    workers : int or None
-        Processes for the replays, as many as pay if None; the result does not depend on it.
-    problem, reading : str, optional
-        Keep to one problem or reading.
-    progress : callable, optional
-        Called with a short text before anything that takes a while.
-    certify_seconds : float, optional
-        For each case: time for certifying optima that no certificate proves; 0 turns it off. What
-        is certified in it depends on the machine. Without it boxes are counted, and nothing depends
-        on the machine. What was left out is said.
-    certificates : sequence of dict
-        Certificates beside the shipped ones; each is proved again before it counts.
-    certificates_folder : str, optional
-        Where these lie, for the command that makes the audit again.
-    draft : bool
-        Whether to say, for each case, what its author can change before submitting.
-    cache : bool or Path
-        Whether proofs that the audit finds, and replays, are kept for later ones, and those that
-        were kept are used once they are proved or judged again: in the user's cache folder, or in
-        the folder given.
+    options : AuditOptions
+    **given
+        Fields of the options that are others here, such as ``seeds=20``.
 
     Returns
     -------
@@ -256,27 +231,13 @@ def audit(
         cases = published_ids()
     chosen = [cases] if isinstance(cases, str | Path | Case) else list(cases)
     loaded = [one if isinstance(one, Case) else load_case(one) for one in chosen]
-    studies = [
-        Study(
-            one,
-            seeds=seeds,
-            workers=workers,
-            problem=problem,
-            reading=reading,
-            progress=progress,
-            certify_seconds=certify_seconds,
-            certificates=certificates,
-            certificates_folder=certificates_folder,
-            cache=cache,
-        )
-        for one in loaded
-    ]
+    studies = [Study(one, options, **given) for one in loaded]
     for study in studies:
         for algorithm in study.case.algorithms:
             # Settings that are wrong end the audit, before anything is computed.
             study.algorithm(algorithm.id)
     with kept_processes():
-        return AuditReport(tuple(replace(audit_case(study), draft=draft) for study in studies))
+        return AuditReport(tuple(map(audit_case, studies)))
 
 
 def audit_case(study: Study) -> CaseAudit:

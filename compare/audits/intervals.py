@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Sequence
-from pathlib import Path
 from typing import Any
 
 from ...nlp import ExactProblem, Outcome, ProvedInterval, certificate, certify, proved
 from ...nlp.proofs import allowance, covered, interval_of
 from ...problem import TrajgapError
 from ...verify import Subject
+from .options import AuditOptions
 
 ALLOWANCES = 3.0
 """For all problems of a case, in what one problem is allowed: most declared and short spline
@@ -32,29 +31,17 @@ class Intervals:
 
     Parameters
     ----------
-    documents : sequence of dict
-        Certificates of any origin: each is proved again before it counts.
-    seconds : float or None
-        For certifying what no certificate proves; 0 turns it off. Without it boxes are counted.
-    progress : callable
-        Called with a short text before a search.
-    cache : bool or Path
-        As `trajgap.nlp.certify` takes it.
+    options : AuditOptions
     """
 
-    def __init__(
-        self,
-        documents: Sequence[dict[str, Any]],
-        seconds: float | None,
-        progress: Callable[[str], None],
-        cache: bool | Path = False,
-    ) -> None:
-        self._documents = tuple(documents)
+    def __init__(self, options: AuditOptions) -> None:
+        seconds = options.certify_seconds
+        self._documents = tuple(options.certificates)
         self._made: list[dict[str, Any]] = []
         self._counted = seconds is None
         self._left = ALLOWANCES if seconds is None else seconds
-        self._progress = progress
-        self._cache = cache
+        self._progress = options.progress
+        self._cache = options.cache
         self.kept = 0
         """Proofs of earlier runs that were proved again and count here."""
         self._found: dict[ExactProblem, ProvedInterval | None] = {}

@@ -53,7 +53,7 @@ def provenance(study: Study, day: date | None = None) -> Provenance:
         trajgap=own,
         commit=commit(),
         libraries={"python": python, **{name: package_version(name) for name in LIBRARIES}},
-        seeds=study.seeds,
+        seeds=study.options.seeds,
         case_sha256=known(case.sha256, "the case was not read from a file"),
         certificates=tuple(_certificates(study)),
         command=_command(study),
@@ -147,9 +147,14 @@ def _questions(study: Study) -> Iterator[tuple[ExactProblem, Subject]]:
 def _command(study: Study) -> str:
     case = study.case
     name = case.id if case.file == case.id else Path(case.file).name
-    words = ["trajgap", "audit", name, "--seeds", str(study.seeds)]
-    for option, value in study.chosen.items():
-        words += [f"--{option}", value] if value is not None else []
+    own = study.options
+    words = ["trajgap", "audit", name, "--seeds", str(own.seeds)]
+    for option, value in (
+        ("--problem", own.problem),
+        ("--reading", own.reading),
+        ("--certificates", own.certificates_folder),
+    ):
+        words += [] if value is None else [option, value]
     return shlex.join(words)
 
 

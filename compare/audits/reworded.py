@@ -81,15 +81,15 @@ class Reworded(Study):
     """
 
     def __init__(self, case: Case, original: Study, certify_seconds: float | None = None) -> None:
-        chosen = original.chosen["reading"]
+        reading = original.options.reading
         super().__init__(
             case,
-            seeds=original.seeds,
-            workers=original.workers,
-            problem=original.chosen["problem"],
-            reading=chosen if chosen in {one.id for one in case.readings} else None,
-            progress=original._progress,
+            original.options,
+            reading=reading if reading in {one.id for one in case.readings} else None,
             certify_seconds=certify_seconds,
+            certificates=(),
+            certificates_folder=None,
+            cache=False,
         )
         self.original = original
 

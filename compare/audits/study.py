@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from copy import copy
 from dataclasses import replace
-from pathlib import Path
 from typing import Any, NamedTuple, Self, TypeVar, cast
 
 import numpy as np
@@ -28,9 +27,8 @@ from ...nlp import (
     printed_problem_or_none,
     solve_per_joint,
     with_interval,
-    with_other_route,
 )
-from ...nlp.optimum import free_values, solve
+from ...nlp.optimum import free_values
 from ...nlp.proofs import KeptNearby
 from ...problem import (
     Array,
@@ -46,13 +44,13 @@ from ...problem import (
 from ...problem.cases import AnyClaim, Claim, DurationsClaim, MotionValueClaim, TimeClaim
 from ..documents import capital, noted
 from .intervals import Intervals
+from .kept_optima import AskedOptimum, KeptOptima
 from .kept_replays import KeptReplays, Replays
+from .options import USUAL, AuditOptions
 from .replay_settings import LISTED, spread_settings
 from .stated import in_words, in_words_among, printed_total, prints_durations
 
 T = TypeVar("T")
-SEEDS = 100
-"""Seeds of a replay by default: independent runs enough for a probability to a few per cent."""
 SPREAD_SEEDS = 3
 """Seeds under each of the spread settings, of which there are sixteen: enough to see a median
 move across them."""
@@ -75,50 +73,35 @@ class Total(NamedTuple):
 class Study:
     """A case, the problems and readings that are looked at, and what was computed of them.
 
-    Optima, checks and replays are computed when they are asked for, each once. The options are
-    those of `audit`; seeds of a replay count from 0.
+    Optima, checks and replays are computed when they are asked for, each once.
+
+    Parameters
+    ----------
+    case : Case
+    options : AuditOptions
+    **given
+        Fields of the options that are others here.
     """
 
-    def __init__(
-        self,
-        case: Case,
-        seeds: int = SEEDS,
-        workers: int | None = 1,
-        problem: str | None = None,
-        reading: str | None = None,
-        progress: Callable[[str], None] | None = None,
-        certify_seconds: float | None = None,
-        certificates: Sequence[dict[str, Any]] = (),
-        certificates_folder: str | None = None,
-        cache: bool | Path = False,
-    ) -> None:
-        if seeds < 2:
-            raise TrajgapError(f"seeds: {seeds} show no spread; give 2 or more, 30 is customary")
+    def __init__(self, case: Case, options: AuditOptions = USUAL, **given: Any) -> None:
+        self.options = options = replace(options, **given)
         self.case = case
         self.claims: tuple[AnyClaim, ...] = tuple(case.claims)
-        self.seeds = seeds
-        self.workers = workers
-        self.selected = tuple(Pair(*one) for one in case.selections(problem, reading))
+        selected = case.selections(options.problem, options.reading)
+        self.selected = tuple(Pair(*one) for one in selected)
         self.readings = tuple(dict.fromkeys(one.reading for one in self.selected))
         self.pairs = tuple(one for one in self.selected if case.statement(*one).complete)
         default = case.default_reading.id
         self.main_reading = default if default in self.readings else self.readings[0]
-        self.chosen = {
-            "problem": problem,
-            "reading": reading,
-            "certificates": certificates_folder,
-        }
-        """What the study was kept to, and given beside; None where it was not."""
-        self._progress = progress or (lambda _: None)
         self._kept: dict[tuple[Any, ...], Any] = {}
-        self.cache = cache
-        self.kept_replays = KeptReplays(cache)
-        self._kept_nearby = KeptNearby(cache)
-        self.intervals = Intervals(certificates, certify_seconds, self._progress, cache)
+        self.kept_replays = KeptReplays(options.cache)
+        self.kept_optima = KeptOptima(options.cache)
+        self._kept_nearby = KeptNearby(options.cache)
+        self.intervals = Intervals(options)
 
     def progress(self, doing: str) -> None:
         """Say what is being done of the case, before anything that takes a while."""
-        self._progress(f"{self.case.id}: {doing}")
+        self.options.progress(f"{self.case.id}: {doing}")
 
     def once(self, key: tuple[Any, ...], compute: Callable[[], T]) -> T:
         """What was kept under a key, computed where nothing is; errors are kept too."""
@@ -257,9 +240,10 @@ class Study:
         algorithm = self.algorithm(algorithm_id)
         if algorithm is None or self.unreplayed(algorithm_id, pair) is not None:
             return ()
+        seeds = self.options.seeds
         return self.once(
             ("runs", algorithm_id, pair),
-            lambda: self._replayed(pair, algorithm_id, {LISTED: algorithm}, self.seeds)[LISTED],
+            lambda: self._replayed(pair, algorithm_id, {LISTED: algorithm}, seeds)[LISTED],
         )
 
     def _replayed(
@@ -272,7 +256,7 @@ class Study:
             self.problem(pair),
             settings,
             seeds,
-            self.workers,
+            self.options.workers,
             lambda words: self.progress(f"{which}, {words}; {where}"),
         )
 
@@ -294,7 +278,7 @@ class Study:
 
         def compute() -> dict[str, Replays]:
             others = {n: one for n, one in self.settings(algorithm_id).items() if n != LISTED}
-            few = self._replayed(pair, algorithm_id, others, min(SPREAD_SEEDS, self.seeds))
+            few = self._replayed(pair, algorithm_id, others, min(SPREAD_SEEDS, self.options.seeds))
             return {LISTED: self.runs(algorithm_id, pair), **few}
 
         return self.once(("spread", algorithm_id, pair), compute)
@@ -312,10 +296,12 @@ class Study:
             interval = None if exact is None else self._proved(pair, exact)
             lower = 0.0 if interval is None else float(interval.lower)
             try:
-                found = solve(one, known=self.known_motions(pair, joint), lower=lower)
+                known = self.known_motions(pair, joint)
+                asked = AskedOptimum(one, known=known, lower=lower, other_route=True)
+                found = self.kept_optima.optimum(asked)
             except TrajgapError as error:
                 return Solution(one, Status.FAILED, str(error))
-            return with_interval(with_other_route(found), interval)
+            return with_interval(found, interval)
 
         if joint is not None and len(self.problem(pair).joints) == 1:
             joint = None
@@ -412,11 +398,12 @@ class Study:
                 )
                 return Solution(relaxed, Status.FAILED, why)
             member = self.freed(pair)
-            if not member.found or given.free:
-                return solve(relaxed)
-            curve = fit(given, problem.waypoints, member.durations)
-            nodal = free_values(family, curve)[None]
-            return solve(relaxed, known=member.durations, known_nodal=nodal)
+            asked = AskedOptimum(relaxed)
+            if member.found and not given.free:
+                curve = fit(given, problem.waypoints, member.durations)
+                nodal = free_values(family, curve)[None]
+                asked = asked._replace(known=member.durations, known_nodal=nodal)
+            return self.kept_optima.optimum(asked)
 
         return self.once(("relaxed", pair), compute)
 
@@ -431,7 +418,7 @@ class Study:
             known = np.vstack([known, own.durations]) if own.found else known
             one = replace(problem, ratios=None)
             try:
-                return solve(one, known=known)
+                return self.kept_optima.optimum(AskedOptimum(one, known=known))
             except TrajgapError as error:
                 return Solution(one, Status.FAILED, str(error))
 

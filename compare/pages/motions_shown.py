@@ -168,8 +168,9 @@ def searches(one: CaseAudit) -> Section:
         )
         grid = table(REPLAY_COLUMNS, replay_rows(study, pair))
         blocks.append(Folded(f"Spread over seeds and open choices: {name}", (grid,)))
+    last = study.options.seeds - 1
     lead = Prose(
-        f"Each algorithm was run with seeds 0 to {study.seeds - 1} under the choices listed below, "
+        f"Each algorithm was run with seeds 0 to {last} under the choices listed below, "
         f"and under settings spread over all that the text leaves open."
         f"{noted(study, study.main_reading)} Replays inform and decide nothing.",
         "note",

@@ -125,13 +125,12 @@ class KeptFiles:
         compute: Callable[[], Iterable[A]],
         left: Callable[[A], Any],
         judged: Callable[[int, Any], A],
-        again: Callable[[int], A],
+        again: Callable[[int], A] | None,
     ) -> tuple[A, ...]:
         """The answers of some searches: what earlier ones left, or else found now and kept.
 
-        Nothing proves what a search finds but the same search. So each answer is judged again and
-        must leave the same, a few of the searches are made again, and one bit that differs discards
-        all of them.
+        Each answer is judged again and must leave the same. Where that does not prove what a search
+        finds, a few of the searches are made again too. One bit that differs discards all of them.
 
         Parameters
         ----------
@@ -147,8 +146,9 @@ class KeptFiles:
         judged : callable
             The answer of a search, by its place and what was left; raises one of `UNREADABLE` if no
             search leaves that.
-        again : callable
-            Makes the search at one place.
+        again : callable or None
+            Makes the search at one place; None where `judged` computes all that an answer is used
+            for, and compares.
 
         Returns
         -------
@@ -169,8 +169,9 @@ class KeptFiles:
             if [left(one) for one in found] != parts:
                 raise ValueError("judged to be another answer")
             rng = np.random.default_rng(int(kept["seal"], 16))
-            for at in rng.choice(count, -(-count // AGAIN), replace=False).tolist():
-                if left(again(at)) != parts[at]:
+            few = 0 if again is None else -(-count // AGAIN)
+            for at in rng.choice(count, few, replace=False).tolist():
+                if again is not None and left(again(at)) != parts[at]:
                     raise ValueError("another answer")
         except UNREADABLE:
             found = tuple(compute())

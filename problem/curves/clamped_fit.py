@@ -338,8 +338,9 @@ def clamped_reach(
         valid[at] = regular
         for i in np.flatnonzero(wanted[own].any(axis=0)).tolist():
             part = derived(a, least + i) / widths[:, :, None] ** (least + i)
+            caps = None if asked.caps is None else asked.caps[own, i]
             for side, sign in enumerate(asked.sides):
-                found[at[regular, None], side, own, i] = tops(part, sign)
+                found[at[regular, None], side, own, i] = tops(part, sign, caps=caps)
     return masked(found, asked, valid)
 
 

@@ -87,11 +87,16 @@ class Asked:
         where there is none.
     least : int
         0 for positions, counted from the first way-point.
+    caps : ndarray, shape (joints, orders), optional
+        Where all that matters of a vector is whether its numbers stay below these. Each number then
+        is on the right side of its cap, unless another of the same vector is beyond its own; it
+        need not be exact, and a curve may find it all the same.
     """
 
     wanted: NDArray[np.bool_]
     sides: tuple[float, ...] = (0.0,)
     least: int = 1
+    caps: Array | None = None
 
     def room(self, vectors: int) -> Array:
         """Zeros for the answers, shape (batch, sides, joints, orders)."""

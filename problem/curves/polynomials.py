@@ -18,11 +18,13 @@ PERM = np.array(
     [[float(math.perm(p, r)) for r in range(MAX_COEFFICIENTS)] for p in range(MAX_COEFFICIENTS)]
 )
 """PERM[p, r] = p!/(p − r)!: the factor of sᵖ⁻ʳ in the r-th derivative of sᵖ."""
+CAPPED = 1e-9
+"""Share of a cap within which a value is found to its last bit: far above the rounding of both."""
 LOOSE = 1e-12
 """Share of a polynomial's terms that is added to a bound: far above the rounding of ten of them, so
 that what is left out by it would not have changed one bit."""
-Clock = tuple[Array, Array, int, Array]
-"""Of derivatives N_r/t′²ʳ⁻¹: N_{r+1}, t′, r, and the least t′ of each piece."""
+Clock = tuple[Array, int, Array]
+"""Of derivatives N_r/t′²ʳ⁻¹: t, r, and the least t′ of each piece."""
 _SETTLED = 2.0**-52
 """Step after which a root in the unit interval is known to the last bit: the spacing at 1."""
 
@@ -55,6 +57,27 @@ def in_time(numerator: Numbers, speed: Numbers, order: int, places: float | Arra
     return np.asarray(valued(numerator, places) / valued(speed, places) ** (2 * order - 1))
 
 
+def following(numerator: Numbers, clock: Numbers, order: int, sign: int = -1) -> Numbers:
+    """N_{r+1} of derivatives in time from N_r and t(e): N_r′ t′ − (2r − 1) N_r t″.
+
+    Powers lead. With a sign of + the terms are added, which bounds what was summed if the
+    coefficients are absolute ones.
+    """
+    speed, bend = derived(clock, 1), derived(clock, 2)
+    turned = _product(derived(numerator, 1), speed)
+    found = turned + sign * (2 * order - 1) * _product(numerator, bend)
+    # The leading terms of q″t′ and q′t″ cancel for two cubics.
+    return np.asarray(found[:3] if order == 1 and sign < 0 else found)
+
+
+def _product(a: Numbers, b: Numbers) -> Numbers:
+    shape = len(a) + len(b) - 1, *np.broadcast_shapes(a.shape[1:], b.shape[1:])
+    out = np.zeros(shape, dtype=np.result_type(a, b))
+    for k in range(len(b)):
+        out[k : k + len(a)] += a * b[k : k + 1]
+    return out
+
+
 def bernstein(a: Array) -> Array:
     """Bernstein coefficients on [0, 1]: the values lie between the least and the largest of them.
 
@@ -65,36 +88,48 @@ def bernstein(a: Array) -> Array:
     return np.tensordot(np.array(share), a, axes=1)
 
 
-def tops(a: Array, side: float, clock: Clock | None = None) -> Array:
+def tops(a: Array, side: float, clock: Clock | None = None, caps: Array | None = None) -> Array:
     """Largest values on [0, 1] over several pieces, found where bounds leave them open.
 
     From ascending coefficients, shape (powers, batch, pieces, joints), for each vector of the batch
-    and joint; a side is one of `Asked.sides`. With a clock, of derivatives in time N_r/t′²ʳ⁻¹.
+    and joint; a side is one of `Asked.sides`. With a clock, of derivatives in time N_r/t′²ʳ⁻¹. Caps
+    are those of one order of `Asked.caps`.
     """
 
     def sized(value: Array) -> Array:
         return np.abs(value) if side == 0.0 else side * value
 
     if clock is None:
-        turning, least = derived(a, 1), np.array(1.0)
+        least = np.array(1.0)
         found = sized(np.stack([a[0], a.sum(axis=0)])).max(axis=(0, 2))
     else:
-        turning, speed, order, slowest = clock
-        shape, least = turning.shape[1:], slowest ** (2 * order - 1)
-        a, speed = (np.broadcast_to(of, (len(of), *shape)) for of in (a, speed))
+        time, order, slowest = clock
+        speed, least = derived(time, 1), slowest ** (2 * order - 1)
+        shape = np.broadcast_shapes(a.shape[1:], time.shape[1:])
+        a, time = (np.broadcast_to(of, (len(of), *shape)) for of in (a, time))
         edges = np.stack([np.zeros(shape), np.ones(shape)])
         found = sized(in_time(a, speed, order, edges)).max(axis=(0, 2))
     bound = sized(bernstein(a)).max(axis=0) + LOOSE * np.abs(a).sum(axis=0)
     open_ = ~(bound < found[:, None] * least) | ~(found[:, None] >= 0.0)
-    places, part = roots_in_unit(turning[:, open_]), a[:, open_]
+    if caps is not None:
+        open_ &= ~(bound < (1.0 - CAPPED) * caps * least)
+        open_ &= ~beyond(found, caps)[:, None, None]
+    part = a[:, open_]
     if clock is None:
+        places = roots_in_unit(derived(part, 1))
         values = valued(part, places)
     else:
-        values = in_time(part, speed[:, open_], order, places)
+        places = roots_in_unit(following(part, time[:, open_], order))
+        values = in_time(part, derived(time[:, open_], 1), order, places)
     inner = np.where(np.isnan(places), -np.inf, sized(values))
     vector, _, joint = np.nonzero(open_)
     np.maximum.at(found, (vector, joint), inner.max(axis=0, initial=-np.inf))
     return np.asarray(found)
+
+
+def beyond(found: Array, caps: Array) -> NDArray[np.bool_]:
+    """Which vectors have a value beyond its cap; shapes (batch, joints) and (joints,)."""
+    return np.asarray((found > (1.0 + CAPPED) * caps).any(axis=1))
 
 
 def roots_in_unit(a: Array) -> Array:

@@ -15,7 +15,9 @@ from .kind import Asked, Enclosed, are_durations
 from .polynomials import (
     MAX_COEFFICIENTS,
     Numbers,
+    beyond,
     derived,
+    following,
     in_time,
     roots_in_unit,
     tops,
@@ -25,14 +27,6 @@ from .trajectory import Trajectory
 
 if TYPE_CHECKING:
     from scipy.interpolate import PPoly
-
-
-def _product(a: Numbers, b: Numbers) -> Numbers:
-    shape = len(a) + len(b) - 1, *np.broadcast_shapes(a.shape[1:], b.shape[1:])
-    out = np.zeros(shape, dtype=np.result_type(a, b))
-    for k in range(len(b)):
-        out[k : k + len(a)] += a * b[k : k + 1]
-    return out
 
 
 def numerators(q: Numbers, t: Numbers, highest: int, sign: int = -1) -> list[Numbers]:
@@ -46,19 +40,15 @@ def numerators(q: Numbers, t: Numbers, highest: int, sign: int = -1) -> list[Num
         Ascending coefficients; complex ones too.
     highest : int
     sign : int
-        With + the terms of absolute coefficients are added, which bounds what was summed.
+        As `following`.
 
     Returns
     -------
     list of ndarray, shape (powers, ...)
     """
-    speed, bend = derived(t, 1), derived(t, 2)
     found = [derived(q, 1)]
     for r in range(1, highest):
-        a = found[-1]
-        following = _product(derived(a, 1), speed) + sign * (2 * r - 1) * _product(a, bend)
-        # The leading terms of q″t′ and q′t″ cancel for two cubics.
-        found.append(following[:3] if r == 1 and sign < 0 else following)
+        found.append(following(found[-1], t, r, sign))
     return found
 
 
@@ -71,6 +61,10 @@ def _least_speed(speed: Array) -> tuple[Array, Array]:
     values = valued(speed, places)
     at = values.argmin(axis=0)[None]
     return np.take_along_axis(values, at, 0)[0], np.take_along_axis(places, at, 0)[0]
+
+
+TOGETHER = 256
+"""Vectors whose pieces are looked at together: what they take fits a cache."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -291,13 +285,27 @@ def clocked_reach(q: Array, clocks: Array, asked: Asked) -> Array:
     `Curve.batch_reach`.
     """
     found = asked.room(clocks.shape[1])
-    orders = (np.flatnonzero(asked.wanted.any(axis=0)) + asked.least).tolist()
-    a, t = q.transpose(1, 0, 2)[:, None], clocks[..., None]
-    speed = derived(t, 1)
-    slowest = _least_speed(speed)[0]
-    known = [a, *numerators(a, t, max(orders) + 1)]
-    for r in orders:
-        clock = (known[r + 1], speed, r, slowest) if r else None
-        for side, sign in enumerate(asked.sides):
-            found[:, side, :, r - asked.least] = tops(known[r], sign, clock)
+    for first in range(0, len(found), TOGETHER):
+        some = slice(first, first + TOGETHER)
+        _reach_of_some(q, clocks[:, some], asked, found[some])
     return found
+
+
+def _reach_of_some(q: Array, clocks: Array, asked: Asked, found: Array) -> None:
+    """`clocked_reach` of few vectors; a vector beyond a cap is left out of what follows."""
+    a, t = q.transpose(1, 0, 2)[:, None], clocks[..., None]
+    slowest, at = _least_speed(derived(t, 1))[0], np.arange(len(found))
+    for r in range(asked.least + asked.wanted.shape[1]):
+        if r > 0:
+            a = derived(a, 1) if r == 1 else following(a, t, r - 1)
+        i = r - asked.least
+        if i < 0 or not asked.wanted[:, i].any():
+            continue
+        clock = (t, r, slowest) if r else None
+        caps = None if asked.caps is None else asked.caps[:, i]
+        for side, sign in enumerate(asked.sides):
+            found[at, side, :, i] = tops(a, sign, clock, caps)
+        if caps is not None:
+            within = ~beyond(found[at, :, :, i].max(axis=1), caps)
+            at, t, slowest = at[within], t[:, within], slowest[within]
+            a = a[:, within] if a.shape[1] > 1 else a

@@ -28,9 +28,9 @@ from ....problem import (
 from ....problem.cases import Claim, ImprovementClaim, InstancesBlock, instance_waypoints
 from ...documents import Procedure
 from ...gaps import SETTLED, settled_at
+from ..kept_optima import AskedOptimum, KeptOptima
 from ..kept_replays import AskedReplay, KeptReplays
 from ..study import Study
-from .kept_optima import AskedOptimum, KeptOptima
 from .result import InstancesResult, Optimum, Sample
 
 STARTS = 2
@@ -312,7 +312,7 @@ def _examined(study: Study, block: InstancesBlock) -> InstancesResult:
             runs=block.runs,
             objectives=block.objectives,
             replays=study.kept_replays,
-            optima=KeptOptima(study.cache),
+            optima=study.kept_optima,
         )
         for step, instances in zip(block.lengths, drawn, strict=True)
         for index, points in enumerate(instances)
@@ -326,7 +326,7 @@ def _examined(study: Study, block: InstancesBlock) -> InstancesResult:
         iterations=last.iterations,
         samples=examine(
             tasks,
-            study.workers or os.cpu_count() or 1,
+            study.options.workers or os.cpu_count() or 1,
             lambda done: study.progress(f"{what}, {done}"),
         ),
         printed_totals=_printed_totals(study, block, readings[0]),

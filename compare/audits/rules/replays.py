@@ -130,7 +130,7 @@ def _improvement(study: Study, claim: ImprovementClaim) -> Iterator[Finding]:
         }
         most = max(each, key=lambda pair: -1.0 if np.isnan(each[pair]) else each[pair])
         said = [
-            f"In {study.seeds} independent runs each, {one} reaches {spread(slower)} and "
+            f"In {study.options.seeds} independent runs each, {one} reaches {spread(slower)} and "
             f"{other} {spread(faster)} under the listed choices.",
             f"One run of {other} is shorter than one of {one} by at least {100 * least:.4g} % "
             f"with probability {_percent(shows)} ({sure}); one run of {one} than another of its "
@@ -162,6 +162,7 @@ def _at(name: str, setting: str) -> str:
 def _compared(study: Study, claim: StatementClaim, against: str) -> Iterator[Finding]:
     """Two algorithms that a sentence compares: totals, and how soon a run has settled."""
     own, other = study.called(str(claim.algorithm)), study.called(against)
+    seeds = study.options.seeds
     for pair in study.main_pairs:
         if claim.problem not in (None, pair.problem):
             continue
@@ -182,7 +183,7 @@ def _compared(study: Study, claim: StatementClaim, against: str) -> Iterator[Fin
             computed=f"shorter in {_percent(shorter)} of the pairs",
             kind="runs",
             sentences=(
-                f"In {study.seeds} independent runs each under the listed choices, {own} reaches "
+                f"In {seeds} independent runs each under the listed choices, {own} reaches "
                 f"{spread(totals[own])} and {other} {spread(totals[other])}; one run of {own} is "
                 f"no longer than one of {other} with probability {_percent(shorter)} "
                 f"({interval_words(low, high)}): {settled}.",

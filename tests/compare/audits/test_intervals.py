@@ -12,6 +12,7 @@ from trajgap.compare import audit
 from trajgap.compare.audits import intervals
 from trajgap.compare.audits.case_audit import CaseAudit
 from trajgap.compare.audits.intervals import Intervals
+from trajgap.compare.audits.options import AuditOptions
 from trajgap.compare.audits.study import Study
 from trajgap.compare.audits.waterfall import waterfalls
 from trajgap.compare.blocks import Prose
@@ -56,8 +57,7 @@ def test_an_audit_certifies_what_it_can() -> None:
 def test_an_audit_says_the_same_with_kept_proofs(tmp_path: Path) -> None:
     day = date(2026, 1, 1)
     cold, warm = (audit(stated(), seeds=2, cache=tmp_path) for _ in range(2))
-    assert (cold.kept, warm.kept) == (0, len(list(tmp_path.iterdir())))
-    assert warm.kept > 0
+    assert cold.kept == 0 < warm.kept
     one, other = (replace(report.cases[0], day=day).document for report in (cold, warm))
     assert one.model_dump_json() == other.model_dump_json()
 
@@ -83,11 +83,11 @@ def test_what_the_budget_leaves_out_is_said() -> None:
 def test_boxes_are_counted_unless_seconds_are_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
     """At a gap that takes 100 boxes: the budget, and not the clock, says what is certified."""
     exact = printed_problem(stated().statement())
-    certified = Intervals((), None, lambda _: None)
+    certified = Intervals(AuditOptions())
     assert certified.interval(exact) is not None
     assert certified.left_out == []
     monkeypatch.setattr(intervals, "ALLOWANCES", 0.2)
-    none = Intervals((), None, lambda _: None)
+    none = Intervals(AuditOptions())
     assert none.interval(exact) is None
     assert none.left_out == ["the optimum: no boxes were left"]
 
@@ -96,7 +96,7 @@ def test_a_lower_bound_alone_is_no_interval(monkeypatch: pytest.MonkeyPatch) -> 
     exact = printed_problem(stated().statement())
     bounded = replace(certify(exact, gap=1e-2), outcome=Outcome.OPEN, upper=None, durations=None)
     monkeypatch.setattr(intervals, "certify", lambda *_, **__: bounded)
-    none = Intervals((), None, lambda _: None)
+    none = Intervals(AuditOptions())
     assert none.interval(exact) is None
     assert none.left_out[0].startswith("the optimum, tried with ")
 

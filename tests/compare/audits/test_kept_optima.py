@@ -7,10 +7,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from trajgap.compare.audits.instances import kept_optima
+from trajgap.compare.audits import kept_optima
 from trajgap.compare.audits.instances.drawn import _ended
-from trajgap.compare.audits.instances.kept_optima import AskedOptimum, KeptOptima
-from trajgap.nlp import Solution, problem_seal
+from trajgap.compare.audits.kept_optima import AskedOptimum, KeptOptima
+from trajgap.nlp import Solution
 from trajgap.nlp.optimum import solve
 from trajgap.problem import Limits, Problem, rest_to_rest, three_five_three
 from trajgap.verify import seal
@@ -83,7 +83,7 @@ def test_a_spoiled_file_is_searched_over_and_replaced(
     own = file.read_bytes()
     stored = json.loads(own)
     question = {
-        "problems": [[problem_seal(p), repr(p.curve), starts] for p, starts in asked],
+        "problems": [one.words() for one in asked],
         "code": kept_optima.search_code(),
     }
     assert stored["seal"] == seal([question, stored["answers"]])
