@@ -204,7 +204,7 @@ def shortest_s_curve(start: AxisState, finish: AxisState, sizes: Sizes) -> AxisP
     braked = _braked(first, top, most)
     begin = braked.at(inf)
     found = [
-        one
+        one if sign > 0.0 else one.mirrored()
         for sign in (1.0, -1.0)
         for one in _candidates(*_seen(begin, last, sign), top, most)
         if _keeps(one, _seen(begin, last, sign)[1], top, most)
@@ -212,8 +212,6 @@ def shortest_s_curve(start: AxisState, finish: AxisState, sizes: Sizes) -> AxisP
     if not found:
         return None
     best = min(found, key=lambda one: one.total_time)
-    if best.start != begin:
-        best = best.mirrored()
     phases = (
         Phase(p.time * unit, p.acceleration * scale[2], p.jerk * sizes.jerk)
         for p in braked.then(best).phases

@@ -7,8 +7,10 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise, product
 from math import inf
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...problem import Array, CaseError, Printed, Quantity
 from ...problem.cases import Digits, ProfiledClaim, end, end_states
@@ -17,11 +19,16 @@ from .named_profiles import NOT_SHORTEST, SHORTEST
 from .printed_row import PrintedRow
 from .rounding import FEW_ROUNDINGS, ROUNDING, meet
 
-_MOST_OPEN = 10
-"""Printed numbers whose both ends are combined: 1024 profiles take a few seconds."""
+_CORNERS = 1024
+"""Combinations of ends of what digits leave: so many profiles take a few seconds. Where there are
+more, they are drawn: of 30 numbers that add up, the largest drawn sum is half of the largest."""
+_NEARER = 6
+"""Times that numbers at which no profile exists are brought halfway to the printed ones."""
 _JUMP = 0.01
-"""Share of the shortest total by which totals of one rounding box must differ to be called a jump:
-ordinary digits change them by far less."""
+"""Share of a number by which its values for numerically equal inputs must differ to be called a
+jump."""
+_HALVINGS = 40
+"""Times that two inputs are brought halfway together: what they leave of each other is rounding."""
 
 
 @dataclass(frozen=True)
@@ -40,6 +47,14 @@ class ProfileQuestion:
     points: Array
     ends: Array
     limits: Array
+
+    def halfway(self, other: ProfileQuestion) -> ProfileQuestion:
+        """The means of the numbers of both."""
+        return ProfileQuestion(
+            (self.points + other.points) / 2.0,
+            (self.ends + other.ends) / 2.0,
+            (self.limits + other.limits) / 2.0,
+        )
 
     def laws(self, profile: str, straight: bool) -> tuple[AxisProfile, ...] | None:
         """The motion of each segment: of the one joint, or of all on a straight line from 0 to 1.
@@ -74,11 +89,37 @@ class ProfileQuestion:
 
 @dataclass(frozen=True)
 class ProfileMotion:
-    """A profile with the way-points that it joins."""
+    """A profile with the way-points that it joins.
+
+    Attributes
+    ----------
+    profile : str
+        A key of `SHORTEST`.
+    """
 
     question: ProfileQuestion
     laws: tuple[AxisProfile, ...]
     straight: bool
+    profile: str = "s-curve"
+
+    @classmethod
+    def of(cls, question: ProfileQuestion, profile: str, straight: bool) -> ProfileMotion | None:
+        """The profile that answers a question; None if none was found that keeps the limits."""
+        laws = question.laws(profile, straight)
+        return None if laws is None else cls(question, laws, straight, profile)
+
+    def asked(self, question: ProfileQuestion) -> ProfileMotion | None:
+        """The same profile for other numbers."""
+        return ProfileMotion.of(question, self.profile, self.straight)
+
+    def near_to(self, question: ProfileQuestion) -> ProfileMotion:
+        """The same for other numbers, or for those nearest to them on the way from its own."""
+        for _ in range(_NEARER):
+            one = self.asked(question)
+            if one is not None:
+                return one
+            question = question.halfway(self.question)
+        return self
 
     @cached_property
     def total_time(self) -> float:
@@ -91,26 +132,45 @@ class ProfileMotion:
         return bool((np.abs(self.question.ends[0]) > self.question.limits[:, :2]).any())
 
     @cached_property
-    def parts(self) -> tuple[float, float, float, float, float]:
-        """Lengths of its parts, and of the jerk at the start of the first and the end of the last.
+    def sides(self) -> tuple[tuple[int, float, bool], ...]:
+        """Pieces of the one law: sign of the acceleration, length, and whether there is jerk.
 
-        In the parts the acceleration has the sign of the way, is 0, and has the other sign.
+        The sign is positive in the direction of the way. Pieces that rounding leaves are none.
         """
         (law,) = self.laws
+        least = ROUNDING * self.total_time
         sign = 1.0 if law.at(inf).position >= law.start.position else -1.0
-        lengths, ramps, first = [0.0, 0.0, 0.0], [0.0, 0.0], True
+        found = []
         for phase in law.phases:
             turn = -phase.acceleration / phase.jerk if phase.jerk else 0.0
             for begin, until in pairwise(
                 sorted({0.0, min(max(turn, 0.0), phase.time), phase.time})
             ):
                 middle = sign * (phase.acceleration + phase.jerk * (begin + until) / 2.0)
-                part = 0 if middle > 0.0 and first else 1 if middle == 0.0 else 2
-                first = part == 0
-                if part == 0 and lengths[0] == 0.0 and phase.jerk:
-                    ramps[0] = until - begin
-                lengths[part] += until - begin
-                ramps[1] = until - begin if part == 2 and phase.jerk else 0.0
+                if until - begin > least:
+                    found.append((int(np.sign(middle)), until - begin, phase.jerk != 0.0))
+        return tuple(found)
+
+    @property
+    def in_order(self) -> bool:
+        """Whether it first accelerates in the direction of the way, then not at all, then back."""
+        signs = [sign for sign, _, _ in self.sides]
+        return signs == sorted(signs, reverse=True)
+
+    @cached_property
+    def parts(self) -> tuple[float, float, float, float, float]:
+        """Lengths of its parts, and of the jerk at the start of the first and the end of the last.
+
+        In the parts the acceleration has the sign of the way, is 0, and has the other sign.
+        """
+        lengths, ramps, first = [0.0, 0.0, 0.0], [0.0, 0.0], True
+        for sign, length, jerked in self.sides:
+            part = 0 if sign > 0 and first else 1 if sign == 0 else 2
+            first = part == 0
+            if part == 0 and lengths[0] == 0.0 and jerked:
+                ramps[0] = length
+            lengths[part] += length
+            ramps[1] = length if part == 2 and jerked else 0.0
         return (*lengths, *ramps)  # type: ignore[return-value]
 
     def near(self, time: float, joint: int) -> Array:
@@ -173,31 +233,33 @@ class NumberRange:
     ----------
     others : ndarray
         In order.
+    jump : tuple of float or None
+        The two values between which it jumps; None if it changes gradually.
     """
 
     plain: float
     others: Array
+    jump: tuple[float, float] | None = None
 
     @classmethod
     def of(
         cls,
-        every: Sequence[ProfileMotion | None],
+        every: Sequence[ProfileMotion],
         number: Callable[[ProfileMotion], Iterable[float]],
+        gradual: bool = True,
     ) -> NumberRange:
-        """A number of the printed motion, the first, and of all others that exist."""
-        found = [[*number(one)] for one in every if one is not None]
-        return cls(found[0][0], np.sort([value for values in found for value in values]))
+        """A number of the printed motion, the first, and of all others.
 
-    @cached_property
-    def jump(self) -> tuple[float, float] | None:
-        """The two values between which it jumps; None if it changes gradually."""
-        gaps = np.diff(self.others)
-        if not len(gaps):
-            return None
-        at = int(np.argmax(gaps))
-        if gaps[at] <= max(0.5 * gaps.sum(), _JUMP * abs(self.others[0])):
-            return None
-        return float(self.others[at]), float(self.others[at + 1])
+        Parameters
+        ----------
+        gradual : bool
+            Whether a motion changes it without a jump.
+        """
+        found = [(value, one) for one in every for value in number(one)]
+        plain = found[0][0]
+        found.sort(key=lambda pair: pair[0])
+        jump = _jump(found, number, gradual)
+        return cls(plain, np.sort([*(value for value, _ in found), *(jump or ())]), jump)
 
     def meets(self, lower: float, upper: float) -> bool:
         """Whether a printed interval holds a value, each side of a jump by itself."""
@@ -217,6 +279,44 @@ class NumberRange:
         return meet((lower, upper), (self.others[0], self.others[-1]))
 
 
+def _jump(
+    found: Sequence[tuple[float, ProfileMotion]],
+    number: Callable[[ProfileMotion], Iterable[float]],
+    gradual: bool,
+) -> tuple[float, float] | None:
+    """The values on both sides of the widest gap, where inputs are brought together over it.
+
+    It is None if that closes the gap.
+
+    Parameters
+    ----------
+    found : sequence of (float, ProfileMotion)
+        Values in order, and the motion of each.
+    """
+    gaps = np.diff([value for value, _ in found])
+    if not len(gaps):
+        return None
+    at = int(np.argmax(gaps))
+    least = _JUMP * abs(found[0][0])
+    if gaps[at] <= max(0.5 * gaps.sum(), least):
+        return None
+    low, high = found[at : at + 2]
+    middle = (low[0] + high[0]) / 2.0
+    for _ in range(_HALVINGS):
+        between = low[1].asked(low[1].question.halfway(high[1].question))
+        if between is None:
+            break
+        values = [*number(between)]
+        if min(values) <= middle < max(values):
+            # The number is of some time, in which it changes.
+            return None if gradual else (low[0], high[0])
+        if values[0] <= middle:
+            low = max(values), between
+        else:
+            high = min(values), between
+    return (low[0], high[0]) if high[0] - low[0] > least else None
+
+
 def profiled_limits(row: PrintedRow[ProfiledClaim], digits: Digits) -> Array:
     """Limits of the joints of a claim with the one that only its profile has.
 
@@ -225,7 +325,7 @@ def profiled_limits(row: PrintedRow[ProfiledClaim], digits: Digits) -> Array:
     """
     problem, claim = row.posed(digits), row.claim
     limits = problem.limits.derivatives
-    given = claim.deceleration if claim.snap is None else claim.snap
+    given = _own_limit(claim)
     if given is None:
         return np.column_stack([limits, limits[:, 1]])
     statement = row.statement
@@ -241,27 +341,34 @@ def profiled_limits(row: PrintedRow[ProfiledClaim], digits: Digits) -> Array:
     return np.column_stack([limits, own])
 
 
-def questions(row: PrintedRow[ProfiledClaim]) -> list[ProfileQuestion] | None:
-    """The printed numbers first, then every combination of ends of what their digits leave.
+def _own_limit(claim: ProfiledClaim) -> Printed | tuple[Printed, ...] | None:
+    """The limit that is of the profile alone: of deceleration or of snap."""
+    return claim.deceleration if claim.snap is None else claim.snap
 
-    It is None if too many numbers are printed digits.
-    """
+
+def questions(row: PrintedRow[ProfiledClaim]) -> list[ProfileQuestion]:
+    """The printed numbers first, then combinations of ends of what their digits leave."""
     problem = row.posed()
     box = row.waypoint_box(problem).or_cut_off()
-    columns = [row.study.problem(row.pair).joints.index(label) for label in problem.joints]
-    ends = end_states(row.statement)[:, columns]
+    order = [row.study.problem(row.pair).joints.index(label) for label in problem.joints]
+    ends = end_states(row.statement)[:, order]
     plain = ProfileQuestion(box.value, ends[..., 0], profiled_limits(row, Digits.PRINTED))
+    loosest = profiled_limits(row, Digits.LOOSEST_CUT)
     try:
-        loosest, tightest = (
-            profiled_limits(row, digits) for digits in (Digits.LOOSEST_CUT, Digits.TIGHTEST)
-        )
+        tightest = profiled_limits(row, Digits.TIGHTEST)
     except CaseError:  # the tightest ranges are empty
-        return None
-    sizes = [loosest] if (loosest == tightest).all() else [loosest, tightest]
-    free = np.argwhere(box.lower < box.upper)
-    moved = np.argwhere(ends[..., 1] < ends[..., 2])
-    if len(free) + len(moved) > _MOST_OPEN:
-        return None
+        tightest = plain.limits
+    together = [[0], [1, 3], [2]] if _own_limit(row.claim) is None else [[0], [1], [2], [3]]
+    # What may vary: the field, its part, and the two ends.
+    free: list[tuple[str, Any, Any, Any]] = [
+        *(("points", at, box.lower[at], box.upper[at]) for at in _where(box.lower < box.upper)),
+        *(("ends", at, *ends[at][1:]) for at in _where(ends[..., 1] < ends[..., 2])),
+        *(
+            ("limits", (slice(None), columns), loosest[:, columns], tightest[:, columns])
+            for columns in together
+            if (loosest[:, columns] != tightest[:, columns]).any()
+        ),
+    ]
     found = [plain]
     # Where the optimum jumps at an exact number, rounding alone must not choose the side.
     away = FEW_ROUNDINGS * (np.abs(box.value).max() + np.abs(np.diff(box.value, axis=0)).max())
@@ -269,23 +376,26 @@ def questions(row: PrintedRow[ProfiledClaim]) -> list[ProfileQuestion] | None:
         points = box.value.copy()
         points[-1] += step
         found.append(replace(plain, points=points))
-    if not len(free) + len(moved) and len(sizes) == 1:
-        return found
-    for limits, chosen in product(sizes, product((1, 2), repeat=len(free) + len(moved))):
-        points, states = box.value.copy(), ends[..., 0].copy()
-        for at, side in zip(map(tuple, free), chosen, strict=False):
-            points[at] = (box.lower if side == 1 else box.upper)[at]
-        for at, side in zip(map(tuple, moved), chosen[len(free) :], strict=True):
-            states[at] = ends[(*at, side)]
-        found.append(ProfileQuestion(points, states, limits))
+    if 2 ** len(free) > _CORNERS:
+        corners = np.random.default_rng(0).integers(0, 2, (_CORNERS, len(free)))
+    else:
+        corners = np.array([*product((0, 1), repeat=len(free))])
+    for chosen in corners if free else ():
+        one = ProfileQuestion(plain.points.copy(), plain.ends.copy(), plain.limits.copy())
+        for (field, at, *sides), side in zip(free, chosen, strict=True):
+            getattr(one, field)[at] = sides[side]
+        found.append(one)
     return found
 
 
-def motions(row: PrintedRow[ProfiledClaim], profile: str) -> list[ProfileMotion | None] | None:
-    """The profile at each of `questions`, the printed numbers first.
+def _where(mask: NDArray[np.bool_]) -> list[tuple[int, ...]]:
+    return [tuple(map(int, at)) for at in np.argwhere(mask)]
 
-    None stands for numbers at which no profile was found that keeps the limits, and in place of
-    all if `questions` has no answer.
+
+def motions(row: PrintedRow[ProfiledClaim], profile: str) -> list[ProfileMotion]:
+    """The profile at each of `questions`, or as near to it as one was found; the printed first.
+
+    The list is empty if no profile was found at the printed numbers.
 
     Parameters
     ----------
@@ -293,16 +403,11 @@ def motions(row: PrintedRow[ProfiledClaim], profile: str) -> list[ProfileMotion 
         A key of `SHORTEST`.
     """
 
-    def compute() -> list[ProfileMotion | None] | None:
+    def compute() -> list[ProfileMotion]:
         asked = questions(row)
-        if asked is None:
-            return None
         straight = len(row.posed().joints) > 1
-        found = []
-        for one in asked:
-            laws = one.laws(profile, straight)
-            found.append(None if laws is None else ProfileMotion(one, laws, straight))
-        return found
+        printed = ProfileMotion.of(asked[0], profile, straight)
+        return [] if printed is None else [printed.near_to(one) for one in asked]
 
     return row.once("profile", compute, profile)
 
@@ -313,6 +418,6 @@ def above_shortest(row: PrintedRow[ProfiledClaim]) -> float:
     if profile not in SHORTEST or profile not in NOT_SHORTEST:
         return 0.0
     own, best = (motions(row, name) for name in (profile, "s-curve"))
-    if not (own and best and own[0] and best[0]):
+    if not (own and best):
         return 0.0
     return own[0].total_time / best[0].total_time - 1.0

@@ -63,15 +63,18 @@ class _Asked:
         """Which states the profile joins."""
         return "from rest to rest" if self.resting else "between the states at both ends"
 
-    def every(self, profile: str = "") -> list[ProfileMotion | None]:
+    def every(self, profile: str = "") -> list[ProfileMotion]:
         """The profile, or another one, at the printed numbers and at the ends of their digits."""
-        return motions(self.row, profile or self.profile) or []
+        return motions(self.row, profile or self.profile)
 
     def range(
-        self, number: Callable[[ProfileMotion], Iterable[float]], profile: str = ""
+        self,
+        number: Callable[[ProfileMotion], Iterable[float]],
+        profile: str = "",
+        gradual: bool = True,
     ) -> NumberRange:
-        """A number of the profile, or of another one."""
-        return NumberRange.of(self.every(profile), number)
+        """A number of the profile, or of another one; whether a motion changes it gradually."""
+        return NumberRange.of(self.every(profile), number, gradual)
 
     @property
     def called(self) -> str:
@@ -146,9 +149,7 @@ def _not_computed(asked: _Asked) -> str | None:
     if profile not in RESTING and end_states(asked.row.statement)[:, :, 1].any():
         return "The algorithm of Biagiotti and Melchiorri has no acceleration at its ends."
     every = motions(asked.row, profile)
-    if every is None:
-        return "More numbers stand for intervals than can be combined."
-    if every[0] is None:
+    if not every:
         return f"No {profile} profile between the states at both ends was found within the limits."
     return _out_of_range(problem, every[0])
 
@@ -239,7 +240,7 @@ def _notes(asked: _Asked, totals: NumberRange) -> tuple[str, ...]:
             f"Within the rounding of the printed digits it jumps from {low:.6g} s to {high:.6g} s."
         )
     every = asked.every()
-    if every and every[0] is not None and every[0].starts_outside:
+    if every and every[0].starts_outside:
         notes.append(
             "The start lies outside the limits: the profile brakes into them at once, and is the "
             "shortest from there."
@@ -287,10 +288,17 @@ def _phases_beside(asked: _Asked) -> Finding:
     shown = ", ".join(f"{one.plain:.5g}" for one in found)
     digits = ", ".join(map(str, printed))
     kind = "fits" if fits else "other phases" if totals.jump is None else "jump"
+    how = "fit" if fits else "are others"
+    if kind == "other phases" and not all(one.in_order for one in asked.every()):
+        ends = [one.cut_off() for one in sizes[:3]]
+        if totals.meets(sum(one.lower for one in ends), sum(one.upper for one in ends)):
+            kind = "more phases"
+            how += "; the profile has more phases, which can be combined in more than one way"
     verdict = {
         "fits": ClaimVerdict.SUPPORTED,
         "other phases": ClaimVerdict.INCONSISTENT,
         "jump": ClaimVerdict.NOT_CHECKABLE,
+        "more phases": ClaimVerdict.NOT_CHECKABLE,
     }[kind]
     ramps = " and ramps" if claim.ramps else ""
     return _found(
@@ -301,8 +309,7 @@ def _phases_beside(asked: _Asked) -> Finding:
         computed=f"{shown} s",
         sentences=(
             f"The {asked.called} {asked.between} takes {totals.plain:.6g} s in phases"
-            f"{ramps} of {shown} s; printed are {digits} {unit}, which "
-            f"{'fit' if fits else 'are others'}.",
+            f"{ramps} of {shown} s; printed are {digits} {unit}, which {how}.",
             *_notes(asked, totals),
         ),
     )
@@ -316,6 +323,7 @@ def _numbers_beside(asked: _Asked) -> Finding:
     if claim.derivative == "jerk":
         return _unknown(asked, "The jerk of a profile is not computed.")
     said, wrong, plain = [], False, []
+    gradual = claim.derivative != "acceleration" or asked.profile != "trapezoidal"
     where = "" if isinstance(claim, PeakClaim) else place_of_value(row.study.case, claim)
     place = "largest" if isinstance(claim, PeakClaim) else claim.place
     size_word = f"{place} " if place in _SIZES else ""
@@ -328,7 +336,8 @@ def _numbers_beside(asked: _Asked) -> Finding:
             return _unknown(asked, "One number is printed for several joints of a profile.")
         joint = own[0] if len(own) == 1 else None
         size = row.measured(number, claim.derivative, joint)
-        found = asked.range(partial(_of_motion, row, claim, [joints.index(one) for one in own]))
+        values = partial(_of_motion, row, claim, [joints.index(one) for one in own])
+        found = asked.range(values, gradual=gradual)
         cut = size.cut_off()
         fits = found.meets(min(size.lower, cut.lower), max(size.upper, cut.upper))
         wrong = wrong or not fits

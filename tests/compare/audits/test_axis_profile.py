@@ -34,7 +34,8 @@ def by_ruckig(start: AxisState, finish: AxisState, sizes: Sizes) -> float | None
 def drawn(rng: np.random.Generator, k: int) -> tuple[AxisState, AxisState, Sizes]:
     """States within the limits and, every few draws, at rest or outside them."""
     v, a, j = map(float, 10 ** rng.uniform(-1, 1, 3))
-    share = rng.uniform(-1, 1, 4) * [1.3 if k % 5 == 0 else 1, k % 3 > 0, k % 4 > 0, k % 2]
+    first = (1.3 if k % 5 == 0 else 1) * (k % 7 > 0)
+    share = rng.uniform(-1, 1, 4) * [first, k % 3 > 0, k % 4 > 0, k % 2]
     place = rng.normal(size=2) * 10 ** rng.uniform(-2, 1, 2)
     start = AxisState(float(place[0]), float(share[0] * v), float(share[1] * a))
     return (
