@@ -11,7 +11,6 @@ from typing import Any
 
 from support.checkout import ROOT
 
-
 FOLDER = ROOT / "benchmarks"
 
 
