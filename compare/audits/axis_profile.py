@@ -36,13 +36,14 @@ class Sizes(NamedTuple):
     velocity: float
     acceleration: float
     jerk: float
-    deceleration: float | None = None
-    """Of the acceleration while the speed falls; None where it is `acceleration`."""
+    own: float | None = None
+    """What the profile alone has: a limit of the acceleration while the speed falls, or the
+    velocity of a plateau."""
 
     @property
     def braking(self) -> float:
         """Largest acceleration against the velocity."""
-        return self.acceleration if self.deceleration is None else self.deceleration
+        return self.acceleration if self.own is None else self.own
 
 
 class Phase(NamedTuple):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise, product
@@ -12,23 +11,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...problem import Array, CaseError, Printed, Quantity
+from ...problem import Array, CaseError, Printed, Problem, Quantity
 from ...problem.cases import Digits, ProfiledClaim, end, end_states
 from .axis_profile import AxisProfile, AxisState, Sizes
-from .named_profiles import NOT_SHORTEST, SHORTEST
+from .named_profiles import ALGORITHM, PRESCRIBED, SHORTEST
 from .printed_row import PrintedRow
-from .rounding import FEW_ROUNDINGS, ROUNDING, meet
+from .rounding import FEW_ROUNDINGS, ROUNDING
 
 _CORNERS = 1024
 """Combinations of ends of what digits leave: so many profiles take a few seconds. Where there are
 more, they are drawn: of 30 numbers that add up, the largest drawn sum is half of the largest."""
 _NEARER = 6
 """Times that numbers at which no profile exists are brought halfway to the printed ones."""
-_JUMP = 0.01
-"""Share of a number by which its values for numerically equal inputs must differ to be called a
-jump."""
-_HALVINGS = 40
-"""Times that two inputs are brought halfway together: what they leave of each other is rounding."""
 
 
 @dataclass(frozen=True)
@@ -79,7 +73,7 @@ class ProfileQuestion:
             if start == finish and not any(start[1:]):
                 found.append(AxisProfile(start, ()))
                 continue
-            able = bool((limits > 0.0).all())
+            able = bool(limits.all())
             one = SHORTEST[profile](start, finish, Sizes(*map(float, limits))) if able else None
             if one is None:
                 return None
@@ -225,125 +219,39 @@ class ProfileMotion:
         )
 
 
-@dataclass(frozen=True)
-class NumberRange:
-    """A number of a profile at the printed numbers, and at all others that digits leave.
-
-    Attributes
-    ----------
-    others : ndarray
-        In order.
-    jump : tuple of float or None
-        The two values between which it jumps; None if it changes gradually.
-    """
-
-    plain: float
-    others: Array
-    jump: tuple[float, float] | None = None
-
-    @classmethod
-    def of(
-        cls,
-        every: Sequence[ProfileMotion],
-        number: Callable[[ProfileMotion], Iterable[float]],
-        gradual: bool = True,
-    ) -> NumberRange:
-        """A number of the printed motion, the first, and of all others.
-
-        Parameters
-        ----------
-        gradual : bool
-            Whether a motion changes it without a jump.
-        """
-        found = [(value, one) for one in every for value in number(one)]
-        plain = found[0][0]
-        found.sort(key=lambda pair: pair[0])
-        jump = _jump(found, number, gradual)
-        return cls(plain, np.sort([*(value for value, _ in found), *(jump or ())]), jump)
-
-    def meets(self, lower: float, upper: float) -> bool:
-        """Whether a printed interval holds a value, each side of a jump by itself."""
-        parts = [self.others]
-        if self.jump is not None:
-            low = self.others <= self.jump[0]
-            parts = [self.others[low], self.others[~low]]
-        for part in parts:
-            # As much again, since corners need not be the extremes of a curved function.
-            width = float(part[-1] - part[0]) + ROUNDING * float(np.abs(part).max())
-            if meet((lower, upper), (part[0] - width, part[-1] + width)):
-                return True
-        return False
-
-    def spans(self, lower: float, upper: float) -> bool:
-        """Whether a printed interval lies among the values, where they jump over it."""
-        return meet((lower, upper), (self.others[0], self.others[-1]))
-
-
-def _jump(
-    found: Sequence[tuple[float, ProfileMotion]],
-    number: Callable[[ProfileMotion], Iterable[float]],
-    gradual: bool,
-) -> tuple[float, float] | None:
-    """The values on both sides of the widest gap, where inputs are brought together over it.
-
-    It is None if that closes the gap.
-
-    Parameters
-    ----------
-    found : sequence of (float, ProfileMotion)
-        Values in order, and the motion of each.
-    """
-    gaps = np.diff([value for value, _ in found])
-    if not len(gaps):
-        return None
-    at = int(np.argmax(gaps))
-    least = _JUMP * abs(found[0][0])
-    if gaps[at] <= max(0.5 * gaps.sum(), least):
-        return None
-    low, high = found[at : at + 2]
-    middle = (low[0] + high[0]) / 2.0
-    for _ in range(_HALVINGS):
-        between = low[1].asked(low[1].question.halfway(high[1].question))
-        if between is None:
-            break
-        values = [*number(between)]
-        if min(values) <= middle < max(values):
-            # The number is of some time, in which it changes.
-            return None if gradual else (low[0], high[0])
-        if values[0] <= middle:
-            low = max(values), between
-        else:
-            high = min(values), between
-    return (low[0], high[0]) if high[0] - low[0] > least else None
-
-
 def profiled_limits(row: PrintedRow[ProfiledClaim], digits: Digits) -> Array:
     """Limits of the joints of a claim with the one that only its profile has.
 
-    Columns are velocity, acceleration and jerk, and snap or deceleration, which is that of
-    acceleration where none is stated; shape (joints, 4).
+    Columns are velocity, acceleration and jerk, and what the profile alone has: deceleration,
+    which is that of acceleration where none is stated, snap or the plateau; shape (joints, 4).
     """
     problem, claim = row.posed(digits), row.claim
     limits = problem.limits.derivatives
-    given = _own_limit(claim)
-    if given is None:
+    own = _own_limit(claim)
+    if own is None:
         return np.column_stack([limits, limits[:, 1]])
+    given, quantity = own
     statement = row.statement
-    quantity: Quantity = "acceleration" if claim.snap is None else "jerk"
     places = [statement.labels.index(label) for label in problem.joints]
     sizes = [
         statement.si(given[j] if isinstance(given, tuple) else given, quantity, "", j)
         for j in places
     ]
-    own = end(sizes, digits, upper=True)
+    column = end(sizes, digits, upper=True)
     if claim.snap is not None:  # of jerk in one unit of time
-        own = own / statement.si(Printed.number(1), "time").value
-    return np.column_stack([limits, own])
+        column = column / statement.si(Printed.number(1), "time").value
+    return np.column_stack([limits, column])
 
 
-def _own_limit(claim: ProfiledClaim) -> Printed | tuple[Printed, ...] | None:
-    """The limit that is of the profile alone: of deceleration or of snap."""
-    return claim.deceleration if claim.snap is None else claim.snap
+def _own_limit(
+    claim: ProfiledClaim,
+) -> tuple[Printed | tuple[Printed, ...], Quantity] | None:
+    """What the profile alone has, and in which unit."""
+    if claim.deceleration is not None:
+        return claim.deceleration, "acceleration"
+    if claim.snap is not None:
+        return claim.snap, "jerk"
+    return None if claim.plateau is None else (claim.plateau, "velocity")
 
 
 def questions(row: PrintedRow[ProfiledClaim]) -> list[ProfileQuestion]:
@@ -395,7 +303,8 @@ def _where(mask: NDArray[np.bool_]) -> list[tuple[int, ...]]:
 def motions(row: PrintedRow[ProfiledClaim], profile: str) -> list[ProfileMotion]:
     """The profile at each of `questions`, or as near to it as one was found; the printed first.
 
-    The list is empty if no profile was found at the printed numbers.
+    The list is empty if no profile was found at the printed numbers; if that profile is prescribed,
+    it is the profiles at the others.
 
     Parameters
     ----------
@@ -407,17 +316,36 @@ def motions(row: PrintedRow[ProfiledClaim], profile: str) -> list[ProfileMotion]
         asked = questions(row)
         straight = len(row.posed().joints) > 1
         printed = ProfileMotion.of(asked[0], profile, straight)
-        return [] if printed is None else [printed.near_to(one) for one in asked]
+        if printed is None and profile == PRESCRIBED:
+            every = (ProfileMotion.of(one, profile, straight) for one in asked)
+            return [one for one in every if one is not None]
+        if printed is None:
+            return []
+        return [printed.near_to(one) for one in asked]
 
-    return row.once("profile", compute, profile)
+    return row.once("profile", compute, profile, row.claim.plateau)
 
 
 def above_shortest(row: PrintedRow[ProfiledClaim]) -> float:
     """Share by which an algorithm's total is above the shortest s-curve's; 0 of other profiles."""
     profile = str(row.claim.profile)
-    if profile not in SHORTEST or profile not in NOT_SHORTEST:
+    if profile != ALGORITHM:
         return 0.0
     own, best = (motions(row, name) for name in (profile, "s-curve"))
     if not (own and best):
         return 0.0
     return own[0].total_time / best[0].total_time - 1.0
+
+
+def out_of_range(problem: Problem, motion: ProfileMotion) -> str | None:
+    """That a profile leaves the position range, which is none of the limits that shape it."""
+    for j, label in enumerate(problem.joints):
+        places = motion.states(j)[:, 0]
+        low, high = problem.limits.position_lower[j], problem.limits.position_upper[j]
+        room = FEW_ROUNDINGS * max(map(abs, places))
+        if places.min() < low - room or places.max() > high + room:
+            return (
+                f"The shortest profile leaves the position range of joint {label}, within which "
+                "no profile is computed."
+            )
+    return None

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ....problem import Array, CaseError, Measured, Problem
+from ....problem import Array, CaseError, Measured, Printed
 from ....problem.cases import (
     AnyClaim,
     Digits,
@@ -24,9 +24,18 @@ from ....problem.cases import (
     profile_of,
 )
 from ...documents import Basis, ClaimVerdict, Finding
-from ..named_profiles import NOT_SHORTEST, RESTING, SHORTEST, profile_called, resting_total
+from ..named_profiles import (
+    ALGORITHM,
+    NOT_SHORTEST,
+    PRESCRIBED,
+    RESTING,
+    SHORTEST,
+    profile_called,
+    resting_total,
+)
+from ..number_range import NumberRange
 from ..printed_row import PrintedRow
-from ..profile_motions import NumberRange, ProfileMotion, motions, profiled_limits
+from ..profile_motions import ProfileMotion, motions, out_of_range, profiled_limits
 from ..rounding import FEW_ROUNDINGS, meet
 from ..stated import DERIVATIVES, place_of_value
 from ..study import Study
@@ -111,7 +120,10 @@ def judge_profiles(study: Study) -> Iterator[Finding]:
             if of.problem in (None, pair.problem):
                 asked = _Asked(claim, PrintedRow(study, of, pair))
                 why = _not_computed(asked)
-                yield judge(asked) if why is None else _unknown(asked, why)
+                if why is None and asked.profile == PRESCRIBED and not asked.every():
+                    yield _impossible(asked)
+                else:
+                    yield judge(asked) if why is None else _unknown(asked, why)
 
 
 def _unknown(asked: _Asked, why: str) -> Finding:
@@ -146,26 +158,60 @@ def _not_computed(asked: _Asked) -> str | None:
         return f"Phases and values of the {profile} profile are not computed."
     if several and asked.row.claim.path is None:
         return "Several joints, each by itself, have no one profile."
-    if profile not in RESTING and end_states(asked.row.statement)[:, :, 1].any():
+    states = end_states(asked.row.statement)[..., 0]
+    if profile == ALGORITHM and states[..., 1].any():
         return "The algorithm of Biagiotti and Melchiorri has no acceleration at its ends."
+    if profile == PRESCRIBED:
+        return _not_prescribed(asked, states)
     every = motions(asked.row, profile)
     if not every:
         return f"No {profile} profile between the states at both ends was found within the limits."
-    return _out_of_range(problem, every[0])
+    return out_of_range(problem, every[0])
 
 
-def _out_of_range(problem: Problem, motion: ProfileMotion) -> str | None:
-    """That a profile leaves the position range, which is none of the limits that shape it."""
-    for j, label in enumerate(problem.joints):
-        places = motion.states(j)[:, 0]
-        low, high = problem.limits.position_lower[j], problem.limits.position_upper[j]
-        room = FEW_ROUNDINGS * max(map(abs, places))
-        if places.min() < low - room or places.max() > high + room:
-            return (
-                f"The shortest profile leaves the position range of joint {label}, within which "
-                "no profile is computed."
-            )
+def _not_prescribed(asked: _Asked, states: Array) -> str | None:
+    """The same of a profile of jerk impulses."""
+    if not isinstance(asked.claim, TotalTimeClaim):
+        return "Phases and values of profiles of jerk impulses are not computed."
+    problem = asked.row.posed()
+    if len(problem.joints) > 1 or len(problem.waypoints) > 2:
+        return "Profiles of jerk impulses are computed for one joint in one segment."
+    _, limit, _, plateau = profiled_limits(asked.row, Digits.PRINTED)[0]
+    ramped = (states[..., 1] == 0.0) & (states[..., 0] != plateau)
+    if ramped.any() and limit == inf:
+        return (
+            "A profile of jerk impulses ramps up to the limit of acceleration where an end has no "
+            "acceleration, and no such limit is stated."
+        )
     return None
+
+
+def _impossible(asked: _Asked) -> Finding:
+    """That no profile has the printed plateau; perhaps one has its opposite."""
+    claim, row = asked.claim, asked.row
+    assert isinstance(claim, TotalTimeClaim)
+    assert claim.plateau is not None
+    own, unit = str(claim.plateau), row.unit("velocity", row.posed().joints[0])
+    text = own.removeprefix("-") if own.startswith("-") else f"-{own}"
+    other = claim.model_copy(update={"plateau": Printed(text, claim.plateau.exact)})
+    turned = _Asked(other, PrintedRow(row.study, other, row.pair))
+    said = ""
+    if turned.every():
+        totals = turned.range(lambda motion: [motion.total_time])
+        number = row.time(claim.value)
+        if totals.meets(number.lower, number.cut_off().upper):
+            said = f" With {text} {unit} it takes {totals.plain:.6g} s, which fits."
+    return _found(
+        asked,
+        ClaimVerdict.INCONSISTENT,
+        "no profile",
+        printed=f"{claim.value} {row.study.time_unit}",
+        computed="no profile",
+        sentences=(
+            f"No {asked.called} with a plateau of {own} {unit} joins the states at both ends, "
+            f"however the digits were rounded: a phase would take less than 0 s.{said}",
+        ),
+    )
 
 
 def _total_beside(asked: _Asked) -> Finding:
@@ -245,7 +291,7 @@ def _notes(asked: _Asked, totals: NumberRange) -> tuple[str, ...]:
             "The start lies outside the limits: the profile brakes into them at once, and is the "
             "shortest from there."
         )
-    if asked.profile not in RESTING:
+    if asked.profile == ALGORITHM:
         best = asked.range(lambda motion: [motion.total_time], "s-curve")
         more = 100 * (totals.plain / best.plain - 1)
         beside = f"; the algorithm's is {more:.2f} % longer" if more >= 0.01 else " too"

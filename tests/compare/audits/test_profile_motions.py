@@ -16,8 +16,8 @@ from trajgap.compare.audits.axis_profile import (
     shortest_trapezoid as trapezoid,
 )
 from trajgap.compare.audits.named_profiles import fourth_order
+from trajgap.compare.audits.number_range import NumberRange
 from trajgap.compare.audits.profile_motions import (
-    NumberRange,
     ProfileMotion,
     ProfileQuestion,
     questions,

@@ -287,6 +287,8 @@ def test_a_peak_of_a_profile_of_another_problem_is_refused() -> None:
         ({"profile": "s-curve", "deceleration": 1}, "deceleration: goes with profile"),
         ({"profile": "s-curve", "snap": 1}, "snap: goes with profile"),
         ({"profile": "fourth-order"}, "snap: is missing"),
+        ({"profile": "s-curve", "plateau": 1}, "plateau: goes with profile"),
+        ({"profile": "jerk-impulses"}, "plateau: is missing"),
         ({"profile": "trapezoidal", "deceleration": [1, 2]}, "deceleration: 2 values for 1 joints"),
         ({"quantity": "phases", "phases": [1, 0, 1]}, "profile: is missing"),
         ({"quantity": "phases", "phases": [1, 0, 1], "profile": "s-curve"}, "are of one segment"),
