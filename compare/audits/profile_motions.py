@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise, product
@@ -12,17 +13,29 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...problem import Array, CaseError, Printed, Problem, Quantity
-from ...problem.cases import Digits, ProfiledClaim, end, end_states
+from ...problem.cases import (
+    Digits,
+    PeakClaim,
+    ProfiledClaim,
+    Statement,
+    ValueClaim,
+    end,
+    end_states,
+    named_places,
+)
 from .axis_profile import AxisProfile, AxisState, Sizes
 from .named_profiles import ALGORITHM, PRESCRIBED, SHORTEST
 from .printed_row import PrintedRow
 from .rounding import FEW_ROUNDINGS, ROUNDING
+from .stated import DERIVATIVES
 
 _CORNERS = 1024
 """Combinations of ends of what digits leave: so many profiles take a few seconds. Where there are
 more, they are drawn: of 30 numbers that add up, the largest drawn sum is half of the largest."""
 _NEARER = 6
 """Times that numbers at which no profile exists are brought halfway to the printed ones."""
+SIZES = ("largest", "smallest")
+"""Places of a motion that are values."""
 
 
 @dataclass(frozen=True)
@@ -225,14 +238,25 @@ def profiled_limits(row: PrintedRow[ProfiledClaim], digits: Digits) -> Array:
     Columns are velocity, acceleration and jerk, and what the profile alone has: deceleration,
     which is that of acceleration where none is stated, snap or the plateau; shape (joints, 4).
     """
-    problem, claim = row.posed(digits), row.claim
-    limits = problem.limits.derivatives
+    problem = row.posed(digits)
+    places = [row.statement.labels.index(label) for label in problem.joints]
+    return with_own_limit(row.statement, row.claim, problem.limits.derivatives, places, digits)
+
+
+def with_own_limit(
+    statement: Statement, claim: ProfiledClaim, limits: Array, places: Sequence[int], digits: Digits
+) -> Array:
+    """Limits of velocity, acceleration and jerk, and the column of what the profile alone has.
+
+    Parameters
+    ----------
+    places : sequence of int
+        Positions of the joints in the robot's list.
+    """
     own = _own_limit(claim)
     if own is None:
         return np.column_stack([limits, limits[:, 1]])
     given, quantity = own
-    statement = row.statement
-    places = [statement.labels.index(label) for label in problem.joints]
     sizes = [
         statement.si(given[j] if isinstance(given, tuple) else given, quantity, "", j)
         for j in places
@@ -349,3 +373,29 @@ def out_of_range(problem: Problem, motion: ProfileMotion) -> str | None:
                 "no profile is computed."
             )
     return None
+
+
+def numbers_of(
+    row: PrintedRow[ProfiledClaim],
+    claim: PeakClaim | ValueClaim,
+    joints: Sequence[int],
+    motion: ProfileMotion,
+) -> Iterable[float]:
+    """What a number may be: on both sides of an instant, or between its two ends.
+
+    A peak is the largest of all ``joints``; a value is of one joint.
+    """
+    order = DERIVATIVES.index(claim.derivative)
+    if isinstance(claim, PeakClaim):
+        return [max(float(np.abs(motion.states(joint)[:, order]).max()) for joint in joints)]
+    (joint,) = joints
+    if claim.place in SIZES:
+        values = motion.states(joint)[:, order]
+        return [float(values.max() if claim.place == "largest" else values.min())]
+    if claim.time is None:
+        at = named_places(row.statement)[str(claim.place)]
+        times = [sum(law.total_time for law in motion.laws[:at])]
+    else:
+        one = row.time(claim.time).cut_off()
+        times = [one.value, one.lower, one.upper]
+    return [float(value) for t in times for value in motion.near(t, joint)[:, order]]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from functools import partial
 from math import inf
@@ -20,7 +20,6 @@ from ....problem.cases import (
     TotalTimeClaim,
     ValueClaim,
     end_states,
-    named_places,
     profile_of,
 )
 from ...documents import Basis, ClaimVerdict, Finding
@@ -35,10 +34,18 @@ from ..named_profiles import (
 )
 from ..number_range import NumberRange
 from ..printed_row import PrintedRow
-from ..profile_motions import ProfileMotion, motions, out_of_range, profiled_limits
+from ..profile_motions import (
+    SIZES,
+    ProfileMotion,
+    motions,
+    numbers_of,
+    out_of_range,
+    profiled_limits,
+)
 from ..rounding import FEW_ROUNDINGS, meet
-from ..stated import DERIVATIVES, place_of_value
+from ..stated import place_of_value
 from ..study import Study
+from .one_way import judge_one_way
 from .rule_group import Explained, rule_group
 
 _PATHS = {
@@ -46,8 +53,6 @@ _PATHS = {
     True: "all joints on a straight line in each segment",
 }
 """How the joints go together, by whether they stay on a straight line."""
-_SIZES = ("largest", "smallest")
-"""Places of a motion that are values."""
 _Profiled = TotalTimeClaim | PhasesClaim
 _Judge = Callable[["_Asked"], Finding]
 
@@ -96,13 +101,16 @@ class _Asked:
         "Is the printed total of a trapezoidal, S-curve or other profile the shortest that the "
         "limits allow between the states at its ends? Are phases, peaks and values its own?",
         "Supported within rounding, else inconsistent: the paper may have meant another profile. "
+        "Without way-points, several totals are supported if one way serves them all. "
         "Not checkable where the shortest total jumps within the rounding, and for several joints "
         "between moving ends.",
         "140° within 150 °/s, 70 °/s² and 70 °/s³ take 4 s with a jerk that is constant in phases.",
     ),
+    without_waypoints=True,
 )
 def judge_profiles(study: Study) -> Iterator[Finding]:
     """Findings of TG304."""
+    yield from judge_one_way(study)
     for claim in study.claims:
         of: _Profiled
         judge: _Judge
@@ -372,7 +380,7 @@ def _numbers_beside(asked: _Asked) -> Finding:
     gradual = claim.derivative != "acceleration" or asked.profile != "trapezoidal"
     where = "" if isinstance(claim, PeakClaim) else place_of_value(row.study.case, claim)
     place = "largest" if isinstance(claim, PeakClaim) else claim.place
-    size_word = f"{place} " if place in _SIZES else ""
+    size_word = f"{place} " if place in SIZES else ""
     for label, number in row.study.printed_numbers(claim):
         # A number of no joint is that of the one joint, or the largest of all.
         own = joints if label is None else tuple(one for one in joints if one == label)
@@ -382,7 +390,7 @@ def _numbers_beside(asked: _Asked) -> Finding:
             return _unknown(asked, "One number is printed for several joints of a profile.")
         joint = own[0] if len(own) == 1 else None
         size = row.measured(number, claim.derivative, joint)
-        values = partial(_of_motion, row, claim, [joints.index(one) for one in own])
+        values = partial(numbers_of, row, claim, [joints.index(one) for one in own])
         found = asked.range(values, gradual=gradual)
         cut = size.cut_off()
         fits = found.meets(min(size.lower, cut.lower), max(size.upper, cut.upper))
@@ -404,32 +412,6 @@ def _numbers_beside(asked: _Asked) -> Finding:
         computed="; ".join(plain),
         sentences=(f"For the {asked.called} {asked.between}: {'; '.join(said)}.",),
     )
-
-
-def _of_motion(
-    row: PrintedRow[_Profiled],
-    claim: PeakClaim | ValueClaim,
-    joints: Sequence[int],
-    motion: ProfileMotion,
-) -> Iterable[float]:
-    """What a number may be: on both sides of an instant, or between its two ends.
-
-    A peak is the largest of all ``joints``; a value is of one joint.
-    """
-    order = DERIVATIVES.index(claim.derivative)
-    if isinstance(claim, PeakClaim):
-        return [max(float(np.abs(motion.states(joint)[:, order]).max()) for joint in joints)]
-    (joint,) = joints
-    if claim.place in _SIZES:
-        values = motion.states(joint)[:, order]
-        return [float(values.max() if claim.place == "largest" else values.min())]
-    if claim.time is None:
-        at = named_places(row.statement)[str(claim.place)]
-        times = [sum(law.total_time for law in motion.laws[:at])]
-    else:
-        one = row.time(claim.time).cut_off()
-        times = [one.value, one.lower, one.upper]
-    return [float(value) for t in times for value in motion.near(t, joint)[:, order]]
 
 
 def _optimal(study: Study, claim: AnyClaim) -> Iterator[Finding]:
