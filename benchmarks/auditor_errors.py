@@ -4,6 +4,8 @@
         --write docs/measurements/auditor-errors-clean.csv
     python benchmarks/auditor_errors.py faults --count 60 \
         --write docs/measurements/auditor-errors-faults.csv
+    python benchmarks/auditor_errors.py clean --seed 1000000 --count 2000   # profiles
+    python benchmarks/auditor_errors.py faults "number of a profile" --count 250
     python benchmarks/auditor_errors.py slips --count 10        # misprints that are named
     python benchmarks/auditor_errors.py show clean --seed 7     # one paper and what is said of it
     python benchmarks/auditor_errors.py page                    # the tables of the docs page
@@ -33,8 +35,8 @@ from trajgap.problem import parse_case
 ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT / "tests"))  # the papers are shared with the tests
 
-from support.papers.claims import draw  # noqa: E402
-from support.papers.planted import FAULTS, planted  # noqa: E402
+import profile_papers  # noqa: E402
+from support.papers import claims, planted as of_curves  # noqa: E402
 from support.papers.slipped import SLIPS, named, slipped  # noqa: E402
 
 CLEAN = ROOT / "docs" / "measurements" / "auditor-errors-clean.csv"
@@ -42,6 +44,10 @@ FAULTY = ROOT / "docs" / "measurements" / "auditor-errors-faults.csv"
 PAGE = ROOT / "docs" / "measurements" / "auditor-errors.md"
 SURE = 0.95
 """Confidence of the upper limits."""
+PROFILES = 1_000_000
+"""Seed from which on clean papers print profiles; below, they print durations on curves."""
+FAULTS = (*of_curves.FAULTS, *profile_papers.FAULTS)
+"""What is planted."""
 BINS = (0.0, 0.5, 1.0, 1.5, 2.0, 3.0, 5.0, 10.0, float("inf"))
 """Sizes of a fault between which papers are counted, in multiples of what its digits could hide."""
 
@@ -82,6 +88,17 @@ class Row:
 
 WHOLE = {field.name for field in fields(Row) if field.type == "int"}
 """Columns that are numbers."""
+
+
+def draw(seed: int) -> claims.Draft | profile_papers.ProfilePaper:
+    """A clean paper."""
+    return claims.draw(seed) if seed < PROFILES else profile_papers.draw(seed - PROFILES)
+
+
+def planted(fault: str, seed: int) -> of_curves.Planted | profile_papers.Planted:
+    """A paper with a fault."""
+    module = profile_papers if fault in profile_papers.FAULTS else of_curves
+    return module.planted(fault, seed)
 
 
 def examined(code: str, fault: str, seed: int) -> Row:
@@ -345,7 +362,8 @@ def main() -> int:
         write_rows(given.write, read_rows(given.sources))
     else:
         path = given.write or (CLEAN if given.what == "clean" else FAULTY)
-        faults = [""] if given.what == "clean" else list(FAULTS)
+        chosen = list(FAULTS) if given.fault == "clean" else [given.fault]
+        faults = [""] if given.what == "clean" else chosen
         run(faults, seeds, path, given.code or described())
     return 0
 

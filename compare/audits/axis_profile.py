@@ -36,13 +36,14 @@ class Sizes(NamedTuple):
     velocity: float
     acceleration: float
     jerk: float
-    deceleration: float | None = None
-    """Of the acceleration while the speed falls; None where it is `acceleration`."""
+    own: float | None = None
+    """What the profile alone has: a limit of the acceleration while the speed falls, or the
+    velocity of a plateau."""
 
     @property
     def braking(self) -> float:
         """Largest acceleration against the velocity."""
-        return self.acceleration if self.deceleration is None else self.deceleration
+        return self.acceleration if self.own is None else self.own
 
 
 class Phase(NamedTuple):
@@ -204,7 +205,7 @@ def shortest_s_curve(start: AxisState, finish: AxisState, sizes: Sizes) -> AxisP
     braked = _braked(first, top, most)
     begin = braked.at(inf)
     found = [
-        one
+        one if sign > 0.0 else one.mirrored()
         for sign in (1.0, -1.0)
         for one in _candidates(*_seen(begin, last, sign), top, most)
         if _keeps(one, _seen(begin, last, sign)[1], top, most)
@@ -212,8 +213,6 @@ def shortest_s_curve(start: AxisState, finish: AxisState, sizes: Sizes) -> AxisP
     if not found:
         return None
     best = min(found, key=lambda one: one.total_time)
-    if best.start != begin:
-        best = best.mirrored()
     phases = (
         Phase(p.time * unit, p.acceleration * scale[2], p.jerk * sizes.jerk)
         for p in braked.then(best).phases

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from itertools import repeat
-from math import cbrt, inf, pi, sqrt
+from math import cbrt, copysign, inf, pi, sqrt
 
 import numpy as np
 from scipy.optimize import brentq
@@ -18,6 +18,7 @@ from .axis_profile import (
     shortest_s_curve,
     shortest_trapezoid,
 )
+from .rounding import FEW_ROUNDINGS
 
 _GAMMA = 0.99
 """Factor by which the book shrinks the acceleration until its formulas close: with it, Example 3.11
@@ -120,15 +121,88 @@ def _of_parts(
     return AxisProfile(start, tuple(phases))
 
 
+_AREA = 16.0 / 35.0
+"""Mean of the impulse 64 t³(1 − t)³ from 0 to 1; its largest value is 1."""
+_WAY = 5.0 / 36.0
+"""Way in the time 1 while such an impulse raises the acceleration from 0 to 1."""
+
+
+def jerk_impulses(start: AxisState, finish: AxisState, sizes: Sizes) -> AxisProfile | None:
+    """The profile of Riboli et al. (2023, equations 76 to 98) with a plateau speed.
+
+    The acceleration at the start lasts until an impulse of jerk takes it to 0 at the speed of the
+    plateau; from there an impulse leads to the acceleration at the finish, which lasts. Where an
+    end has another speed and no acceleration, an impulse to the limit of acceleration is added.
+
+    Its phases have the mean jerk of each impulse: times, velocities and accelerations where phases
+    meet are right, and positions are not.
+
+    Parameters
+    ----------
+    sizes : Sizes
+        Its jerk is the peak of the impulses, its `own` the plateau.
+
+    Returns
+    -------
+    AxisProfile or None
+        None if a phase would take less than no time, or if there is no limit to ramp up to.
+    """
+    speed = sizes.own
+    ramped = any(end.acceleration == 0.0 and end.velocity != speed for end in (start, finish))
+    if not speed or (ramped and sizes.acceleration == inf):
+        return None
+    first, there = _to_plateau(start.velocity, start.acceleration, speed, sizes)
+    # Backwards in time velocities change their sign, and accelerations do not.
+    last, back = _to_plateau(-finish.velocity, finish.acceleration, -speed, sizes)
+    cruise = (finish.position - start.position - there + back) / speed
+    ended = [Phase(p.time, p.acceleration + p.jerk * p.time, -p.jerk) for p in reversed(last)]
+    phases = (*first, Phase(cruise, 0.0), *ended)
+    least = FEW_ROUNDINGS * sum(abs(one.time) for one in phases)
+    return AxisProfile(start, phases) if min(p.time for p in phases) >= -least else None
+
+
+def _to_plateau(
+    velocity: float, acceleration: float, speed: float, sizes: Sizes
+) -> tuple[list[Phase], float]:
+    """Phases from a state to a speed that is kept, and their way."""
+    jerk, phases, way = _AREA * sizes.jerk, [], 0.0
+
+    def impulse(end: float) -> None:
+        nonlocal velocity, acceleration, way
+        change = end - acceleration
+        time = abs(change) / jerk
+        phases.append(Phase(time, acceleration, copysign(jerk, change)))
+        way += time * (velocity + time * (acceleration / 2.0 + change * _WAY))
+        velocity += time * (acceleration + end) / 2.0
+        acceleration = end
+
+    if acceleration == 0.0 and velocity != speed:
+        impulse(copysign(sizes.acceleration, speed - velocity))
+    if acceleration != 0.0:
+        left = speed - velocity - acceleration * abs(acceleration) / (2.0 * jerk)
+        time = left / acceleration
+        phases.append(Phase(time, acceleration))
+        way += time * (velocity + time * acceleration / 2.0)
+        velocity += time * acceleration
+        impulse(0.0)
+    return phases, way
+
+
 SHORTEST: dict[str, Callable[[AxisState, AxisState, Sizes], AxisProfile | None]] = {
     "trapezoidal": shortest_trapezoid,
     "s-curve": shortest_s_curve,
     "biagiotti-melchiorri": double_s,
+    "jerk-impulses": jerk_impulses,
 }
 """The motion of one axis between two states by the name of its profile."""
+ALGORITHM = "biagiotti-melchiorri"
+"""The profile of an algorithm that is set beside the shortest within the same limits."""
+PRESCRIBED = "jerk-impulses"
+"""The profile that its numbers determine, whatever is shorter."""
 NOT_SHORTEST = {
     "biagiotti-melchiorri": "{} of Biagiotti and Melchiorri's algorithm",
     "fourth-order": "fourth-order {}",
+    "jerk-impulses": "{} of jerk impulses",
 }
 """Profiles than which a motion within the same limits may be shorter, as sentences call them."""
 

@@ -2,26 +2,40 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise, product
 from math import inf
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from ...problem import Array, CaseError, Printed, Quantity
-from ...problem.cases import Digits, ProfiledClaim, end, end_states
+from ...problem import Array, CaseError, Printed, Problem, Quantity
+from ...problem.cases import (
+    Digits,
+    PeakClaim,
+    ProfiledClaim,
+    Statement,
+    ValueClaim,
+    end,
+    end_states,
+    named_places,
+)
 from .axis_profile import AxisProfile, AxisState, Sizes
-from .named_profiles import NOT_SHORTEST, SHORTEST
+from .named_profiles import ALGORITHM, PRESCRIBED, SHORTEST
 from .printed_row import PrintedRow
-from .rounding import FEW_ROUNDINGS, ROUNDING, meet
+from .rounding import FEW_ROUNDINGS, ROUNDING
+from .stated import DERIVATIVES
 
-_MOST_OPEN = 10
-"""Printed numbers whose both ends are combined: 1024 profiles take a few seconds."""
-_JUMP = 0.01
-"""Share of the shortest total by which totals of one rounding box must differ to be called a jump:
-ordinary digits change them by far less."""
+_CORNERS = 1024
+"""Combinations of ends of what digits leave: so many profiles take a few seconds. Where there are
+more, they are drawn: of 30 numbers that add up, the largest drawn sum is half of the largest."""
+_NEARER = 6
+"""Times that numbers at which no profile exists are brought halfway to the printed ones."""
+SIZES = ("largest", "smallest")
+"""Places of a motion that are values."""
 
 
 @dataclass(frozen=True)
@@ -40,6 +54,14 @@ class ProfileQuestion:
     points: Array
     ends: Array
     limits: Array
+
+    def halfway(self, other: ProfileQuestion) -> ProfileQuestion:
+        """The means of the numbers of both."""
+        return ProfileQuestion(
+            (self.points + other.points) / 2.0,
+            (self.ends + other.ends) / 2.0,
+            (self.limits + other.limits) / 2.0,
+        )
 
     def laws(self, profile: str, straight: bool) -> tuple[AxisProfile, ...] | None:
         """The motion of each segment: of the one joint, or of all on a straight line from 0 to 1.
@@ -64,7 +86,7 @@ class ProfileQuestion:
             if start == finish and not any(start[1:]):
                 found.append(AxisProfile(start, ()))
                 continue
-            able = bool((limits > 0.0).all())
+            able = bool(limits.all())
             one = SHORTEST[profile](start, finish, Sizes(*map(float, limits))) if able else None
             if one is None:
                 return None
@@ -74,11 +96,37 @@ class ProfileQuestion:
 
 @dataclass(frozen=True)
 class ProfileMotion:
-    """A profile with the way-points that it joins."""
+    """A profile with the way-points that it joins.
+
+    Attributes
+    ----------
+    profile : str
+        A key of `SHORTEST`.
+    """
 
     question: ProfileQuestion
     laws: tuple[AxisProfile, ...]
     straight: bool
+    profile: str = "s-curve"
+
+    @classmethod
+    def of(cls, question: ProfileQuestion, profile: str, straight: bool) -> ProfileMotion | None:
+        """The profile that answers a question; None if none was found that keeps the limits."""
+        laws = question.laws(profile, straight)
+        return None if laws is None else cls(question, laws, straight, profile)
+
+    def asked(self, question: ProfileQuestion) -> ProfileMotion | None:
+        """The same profile for other numbers."""
+        return ProfileMotion.of(question, self.profile, self.straight)
+
+    def near_to(self, question: ProfileQuestion) -> ProfileMotion:
+        """The same for other numbers, or for those nearest to them on the way from its own."""
+        for _ in range(_NEARER):
+            one = self.asked(question)
+            if one is not None:
+                return one
+            question = question.halfway(self.question)
+        return self
 
     @cached_property
     def total_time(self) -> float:
@@ -91,26 +139,45 @@ class ProfileMotion:
         return bool((np.abs(self.question.ends[0]) > self.question.limits[:, :2]).any())
 
     @cached_property
-    def parts(self) -> tuple[float, float, float, float, float]:
-        """Lengths of its parts, and of the jerk at the start of the first and the end of the last.
+    def sides(self) -> tuple[tuple[int, float, bool], ...]:
+        """Pieces of the one law: sign of the acceleration, length, and whether there is jerk.
 
-        In the parts the acceleration has the sign of the way, is 0, and has the other sign.
+        The sign is positive in the direction of the way. Pieces that rounding leaves are none.
         """
         (law,) = self.laws
+        least = ROUNDING * self.total_time
         sign = 1.0 if law.at(inf).position >= law.start.position else -1.0
-        lengths, ramps, first = [0.0, 0.0, 0.0], [0.0, 0.0], True
+        found = []
         for phase in law.phases:
             turn = -phase.acceleration / phase.jerk if phase.jerk else 0.0
             for begin, until in pairwise(
                 sorted({0.0, min(max(turn, 0.0), phase.time), phase.time})
             ):
                 middle = sign * (phase.acceleration + phase.jerk * (begin + until) / 2.0)
-                part = 0 if middle > 0.0 and first else 1 if middle == 0.0 else 2
-                first = part == 0
-                if part == 0 and lengths[0] == 0.0 and phase.jerk:
-                    ramps[0] = until - begin
-                lengths[part] += until - begin
-                ramps[1] = until - begin if part == 2 and phase.jerk else 0.0
+                if until - begin > least:
+                    found.append((int(np.sign(middle)), until - begin, phase.jerk != 0.0))
+        return tuple(found)
+
+    @property
+    def in_order(self) -> bool:
+        """Whether it first accelerates in the direction of the way, then not at all, then back."""
+        signs = [sign for sign, _, _ in self.sides]
+        return signs == sorted(signs, reverse=True)
+
+    @cached_property
+    def parts(self) -> tuple[float, float, float, float, float]:
+        """Lengths of its parts, and of the jerk at the start of the first and the end of the last.
+
+        In the parts the acceleration has the sign of the way, is 0, and has the other sign.
+        """
+        lengths, ramps, first = [0.0, 0.0, 0.0], [0.0, 0.0], True
+        for sign, length, jerked in self.sides:
+            part = 0 if sign > 0 and first else 1 if sign == 0 else 2
+            first = part == 0
+            if part == 0 and lengths[0] == 0.0 and jerked:
+                ramps[0] = length
+            lengths[part] += length
+            ramps[1] = length if part == 2 and jerked else 0.0
         return (*lengths, *ramps)  # type: ignore[return-value]
 
     def near(self, time: float, joint: int) -> Array:
@@ -165,103 +232,75 @@ class ProfileMotion:
         )
 
 
-@dataclass(frozen=True)
-class NumberRange:
-    """A number of a profile at the printed numbers, and at all others that digits leave.
-
-    Attributes
-    ----------
-    others : ndarray
-        In order.
-    """
-
-    plain: float
-    others: Array
-
-    @classmethod
-    def of(
-        cls,
-        every: Sequence[ProfileMotion | None],
-        number: Callable[[ProfileMotion], Iterable[float]],
-    ) -> NumberRange:
-        """A number of the printed motion, the first, and of all others that exist."""
-        found = [[*number(one)] for one in every if one is not None]
-        return cls(found[0][0], np.sort([value for values in found for value in values]))
-
-    @cached_property
-    def jump(self) -> tuple[float, float] | None:
-        """The two values between which it jumps; None if it changes gradually."""
-        gaps = np.diff(self.others)
-        if not len(gaps):
-            return None
-        at = int(np.argmax(gaps))
-        if gaps[at] <= max(0.5 * gaps.sum(), _JUMP * abs(self.others[0])):
-            return None
-        return float(self.others[at]), float(self.others[at + 1])
-
-    def meets(self, lower: float, upper: float) -> bool:
-        """Whether a printed interval holds a value, each side of a jump by itself."""
-        parts = [self.others]
-        if self.jump is not None:
-            low = self.others <= self.jump[0]
-            parts = [self.others[low], self.others[~low]]
-        for part in parts:
-            # As much again, since corners need not be the extremes of a curved function.
-            width = float(part[-1] - part[0]) + ROUNDING * float(np.abs(part).max())
-            if meet((lower, upper), (part[0] - width, part[-1] + width)):
-                return True
-        return False
-
-    def spans(self, lower: float, upper: float) -> bool:
-        """Whether a printed interval lies among the values, where they jump over it."""
-        return meet((lower, upper), (self.others[0], self.others[-1]))
-
-
 def profiled_limits(row: PrintedRow[ProfiledClaim], digits: Digits) -> Array:
     """Limits of the joints of a claim with the one that only its profile has.
 
-    Columns are velocity, acceleration and jerk, and snap or deceleration, which is that of
-    acceleration where none is stated; shape (joints, 4).
+    Columns are velocity, acceleration and jerk, and what the profile alone has: deceleration,
+    which is that of acceleration where none is stated, snap or the plateau; shape (joints, 4).
     """
-    problem, claim = row.posed(digits), row.claim
-    limits = problem.limits.derivatives
-    given = claim.deceleration if claim.snap is None else claim.snap
-    if given is None:
+    problem = row.posed(digits)
+    places = [row.statement.labels.index(label) for label in problem.joints]
+    return with_own_limit(row.statement, row.claim, problem.limits.derivatives, places, digits)
+
+
+def with_own_limit(
+    statement: Statement, claim: ProfiledClaim, limits: Array, places: Sequence[int], digits: Digits
+) -> Array:
+    """Limits of velocity, acceleration and jerk, and the column of what the profile alone has.
+
+    Parameters
+    ----------
+    places : sequence of int
+        Positions of the joints in the robot's list.
+    """
+    own = _own_limit(claim)
+    if own is None:
         return np.column_stack([limits, limits[:, 1]])
-    statement = row.statement
-    quantity: Quantity = "acceleration" if claim.snap is None else "jerk"
-    places = [statement.labels.index(label) for label in problem.joints]
+    given, quantity = own
     sizes = [
         statement.si(given[j] if isinstance(given, tuple) else given, quantity, "", j)
         for j in places
     ]
-    own = end(sizes, digits, upper=True)
+    column = end(sizes, digits, upper=True)
     if claim.snap is not None:  # of jerk in one unit of time
-        own = own / statement.si(Printed.number(1), "time").value
-    return np.column_stack([limits, own])
+        column = column / statement.si(Printed.number(1), "time").value
+    return np.column_stack([limits, column])
 
 
-def questions(row: PrintedRow[ProfiledClaim]) -> list[ProfileQuestion] | None:
-    """The printed numbers first, then every combination of ends of what their digits leave.
+def _own_limit(
+    claim: ProfiledClaim,
+) -> tuple[Printed | tuple[Printed, ...], Quantity] | None:
+    """What the profile alone has, and in which unit."""
+    if claim.deceleration is not None:
+        return claim.deceleration, "acceleration"
+    if claim.snap is not None:
+        return claim.snap, "jerk"
+    return None if claim.plateau is None else (claim.plateau, "velocity")
 
-    It is None if too many numbers are printed digits.
-    """
+
+def questions(row: PrintedRow[ProfiledClaim]) -> list[ProfileQuestion]:
+    """The printed numbers first, then combinations of ends of what their digits leave."""
     problem = row.posed()
     box = row.waypoint_box(problem).or_cut_off()
-    columns = [row.study.problem(row.pair).joints.index(label) for label in problem.joints]
-    ends = end_states(row.statement)[:, columns]
+    order = [row.study.problem(row.pair).joints.index(label) for label in problem.joints]
+    ends = end_states(row.statement)[:, order]
     plain = ProfileQuestion(box.value, ends[..., 0], profiled_limits(row, Digits.PRINTED))
+    loosest = profiled_limits(row, Digits.LOOSEST_CUT)
     try:
-        loosest, tightest = (
-            profiled_limits(row, digits) for digits in (Digits.LOOSEST_CUT, Digits.TIGHTEST)
-        )
+        tightest = profiled_limits(row, Digits.TIGHTEST)
     except CaseError:  # the tightest ranges are empty
-        return None
-    sizes = [loosest] if (loosest == tightest).all() else [loosest, tightest]
-    free = np.argwhere(box.lower < box.upper)
-    moved = np.argwhere(ends[..., 1] < ends[..., 2])
-    if len(free) + len(moved) > _MOST_OPEN:
-        return None
+        tightest = plain.limits
+    together = [[0], [1, 3], [2]] if _own_limit(row.claim) is None else [[0], [1], [2], [3]]
+    # What may vary: the field, its part, and the two ends.
+    free: list[tuple[str, Any, Any, Any]] = [
+        *(("points", at, box.lower[at], box.upper[at]) for at in _where(box.lower < box.upper)),
+        *(("ends", at, *ends[at][1:]) for at in _where(ends[..., 1] < ends[..., 2])),
+        *(
+            ("limits", (slice(None), columns), loosest[:, columns], tightest[:, columns])
+            for columns in together
+            if (loosest[:, columns] != tightest[:, columns]).any()
+        ),
+    ]
     found = [plain]
     # Where the optimum jumps at an exact number, rounding alone must not choose the side.
     away = FEW_ROUNDINGS * (np.abs(box.value).max() + np.abs(np.diff(box.value, axis=0)).max())
@@ -269,23 +308,27 @@ def questions(row: PrintedRow[ProfiledClaim]) -> list[ProfileQuestion] | None:
         points = box.value.copy()
         points[-1] += step
         found.append(replace(plain, points=points))
-    if not len(free) + len(moved) and len(sizes) == 1:
-        return found
-    for limits, chosen in product(sizes, product((1, 2), repeat=len(free) + len(moved))):
-        points, states = box.value.copy(), ends[..., 0].copy()
-        for at, side in zip(map(tuple, free), chosen, strict=False):
-            points[at] = (box.lower if side == 1 else box.upper)[at]
-        for at, side in zip(map(tuple, moved), chosen[len(free) :], strict=True):
-            states[at] = ends[(*at, side)]
-        found.append(ProfileQuestion(points, states, limits))
+    if 2 ** len(free) > _CORNERS:
+        corners = np.random.default_rng(0).integers(0, 2, (_CORNERS, len(free)))
+    else:
+        corners = np.array([*product((0, 1), repeat=len(free))])
+    for chosen in corners if free else ():
+        one = ProfileQuestion(plain.points.copy(), plain.ends.copy(), plain.limits.copy())
+        for (field, at, *sides), side in zip(free, chosen, strict=True):
+            getattr(one, field)[at] = sides[side]
+        found.append(one)
     return found
 
 
-def motions(row: PrintedRow[ProfiledClaim], profile: str) -> list[ProfileMotion | None] | None:
-    """The profile at each of `questions`, the printed numbers first.
+def _where(mask: NDArray[np.bool_]) -> list[tuple[int, ...]]:
+    return [tuple(map(int, at)) for at in np.argwhere(mask)]
 
-    None stands for numbers at which no profile was found that keeps the limits, and in place of
-    all if `questions` has no answer.
+
+def motions(row: PrintedRow[ProfiledClaim], profile: str) -> list[ProfileMotion]:
+    """The profile at each of `questions`, or as near to it as one was found; the printed first.
+
+    The list is empty if no profile was found at the printed numbers; if that profile is prescribed,
+    it is the profiles at the others.
 
     Parameters
     ----------
@@ -293,26 +336,66 @@ def motions(row: PrintedRow[ProfiledClaim], profile: str) -> list[ProfileMotion 
         A key of `SHORTEST`.
     """
 
-    def compute() -> list[ProfileMotion | None] | None:
+    def compute() -> list[ProfileMotion]:
         asked = questions(row)
-        if asked is None:
-            return None
         straight = len(row.posed().joints) > 1
-        found = []
-        for one in asked:
-            laws = one.laws(profile, straight)
-            found.append(None if laws is None else ProfileMotion(one, laws, straight))
-        return found
+        printed = ProfileMotion.of(asked[0], profile, straight)
+        if printed is None and profile == PRESCRIBED:
+            every = (ProfileMotion.of(one, profile, straight) for one in asked)
+            return [one for one in every if one is not None]
+        if printed is None:
+            return []
+        return [printed.near_to(one) for one in asked]
 
-    return row.once("profile", compute, profile)
+    return row.once("profile", compute, profile, row.claim.plateau)
 
 
 def above_shortest(row: PrintedRow[ProfiledClaim]) -> float:
     """Share by which an algorithm's total is above the shortest s-curve's; 0 of other profiles."""
     profile = str(row.claim.profile)
-    if profile not in SHORTEST or profile not in NOT_SHORTEST:
+    if profile != ALGORITHM:
         return 0.0
     own, best = (motions(row, name) for name in (profile, "s-curve"))
-    if not (own and best and own[0] and best[0]):
+    if not (own and best):
         return 0.0
     return own[0].total_time / best[0].total_time - 1.0
+
+
+def out_of_range(problem: Problem, motion: ProfileMotion) -> str | None:
+    """That a profile leaves the position range, which is none of the limits that shape it."""
+    for j, label in enumerate(problem.joints):
+        places = motion.states(j)[:, 0]
+        low, high = problem.limits.position_lower[j], problem.limits.position_upper[j]
+        room = FEW_ROUNDINGS * max(map(abs, places))
+        if places.min() < low - room or places.max() > high + room:
+            return (
+                f"The shortest profile leaves the position range of joint {label}, within which "
+                "no profile is computed."
+            )
+    return None
+
+
+def numbers_of(
+    row: PrintedRow[ProfiledClaim],
+    claim: PeakClaim | ValueClaim,
+    joints: Sequence[int],
+    motion: ProfileMotion,
+) -> Iterable[float]:
+    """What a number may be: on both sides of an instant, or between its two ends.
+
+    A peak is the largest of all ``joints``; a value is of one joint.
+    """
+    order = DERIVATIVES.index(claim.derivative)
+    if isinstance(claim, PeakClaim):
+        return [max(float(np.abs(motion.states(joint)[:, order]).max()) for joint in joints)]
+    (joint,) = joints
+    if claim.place in SIZES:
+        values = motion.states(joint)[:, order]
+        return [float(values.max() if claim.place == "largest" else values.min())]
+    if claim.time is None:
+        at = named_places(row.statement)[str(claim.place)]
+        times = [sum(law.total_time for law in motion.laws[:at])]
+    else:
+        one = row.time(claim.time).cut_off()
+        times = [one.value, one.lower, one.upper]
+    return [float(value) for t in times for value in motion.near(t, joint)[:, order]]

@@ -123,14 +123,21 @@ class ProfiledClaim(TimeClaim):
     """What claims of a profile of velocity have in common."""
 
     profile: (
-        Literal["trapezoidal", "s-curve", "sine-jerk", "fourth-order", "biagiotti-melchiorri"]
+        Literal[
+            "trapezoidal",
+            "s-curve",
+            "sine-jerk",
+            "fourth-order",
+            "biagiotti-melchiorri",
+            "jerk-impulses",
+        ]
         | None
     ) = None
     """The profile of `other_curve`, where it is one that joins the way-points segment by segment:
     the shortest with constant acceleration and speed, with constant jerk, or with jerk in half
-    sines; with constant snap; or that of the algorithm of Biagiotti and Melchiorri, which is not
-    always the shortest. It is at rest at way-points in between, and at the ends as the interpolant
-    prescribes."""
+    sines; with constant snap; that of the algorithm of Biagiotti and Melchiorri, which is not
+    always the shortest; or that of Riboli et al. with a plateau speed. It is at rest at way-points
+    in between, and at the ends as the interpolant prescribes."""
     path: Literal["straight"] | None = None
     """How the joints go together in a profile: on a straight line between way-points, all by one
     time law. Each by itself if absent."""
@@ -140,6 +147,8 @@ class ProfiledClaim(TimeClaim):
     snap: OneOrEachLength | None = None
     """Fourth-order profiles: largest derivative of the jerk, in the unit of jerk per unit of
     time."""
+    plateau: Number | None = None
+    """Profiles of jerk impulses: the velocity that is kept between both ends, with its sign."""
 
     @model_validator(mode="after")
     def _on_another_curve(self) -> Self:
@@ -147,13 +156,18 @@ class ProfiledClaim(TimeClaim):
             raise fault(".profile", "goes with other_curve; name the curve there as the paper does")
         if self.path is not None and self.profile is None:
             raise fault(".path", "goes with profile; add it, or leave this out")
-        for key, profile in (("deceleration", "trapezoidal"), ("snap", "fourth-order")):
-            if getattr(self, key) is not None and self.profile != profile:
+        for key, profile, needed in (
+            ("deceleration", "trapezoidal", False),
+            ("snap", "fourth-order", True),
+            ("plateau", "jerk-impulses", True),
+        ):
+            given = getattr(self, key) is not None
+            if given and self.profile != profile:
                 raise fault(
                     f".{key}", f'goes with profile = "{profile}" only; add that, or leave it out'
                 )
-        if self.profile == "fourth-order" and self.snap is None:
-            raise fault(".snap", 'is missing; profile "fourth-order" needs it')
+            if needed and not given and self.profile == profile:
+                raise fault(f".{key}", f'is missing; profile "{profile}" needs it')
         return self
 
 

@@ -168,6 +168,7 @@ _BOUNDED_BY: dict[str, Quantity] = {
     "sine-jerk": "jerk",
     "fourth-order": "jerk",
     "biagiotti-melchiorri": "jerk",
+    "jerk-impulses": "jerk",
 }
 """The limit without which each profile is another one: its highest derivative would jump."""
 
@@ -182,6 +183,8 @@ def _check_profile(
         _check_each(faults, claim.deceleration, "acceleration", every, f"{at}.deceleration")
     if claim.snap is not None:
         _check_each(faults, claim.snap, "jerk", every, f"{at}.snap")
+    if claim.plateau is not None:
+        _check_each(faults, claim.plateau, "velocity", every, f"{at}.plateau")
     needed = _BOUNDED_BY[claim.profile]
     for statement in every:
         given = getattr(statement.limits, needed)

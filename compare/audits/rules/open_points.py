@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from ....problem.cases import ImprovementClaim, StatementClaim
 from ...documents import Basis, Finding
 from ..study import Study
+from .one_way import judge_one_way
 from .rule_group import Explained, rule_group
 
 
@@ -33,8 +34,10 @@ def list_open_points(study: Study) -> Iterator[Finding]:
 
 def _without_waypoints(study: Study) -> Iterator[Finding]:
     """What cannot be said of claims while the way-points are missing."""
+    by_one_way = {found.claim for found in judge_one_way(study)}
     for claim in study.claims:
         said = isinstance(claim, StatementClaim) and bool(claim.not_checkable)
+        said = said or claim.id in by_one_way
         if said or isinstance(claim, ImprovementClaim):
             continue
         why = (study.case.statement(claim.problem).waypoints.not_printed or "").removesuffix(".")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from functools import partial
 from math import inf
@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ....problem import Array, CaseError, Measured, Problem
+from ....problem import Array, CaseError, Measured, Printed
 from ....problem.cases import (
     AnyClaim,
     Digits,
@@ -20,16 +20,32 @@ from ....problem.cases import (
     TotalTimeClaim,
     ValueClaim,
     end_states,
-    named_places,
     profile_of,
 )
 from ...documents import Basis, ClaimVerdict, Finding
-from ..named_profiles import NOT_SHORTEST, RESTING, SHORTEST, profile_called, resting_total
+from ..named_profiles import (
+    ALGORITHM,
+    NOT_SHORTEST,
+    PRESCRIBED,
+    RESTING,
+    SHORTEST,
+    profile_called,
+    resting_total,
+)
+from ..number_range import NumberRange
 from ..printed_row import PrintedRow
-from ..profile_motions import NumberRange, ProfileMotion, motions, profiled_limits
+from ..profile_motions import (
+    SIZES,
+    ProfileMotion,
+    motions,
+    numbers_of,
+    out_of_range,
+    profiled_limits,
+)
 from ..rounding import FEW_ROUNDINGS, meet
-from ..stated import DERIVATIVES, place_of_value
+from ..stated import place_of_value
 from ..study import Study
+from .one_way import judge_one_way
 from .rule_group import Explained, rule_group
 
 _PATHS = {
@@ -37,8 +53,6 @@ _PATHS = {
     True: "all joints on a straight line in each segment",
 }
 """How the joints go together, by whether they stay on a straight line."""
-_SIZES = ("largest", "smallest")
-"""Places of a motion that are values."""
 _Profiled = TotalTimeClaim | PhasesClaim
 _Judge = Callable[["_Asked"], Finding]
 
@@ -63,15 +77,18 @@ class _Asked:
         """Which states the profile joins."""
         return "from rest to rest" if self.resting else "between the states at both ends"
 
-    def every(self, profile: str = "") -> list[ProfileMotion | None]:
+    def every(self, profile: str = "") -> list[ProfileMotion]:
         """The profile, or another one, at the printed numbers and at the ends of their digits."""
-        return motions(self.row, profile or self.profile) or []
+        return motions(self.row, profile or self.profile)
 
     def range(
-        self, number: Callable[[ProfileMotion], Iterable[float]], profile: str = ""
+        self,
+        number: Callable[[ProfileMotion], Iterable[float]],
+        profile: str = "",
+        gradual: bool = True,
     ) -> NumberRange:
-        """A number of the profile, or of another one."""
-        return NumberRange.of(self.every(profile), number)
+        """A number of the profile, or of another one; whether a motion changes it gradually."""
+        return NumberRange.of(self.every(profile), number, gradual)
 
     @property
     def called(self) -> str:
@@ -84,13 +101,16 @@ class _Asked:
         "Is the printed total of a trapezoidal, S-curve or other profile the shortest that the "
         "limits allow between the states at its ends? Are phases, peaks and values its own?",
         "Supported within rounding, else inconsistent: the paper may have meant another profile. "
+        "Without way-points, several totals are supported if one way serves them all. "
         "Not checkable where the shortest total jumps within the rounding, and for several joints "
         "between moving ends.",
         "140° within 150 °/s, 70 °/s² and 70 °/s³ take 4 s with a jerk that is constant in phases.",
     ),
+    without_waypoints=True,
 )
 def judge_profiles(study: Study) -> Iterator[Finding]:
     """Findings of TG304."""
+    yield from judge_one_way(study)
     for claim in study.claims:
         of: _Profiled
         judge: _Judge
@@ -108,7 +128,10 @@ def judge_profiles(study: Study) -> Iterator[Finding]:
             if of.problem in (None, pair.problem):
                 asked = _Asked(claim, PrintedRow(study, of, pair))
                 why = _not_computed(asked)
-                yield judge(asked) if why is None else _unknown(asked, why)
+                if why is None and asked.profile == PRESCRIBED and not asked.every():
+                    yield _impossible(asked)
+                else:
+                    yield judge(asked) if why is None else _unknown(asked, why)
 
 
 def _unknown(asked: _Asked, why: str) -> Finding:
@@ -143,28 +166,60 @@ def _not_computed(asked: _Asked) -> str | None:
         return f"Phases and values of the {profile} profile are not computed."
     if several and asked.row.claim.path is None:
         return "Several joints, each by itself, have no one profile."
-    if profile not in RESTING and end_states(asked.row.statement)[:, :, 1].any():
+    states = end_states(asked.row.statement)[..., 0]
+    if profile == ALGORITHM and states[..., 1].any():
         return "The algorithm of Biagiotti and Melchiorri has no acceleration at its ends."
+    if profile == PRESCRIBED:
+        return _not_prescribed(asked, states)
     every = motions(asked.row, profile)
-    if every is None:
-        return "More numbers stand for intervals than can be combined."
-    if every[0] is None:
+    if not every:
         return f"No {profile} profile between the states at both ends was found within the limits."
-    return _out_of_range(problem, every[0])
+    return out_of_range(problem, every[0])
 
 
-def _out_of_range(problem: Problem, motion: ProfileMotion) -> str | None:
-    """That a profile leaves the position range, which is none of the limits that shape it."""
-    for j, label in enumerate(problem.joints):
-        places = motion.states(j)[:, 0]
-        low, high = problem.limits.position_lower[j], problem.limits.position_upper[j]
-        room = FEW_ROUNDINGS * max(map(abs, places))
-        if places.min() < low - room or places.max() > high + room:
-            return (
-                f"The shortest profile leaves the position range of joint {label}, within which "
-                "no profile is computed."
-            )
+def _not_prescribed(asked: _Asked, states: Array) -> str | None:
+    """The same of a profile of jerk impulses."""
+    if not isinstance(asked.claim, TotalTimeClaim):
+        return "Phases and values of profiles of jerk impulses are not computed."
+    problem = asked.row.posed()
+    if len(problem.joints) > 1 or len(problem.waypoints) > 2:
+        return "Profiles of jerk impulses are computed for one joint in one segment."
+    _, limit, _, plateau = profiled_limits(asked.row, Digits.PRINTED)[0]
+    ramped = (states[..., 1] == 0.0) & (states[..., 0] != plateau)
+    if ramped.any() and limit == inf:
+        return (
+            "A profile of jerk impulses ramps up to the limit of acceleration where an end has no "
+            "acceleration, and no such limit is stated."
+        )
     return None
+
+
+def _impossible(asked: _Asked) -> Finding:
+    """That no profile has the printed plateau; perhaps one has its opposite."""
+    claim, row = asked.claim, asked.row
+    assert isinstance(claim, TotalTimeClaim)
+    assert claim.plateau is not None
+    own, unit = str(claim.plateau), row.unit("velocity", row.posed().joints[0])
+    text = own.removeprefix("-") if own.startswith("-") else f"-{own}"
+    other = claim.model_copy(update={"plateau": Printed(text, claim.plateau.exact)})
+    turned = _Asked(other, PrintedRow(row.study, other, row.pair))
+    said = ""
+    if turned.every():
+        totals = turned.range(lambda motion: [motion.total_time])
+        number = row.time(claim.value)
+        if totals.meets(number.lower, number.cut_off().upper):
+            said = f" With {text} {unit} it takes {totals.plain:.6g} s, which fits."
+    return _found(
+        asked,
+        ClaimVerdict.INCONSISTENT,
+        "no profile",
+        printed=f"{claim.value} {row.study.time_unit}",
+        computed="no profile",
+        sentences=(
+            f"No {asked.called} with a plateau of {own} {unit} joins the states at both ends, "
+            f"however the digits were rounded: a phase would take less than 0 s.{said}",
+        ),
+    )
 
 
 def _total_beside(asked: _Asked) -> Finding:
@@ -239,12 +294,12 @@ def _notes(asked: _Asked, totals: NumberRange) -> tuple[str, ...]:
             f"Within the rounding of the printed digits it jumps from {low:.6g} s to {high:.6g} s."
         )
     every = asked.every()
-    if every and every[0] is not None and every[0].starts_outside:
+    if every and every[0].starts_outside:
         notes.append(
             "The start lies outside the limits: the profile brakes into them at once, and is the "
             "shortest from there."
         )
-    if asked.profile not in RESTING:
+    if asked.profile == ALGORITHM:
         best = asked.range(lambda motion: [motion.total_time], "s-curve")
         more = 100 * (totals.plain / best.plain - 1)
         beside = f"; the algorithm's is {more:.2f} % longer" if more >= 0.01 else " too"
@@ -287,10 +342,17 @@ def _phases_beside(asked: _Asked) -> Finding:
     shown = ", ".join(f"{one.plain:.5g}" for one in found)
     digits = ", ".join(map(str, printed))
     kind = "fits" if fits else "other phases" if totals.jump is None else "jump"
+    how = "fit" if fits else "are others"
+    if kind == "other phases" and not all(one.in_order for one in asked.every()):
+        ends = [one.cut_off() for one in sizes[:3]]
+        if totals.meets(sum(one.lower for one in ends), sum(one.upper for one in ends)):
+            kind = "more phases"
+            how += "; the profile has more phases, which can be combined in more than one way"
     verdict = {
         "fits": ClaimVerdict.SUPPORTED,
         "other phases": ClaimVerdict.INCONSISTENT,
         "jump": ClaimVerdict.NOT_CHECKABLE,
+        "more phases": ClaimVerdict.NOT_CHECKABLE,
     }[kind]
     ramps = " and ramps" if claim.ramps else ""
     return _found(
@@ -301,8 +363,7 @@ def _phases_beside(asked: _Asked) -> Finding:
         computed=f"{shown} s",
         sentences=(
             f"The {asked.called} {asked.between} takes {totals.plain:.6g} s in phases"
-            f"{ramps} of {shown} s; printed are {digits} {unit}, which "
-            f"{'fit' if fits else 'are others'}.",
+            f"{ramps} of {shown} s; printed are {digits} {unit}, which {how}.",
             *_notes(asked, totals),
         ),
     )
@@ -316,9 +377,10 @@ def _numbers_beside(asked: _Asked) -> Finding:
     if claim.derivative == "jerk":
         return _unknown(asked, "The jerk of a profile is not computed.")
     said, wrong, plain = [], False, []
+    gradual = claim.derivative != "acceleration" or asked.profile != "trapezoidal"
     where = "" if isinstance(claim, PeakClaim) else place_of_value(row.study.case, claim)
     place = "largest" if isinstance(claim, PeakClaim) else claim.place
-    size_word = f"{place} " if place in _SIZES else ""
+    size_word = f"{place} " if place in SIZES else ""
     for label, number in row.study.printed_numbers(claim):
         # A number of no joint is that of the one joint, or the largest of all.
         own = joints if label is None else tuple(one for one in joints if one == label)
@@ -328,7 +390,8 @@ def _numbers_beside(asked: _Asked) -> Finding:
             return _unknown(asked, "One number is printed for several joints of a profile.")
         joint = own[0] if len(own) == 1 else None
         size = row.measured(number, claim.derivative, joint)
-        found = asked.range(partial(_of_motion, row, claim, [joints.index(one) for one in own]))
+        values = partial(numbers_of, row, claim, [joints.index(one) for one in own])
+        found = asked.range(values, gradual=gradual)
         cut = size.cut_off()
         fits = found.meets(min(size.lower, cut.lower), max(size.upper, cut.upper))
         wrong = wrong or not fits
@@ -349,32 +412,6 @@ def _numbers_beside(asked: _Asked) -> Finding:
         computed="; ".join(plain),
         sentences=(f"For the {asked.called} {asked.between}: {'; '.join(said)}.",),
     )
-
-
-def _of_motion(
-    row: PrintedRow[_Profiled],
-    claim: PeakClaim | ValueClaim,
-    joints: Sequence[int],
-    motion: ProfileMotion,
-) -> Iterable[float]:
-    """What a number may be: on both sides of an instant, or between its two ends.
-
-    A peak is the largest of all ``joints``; a value is of one joint.
-    """
-    order = DERIVATIVES.index(claim.derivative)
-    if isinstance(claim, PeakClaim):
-        return [max(float(np.abs(motion.states(joint)[:, order]).max()) for joint in joints)]
-    (joint,) = joints
-    if claim.place in _SIZES:
-        values = motion.states(joint)[:, order]
-        return [float(values.max() if claim.place == "largest" else values.min())]
-    if claim.time is None:
-        at = named_places(row.statement)[str(claim.place)]
-        times = [sum(law.total_time for law in motion.laws[:at])]
-    else:
-        one = row.time(claim.time).cut_off()
-        times = [one.value, one.lower, one.upper]
-    return [float(value) for t in times for value in motion.near(t, joint)[:, order]]
 
 
 def _optimal(study: Study, claim: AnyClaim) -> Iterator[Finding]:

@@ -11,7 +11,7 @@ from trajgap.compare.audits.axis_profile import (
     shortest_s_curve,
     shortest_trapezoid,
 )
-from trajgap.compare.audits.named_profiles import double_s, fourth_order, s_curve
+from trajgap.compare.audits.named_profiles import double_s, fourth_order, jerk_impulses, s_curve
 
 
 def by_ruckig(start: AxisState, finish: AxisState, sizes: Sizes) -> float | None:
@@ -34,7 +34,8 @@ def by_ruckig(start: AxisState, finish: AxisState, sizes: Sizes) -> float | None
 def drawn(rng: np.random.Generator, k: int) -> tuple[AxisState, AxisState, Sizes]:
     """States within the limits and, every few draws, at rest or outside them."""
     v, a, j = map(float, 10 ** rng.uniform(-1, 1, 3))
-    share = rng.uniform(-1, 1, 4) * [1.3 if k % 5 == 0 else 1, k % 3 > 0, k % 4 > 0, k % 2]
+    first = (1.3 if k % 5 == 0 else 1) * (k % 7 > 0)
+    share = rng.uniform(-1, 1, 4) * [first, k % 3 > 0, k % 4 > 0, k % 2]
     place = rng.normal(size=2) * 10 ** rng.uniform(-2, 1, 2)
     start = AxisState(float(place[0]), float(share[0] * v), float(share[1] * a))
     return (
@@ -75,9 +76,9 @@ def test_trapezoids_take_ruckigs_time_and_reversed_swap_both_limits() -> None:
         assert found.total_time == pytest.approx(by_ruckig(start, finish, one), rel=1e-7, abs=1e-7)
         if abs(start.velocity) > sizes.velocity:
             continue
-        braking = sizes._replace(deceleration=float(rng.uniform(0.2, 3)) * sizes.acceleration)
+        braking = sizes._replace(own=float(rng.uniform(0.2, 3)) * sizes.acceleration)
         forth = shortest_trapezoid(start, finish, braking)
-        swapped = braking._replace(acceleration=braking.braking, deceleration=braking.acceleration)
+        swapped = braking._replace(acceleration=braking.braking, own=braking.acceleration)
         back = [s._replace(velocity=-s.velocity) for s in (finish, start)]
         again = shortest_trapezoid(back[0], back[1], swapped)
         assert arrives(forth, finish)
@@ -133,3 +134,30 @@ def test_a_fourth_order_profile_passes_the_integral_of_its_speed(
     assert fourth_order(way, *limits) == pytest.approx(total, rel=1e-6)
     assert total > s_curve(way, *limits[:3])
     assert fourth_order(way, *limits[:3], 1e9) == pytest.approx(s_curve(way, *limits[:3]), rel=1e-3)
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+@pytest.mark.parametrize("ends", [((0.4, 7.0), (0.2, -9.0)), ((0.0, 0.0), (3.0, 5.0))])
+def test_jerk_impulses_lead_from_state_to_state(
+    sign: float, ends: tuple[tuple[float, float], ...]
+) -> None:
+    """The jerk is integrated twice and thrice; a plateau of the other sign is never reached."""
+    start = AxisState(0.5, *(sign * x for x in ends[0]))
+    finish = AxisState(0.5 + sign * 2.0, *(sign * x for x in ends[1]))
+    found = jerk_impulses(start, finish, Sizes(math.inf, 5.0, 90.0, sign * 1.5))
+    moments = np.zeros(3)
+    since = 0.0
+    for phase in found.phases:
+        share, weights = np.polynomial.legendre.leggauss(12)
+        u, weights = (share + 1) / 2, weights / 2
+        jerk = 64 * u**3 * (1 - u) ** 3 * 90.0 * np.sign(phase.jerk)
+        left = found.total_time - since - u * phase.time
+        moments += phase.time * np.array([(weights * jerk * left**k).sum() for k in range(3)])
+        since += phase.time
+    a, v, t = start.acceleration, start.velocity, found.total_time
+    place = start.position + v * t + a * t**2 / 2 + moments[2] / 2
+    reached = (place, v + a * t + moments[1], a + moments[0])
+    assert reached == pytest.approx(finish, abs=1e-9)
+    assert jerk_impulses(start, finish, Sizes(math.inf, 5.0, 90.0, sign * -1.5)) is None
+    if not start.acceleration:
+        assert jerk_impulses(start, finish, Sizes(math.inf, math.inf, 90.0, sign * 1.5)) is None

@@ -39,14 +39,12 @@ NOT_SUPPORTED: dict[str, dict[str, str]] = {
         "refuted": "comprehensive",
     },
     "sun2024-segment-assembly": {"not checkable": "stage-1-shortest-time stage-2-shortest-time"},
-    "ban2024-dual-s-welding": {
-        "not checkable": "total-a total-b total-c a-shorter-than-b a-shorter-than-c"
-    },
+    "ban2024-dual-s-welding": {"not checkable": "a-shorter-than-b a-shorter-than-c"},
     "he2022-closed-form-paths": {
         "not checkable": "strictly-optimal "
         + " ".join(f"{p}-case-{n}" for p in ("sinusoid", "squircle", "nurbs") for n in (1, 2, 3))
     },
-    "riboli2023-iptp-16-tasks": {"not checkable": "plateau-15"},
+    "riboli2023-iptp-16-tasks": {"inconsistent": "task-15-time"},
     "ruckig-issue-128": {"inconsistent": "reported"},
     "wang2025-mim-wafer-stage": {"not checkable": "above-optimum"},
     "robotics1-2017-07-11": {
@@ -89,11 +87,13 @@ PEAKS = [
 """Largest values of the motions in degrees and seconds, joint by joint."""
 
 SAID = {
+    ("ban2024-dual-s-welding", "total-b"): "one of 0.2878 to 0.2979 m serves all 3 totals",
     ("biagiotti2008-double-s", "ex-3.11-phases"): "takes 1.78045 s; the algorithm's is 8.87 %",
     ("biagiotti2008-double-s", "ex-3.12-phases"): "takes 1.75422 s; the algorithm's is 52.01 %",
     ("biagiotti2008-double-s", "ex-3.9-phases"): "takes 2.71 s too",
     ("pilz-atrap-profile", "reversal-total"): "takes 3.73205 s",
     ("pilz-ptp-scaled", "total"): "takes 4.5 s",
+    ("riboli2023-iptp-16-tasks", "task-15-time"): "With 9.4 rad/s it takes 0.964148 s, which fits",
     ("robotics1-2017-04-11", "phases"): "phases of 0.225, 0.99583, 0.675 s",
     ("ruckig-issue-128", "reached"): "brakes into them at once",
     ("ruckig-issue-128", "reported"): "takes 0.167347 s; printed is 0.230593 s, which is 37.79 %",

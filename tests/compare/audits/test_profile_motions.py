@@ -16,8 +16,8 @@ from trajgap.compare.audits.axis_profile import (
     shortest_trapezoid as trapezoid,
 )
 from trajgap.compare.audits.named_profiles import fourth_order
+from trajgap.compare.audits.number_range import NumberRange
 from trajgap.compare.audits.profile_motions import (
-    NumberRange,
     ProfileMotion,
     ProfileQuestion,
     questions,
@@ -70,8 +70,7 @@ def test_an_instant_in_a_later_segment_is_one_of_that_segment() -> None:
 
 
 def test_values_on_both_sides_of_a_jump_are_told_apart() -> None:
-    found = NumberRange(1.0, np.array([1.0, 1.01, 2.0, 2.01]))
-    assert found.jump == (1.01, 2.0)
+    found = NumberRange(1.0, np.array([1.0, 1.01, 2.0, 2.01]), (1.01, 2.0))
     for low, high, meets, spans in (
         (1.005, 1.02, True, True),
         (1.99, 2.0, True, True),

@@ -60,6 +60,25 @@ def test_clean_papers_are_accused_of_nothing(seed: int) -> None:
         assert any(j.verdict is ClaimVerdict.SUPPORTED for j in one.judgements)
 
 
+PROFILES = (19, 73, 175, 200, 253, 278)
+"""Papers with profiles, wrongly accused before: of peaks between the values at two limits, of the
+sign of a motion from rest, of phases of a profile that has more or whose limits vary by
+themselves."""
+
+
+@pytest.mark.parametrize("seed", [*PROFILES, *slow(range(1000, 1060))])
+def test_clean_profiles_are_accused_of_nothing(seed: int) -> None:
+    one = audited_text(loaded("profile_papers").draw(seed).text())
+    assert (one.errors, contradicted(one)) == (0, {})
+
+
+@pytest.mark.parametrize("fault", ["number of a profile", "input of a profile"])
+def test_a_fault_of_a_profile_is_seen(fault: str) -> None:
+    found = (loaded("profile_papers").planted(fault, seed) for seed in range(50))
+    one = next(p for p in found if p.size > 3 * p.room)
+    assert contradicted(audited_text(one.draft.text()))
+
+
 @pytest.mark.parametrize(
     "fault", ["sum", "control vertex digit", "limit exceeded", "suboptimal called optimal"]
 )

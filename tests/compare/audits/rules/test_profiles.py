@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 from scipy.optimize import linprog
-from support.findings import finding
-from support.made_up import QUINTIC, Numbers, claim, paper, peak, sentence, total
+from support.findings import audited_text, finding, verdicts
+from support.made_up import QUINTIC, Numbers, claim, entry, paper, peak, sentence, total
 from trajgap.compare.audits.named_profiles import resting_total, s_curve, sine_jerk, trapezoidal
 from trajgap.compare.documents import Basis, ClaimVerdict, Finding
 from trajgap.problem import CaseError, parse_case
@@ -282,11 +282,30 @@ def test_a_peak_of_a_profile_of_another_problem_is_refused() -> None:
 
 
 @pytest.mark.parametrize(
+    ("slower", "verdict"),
+    [("2.05", "supported"), ("2.50", "inconsistent"), (None, "not checkable")],
+)
+def test_one_way_serves_the_totals_of_all_limits(slower: str | None, verdict: str) -> None:
+    """3 rad within 2 and 4 take 2 s, and within 2 rad/s and 3.636 rad/s² 2.05 s."""
+    first = total("t", "2.00", profile="trapezoidal", problem="one", **CLAIM)
+    other = entry("problems", id="two", limits={"velocity": 2, "acceleration": "3.636"})
+    parts = [first, entry("problems", id="one"), other]
+    if slower is not None:
+        parts.append(total("u", slower, profile="trapezoidal", problem="two", **CLAIM))
+    text = paper([[0, 1]], *parts, curve=QUINTIC, velocity=2, acceleration=4)
+    text = text.replace("joint_rows = [[0, 1]]", 'not_printed = "the arc"\ncount = 2')
+    found = verdicts(audited_text(text))
+    assert set(found.values()) == {verdict}
+
+
+@pytest.mark.parametrize(
     ("keys", "why"),
     [
         ({"profile": "s-curve", "deceleration": 1}, "deceleration: goes with profile"),
         ({"profile": "s-curve", "snap": 1}, "snap: goes with profile"),
         ({"profile": "fourth-order"}, "snap: is missing"),
+        ({"profile": "s-curve", "plateau": 1}, "plateau: goes with profile"),
+        ({"profile": "jerk-impulses"}, "plateau: is missing"),
         ({"profile": "trapezoidal", "deceleration": [1, 2]}, "deceleration: 2 values for 1 joints"),
         ({"quantity": "phases", "phases": [1, 0, 1]}, "profile: is missing"),
         ({"quantity": "phases", "phases": [1, 0, 1], "profile": "s-curve"}, "are of one segment"),

@@ -1,0 +1,110 @@
+"""A number of profiles over all that rounds to the printed digits, and where it jumps."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...problem import Array
+from .profile_motions import ProfileMotion
+from .rounding import ROUNDING, meet
+
+_JUMP = 0.01
+"""Share of a number by which its values for numerically equal inputs must differ to be called a
+jump."""
+_HALVINGS = 40
+"""Times that two inputs are brought halfway together: what they leave of each other is rounding."""
+
+
+@dataclass(frozen=True)
+class NumberRange:
+    """A number of a profile at the printed numbers, and at all others that digits leave.
+
+    Attributes
+    ----------
+    others : ndarray
+        In order.
+    jump : tuple of float or None
+        The two values between which it jumps; None if it changes gradually.
+    """
+
+    plain: float
+    others: Array
+    jump: tuple[float, float] | None = None
+
+    @classmethod
+    def of(
+        cls,
+        every: Sequence[ProfileMotion],
+        number: Callable[[ProfileMotion], Iterable[float]],
+        gradual: bool = True,
+    ) -> NumberRange:
+        """A number of the printed motion, the first, and of all others.
+
+        Parameters
+        ----------
+        gradual : bool
+            Whether a motion changes it without a jump.
+        """
+        found = [(value, one) for one in every for value in number(one)]
+        plain = found[0][0]
+        found.sort(key=lambda pair: pair[0])
+        jump = _jump(found, number, gradual)
+        return cls(plain, np.sort([*(value for value, _ in found), *(jump or ())]), jump)
+
+    def meets(self, lower: float, upper: float) -> bool:
+        """Whether a printed interval holds a value, each side of a jump by itself."""
+        parts = [self.others]
+        if self.jump is not None:
+            low = self.others <= self.jump[0]
+            parts = [self.others[low], self.others[~low]]
+        for part in parts:
+            # As much again, since corners need not be the extremes of a curved function.
+            width = float(part[-1] - part[0]) + ROUNDING * float(np.abs(part).max())
+            if meet((lower, upper), (part[0] - width, part[-1] + width)):
+                return True
+        return False
+
+    def spans(self, lower: float, upper: float) -> bool:
+        """Whether a printed interval lies among the values, where they jump over it."""
+        return meet((lower, upper), (self.others[0], self.others[-1]))
+
+
+def _jump(
+    found: Sequence[tuple[float, ProfileMotion]],
+    number: Callable[[ProfileMotion], Iterable[float]],
+    gradual: bool,
+) -> tuple[float, float] | None:
+    """The values on both sides of the widest gap, where inputs are brought together over it.
+
+    It is None if that closes the gap.
+
+    Parameters
+    ----------
+    found : sequence of (float, ProfileMotion)
+        Values in order, and the motion of each.
+    """
+    gaps = np.diff([value for value, _ in found])
+    if not len(gaps):
+        return None
+    at = int(np.argmax(gaps))
+    least = _JUMP * abs(found[0][0])
+    if gaps[at] <= max(0.5 * gaps.sum(), least):
+        return None
+    low, high = found[at : at + 2]
+    middle = (low[0] + high[0]) / 2.0
+    for _ in range(_HALVINGS):
+        between = low[1].asked(low[1].question.halfway(high[1].question))
+        if between is None:
+            break
+        values = [*number(between)]
+        if min(values) <= middle < max(values):
+            # The number is of some time, in which it changes.
+            return None if gradual else (low[0], high[0])
+        if values[0] <= middle:
+            low = max(values), between
+        else:
+            high = min(values), between
+    return (low[0], high[0]) if high[0] - low[0] > least else None

@@ -1,0 +1,102 @@
+"""TG304 where way-points are not printed: one way has to serve the totals of several profiles."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+from scipy.optimize import brentq
+
+from ....problem.cases import Digits, TotalTimeClaim
+from ...documents import Basis, ClaimVerdict, Finding
+from ..named_profiles import RESTING, profile_called, resting_total
+from ..printed_row import PrintedRow
+from ..profile_motions import with_own_limit
+from ..study import Study
+
+_CLOSE = 1e-12
+"""Share to which a way is computed: well below any printed digit."""
+
+
+class _Ways(NamedTuple):
+    """A printed total, and the ways (rad or m) that take it at the ends of what digits leave."""
+
+    row: PrintedRow[TotalTimeClaim]
+    lower: float
+    upper: float
+
+
+def judge_one_way(study: Study) -> Iterator[Finding]:
+    """Findings on totals from rest to rest of one joint, whose only way is the unknown one."""
+    for reading in study.readings:
+        groups: dict[str, list[_Ways]] = {}
+        for pair in study.selected:
+            statement = study.case.statement(*pair)
+            points = statement.waypoints
+            alone = len(statement.labels) == 1 and points.number == 2
+            if pair.reading != reading or not (alone and statement.declaration.at_rest):
+                continue
+            _, limited, _, _ = statement.data()
+            if limited.uneven:
+                continue
+            for claim in study.claims:
+                if not isinstance(claim, TotalTimeClaim) or claim.profile not in RESTING:
+                    continue
+                if points.not_printed and claim.problem in (None, pair.problem):
+                    row = PrintedRow(study, claim, pair)
+                    groups.setdefault(points.not_printed, []).append(_ways(row))
+        for group in groups.values():
+            if len(group) > 1:
+                yield from _together(group)
+
+
+def _ways(row: PrintedRow[TotalTimeClaim]) -> _Ways:
+    """The totals grow with the way and fall with the limits: two of them enclose all others."""
+    number = row.time(row.claim.value)
+    return _Ways(
+        row,
+        _way(row, number.lower, Digits.TIGHTEST),
+        _way(row, number.cut_off().upper, Digits.LOOSEST_CUT),
+    )
+
+
+def _way(row: PrintedRow[TotalTimeClaim], total: float, digits: Digits) -> float:
+    """The way that the profile takes in a time."""
+    statement, profile = row.statement, str(row.claim.profile)
+    _, limited, _, _ = statement.data(digits)
+    limits = with_own_limit(statement, row.claim, limited.derivatives, [0], digits)
+
+    def late(way: float) -> float:
+        return resting_total(profile, np.array([[way]]), limits) - total
+
+    above = 1.0
+    while late(above) < 0.0:
+        above *= 2.0
+    return float(brentq(late, 0.0, above, xtol=_CLOSE * above, rtol=_CLOSE))
+
+
+def _together(group: list[_Ways]) -> Iterator[Finding]:
+    lower, upper = max(one.lower for one in group), min(one.upper for one in group)
+    fits = lower <= upper
+    for row, low, high in group:
+        unit = row.unit("position", row.statement.labels[0])
+        ways = [f"{row.in_units('position', way):.4g}" for way in (low, high, lower, upper)]
+        serves = (
+            f"one of {ways[2]} to {ways[3]} {unit} serves all {len(group)} totals"
+            if fits
+            else f"no one way serves all {len(group)} totals"
+        )
+        yield row.finding(
+            "TG304",
+            verdict=ClaimVerdict.SUPPORTED if fits else ClaimVerdict.INCONSISTENT,
+            basis=Basis.CHECK,
+            kind="one way" if fits else "no one way",
+            printed=f"{row.claim.value} {row.study.time_unit}",
+            computed=f"{ways[0]} to {ways[1]} {unit}",
+            sentences=(
+                f"The {profile_called([str(row.claim.profile)])} from rest to rest takes "
+                f"{row.claim.value} {row.study.time_unit} for a way of {ways[0]} to {ways[1]} "
+                f"{unit}; {serves}.",
+            ),
+        )
