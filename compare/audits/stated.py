@@ -180,6 +180,11 @@ def place(claim: Claim) -> str:
     return ", ".join(head.split(", ")[:2])
 
 
+def at_place(where: str) -> str:
+    """A place with its preposition: on a page, in anything else."""
+    return f"{'on' if where.startswith('page') else 'in'} {where}"
+
+
 _MOST = 8
 """Numbers of a row that a sentence repeats at most; of a longer one it gives the total."""
 _MEASURES = {
