@@ -243,7 +243,8 @@ def fault_table(rows: Sequence[Row]) -> str:
 def room_table(rows: Sequence[Row]) -> str:
     """What digits hide of each fault, the smallest that was seen, the largest that was not."""
     lines = [
-        "| fault | median of what digits hide | smallest seen | largest not seen | its multiple |",
+        "| fault | median of what rounding hides | smallest seen | largest not seen | its "
+        "multiple |",
         "|---|---|---|---|---|",
     ]
     for fault in FAULTS:

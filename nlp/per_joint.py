@@ -192,7 +192,7 @@ class Range:
 
 
 def longest_status(joints: tuple[Solution, ...]) -> Status:
-    """The worst status among the joints; *converged* at best, for the output is no optimum."""
+    """The worst status among the joints; *converged* at best, for the output is not an optimum."""
     order = [
         Status.OPTIMAL,
         Status.CONVERGED,
@@ -231,7 +231,7 @@ class PerJointSolution(SearchResult):
 
     @property
     def evidence(self) -> Evidence:
-        """Of the output, which is no optimum: best known at most, where every search converged."""
+        """Evidence of the output: best known at most, because it is not an optimum."""
         if self.vector is None:
             return Evidence.NONE
         return weakest([Evidence.BEST_KNOWN, self.joint_evidence])

@@ -105,7 +105,7 @@ def _by_word(word: str, waypoints: Array, segments: int) -> Array:
 
 
 def no_formula(curve: Curve) -> str | None:
-    """Why the shortest total at fixed ratios is no formula for a curve; None if it is one.
+    """Why the shortest total at fixed ratios is not a formula for a curve; None if it is one.
 
     Parameters
     ----------

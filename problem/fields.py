@@ -146,7 +146,9 @@ def _ratio_word(raw: object) -> str:
     if raw not in RATIO_CHOICES:
         shown = repr(raw) if isinstance(raw, str) else describe(raw)
         words = ", ".join(f'"{word}"' for word in RATIO_CHOICES)
-        raise TrajgapError(f"{shown} is no ratio; give one number per segment, or one of {words}")
+        raise TrajgapError(
+            f"{shown} is not a ratio; give one number per segment, or one of {words}"
+        )
     return str(raw)
 
 

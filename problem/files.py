@@ -88,7 +88,9 @@ def read_regular(path: Path, largest: int, fix: str) -> bytes:
 
 
 def check_regular(path: Path) -> None:
-    """Refuse what is no regular file, whose reading might never end; absence is no fault here.
+    """Refuse what is not a regular file, because reading it might never end.
+
+    A file that does not exist is not refused here.
 
     Raises
     ------

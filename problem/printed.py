@@ -60,7 +60,7 @@ def read_float(text: str) -> float:
     if word.lower() in _INFINITE:
         return float(word)
     if _NUMBER.fullmatch(word) is None:
-        raise TrajgapError(f"{text[:40]!r} is no number")
+        raise TrajgapError(f"{text[:40]!r} is not a number")
     found = float(word)
     if math.isinf(found):
         raise TrajgapError(f"{text[:40]!r} is beyond the range of float64")

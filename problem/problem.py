@@ -178,7 +178,7 @@ class Problem:
 
     @property
     def unscaled(self) -> str | None:
-        """Why the shortest total at the ratios is no formula; None if it is, or without ratios."""
+        """Why no formula gives the shortest total at the ratios; None if one does."""
         return None if self.ratios is None else no_formula(self.curve)
 
     @property
@@ -198,7 +198,7 @@ class Problem:
         polynomials = as_piecewise(self.curve)
         if polynomials is None:
             raise TrajgapError(
-                f"curve: {self.curve.name} is no piecewise polynomial with breaks at "
+                f"curve: {self.curve.name} is not a piecewise polynomial with breaks at "
                 "the way-points, which is needed here"
             )
         return polynomials

@@ -12,7 +12,7 @@ from .errors import CaseError
 from .files import read_regular
 
 LARGEST_BYTES = 5_000_000
-"""Two hundred times the longest case file shipped: what is larger is no case file."""
+"""Two hundred times the longest case file shipped: what is larger is not a case file."""
 
 
 def read_text(path: Path) -> str:

@@ -287,7 +287,7 @@ def _read_proof(
     proof = document["proof"]
     if proof is None and document["format"] == STATE_FORMAT:
         return None, Fraction(0)  # nothing is proved yet
-    need(type(proof) is dict, "malformed: proof is no object")
+    need(type(proof) is dict, "malformed: proof is not an object")
     name = proof.get("kind")
     known = type(name) is str and name in KINDS
     need(known, f"unknown kind of proof {shown(repr(name))}")

@@ -15,7 +15,7 @@ BELOW_AT_RATIOS = (
     "The whole printed interval lies below it: other ratios of the durations, other limits, "
     "another reading or other digits explain that."
 )
-"""What is said of a printed total below the shortest one at fixed ratios; it is no accusation."""
+"""What explains a printed total below the shortest one at fixed ratios."""
 
 
 def optimum_called(problem: Problem, evidence: Evidence) -> str:

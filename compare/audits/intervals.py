@@ -16,7 +16,7 @@ from ...verify import Subject
 ALLOWANCES = 3.0
 """For all problems of a case, in what one problem is allowed: most declared and short spline
 problems are certified in it, and a usual audit still ends in about a minute. Boxes are counted and
-not seconds, so that no verdict depends on how busy the machine is."""
+not seconds, so no verdict depends on how busy the machine is."""
 _GAP = 1e-4
 """Relative width that is asked for: far below the digits that papers print, and cheap to reach."""
 _SHARE = 1 / 3

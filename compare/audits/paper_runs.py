@@ -189,7 +189,8 @@ def searched_for(study: Study, pair: Pair) -> Reference | None:
     """What a paper's procedure would find if each of its searches were exact.
 
     That is the optimum, or, where each joint is planned by itself, what the joints' own optima
-    give: the longest duration of each segment. The latter is no optimum, and runs may end below it.
+    give: the longest duration of each segment. The latter is not an optimum, and runs may end
+    below it.
     """
     if not planned_apart(study.problem(pair)):
         return reference_of(study.optimum(pair))

@@ -109,7 +109,7 @@ def _outcome(study: Study, waterfall: Waterfall) -> ReadingOutcome:
         unmoved = row.unmoved
         if unmoved is not None:
             keeping, held = Why(unmoved), Why(unmoved)
-        elif not isinstance(claim, TotalTimeClaim):  # a total alone is no motion
+        elif not isinstance(claim, TotalTimeClaim):  # a total alone is not a motion
             found = row.check
             keeping = row.keeping
             jumps = sum(jump.order == 1 for jump in found.jumps)

@@ -209,8 +209,8 @@ def judge_rounding(
     Notes
     -----
     `keeps` and `consistent` rest on `check` at one point. `breaks` rests on a proof that no
-    rounding can upset (`bound` and `interval`). A velocity that jumps is no excess over a limit:
-    where nothing else is wrong, the answer is `undecided`.
+    rounding can upset (`bound` and `interval`). A velocity that jumps is not an excess over a
+    limit: where nothing else is wrong, the answer is `undecided`.
     """
     if loose_ends:
         found = judge_rounding(problem, durations, waypoints, tolerance, loosest)

@@ -147,7 +147,7 @@ def stands_in(study: Study) -> bool:
 
 
 def _converged(solution: Solution) -> Solution:
-    """The solution, without its answer where the search did not converge: that is no optimum."""
+    """The solution, without its answer if the search did not converge."""
     if solution.evidence is not Evidence.UNCONVERGED:
         return solution
     why = f"the search did not converge ({solution.why}): no optimum of this family is known"

@@ -222,7 +222,7 @@ def _unchecked(case: AuditedCase) -> list[str]:
     places = {one.claim: one.where for one in case.claims}
     reasons: dict[str, list[str]] = {}
     for one in case.verdicts:
-        # What only informs stands with the claim on its page: it is no reason.
+        # What only informs stands with the claim on its page: it is not a reason.
         if one.verdict is ClaimVerdict.NOT_CHECKABLE and not one.informs:
             reasons.setdefault(one.sentences[0].rstrip("."), []).append(places[one.claim])
     lines = [

@@ -130,7 +130,7 @@ def certify_case(
     states = _states(resume, asked)
     folder = CERTIFICATE_FOLDER if folder is None and not as_json else folder
     if not 0 <= gap < 1:
-        why = f"{gap:g} is no relative width; give 0 or more, below 1"
+        why = f"{gap:g} is not a relative width; give 0 or more, below 1"
         raise CaseError(case.file, "--gap", why)
     if folder is not None:
         check_certificates(folder)
@@ -182,10 +182,12 @@ def read_certificates(folder: Path) -> list[dict[str, Any]]:
     Raises
     ------
     CaseError
-        If it is no folder, or holds no certificate.
+        If it is not a folder, or holds no certificate.
     """
     if not folder.is_dir():
-        raise CaseError(str(folder), "--certificates", "is no folder; name the one with your files")
+        raise CaseError(
+            str(folder), "--certificates", "is not a folder; name the one with your files"
+        )
     documents = [_read(path) for path in sorted(folder.glob("*.json"))]
     found = [one for one in documents if one.get("format") == CERTIFICATE_FORMAT]
     if not found:
@@ -291,7 +293,9 @@ def _check_files(folder: Path, asked: Sequence[Question]) -> None:
         for kind, wanted in (("", CERTIFICATE_FORMAT), (".state", STATE_FORMAT)):
             path = _file(folder, one, kind)
             if path.exists() and _read(path).get("format") not in (wanted, *OLD_FORMATS):
-                raise CaseError(str(path), "--certificates", f"is no {wanted}; name another folder")
+                raise CaseError(
+                    str(path), "--certificates", f"is not a {wanted}; name another folder"
+                )
 
 
 def _read(path: Path) -> dict[str, Any]:

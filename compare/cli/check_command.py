@@ -157,7 +157,7 @@ def check(
         plot,
     )
     if math.isnan(tolerance):
-        raise typer.BadParameter("--tolerance is no number; give one from 0 to 1")
+        raise typer.BadParameter("--tolerance is not a number; give one from 0 to 1")
     if durations is not None:
         if options.names:
             raise typer.BadParameter(f"{options.names[0]} is of a motion; --durations of a case")

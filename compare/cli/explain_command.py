@@ -51,7 +51,7 @@ def _document(asked: Sequence[str]) -> ExplainDocument:
         if one not in known:
             near = get_close_matches(one, known, n=1) or [name for name in known if one in name]
             meant = f"did you mean {known[near[0]]!r}?" if near else "`trajgap explain` lists all"
-            raise CaseError(repr(said), "", f"is no rule and no word of the reports; {meant}")
+            raise CaseError(repr(said), "", f"is not a rule or a word of the reports; {meant}")
     return ExplainDocument(
         rules=tuple(one for one in rules if one.id.casefold() in wanted),
         words=tuple(one for one in words if one.word.casefold() in wanted),

@@ -192,7 +192,9 @@ def _kind_of_picture(path: Path) -> str:
     kind = path.suffix.lower().removeprefix(".")
     if kind not in KINDS:
         known = ", ".join(f".{one}" for one in KINDS)
-        raise CaseError(str(path), "--plot", f"is no name of a picture; end it with one of {known}")
+        raise CaseError(
+            str(path), "--plot", f"is not a name of a picture; end it with one of {known}"
+        )
     return kind
 
 

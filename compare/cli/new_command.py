@@ -120,7 +120,7 @@ def new(
             if _known(answer, name):
                 given[name] = answer
             else:
-                said = f"{answer!r} is no unit of {name}" if answer else "is missing"
+                said = f"{answer!r} is not a unit of {name}" if answer else "is missing"
                 faults.append((f"--{name}-unit", f"{said}; give one of {', '.join(CHOICES[name])}"))
         if faults:
             raise CaseError(file, *faults[0], faults[1:])

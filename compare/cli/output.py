@@ -253,7 +253,9 @@ def check_folder(path: Path, cases: Sequence[Case]) -> None:
         found = foreign(path)
         if found is not None:
             raise CaseError(
-                name, "--out", f"holds {found}, which is no audit; name a new or an empty folder"
+                name,
+                "--out",
+                f"holds {found}, which is not an audit; name a new or an empty folder",
             )
         if path.name in ("", "..") or path.is_mount():
             raise CaseError(name, "--out", "cannot be replaced as a whole; name a folder in it")
@@ -274,7 +276,7 @@ def check_certificates(folder: Path) -> None:
             try_writing_in(folder)
         except NotADirectoryError as error:
             raise CaseError(
-                str(error.filename), "--certificates", "is no folder; name another"
+                str(error.filename), "--certificates", "is not a folder; name another"
             ) from None
 
 

@@ -204,7 +204,7 @@ def _write(out: Path, found: Mapping[str, str]) -> None:
     """
     name = str(out)
     if os.path.lexists(out) and (not out.is_dir() or out.is_symlink()):
-        raise CaseError(name, "FOLDER", "is no folder; name a new one")
+        raise CaseError(name, "FOLDER", "is not a folder; name a new one")
     try:
         other = list(out.iterdir()) if out.exists() else []
         if other and not (out / _MARK).is_file():

@@ -65,7 +65,7 @@ class StatedSource(Entry):
 
 
 class Consequence(Entry):
-    """What follows from a cause and is no fault of its own."""
+    """What follows from a cause and is not a fault of its own."""
 
     rule: str
     """Permanent id of the rule that saw it."""

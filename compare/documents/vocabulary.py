@@ -21,13 +21,13 @@ class Severity(StrEnum):
     """How much a finding weighs; tied to its conclusion, never to a digit."""
 
     ERROR = "error"
-    """A proof contradicts something printed, or shows that two printed things contradict each
-    other, whatever the reading."""
+    """A proof contradicts something printed, or shows that two printed statements contradict each
+    other, under any reading."""
     WARNING = "warning"
     """A proof contradicts something printed under some readings and not under all, printed things
     do not fit together, or a best known value speaks against a statement."""
     INFO = "info"
-    """A fact beside the claim, or support for it."""
+    """A fact about the claim, or support for it."""
 
 
 class Urgency(StrEnum):
@@ -53,11 +53,12 @@ class ClaimVerdict(StrEnum):
     conditions, an enclosure that holds however the digits were rounded, a scaling law, or a
     checked motion that is shorter than one called optimal."""
     NOT_CHECKABLE = "not checkable"
-    """Nothing that the text carries decides it, and the reason is given."""
+    """The text contains nothing that decides it, and the reason is given."""
     INCONSISTENT = "inconsistent"
-    """Two printed things contradict each other; neither alone is refuted."""
+    """Two printed statements contradict each other; neither alone is refuted."""
     DEPENDS = "depends on the reading"
-    """The admissible readings of the text give different words; each stands beside its reading."""
+    """The admissible readings of the text give different verdicts; the report shows each with its
+    reading."""
 
 
 class Scope(StrEnum):
@@ -102,13 +103,13 @@ class Confidence(StrEnum):
 
     DIGITS = "printed digits"
     """It follows from the printed digits alone, whatever the reading: sums, percentages, counts of
-    conditions, tables set side by side."""
+    conditions, comparisons of tables."""
     PROVEN = "proven under a reading"
     """It follows from the curve, way-points and limits as a reading has them: by an enclosure over
     the rounding, by exact extrema of the printed motion, or by a certified bound."""
     COMPUTED = "computed under a reading"
-    """It follows from exact extrema of the printed motion as a reading has it; what the rounding of
-    the other printed digits, or sampling, makes of them is estimated, not enclosed."""
+    """It follows from exact extrema of the printed motion as a reading has it; the effect of
+    rounding in the other printed digits, or of sampling, is estimated, not enclosed."""
     BEST_KNOWN = "best known"
     """It rests on the best motion found under a reading, with nothing proved below it."""
     UNCONVERGED = "not converged"
@@ -310,7 +311,7 @@ TIMES = {
     "feasible time": "T·max(1, c*): all durations stretched until every limit is kept.",
     "tight time": "T·c*: all durations rescaled until a limit is just reached.",
 }
-"""Times that are no member of an enumeration and stand beside the gaps."""
+"""Times that are not members of an enumeration and stand beside the gaps."""
 
 TERMS = {
     "reading": "One way to understand what the text leaves open; everything is computed under each "
@@ -335,7 +336,7 @@ TERMS = {
     "evidence for them.",
     "starts at best": "How many starts of the local solver ended at the lowest total found.",
 }
-"""Terms of the pages that are no member of an enumeration: steps, optima and runs."""
+"""Terms of the pages that are not members of an enumeration: steps, optima and runs."""
 
 
 @dataclass(frozen=True)

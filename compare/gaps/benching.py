@@ -325,7 +325,7 @@ def measure_gaps(runs: Runs, optimum: Solution | Reference | float) -> BenchResu
     Raises
     ------
     TrajgapError
-        If the optimum is no positive finite time.
+        If the optimum is not a positive finite time.
     """
     plan = runs.plan
     return bench_result(

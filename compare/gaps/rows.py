@@ -52,7 +52,7 @@ class Bracket:
         if not 0 < self.upper < float("inf"):
             raise TrajgapError(f"reference: {self.upper} s is not a positive finite time")
         if self.lower is not None and not 0 < self.lower <= self.upper:
-            raise TrajgapError(f"reference: {self.lower} s is no lower bound of {self.upper} s")
+            raise TrajgapError(f"reference: {self.lower} s is not a lower bound of {self.upper} s")
 
     def gap(self, time: float) -> tuple[float, float]:
         """Relative distance of a time, [(T − U)/U, (T − L)/L]; negative values are kept.
@@ -257,7 +257,7 @@ class Row:
         Raises
         ------
         TrajgapError
-            If it is no such text.
+            If it is not such a text.
         """
         try:
             found: dict[str, Any] = json.loads(text)

@@ -43,7 +43,7 @@ class Store:
     Raises
     ------
     CaseError
-        If it is no store, is one of another version, or cannot be read or written.
+        If it is not a store, is one of another version, or cannot be read or written.
     """
 
     def __init__(self, path: Path) -> None:
@@ -98,7 +98,7 @@ class Store:
         except sqlite3.Error as error:
             name = str(self.path)
             if error.sqlite_errorcode == sqlite3.SQLITE_NOTADB:
-                fix = "is no store of trajgap; name a new file"
+                fix = "is not a store of trajgap; name a new file"
             elif self.path.parent.is_dir():
                 fix = f"cannot be used ({error}); check the disk, or name another file"
             else:

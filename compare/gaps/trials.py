@@ -29,8 +29,8 @@ LIBRARIES = {"scipy": "scipy", "mealpy": "mealpy", "pymoo": "pymoo", "pygmo": "p
 """Distribution that an optimiser's prefix names: its version can change what a run finds."""
 
 DESCENT = "descent"
-"""What a study calls this package's own solver: it is no optimiser that a paper could use, since it
-knows the derivatives of the limits, and stands beside them as a reference."""
+"""What a study calls this package's own solver: it is not an optimiser that a paper could use,
+since it knows the derivatives of the limits, and stands beside them as a reference."""
 
 
 @lru_cache(maxsize=256)

@@ -115,7 +115,9 @@ def check_bench_folder(out: Path) -> None:
     for name in there:
         if name not in (_PAGE, _MARK, _ROWS) and not name.startswith(_PICTURES):
             raise CaseError(
-                str(out), "--out", f"holds {name}, which is no bench; name a new or an empty folder"
+                str(out),
+                "--out",
+                f"holds {name}, which is not a bench; name a new or an empty folder",
             )
     if there and _MARK not in there:
         raise CaseError(str(out), "--out", "holds no bench; name a new or an empty folder")

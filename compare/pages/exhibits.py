@@ -157,7 +157,8 @@ def _workspaces(study: Study) -> Iterator[Block]:
     dh = study.case.dh
     if dh is None:
         return
-    # By the stated convention alone: what another one keeps out of reach is no fault of the paper.
+    # By the stated convention alone: what another one keeps out of reach is not a fault of the
+    # paper.
     chain = study.case.chain()
     assert chain is not None
     try:

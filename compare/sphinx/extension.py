@@ -26,7 +26,7 @@ def shown(value: object, form: str) -> str:
         If the value is none, or not of the format's kind.
     """
     if value is None or isinstance(value, dict | list):
-        raise TrajgapError(f"{value!r} is no single value; name a key further down")
+        raise TrajgapError(f"{value!r} is not a single value; name a key further down")
     try:
         return format(value, form)
     except (TypeError, ValueError):

@@ -205,7 +205,7 @@ def cited(source: Mapping[str, Any]) -> str:
     if not authors:
         return ""
     names = [one.strip() for one in re.split(r",| and ", authors) if one.strip()]
-    # Initials and "et al." are no part of the name that a sentence gives.
+    # Initials and "et al." are not part of the name that a sentence gives.
     plain = [re.sub(r"( [A-Z]\.)+$", "", one.removesuffix("et al.").strip()) for one in names]
     plain = [one for one in plain if one]
     many = len(plain) > 2 or "et al." in authors

@@ -51,13 +51,15 @@ def wanted_words(option: str) -> list[str]:
     Raises
     ------
     TrajgapError
-        If one is no verdict on a claim: such a list would be empty whatever the case says.
+        If one is not a verdict on a claim: such a list would be empty whatever the case says.
     """
     words = [" ".join(word.split()) for word in option.split(",") if word.strip()]
     for word in words:
         if word not in tuple(ClaimVerdict):
             known = ", ".join(ClaimVerdict)
-            raise TrajgapError(f":verdict: {word!r} is no verdict on a claim; use some of: {known}")
+            raise TrajgapError(
+                f":verdict: {word!r} is not a verdict on a claim; use some of: {known}"
+            )
     return words
 
 

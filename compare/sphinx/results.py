@@ -52,7 +52,7 @@ class Results:
         except ValueError:
             raise TrajgapError(f"{path}: is no JSON; make it again") from None
         if not isinstance(read, dict):
-            raise TrajgapError(f"{path}: is no document of trajgap; make it again")
+            raise TrajgapError(f"{path}: is not a document of trajgap; make it again")
         return read
 
     def case(self, name: str) -> dict[str, Any]:

@@ -84,7 +84,7 @@ class Guarded:
         Raises
         ------
         TrajgapError
-            If a position has the wrong shape, is no number, or leaves the bounds.
+            If a position has the wrong shape, is not a number, or leaves the bounds.
         """
         if self.fault is not None:
             raise self.fault

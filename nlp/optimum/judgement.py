@@ -124,7 +124,7 @@ def on_floor(durations: Array, floor: Array) -> NDArray[np.bool_]:
 
 
 def still_falling(durations: Array, floor: Array) -> str | None:
-    """Why an answer is no shortest motion, if a duration lies on a least one of the search."""
+    """Why an answer is not the shortest motion, if a duration lies on a least one of the search."""
     at = np.flatnonzero(on_floor(durations, floor)).tolist()
     if not at:
         return None

@@ -79,8 +79,8 @@ class Evidence(StrEnum):
     """The value of a checked motion at which the search stopped before it met the conditions of an
     optimum: shorter ones are to be expected."""
     NONE = "none"
-    """No value. A verdict that rests on none rests on the printed digits, a count, a check of what
-    is printed, or a shorter motion that was checked and needs no optimum beside it."""
+    """No value. A verdict without a reference rests on the printed digits, a count, a check of what
+    is printed, or a shorter motion that was checked and needs no optimum for comparison."""
 
 
 def weakest(evidence: Iterable[Evidence]) -> Evidence:
@@ -248,7 +248,7 @@ class Solution(SearchResult):
         Raises
         ------
         TrajgapError
-            If there are no durations, or the step is no time.
+            If there are no durations, or the step is not a time.
         """
         return sampled(self.trajectory, dt, self.problem.joints)
 

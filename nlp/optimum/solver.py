@@ -99,8 +99,8 @@ def solve(
         Time limit, kept to within a step of the search: the best motion so far is the answer, and
         `why` says that the time ran out. What is found then depends on the machine.
     lower : float
-        A proved lower bound of the total, s. It saves searches, and is no part of the answer: where
-        a known motion is within a millionth of it, no other basin is looked for.
+        A proved lower bound of the total, s. It saves searches, and is not part of the answer:
+        where a known motion is within a millionth of it, no other basin is looked for.
 
     Returns
     -------

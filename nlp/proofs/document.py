@@ -90,7 +90,7 @@ def stated_problem(problem: ExactProblem) -> StatedProblem:
 
 
 def _ratios(problem: ExactProblem) -> dict[str, Any]:
-    """Ratios of the durations, where they are fixed: a word where they are no rational numbers."""
+    """Ratios of the durations, where they are fixed: a word where they are not rational numbers."""
     if problem.chord:
         return {"ratios": CHORD}
     return {} if problem.shares is None else {"ratios": [decimal(x) for x in problem.shares]}

@@ -130,7 +130,7 @@ class ExactProblem:
     shares : tuple of Fraction or None
         Share of each segment in the total, where ratios fix it.
     chord : bool
-        Whether they are those of chord lengths that are no rational numbers; without ``shares``.
+        Whether they are those of chord lengths that are not rational numbers; without ``shares``.
     """
 
     name: str
@@ -179,7 +179,7 @@ class ExactProblem:
             If it is of another kind.
         """
         if not isinstance(self.curve, Interpolant):
-            raise TrajgapError(f"certify: {self.curve.name} is no declared piecewise polynomial")
+            raise TrajgapError(f"certify: {self.curve.name} is not a declared piecewise polynomial")
         return self.curve
 
     def joint(self, index: int) -> ExactProblem:

@@ -18,7 +18,7 @@ def _day(text: str) -> str:
     try:
         return date.fromisoformat(text).isoformat()
     except ValueError:
-        raise TrajgapError(f"{text!r} is no day; write it as 2026-01-31") from None
+        raise TrajgapError(f"{text!r} is not a day; write it as 2026-01-31") from None
 
 
 Day = Annotated[Text, AfterValidator(_day)]

@@ -103,7 +103,7 @@ def _check_claim(
             number(claim.time, "time", "time")
         elif claim.place not in (known := named_places(statement)):
             fix = spelling_hint(claim.place or "", known)
-            faults.add(f"{at}.place", f"{claim.place!r} is no place of the motion; {fix}")
+            faults.add(f"{at}.place", f"{claim.place!r} is not a place of the motion; {fix}")
     if isinstance(claim, ControlVerticesClaim):
         _check_vertices(claim, statement, f"{at}.joint_rows")
 

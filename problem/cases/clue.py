@@ -97,4 +97,4 @@ CLUE_KINDS = ("axis", "data-sheet", "smooth", "half-turns")
 def _check_unit(quantity: Known, unit: str, at: str = "") -> None:
     if unit not in CHOICES[quantity]:
         known = ", ".join(CHOICES[quantity])
-        raise fault(f".unit{at}", f"{unit!r} is no unit of {quantity}; use one of {known}")
+        raise fault(f".unit{at}", f"{unit!r} is not a unit of {quantity}; use one of {known}")

@@ -63,7 +63,7 @@ def _polynomials(block: InterpolantBlock, count: int, ends: Ends) -> Curve:
 
 
 def _spline(made: Callable[..., Curve]) -> Callable[[InterpolantBlock, int, Ends], Curve]:
-    """A spline of one degree: a segment between breaks, of which virtual ones are no way-points."""
+    """A spline of one degree with a segment between breaks; virtual breaks are not way-points."""
 
     def declared(block: InterpolantBlock, count: int, ends: Ends) -> Curve:
         virtual = block.virtual or ()

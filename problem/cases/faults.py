@@ -119,7 +119,7 @@ def _read(detail: Mapping[str, Any]) -> list[tuple[str, str]]:
         if given is None:
             return [(f"{path}.{key}", f"is missing; add one of {', '.join(kinds)}")]
         fix = spelling_hint(str(given), kinds)
-        return [(f"{path}.{key}", f"{_short(given)} is no {name}; {fix}")]
+        return [(f"{path}.{key}", f"{_short(given)} is not a {name}; {fix}")]
     if kind == "missing" and detail["loc"][-1] in _MISSING:
         return [(path, _MISSING[detail["loc"][-1]])]
     if kind == "string_too_short" and detail["loc"][-1] == "where":

@@ -284,7 +284,7 @@ def check_kinematics(document: CaseFile, faults: Faults, chain: Chain | None) ->
         if name is not None and name not in known:
             faults.add(
                 f"cartesian[{index}].waypoint",
-                f"{name!r} is no label of a way-point; {spelling_hint(name, known)}",
+                f"{name!r} is not a label of a way-point; {spelling_hint(name, known)}",
             )
     if named and None in named and waypoints is not None and len(named) != waypoints.number:
         faults.add(

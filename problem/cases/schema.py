@@ -277,7 +277,7 @@ def _setting(raw: object) -> object:
         return float(raw)
     if isinstance(raw, bool | int | float | str):
         return raw
-    raise TrajgapError(f"{describe(raw)} is no setting; give a number, a string or a list")
+    raise TrajgapError(f"{describe(raw)} is not a setting; give a number, a string or a list")
 
 
 Setting = Annotated[

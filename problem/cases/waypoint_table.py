@@ -160,7 +160,7 @@ def _name_joints(faults: Faults, names: Sequence[str], first: int, down: bool = 
         elif name in names[:at]:
             faults.add(where, f"joint {name!r} is named twice; rename one")
         elif _TIME_HEADER.fullmatch(name):
-            faults.add(where, f"{name!r} is no joint; leave instants out, and print durations")
+            faults.add(where, f"{name!r} is not a joint; leave instants out, and print durations")
 
 
 def _refuse_count(faults: Faults, cells: Sequence[str], header: str) -> None:

@@ -67,7 +67,7 @@ def inner_fractions(vector: Sequence[float], degree: int) -> tuple[float, ...]:
     Raises
     ------
     TrajgapError
-        If it is no clamped vector of that degree whose inner knots are all different.
+        If it is not a clamped vector of that degree whose inner knots are all different.
     """
     ends, knots = degree + 1, [float(u) for u in vector]
     if not all(map(isfinite, knots)):
@@ -311,7 +311,7 @@ class ClampedDeclaration:
 
 
 def fractions_of(curve: ClampedDeclaration, waypoints: Array) -> Fractions | None:
-    """Parameters that are no times; None where they are."""
+    """Parameters that are not times; None where they are."""
     if curve.fractions is not None or curve.parameters is Parameters.TIMES:
         return curve.fractions
     if curve.parameters is Parameters.CHORD:

@@ -306,7 +306,7 @@ def merged_values(entries: Derivatives) -> Derivatives:
 def as_curve(given: object) -> Curve:
     """A curve of any kind, or a clear refusal."""
     if not isinstance(given, Curve):
-        raise TrajgapError(f"curve: {type(given).__name__} is no kind of curve known here")
+        raise TrajgapError(f"curve: {type(given).__name__} is not a kind of curve known here")
     return given
 
 
@@ -356,8 +356,8 @@ def are_durations(h: Array) -> NDArray[np.bool_]:
 def masked(reach: Array, asked: Asked, valid: NDArray[np.bool_]) -> Array:
     """What `Curve.batch_reach` returns, from the numbers that were found, in place.
 
-    Nothing lies on a side of 0 that no value is on; what is no number, or of vectors that define no
-    curve, is infinite.
+    Nothing lies on a side of 0 that no value is on; what is not a number, or of vectors that
+    define no curve, is infinite.
     """
     np.maximum(reach, 0.0, out=reach)
     reach[np.isnan(reach)] = np.inf

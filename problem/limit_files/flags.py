@@ -28,7 +28,7 @@ def limits_of_flags(
     Raises
     ------
     CaseError
-        If one is no number, or they are not as many as joints.
+        If one is not a number, or they are not as many as joints.
     """
     ranges: dict[str, dict[str, Range]] = {joint: {} for joint in joints}
     for quantity, text in given.items():
@@ -54,7 +54,7 @@ def _range(flag: str, word: str, quantity: str) -> Range:
     except TrajgapError as error:
         raise CaseError(flag, "", f"{error}; give 6, or -1:2") from None
     if len(numbers) > 2:
-        raise CaseError(flag, "", f"{word[:40]!r} is no limit; give 6, or -1:2")
+        raise CaseError(flag, "", f"{word[:40]!r} is not a limit; give 6, or -1:2")
     if len(numbers) == 1:
         if numbers[0] < 0:
             raise CaseError(flag, "", f"{word} is negative; give a size, or a range LOW:HIGH")

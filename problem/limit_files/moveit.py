@@ -36,7 +36,7 @@ def read_moveit(path: Path) -> StatedLimits:
         same of acceleration, deceleration and jerk, and ``has_position_limits`` with
         ``min_position`` and ``max_position``; rad, or m. A ``has_...`` that is false says that
         there is no limit; one that is missing is taken from what stands beside it. The default
-        scaling factors of planners are no limits and are left aside.
+        scaling factors of planners are not limits and are left aside.
     """
     name = str(path)
     documents = read_yaml(path)
@@ -52,7 +52,7 @@ def read_moveit(path: Path) -> StatedLimits:
     ranges: dict[str, dict[str, Range]] = {}
     for joint, block in found["joint_limits"].items():
         if not isinstance(joint, str) or not isinstance(block, Mapping):
-            raise CaseError(name, f"joint_limits.{joint}", "is no block of limits; see MoveIt")
+            raise CaseError(name, f"joint_limits.{joint}", "is not a block of limits; see MoveIt")
         ranges[joint] = _ranges(name, f"joint_limits.{joint}", block)
     if not ranges:
         raise CaseError(name, "joint_limits", "holds no joint; name the joints of the arm")
@@ -99,7 +99,7 @@ def _number(name: str, field: str, block: Mapping[Any, Any], key: str) -> float 
     if value is None:
         return None
     if isinstance(value, bool) or not isinstance(value, int | float):
-        raise CaseError(name, f"{field}.{key}", f"{str(value)[:40]!r} is no number; fix it")
+        raise CaseError(name, f"{field}.{key}", f"{str(value)[:40]!r} is not a number; fix it")
     try:
         found = float(value)
     except OverflowError:

@@ -14,7 +14,7 @@ from ..motions import BRAKING, ORDERS, JointLimits, check_range
 Range = tuple[float, float]
 """Lower and upper limit, rad and s; infinite where that side has none."""
 
-_UNKNOWN = "is no joint with limits there; rename it or add it;"
+_UNKNOWN = "is not a joint with limits there; rename it or add it;"
 """What is said of a joint that a file does not know, before the nearest name."""
 
 

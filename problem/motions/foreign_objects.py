@@ -45,7 +45,7 @@ def as_motion(given: Any, joints: Sequence[str] = ()) -> Motion:
         if applies(given):
             return read(given, joints)
     raise TrajgapError(
-        f"{type(given).__name__} is no motion known here; give scipy's PPoly, or Samples of it"
+        f"{type(given).__name__} is not a motion known here; give scipy's PPoly, or Samples of it"
     )
 
 
@@ -83,7 +83,7 @@ def _b_spline(given: Any, joints: Sequence[str]) -> Motion:
 
 def _trajectory(given: Any, joints: Sequence[str]) -> Motion:
     if not given.polynomial_in_time:
-        raise TrajgapError("its pieces are no polynomials in time; sample it and give Samples")
+        raise TrajgapError("its pieces are not polynomials in time; sample it and give Samples")
     return Motion.of_polynomial(given.polynomial, joints, "the curve of trajgap")
 
 
@@ -101,7 +101,7 @@ def _toppra_steps(given: Any, joints: Sequence[str]) -> Motion:
 
     path = getattr(given._path, "cspl", None)
     if path is None:
-        raise TrajgapError("ParametrizeConstAccel: its path is no spline; sample it")
+        raise TrajgapError("ParametrizeConstAccel: its path is not a spline; sample it")
     grid, clock = np.asarray(given._ss, float), np.asarray(given._ts, float)
     speeds = np.asarray(given._velocities, float)
     powers = path.c.shape[0]

@@ -31,7 +31,7 @@ def interpolated(samples: Samples, how: Interpolation) -> Motion:
         If the interpolation needs a derivative that is not given.
     """
     if how is Interpolation.NONE:
-        raise TrajgapError("interpolation: 'none' is no motion; check_samples judges samples")
+        raise TrajgapError("interpolation: 'none' is not a motion; check_samples judges samples")
     if how is Interpolation.SPLINE:
         return not_a_knot_spline(samples)
     velocities, accelerations = samples.has(1), samples.has(2)

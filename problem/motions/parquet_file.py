@@ -34,7 +34,8 @@ def read_parquet(path: Path, joints: Sequence[str] = ()) -> Samples:
     Raises
     ------
     CaseError
-        If it is no such table, a column has a type without a reading, or pyarrow is not installed.
+        If it is not such a table, a column has a type without a reading, or pyarrow is not
+        installed.
     """
     name = str(path)
     check_regular(path)
@@ -77,7 +78,7 @@ def _numbers(name: str, label: str, column: Any) -> tuple[Array, float]:
         raise CaseError(name, label, "is the index of a data frame; write it with index=False")
     numeric = (types.is_integer, types.is_floating, types.is_decimal, types.is_null)
     if not any(one(kind) for one in numeric):
-        raise CaseError(name, label, f"holds {kind}, which is no number; give rad or m")
+        raise CaseError(name, label, f"holds {kind}, which is not a number; give rad or m")
     found = np.asarray(column.cast(float64()).to_numpy(), dtype=np.float64)
     if types.is_decimal(kind):
         return found, 0.5 * 10.0**-kind.scale

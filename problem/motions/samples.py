@@ -107,7 +107,7 @@ class Samples:
         object.__setattr__(self, "noise", np.array(noise))
         for clock in (self.time_noise, self.rounding.time):
             if not (np.isfinite(clock) and clock >= 0):
-                raise TrajgapError("time noise: is no time; give what times may be off by, or 0")
+                raise TrajgapError("time noise: is not a time; give what times may be off by, or 0")
 
     def _check_finite(
         self, name: str, values: Array, rows: NDArray[np.bool_] | None = None
@@ -176,7 +176,7 @@ class Samples:
 
     @property
     def assumed(self) -> str:
-        """What the numbers may be off by, in a sentence; empty where they are taken exactly."""
+        """Uncertainty of the numbers, in a sentence; empty where they are taken exactly."""
         parts = []
         if self.clock:
             parts.append(f"times to {self.clock:.3g} s")

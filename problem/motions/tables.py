@@ -56,7 +56,7 @@ def read_csv(path: Path, joints: Sequence[str] = ()) -> Samples:
     Raises
     ------
     CaseError
-        If it is no such table; the line says where and how to fix it.
+        If it is not such a table; the line says where and how to fix it.
     """
     name = str(path)
     data = read_regular(path, LARGEST_FILE, "split it, or keep fewer rows")
@@ -150,9 +150,9 @@ def _bad_row(text: str, name: str, separator: str | None, skip: bool, columns: i
                 return CaseError(
                     name,
                     f"line {number}, column {k}",
-                    f"{shown!r} is no number{comma or '; fix it'}",
+                    f"{shown!r} is not a number{comma or '; fix it'}",
                 )
-    return CaseError(name, "", "is no table of numbers; give one row per sample")
+    return CaseError(name, "", "is not a table of numbers; give one row per sample")
 
 
 def samples_of_columns(

@@ -74,7 +74,7 @@ def sampled(
     begin, end = float(motion.breaks[0]), float(motion.breaks[-1])
     total = end - begin
     if not (np.isfinite(step) and step > 0):
-        raise TrajgapError(f"step: {step} is no time between samples; give seconds, more than 0")
+        raise TrajgapError(f"step: {step} is not a time between samples; give seconds, more than 0")
     if total / step > MOST_VALUES:
         raise TrajgapError(f"step: {total / step:.3g} samples are too many; take a longer step")
     times = _rows(np.asarray(motion.breaks) - begin, step, breaks)

@@ -143,7 +143,7 @@ def _poses(first: ArrayLike, last: ArrayLike, points: int) -> Array:
     ends = [np.asarray(pose, dtype=np.float64) for pose in (first, last)]
     for name, pose in zip(("first", "last"), ends, strict=True):
         if pose.shape != (4, 4) or not np.isfinite(pose).all():
-            raise TrajgapError(f"ctraj: {name} is no pose; give a finite 4 by 4 transform")
+            raise TrajgapError(f"ctraj: {name} is not a pose; give a finite 4 by 4 transform")
     share = np.linspace(0.0, 1.0, points)
     poses = np.tile(np.eye(4), (points, 1, 1))
     a, b = (pose[:3, 3] for pose in ends)

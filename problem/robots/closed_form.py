@@ -45,7 +45,7 @@ def closed_form_inverse(chain: Chain, target: ArrayLike, tolerance: float = TOLE
     Raises
     ------
     TrajgapError
-        If the chain is of another kind, or the target is no pose.
+        If the chain is of another kind, or the target is not a pose.
 
     Examples
     --------

@@ -113,7 +113,7 @@ def inverse_kinematics(
     Raises
     ------
     TrajgapError
-        If the target is no pose or point, a component is unknown or not given by the target, a
+        If the target is not a pose or point, a component is unknown or not given by the target, a
         joint slides without bounds, or a number is out of range.
     """
     goal, rows = question(target, components)
@@ -164,7 +164,7 @@ def question(target: ArrayLike, components: Sequence[str] | None) -> tuple[Array
         skew = np.abs(rotation @ rotation.T - np.eye(3)).max()
         last = np.array_equal(given[3], [0, 0, 0, 1])
         if skew > _ROTATION_TOLERANCE or np.linalg.det(rotation) < 0 or not last:
-            raise TrajgapError("target: is no pose; give a rotation and the last row 0, 0, 0, 1")
+            raise TrajgapError("target: is not a pose; give a rotation and the last row 0, 0, 0, 1")
         pose = given
     else:
         pose[:3, 3] = given

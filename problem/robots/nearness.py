@@ -70,7 +70,7 @@ def proximity(
     """
     goal, given = np.asarray(point, dtype=np.float64), np.asarray(held, dtype=np.float64)
     if goal.shape != (3,) or not np.isfinite(goal).all():
-        raise TrajgapError("point: is no finite position; give three numbers, m")
+        raise TrajgapError("point: is not a finite position; give three numbers, m")
     if given.shape != (chain.joints,) or np.isinf(given).any():
         raise TrajgapError(
             f"held: shape {given.shape} for {chain.joints} joints; give one number each, "

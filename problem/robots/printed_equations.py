@@ -105,7 +105,7 @@ def check_equation(chain: Chain, text: str, samples: int = SAMPLES, seed: int = 
     Raises
     ------
     TrajgapError
-        If the text is no equation of that language.
+        If the text is not an equation of that language.
 
     Examples
     --------
@@ -116,7 +116,7 @@ def check_equation(chain: Chain, text: str, samples: int = SAMPLES, seed: int = 
     *definitions, sides = (part.split("=") for part in text.split(";"))
     if len(text) > LONGEST_EQUATION or any(len(part) != 2 for part in (*definitions, sides)):
         raise TrajgapError(
-            f"{_short(text)} is no equation; write left = right, in at most "
+            f"{_short(text)} is not an equation; write left = right, in at most "
             f"{LONGEST_EQUATION} characters"
         )
     if chain.joints > 9 or not chain.revolute.all():
@@ -155,7 +155,7 @@ def _value(text: str, chain: Chain, q: Array, frames: Array, names: dict[str, An
     try:
         tree = ast.parse(text.strip(), mode="eval").body
     except (SyntaxError, ValueError):
-        raise TrajgapError(f"{_short(text)} is no expression; see check_equation") from None
+        raise TrajgapError(f"{_short(text)} is not an expression; see check_equation") from None
 
     def value(node: ast.AST) -> Any:
         match node:
@@ -202,7 +202,7 @@ def _named(name: str, chain: Chain, q: Array, frames: Array) -> Any:
     if inside and re.fullmatch(r"T\d", name):
         before = frames[:, joints[0] - 1] if joints[0] else np.eye(4)
         return np.linalg.inv(before) @ frames[:, joints[0]]
-    raise TrajgapError(f"{_short(name)} is no name of this robot; see check_equation")
+    raise TrajgapError(f"{_short(name)} is not a name of this robot; see check_equation")
 
 
 def _short(text: str) -> str:

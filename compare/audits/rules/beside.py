@@ -40,7 +40,7 @@ _LENGTH_FACTORS = {
     10.0: "as between millimetres and centimetres",
     60.0: "as per minute instead of per second",
 }
-"""The same of joints that slide, whose numbers are no angles."""
+"""The same of joints that slide, whose numbers are not angles."""
 _NEAR_FACTOR = 0.01
 """Relative distance from such a ratio below which the unit is named as an explanation."""
 

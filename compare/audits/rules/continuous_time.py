@@ -40,7 +40,7 @@ _NARROW = 0.01
         "Supported if the limits are kept by the printed numbers, or by some values that "
         "round to them. Refuted only if a limit is broken however the digits were rounded, and "
         "however they were cut off.",
-        "A velocity of 2.0004 rad/s against a limit of 2 rad/s is no fault if durations "
+        "A velocity of 2.0004 rad/s against a limit of 2 rad/s is not a fault if durations "
         "printed with two decimals explain it; 2.6 rad/s is one.",
     ),
     TG202=Explained(

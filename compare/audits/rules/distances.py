@@ -348,7 +348,7 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
 
     Shorter means: for every way-point and limit that rounds to the printed digits, the same checked
     durations, stretched as far as those may need, take less than the low end of the printed total.
-    Durations that break the limits are no answer within them.
+    Durations that break the limits are not answers within them.
     """
     for reading in study.readings:
         sides = _Sides()

@@ -24,7 +24,7 @@ _CLOSE = 0.01
 """Share by which a row may miss the limits of another and still be said to fit it."""
 
 _informing = partial(Finding, rule="TG108", decides=False)
-"""Nothing here decides: a printer's slip is no fault of the numbers."""
+"""Nothing here decides: a printer's slip is not a fault of the numbers."""
 
 
 @rule_group(

@@ -41,7 +41,7 @@ def judge_scaling(study: Study) -> Iterator[Finding]:
         if slow.problem == fast.problem or slow.joint != fast.joint:
             continue
         if other_objective(study.case, fast) is not None:
-            continue  # its total is no shortest one, and need not scale
+            continue  # its total is not the shortest one, and need not scale
         for reading in study.readings:
             yield from _stretched(study, slow, fast, reading, statements)
 

@@ -146,7 +146,7 @@ def _missing(problem: ExactProblem) -> str | None:
     curve = problem.curve
     if problem.chord:
         return (
-            "chord lengths of several joints are no rational numbers, so that no certificate "
+            "chord lengths of several joints are not rational numbers, so that no certificate "
             "states them exactly; write the ratios as numbers"
         )
     formula = "at fixed ratios the optimum is a formula, and `solve` gives it"

@@ -39,7 +39,7 @@ def test_a_card_has_at_most_eighty_words_and_no_ids(case_id: str) -> None:
     ("case_id", "errors", "said"),
     [
         # 1.869/1.817473 and 1.6041/1.321799 are 2.8 and 21.4 % at the printed digits; the second
-        # is no time of a motion within limits, and both rest on way-points that repeat digits.
+        # is not a time of a motion within limits, and both rest on way-points that repeat digits.
         (PALLET, 2, "1.8690 s and 1.6041 s (breaks a limit) are at least 2.6 % and 21.1 % above"),
         # Each joint is planned alone: 3.528/3.4128 and 3.528/3.3324, of what their own optima add
         # up to. Joint 3 takes 3.172 s beside 3.126941 s; what refutes the percentage stands there.

@@ -239,7 +239,7 @@ def test_a_wrong_sum_breaks_no_limit() -> None:
 
 
 def test_a_named_method_has_a_total_of_its_own() -> None:
-    """A rival's 2.50 s is no other print of the paper's 1.90 s, nor its answer on the card."""
+    """A rival's 2.50 s is not another print of the paper's 1.90 s, nor its answer on the card."""
     named, own = algorithms("a"), total("own", "1.90")
     one = audited_text(asked(OWN, named, total("rival", "2.50", algorithm="a")))
     assert set(verdicts(one).values()) == {"supported", "not checkable"}

@@ -120,7 +120,7 @@ def test_a_misspelt_joint_is_not_passed_over(run, misspelt):
     file = "l.yaml" if misspelt == "csv" else changed
     assert_refused(
         run("check", "m.csv", *sources, "--interpolation", "quintic"),
-        f"{file}: {wanted[0]}: is no joint with limits there; rename it or add it;",
+        f"{file}: {wanted[0]}: is not a joint with limits there; rename it or add it;",
         f"did you mean {wanted[1]!r}",
     )
 

@@ -217,7 +217,7 @@ def test_a_store_of_another_version_is_not_touched(path: Path) -> None:
 
 def test_what_is_no_database_is_refused(path: Path) -> None:
     path.write_text("format = 1\n" * 200)
-    with pytest.raises(CaseError, match=r"kept.sqlite: is no store of trajgap; name a new file"):
+    with pytest.raises(CaseError, match=r"kept.sqlite: is not a store of trajgap; name a new file"):
         Store(path)
     with pytest.raises(CaseError, match=r"cannot be made .*; make its folder first"):
         Store(path.parent / "nowhere" / "kept.sqlite")

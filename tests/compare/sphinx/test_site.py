@@ -33,7 +33,7 @@ PROSE = [
 FIGURE = re.compile(r"(?<![\w.])\d+(?:\.\d+)?\s?%|(?<![\w.])\d+\.\d+(?:e-?\d+)?(?:\s?m?s\b)?")
 """A percentage, or a number with decimals; whole numbers count things on the page itself."""
 NO_RESULT = {"3.11": "the least Python, held by test_house", "1.0.0": "a version"}
-"""Numbers with a point that are no figures."""
+"""Numbers with a point that are not figures."""
 
 
 @cache

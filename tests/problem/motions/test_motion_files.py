@@ -187,7 +187,7 @@ def test_one_clear_line(tmp_path, one: Refusal):
         ("dashes.yaml", "- " * 100_000, "nested too deeply"),
         ("indent.yaml", "\n".join(" " * k + "a:" for k in range(3000)), "nested too deeply"),
         ("long.yaml", "a: " + "9" * 10_000, "."),
-        ("bomb.yaml", bomb(12), "joint_names: is no list"),
+        ("bomb.yaml", bomb(12), "joint_names: is not a list"),
         ("merge.yaml", merges(12), "a merge key"),
     ],
 )
@@ -309,9 +309,9 @@ LATER = [DAY + dt.timedelta(seconds=one) for one in STEPS]
         ("uint8()", [1, 2, 3], "holds uint8 without a unit"),
         ("decimal128(5, 0)", [Decimal(1), Decimal(2), Decimal(3)], "without a unit"),
         ("bool_()", [False, True, True], "holds bool"),
-        ("string()", ["0.1", "0.2", "0.3"], "holds string, which is no number"),
-        ("list_(float64())", [[0.1], [0.2], [0.3]], "which is no number"),
-        ("struct([('sec', int32())])", [{"sec": 1}] * 3, "which is no number"),
+        ("string()", ["0.1", "0.2", "0.3"], "holds string, which is not a number"),
+        ("list_(float64())", [[0.1], [0.2], [0.3]], "which is not a number"),
+        ("struct([('sec', int32())])", [{"sec": 1}] * 3, "which is not a number"),
         ("float64()", [0.25, None, 1.5], "has no time in row 2"),
         ("null()", [None] * 3, "has no time in row 1"),
         ("float64()", [0.25, float("nan"), 1.5], "number 2 is not finite"),
@@ -333,7 +333,7 @@ def test_times_of_a_parquet_file_by_their_type(tmp_path, kind, values, times):
 @pytest.mark.parametrize(
     ("label", "values", "wanted"),
     [
-        ("a", [True, False], "a: holds bool, which is no number"),
+        ("a", [True, False], "a: holds bool, which is not a number"),
         ("a", ["1", "2"], "a: holds string"),
         ("a", [dt.timedelta(1), dt.timedelta(2)], "a: holds duration"),
         ("a", [DAY, DAY], "a: holds timestamp"),

@@ -184,9 +184,9 @@ POSE_AT = translation(0.3, 0.2, 0.1)
         ([[1, 2], [3, 4]], {}, "target: shape (2, 2); give a (4, 4) pose or a (3,) point"),
         (["a", "b", "c"], {}, "target: not numbers; give a (4, 4) pose or a (3,) point"),
         ([0, np.nan, 1], {}, "target: a number is not finite; correct it"),
-        (2 * np.eye(4), {}, "target: is no pose; give a rotation and the last row 0, 0, 0, 1"),
-        (np.diag([1, 1, -1, 1.0]), {}, "target: is no pose; give a rotation and the last row"),
-        (np.ones((4, 4)), {}, "target: is no pose; give a rotation and the last row 0, 0, 0, 1"),
+        (2 * np.eye(4), {}, "target: is not a pose; give a rotation and the last row 0, 0, 0, 1"),
+        (np.diag([1, 1, -1, 1.0]), {}, "target: is not a pose; give a rotation and the last row"),
+        (np.ones((4, 4)), {}, "target: is not a pose; give a rotation and the last row 0, 0, 0, 1"),
         ([0, 0, 1], {"components": ("x", "rx")}, "components: 'rx' is none of x, y, z; use these"),
         (POSE_AT, {"components": ("q",)}, "components: 'q' is none of x, y, z, rx, ry, rz; use"),
         (POSE_AT, {"components": ()}, "components: none, or one is named twice; name each once"),
@@ -206,8 +206,8 @@ def test_faults(target, options, message):
 @pytest.mark.parametrize(
     ("point", "held", "message"),
     [
-        ([1, 2], [0, 0], "point: is no finite position; give three numbers, m"),
-        ([1, 2, np.inf], [0, 0], "point: is no finite position; give three numbers, m"),
+        ([1, 2], [0, 0], "point: is not a finite position; give three numbers, m"),
+        ([1, 2, np.inf], [0, 0], "point: is not a finite position; give three numbers, m"),
         ([1, 2, 3], [0], "held: shape (1,) for 2 joints; give one number each, NaN where"),
         ([1, 2, 3], [0, np.inf], "held: shape (2,) for 2 joints; give one number each, NaN"),
     ],

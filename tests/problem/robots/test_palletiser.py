@@ -28,7 +28,7 @@ ANY = RNG.uniform(-pi, pi, (60, 5))
 def printed_pose(t1: float, t2: float, t3: float, t4: float, t5: float) -> np.ndarray:
     """Equation (1), from the five matrices that the paper prints, a2 = a3 = 0.6 m.
 
-    The text has -c5 in the first entry of the last one, with which it is no rotation.
+    The text has -c5 in the first entry of the last one, with which it is not a rotation.
     """
     c1, s1, c2, s2, c3, s3 = cos(t1), sin(t1), cos(t2), sin(t2), cos(t3), sin(t3)
     c4, s4, c5, s5 = cos(t4), sin(t4), cos(t5), sin(t5)
@@ -153,10 +153,10 @@ def test_each_printed_equation_is_judged() -> None:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("px + py", "'px + py' is no equation; write left = right"),
-        ("px = " + "1 + " * 200 + "1", "is no equation; write left = right, in at most 400"),
-        ("px = py +", "'py +' is no expression; see check_equation"),
-        ("px = t6", "'t6' is no name of this robot; see check_equation"),
+        ("px + py", "'px + py' is not an equation; write left = right"),
+        ("px = " + "1 + " * 200 + "1", "is not an equation; write left = right, in at most 400"),
+        ("px = py +", "'py +' is not an expression; see check_equation"),
+        ("px = t6", "'t6' is not a name of this robot; see check_equation"),
         ("px = open(py)", "'open(py)' is not read; see check_equation"),
         ("px = 'a'", "\"'a'\" is not read; see check_equation"),
         ("T @ px = T", "'T @ px' mixes numbers and transforms; compare like"),

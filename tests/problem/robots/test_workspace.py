@@ -172,7 +172,7 @@ def test_what_cannot_be_done_is_said() -> None:
     arm, first, last = ends()
     with pytest.raises(TrajgapError, match="ctraj: 1 points make no line"):
         ctraj(arm, first, last, 1)
-    with pytest.raises(TrajgapError, match="ctraj: last is no pose"):
+    with pytest.raises(TrajgapError, match="ctraj: last is not a pose"):
         ctraj(arm, first, last[:3])
     far = last.copy()
     far[:3, 3] += [0.0, 5.0, 0.0]

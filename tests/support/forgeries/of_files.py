@@ -10,7 +10,9 @@ from trajgap.verify.ranges import MOST_BYTES
 
 ENTRIES = "reading.listed: malformed: {what}: not {least} to {most} entries"
 MISSING = "reading.fields: malformed: {what}: {', '.join(missing)}: missing"
-NO_INTEGER = "reading._no_integer: malformed: {shown(digits)} is no integer; other numbers are text"
+NO_INTEGER = (
+    "reading._no_integer: malformed: {shown(digits)} is not an integer; other numbers are text"
+)
 LARGE = "reading._read: larger than {MOST_BYTES} bytes; name a certificate"
 
 

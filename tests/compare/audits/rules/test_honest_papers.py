@@ -172,7 +172,7 @@ def test_without_limits_no_motion_is_the_shortest_and_none_refutes() -> None:
 
 @pytest.mark.parametrize("keys", [{"state": "before"}, {}])
 def test_the_state_before_an_optimisation_breaks_no_limit(keys: dict[str, str]) -> None:
-    """No statement claims a limit here, and what an improvement starts from is no answer."""
+    """No statement claims a limit here, and what an improvement starts from is not an answer."""
     start = row("start", "0.50", **keys) + gain("start", "d")
     text = one_joint("0, 1", "1.9", "0.99", "none", start)
     found = finding(text.replace('"none"', '"none"\nnot_checkable = "a"'), "start", "TG201")

@@ -97,7 +97,7 @@ def test_a_table_of_another_length_loads_and_is_the_finding(
     (found,) = [f for f in one.findings if f.claim == "d" and f.rule == "TG109"]
     assert (found.verdict, found.severity) == (ClaimVerdict.INCONSISTENT, Severity.WARNING)
     assert not [f for f in one.findings if f.claim == "d" and f.rule == "TG201"]
-    # A wrong count is no proof.
+    # A wrong count is not a proof.
     (cause,) = (c for c in one.causes if c.rule == "TG109")
     assert plainly(one.case, cause, brief=True) == (f"Table 2 prints {said}.",)
 
