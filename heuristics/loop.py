@@ -259,7 +259,7 @@ def run_per_joint(
     iterations: int | None = None,
     objective: str = Handling.DEATH_PENALTY,
 ) -> JointRuns:
-    """Search each joint by itself; each segment then takes the longest duration.
+    """Search each joint separately; each segment then takes the longest duration.
 
     Source: `puma560-mnam-pso-353`, section 4.1.
 

@@ -119,6 +119,7 @@ class JointRuns:
     def __str__(self) -> str:
         found = f"{self.reported_time:.6f} s" if self.feasible else "some joint found nothing"
         return (
-            f"{self.algorithm} on {self.problem}, each joint by itself, seed {self.seed}: {found}\n"
+            f"{self.algorithm} on {self.problem}, each joint separately, seed {self.seed}: "
+            f"{found}\n"
             f"durations       {np.array2string(self.durations, precision=6)} s (longest)"
         )

@@ -32,7 +32,7 @@ class BudgetedRun:
     durations : ndarray, shape (segments,)
         Of the best position judged, s; under a stretch, what it stands for.
     reported_time : float
-        Its fitness, s; inf if nothing feasible was judged.
+        Its fitness, s; inf if no feasible vector was evaluated.
     totals : ndarray, shape (evaluations,)
         Best fitness after each evaluation, s; inf before anything feasible was judged.
     """
@@ -117,7 +117,7 @@ def run_within(
         pass
     except TimeSpent:
         raise TrajgapError(
-            f"{method.kind}: took longer than {seconds:g} s; raise the time limit, or look where "
+            f"{method.kind}: took longer than {seconds:g} s; raise the time limit, or find where "
             "it hangs"
         ) from None
     if budgeted.refused > 1:

@@ -1,4 +1,4 @@
-"""The papers' other procedure: each joint by itself, then the longest duration per segment."""
+"""The papers' other procedure: each joint separately, then the longest duration per segment."""
 
 from __future__ import annotations
 
@@ -237,7 +237,7 @@ class PerJointSolution(SearchResult):
         return weakest([Evidence.BEST_KNOWN, self.joint_evidence])
 
     def __str__(self) -> str:
-        lines = [f"{self.problem.name}: each joint by itself, then the longest per segment"]
+        lines = [f"{self.problem.name}: each joint separately, then the longest per segment"]
         for label, s in zip(self.problem.joints, self.joints, strict=True):
             shown = ", ".join(f"{d:.4f}" for d in s.durations) if s.found else s.why
             lines.append(f"joint {label:<9} {s.total_time:.6f} s  ({shown})  {s.status}")
@@ -259,7 +259,7 @@ def solve_per_joint(
     solver: Callable[[Problem], Solution] = solve,
     search: Callable[[list[Near]], Sequence[list[Array]]] = _all_nearby,
 ) -> PerJointSolution:
-    """Optimise each joint by itself and take the longest duration of each segment.
+    """Optimise each joint separately and take the longest duration of each segment.
 
     Where the problem fixes the ratios of its durations, that is the longest of the joints' totals,
     and the optimum with shared durations too.

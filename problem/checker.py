@@ -33,9 +33,9 @@ class Verdict(StrEnum):
     PASS = "pass"
     """Every limit is kept within the tolerance, rounding errors included."""
     VIOLATED = "violated"
-    """Some limit is exceeded by more than the tolerance, whatever the rounding errors."""
+    """Some limit is exceeded by more than the tolerance, rounding errors included."""
     DISCONTINUOUS = "discontinuous"
-    """Position or velocity jumps at a break (or acceleration, where jerk is limited)."""
+    """Position or velocity jumps at a break (or acceleration, if jerk is limited)."""
     UNDECIDED = "undecided"
     """The bound on rounding errors does not separate the peak from its limit."""
 

@@ -118,7 +118,7 @@ def check_name(name: str) -> None:
 
 def _check_regular(name: str, status: os.stat_result) -> None:
     if stat.S_ISDIR(status.st_mode):
-        raise CaseError(name, "", "is a directory; name a file in it")
+        raise CaseError(name, "", "is a directory; give a file in it")
     if not stat.S_ISREG(status.st_mode):
         raise CaseError(name, "", "is not a regular file; name a text file")
 

@@ -22,7 +22,8 @@ class Coupling(StrEnum):
     SHARED = "shared"
     """All joints pass each way-point at the same time; their total is minimised together."""
     PER_JOINT = "per-joint"
-    """Each joint is optimised by itself; each segment then takes the longest of them."""
+    """Each joint is optimised separately; each segment then takes the longest of their
+    durations."""
 
 
 @dataclass(frozen=True, eq=False)

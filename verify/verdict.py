@@ -103,7 +103,7 @@ class CertificateVerdict:
     altered : bool
         Whether it, or the problem in it, differs from what was written.
     out_of_time : bool
-        The time was over before anything was decided.
+        The time ran out before anything was decided.
     lower, upper : Fraction or None
         The optimum lies between; ``upper`` is None where none is claimed.
     infeasible : bool

@@ -85,13 +85,15 @@ def verdict_card(
     return VerdictCard(
         limits=limits,
         optimum=optimum,
-        reached=known(near, "no run of the paper's algorithm is committed, or it has no room"),
-        improvement=Why("an error says it")
+        reached=known(
+            near, "no run of the paper's algorithm is committed, or there is no room for it"
+        ),
+        improvement=Why("an error above covers it")
         if covered
         else known(improvement, "no improvement is claimed"),
         errors=errors,
         more=more,
-        explanation=known(explanation, "none that was tried fits, or has room"),
+        explanation=known(explanation, "none that was tried fits, or there is no room for it"),
     )
 
 

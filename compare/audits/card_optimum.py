@@ -379,7 +379,7 @@ def _kept_there(row: PrintedRow[TimeClaim]) -> str:
 
 
 def _together_where_apart(study: Study, pair: Pair) -> str:
-    """What the optimum is of, where the paper plans each joint by itself: that has another one."""
+    """What the optimum is of, where the paper plans each joint separately: that has another one."""
     return " of all joints together" if planned_apart(study.problem(pair)) else ""
 
 

@@ -77,7 +77,7 @@ class CaseAudit(InNotebooks):
     findings: tuple[Finding, ...]
     judgements: tuple[Judgement, ...]
     causes: tuple[Cause, ...] = ()
-    """What speaks against something printed, each once; the gravest first."""
+    """Evidence against printed statements, each once; the gravest first."""
 
     day: date | None = None
     """Of the audit; that on which its document is made if None."""

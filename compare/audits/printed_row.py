@@ -185,8 +185,8 @@ class PrintedRow(Generic[C]):
             return None
         many = f"{curve.free} coefficient{'s' if curve.free > 1 else ''}"
         return (
-            f"the curve ({curve.name}) leaves {many} per joint free, so that durations alone "
-            "define no motion"
+            f"the curve ({curve.name}) leaves {many} per joint free, so durations alone define no "
+            "motion"
         )
 
     def _determined(self) -> Problem:

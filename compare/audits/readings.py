@@ -229,8 +229,8 @@ def segments(excesses: Sequence[Excess]) -> str:
 def _of_answers(summary: ReadingsSummary, called: Callable[[str, str], str]) -> Iterable[str]:
     if not summary.outcomes:
         yield (
-            f"Under none of {len(summary.admissible)} readings can limits, optimum or gap be "
-            f"computed, since {summary.outcomes_why}."
+            f"Limits, optimum and gap cannot be computed under any of the "
+            f"{len(summary.admissible)} readings: {summary.outcomes_why}."
         )
         return
     by_answer: defaultdict[tuple[str, str], list[ReadingOutcome]] = defaultdict(list)
@@ -248,7 +248,7 @@ def _of_answers(summary: ReadingsSummary, called: Callable[[str, str], str]) -> 
         said = ", ".join(
             f"{KEPT[k]} {under(found[k], summary.admissible, named, why=True)}" for k in words
         )
-        limits = f"the limits are {said}" if said else "limits cannot be judged"
+        limits = f"the limits are {said}" if said else "the limits cannot be judged"
         yield f"{called(claim, problem)}: {limits}.{_of_gaps(own, summary)}"
 
 
@@ -263,7 +263,7 @@ def _of_gaps(own: Sequence[ReadingOutcome], summary: ReadingsSummary) -> str:
     parts = []
     for group, where in (
         (kept, " where the limits are kept"),
-        ([o for o in plain if o not in kept], " elsewhere" if kept else ""),
+        ([o for o in plain if o not in kept], " otherwise" if kept else ""),
     ):
         gaps = [o.gap for o in group if isinstance(o.gap, Gap)]
         if gaps:
@@ -276,7 +276,9 @@ def _of_gaps(own: Sequence[ReadingOutcome], summary: ReadingsSummary) -> str:
     }.get(evidence, "best known total")
     left = len(own) - len(plain)
     without = f" ({left} implausible reading{'s' * (left > 1)} left out)" if left else ""
-    return f" Printed total beside the {beside}: {', and '.join(parts)}{without}." if parts else ""
+    if not parts:
+        return ""
+    return f" Printed total compared with the {beside}: {', and '.join(parts)}{without}."
 
 
 def _away(low: float, high: float) -> str:
@@ -315,7 +317,7 @@ def _of_fit(summary: ReadingsSummary, called: Callable[[str, str], str]) -> Iter
         *(["the velocity jumps"] if any(o.jumps for o in own) else []),
     ]
     if len(nearest) == len(summary.fits):
-        which = "The printed durations lie alike under every reading"
+        which = "The printed durations are equally far from the limits under every reading"
     else:
         best = under(nearest, summary.admissible, _names(summary), most=3)
         which = f"The printed durations fit best {best}"

@@ -209,10 +209,10 @@ _STATEMENTS = {
     "jumps": "the acceleration{of} jumps",
     "at_rest": "the motion is at rest at both ends",
     "optimal": "the motion is optimal",
-    "kinematics": "joint angles and positions belong together",
+    "kinematics": "the joint angles and the positions agree",
     "varies_most": "joint {joint} varies most",
     "varies_much": "joint {joint} varies much",
-    "equations": "the kinematic equations hold on the printed robot",
+    "equations": "the kinematic equations hold for the printed robot",
     "above": "one position lies above another",
     "none": "a sentence that cannot be checked",
 }

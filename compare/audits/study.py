@@ -224,7 +224,9 @@ class Study:
         found = []
         for block in self.case.algorithms:
             if block.kind is None:
-                found.append(f"{block.name}: the case file names no algorithm that trajgap has.")
+                found.append(
+                    f"{block.name}: the case file names no algorithm that trajgap implements."
+                )
             elif block.kind not in KINDS:
                 try:
                     from_settings(block.kind, {})
@@ -240,7 +242,7 @@ class Study:
         """Why an algorithm is not replayed on a problem, as a sentence; None if it is."""
         algorithm, name = self.algorithm(algorithm_id), capital(self.called(algorithm_id))
         if algorithm is None:
-            return f"{name} is of a kind that is not implemented here."
+            return f"{name} is an algorithm that is not implemented here."
         problem = self.problem(pair)
         try:
             # What judges the positions of every run says whether it can.
@@ -348,10 +350,10 @@ class Study:
         return np.array(positive).reshape(-1, problem.segments)
 
     def per_joint(self, pair: Pair) -> PerJointSolution:
-        """Each joint by itself, with the ranges within half a printed digit and 1e-6 s."""
+        """Each joint separately, with the ranges within half a printed digit and 1e-6 s."""
 
         def compute() -> PerJointSolution:
-            self.progress(f"each joint by itself; {in_words(self.case, *pair)}")
+            self.progress(f"each joint separately; {in_words(self.case, *pair)}")
             slacks = tuple(dict.fromkeys((*self.half_digits(pair), OPTIMUM_SLACK)))
             problem = self.problem(pair)
             try:
@@ -392,7 +394,7 @@ class Study:
             problem = self.problem(pair)
             given = as_piecewise(problem.curve)
             if given is None:
-                why = "only a declared piecewise polynomial is a member of its relaxed family"
+                why = "only declared piecewise polynomials have a relaxed family"
                 return Solution(problem, Status.FAILED, why)
             self.progress(f"relaxed family; {in_words(self.case, *pair)}")
             inner = problem.segments - 1

@@ -57,27 +57,31 @@ def audit(
     ] = None,
     problem: ProblemId = None,
     reading: ReadingId = None,
-    seeds: Annotated[int, typer.Option(min=2, max=MOST, help="Seeds of each replay.")] = 100,
+    seeds: Annotated[
+        int, typer.Option(min=2, max=MOST, help="Number of seeds for each replay.")
+    ] = 100,
     workers: Workers = None,
     certify_seconds: Annotated[
         float | None,
         typer.Option(
             metavar="SECONDS",
             min=0.0,
-            help="For each case: time to certify optima that no certificate proves; 0 for none. "
-            "By default boxes are counted, so that no verdict depends on the machine.",
+            help="Time per case to certify optima that no certificate proves; 0 for none. "
+            "By default boxes are counted, so no verdict depends on the machine.",
         ),
     ] = None,
     certificates: Annotated[
         Path | None,
         typer.Option(
             metavar="FOLDER",
-            help="Certificates to use beside the shipped ones; each is proved again.",
+            help="Certificates to use in addition to the shipped ones; each is verified.",
         ),
     ] = None,
     draft: Annotated[
         bool,
-        typer.Option("--draft", help="Your own draft: say what to change before you submit it."),
+        typer.Option(
+            "--draft", help="Judge your own draft, and list what to change before you submit it."
+        ),
     ] = False,
     no_cache: NoCache = False,
     strict: Annotated[
@@ -90,7 +94,7 @@ def audit(
         Path | None,
         typer.Option(
             metavar="FOLDER",
-            help="Where the pages go: a new or an empty folder, or that of an earlier audit.",
+            help="Folder for the pages: new, empty, or that of an earlier audit.",
             show_default="trajgap-audit",
         ),
     ] = None,
@@ -178,11 +182,11 @@ def audited(document: AuditDocument, cases: Sequence[Case]) -> list[RenderableTy
             shown = [(*one[:3], one[5]) for one in map(reached_cells, runs)]
             parts += [
                 line(""),
-                line(f"How near its algorithms get: {title}"),
+                line(f"How near the paper's algorithms get: {title}"),
                 Columns(_RUNS, shown),
             ]
         more = len(searches) - _SEARCHES
-        parts += [line(f"{more} more searches on the pages.", "dim")] if more > 0 else []
+        parts += [line(f"{more} more searches are on the pages.", "dim")] if more > 0 else []
         parts += [line(f"{words}: {value}", "dim") for words, value in facts(case)]
     return parts
 
@@ -201,7 +205,7 @@ def _rows(case: AuditedCase) -> list[tuple[str, str, str]]:
 
 
 _SEARCHES = 2
-"""Searches that a terminal shows, such as that of each joint by itself and of all together."""
+"""Searches that a terminal shows, such as that of each joint separately and of all together."""
 _RUNS = ("~algorithm", "limits broken", ">median, its gap", ">no answer")
 """Of the columns that a page has, those that fit a terminal."""
 _REASONS = 3
@@ -230,7 +234,7 @@ def _unchecked(case: AuditedCase) -> list[str]:
         for why, where in list(reasons.items())[:_REASONS]
     ]
     more = len(reasons) - len(lines)
-    rest = [f"{more} more reason{'s' if more > 1 else ''} on the pages."] if more else []
+    rest = [f"{more} more reason{'s are' if more > 1 else ' is'} on the pages."] if more else []
     return lines + rest
 
 

@@ -186,7 +186,7 @@ def read_certificates(folder: Path) -> list[dict[str, Any]]:
     """
     if not folder.is_dir():
         raise CaseError(
-            str(folder), "--certificates", "is not a folder; name the one with your files"
+            str(folder), "--certificates", "is not a folder; give the one with your files"
         )
     documents = [_read(path) for path in sorted(folder.glob("*.json"))]
     found = [one for one in documents if one.get("format") == CERTIFICATE_FORMAT]
@@ -255,15 +255,15 @@ def _states(resume: Sequence[Path], asked: Sequence[Question]) -> dict[str, Stat
         ]
         if not fits:
             raise CaseError(
-                state.name, "problem", "is none of those selected; name the case and reading of it"
+                state.name, "problem", "is none of those selected; select its case and reading"
             )
         found |= dict.fromkeys(fits, state)
     return found
 
 
 WIDENED = (
-    "lower and upper limits differ, and this kind of proof takes the larger size on both sides: "
-    "the lower bound holds, and more time need not close the gap"
+    "lower and upper limits differ, and this kind of proof uses the larger size on both sides: "
+    "the lower bound holds, but more time need not close the gap"
 )
 """Said of intervals that are wide for another reason than time."""
 
@@ -277,10 +277,10 @@ def _why(found: Certified | str) -> str | None:
             return WIDENED
         if found.left_out is None:
             return None
-        return f"{found.left_out}; --time was too short, and resume goes on with more"
+        return f"{found.left_out}; --time was too short; resume with more time"
     if found.verdict.out_of_time:
-        return "the proof found was not verified within --time; resume with more"
-    return f"the proof found is refused: {found.verdict.reason}"
+        return "the proof was not verified within --time; resume with more time"
+    return f"the proof was refused: {found.verdict.reason}"
 
 
 def _file(folder: Path, one: Question, kind: str = "") -> Path:
@@ -409,7 +409,7 @@ def _certified(document: CertifyDocument, case: Case) -> list[RenderableType]:
     parts += by_question(rows, columns, apart, case)
     reasons = dict.fromkeys(r.outcome_why for r in results if r.outcome_why)
     parts += [line(reason, "dim") for reason in reasons]
-    return parts + [line(f"go on with --resume {r.state}") for r in results if r.state]
+    return parts + [line(f"continue with --resume {r.state}") for r in results if r.state]
 
 
 def _cells(result: CertifiedResult) -> tuple[object, ...]:

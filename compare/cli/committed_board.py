@@ -77,7 +77,7 @@ def stand_against(
         If there are no committed results of this kind, or an optimiser is unknown.
     """
     if word != LEADERBOARD:
-        raise CaseError("--against", "", f"{word!r} is unknown; the word is {LEADERBOARD}")
+        raise CaseError("--against", "", f"{word!r} is unknown; use {LEADERBOARD}")
     board = _board(budget, handling)
     instances = _instances(board, source)
     labels = _labels(names, board)
@@ -107,8 +107,8 @@ def stand_against(
         line(""),
         board_table(found, labels),
         line(
-            f"{handling}, {budget:,} evaluations, {many}. Rows "
-            "with * were run now; the others are the committed ones of the leaderboard."
+            f"{handling}, {budget:,} evaluations, {many}. Rows with * were run now; the others "
+            "are the committed rows of the leaderboard."
         ),
     ]))  # fmt: skip
     return NEVER_RAN if any(one.failed == one.runs for one in standing) else 0
@@ -136,7 +136,7 @@ def _instances(board: Board, source: str | None) -> tuple[str, ...]:
     chosen = tuple(name for name in names if name in asked)
     if not chosen:
         some = ", ".join(SUITE_PREFIX + name for name in names[:3])
-        raise CaseError(source, "", f"no instance of the leaderboard; it has {some}, ...")
+        raise CaseError(source, "", f"not an instance of the leaderboard; it has {some}, ...")
     return chosen
 
 

@@ -21,7 +21,8 @@ def explain(
     asked: Annotated[
         list[str] | None,
         typer.Argument(
-            metavar="[RULE|WORD]...", help="Such as TG201 or certified; all are listed by default."
+            metavar="[RULE|WORD]...",
+            help="For example TG201 or certified; all are listed by default.",
         ),
     ] = None,
     as_json: AsJson = False,
@@ -82,7 +83,7 @@ def _in_full(document: ExplainDocument) -> list[RenderableType]:
         parts += [
             line(f"{rule.id}: {rule.title}", "bold"),
             line(rule.asks),
-            line(f"What it may say: {rule.concludes}"),
+            line(f"Possible verdicts: {rule.concludes}"),
             line(f"Example: {rule.example}"),
             line(""),
         ]

@@ -104,7 +104,7 @@ def check_file(source: str, options: MotionOptions, as_json: bool, out: Path | N
             read,
             how,
             found,
-            slower or Why(found.feasible_why or "--repair asks for it"),
+            slower or Why(found.feasible_why or "--repair needs it"),
             plot,
         )
         if kind is not None:
@@ -133,7 +133,9 @@ def judged(
     content = read.content
     if isinstance(content, Motion):
         if how is not None:
-            raise CaseError("--interpolation", "", "is of samples; polynomials are the motion")
+            raise CaseError(
+                "--interpolation", "", "applies to samples only; polynomials are the motion itself"
+            )
         return None, check_motion(content, limits, tolerance)
     if how is None:
         how = Interpolation.CONTROLLER if read.controller else Interpolation.NONE
@@ -153,8 +155,8 @@ def _of_exact_times(verdict: Verdict) -> tuple[str, ...]:
     if verdict is Verdict.UNDECIDED:
         return ()
     return (
-        "If the times are exact, as those of a planner's grid are, the verdict is "
-        f"{verdict}: state --time-noise 0.",
+        f"If the times are exact, like those of a planner's grid, the verdict is {verdict}: add "
+        "--time-noise 0.",
     )
 
 
@@ -248,7 +250,7 @@ def stated_limits(joints: Sequence[str], factors: Array, options: MotionOptions)
     limits = merge(joints, sources)
     ends = (limits.lower, limits.upper, limits.deceleration)
     if all(np.isinf(one).all() for one in ends):
-        raise CaseError("limits", "", "none is finite, so that nothing is judged; give one")
+        raise CaseError("limits", "", "none is finite, so nothing can be judged; give one")
     return limits
 
 
@@ -322,9 +324,7 @@ def repaired(
     endings = _ENDINGS[read.form]
     if out.suffix.lower() not in endings:
         known = " or ".join(endings)
-        raise CaseError(
-            str(out), "--repair", f"the motion would be read as something else; use {known}"
-        )
+        raise CaseError(str(out), "--repair", f"no motion file has this ending; use {known}")
     if found.feasible_time is None:
         advice = read.content.advice
         return Why(f"{found.feasible_why}. {advice}" if advice else str(found.feasible_why))

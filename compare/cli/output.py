@@ -75,7 +75,7 @@ def say(text: str) -> None:
     except OSError as error:
         reason = error.strerror or type(error).__name__
         raise CaseError(
-            "standard output", "", f"cannot be written ({reason}); send it elsewhere"
+            "standard output", "", f"cannot be written ({reason}); redirect it elsewhere"
         ) from None
 
 
@@ -209,7 +209,7 @@ def new_output(path: Path | None, field: str = "--out") -> Iterator[Callable[[st
     with ExitStack() as stack:
         with _writing(name, field), _taken(name, field):
             if path.is_dir():
-                raise CaseError(name, field, "is a directory; name a file in it")
+                raise CaseError(name, field, "is a directory; give a file in it")
             put = stack.enter_context(new_file(path))
 
         def write(content: str | bytes) -> None:
@@ -255,10 +255,10 @@ def check_folder(path: Path, cases: Sequence[Case]) -> None:
             raise CaseError(
                 name,
                 "--out",
-                f"holds {found}, which is not an audit; name a new or an empty folder",
+                f"contains {found}, which is not an audit; give a new or an empty folder",
             )
         if path.name in ("", "..") or path.is_mount():
-            raise CaseError(name, "--out", "cannot be replaced as a whole; name a folder in it")
+            raise CaseError(name, "--out", "cannot be replaced as a whole; give a folder in it")
         path.parent.mkdir(parents=True, exist_ok=True)
         try_writing_in(path.parent)
 
@@ -276,7 +276,7 @@ def check_certificates(folder: Path) -> None:
             try_writing_in(folder)
         except NotADirectoryError as error:
             raise CaseError(
-                str(error.filename), "--certificates", "is not a folder; name another"
+                str(error.filename), "--certificates", "is not a folder; give another"
             ) from None
 
 
@@ -286,7 +286,7 @@ def _taken(name: str, field: str) -> Iterator[None]:
         yield
     except FileExistsError:
         raise CaseError(
-            name, field, "exists already; name another file or delete this one"
+            name, field, "already exists; give another file or delete this one"
         ) from None
 
 
@@ -297,7 +297,7 @@ def _writing(name: str, field: str) -> Iterator[None]:
     except OSError as error:
         reason = error.strerror or type(error).__name__
         raise CaseError(
-            name, field, f"cannot be written ({reason}); name a place that can"
+            name, field, f"cannot be written ({reason}); give a writable place"
         ) from None
 
 
@@ -408,4 +408,4 @@ def kept_proofs(count: int) -> str:
     with and without what was kept.
     """
     proofs = "1 kept proof was" if count == 1 else f"{count} kept proofs were"
-    return f"{proofs} proved again instead of searched; --no-cache searches anew\n"
+    return f"{proofs} verified instead of searched; --no-cache searches again\n"

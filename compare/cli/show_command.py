@@ -36,7 +36,7 @@ def show(
     as_json: AsJson = False,
     out: Out = None,
 ) -> int:
-    """Show what a case holds, and what it leaves open."""
+    """Show what a case contains, and what it leaves open."""
     with new_output(out) as write:
         found = read_case(case)
         document = show_document(found, problem, reading)
@@ -71,14 +71,14 @@ def _tables(document: ShowDocument, case: Case) -> list[RenderableType]:
         *(line(said) for said in lines),
         Columns(("problem", "~title"), problems),
         *_asked(document, case),
-        Columns(("reading", "~what it means, and why it is admissible"), readings),
+        Columns(("reading", "~meaning, and why it is admissible"), readings),
     ]
     if document.claims:
         claims = [(c.id, _digits(c), f"{claim_text(case, c)} ({c.where})") for c in document.claims]
-        parts.append(Columns(("claim", "printed", "~what is said, and where"), claims))
+        parts.append(Columns(("claim", "printed", "~statement, and its place"), claims))
     if document.assumptions:
         choices = [(str(k), f"{a.text} {a.choice}") for k, a in enumerate(document.assumptions, 1)]
-        parts.append(Columns(("choice", "~what is left open, and what was chosen"), choices))
+        parts.append(Columns(("choice", "~open point, and the choice made"), choices))
     return parts
 
 

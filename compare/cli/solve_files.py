@@ -108,7 +108,7 @@ def _names(source: str, urdf: Path, count: int) -> tuple[str, ...]:
         raise CaseError(
             source,
             "line 1",
-            f"numbers {count} joints, and {urdf} has {len(names)} with limits "
+            f"numbers {count} joints, but {urdf} has {len(names)} with limits "
             f"({', '.join(names)}); name those of the table",
         )
     return names
@@ -204,7 +204,7 @@ def written_lines(written: WrittenMotion, case: Case) -> list[str]:
     ]
     if result.verdict != "pass" and written.form is MotionForm.CSV:
         lines.append(
-            "a break of the curve lies between two rows: --format ros has it as a point, ppoly is "
-            "the curve itself"
+            "a break of the curve lies between two rows; --format ros writes it as a point, and "
+            "ppoly writes the curve itself"
         )
     return lines

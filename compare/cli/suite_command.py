@@ -42,7 +42,10 @@ suite = typer.Typer(
 )
 
 Folder = Annotated[
-    Path, typer.Argument(metavar="FOLDER", help="A new or an empty folder, or one written so.")
+    Path,
+    typer.Argument(
+        metavar="FOLDER", help="A new or an empty folder, or one written by this command."
+    ),
 ]
 
 
@@ -173,7 +176,7 @@ def _shown(document: SuiteShowDocument) -> list[RenderableType]:
         facts += [
             ("basins", f"{hard.basins} found by {hard.starts} random starts; "
              f"{hard.best_basin_share:.0%} of them reach the best"),
-            ("feasible share", f"{hard.feasible_share:.2%} of durations drawn within the bounds"),
+            ("feasible share", f"{hard.feasible_share:.2%} of durations drawn within bounds"),
         ]  # fmt: skip
         if hard.baselines:
             rates = ", ".join(f"{name} {rate:.0%}" for name, rate in hard.baselines.items())
@@ -204,15 +207,15 @@ def _write(out: Path, found: Mapping[str, str]) -> None:
     """
     name = str(out)
     if os.path.lexists(out) and (not out.is_dir() or out.is_symlink()):
-        raise CaseError(name, "FOLDER", "is not a folder; name a new one")
+        raise CaseError(name, "FOLDER", "is not a folder; give a new one")
     try:
         other = list(out.iterdir()) if out.exists() else []
         if other and not (out / _MARK).is_file():
             held = min(p.name for p in other)
-            raise CaseError(name, "FOLDER", f"holds {held}; name a new or an empty folder")
+            raise CaseError(name, "FOLDER", f"contains {held}; give a new or an empty folder")
         replace_folder(out, found)
     except TrajgapError:
         raise
     except OSError as error:
         reason = error.strerror or type(error).__name__
-        raise CaseError(name, "FOLDER", f"cannot be written ({reason}); name another") from None
+        raise CaseError(name, "FOLDER", f"cannot be written ({reason}); give another") from None

@@ -162,7 +162,7 @@ class Finding(Entry):
     """The printed digits, with units."""
     computed: str | None = None
     """What was computed, with units."""
-    gap: OrWhy[Gap] = Why("no time is set beside an optimum")
+    gap: OrWhy[Gap] = Why("no time is compared with an optimum")
     kind: Annotated[str, Field(min_length=1)]
     """What findings of a rule have in common that say the same in other numbers."""
     sentences: Annotated[tuple[str, ...], AfterValidator(_begun)] = Field(exclude=True)
@@ -245,7 +245,7 @@ class Judgement(Entry):
     caveats_in_short: tuple[str, ...] = ()
     """Each of them without its reason."""
     beside: str = ""
-    """What stands beside the word wherever it is shown, such as "but on doubted numbers"."""
+    """What stands beside the word wherever it is shown, such as "but on doubtful numbers"."""
     readings: dict[str, ClaimVerdict]
     """The verdict under each reading by itself."""
     informs: bool = Field(default=False, exclude=True)

@@ -13,7 +13,7 @@ from .entry import Count, Document, Entry, OrLeftOut, OrWhy, Real, Why, known
 from .finding import UNCERTIFIED
 from .vocabulary import Limited
 
-NO_OTHER_ROUTE = "no second route knows this curve and this many durations"
+NO_OTHER_ROUTE = "no second route handles this curve with this many durations"
 """Why a total stands by itself: descents take few durations, all of them determined."""
 NOT_ASKED = "not asked for"
 """Why a path is not retimed, where nobody wanted it."""
@@ -224,7 +224,7 @@ def _procedure(answer: PerJointSolution) -> Answer:
     return Answer(
         status=answer.status,
         status_why="; ".join(unsettled)
-        or "of the joints' own optima; the total is what their longest durations add up to",
+        or "of the joints' own optima; the total is the sum of their longest durations",
         total_time=answer.total_time if answer.check else Why(none),
         segment_durations=Why("each joint has durations of its own, see joints"),
         infimum=Why("the longest durations of a procedure, not an optimum"),
@@ -284,7 +284,7 @@ def _toppra(
     if not retiming.applicable:
         return Why(retiming.why or "not applicable"), None
     runs = zip(retiming.durations, retiming.gridpoints, strict=True)
-    order = "the durations agree within the solver's accuracy, or show no one order"
+    order = "the durations agree within the solver's accuracy, or show no single order"
     return tuple(RetimedPath(duration=d, gridpoints=n) for d, n in runs), Extrapolated(
         duration=known(retiming.extrapolated, retiming.why),
         error=known(retiming.error, retiming.why),

@@ -12,20 +12,20 @@ EXACT = Why("a single value, not an interval")
 """Why a value has no interval."""
 PUBLISHED = "published"
 """Name of the step that is the printed total."""
-OWN_OPTIMA = "each joint at its optimum, longest per segment"
-"""Name of the step that such a total is set beside where the paper plans each joint by itself."""
+OWN_OPTIMA = "each joint at its optimum, longest duration per segment"
+"""Name of the step that such a total is set beside where the paper plans each joint separately."""
 SHARED_OPTIMUM = "optimum of the same curve, shared durations"
 """Name of the step that distances are counted from."""
-STAND_IN_OPTIMUM = "optimum of the case file's curve, of which no time is printed"
+STAND_IN_OPTIMUM = "optimum of the case file's curve, for which no time is printed"
 """Name of that step where every printed time is of a curve that a case file cannot name."""
 RATIOS_OPTIMUM = "shortest total of the same curve at these ratios of the durations"
 """Name of that step where the question fixes the ratios, so that the total alone is chosen."""
-FREED_OPTIMUM = "the same curve, each duration chosen"
+FREED_OPTIMUM = "the same curve with each duration free"
 """Name of the step below it: what fixing the ratios costs."""
 
 OPTIMUM_RETIMED = "TOPPRA on the path of that optimum"
 """Name of the step that cross-checks the optimum: no timing of its path is shorter."""
-THIRD_ORDER = "the path of that optimum, timed anew with limited jerk"
+THIRD_ORDER = "the path of that optimum, re-timed with limited jerk"
 """Name of that step where jerk is limited, of which TOPPRA knows nothing."""
 RELAXED_RETIMED = "TOPPRA on the path of the relaxed family"
 """Name of the same step below the relaxed family."""
@@ -74,4 +74,4 @@ class Waterfall(Entry):
         if isinstance(why, Why):
             return (f"No optimum: {why}.",)
         beside = next((s.time for s in self.steps if s.name == OPTIMUM_RETIMED), None)
-        return (f"TOPPRA is not asked: {beside}.",) if isinstance(beside, Why) else ()
+        return (f"TOPPRA is not run: {beside}.",) if isinstance(beside, Why) else ()

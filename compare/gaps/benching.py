@@ -44,8 +44,8 @@ _FIRST_RANGES = ("position_initial", "position_range")
 """Settings of the papers' algorithms that say where their first positions are drawn."""
 
 _REPAIRED = (
-    "cma, stretch: CMA-ES with repair. For it alone, durations that break a limit count with the "
-    "shortest uniform stretch that keeps all limits."
+    "cma, stretch: CMA-ES with repair. Only for CMA-ES, durations that break a limit count with "
+    "the shortest uniform stretch that keeps all limits."
 )
 """What a reader must know of the baseline that is judged otherwise than the rest."""
 
@@ -272,8 +272,8 @@ def bounds_note(problem: Problem) -> tuple[str, ...]:
     sides = zip(box.lower, box.upper, strict=True)
     said = ", ".join(dict.fromkeys(f"{low:g} to {high:g} s" for low, high in sides))
     return (
-        f"Not every duration has an upper bound. Searched: {said} for each; equal durations reach "
-        "a total of that size, so no shorter motion has a longer one.",
+        f"Some durations have no upper bound. Searched: {said} for each; equal durations reach a "
+        "total of that size, so no shorter motion has a longer duration.",
     )
 
 
@@ -364,7 +364,9 @@ def enter(
         entrants[name] = Entrant(name, own, str(handling), name)
     for name in settings:
         if name not in entrants:
-            raise TrajgapError(f"settings of {name!r}: it does not take part; name it too")
+            raise TrajgapError(
+                f"settings of {name!r}: this optimiser does not take part; name it too"
+            )
     if baselines:
         for name in BASELINES:
             entrants.setdefault(name, Entrant(name, {}, str(handling), name))

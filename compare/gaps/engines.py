@@ -147,7 +147,7 @@ def _finished(pending: dict[Future[TrialOutcome], Trial], engine: Engine) -> Ite
         elif type(error).__name__ == "KilledWorker":
             # Dask has tried on several workers, and each has died.
             yield TrialOutcome(
-                failed(trial, f"{trial.optimizer}: workers died at it, several times"), 0
+                failed(trial, f"{trial.optimizer}: workers died repeatedly while running it"), 0
             )
         elif isinstance(error, TrajgapError):
             raise error
@@ -158,6 +158,6 @@ def _finished(pending: dict[Future[TrialOutcome], Trial], engine: Engine) -> Ite
 def _lost(engine: Engine, error: BaseException | None) -> ProcessError:
     said = "cancelled" if error is None else f"{type(error).__name__}: {error}"
     return ProcessError(
-        f"{engine.name}: lost ({' '.join(said.split())}); what is finished is stored, the same "
-        "command goes on"
+        f"{engine.name}: lost ({' '.join(said.split())}); finished runs are stored, and the same "
+        "command continues"
     )

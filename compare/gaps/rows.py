@@ -171,7 +171,7 @@ class Row:
     evaluations : int
         Duration vectors judged, at most the budget.
     durations : tuple of float or None
-        What the best position stands for, s; None if nothing feasible was judged.
+        What the best position stands for, s; None if no feasible vector was evaluated.
     reported_time : float or None
         Its total by the objective, s.
     verdict : str or None
@@ -268,7 +268,9 @@ class Row:
                 found[name] = None if found[name] is None else tuple(found[name])
             return cls(**found)
         except (ValueError, TypeError, KeyError) as error:
-            raise TrajgapError(f"row: cannot be read ({error}); was the file altered?") from None
+            raise TrajgapError(
+                f"row: cannot be read ({error}); the file may have been altered"
+            ) from None
 
 
 @lru_cache(maxsize=64)

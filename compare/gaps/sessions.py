@@ -80,7 +80,7 @@ def run_study(
     store : Store
     engine : Engine
     retry : bool
-        Run the failed ones again.
+        Repeat failed runs.
     progress : callable
         Called before the first run and after each.
 

@@ -63,7 +63,7 @@ class Store:
         (found,) = self._data.execute("PRAGMA application_id").fetchone()
         (tables,) = self._data.execute("SELECT count(*) FROM sqlite_master").fetchone()
         if found not in (0, _APPLICATION) or (found == 0 and tables):
-            raise CaseError(str(self.path), "", "is a database of another program; name a new file")
+            raise CaseError(str(self.path), "", "is a database of another program; give a new file")
         self._data.execute("PRAGMA journal_mode = WAL")
         self._data.execute("PRAGMA synchronous = FULL")
         with self._writing():
@@ -77,8 +77,8 @@ class Store:
                 raise CaseError(
                     str(self.path),
                     "",
-                    f"holds rows of version {version}, this program writes {ROW_FORMAT}; "
-                    "name a new file",
+                    f"contains rows of version {version}, but this program writes {ROW_FORMAT}; "
+                    "give a new file",
                 )
 
     @contextmanager
@@ -98,11 +98,11 @@ class Store:
         except sqlite3.Error as error:
             name = str(self.path)
             if error.sqlite_errorcode == sqlite3.SQLITE_NOTADB:
-                fix = "is not a store of trajgap; name a new file"
+                fix = "is not a store of trajgap; give a new file"
             elif self.path.parent.is_dir():
-                fix = f"cannot be used ({error}); check the disk, or name another file"
+                fix = f"cannot be used ({error}); check the disk, or give another file"
             else:
-                fix = f"cannot be made ({error}); make its folder first"
+                fix = f"cannot be created ({error}); create its folder first"
             raise CaseError(name, "", fix) from None
 
     def __enter__(self) -> Self:

@@ -109,7 +109,7 @@ class StudyPlan:
         Parameters
         ----------
         store : Store, optional
-            Knows or keeps the optima that gaps are set against; without it, rows have no gaps.
+            Knows or keeps the optima from which gaps are measured; without it, rows have no gaps.
         """
         for _, trials in self.groups(store):
             yield from trials
@@ -344,7 +344,7 @@ def _pairs(case: Case, block: ProblemsBlock) -> list[tuple[str, str]]:
     }
     stated = [pair for pair in found if case.statement(*pair).complete]
     if not stated:
-        raise CaseError(case.file, "", "states no problem in full; name another case")
+        raise CaseError(case.file, "", "states no complete problem; choose another case")
     return stated
 
 

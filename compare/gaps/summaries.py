@@ -38,7 +38,7 @@ class Summary:
         Label of the optimiser in its study.
     handling : str
     budget : int
-        Evaluations of each run.
+        Number of evaluations of each run.
     runs, failed : int
         Number of runs, and of those that raised, hung or broke the rules.
     lower_quartile, median, upper_quartile : float

@@ -95,7 +95,9 @@ class _Child:
         self._listener.start()
         if self._answers.get() is None:
             self.end()
-            raise ProcessError(f'workers: a process ends at once; see why: python -c "{_PROGRAM}"')
+            raise ProcessError(
+                f'workers: a process ends at once; to see why, run python -c "{_PROGRAM}"'
+            )
 
     def ask(self, trial: Trial) -> TrialOutcome:
         """Have a trial run.
@@ -117,7 +119,7 @@ class _Child:
             try:
                 code = self._process.wait(_GRACE)
             except subprocess.TimeoutExpired:
-                raise _Ended("it closed the pipe by which it answers") from None
+                raise _Ended("it closed the pipe for its answers") from None
             raise _Ended(f"exit code {code}" if code >= 0 else _signal(-code))
         return answer
 
@@ -179,7 +181,7 @@ class Crew:
             except _Late:
                 tries = _TRIES
                 why = (
-                    f"took longer than {trial.seconds:g} s; raise the time limit, or look where "
+                    f"took longer than {trial.seconds:g} s; raise the time limit, or find where "
                     "it hangs"
                 )
             except _Ended as end:

@@ -171,7 +171,7 @@ def _row(trial: Trial, found: BudgetedRun) -> Row:
         "trace": trace_of(found.totals),
     }
     if not math.isfinite(found.reported_time):
-        return Row.begun(trial, **known, feasible_why="nothing feasible was judged")
+        return Row.begun(trial, **known, feasible_why="no feasible vector was evaluated")
     judged = check(trial.problem, found.durations)
     worst = judged.worst
     return Row.begun(

@@ -60,9 +60,9 @@ def against(one: CaseAudit) -> Section:
     if causes:
         blocks += [Prose("The causes", "heading"), *(_behind(one, c) for c in causes)]
     if not found:
-        title = "What speaks against something printed"
+        title = "Evidence against printed statements"
     else:
-        title = "Claims refuted, contradicted or open to the reading"
+        title = "Claims refuted, contradicted or dependent on the reading"
     return Section("against", title, tuple(blocks))
 
 
@@ -103,7 +103,7 @@ _POINTS = (CaveatKind.POINTS, CaveatKind.SOME_POINTS)
 
 
 def _caveats(judgement: Judgement) -> Iterator[Caveat]:
-    """What goes with the word; of doubted way-points the word has said so, or a short line does."""
+    """Remarks on a verdict, without doubtful way-points if the verdict names them already."""
     for caveat in judgement.caveats:
         if caveat.kind not in _POINTS:
             yield _sentence(caveat)
@@ -285,5 +285,5 @@ def advised(one: CaseAudit) -> Section:
     ]
     blocks: list[Block] = list(grids[:1] if pressing else [])
     if opened:
-        blocks.append(Folded(f"{len(opened)} things that a reader cannot check", (grids[-1],)))
+        blocks.append(Folded(f"{len(opened)} points that readers cannot check", (grids[-1],)))
     return Section("before-you-submit", "Before you submit", tuple(blocks))

@@ -84,12 +84,12 @@ def write_report(report: AuditReport, out: Path) -> None:
         other = foreign(out)
         if other is not None:
             raise TrajgapError(
-                f"{out}: {other} is not part of a trajgap report; name a new or an empty folder"
+                f"{out}: {other} is not part of a trajgap report; give a new or an empty folder"
             )
         replace_folder(out, report_files(report))
     except OSError as error:
         reason = error.strerror or type(error).__name__
-        raise TrajgapError(f"{out}: cannot be written ({reason}); name another place") from None
+        raise TrajgapError(f"{out}: cannot be written ({reason}); give another place") from None
 
 
 def foreign(out: Path) -> str | None:
@@ -224,8 +224,8 @@ def _not_computed(one: CaseAudit) -> Section:
     # Where there are several readings, the section above has said why.
     reason = "" if one.readings is not None else f" ({why})"
     said = Prose(
-        f"No problem is posed, since way-points are not printed{reason}: there are no optima, "
-        "motions, replays or landscapes of its own."
+        f"No problem is posed, because way-points are not printed{reason}. The case has no "
+        "optima, motions, replays or landscapes of its own."
     )
     return Section("not-computed", "Not computed", (said,))
 
@@ -250,6 +250,6 @@ def _reproduced(one: CaseAudit) -> Section:
     proved = tuple((c.file, f"SHA-256 {c.sha256}; about {c.subject}") for c in made.certificates)
     blocks: list[Block] = [Prose(made.citation, "source"), Terms(tuple(pairs))]
     if proved:
-        blocks.append(Folded(f"{len(proved)} certificates, proved again", (Terms(proved),)))
-    title = "Cite this audit, and make it again"
+        blocks.append(Folded(f"{len(proved)} certificates, verified", (Terms(proved),)))
+    title = "Cite and reproduce this audit"
     return Section("reproducibility", title, tuple(blocks), folded=True)

@@ -38,7 +38,7 @@ def motion_picture(
     ----------
     problem : Problem
     durations : array_like, shape (segments,) or (joints, segments)
-        Segment durations, s, shared by all joints or of each joint by itself.
+        Segment durations, s, shared by all joints or of each joint separately.
     title : str
     check : Check, optional
         Its verdict is written below the picture.

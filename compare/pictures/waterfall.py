@@ -24,7 +24,7 @@ from .drawing import (
     shown,
 )
 
-_HEADING = "the first against this"
+_HEADING = "first step relative to this one"
 """Above the column that sets the first step beside each: one percentage per distance."""
 _EDGES = (1.2, 1.36)
 """Right edges of the seconds and the percent in that column (bars end at 1)."""

@@ -42,7 +42,7 @@ from .suite import InstanceShown, SuiteTable
 _EVIDENCE = frozenset(map(str, Evidence))
 """Words that stand as badges in a table."""
 _OPEN_SEARCHES = 2
-"""Searches that stand in the open, such as that of each joint by itself and of all together."""
+"""Searches that stand in the open, such as that of each joint separately and of all together."""
 _OPEN_ROWS = 8
 """Rows of readings that stand in the open; of more, those of the default reading do."""
 
@@ -201,7 +201,7 @@ def readings_of(case: dict[str, Any]) -> list[nodes.Node]:
     """Paragraphs and the table of a case's readings; one paragraph where there is one reading."""
     said = case["readings"]
     if said is None:
-        return [paragraph("The text leaves nothing open: there is one reading.")]
+        return [paragraph("The text leaves nothing open, so there is one reading.")]
     names = said["admissible"]
     head = paragraph(f"The text can be read in {len(names)} ways. The default is ")
     labels = reading_names(case).labels
@@ -374,7 +374,7 @@ class SourceShown(FromResults):
             self.env.note_dependency(str(path))
             verdict = proved_again(path, one["sha256"])
             rows.append([nodes.literal("", one["file"]), badge(worth(verdict)), verdict.reason])
-        note = paragraph("Each certificate was proved again when this page was built.")
+        note = paragraph("Each certificate was verified when this page was built.")
         count = f"{len(rows)} certificate{'' if len(rows) == 1 else 's'}"
         return folded(count, note, table(("file", "evidence", "what it proves"), rows))
 
@@ -400,7 +400,7 @@ class CertificateShown(SphinxDirective):
         head = nodes.paragraph()
         head += badge(worth(verdict))
         said = f"{verdict.reason[:1].upper()}{verdict.reason[1:]}"
-        head += nodes.Text(f" {said}. Proved again when this page was built ({path.name}).")
+        head += nodes.Text(f" {said}. Verified when this page was built ({path.name}).")
         return [head]
 
 

@@ -234,7 +234,7 @@ def reached_of(case: Mapping[str, Any]) -> str:
 def distance_of(case: Mapping[str, Any]) -> Distance | None:
     """The printed total of the first problem beside its optimum.
 
-    The optimum is that of shared durations; where the paper plans each joint by itself, it is what
+    The optimum is that of shared durations; where the paper plans each joint separately, it is what
     the joints' own optima give.
 
     Parameters

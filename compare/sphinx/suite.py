@@ -124,18 +124,18 @@ class InstanceShown(SphinxDirective):
     def _proof(self, one: BenchmarkInstance) -> nodes.paragraph:
         file = one.certificate_file()
         if file is None:
-            return paragraph(f"No certificate is shipped; make it with {one.command}.")
+            return paragraph(f"No certificate is shipped; create it with {one.command}.")
         path = Path(str(file))
         self.env.note_dependency(str(path))
         head = nodes.paragraph()
         if one.verify_seconds is not None and one.verify_seconds > PROVED_WITHIN:
             head += badge(str(one.evidence))
             head += nodes.Text(
-                f" Its proof takes {one.verify_seconds:g} s and was not made again by this build."
+                f" Its proof takes {one.verify_seconds:g} s and is not part of this build."
             )
             return head
         verdict = proved_again(path, one.certificate_sha256)
         head += badge(worth(verdict))
         said = f"{verdict.reason[:1].upper()}{verdict.reason[1:]}"
-        head += nodes.Text(f" {said}. Proved again when this page was built.")
+        head += nodes.Text(f" {said}. Verified when this page was built.")
         return head

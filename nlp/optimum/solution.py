@@ -71,7 +71,7 @@ class Evidence(StrEnum):
     """What stands behind a reference value."""
 
     CERTIFIED = "certified"
-    """Lower and upper bound within the stated gap, re-checked."""
+    """Lower and upper bound within the stated gap, verified again."""
     BEST_KNOWN = "best known"
     """The best value found and checked, with nothing proved below it. A gap against it is a lower
     estimate of the true one."""

@@ -39,7 +39,7 @@ class Parameters(StrEnum):
     CHORD = "chord"
     """Chord lengths of the joint vector, (4) and (5) of z1."""
     JOINT_CHORD = "joint-chord"
-    """Chord lengths of each joint by itself."""
+    """Chord lengths of each joint separately."""
     GIVEN = "given"
     """Printed numbers."""
 

@@ -18,7 +18,7 @@ class Interpolation(StrEnum):
     """What is taken to happen between samples."""
 
     NONE = "none"
-    """Nothing is: only what every motion through the samples does is concluded."""
+    """Nothing is assumed; conclusions hold for every motion through the samples."""
     LINEAR = "linear"
     """Straight lines; velocity jumps at the samples."""
     CUBIC = "cubic"

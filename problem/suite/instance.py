@@ -55,7 +55,7 @@ class Hardness(_Strict):
     baseline_runs: Count = 0
     """Runs of each baseline; one of those that draw no random numbers."""
     baseline_budget: Count = 0
-    """Evaluations of each run."""
+    """Number of evaluations of each run."""
 
 
 class BenchmarkInstance(_Strict):

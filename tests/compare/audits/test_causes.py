@@ -71,7 +71,7 @@ def test_what_was_judged_on_doubted_way_points_says_so() -> None:
         assert said.kind in (CaveatKind.POINTS, CaveatKind.SOME_POINTS)
         assert "Table 2" in said.why
     assert qualified(by["durations-80"].verdict, by["durations-80"].beside) == (
-        "supported, but on doubted way-points"
+        "supported, but on doubtful way-points"
     )
     # The law of scaling refutes it whatever the way-points are.
     assert by["time-optimal"].caveats[0].kind is CaveatKind.SOME_POINTS

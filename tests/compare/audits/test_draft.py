@@ -89,7 +89,7 @@ def test_a_total_that_is_no_sum_is_replaced_by_one_number() -> None:
     other = drafted("1.000 1.000 1.000", "2.500", "jumps")
     (found,) = [a for a in other.advice if "add up" in a.says]
     assert "3.0" in found.change
-    assert advised(other).blocks[-1].title == "1 things that a reader cannot check"
+    assert advised(other).blocks[-1].title == "1 points that readers cannot check"
     assert "The causes" in str(against(other).blocks)
 
 

@@ -233,7 +233,7 @@ def test_verify_compares_with_a_case_number_by_number(run: Run, document: dict[s
     assert (code, one["in_case"]) == (1, None)
     assert "differs in duration_lower" in one["in_case_why"]
     code, one = verified("mine.toml")
-    assert (code, one["in_case_why"]) == (1, "no problem of the case is this one")
+    assert (code, one["in_case_why"]) == (1, "the case does not contain this problem")
 
 
 def test_a_certificate_of_the_old_format_is_made_again(run: Run) -> None:

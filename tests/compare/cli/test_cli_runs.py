@@ -75,7 +75,7 @@ def test_evaluations_beyond_the_budget_of_one_run_are_explained(
 def test_joints_that_the_case_searches_apart_are_named(run: Run) -> None:
     out = run.done("bench", "mine.toml", "--optimizer", "random", *SMALL)
     assert out.splitlines()[0] == "Mine (mine)"
-    assert "The case searches each joint by itself" in " ".join(out.split())
+    assert "The case searches each joint separately" in " ".join(out.split())
     assert ", certified" in out
 
 
@@ -218,7 +218,7 @@ def test_a_study_is_run_exported_and_gone_on_with(run: Run) -> None:
     assert lines[1] == "Mine (mine/main, plain)"
     assert "particles 10" in out
     assert "{" not in out
-    assert "run the failed ones again: trajgap study few.toml --retry" in lines
+    assert "to repeat the failed runs: trajgap study few.toml --retry" in lines
     with open("few.csv", encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
     assert len(rows) == 8

@@ -217,7 +217,7 @@ def test_a_store_of_another_version_is_not_touched(path: Path) -> None:
 
 def test_what_is_no_database_is_refused(path: Path) -> None:
     path.write_text("format = 1\n" * 200)
-    with pytest.raises(CaseError, match=r"kept.sqlite: is not a store of trajgap; name a new file"):
+    with pytest.raises(CaseError, match=r"kept.sqlite: is not a store of trajgap; give a new file"):
         Store(path)
     with pytest.raises(CaseError, match=r"cannot be made .*; make its folder first"):
         Store(path.parent / "nowhere" / "kept.sqlite")
@@ -375,9 +375,9 @@ def test_iohprofiler_is_read_by_iohinspector(rows: list[Row], tmp_path: Path) ->
 @pytest.mark.parametrize(
     ("name", "said"),
     [
-        ("rows.xls", "rows.xls: --export: has no known ending; use .csv, .parquet, .ioh"),
-        ("there.csv", "there.csv: --export: exists already; name another or delete this one"),
-        ("nowhere/rows.csv", "rows.csv: --export: its folder is not there; make it first"),
+        ("rows.xls", "rows.xls: --export: has an unknown ending; use .csv, .parquet, .ioh"),
+        ("there.csv", "there.csv: --export: already exists; give another or delete this one"),
+        ("nowhere/rows.csv", "rows.csv: --export: its folder does not exist; create it first"),
     ],
 )
 def test_a_name_that_cannot_be_used_is_refused(tmp_path: Path, name: str, said: str) -> None:

@@ -111,7 +111,7 @@ def test_a_run_that_takes_too_long_is_a_row_without_clock_times() -> None:
     assert time.monotonic() - begun < 60
     assert row == run_trial(small_trial("support.optimizers:sleeps", seconds=0.3))
     assert row.message == (
-        "support.optimizers:sleeps: took longer than 0.3 s; raise the time limit, or look where "
+        "support.optimizers:sleeps: took longer than 0.3 s; raise the time limit, or find where "
         "it hangs"
     )
 
@@ -122,7 +122,7 @@ def test_a_run_that_judges_nothing_feasible_has_no_time() -> None:
     object.__setattr__(trial.problem, "duration_upper", np.full(3, 0.21))
     row = run_trial(trial)
     assert (row.status, row.reported_time, row.trace) == (RowStatus.FINISHED, None, ())
-    assert row.feasible_why == "nothing feasible was judged"
+    assert row.feasible_why == "no feasible vector was evaluated"
 
 
 def test_where_an_optimiser_comes_from(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -253,7 +253,9 @@ def test_a_process_that_cannot_start_is_reported(
     crew: Crew, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(trial_process, "_PROGRAM", "raise SystemExit(3)")
-    with pytest.raises(ProcessError, match=r"^workers: a process ends at once; see why: python"):
+    with pytest.raises(
+        ProcessError, match=r"^workers: a process ends at once; to see why, run python"
+    ):
         crew.run(small_trial())
     monkeypatch.setattr(sys, "executable", "/no/such/python")
     with pytest.raises(ProcessError, match=r"^workers: a process cannot be started \("):

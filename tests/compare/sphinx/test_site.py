@@ -262,7 +262,7 @@ def test_a_foreign_project_shows_an_audit(tmp_path):
     for reading in case["readings"]["admissible"]:
         assert page.count(f'<span class="pre">{reading}</span>') == 1
     assert 'aria-labelledby="' in page
-    assert "Proved again when this page was built" in page
+    assert "Verified when this page was built" in page
     assert page.count("certified</span>") > 40  # the suite's table, of 46
     assert ">353-puma560<" in page
     assert "basins" in page

@@ -206,8 +206,8 @@ def test_equations_are_judged_and_never_held_against_a_paper() -> None:
     right = "px = c1*(0.7*c2 + 0.4*c23)"
     for (printed, mended), verdict, said in (
         ((right, None), "supported", "1 of 1 equations hold at every pose tried, as the text has"),
-        (("px = s1", right), "not checkable", "Others hold once mended: (4) with all of it."),
-        (("px = s1", "px = c1"), "not checkable", "Not as the text has them: (4)."),
+        (("px = s1", right), "not checkable", "Others hold once corrected: (4) with all of it."),
+        (("px = s1", "px = c1"), "not checkable", "These do not hold as printed: (4)."),
         (("t1 = atan2(py, px)", "t1 = atan2(pm*py, pm*px)"), "not checkable", "of the poses as it"),
     ):
         keys = {"printed": printed} | ({"mended": mended, "mend": "all of it"} if mended else {})

@@ -155,7 +155,7 @@ def test_one_number_of_several_joints_may_be_their_norm_largest_or_mean() -> Non
     assert found.meant(None) == {
         " of the norm over the joints": pytest.approx(2.5),
         " of the largest joint": pytest.approx(2.0),
-        " of the joints in the mean": pytest.approx(1.75),
+        " averaged over the joints": pytest.approx(1.75),
     }
 
 

@@ -269,7 +269,7 @@ def test_a_peak_without_a_joint_is_the_largest_of_all(
 def test_a_peak_of_a_joint_that_the_profile_lacks_is_not_checkable() -> None:
     found = of_profile("9.9", {"joint": "1"}, {"joint": "2"})
     assert found.verdict is ClaimVerdict.NOT_CHECKABLE
-    assert found.message == "The profile is not of a joint whose number is printed."
+    assert found.message == "No number is printed for the joints of this profile."
 
 
 def test_a_peak_of_a_profile_of_another_problem_is_refused() -> None:
