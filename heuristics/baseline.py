@@ -36,17 +36,19 @@ def uniform_rescaling(problem: Problem) -> Array:
         )
     if not problem.curve.homogeneous:
         raise TrajgapError(
-            "uniform rescaling: a prescribed derivative is not 0, stretching would change it"
+            "uniform rescaling: a prescribed derivative is not 0, and stretching would change it"
         )
     stretch = float(evaluate(problem, np.ones((1, problem.segments))).stretch[0])
     if not np.isfinite(stretch):
-        raise TrajgapError("uniform rescaling: a joint with limit 0 moves; no stretch repairs that")
+        raise TrajgapError(
+            "uniform rescaling: a joint with limit 0 moves, which no stretch repairs"
+        )
     equal = np.full(problem.segments, stretch)
     durations: Array = np.clip(equal, problem.duration_lower, problem.duration_upper)
     if not (durations > 0).all():
         raise TrajgapError(
-            "uniform rescaling: nothing moves or nothing is limited, the total can shrink to 0; "
-            "give positive lower duration bounds"
+            "uniform rescaling: nothing moves or nothing is limited, so the total can shrink to "
+            "0; give positive lower duration bounds"
         )
     found = check(problem, durations)
     beyond = [p for p in found.peaks if p.quantity == "position" and p.ratio > 1 + found.tolerance]

@@ -120,7 +120,7 @@ def searched(
         search.search(bounds, rng, budgeted)
     if budgeted.best is None:
         raise TrajgapError(
-            f"{search.kind}: judged no position; call the objective that it is given"
+            f"{search.kind}: evaluated no position; call the objective that it is given"
         )
     judged = budgeted.judged
     ends = np.minimum(np.arange(1, blocks + 1) * per, judged) - 1

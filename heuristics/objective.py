@@ -83,7 +83,7 @@ class DeathPenalty:
             )
         if problem.ratios is not None:
             raise TrajgapError(
-                "ratios: the durations have fixed ratios, so that the total is the one unknown and "
+                "ratios: the durations have fixed ratios, so the total is the only unknown and "
                 "there is nothing to search; `solve` gives it, or leave the ratios out"
             )
 
@@ -171,4 +171,4 @@ def check_shape(fitness: Array, count: int) -> None:
 
 def nan_returned() -> TrajgapError:
     """Error for an objective that returned NaN."""
-    return TrajgapError("objective: returned NaN; return inf for what is infeasible")
+    return TrajgapError("objective: returned NaN; return inf for infeasible positions")

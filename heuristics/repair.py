@@ -75,8 +75,8 @@ class Stretch:
         DeathPenalty(self.problem, self.penalty)
         if not self.problem.curve.homogeneous:
             raise TrajgapError(
-                "stretch: a prescribed derivative is not 0, stretching would change it; "
-                "use the death penalty"
+                "stretch: a prescribed derivative is not 0, and stretching would change it; use "
+                "the death penalty"
             )
 
     def _stretched(self, durations: Array) -> tuple[Array, NDArray[np.bool_]]:

@@ -122,11 +122,13 @@ def run_within(
         ) from None
     if budgeted.refused > 1:
         raise TrajgapError(
-            f"{method.kind}: went on after its budget of {budget} evaluations was spent; let the "
-            "exception of the objective pass"
+            f"{method.kind}: continued after its budget of {budget} evaluations was spent; do not "
+            "catch the exception of the objective"
         )
     if budgeted.best is None:
-        raise TrajgapError(f"{method.kind}: judged no position; call the function that it is given")
+        raise TrajgapError(
+            f"{method.kind}: evaluated no position; call the function that it is given"
+        )
     totals = budgeted.totals
     totals[totals >= method.penalty] = np.inf
     return BudgetedRun(

@@ -237,7 +237,9 @@ class PerJointSolution(SearchResult):
         return weakest([Evidence.BEST_KNOWN, self.joint_evidence])
 
     def __str__(self) -> str:
-        lines = [f"{self.problem.name}: each joint separately, then the longest per segment"]
+        lines = [
+            f"{self.problem.name}: each joint separately, then the longest duration per segment"
+        ]
         for label, s in zip(self.problem.joints, self.joints, strict=True):
             shown = ", ".join(f"{d:.4f}" for d in s.durations) if s.found else s.why
             lines.append(f"joint {label:<9} {s.total_time:.6f} s  ({shown})  {s.status}")

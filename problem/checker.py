@@ -266,17 +266,17 @@ def _rescaled(
     stretched = h * factor
     slack = 1 + TOLERANCE
     if not np.isfinite(factor):
-        return None, "a joint with limit 0 moves; no stretch repairs that"
+        return None, "a joint with limit 0 moves, which no stretch repairs"
     if factor != 1.0 and not problem.curve.homogeneous:
-        return None, "a prescribed end derivative is not 0; stretching would change it"
+        return None, "a prescribed end derivative is not 0, and stretching would change it"
     if any(p.quantity == "position" and p.ratio > 1 + TOLERANCE for p in peaks):
-        return None, "a position limit is exceeded; stretching does not move the path"
+        return None, "a position limit is exceeded, and stretching does not change the path"
     if (stretched * slack < problem.duration_lower).any():
         return None, "a stretched duration falls below its lower bound"
     if (stretched > problem.duration_upper * slack).any():
         return None, "a stretched duration exceeds its upper bound"
     if factor == 0.0:
-        return None, "nothing moves or nothing is limited; the total time can shrink to 0"
+        return None, "nothing moves or nothing is limited, so the total time can shrink to 0"
     return float(stretched.sum()), None
 
 
@@ -351,10 +351,10 @@ def _judged(problem: Problem, h: Array, found: Enclosed, tolerance: float) -> tu
     tight_time, tight_why = _rescaled(problem, h, stretch, peaks)
     if serious:
         feasible_time, tight_time = None, None
-        feasible_why = tight_why = "the motion jumps at a break; stretching does not repair that"
+        feasible_why = tight_why = "the motion jumps at a break, which stretching does not repair"
     elif any(p.quantity in roots and _slack(problem, p) >= 1.0 for p in peaks):
         feasible_time, tight_time = None, None
-        feasible_why = tight_why = "rounding hides whether a stretch repairs it"
+        feasible_why = tight_why = "rounding errors hide whether a stretch repairs it"
     judged = Check(
         verdict=verdict,
         limits=about_limits,

@@ -155,7 +155,7 @@ def _ratio_word(raw: object) -> str:
 def _upper_limit(raw: object) -> Printed | None:
     sign = _infinite(raw)
     if sign == "-":
-        raise TrajgapError("-inf is negative; write inf where there is no limit")
+        raise TrajgapError("-inf is negative; write inf for no limit")
     return None if raw is None or sign else _not_negative(read_number(raw))
 
 

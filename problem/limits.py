@@ -103,7 +103,7 @@ class Limits:
                     f"got shape {array.shape}"
                 )
             if np.isnan(array).any():
-                raise TrajgapError(f"limits.{name}: is NaN; write inf where there is no limit")
+                raise TrajgapError(f"limits.{name}: is NaN; write inf for no limit")
             if paired:
                 full = _paired(name, array)
             else:

@@ -162,7 +162,7 @@ class Problem:
         object.__setattr__(self, "linear", linear)
         if isinstance(self.ratios, str) and self.ratios == "chord" and len(set(linear)) > 1:
             raise TrajgapError(
-                'ratios: "chord" adds angles and lengths, so that they depend on units; give '
+                'ratios: "chord" adds angles and lengths, so the ratios depend on units; give '
                 'numbers, or "equal"'
             )
         if self.ratios is not None:
@@ -199,8 +199,8 @@ class Problem:
         polynomials = as_piecewise(self.curve)
         if polynomials is None:
             raise TrajgapError(
-                f"curve: {self.curve.name} is not a piecewise polynomial with breaks at "
-                "the way-points, which is needed here"
+                f"curve: {self.curve.name} is not a piecewise polynomial with breaks at the "
+                "way-points, which is required here"
             )
         return polynomials
 

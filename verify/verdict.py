@@ -197,7 +197,7 @@ def _document(data: Any) -> dict[str, Any]:
     need(type(data) is dict, "no JSON object; name a certificate")
     found = data.get("format")
     if type(found) is str and found in OLD_FORMATS:
-        raise Refused(f"{found}: an old format; `trajgap solve CASE --certify` makes it again")
+        raise Refused(f"{found}: an old format; `trajgap solve CASE --certify` recreates it")
     wanted = type(found) is str and found in (CERTIFICATE_FORMAT, STATE_FORMAT)
     need(wanted, f"no {CERTIFICATE_FORMAT}; name a certificate")
     state = found == STATE_FORMAT

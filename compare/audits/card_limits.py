@@ -162,7 +162,7 @@ def _differing(study: Study, found: Mapping[str, set[ClaimVerdict]], where: str)
         shares += [
             noted(f"{word} under {len(those)}", implausibly(those, far)) for word, those in others
         ]
-        return f"Whether the limits{where} are kept depends on the reading: {', '.join(shares)}"
+        return f"Limits{where} are {', '.join(shares)}"
     ordered = sorted(said.items(), key=lambda item: all(one in far for one in item[1]))
     parts = []
     for word, own in ordered:

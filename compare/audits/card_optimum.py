@@ -397,17 +397,17 @@ def _joint_by_joint(row: PrintedRow[TimeClaim], seconds: float) -> str | None:
     wide = answer.ranges[0]
     proven = answer.joint_evidence is Evidence.CERTIFIED
     # The joints' optima may be proven; the range that they leave is the widest that is found.
-    own = "obtained by optimising each joint separately"
+    own = "from optimising each joint separately"
     own += "" if all_exact(row) else " at the printed digits"
     own += "" if proven else " (best known)"
     span = f"{ranged(wide.lowest, wide.highest, '.4f')} s"
     low, high = total.interval
     if meet((low, high), (wide.lowest, wide.highest)):
-        return f"agrees with the {span} {own}"
+        return f"agrees with {span} {own}"
     longer = seconds > wide.highest
     shares = sorted(abs(seconds / one - 1) for one in (wide.highest, wide.lowest))
     shown = " to ".join(dict.fromkeys(map(_percent_digits, shares)))
-    return f"is {shown} % {'above' if longer else 'below'} the {span} {own}"
+    return f"is {shown} % {'above' if longer else 'below'} {span} {own}"
 
 
 def _seconds(row: PrintedRow[TimeClaim]) -> float:

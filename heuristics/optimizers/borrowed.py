@@ -91,7 +91,7 @@ class Guarded:
         try:
             x = np.asarray(positions, dtype=np.float64)
         except (TypeError, ValueError):
-            raise self._wrong("asked for the fitness of something that is not numbers") from None
+            raise self._wrong("asked for the fitness of something that is not numeric") from None
         count = len(self._box)
         if x.ndim not in (1, 2) or x.shape[-1] != count:
             raise self._wrong(

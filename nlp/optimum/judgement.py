@@ -79,7 +79,7 @@ def judged(
     status = Status.FEASIBLE if notes or beyond > SAME else Status.CONVERGED
     if beyond > KKT_TOLERANCE:
         longer = f"longer by {beyond:.1e} (relative) than a tight motion"
-        notes += [f"{longer}, which rounding errors blur"]
+        notes += [f"{longer}, within rounding errors"]
     if answer.verdict.verdict is Verdict.DISCONTINUOUS:
         jumps = sum(jump.order < 2 for jump in answer.verdict.jumps)
         notes += [f"limits kept inside the segments; {jumps} jumps of velocity between them"]

@@ -206,7 +206,7 @@ class Solution(SearchResult):
             return None
         if not np.isfinite(self.problem.limits.sides).any():
             return "without limits there is no shortest motion (not checkable)"
-        return "nothing that is limited keeps the total from 0, so that no motion is the shortest"
+        return "no limit keeps the total from falling to 0, so there is no shortest motion"
 
     @property
     def settled(self) -> bool:

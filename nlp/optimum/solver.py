@@ -43,7 +43,7 @@ time of a wide search and dense descents, at 10 segments in twice it."""
 RATIOS = 12
 """Random ratios from which rounds look for a motion without a jump: every second of them finds
 one, where there is any."""
-ONLY_TOLERANCE = "the limits leave no room: they are kept within the tolerance of the check alone"
+ONLY_TOLERANCE = "the limits leave no room: they are kept only within the tolerance of the check"
 """Beside an answer that exact limits would not let pass."""
 
 
@@ -141,7 +141,7 @@ def _at_ratios(problem: Problem) -> Solution:
     if not answer.found:
         return refused_at_ratios(problem, h)
     if check(problem, h).stretch == 0.0 and not problem.duration_lower.any():
-        why = "nothing that moves is limited, so that the total falls to 0"
+        why = "nothing that moves is limited, so the total falls to 0"
         found = replace(answer, status=Status.NOT_ATTAINED, why=why, infimum=0.0)
         return replace(found, kkt_residual=None, active=())
     if answer.status is not Status.CONVERGED:
@@ -341,7 +341,7 @@ def _without_jumps(problem: Problem, solution: Solution) -> Solution:
     equations = len(places) - problem.curve.free * len({j for *_, j in places})
     if equations <= ratios:
         return solution
-    why = f"it would take {ratios} ratios of durations that meet {equations} equations"
+    why = f"{ratios} ratios of durations would have to satisfy {equations} equations"
     return replace(solution, why=f"{solution.why}; {why}")
 
 

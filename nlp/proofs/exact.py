@@ -26,8 +26,8 @@ from ...problem.curves import Derivatives
 from .shares import exact_shares, printed_shares
 
 MOVING = (
-    "prescribes derivatives other than 0, which the proof for its kind of problem does not cover; "
-    "what --any-curve proves over any curve is a lower bound for it"
+    "prescribes derivatives other than 0, which this kind of proof does not cover; --any-curve "
+    "proves a lower bound"
 )
 """Why there is no proof of a curve at fixed ratios, of a B-spline, or in units of a proof for cubic
 and quintic splines; and what still holds."""
@@ -219,7 +219,9 @@ def one_velocity(end: Derivatives) -> float | None:
     """
     value = dict(end).get(1)
     if isinstance(value, tuple):
-        raise TrajgapError("certify: end velocities that differ are those of polynomials alone")
+        raise TrajgapError(
+            "certify: end velocities that differ between joints are covered for polynomials only"
+        )
     return value
 
 
@@ -394,6 +396,6 @@ def _derivative(number: Printed, order: int, statement: Statement, joint: int) -
     if other.pi != base.pi:
         raise TrajgapError(
             "certify: a derivative at an end is in another unit of angle than the way-points, "
-            "so that no certificate states it exactly; give both in the same"
+            "so no certificate can state it exactly; give both in the same unit"
         )
     return number.fraction * other.rational / base.rational

@@ -210,11 +210,13 @@ def not_applicable(trajectory: Trajectory, limits: Limits) -> str | None:
     if not moving.any():
         return "nothing moves"
     if limits.uneven:
-        return "the two sides of a limit differ in size, and paths are retimed within equal ones"
+        return (
+            "the two sides of a limit differ in size, and paths are re-timed only within equal ones"
+        )
     if np.isfinite(limits.jerk[moving]).any():
-        return "jerk is limited, and TOPPRA knows velocity and acceleration limits only"
+        return "jerk is limited, but TOPPRA handles velocity and acceleration limits only"
     if np.isinf(limits.acceleration[moving]).all():
-        return "no acceleration is limited; speed along the path could jump"
+        return "no acceleration is limited, so the speed along the path could jump"
     for name, values in (("velocity", limits.velocity), ("acceleration", limits.acceleration)):
         stuck = np.flatnonzero(moving & (values == 0))
         if stuck.size:

@@ -395,7 +395,7 @@ class Case:
         if known is None:
             chain = self.chain()
             if chain is None or chain.labels != self.robot.joints:
-                why = "needs the robot's table, and all its joints in robot.joints; add them"
+                why = "needs the robot's table with all its joints in robot.joints; add them"
                 raise CaseError(self.file, "waypoints.line", why + selected)
             if unit is None:
                 choices = ", ".join(CHOICES["position"])

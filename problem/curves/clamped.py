@@ -243,17 +243,14 @@ def _read(
     counted = counts_in_words(conditions, points, "control points")
     count, curve, why = Count.OVER, None, nearest_reading(knots, degree, end_orders)
     if inner < 0:
-        words = (
-            f"impossible as the text has it: degree {degree} needs more way-points; "
-            "lower the degree"
-        )
+        words = f"impossible as printed: degree {degree} needs more way-points; lower the degree"
     elif points == conditions:
         count = Count.DETERMINED
         curve = ClampedBSpline(waypoints, degree, knots, parameters, time, end_orders)
         words = f"determined, {counted}{'' if parameters is Parameters.TIMES else _CHORDS[time]}"
     elif points < conditions:
         # Only the printed rule, taken at its letter, is called impossible.
-        literal = "impossible as the text has it: " if knots is Knots.AVERAGED else ""
+        literal = "impossible as printed: " if knots is Knots.AVERAGED else ""
         words = f"{literal}over-determined, {counted}; {why}"
     else:
         count, free = Count.UNDER, points - conditions
@@ -273,8 +270,9 @@ _CHORDS = {
         "the chords' proportions"
     ),
     Timing.STRETCHED: (
-        "; chords place knots and way-points, velocity jumps where a segment's duration leaves the "
-        "chords' proportions. With one u = t/T for all, only the total is left of the durations"
+        "; chords place knots and way-points, velocity jumps where a segment's duration leaves "
+        "the chords' proportions. With one u = t/T for all, only the total of the durations "
+        "remains free"
     ),
 }
 """What is added to the words of a determined reading with chord parameters."""

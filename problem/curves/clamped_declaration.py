@@ -93,7 +93,7 @@ def inner_fractions(vector: Sequence[float], degree: int) -> tuple[float, ...]:
         if one == other:
             raise TrajgapError(
                 f"interpolant.knot_vector: the inner knot {one:g} stands {knots.count(one)} times; "
-                "each may stand once, so that the curve is smooth there"
+                "each may stand once, to keep the curve smooth there"
             )
     return tuple((u - knots[0]) / (knots[-1] - knots[0]) for u in knots[ends : len(knots) - ends])
 
@@ -127,8 +127,8 @@ def nearest_reading(knots: Knots, degree: int, end_orders: tuple[int, ...]) -> s
     rest = 2 * len(end_orders)
     if knots is Knots.WAYPOINTS:
         return (
-            f"with knots at the way-points degree {rest + 1} is determined, with the index "
-            f"continued degree {degree} is"
+            f"with knots at the way-points, degree {rest + 1} is determined; with the index "
+            f"continued, degree {degree} is"
         )
     return f"continue the averaging index at both ends, one knot for each of the {rest} conditions"
 
@@ -145,7 +145,7 @@ def chord_fractions(waypoints: NDArray[np.generic]) -> Fractions:
     if not (chords > 0).all():
         k = int(np.argmin(chords))
         raise TrajgapError(
-            f"waypoints: {k} and {k + 1} coincide, chord parameters do not tell them apart; "
+            f"waypoints: {k} and {k + 1} coincide, so chord parameters cannot distinguish them; "
             "take the parameters from the times"
         )
     along = np.concatenate([[0.0], np.cumsum(chords)])

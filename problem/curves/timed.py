@@ -151,7 +151,9 @@ class ClockedTrajectory(Trajectory):
         """
         if order == 0:
             return super().derivative(segment, joint, 0)
-        raise TrajgapError("trajectory: time is not linear here, derivatives are not polynomials")
+        raise TrajgapError(
+            "trajectory: time is not linear here, so derivatives are not polynomials"
+        )
 
     @property
     def path(self) -> Trajectory:

@@ -41,7 +41,7 @@ def read_moveit(path: Path) -> StatedLimits:
     name = str(path)
     documents = read_yaml(path)
     if len(documents) > 1:
-        raise CaseError(name, "", f"holds {len(documents)} documents; keep one")
+        raise CaseError(name, "", f"contains {len(documents)} documents; keep one")
     found = documents[0] if documents else None
     # As a file of ROS parameters it is wrapped: node, ros__parameters, robot_description_planning.
     for _ in range(4):
@@ -55,7 +55,7 @@ def read_moveit(path: Path) -> StatedLimits:
             raise CaseError(name, f"joint_limits.{joint}", "is not a block of limits; see MoveIt")
         ranges[joint] = _ranges(name, f"joint_limits.{joint}", block)
     if not ranges:
-        raise CaseError(name, "joint_limits", "holds no joint; name the joints of the arm")
+        raise CaseError(name, "joint_limits", "contains no joint; name the joints of the arm")
     return StatedLimits(name, ranges)
 
 
@@ -105,5 +105,5 @@ def _number(name: str, field: str, block: Mapping[Any, Any], key: str) -> float 
     except OverflowError:
         found = math.inf
     if math.isnan(found):
-        raise CaseError(name, f"{field}.{key}", "is NaN; leave it out where there is no limit")
+        raise CaseError(name, f"{field}.{key}", "is NaN; leave it out if there is no limit")
     return found

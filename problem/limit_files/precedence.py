@@ -93,7 +93,7 @@ def merge(joints: Sequence[str], sources: Sequence[StatedLimits]) -> JointLimits
             raise CaseError(
                 said[joint, BRAKING],
                 BRAKING,
-                f"joint {joint} has two-sided acceleration limits beside it; state one of the two",
+                f"joint {joint} also has two-sided acceleration limits; state one of the two",
             )
     return JointLimits(tuple(joints), lower, upper, braking, said)
 

@@ -85,7 +85,7 @@ class _Reader:
         if len(self.path) > 50:
             raise self.fault("", "is nested too deeply; give a URDF")
         if not self.path and tag != "robot":
-            raise self.fault("", f"begins with <{tag[:40]}>; a URDF begins with <robot>")
+            raise self.fault("", f"begins with <{tag[:40]}>, but a URDF begins with <robot>")
         self.path.append(tag)
         if self.path == ["robot", "joint"]:
             self.joint, self.kind = attributes.get("name", ""), attributes.get("type", "")

@@ -39,8 +39,8 @@ class Floor:
 
     def __str__(self) -> str:
         return (
-            f"{self.time:.6f} s over any motion between the {self.stops} standstills, whatever "
-            f"it passes in between ({100 * self.above:.1f} % above it)"
+            f"{self.time:.6f} s for any motion between the {self.stops} standstills, whatever its "
+            f"path ({100 * self.above:.1f} % above it)"
         )
 
 
@@ -113,12 +113,12 @@ def least_time(
     still = np.asarray((speed <= standing).all(axis=1))
     if not (still[0] and still[-1]):
         which = "start" if not still[0] else "end"
-        return None, f"that the motion {which}s at rest is not shown, so its ends set no floor"
+        return None, f"it is not shown that the motion {which}s at rest, so its ends set no floor"
     sizes = np.maximum(np.abs(limits.lower[:, 1:]), np.abs(limits.upper[:, 1:]))
     braking = np.isfinite(limits.deceleration)
     sizes[braking, 1] = np.maximum(sizes[braking, 1], limits.deceleration[braking])
     if not np.isfinite(sizes).any():
-        return None, "nothing is limited but positions"
+        return None, "only positions are limited"
     begun, ended = motion.at_ends(2)
     at = np.nonzero(still)[0]
     places = np.vstack([motion.scaled[:, 0], motion.scaled[-1:].sum(axis=1)])

@@ -225,7 +225,7 @@ def _message(given: Any, joints: Sequence[str]) -> Motion:
     """A JointTrajectory of ROS: a message, or its plain values, as its controller follows it."""
     held = list(trajectories(given if isinstance(given, Mapping) else plain_message(given)))
     if len(held) != 1:
-        raise TrajgapError(f"the message holds {len(held)} trajectories; give one")
+        raise TrajgapError(f"the message contains {len(held)} trajectories; give one")
     samples = samples_of_message(held[0], "JointTrajectory", text=False)
     if joints and tuple(joints) != samples.joints:
         raise TrajgapError(

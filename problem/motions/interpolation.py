@@ -66,4 +66,4 @@ def _words(how: Interpolation, degree: NDArray[np.int64]) -> str:
     names = {1: "straight lines", 3: "cubic Hermite", 5: "quintic Hermite"}
     used = [names[d] for d in (1, 3, 5) if (degree == d).any()]
     said = " and ".join(used) + " between samples"
-    return f"{said}, as joint_trajectory_controller" if how is Interpolation.CONTROLLER else said
+    return f"{said}, as in joint_trajectory_controller" if how is Interpolation.CONTROLLER else said

@@ -160,8 +160,8 @@ class JointLimits:
             lacking = sum(quantity == other for _, other in unstated)
             if quantity != ORDERS[0] and lacking < len(self.joints):
                 raise TrajgapError(
-                    f"{quantity} of joint {joint}: no limit is stated, and other joints have one; "
-                    "state it, or inf where there is none"
+                    f"{quantity} of joint {joint}: no limit is stated, but other joints have one; "
+                    "state it, or inf for none"
                 )
 
 
@@ -194,14 +194,16 @@ def check_range(low: float, high: float, quantity: str, joint: str) -> None:
     """Refuse a range that no motion can keep."""
     name = f"{quantity} of joint {joint}"
     if np.isnan(low) or np.isnan(high):
-        raise TrajgapError(f"{name}: is NaN; leave it out where there is no limit")
+        raise TrajgapError(f"{name}: is NaN; leave it out if there is no limit")
     if low > high:
         raise TrajgapError(f"{name}: the lower limit {low:g} lies above the upper one {high:g}")
     if quantity != "position" and not low <= 0.0 <= high:
-        raise TrajgapError(f"{name}: {low:g} to {high:g} leaves out 0; a range includes standing")
+        raise TrajgapError(
+            f"{name}: {low:g} to {high:g} excludes 0; a range must include standstill"
+        )
     if any(np.isfinite(end) and abs(end) > LARGEST for end in (low, high)):
-        raise TrajgapError(f"{name}: is beyond {LARGEST:g}; write inf where there is no limit")
+        raise TrajgapError(f"{name}: is beyond {LARGEST:g}; write inf for no limit")
     if any(0 < abs(end) < 1 / LARGEST for end in (low, high)):
-        raise TrajgapError(f"{name}: is below {1 / LARGEST:g}; write 0 where nothing may move")
+        raise TrajgapError(f"{name}: is below {1 / LARGEST:g}; write 0 if nothing may move")
     if low == np.inf or high == -np.inf:
-        raise TrajgapError(f"{name}: leaves nothing; leave it out where there is no limit")
+        raise TrajgapError(f"{name}: leaves nothing; leave it out if there is no limit")

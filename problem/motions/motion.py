@@ -241,5 +241,5 @@ def check_times(times: Array, field: str) -> None:
         raise TrajgapError(f"{field}: a step or a time is out of range; give seconds")
     if clock_error(times).max() > 1e-3:
         raise TrajgapError(
-            f"{field}: a step is lost in the digits of its time; let time start near 0"
+            f"{field}: a step is too small for the digits of its time; let time start near 0"
         )

@@ -51,7 +51,7 @@ def read_parquet(path: Path, joints: Sequence[str] = ()) -> Samples:
         names, rows = list(file.schema_arrow.names), file.metadata.num_rows
         check_size(name, rows, len(names))
         if not names or rows == 0:
-            raise CaseError(name, "", "holds no rows; give one row per sample")
+            raise CaseError(name, "", "contains no rows; give one row per sample")
         rows_read = file.read()
         time, _ = column_meaning(name, names)
         read = [
@@ -107,7 +107,7 @@ def _times(name: str, label: str, column: Any) -> tuple[Array, float]:
         second = 1 if types.is_date32(kind) else _A_SECOND[getattr(kind, "unit", "ms")]
         start = 0 if types.is_duration(kind) else int(whole[0])
         if max(abs(int(whole.max()) - start), abs(int(whole.min()) - start)) >= 2**63:
-            raise CaseError(name, label, "spans more than is read; give seconds")
+            raise CaseError(name, label, "spans more time than can be read; give seconds")
         return np.asarray((whole - start) / second, dtype=np.float64), 0.5 / second
     whole_numbers = types.is_integer(kind) or (types.is_decimal(kind) and kind.scale <= 0)
     if whole_numbers and label.strip().lower() in _NO_UNIT:

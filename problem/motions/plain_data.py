@@ -120,7 +120,8 @@ def _odd_number(name: str, node: Any) -> CaseError:
     return CaseError(
         name,
         _place(node.start_mark),
-        f"{node.value[:40]!r} is another number in YAML than it seems; write plain decimal digits",
+        f"{node.value[:40]!r} is a different number in YAML than it appears; write plain decimal "
+        "digits",
     )
 
 

@@ -43,7 +43,7 @@ def motion_of_json(found: Any, name: str, factors: Array | float = 1.0) -> Motio
     breaks = _array(name, "breaks" if "breaks" in found else "x", found, 1)
     c = _array(name, key, found, 3)
     if c.size > 10 * MOST_VALUES:
-        raise CaseError(name, key, f"{c.size} coefficients are more than is read; keep fewer")
+        raise CaseError(name, key, f"{c.size} coefficients are too many; keep fewer")
     labels = found.get("joints") or ()
     if not isinstance(labels, list | tuple) or not all(isinstance(x, str) and x for x in labels):
         raise CaseError(name, "joints", "is not a list of names; give one name per joint")

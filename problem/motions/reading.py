@@ -235,10 +235,12 @@ def _message(
     held = list(trajectories(found))
     if not held:
         raise CaseError(
-            name, "", "holds no trajectory; give joint_names and points, or breaks and coefficients"
+            name,
+            "",
+            "contains no trajectory; give joint_names and points, or breaks and coefficients",
         )
     if len(held) > 1:
-        raise CaseError(name, "", f"holds {len(held)} trajectories; keep one")
+        raise CaseError(name, "", f"contains {len(held)} trajectories; keep one")
     return _ros(name, samples_of_message(held[0], name), units, stated, words)
 
 

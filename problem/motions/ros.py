@@ -92,7 +92,7 @@ def samples_of_message(message: Mapping[str, Any], name: str, text: bool = True)
     if not isinstance(points, list) or len(points) < 2:
         raise CaseError(name, "points", "fewer than two points; a motion needs two or more")
     if len(points) * len(joints) > MOST_VALUES:
-        raise CaseError(name, "points", f"{len(points)} points are more than is read; keep fewer")
+        raise CaseError(name, "points", f"{len(points)} points are too many; keep fewer")
     times = np.empty(len(points))
     values = np.full((3, len(points), len(joints)), np.nan)
     for k, point in enumerate(points):

@@ -103,11 +103,15 @@ class Samples:
                 object.__setattr__(self, name, None)
         noise = np.broadcast_to(np.asarray(self.noise, dtype=np.float64), (count,))
         if not ((noise >= 0) & (noise <= LARGEST)).all():
-            raise TrajgapError("noise: is not a length; give what positions may be off by, or 0")
+            raise TrajgapError(
+                "noise: is not a length; give the uncertainty of the positions, or 0"
+            )
         object.__setattr__(self, "noise", np.array(noise))
         for clock in (self.time_noise, self.rounding.time):
             if not (np.isfinite(clock) and clock >= 0):
-                raise TrajgapError("time noise: is not a time; give what times may be off by, or 0")
+                raise TrajgapError(
+                    "time noise: is not a time; give the uncertainty of the times, or 0"
+                )
 
     def _check_finite(
         self, name: str, values: Array, rows: NDArray[np.bool_] | None = None
@@ -199,17 +203,17 @@ class Samples:
             )
             if holds
         )
-        return f"Numbers are known only so far: {', '.join(parts)} ({why})."
+        return f"Uncertainty of the numbers: {', '.join(parts)} ({why})."
 
     @property
     def advice(self) -> str:
         """What to do where that leaves a verdict open."""
         rounded = bool(np.any(self.rounding.values)) or self.rounding.time > 0
         return (
-            "Write more digits, of the times too; or state --noise 0 and --time-noise 0 if the "
-            "numbers of the file are exact."
+            "Write more digits, also for the times, or state --noise 0 and --time-noise 0 if the "
+            "numbers in the file are exact."
             if rounded
-            else "State a smaller noise if the numbers are known better."
+            else "State a smaller noise if the numbers are more precise."
             if self.assumed
             else ""
         )

@@ -127,7 +127,7 @@ def csv_text(samples: Samples, units: Array | float = 1.0) -> str:
     there = [(word, values) for word, values in given if values is not None]
     head = ["time", *(f"{joint}{word}" for word, _ in there for joint in samples.joints)]
     if any(sign in "".join(head) for sign in ',;\t\n\r#"'):
-        raise TrajgapError("joints: a name holds a separator; rename it for CSV")
+        raise TrajgapError("joints: a name contains a separator; rename it for CSV")
     table = np.column_stack([samples.time, *(values / units for _, values in there)])
     stream = io.StringIO()
     stream.write(",".join(head) + "\n")

@@ -97,7 +97,7 @@ class Chain:
             )
         allowed = {"lower": -np.inf, "upper": np.inf}.get(name)
         if not (np.isfinite(row) | (row == allowed if allowed is not None else False)).all():
-            raise TrajgapError(f"chain.{name}: holds a number that is not finite; correct it")
+            raise TrajgapError(f"chain.{name}: contains a number that is not finite; correct it")
         full = np.array(np.broadcast_to(row.ravel() if optional else row, (count,)))
         full.setflags(write=False)
         return full

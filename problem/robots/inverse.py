@@ -120,7 +120,7 @@ def inverse_kinematics(
     if not (starts >= 1 and iterations >= 1 and 0 < tolerance < np.inf):
         raise TrajgapError(
             f"inverse kinematics: {starts} starts, {iterations} iterations, tolerance {tolerance}; "
-            "give at least 1, at least 1, and a positive number"
+            "give at least 1 start, at least 1 iteration, and a positive tolerance"
         )
     begin = _starts(chain, np.random.default_rng(seed), starts, guess)
     near = guess is not None

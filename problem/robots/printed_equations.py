@@ -61,7 +61,7 @@ class Equation(Strict):
     def _together(self) -> Self:
         if (self.mended is None) != (self.mend is None):
             missing = ".mend" if self.mend is None else ".mended"
-            raise fault(missing, "is missing; mended and mend stand together")
+            raise fault(missing, "is missing; mended and mend must be given together")
         return self
 
 
@@ -120,7 +120,7 @@ def check_equation(chain: Chain, text: str, samples: int = SAMPLES, seed: int = 
             f"{LONGEST_EQUATION} characters"
         )
     if chain.joints > 9 or not chain.revolute.all():
-        raise TrajgapError("equations: are those of fewer than ten joints that all turn")
+        raise TrajgapError("equations: apply only to chains of fewer than ten joints that all turn")
     q = np.random.default_rng(seed).uniform(*chain.span(), (samples, chain.joints))
     frames = link_frames(chain, q)
     differences = []
@@ -142,7 +142,9 @@ def _apart(left: Array, right: Array, wraps: bool) -> Array:
     try:
         apart = left - right
     except ValueError:
-        raise TrajgapError("equations: a number stands against a transform; compare like") from None
+        raise TrajgapError(
+            "equations: a number is compared with a transform; compare like with like"
+        ) from None
     if wraps:
         return np.asarray(np.abs(apart - 2 * np.pi * np.round(apart / (2 * np.pi))))
     size = np.maximum(1.0, np.maximum(np.abs(left), np.abs(right)))
@@ -171,14 +173,16 @@ def _value(text: str, chain: Chain, q: Array, frames: Array, names: dict[str, An
                 name in _FUNCTIONS and len(given) == _FUNCTIONS[name][0]
             ):
                 return _FUNCTIONS[name][1](*map(value, given))
-        raise TrajgapError(f"{_short(ast.unparse(node))} is not read; see check_equation")
+        raise TrajgapError(f"{_short(ast.unparse(node))} is not supported; see check_equation")
 
     try:
         return value(tree)
     except TrajgapError:
         raise
     except ValueError:
-        raise TrajgapError(f"{_short(text)} mixes numbers and transforms; compare like") from None
+        raise TrajgapError(
+            f"{_short(text)} mixes numbers and transforms; compare like with like"
+        ) from None
 
 
 def _named(name: str, chain: Chain, q: Array, frames: Array) -> Any:

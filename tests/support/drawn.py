@@ -54,7 +54,7 @@ STEPS = (
     Step(name="published", time=1.9, low=1.895, high=1.905),
     Step(name="feasible after repair", time=2.1, note="stretched"),
     Step(
-        name="each joint at its optimum, longest duration per segment",
+        name="each joint at its optimum, longest per segment",
         time=1.7,
         low=1.6,
         high=1.8,

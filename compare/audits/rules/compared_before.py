@@ -252,8 +252,8 @@ def _taken_away(ablated: Sequence[Ablated], case: Case) -> Iterator[str]:
             if one.problem == problem
         ]
         yield (
-            f"{noted('Share of pairs', searched)} in which the whole algorithm is shorter than "
-            f"itself without {', '.join(parts)}."
+            f"{noted('Share of pairs', searched)} in which the complete algorithm is shorter than "
+            f"without one improvement: {', '.join(parts)}."
         )
 
 

@@ -386,7 +386,7 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
         else:
             verdict = ClaimVerdict.SUPPORTED
             called_so = {optimum_called(one.problem, evidence) for one in sides.solutions}
-            rounded = "if digits were rounded up to keep the limits" if sides.rounded_up else ""
+            rounded = " if digits were rounded up to keep the limits" if sides.rounded_up else ""
             which = " or the ".join(sorted(called_so))
             whose = what_agrees(len(sides.agreeing), sides.summed)
             said = [f"{whose} the {which}{rounded}."]

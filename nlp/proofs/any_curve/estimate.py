@@ -118,7 +118,7 @@ def estimate_any_curve(
     short = np.flatnonzero(question.lower > question.upper * (1 + TOLERANCE))
     if short.size:
         return AnyCurveEstimate(
-            None, why=f"segment {short[0] + 1} cannot be done within its upper bound"
+            None, why=f"segment {short[0] + 1} cannot be traversed within its upper bound"
         )
     bounded = np.isfinite(question.acceleration)
     durations = question.lower.copy()

@@ -129,7 +129,7 @@ def test_an_optimum_whose_digits_were_rounded_up_is_not_refuted_and_a_longer_one
     one = drafted(digits(shorter, more), f"{sum(shorter) + 3 * more:.3f}", "optimal")
     (judged,) = [j for j in one.judgements if j.claim == "said"]
     assert judged.verdict == word
-    assert ("digits rounded up" in judged.why) == (more == 0.0)
+    assert ("digits were rounded up" in judged.why) == (more == 0.0)
 
 
 def applied(text: str) -> tuple[CaseAudit, CaseAudit]:

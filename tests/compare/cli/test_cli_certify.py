@@ -241,7 +241,7 @@ def test_a_certificate_of_the_old_format_is_made_again(run: Run) -> None:
     path.parent.mkdir()
     path.write_text('{"format": "trajgap-certificate-1"}')
     _, out, _ = run("verify", str(path))
-    assert "`trajgap solve CASE --certify` makes it again" in out
+    assert "`trajgap solve CASE --certify` recreates it" in out
     assert run("solve", *ONE, "--certify", "--gap", "0.1")[0] == 0
     assert verify(path).proves
 

@@ -86,7 +86,7 @@ def test_what_does_no_harm_changes_nothing(name: str, tmp_path: Path) -> None:
     ("name", "message"),
     [
         ("support.optimizers:raises", "ZeroDivisionError: one over nothing!!!"),
-        ("support.optimizers:swallows", "went on after its budget of 200 evaluations was spent"),
+        ("support.optimizers:swallows", "continued after its budget of 200 evaluations was spent"),
         ("support.optimizers:moves_bounds", "asked for the fitness of 7 s for duration 1, outside"),
         ("support.optimizers:raises_unprintable", "ValueError: half of a pair: <U+DC80>, a cursor"),
         ("support.optimizers:raises_mute", "Mute"),

@@ -167,7 +167,7 @@ def test_a_range_of_acceleration_has_no_deceleration_beside_it():
         ({"jerk": "1:2:3"}, "is not a limit"),
         ({"velocity": "-1"}, "is negative"),
         ({"deceleration": "-1:1"}, "is a range"),
-        ({"velocity": "1:2"}, "leaves out 0"),
+        ({"velocity": "1:2"}, "excludes 0"),
     ],
 )
 def test_flags_that_are_none(given, wanted):

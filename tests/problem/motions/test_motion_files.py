@@ -181,7 +181,7 @@ def test_one_clear_line(tmp_path, one: Refusal):
         ("latin.csv", b"time,gelenk-\xe4\n0,1\n", "not UTF-8"),
         ("latin.yaml", b"a: \xe4\n", "not UTF-8"),
         ("control.yaml", "a: \x07\n", "not valid YAML"),
-        ("wide.csv", ",".join(["1"] * 500) + "\n", "more than is read"),
+        ("wide.csv", ",".join(["1"] * 500) + "\n", "too many"),
         ("deep.json", "[" * 200_000, "nested too deeply"),
         ("deep.yaml", "[" * 100_000, "nested too deeply"),
         ("dashes.yaml", "- " * 100_000, "nested too deeply"),
@@ -224,7 +224,7 @@ def test_units_and_noise_are_checked(tmp_path):
         ((path, ("deg",), (1.0, 2.0, 3.0)), "3 numbers for 2 joints"),
         ((path, ("deg",), (-1.0,)), "noise"),
         ((ros, ("deg",)), "in rad and m"),
-        ((poly, ("deg",), (0.1,)), "is of samples"),
+        ((poly, ("deg",), (0.1,)), "applies to samples only"),
         ((stated, ("rad",)), "--units: the file itself states deg; leave it out"),
     ):
         with pytest.raises(CaseError, match=wanted):
@@ -315,7 +315,7 @@ LATER = [DAY + dt.timedelta(seconds=one) for one in STEPS]
         ("float64()", [0.25, None, 1.5], "has no time in row 2"),
         ("null()", [None] * 3, "has no time in row 1"),
         ("float64()", [0.25, float("nan"), 1.5], "number 2 is not finite"),
-        ("timestamp('ns')", [-(2**63) + 1, 0, 2**63 - 1], "spans more than is read"),
+        ("timestamp('ns')", [-(2**63) + 1, 0, 2**63 - 1], "spans more time than can be read"),
     ],
 )
 def test_times_of_a_parquet_file_by_their_type(tmp_path, kind, values, times):

@@ -193,7 +193,11 @@ POSE_AT = translation(0.3, 0.2, 0.1)
         (POSE_AT, {"components": ("x", "x")}, "components: none, or one is named twice; name"),
         (POSE_AT, {"starts": 0}, "inverse kinematics: 0 starts, 300 iterations, tolerance 1e-09"),
         (POSE_AT, {"iterations": 0}, "inverse kinematics: 32 starts, 0 iterations, tolerance"),
-        (POSE_AT, {"tolerance": 0.0}, "tolerance 0.0; give at least 1, at least 1, and a positive"),
+        (
+            POSE_AT,
+            {"tolerance": 0.0},
+            "tolerance 0.0; give at least 1 start, at least 1 iteration, and a positive",
+        ),
         (POSE_AT, {"guess": [1.0]}, "joint values: shape (1,); give (..., 2), one per joint"),
         (POSE_AT, {"guess": [[1.0, 2.0]]}, "guess: shape (1, 2); give one value per joint"),
     ],

@@ -74,8 +74,8 @@ FORGERIES = [
     *(Forgery("verdict._document: no {CERTIFICATE_FORMAT}; name a certificate", "file", content)
       for content in (b"{}", b'{"format": ["trajgap-certificate-2"]}',
                       b'{"format": "trajgap-certificate-3"}')),
-    *(Forgery("verdict._document: {found}: an old format; `trajgap solve CASE --certify` makes "
-              "it again", "file", _with("trajgap-certificate-2", name))
+    *(Forgery("verdict._document: {found}: an old format; `trajgap solve CASE --certify` "
+              "recreates it", "file", _with("trajgap-certificate-2", name))
       for name in ("trajgap-certificate-1", "trajgap-state-1")),
     *_every_key(),
     Forgery(MISSING, "state", {"proposals": GONE}),

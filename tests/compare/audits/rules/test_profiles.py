@@ -158,9 +158,9 @@ STRAIGHT = {"path": "straight"}
     [
         ({}, "2.00", "supported", "as long as its slowest joint needs, takes 2 s"),
         (STRAIGHT, "2.17", "supported", "straight line in each segment, tak"),
-        (STRAIGHT, "2.00", "inconsistent", "which is 7.69 % shorter"),
-        ({}, "2.17", "not checkable", "which fits where the joints stay on a straight"),
-        ({}, "2.30", "inconsistent", "which is 15.00 % longer"),
+        (STRAIGHT, "2.00", "inconsistent", "is 7.69 % shorter"),
+        ({}, "2.17", "not checkable", "fits if the joints stay on a straight"),
+        ({}, "2.30", "inconsistent", "is 15.00 % longer"),
     ],
 )
 def test_how_the_joints_go_together_is_said(
@@ -191,7 +191,7 @@ def test_a_profile_between_moving_ends_is_not_set_beside_one_from_rest_to_rest(
 def test_a_joint_that_must_not_move_and_does_is_no_fault_of_the_total() -> None:
     found = judged("trapezoidal", "2.00", TWO, velocity=2, acceleration=[0, 4])
     assert found.verdict is ClaimVerdict.NOT_CHECKABLE
-    assert "a joint moves whose limit is 0" in found.message
+    assert "a joint with limit 0 moves" in found.message
 
 
 ONE = {"velocity": 2, "acceleration": 4, "jerk": 20}
