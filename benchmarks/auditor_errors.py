@@ -190,7 +190,7 @@ def clean_table(rows: Sequence[Row]) -> str:
         f"Of {claims:,} claims {judged / claims:.1%} were judged: {_share(rows, 'supported')} "
         f"supported, {_share(rows, 'depends')} depend on a reading that was offered beside the "
         f"true one, {_share(rows, 'unchecked')} not checkable. "
-        f"One audit takes {sum(r.ms for r in rows) / papers:.0f} ms of processor time in the mean.",
+        f"One audit takes {sum(r.ms for r in rows) / papers:.0f} ms of processor time on average.",
     ]
     wrong = [f"{r.seed} ({r.against})" for r in rows if r.seen or r.errors]
     lines += ["", f"Seeds in error: {', '.join(wrong) if wrong else 'none'}."]

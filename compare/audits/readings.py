@@ -230,7 +230,7 @@ def _of_answers(summary: ReadingsSummary, called: Callable[[str, str], str]) -> 
     if not summary.outcomes:
         yield (
             f"Limits, optimum and gap cannot be computed under any of the "
-            f"{len(summary.admissible)} readings: {summary.outcomes_why}."
+            f"{len(summary.admissible)} readings, because {summary.outcomes_why}."
         )
         return
     by_answer: defaultdict[tuple[str, str], list[ReadingOutcome]] = defaultdict(list)

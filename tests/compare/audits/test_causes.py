@@ -139,7 +139,7 @@ def test_a_longest_duration_of_another_row_is_named() -> None:
     assert {c.rule for c in errors} == {"TG101", "TG102", "TG201"}
     for error in errors:
         assert error.explanations[0].change == (
-            "The duration of segment 2 may have been taken from another row: 2.000 in place of "
+            "The duration of segment 2 may have been taken from another row: 2.000 instead of "
             "1.000."
         )
 

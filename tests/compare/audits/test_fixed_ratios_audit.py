@@ -181,7 +181,7 @@ def test_moving_ends_leave_no_total_to_compare_with() -> None:
     found = waterfalls(one.study)
     assert verdicts(one)["best"] is ClaimVerdict.NOT_CHECKABLE
     said = optimum_line(one.study, found, {}, before=False)
-    assert said.startswith("The shortest total at these ratios is not checkable")
+    assert said.startswith("The shortest total at these ratios cannot be checked")
     own = next(step for step in found[0].steps if step.name == RATIOS_OPTIMUM)
     assert "prescribes derivatives other than 0" in own.note
 

@@ -80,7 +80,7 @@ def message(name: str, reading: str = "rpm", *changes: Change) -> str:
         ("means", "rpm", "is 78.3058 mm/s, printed as 78.3"),
         ("means", "rpm", "is 6.41658 rpm, printed as 6.42"),
         # Angles and lengths are not compared; positions of the end follow from the slide.
-        ("most", "rpm", "Joints are printed in different units (deg, mm), so that nothing says"),
+        ("most", "rpm", "Joints are printed in different units (deg, mm), so it cannot be said"),
         ("poses", "rpm", "joints 1, 2 and d3 are read in deg, deg, mm."),
     ],
 )
@@ -97,9 +97,9 @@ def printed_as(value: float, places: int = 1) -> Change:
     [
         # 0.2332 for 233.2 mm/s is metres; 57.3 and 2π times too much are nothing at all.
         ((), "near 0.001, as a thousandth of the unit."),
-        ((printed_as(233.246 * 180 / np.pi),), "off by more than rounding"),
-        ((printed_as(233.246 * 2 * np.pi),), "off by more than rounding"),
-        ((printed_as(233.246 * 30 / np.pi),), "off by more than rounding"),
+        ((printed_as(233.246 * 180 / np.pi),), "neither rounding, cut-off digits"),
+        ((printed_as(233.246 * 2 * np.pi),), "neither rounding, cut-off digits"),
+        ((printed_as(233.246 * 30 / np.pi),), "neither rounding, cut-off digits"),
         ((printed_as(23.32, 2),), "as between millimetres and centimetres"),
         (
             (('joint = "d3"\nvalue', 'joint = "2"\nvalue'), printed_as(np.radians(105.456), 4)),

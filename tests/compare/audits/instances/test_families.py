@@ -199,7 +199,7 @@ def test_the_sentences_of_a_reading_hold_its_numbers() -> None:
     told = _under(replace(runs, printed_totals=(None, "1.2 s")), "as-printed").message
     assert "is usual here: it lies within the middle" in told
     assert "50 % of them are at least as large." in told
-    assert "Where 1.2 s is printed, the procedure of the paper takes 1 s at the median" in told
+    assert "The paper prints 1.2 s; the procedure of the paper takes 1 s at the median" in told
     assert "compared with the paper's" not in told
 
 

@@ -304,4 +304,4 @@ def test_what_breaks_the_limits_is_not_optimal_within_them() -> None:
     assert found.message.startswith("The printed motion breaks a limit. Table 2: A limit is broken")
     beside = next(f for f in one.findings if f.rule == "TG302" and f.claim == "d")
     assert beside.severity is Severity.INFO
-    assert beside.message.endswith("which keeps the limits; these durations do not.")
+    assert beside.message.endswith("because these durations break the limits.")

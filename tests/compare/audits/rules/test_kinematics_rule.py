@@ -208,7 +208,11 @@ def test_equations_are_judged_and_never_held_against_a_paper() -> None:
         ((right, None), "supported", "1 of 1 equations hold at every pose tried, as the text has"),
         (("px = s1", right), "not checkable", "Others hold once corrected: (4) with all of it."),
         (("px = s1", "px = c1"), "not checkable", "These do not hold as printed: (4)."),
-        (("t1 = atan2(py, px)", "t1 = atan2(pm*py, pm*px)"), "not checkable", "of the poses as it"),
+        (
+            ("t1 = atan2(py, px)", "t1 = atan2(pm*py, pm*px)"),
+            "not checkable",
+            "of the poses as printed",
+        ),
     ):
         keys = {"printed": printed} | ({"mended": mended, "mend": "all of it"} if mended else {})
         equation = entry("equations", id="e", where="equation (4)", **keys)

@@ -277,7 +277,7 @@ def test_a_peak_of_a_profile_of_another_problem_is_refused() -> None:
     text = paper(
         [[0, 1]], own, peak("p", "t", "velocity", "2.0"), curve=QUINTIC, velocity=2, acceleration=4
     )
-    with pytest.raises(CaseError, match="'t' is about another problem"):
+    with pytest.raises(CaseError, match="'t' belongs to another problem"):
         parse_case(text, "made-up.toml")
 
 
@@ -289,7 +289,7 @@ def test_a_peak_of_a_profile_of_another_problem_is_refused() -> None:
         ({"profile": "fourth-order"}, "snap: is missing"),
         ({"profile": "trapezoidal", "deceleration": [1, 2]}, "deceleration: 2 values for 1 joints"),
         ({"quantity": "phases", "phases": [1, 0, 1]}, "profile: is missing"),
-        ({"quantity": "phases", "phases": [1, 0, 1], "profile": "s-curve"}, "are of one segment"),
+        ({"quantity": "phases", "phases": [1, 0, 1], "profile": "s-curve"}, "describe one segment"),
     ],
 )
 def test_keys_that_a_profile_does_not_have_are_refused(keys: dict[str, Any], why: str) -> None:
