@@ -180,7 +180,7 @@ def run_as_left(
     total = float(judge(position[None])[0])
     ended = total if total < method.penalty else np.inf
     if ended != trace[-1] or not (trace[1:] <= trace[:-1]).all():
-        raise TrajgapError(f"run: its trace does not go down to {ended} s")
+        raise TrajgapError(f"run: its trace does not end at {ended} s")
     return _answered(method, question, judge, trace, position, evaluations)
 
 

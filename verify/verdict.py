@@ -223,7 +223,7 @@ def _judged(document: dict[str, Any], clock: Clock, spread: Spread | None) -> Ce
     answer = _read_answer(problem, claim, subject)
     kind, total = _read_proof(document, problem, clock)
     if kind is not None:
-        need(subject is kind.subject, f"this kind of proof speaks about {kind.subject}")
+        need(subject is kind.subject, f"this kind of proof is about {kind.subject}")
     need(lower <= total, "the lower bound exceeds the total that is proved")
     upper, least = None, None
     if answer is not None:
@@ -295,7 +295,8 @@ def _read_proof(
     own = (name == _OF_RATIOS) == (problem.chord or problem.shares is not None)
     need(
         own or make.subject is Subject.ANY,
-        f"at fixed ratios of the durations the kind of proof is {_OF_RATIOS}, and only there",
+        f"the kind of proof {_OF_RATIOS} is required at fixed ratios of the durations, and "
+        "allowed only there",
     )
     proof = fields(proof, "proof", ("kind", "total", "tree", *make.keys))
     total = number(proof["total"])

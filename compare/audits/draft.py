@@ -219,6 +219,6 @@ def _left_open(study: Study) -> Iterator[Advice]:
                 where=block.where or block.name,
                 claim=None,
                 says=f"Left open for {block.name}: {line}",
-                change="Print it, so that others can run the algorithm again.",
+                change="Print this choice, so that others can rerun the algorithm.",
                 edits=(),
             )

@@ -78,9 +78,7 @@ def readings_summary(
         labels=study.case.labels,
         implausible=implausible(study),
         default=study.case.default_reading.id,
-        default_why=known(
-            study.case.default_reading.default_why, "the case file gives no reason of its own"
-        ),
+        default_why=known(study.case.default_reading.default_why, "the case file gives no reason"),
         clues=reading_clues(study),
         answers=(),
         holding=(),
@@ -98,7 +96,7 @@ def _outcome(study: Study, waterfall: Waterfall) -> ReadingOutcome:
     solution = study.optimum(pair)
     reference = reference_of(solution)
     keeping: Keeping | Why = Why("no durations are printed for all joints of this problem")
-    distance: Gap | Why = Why("no printed total stands beside an optimum")
+    distance: Gap | Why = Why("no printed total can be compared with an optimum")
     held: HeldOtherwise | Why = Why("no durations are printed for all joints of this problem")
     stretch: float | None = None
     excesses: tuple[Excess, ...] = ()

@@ -111,7 +111,9 @@ class RoundingBox:
             array.setflags(write=False)
             object.__setattr__(self, name, array)
         if not self.value.shape == self.lower.shape == self.upper.shape:
-            raise TrajgapError("box: value, lower and upper differ in shape; give them alike")
+            raise TrajgapError(
+                "box: value, lower and upper differ in shape; give all three the same shape"
+            )
         if not all(np.isfinite(a).all() for a in (self.value, self.lower, self.upper)):
             raise TrajgapError("box: a number is not finite; give finite bounds")
         if (self.lower > self.value).any() or (self.value > self.upper).any():
@@ -246,7 +248,7 @@ def _judge(
     if q.value.shape != problem.waypoints.shape:
         raise TrajgapError(
             f"waypoints: the box has shape {q.value.shape}, "
-            f"the problem {problem.waypoints.shape}; give them alike"
+            f"but the problem has {problem.waypoints.shape}; give both the same shape"
         )
     printed = replace(problem, waypoints=q.value)
     at_print = check(printed, durations.value, tolerance=tolerance)

@@ -83,8 +83,8 @@ BAD_INPUT, FAULT, CLOSED_PIPE = 2, 70, 141
 """Exit codes: that of argument parsers, EX_SOFTWARE, and what a shell says of SIGPIPE."""
 _BEGIN = """To begin:
   trajgap audit puma560-mnam-pso-353           judge a published paper
-  trajgap new mine.toml --from table.csv       create a case file for your own paper (see new
-  --help) trajgap check motion.csv --urdf arm.urdf     judge a motion against limits
+  trajgap new mine.toml --from table.csv       create a case file of your own (see new --help)
+  trajgap check motion.csv --urdf arm.urdf     judge a motion against limits
   trajgap solve points.csv --urdf arm.urdf     find the fastest motion through way-points
 """
 """What `trajgap` without a command says first."""

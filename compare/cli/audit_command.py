@@ -88,7 +88,7 @@ def audit(
         bool, typer.Option("--strict", help="Exit with 1 if a finding has severity error.")
     ] = False,
     as_json: Annotated[
-        bool, typer.Option("--json", help="Print JSON; write pages only where --out says.")
+        bool, typer.Option("--json", help="Print JSON; write pages only with --out.")
     ] = False,
     out: Annotated[
         Path | None,

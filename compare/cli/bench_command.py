@@ -117,7 +117,7 @@ def bench(
         typer.Option(min=1, max=MOST, help="Number of processes; the rows do not depend on it."),
     ] = 1,
     as_json: Annotated[
-        bool, typer.Option("--json", help="Print JSON; write a page only where --out says.")
+        bool, typer.Option("--json", help="Print JSON; write a page only with --out.")
     ] = False,
     out: Annotated[
         Path | None,

@@ -79,7 +79,7 @@ def solve(
         typer.Argument(
             metavar="CASE|FILE",
             help="Id of a published case, suite:NAME, a case file, or a table of way-points (CSV) "
-            "with limits beside it.",
+            "with limits as options.",
         ),
     ],
     problem: ProblemId = None,
@@ -125,7 +125,8 @@ def solve(
         bool,
         typer.Option(
             "--any-curve",
-            help="With --certify: over every motion through the way-points, whatever its curve.",
+            help="With --certify: prove a bound for every motion through the way-points, on any "
+            "curve.",
         ),
     ] = False,
     certificates: Annotated[

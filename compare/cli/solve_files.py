@@ -92,7 +92,7 @@ def limits_of_table(source: str, options: MotionOptions) -> Callable[[tuple[str,
         slower = [j for j, x in zip(joints, stated.deceleration, strict=True) if np.isfinite(x)]
         doubt = slower and (
             f"deceleration has its own limit at joint {', '.join(slower)}; here the smaller value "
-            "limits acceleration and deceleration alike, so a motion that uses the larger one may "
+            "limits both, so a motion that uses the larger one may "
             "be shorter"
         )
         sources = ", ".join(dict.fromkeys(stated.sources.values()))

@@ -54,7 +54,7 @@ def nature_caveat(nature: Nature) -> Caveat:
     """The caveat of a sentence that claims nothing that numbers could decide."""
     why = {
         Nature.DEFINITION: "it says how something is named or made, and claims no result",
-        Nature.IDENTITY: "it holds whatever this paper prints",
+        Nature.IDENTITY: "it is true whatever this paper prints",
         Nature.AIM: "it states a goal, not a result",
         Nature.JUDGEMENT: "it names no measure that could be computed",
     }

@@ -226,21 +226,21 @@ def _procedure(answer: PerJointSolution) -> Answer:
         status_why="; ".join(unsettled)
         or "of the joints' own optima; the total is the sum of their longest durations",
         total_time=answer.total_time if answer.check else Why(none),
-        segment_durations=Why("each joint has durations of its own, see joints"),
+        segment_durations=Why("each joint has its own durations, see joints"),
         infimum=Why("the longest durations of a procedure, not an optimum"),
         lower_bound=UNCERTIFIED,
         evidence=answer.evidence,
         max_violation=answer.check.max_violation if answer.check else Why(none),
         kkt_residual=max(residuals) if len(residuals) == len(joints) else Why(none),
-        route=Why("each joint has a route of its own, see joints"),
-        other_route_total=Why("each joint has a route of its own, see joints"),
+        route=Why("each joint has its own route, see joints"),
+        other_route_total=Why("each joint has its own route, see joints"),
         active=tuple(_active(a) for s in joints for a in s.active),
         starts=sum(s.starts for s in joints),
         starts_at_best=sum(s.starts_at_best for s in joints),
         # Joints of one kind share one NLP, which is built once.
         build_seconds=max(s.build_seconds for s in joints),
         solve_seconds=sum(s.solve_seconds for s in joints),
-        toppra=Why("each joint has a path of its own, see joints"),
+        toppra=Why("each joint has its own path, see joints"),
     )
 
 

@@ -317,7 +317,7 @@ TIMES = {
 TERMS = {
     "reading": "One way to understand what the text leaves open; everything is computed under each "
     "reading that the text admits.",
-    "shared durations": "All joints pass each way-point together, so that they share the segment "
+    "shared durations": "All joints pass each way-point together, so they share the segment "
     "durations.",
     "at these ratios": "The question fixes the ratios of the segment durations, so only their "
     "total is chosen. Durations in other ratios answer another question.",

@@ -399,7 +399,7 @@ def _path(function: Callable[..., object]) -> str:
     module, name = getattr(function, "__module__", ""), getattr(function, "__qualname__", "")
     if not module or not name or "<" in name:
         raise TrajgapError(
-            f"optimizer {name or function!r}: give a function that is defined at the top of a "
-            "module, so that it can be found again"
+            f"optimizer {name or function!r}: give a function that is defined at the top level of "
+            "a module, so that it can be imported"
         )
     return f"{module}:{name}"

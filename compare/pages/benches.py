@@ -400,7 +400,7 @@ def _reading() -> Section:
          "two middle runs; none if either has no answer"),
         ("T", "the total that the checker finds for the answer, stretched if it broke a limit"),
         ("quartiles, best", "a quarter of the runs end below the first and a quarter above the "
-         "second, with the same rule where that falls between two runs; the closest run"),
+         "second, with the same rule if that falls between two runs; the closest run"),
         ("feasible", "answers that keep every limit at all times"),
         ("≤ 1 %", "share of runs that come within that gap"),
         ("evaluations to 1 %", "evaluations that restarts need on average until one reaches the "

@@ -87,7 +87,7 @@ def _jumps_of(
     where = "; ".join(dict.fromkeys(c.where for c in claims))
     caption = (
         f"{where}.{noted(study, row.reading)} The velocity jumps under {len(jumping)} of "
-        f"{len(moved)} readings. Limits are judged apart from jumps, inside the segments."
+        f"{len(moved)} readings. Limits are judged inside the segments, separately from jumps."
     )
     yield _drawn(file_name("jumps", problem, first.id), picture, caption)
     grid = tuple(
@@ -133,7 +133,7 @@ def _polygons(study: Study) -> Iterator[Block]:
         )
         both = "both are" if statement.unit("position") else "both of each joint are"
         caption = (
-            f"{claim.where} beside the vertices computed from the printed way-points "
+            f"{claim.where} compared with the vertices computed from the printed way-points "
             f"({statement.waypoints.where}). A grey bar covers every difference that the rounding "
             f"of both explains. No reading enters: {both} printed in one unit, and time is not "
             "involved."
@@ -178,7 +178,7 @@ def _workspaces(study: Study) -> Iterator[Block]:
     ranges = (
         "their ranges"
         if np.isfinite(chain.upper - chain.lower).all()
-        else "their ranges, or one turn where none is printed"
+        else "their ranges, or one turn if none is printed"
     )
     caption = (
         f"{dh.where or 'The table'}, {chain.convention} convention. Joints uniform in {ranges}."
@@ -210,7 +210,7 @@ def _printed_path(study: Study, dh: DhTable, chain: Chain) -> _Path | None:
     where = "; ".join(dict.fromkeys(place.where for place in places))
     said = f"Way-points as printed ({where}). "
     if far:
-        said += f"For any joint values, the end misses at least {', '.join(far)}."
+        said += f"For any joint values, the end misses {', '.join(far)} at least."
     else:
         said += (
             "Some joint values reach each of them within rounding; TG601 examines whether these "

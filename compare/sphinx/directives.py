@@ -280,7 +280,7 @@ class WaterfallShown(FromResults):
                 notes = [paragraph(one, "trajgap-beside") for one in said]
                 shown = picture(drawn, place, every)
                 return [*shown, *notes, *folded("Step by step", every.deepcopy())]
-        raise TrajgapError(f"{name}: no waterfall of {asked or 'any problem'}; look into the JSON")
+        raise TrajgapError(f"{name}: no waterfall of {asked or 'any problem'}; see the JSON")
 
 
 class ReachedShown(FromResults):

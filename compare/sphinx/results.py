@@ -46,7 +46,7 @@ class Results:
         path = self.folder / f"{name}.json"
         if name not in self.names:
             known = ", ".join(self.names) or "none"
-            raise TrajgapError(f"{path}: no such result; known: {known}")
+            raise TrajgapError(f"{path}: there is no such result; known: {known}")
         try:
             read = json.loads(path.read_text(encoding="utf-8"))
         except ValueError:

@@ -66,7 +66,7 @@ def retimed_motion(
             )
         speeds = found[1]
         if (speeds[1:] + speeds[:-1] <= 0).any():
-            raise TrajgapError(f"TOPPRA stands still inside piece {number}; take other limits")
+            raise TrajgapError(f"TOPPRA stops inside piece {number}; choose other limits")
         steps = 2.0 * np.diff(path.s) / (speeds[1:] + speeds[:-1])
         skip = 1 if positions else 0  # a standstill ends one piece and begins the next
         times += (times[-1] + np.cumsum(steps)).tolist()

@@ -267,7 +267,7 @@ def check_kinematics(document: CaseFile, faults: Faults, chain: Chain | None) ->
         if listed and column.unit not in CHOICES["position"]:
             faults.add(
                 f"{field}.unit",
-                f"is needed where units.position lists one per joint of the robot's; use one of "
+                f"is needed if units.position lists one unit per joint; use one of "
                 f"{', '.join(CHOICES['position'])}",
             )
         printed.append(column.joint)

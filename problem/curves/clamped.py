@@ -270,8 +270,8 @@ _CHORDS = {
         "the chords' proportions"
     ),
     Timing.STRETCHED: (
-        "; chords place knots and way-points, velocity jumps where a segment's duration leaves "
-        "the chords' proportions. With one u = t/T for all, only the total of the durations "
+        "; chords place knots and way-points, and the velocity jumps if a segment's duration "
+        "leaves the chords' proportions. With one u = t/T for all, only the total of the durations "
         "remains free"
     ),
 }

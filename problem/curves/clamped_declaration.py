@@ -222,7 +222,7 @@ class ClampedDeclaration:
         given = self.knots is Knots.GIVEN
         if given != bool(self.knot_vector):
             raise TrajgapError(
-                'interpolant.knot_vector: is missing where knots are "given"; name all of them'
+                'interpolant.knot_vector: is missing, although knots are "given"; list all knots'
                 if given
                 else 'interpolant.knot_vector: is for knots that are "given"; leave it out'
             )
@@ -238,7 +238,7 @@ class ClampedDeclaration:
         if given and self.parameters is not fitting:
             where = "printed parameters" if self.stretched else "the times"
             raise TrajgapError(
-                f'interpolant.parameters: where knots are "given" and time is "{self.time}", '
+                f'interpolant.parameters: if knots are "given" and time is "{self.time}", '
                 f'way-points are passed at {where}; write "{fitting}"'
             )
 

@@ -177,7 +177,7 @@ class Chain:
                 f"joint values: shape {given.shape}; give (..., {self.joints}), one per joint"
             )
         if not np.isfinite(given).all():
-            raise TrajgapError("joint values: one is not finite; give rad (m where it slides)")
+            raise TrajgapError("joint values: one is not finite; give rad (m for sliding joints)")
         return given
 
 

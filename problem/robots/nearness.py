@@ -73,8 +73,8 @@ def proximity(
         raise TrajgapError("point: is not a finite position; give three numbers, m")
     if given.shape != (chain.joints,) or np.isinf(given).any():
         raise TrajgapError(
-            f"held: shape {given.shape} for {chain.joints} joints; give one number each, "
-            "NaN where a joint is free"
+            f"held: shape {given.shape} for {chain.joints} joints; give one number each, NaN for "
+            "a free joint"
         )
     free = np.isnan(given)
     kept = chain.with_bounds(np.where(free, chain.lower, given), np.where(free, chain.upper, given))

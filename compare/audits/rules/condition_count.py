@@ -35,7 +35,7 @@ digits moves it by less."""
     ),
     TG207=Explained(
         "The motion is at rest where it is said to be",
-        "Is the motion at rest where the paper says so? The derivatives at both ends are computed.",
+        "Is the motion at rest if the paper says so? The derivatives at both ends are computed.",
         "Supported if they vanish, inconsistent if one does not.",
         "A paper says “starts and ends at rest”, but its natural cubic spline starts at 68 °/s.",
     ),

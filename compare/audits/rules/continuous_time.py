@@ -56,7 +56,7 @@ _NARROW = 0.01
         "Which limits do the printed durations reach? The shortest motion reaches at least one.",
         INFORMS + " A motion that reaches no limit could be shorter.",
         "The largest velocity is 62 % of its limit and the largest acceleration 71 %: all "
-        "durations could be shortened alike.",
+        "durations could be shortened by the same factor.",
     ),
     TG206=Explained(
         "Acceleration jumps where it is said to",

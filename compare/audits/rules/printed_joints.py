@@ -34,7 +34,7 @@ from .rule_group import Explained, rule_group
         "Supported if the two agree in the plane within rounding and the first is higher. "
         "Otherwise not checkable, with both distances: signs are easily lost in print and in "
         "extracted text.",
-        "“Above the table” stands 0.30 m beside the table; with another sign of y it would be 0 m.",
+        "“Above the table” lies 0.30 m beside the table; with another sign of y it would be 0 m.",
     ),
     without_waypoints=True,
 )
@@ -67,7 +67,7 @@ def _varies(study: Study, claim: StatementClaim) -> Finding:
     )
     said = [
         f"The printed angles of joint {claim.joint} span "
-        f"{_middle(*own):.2f}, beside {shown or 'no other joint in print'} (printed unit)."
+        f"{_middle(*own):.2f}, compared with {shown or 'no other printed joint'} (printed unit)."
     ]
     chain = study.case.chain()
     missing = [] if chain is None else [one for one in chain.labels if one not in printed]
@@ -124,7 +124,7 @@ def _above(study: Study, claim: StatementClaim) -> Finding:
     beside = _beside(upper, lower)
     rise = upper.values[2].interval
     floor = lower.values[2].interval
-    names = f"{upper.label or upper.id} stands {{}} {upper.unit} beside {lower.label or lower.id}"
+    names = f"{upper.label or upper.id} lies {{}} {upper.unit} beside {lower.label or lower.id}"
     height = float(upper.values[2].fraction - lower.values[2].fraction)
     said = [f"{names.format(f'{beside[0]:.4g}')} and {height:.4g} {upper.unit} above it."]
     if _meets(upper, lower) and rise.lower > floor.upper:

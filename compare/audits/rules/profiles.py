@@ -85,7 +85,7 @@ class _Asked:
         "limits allow between the states at its ends? Are the phases, peaks and values those of "
         "this profile?",
         "Supported within rounding, else inconsistent: the paper may have meant another profile. "
-        "Not checkable where the shortest total jumps within the rounding, and for several joints "
+        "Not checkable if the shortest total jumps within the rounding, or for several joints "
         "between moving ends.",
         "A motion of 140° within 150 °/s, 70 °/s² and 70 °/s³ takes 4 s if the jerk is constant "
         "in phases.",

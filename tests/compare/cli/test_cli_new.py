@@ -47,7 +47,7 @@ def test_new_warns_of_joints_that_may_be_angles(run: Run, folder: Path) -> None:
     units = ("--position-unit", "deg", "--time-unit", "s")
     code, _, err = run("new", "out.toml", "--from", "table.csv", *units)
     assert code == 0
-    assert err.startswith("trajgap: table.csv: line 1 is taken for the names of the joints, 1, 2;")
+    assert err.startswith("trajgap: table.csv: line 1 is read as the names of the joints, 1, 2;")
     assert sorted(path.name for path in folder.iterdir()) == ["mine.toml", "out.toml", "table.csv"]
 
 

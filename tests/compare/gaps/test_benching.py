@@ -330,6 +330,6 @@ def test_the_page_the_picture_and_the_rows(runs: Runs, tmp_path: Path) -> None:
     assert 1 + float(first["feasible_gap_highest"]) == pytest.approx((1 + exact) / 0.9)
     write_bench([(result, runs)], out)  # an earlier bench is replaced
     (out / "mine.txt").write_text("kept")
-    with pytest.raises(CaseError, match=r"holds mine.txt, which is not a bench"):
+    with pytest.raises(CaseError, match=r"contains mine.txt, which is not a bench"):
         write_bench([(result, runs)], out)
     assert (out / "mine.txt").read_text() == "kept"

@@ -85,7 +85,7 @@ def test_a_folder_with_other_files_is_left_alone(
     elif mark is not None:
         (out / MARK).write_text(mark, encoding="utf-8")
     before = content(out)
-    refuses(NOTHING, out, f"{re.escape(named)} is not part of a trajgap report; name a new or an")
+    refuses(NOTHING, out, f"{re.escape(named)} is not part of a trajgap report; give a new or an")
     assert content(out) == before
 
 
@@ -105,7 +105,7 @@ def test_what_would_share_names_or_lie_over_files_is_refused(
         (NOTHING, "audit", r"pictures/mine\.png is not part of a trajgap report"),
         (report, "file", "what is there is not part of a trajgap report"),
         (report, "link", "what is there is not part of a trajgap report"),
-        (NOTHING, "file/audit", r"cannot be written \(.+\); name another place"),
+        (NOTHING, "file/audit", r"cannot be written \(.+\); give another place"),
         (AuditReport(report.cases * 2), "out", f"two cases are called '{ID}'; give each an id"),
         *((one, "out", f"a case cannot be called '{name}'; rename it") for one, name in named),
     ):

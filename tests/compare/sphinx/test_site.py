@@ -184,7 +184,7 @@ def test_each_key_on_the_site_says_something_and_no_altered_one_does(page, key, 
     parts = path.split(".")
     for k, part in enumerate(parts):
         wrong = "999" if part.isdigit() else f"{part}x"
-        with pytest.raises(TrajgapError, match="nothing stands at"):
+        with pytest.raises(TrajgapError, match="there is nothing at"):
             RESULTS.value(f"{name}:{'.'.join([*parts[:k], wrong, *parts[k + 1 :]])}")
     with pytest.raises(TrajgapError, match="there is no such result"):
         RESULTS.value(f"{name}x:{path}")
