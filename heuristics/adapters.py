@@ -20,13 +20,12 @@ Searching = Callable[[Objective, Bounds, np.random.Generator], object]
 
 @dataclass(frozen=True)
 class External:
-    """A search that owns its loop, run by `run` like any algorithm.
+    """A search with its own loop, run by `run` like any algorithm.
 
-    The answer is the best position that the search handed to the objective, and the trace its
-    best-so-far after every ``per_iteration`` of them: the same account as for an algorithm with a
-    population of that size, whatever the search itself reports. When the budget of
-    ``per_iteration`` × (``iterations`` + 1) evaluations is spent the search is stopped from inside
-    the objective.
+    The answer is the best position that the search passed to the objective, and the trace is the
+    best so far after every ``per_iteration`` evaluations, as for an algorithm with a population of
+    that size. What the search itself reports is ignored. When the budget of ``per_iteration`` ×
+    (``iterations`` + 1) evaluations is spent the search is stopped from inside the objective.
 
     Parameters
     ----------
@@ -40,12 +39,12 @@ class External:
     per_iteration : int
         Evaluations that count as one iteration.
     penalty : float
-        Fitness of an infeasible vector, s; finite by default, since many searches subtract.
+        Fitness of an infeasible vector, s; finite by default, because many searches subtract.
     position_range : tuple of float, optional
         Range of every duration that is searched within the problem's bounds, s. Needed by searches
-        that want finite bounds where the problem has none.
+        that require finite bounds if the problem has none.
     options : mapping
-        What was passed on to the search, for the record.
+        Options that were passed to the search, for the record.
 
     Raises
     ------

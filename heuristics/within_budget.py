@@ -25,12 +25,12 @@ _SEED = Annotated[int, whole(0)]
 
 @dataclass(frozen=True, eq=False)
 class BudgetedRun:
-    """What one search found within its budget, by the objective's own account.
+    """The result of one search within its budget, as recorded by the objective.
 
     Attributes
     ----------
     durations : ndarray, shape (segments,)
-        Of the best position judged, s; under a stretch, what it stands for.
+        Durations of the best position evaluated, s; with a stretch, those that it represents.
     reported_time : float
         Its fitness, s; inf if no feasible vector was evaluated.
     totals : ndarray, shape (evaluations,)
@@ -56,18 +56,18 @@ def run_within(
     seconds: float | None = None,
     stream: tuple[int, ...] = (),
 ) -> BudgetedRun:
-    """Search until the method ends by itself or its budget is spent.
+    """Search until the method ends or its budget is spent.
 
-    The objective counts: a method cannot see more evaluations than its budget, and its answer is
-    the best position that it had judged, whatever it reports.
+    The objective counts evaluations: a method cannot exceed its budget, and its answer is the best
+    position that was evaluated, whatever it reports.
 
     Parameters
     ----------
     method : Algorithm or Search
         From `find_optimizer`, for the same budget.
     problem : Problem
-        All joints share one duration vector. Where it states no upper bound, a search that owns its
-        loop looks within `search_box`.
+        All joints share one duration vector. If it states no upper bound, a search with its own
+        loop is restricted to `search_box`.
     seed : int
     budget : int
         Evaluations.
@@ -85,8 +85,8 @@ def run_within(
     Raises
     ------
     TrajgapError
-        If the objective cannot judge the problem, or the search judged nothing, went on after its
-        budget was spent, or took too long.
+        If the objective cannot judge the problem, or the search evaluated nothing, continued after
+        its budget was spent, or took too long.
 
     Examples
     --------

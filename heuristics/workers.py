@@ -26,9 +26,9 @@ _END = 5.0
 
 @contextmanager
 def kept_processes() -> Iterator[None]:
-    """Keep the processes of every `in_processes` inside for the next one, and end them at the end.
+    """Reuse the processes of `in_processes` within this context, and end them when it ends.
 
-    A process imports for two seconds before its first work, often longer than that work takes.
+    A process spends two seconds on imports before its first work, which is often shorter than that.
     """
     reserve = _Reserve([])
     before = _RESERVE.set(reserve)
@@ -46,10 +46,9 @@ def in_processes(
 ) -> Generator[R, None, None]:
     """Apply a function to items in several processes; results in the order of the items.
 
-    Every process has a pipe of its own and one piece of work at a time. So the death of one, by
-    the system or by hand, neither blocks another nor spoils what others have done (in a pool of
-    the standard library all work in progress is lost, and a lock may be lost with it): its piece
-    of work is done again by a fresh process.
+    Every process has its own pipe and one piece of work at a time. If a process is killed, it
+    neither blocks the others nor spoils their work (a pool of the standard library loses all work
+    in progress, and possibly a lock): a new process repeats its piece of work.
 
     Parameters
     ----------

@@ -192,7 +192,7 @@ class Range:
 
 
 def longest_status(joints: tuple[Solution, ...]) -> Status:
-    """The worst status among the joints; *converged* at best, for the output is not an optimum."""
+    """The worst status among the joints; *converged* at best, because there is no optimum."""
     order = [
         Status.OPTIMAL,
         Status.CONVERGED,
@@ -207,11 +207,11 @@ def longest_status(joints: tuple[Solution, ...]) -> Status:
 
 @dataclass(frozen=True, eq=False)
 class PerJointSolution(SearchResult):
-    """Each joint's own optimum, and what the longest-per-segment procedure makes of them.
+    """Each joint's own optimum, and the total that the longest duration per segment gives.
 
     Its durations are the longest of the joints', per segment, judged with all joints. The total of
-    the procedure is its output, not an optimum of anything: where a joint's optimum is flat, many
-    totals are equally justified, and `ranges` says which.
+    the procedure is its output, not an optimum: if a joint's optimum is flat, many totals are
+    equally justified, and `ranges` gives them.
 
     Attributes
     ----------
@@ -263,13 +263,13 @@ def solve_per_joint(
 ) -> PerJointSolution:
     """Optimise each joint separately and take the longest duration of each segment.
 
-    Where the problem fixes the ratios of its durations, that is the longest of the joints' totals,
-    and the optimum with shared durations too.
+    If the problem fixes the ratios of its durations, this is the longest of the joints' totals, and
+    also the optimum with shared durations.
 
     Parameters
     ----------
     problem : Problem
-        Its coupling is not looked at.
+        Its coupling is ignored.
     slacks : tuple of float
         Excesses over each joint's own optimum, s, for which the range of the procedure's total
         is reported; none for an empty tuple.

@@ -42,7 +42,7 @@ class Verdict(StrEnum):
 
 @dataclass(frozen=True)
 class Peak:
-    """The largest value of one quantity of one joint, set beside its limit.
+    """The largest value of one quantity of one joint, compared with its limit.
 
     Attributes
     ----------
@@ -54,7 +54,7 @@ class Peak:
     segment : int
         Segment, from 0.
     time : float or None
-        Where on the trajectory, s.
+        Time on the trajectory, s.
     value, limit : float
         In rad, s; the limit of a derivative as a size, that of the side with the larger ratio.
     ratio : float
@@ -74,7 +74,7 @@ class Peak:
 
     @property
     def margin(self) -> float:
-        """1 − ratio: what is left of the limit."""
+        """1 − ratio: the remaining share of the limit."""
         return 1.0 - self.ratio
 
 
@@ -84,14 +84,14 @@ _DERIVATIVES = ("position", *QUANTITIES)
 
 @dataclass(frozen=True, eq=False)
 class Check(InNotebooks):
-    """What the checker found about one duration vector.
+    """The result of a check of one duration vector.
 
     Attributes
     ----------
     verdict : Verdict
     limits : Verdict
-        The verdict about the limits alone, jumps apart: pass, violated or undecided. Inside the
-        pieces every limit may be kept while the motion jumps between them.
+        The verdict on the limits alone, apart from jumps: pass, violated or undecided. The limits
+        may be kept inside every piece although the motion jumps between pieces.
     worst : Peak or None
         Largest ratio; None if nothing is limited. A duration counts only beyond its bound.
     peaks : tuple of Peak
@@ -103,7 +103,8 @@ class Check(InNotebooks):
     stretch : float
         c* = max (|v|/V, √(|a|/A), ∛(|j|/J)): stretching all durations by it makes them tight.
     feasible_time, tight_time : float or None
-        T·max(1, c*), the uniform repair; T·c*, the free rescaling. None with the reason beside.
+        T·max(1, c*), the uniform repair; T·c*, the free rescaling. None if there is none; a reason
+        is given.
     tolerance : float
         Relative excess that counts as kept.
     """
@@ -286,7 +287,7 @@ def check(
     nodal: ArrayLike | None = None,
     tolerance: float = TOLERANCE,
 ) -> Check:
-    """Judge one duration vector, for all t, knowing nothing of who produced it.
+    """Judge one duration vector at all t, whatever produced it.
 
     Parameters
     ----------

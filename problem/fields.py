@@ -166,7 +166,7 @@ class LimitPair:
     Attributes
     ----------
     lower, upper : Printed or None
-        0 or less, and 0 or more; None where there is no limit.
+        0 or less, and 0 or more; None if there is no limit.
     """
 
     lower: Printed | None

@@ -45,9 +45,9 @@ class Problem:
         Joint labels; "1", "2", ... by default.
     name : str
     ratios : array_like, shape (segments,), or {"equal", "chord"}, optional
-        Ratios of the durations, of any scale: then the total is the one unknown. "chord" takes the
-        lengths between the way-points, all joints together, and turns into these numbers here, so
-        that the question of one joint keeps them. Without ratios each duration is chosen.
+        Ratios of the durations, of any scale: then the total is the only unknown. "chord" uses the
+        distances between the way-points over all joints; they are computed here, so that the
+        problem of one joint keeps them. Without ratios each duration is free.
     linear : tuple of bool
         Whether each joint slides instead of turning, so that its numbers are in m instead of rad;
         none does by default.
@@ -55,7 +55,8 @@ class Problem:
     Raises
     ------
     TrajgapError
-        If shapes disagree, a value is not finite, or a bound is negative or crosses its partner.
+        If shapes disagree, a value is not finite, or a bound is negative or a lower bound exceeds
+        its upper one.
 
     Examples
     --------
@@ -170,7 +171,7 @@ class Problem:
 
     @property
     def shares(self) -> Array | None:
-        """Share of each segment in the total, where ratios fix it; None where they do not."""
+        """Share of each segment in the total, if ratios fix it; otherwise None."""
         if self.ratios is None:
             return None
         largest = np.max(np.asarray(self.ratios, dtype=np.float64))
@@ -194,7 +195,7 @@ class Problem:
         Raises
         ------
         TrajgapError
-            If it is of another kind.
+            If the curve is of another kind.
         """
         polynomials = as_piecewise(self.curve)
         if polynomials is None:
@@ -206,14 +207,14 @@ class Problem:
 
     @property
     def hull(self) -> Problem:
-        """The same question within the `Limits.hull`: its optimum is a lower bound on this one's.
+        """The same problem within `Limits.hull`: its optimum is a lower bound on this one's.
 
-        Without uneven limits it is this problem itself.
+        Without uneven limits, it is this problem itself.
         """
         return replace(self, limits=self.limits.hull) if self.limits.uneven else self
 
     def joint(self, index: int) -> Problem:
-        """The same question for one joint alone, with shared coupling."""
+        """The same problem for one joint only, with shared coupling."""
         return replace(
             self,
             curve=self.curve.for_joint(self.waypoints, index),

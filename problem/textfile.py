@@ -81,7 +81,7 @@ def parse_toml(text: str, file: str) -> dict[str, Any]:
     Raises
     ------
     CaseError
-        If the text is no TOML, is nested too deeply, or holds a number out of range.
+        If the text is not TOML, is nested too deeply, or contains a number out of range.
     """
     try:
         return tomllib.loads(text, parse_float=Decimal)

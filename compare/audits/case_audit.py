@@ -68,8 +68,8 @@ _ENDING = (CaseError, ProcessError)
 class CaseAudit(InNotebooks):
     """Findings and verdicts of one case, with the study they were drawn from.
 
-    What informs and decides nothing is computed when it is asked for: waterfalls, the readings side
-    by side, the card.
+    What is information only is computed on first use: waterfalls, the readings side by side, the
+    card.
     """
 
     case: Case
@@ -80,16 +80,16 @@ class CaseAudit(InNotebooks):
     """Evidence against printed statements, each once; the gravest first."""
 
     day: date | None = None
-    """Of the audit; that on which its document is made if None."""
+    """Date of the audit; by default the day on which its document is made."""
 
     draft: bool = False
-    """Whether the case is its author's draft, who wants to know what to change."""
+    """Whether the case is an author's draft, for which the audit lists what to change."""
 
     made: VerdictCard | None = None
-    """The card, where it was made by hand; otherwise `card` makes it."""
+    """A card made by hand; otherwise `card` makes it."""
 
     made_waterfalls: tuple[Waterfall, ...] | None = None
-    """The waterfalls, where they were made by hand; otherwise `waterfalls` computes them."""
+    """Waterfalls made by hand; otherwise `waterfalls` computes them."""
 
     @cached_property
     def waterfalls(self) -> tuple[Waterfall, ...]:
@@ -142,7 +142,7 @@ class CaseAudit(InNotebooks):
 
     @cached_property
     def document(self) -> AuditedCase:
-        """What the audit says of the case, as terminal, page, Markdown and JSON print it."""
+        """The result of the audit, as terminal, page, Markdown and JSON print it."""
         blocks = examinable(self.study)
         return AuditedCase(
             case=self.case.id,
@@ -188,12 +188,12 @@ class AuditReport(InNotebooks):
 
     @property
     def kept(self) -> int:
-        """Proofs of earlier runs that were proved again and count here."""
+        """Proofs of earlier runs that were verified and count here."""
         return sum(one.study.intervals.kept for one in self.cases)
 
     @property
     def document(self) -> AuditDocument:
-        """What `trajgap audit` answers."""
+        """The document that `trajgap audit` prints."""
         return AuditDocument(cases=tuple(one.document for one in self.cases))
 
     def __str__(self) -> str:
@@ -214,34 +214,34 @@ def audit(
     draft: bool = False,
     cache: bool | Path = False,
 ) -> AuditReport:
-    """Audit published claims against the exact optimum of the very problems they state.
+    """Audit published claims against the exact optimum of the problems that they state.
 
     Parameters
     ----------
     cases : str, Path, Case, or iterable of these, optional
         Ids of shipped cases or case files; all shipped cases by default.
     seeds : int
-        Seeds of each replay.
+        Number of seeds of each replay.
     workers : int or None
-        Processes for the replays, as many as pay if None; the result does not depend on it.
+        Number of processes for the replays, chosen by their length if None; the result does not
+        depend on it.
     problem, reading : str, optional
         Keep to one problem or reading.
     progress : callable, optional
-        Called with a short text before anything that takes a while.
+        Called with a short text before each long computation.
     certify_seconds : float, optional
-        For each case: time for certifying optima that no certificate proves; 0 turns it off. What
-        is certified in it depends on the machine. Without it boxes are counted, and nothing depends
-        on the machine. What was left out is said.
+        Time per case for certifying optima that no certificate proves; 0 turns it off. With it,
+        what is certified depends on the machine. Without it, boxes are counted, and nothing depends
+        on the machine. The audit lists what was left out.
     certificates : sequence of dict
-        Certificates beside the shipped ones; each is proved again before it counts.
+        Certificates in addition to the shipped ones; each is verified before it counts.
     certificates_folder : str, optional
-        Where these lie, for the command that makes the audit again.
+        Their folder, for the command that reproduces the audit.
     draft : bool
-        Whether to say, for each case, what its author can change before submitting.
+        Whether to list, for each case, what its author can change before submitting.
     cache : bool or Path
-        Whether proofs that the audit finds, and replays, are kept for later ones, and those that
-        were kept are used once they are proved or judged again: in the user's cache folder, or in
-        the folder given.
+        Whether proofs and replays are kept for later audits, and kept ones are used after they were
+        verified or judged again: in the user's cache folder, or in the folder given.
 
     Returns
     -------

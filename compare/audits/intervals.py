@@ -56,7 +56,7 @@ class Intervals:
         self._progress = progress
         self._cache = cache
         self.kept = 0
-        """Proofs of earlier runs that were proved again and count here."""
+        """Proofs of earlier runs that were verified and count here."""
         self._found: dict[ExactProblem, ProvedInterval | None] = {}
         self.left_out: list[str] = []
         """Problems that are covered and were not certified, and totals that were not excluded for

@@ -73,9 +73,9 @@ class Total(NamedTuple):
 
 
 class Study:
-    """A case, the problems and readings that are looked at, and what was computed of them.
+    """A case, the selected problems and readings, and what was computed for them.
 
-    Optima, checks and replays are computed when they are asked for, each once. The options are
+    Optima, checks and replays are computed on first use, each once. The options are
     those of `audit`; seeds of a replay count from 0.
     """
 
@@ -117,11 +117,11 @@ class Study:
         self.intervals = Intervals(certificates, certify_seconds, self._progress, cache)
 
     def progress(self, doing: str) -> None:
-        """Say what is being done of the case, before anything that takes a while."""
+        """Report the next long computation."""
         self._progress(f"{self.case.id}: {doing}")
 
     def once(self, key: tuple[Any, ...], compute: Callable[[], T]) -> T:
-        """What was kept under a key, computed where nothing is; errors are kept too."""
+        """The value kept under a key, computed on first use; errors are kept too."""
         if key not in self._kept:
             try:
                 self._kept[key] = compute()
@@ -133,7 +133,7 @@ class Study:
         return cast(T, found)
 
     def only(self, *claims: AnyClaim, pair: Pair | None = None) -> Self:
-        """The same study, asked about some claims alone, and about one problem and reading."""
+        """The same study, restricted to some claims, and to one problem and reading."""
         view = copy(self)
         view.claims = claims
         if pair is not None:
@@ -148,7 +148,7 @@ class Study:
 
     @property
     def has_problems(self) -> bool:
-        """Whether way-points are printed, so that there are problems to solve."""
+        """Whether way-points are printed, so there are problems to solve."""
         return bool(self.pairs)
 
     @property
@@ -192,7 +192,7 @@ class Study:
         return f"{', '.join(map(str, self.case.printed_durations(claim)))} {self.time_unit}"
 
     def claim_total(self, claim: Claim, reading: str) -> Total | None:
-        """A claim's total; None where it has none."""
+        """A claim's total; None if it has none."""
         shown = self.total_digits(claim)
         printed = printed_total(claim)
         total = None
@@ -220,7 +220,7 @@ class Study:
 
     @property
     def not_replayed(self) -> tuple[str, ...]:
-        """Algorithms without an implementation here, each as one sentence with the nearest kind."""
+        """Algorithms that are not implemented here, each in one sentence with the nearest kind."""
         found = []
         for block in self.case.algorithms:
             if block.kind is None:
@@ -235,7 +235,7 @@ class Study:
         return tuple(found)
 
     def called(self, algorithm_id: str) -> str:
-        """An algorithm as a sentence calls it, by its name."""
+        """The name of an algorithm, for use in a sentence."""
         return f"the {next(a.name for a in self.case.algorithms if a.id == algorithm_id)}"
 
     def unreplayed(self, algorithm_id: str, pair: Pair) -> str | None:
@@ -324,10 +324,10 @@ class Study:
         return self.once(("optimum", pair, joint), compute)
 
     def known_motions(self, pair: Pair, joint: str | None = None) -> Array:
-        """Durations that the study has anyway, printed and replayed: what keeps is an incumbent.
+        """Printed and replayed durations; those that keep the limits serve as incumbents.
 
         Shape (motions, segments), s. Replays are run for the main reading, whose pages show them;
-        of other readings those count that are there.
+        for other readings only existing ones count.
         """
         problem = self.problem(pair)
         alone = joint if len(problem.joints) > 1 else None
@@ -388,7 +388,7 @@ class Study:
         return (max(halves),) if halves else ()
 
     def relaxed(self, pair: Pair) -> Solution:
-        """Optimum of the relaxed family: at least quintic everywhere, C2, the rest left free."""
+        """Optimum of the relaxed family: at least quintic everywhere, C2, other terms free."""
 
         def compute() -> Solution:
             problem = self.problem(pair)
@@ -423,7 +423,7 @@ class Study:
         return self.once(("relaxed", pair), compute)
 
     def freed(self, pair: Pair) -> Solution:
-        """The optimum with each duration chosen; where no ratios are fixed, `optimum`."""
+        """The optimum with each duration free; equal to `optimum` if no ratios are fixed."""
         problem, own = self.problem(pair), self.optimum(pair)
         if problem.ratios is None:
             return own

@@ -183,7 +183,7 @@ def progress(label: str, total: int | None = None, rate: bool = False) -> Iterat
 
 @contextmanager
 def new_output(path: Path | None, field: str = "--out") -> Iterator[Callable[[str | bytes], None]]:
-    """Reserve a new file; what is written appears under its name at once and complete.
+    """Reserve a new file, which appears under its name only when complete.
 
     Parameters
     ----------
@@ -220,7 +220,7 @@ def new_output(path: Path | None, field: str = "--out") -> Iterator[Callable[[st
 
 
 def replace_output(path: Path, text: str) -> None:
-    """Write a file under its name at once and complete, in the place of an earlier one.
+    """Write a complete file in a single step, replacing an earlier one.
 
     Raises
     ------

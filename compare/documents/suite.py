@@ -53,7 +53,7 @@ class SuiteInstance(Entry):
     """Its file, as the suite ships it."""
     certificate_sha256: OrWhy[str]
     command: str
-    """What makes the certificate."""
+    """Command that creates the certificate."""
     hardness: OrWhy[MeasuredHardness]
 
 

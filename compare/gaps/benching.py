@@ -55,16 +55,16 @@ Named = str | Callable[..., object]
 
 @dataclass(frozen=True)
 class Entrant:
-    """An optimiser as it takes part.
+    """An optimiser with its settings, as it takes part in a bench.
 
     Attributes
     ----------
     optimizer : str
         As `find_optimizer` takes it.
     settings : mapping
-        What is set; the rest has its default.
+        Settings; the others have their defaults.
     handling : str
-        What happens to vectors that break a limit.
+        Treatment of vectors that break a limit.
     label : str
         Its name in tables and pictures.
     """
@@ -83,9 +83,9 @@ class Entrant:
     def stream(self) -> int:
         """Key of its random stream under every seed.
 
-        Optimisers of equal seeds would begin with the same draws, so that their runs were no
-        independent samples. The key depends on nothing but the entrant, so that its rows are the
-        same in any company.
+        With equal seeds alone, optimisers would begin with the same draws, and their runs would not
+        be independent samples. The key depends only on the entrant, so its rows do not depend on
+        the others.
         """
         digest = hashlib.sha256(canonical(self.identity).encode()).digest()
         return int.from_bytes(digest[:4], "big")
@@ -105,9 +105,9 @@ class BenchPlan:
     trials : tuple of Trial
         By entrant, then by seed.
     budget, seeds : int
-        Evaluations of a run of what has no iterations of its own; seeds of each optimiser.
+        Evaluations of a run, for optimisers without their own iterations; seeds of each optimiser.
     notes : tuple of str
-        What was chosen so that the optimisers can run.
+        Choices that were made so that the optimisers can run.
     """
 
     problem: Problem
@@ -122,7 +122,7 @@ class BenchPlan:
 
 @dataclass(frozen=True, eq=False)
 class Runs:
-    """What a bench leaves: a row for each of its trials, in their order."""
+    """The rows of a bench, one for each of its trials, in their order."""
 
     plan: BenchPlan
     rows: tuple[Row, ...]
@@ -152,9 +152,9 @@ def bench(
     problem : Problem
     optimizers : str, callable, or iterable of them
     engine : Engine, optional
-        Where the runs are made, such as `on_this_machine`; by default here, one by one.
+        Where the runs are made, such as `on_this_machine`; by default in this process, one by one.
     progress : callable, optional
-        Called with each row as it comes.
+        Called with each row as it arrives.
     **options
         ``seeds``, ``budget``, ``handling``, ``settings``, ``baselines``, ``seconds``, ``name`` and
         ``reading``, as `plan_bench` takes them.
@@ -167,7 +167,7 @@ def bench(
     Raises
     ------
     TrajgapError
-        As `plan_bench`. What an optimiser does wrong while it runs is in its rows.
+        As `plan_bench`. Faults of an optimiser during a run are recorded in its rows.
     """
     return run_bench(plan_bench(problem, optimizers, **options), engine, progress)
 
@@ -185,20 +185,21 @@ def plan_bench(
     name: str = "",
     reading: str = "",
 ) -> BenchPlan:
-    """Lay out the runs of a bench.
+    """Plan the runs of a bench.
 
     Parameters
     ----------
     problem : Problem
-        Searched with one duration vector for all its joints. Where it has no upper bound on a
-        duration, searches look within the total that equal durations reach; the notes say so.
+        Searched with one duration vector for all its joints. If it has no upper bound on a
+        duration, searches are restricted to the total that equal durations reach; the notes say so.
     optimizers : str, callable, or iterable of them
         As `find_optimizer` takes them; a callable must be a function of a module.
     seeds : int
-        Runs of each optimiser; one of those that draw no random numbers.
+        Runs of each optimiser; one run if it draws no random numbers.
     budget : int, optional
-        Evaluations of each run; the objective stops a run that asks for more. Without it a paper's
-        algorithm makes its own iterations, printed by its paper, and anything else has 6000.
+        Evaluations of each run; the objective stops a run that asks for more. Without it, a paper's
+        algorithm runs the iterations that its paper prints, and any other optimiser has 6000
+        evaluations.
     handling : str
         "death-penalty", "stretch" or "rescale".
     settings : mapping, optional
@@ -209,7 +210,7 @@ def plan_bench(
     seconds : float
         Time limit of one run; a run that takes longer has failed.
     name, reading : str
-        What rows call the problem.
+        Names of the problem in the rows.
 
     Raises
     ------
@@ -219,8 +220,8 @@ def plan_bench(
 
     Notes
     -----
-    Each optimiser has a random stream of its own under each seed (`Entrant.stream`): runs of
-    different optimisers are independent samples, also where their seeds are called alike.
+    Each optimiser has its own random stream under each seed (`Entrant.stream`): runs of different
+    optimisers are independent samples, even with equal seeds.
     """
     judge_of(problem, float("inf"), handling)  # one line now, instead of one in every row
     names = [optimizers] if isinstance(optimizers, str) or callable(optimizers) else optimizers
@@ -285,7 +286,7 @@ def run_bench(
 ) -> Runs:
     """Make the runs of a bench; parameters as `bench`. The rows are the same on every engine.
 
-    With a store, runs that it holds are not made again, and each new one is in it as it ends.
+    With a store, stored runs are not repeated, and each new run is stored as it ends.
     """
     report = progress or (lambda _: None)
     found: dict[str, Row] = {}
@@ -309,7 +310,7 @@ def run_bench(
 
 
 def measure_gaps(runs: Runs, optimum: Solution | Reference | float) -> BenchResult:
-    """Gap quantiles, success rates and comparisons of what a bench left.
+    """Gap quantiles, success rates and comparisons of the runs of a bench.
 
     Parameters
     ----------

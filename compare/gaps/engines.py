@@ -28,9 +28,9 @@ class Engine:
     slots : callable
         Number of workers at the moment.
     name : str
-        Words for people.
+        Name for messages.
     run : callable
-        What the executor is given with each trial.
+        Function that the executor calls with each trial.
     """
 
     executor: Executor
@@ -43,13 +43,13 @@ class Engine:
 def on_this_machine(workers: int) -> Iterator[Engine]:
     """Run trials in processes of this machine.
 
-    Each worker is a thread that owns a process, so that the death of one process loses nothing
-    but its trial, which is done again.
+    Each worker is a thread that owns a process, so the death of one process loses only its trial,
+    which is repeated.
 
     Parameters
     ----------
     workers : int
-        1 runs one trial after another, in a process of its own all the same.
+        1 runs one trial after another, still in a separate process.
     """
     with ExitStack() as stack:
         crew = Crew()
@@ -99,7 +99,7 @@ def _threads(client: Any) -> int:
 def outcomes(trials: Iterable[Trial], engine: Engine) -> Iterator[TrialOutcome]:
     """Run trials; outcomes come as they finish, in any order.
 
-    Only a few trials are handed out at a time, so that memory does not grow with their number.
+    Only a few trials are submitted at a time, so memory does not grow with their number.
 
     Parameters
     ----------
@@ -110,7 +110,7 @@ def outcomes(trials: Iterable[Trial], engine: Engine) -> Iterator[TrialOutcome]:
     Raises
     ------
     ProcessError
-        If the engine itself fails; trials that have not come back are then not done.
+        If the engine itself fails; trials that have not returned are then not done.
     """
     pending: dict[Future[TrialOutcome], Trial] = {}
     room = _AHEAD * engine.slots()

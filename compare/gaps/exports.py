@@ -59,7 +59,7 @@ _NOTHING = sys.float_info.max
 
 
 def export_rows(rows: Iterable[Row], path: Path) -> int:
-    """Write rows in the format that a name ends with; the file appears at once and complete.
+    """Write rows in the format of the name's ending; the file appears complete or not at all.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ def export_rows(rows: Iterable[Row], path: Path) -> int:
     Returns
     -------
     int
-        Rows written. IOHprofiler's format has no place for a run that judged nothing.
+        Rows written. IOHprofiler's format cannot hold a run that evaluated nothing.
 
     Raises
     ------
@@ -85,7 +85,7 @@ def export_rows(rows: Iterable[Row], path: Path) -> int:
 
 
 def check_export(path: Path) -> None:
-    """Find out whether rows could be exported to a path, before anything is computed.
+    """Check whether rows can be exported to a path, before anything is computed.
 
     Raises
     ------

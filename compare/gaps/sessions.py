@@ -18,20 +18,20 @@ _SOFTWARE = ("trajgap", "numpy", "scipy", "casadi", "numba")
 
 @dataclass(frozen=True)
 class StudySession:
-    """How a session stands.
+    """Progress of a session.
 
     Attributes
     ----------
     total : int
         Trials of the study.
     resumed : int
-        Of them in the store before the session began.
+        Trials in the store before the session began.
     run : int
-        Of them run since then.
+        Trials run since then.
     failed : int
         Runs of this session that failed.
     seconds : float
-        That the runs of this session took together.
+        Total time of the runs of this session.
     """
 
     total: int
@@ -70,9 +70,9 @@ def run_study(
     retry: bool = False,
     progress: Callable[[StudySession], None] = lambda _: None,
 ) -> StudySession:
-    """Run what the store does not hold yet.
+    """Run the trials that are not in the store yet.
 
-    Whatever ends the session, a row that came back is in the store, and the next session goes on.
+    However the session ends, every returned row is in the store, and the next session continues.
 
     Parameters
     ----------

@@ -32,13 +32,13 @@ CREATE TABLE notes (name TEXT PRIMARY KEY, text TEXT NOT NULL) WITHOUT ROWID;
 class Store:
     """Rows of finished runs by the key of their trial.
 
-    Several processes may use one store. A row is on disk before `put` returns, and is never
-    changed after that: the row that was there first stays.
+    Several processes may use one store. A row is on disk before `put` returns, and never changes
+    after that: the first row stays.
 
     Parameters
     ----------
     path : Path
-        Made if it is not there.
+        Created if it does not exist.
 
     Raises
     ------
@@ -127,7 +127,7 @@ class Store:
         ----------
         row : Row
         seconds : float
-            That the run took.
+            Duration of the run.
 
         Returns
         -------
@@ -146,13 +146,13 @@ class Store:
             return self._data.total_changes > before
 
     def status(self, key: str) -> RowStatus | None:
-        """How the run of a key ended; None if it is not here."""
+        """How the run of a key ended; None if it is not stored."""
         with self._telling():
             found = self._data.execute("SELECT status FROM runs WHERE key = ?", (key,)).fetchone()
         return None if found is None else RowStatus(found[0])
 
     def row(self, key: str) -> Row | None:
-        """The row of a key; None if it is not here."""
+        """The row of a key; None if it is not stored."""
         with self._telling():
             found = self._data.execute("SELECT row FROM runs WHERE key = ?", (key,)).fetchone()
         return None if found is None else self._read(found[0])
@@ -170,31 +170,31 @@ class Store:
             raise CaseError(str(self.path), "", str(error)) from None
 
     def tally(self) -> Counter[RowStatus]:
-        """How many runs ended in which way."""
+        """Number of runs by the way they ended."""
         with self._telling():
             found = self._data.execute("SELECT status, count(*) FROM runs GROUP BY status")
             return Counter({RowStatus(status): count for status, count in found})
 
     def seconds(self) -> float:
-        """Seconds that all runs took together."""
+        """Total time of all runs, s."""
         with self._telling():
             (found,) = self._data.execute("SELECT total(seconds) FROM runs").fetchone()
         return float(found)
 
     def optimum(self, problem: str, solve: Callable[[], Bracket | None]) -> Bracket | None:
-        """Where the optimum of a problem lies: the same answer in every process and session.
+        """Interval of the optimum of a problem: the same in every process and session.
 
         Parameters
         ----------
         problem : str
             Its hash.
         solve : callable
-            Asked once, if the store does not know.
+            Called once, if the interval is not stored.
 
         Returns
         -------
         Bracket or None
-            None if there is none to set gaps against.
+            None if there is no reference for gaps.
         """
         asking = "SELECT upper, lower FROM optima WHERE problem = ?"
         with self._telling():

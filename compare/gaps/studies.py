@@ -50,21 +50,21 @@ class StudyProblem:
     name, reading : str
         As rows state them.
     case : Case
-        Where it is stated.
+        The case that states it.
     problem_id : str
         Its id there.
     joint : str or None
-        The joint that is searched by itself; None for all together.
+        The joint that is searched separately; None for all joints together.
     problem : Problem
         As stated.
     box : Bounds
-        Where searches look for durations.
+        Box in which durations are searched.
     stream : tuple of int
         Part of the spawn key of its random numbers: (j,) for joint j of several.
     solve : callable
-        Finds where the optimum of the problem as stated lies.
+        Returns the interval of the optimum of the problem as stated.
     notes : tuple of str
-        What was chosen so that optimisers can search it.
+        Choices that were made so that optimisers can search it.
     """
 
     name: str
@@ -81,7 +81,7 @@ class StudyProblem:
 
 @dataclass(frozen=True, eq=False)
 class StudyPlan:
-    """What a study file asks for.
+    """The runs that a study file specifies.
 
     Attributes
     ----------
@@ -109,13 +109,14 @@ class StudyPlan:
         Parameters
         ----------
         store : Store, optional
-            Knows or keeps the optima from which gaps are measured; without it, rows have no gaps.
+            Provides and stores the optima from which gaps are measured; without it, rows have no
+            gaps.
         """
         for _, trials in self.groups(store):
             yield from trials
 
     def groups(self, store: Store | None = None) -> Iterator[tuple[str, tuple[Trial, ...]]]:
-        """The trials that differ by their seeds alone, with the label of their optimiser.
+        """Groups of trials that differ only in their seeds, with the label of their optimiser.
 
         Parameters
         ----------
@@ -149,7 +150,7 @@ class StudyPlan:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What was run where the file states no budget, and what was left out."""
+        """Notes on budgets that the file does not state, and on what was left out."""
         budget = None if self.document.budget is None else self.document.budget[0]
         entrants = [replace(one, label=one.optimizer) for one in self._entrants()]
         return (*dict.fromkeys(budget_notes(entrants, budget)), *self.missing)
@@ -192,7 +193,7 @@ def parse_study(text: str, file: str, folder: Path) -> StudyPlan:
     file : str
         Name for messages.
     folder : Path
-        Where the paths in it start.
+        Folder to which its paths are relative.
 
     Raises
     ------

@@ -45,7 +45,7 @@ _PROBLEMS = 64
 
 @dataclass(frozen=True)
 class TrialOutcome:
-    """A row, and what is measured beside it and differs from run to run.
+    """A row, and the measured time, which differs from run to run.
 
     Attributes
     ----------
@@ -223,13 +223,13 @@ atexit.register(_crew.end)
 
 
 def run_apart(trial: Trial) -> TrialOutcome:
-    """Run a trial in a process that belongs to this thread; it is started at the first trial.
+    """Run a trial in the process of this thread, which is started at the first trial.
 
     Returns
     -------
     TrialOutcome
-        A run whose process ends is done again, once, in a fresh process. The row is a failed one
-        if that ends too, or if the run takes longer than the trial allows.
+        A run whose process ends is repeated once in a new process. The run has failed if that
+        process ends too, or if the run takes longer than the trial allows.
 
     Raises
     ------

@@ -107,9 +107,9 @@ def run_trial(trial: Trial) -> Row:
     Returns
     -------
     Row
-        Failed, with a message, if the optimiser is not found, raises, judges nothing, leaves the
-        rules or takes too long. One that hangs in compiled code, or ends the process, is caught
-        by the engines alone.
+        Failed, with a message, if the optimiser is not found, raises an exception, evaluates
+        nothing, breaks a rule or takes too long. Only the engines detect one that hangs in compiled
+        code or ends the process.
     """
     if trial.optimizer == DESCENT:
         return _descended(trial)

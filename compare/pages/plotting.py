@@ -27,12 +27,12 @@ def plot(result: Plotted, beside: ArrayLike | Solution | JointLimits | None = No
     ----------
     result : Solution, Problem, Motion, Samples, Runs, CaseAudit, AuditReport or Waterfall
         A solution and a problem with durations: the motion, with limits and largest values. A
-        motion or samples from elsewhere with limits: the same, and what breaks them. Runs of
+        motion or samples from elsewhere with limits: the same, with violations marked. Runs of
         `bench`: gaps over the evaluations. An audit of one case, and a waterfall: where the time
         goes.
     beside : array_like, shape (segments,), or JointLimits or Solution or float, optional
-        The durations of a problem, s; the limits of a motion; the optimum against which runs are
-        set.
+        The durations of a problem, s; the limits of a motion; the optimum with which runs are
+        compared.
 
     Returns
     -------

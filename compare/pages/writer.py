@@ -56,7 +56,7 @@ class _Mark(BaseModel):
 
 
 def write_report(report: AuditReport, out: Path) -> None:
-    """Write the pages of an audit into a folder; all of them appear together.
+    """Write the pages of an audit into a folder; they all appear together.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ def write_report(report: AuditReport, out: Path) -> None:
     Raises
     ------
     TrajgapError
-        If the folder holds anything else, two cases would share a file, or it cannot be written.
+        If the folder contains anything else, two cases would share a file, or it cannot be written.
     """
     out = Path(out)
     names = [one.case.id for one in report.cases]

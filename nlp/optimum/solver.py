@@ -74,8 +74,9 @@ def solve(
     """Best known total time of a problem with shared durations.
 
     Up to 24 segments a wide search on exact totals finds basins, and a descent on the exact extrema
-    goes down in each. Beyond, and where the curve leaves derivatives free, rounds of the exact NLP
-    (`build`) answer. Where the problem fixes the ratios of its durations, the total is a formula.
+    runs in each. For more segments, or if the curve leaves derivatives free, rounds of the exact
+    NLP (`build`) find the answer. If the problem fixes the ratios of its durations, the total is
+    given by a formula.
 
     Parameters
     ----------
@@ -89,18 +90,18 @@ def solve(
     initial : array_like, shape (starts, segments), optional
         Starts to use instead, s.
     known : array_like, shape (motions, segments), optional
-        Durations, s, that somebody already has: printed ones, replays, a certificate's. Each that
-        `check` passes, as it is or stretched uniformly, is an incumbent: the answer is never worse.
-        The others do no harm.
+        Durations, s, that are already known: printed ones, replays, those of a certificate. Each
+        that `check` passes, as it is or stretched uniformly, is an incumbent: the answer is never
+        worse. The others do no harm.
     known_nodal : array_like, shape (motions, free, joints), optional
-        Their free derivatives, where the curve leaves some open; without them those motions are
-        not determined, and not used.
+        Their free derivatives, if the curve leaves some open; without them, those motions are not
+        determined and not used.
     seconds : float
         Time limit, kept to within a step of the search: the best motion so far is the answer, and
-        `why` says that the time ran out. What is found then depends on the machine.
+        `why` says that the time ran out. The result then depends on the machine.
     lower : float
         A proved lower bound of the total, s. It saves searches, and is not part of the answer:
-        where a known motion is within a millionth of it, no other basin is looked for.
+        if a known motion is within a millionth of it, no other basin is searched.
 
     Returns
     -------

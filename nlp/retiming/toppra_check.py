@@ -23,7 +23,7 @@ class Retiming:
     Attributes
     ----------
     applicable : bool
-        False if there is nothing to compare with; `why` says the reason.
+        False if there is nothing to compare with; `why` gives the reason.
     why : str or None
         Why it is not applicable, or why the inequality is not asserted.
     trajectory_time : float
@@ -100,7 +100,7 @@ def retime(
     Returns
     -------
     Retiming
-        Never raises for a trajectory to which it does not apply: `applicable` says so.
+        Never raises for a trajectory to which it does not apply; `applicable` is then False.
 
     Raises
     ------

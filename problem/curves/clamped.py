@@ -54,13 +54,13 @@ class ClampedBSpline(ClampedDeclaration, StretchedCurve):
         p, 3 to 7; z1 does not print it.
     knots : Knots or str
     parameters : Parameters or str
-        What the knots are placed by. With chords the inner knots lie at fixed fractions of the
+        What determines the knots. With chords the inner knots lie at fixed fractions of the
         total time.
     time : Timing or str
-        "timed": e is time, the way-points are passed where the durations say. "stretched": the
-        way-points sit at the parameters themselves and each segment is stretched in time by
-        itself, so that velocity may jump; with parameters from the times there is no difference,
-        and it is refused.
+        "timed": e is time, the way-points are passed where the durations say. "stretched": the "
+        "way-points lie at the parameters themselves and each segment is stretched in time "
+        "separately, so the velocity may jump; with parameters from the times there is no "
+        "difference, so this is refused.
     end_orders : tuple of int
         Derivatives that are 0 at both ends.
     fractions : tuple, optional
@@ -89,7 +89,7 @@ class ClampedBSpline(ClampedDeclaration, StretchedCurve):
         return tuple((r, 0.0) for r in self.end_orders) if ends else ()
 
     def smooth_order(self, break_index: int) -> int:
-        """The spline's own, unless every segment is stretched by itself."""
+        """The spline's own order, unless every segment is stretched separately."""
         return 0 if self.stretched else self.degree - 1
 
     def smooth_shares(self, waypoints: Array) -> Array | None:
@@ -175,7 +175,7 @@ class ClampedReading:
     curve : ClampedBSpline or None
         The declaration, if it is determined.
     words : str
-        What holds of this reading, and the nearest one that works.
+        A description of this reading, and the nearest one that works.
     """
 
     degree: int

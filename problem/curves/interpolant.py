@@ -440,5 +440,5 @@ def _values(entries: Derivatives) -> list[float]:
 
 
 def as_piecewise(curve: Curve) -> Interpolant | None:
-    """The declaration as polynomials with breaks at the ends of segments, where it is one."""
+    """The declaration as polynomials with breaks at the ends of segments, if it is one."""
     return curve if isinstance(curve, Interpolant) else None

@@ -23,12 +23,12 @@ def limits_of_flags(
         Quantity to text: ``6``, ``6,8,inf``, or ``-1:2`` for a range; of positions a range, or a
         number that stands for both sides. None where there is no flag.
     factors : ndarray, shape (joints,)
-        What a number is in rad.
+        Size of the unit in rad.
 
     Raises
     ------
     CaseError
-        If one is not a number, or they are not as many as joints.
+        If one is not a number, or their number differs from that of the joints.
     """
     ranges: dict[str, dict[str, Range]] = {joint: {} for joint in joints}
     for quantity, text in given.items():

@@ -35,7 +35,7 @@ def read_moveit(path: Path) -> StatedLimits:
         Under ``joint_limits``, for each joint: ``has_velocity_limits`` and ``max_velocity``, the
         same of acceleration, deceleration and jerk, and ``has_position_limits`` with
         ``min_position`` and ``max_position``; rad, or m. A ``has_...`` that is false says that
-        there is no limit; one that is missing is taken from what stands beside it. The default
+        there is no limit; a missing one follows from the other keys. The default
         scaling factors of planners are not limits and are left aside.
     """
     name = str(path)

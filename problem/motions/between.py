@@ -38,7 +38,7 @@ _STRIDES = 12
 def check_samples(
     samples: Samples, limits: JointLimits, tolerance: float = MOTION_TOLERANCE
 ) -> MotionCheck:
-    """Judge every motion through samples, whatever happens between them.
+    """Judge all motions through samples, without an assumption about what happens between them.
 
     Parameters
     ----------
@@ -50,8 +50,8 @@ def check_samples(
     Returns
     -------
     MotionCheck
-        Its verdict is *violated* where every such motion breaks a limit, else *undecided*: no
-        samples show that a motion keeps its limits between them.
+        Its verdict is *violated* if every such motion breaks a limit, otherwise *undecided*:
+        samples cannot show that a motion keeps its limits between them.
     """
     check_same_joints(samples.joints, limits)
     peaks: list[MotionPeak] = []

@@ -27,7 +27,7 @@ class Floor:
     stops : int
         Standstills of all joints, start and end included.
     waiting : float
-        s that the motion stands still; the floor has none of it.
+        Time that the motion stands still, s; the floor does not include it.
     above : float
         (T − time)/time of the judged motion.
     """
@@ -47,8 +47,8 @@ class Floor:
 def shortest(distance: float, velocity: float, acceleration: float, jerk: float) -> float:
     """Shortest time of one joint from rest to rest, also with jerk limits (at rest a = 0).
 
-    The optimal profile speeds up and slows down alike; its top speed v follows from the distance,
-    v·t(v) = d with t(v) = v/A + A/J, or 2√(v/J) where A is not reached.
+    The optimal profile speeds up and slows down symmetrically; its top speed v follows from the
+    distance, v·t(v) = d with t(v) = v/A + A/J, or 2√(v/J) where A is not reached.
 
     Parameters
     ----------

@@ -30,14 +30,14 @@ def as_motion(given: Any, joints: Sequence[str] = ()) -> Motion:
         ``SplineInterpolator``, ``ParametrizeSpline`` or ``ParametrizeConstAccel``; Ruckig's
         ``Trajectory``; Drake's ``PiecewisePolynomial`` or ``BsplineTrajectory``; a message
         ``JointTrajectory`` of ROS, or any message with one as plain values, as the controller
-        follows it; or what `fit` gives.
+        follows it; or the result of `fit`.
     joints : sequence of str, optional
-        Labels; "1", "2", ... by default. A message names its own.
+        Labels; "1", "2", ... by default. A message contains its own names.
 
     Raises
     ------
     TrajgapError
-        If it is none of them, or no polynomial of time on each piece.
+        If it is none of them, or not a polynomial in time on each piece.
     """
     if isinstance(given, Motion):
         return given

@@ -23,7 +23,7 @@ def interpolated(samples: Samples, how: Interpolation) -> Motion:
     Returns
     -------
     Motion
-        With bounds on what noise and rounding may change.
+        With bounds on the effect of noise and rounding.
 
     Raises
     ------

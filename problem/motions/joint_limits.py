@@ -30,10 +30,10 @@ class JointLimits:
     lower, upper : ndarray, shape (joints, 4)
         Range of derivative 0 to 3, rad, s; infinite where there is none.
     deceleration : ndarray, shape (joints,)
-        Largest |acceleration| while the joint's speed falls, rad/s²; where it is given,
-        ``acceleration`` holds while the speed grows. inf where it is not.
+        Largest |acceleration| while the joint's speed falls, rad/s²; if it is given, the
+        acceleration limit applies only while the speed grows. inf if it is not given.
     sources : mapping
-        (joint, quantity) to where the limit is stated, also where it is stated that there is none.
+        (joint, quantity) to the source of the limit, or of the statement that there is none.
 
     Raises
     ------
@@ -78,8 +78,7 @@ class JointLimits:
     ) -> JointLimits:
         """Symmetric limits, one value or one per joint, rad and s.
 
-        None states nothing, and what is not stated is not judged; inf states that there is no
-        limit.
+        None means that nothing is stated, so nothing is judged; inf states that there is no limit.
         """
         count = len(joints)
 
@@ -133,8 +132,8 @@ class JointLimits:
     def two_sided(self) -> Limits:
         """The same limits for `Problem` and `solve`, each side of its own size.
 
-        A deceleration has no place there: where it is given, the smallest of it and of both sides
-        of the acceleration counts on both.
+        These have no separate deceleration: if it is given, the smallest of the deceleration and
+        both sides of the acceleration is used on both sides.
 
         Raises
         ------
@@ -166,7 +165,7 @@ class JointLimits:
 
 
 def unstated_words(unstated: Sequence[tuple[str, str]], joints: Sequence[str]) -> str:
-    """What is not judged, in words; empty if all is: whole joints, whole quantities, the rest."""
+    """What is not judged: whole joints, whole quantities, the rest; empty if all is judged."""
     lacks = {one: [q for q in ORDERS if (one, q) in set(unstated)] for one in joints}
     free = [one for one in joints if len(lacks[one]) == len(ORDERS)]
     others = [one for one in joints if one not in free]

@@ -72,7 +72,7 @@ class MotionJump:
     size : float
         rad/sᵒʳᵈᵉʳ; value after less value before.
     count : int
-        Breaks at which it jumps.
+        Number of breaks at which it jumps.
     """
 
     joint: str
@@ -84,12 +84,12 @@ class MotionJump:
 
 @dataclass(frozen=True, eq=False)
 class MotionCheck:
-    """What is true of a motion, or of all motions through samples.
+    """The result of a check of a motion, or of all motions through samples.
 
     Attributes
     ----------
     limits : Verdict
-        About the limits alone, jumps apart.
+        Verdict on the limits alone, apart from jumps.
     worst : MotionPeak or None
         Largest ratio; None if nothing is limited.
     peaks : tuple of MotionPeak
@@ -97,16 +97,16 @@ class MotionCheck:
     total_time : float
         s.
     stretch : float
-        Uniform slow-down that repairs: every duration times this keeps the limits; at least 1. For
-        all motions through samples: no smaller one can.
+        Uniform slow-down that repairs the motion: all durations times this factor keep the limits;
+        at least 1. For samples: no smaller factor can repair any motion through them.
     feasible_time : float or None
-        ``total_time`` times ``stretch``; None with the reason beside.
+        ``total_time`` times ``stretch``; None if there is none, with a reason.
     floor : Floor or None
         No motion between the same standstills is shorter.
     concluded, open : tuple of str
-        What follows from the file, and what does not.
+        Conclusions from the file, and what remains open.
     not_judged : tuple of (str, str)
-        Joint and quantity wherever no limit is stated: the verdict is silent about them.
+        Joint and quantity wherever no limit is stated: the verdict does not cover them.
     """
 
     verdict: Verdict

@@ -57,14 +57,14 @@ def sampled(
     Parameters
     ----------
     step : float
-        Between rows, s; the last row is the end, however near.
+        Step between rows, s; the last row is the end, which may be nearer.
     joints : tuple of str, optional
         Labels; those of the motion, or "1", "2", ....
     breaks : bool
-        Whether the motion's breaks are rows too, so that quintic Hermite interpolation gives a
-        motion of degree 5 or less back exactly.
+        Whether the motion's breaks are rows too, so that quintic Hermite interpolation reproduces a
+        motion of degree 5 or less exactly.
     whole_nanoseconds : bool
-        Whether times are rounded to those, as messages of ROS have them.
+        Whether times are rounded to whole nanoseconds, as in ROS messages.
 
     Raises
     ------
@@ -110,17 +110,17 @@ def _rows(breaks: Array, step: float, all_breaks: bool) -> Array:
 def csv_text(samples: Samples, units: Array | float = 1.0) -> str:
     """Samples as CSV with the 17 digits that determine a float64.
 
-    Zeros at the end are written too: the digits of a file say how far its numbers are known.
+    Trailing zeros are written too, because the digits of a file determine its uncertainty.
 
     Parameters
     ----------
     units : float or ndarray, shape (joints,)
-        What 1 of the written positions is, in rad or m; times are in s.
+        Unit of the written positions, in rad or m; times are in s.
 
     Raises
     ------
     TrajgapError
-        If the name of a joint holds a separator.
+        If the name of a joint contains a separator.
     """
     given = [("", samples.position), (" velocity", samples.velocity)]
     given.append((" acceleration", samples.acceleration))
@@ -157,7 +157,7 @@ def motion_text(
     Raises
     ------
     TrajgapError
-        As `sampled`; of polynomials if the motion is none.
+        As `sampled`; for polynomials also if the motion is not polynomial.
     """
     if form is MotionForm.CSV:
         return csv_text(sampled(motion, step, joints))
@@ -170,7 +170,7 @@ def motion_text(
 
 
 def read_back(text: str, form: MotionForm, name: str) -> Motion:
-    """The motion that a reader makes of a written file: samples by quintic Hermite polynomials."""
+    """The motion that a reader obtains from a file, by quintic Hermite polynomials."""
     if form is MotionForm.PPOLY:
         return motion_of_json(parse_json(text.encode(), name), name)
     if form is MotionForm.ROS:

@@ -47,8 +47,8 @@ class IkSolution:
     Attributes
     ----------
     joints : ndarray, shape (joints,)
-        Joint variables, rad (m where a joint slides), within the bounds; where nothing was
-        solved, the values with the smallest residual.
+        Joint variables, rad (m where a joint slides), within the bounds; if nothing was solved, the
+        values with the smallest residual.
     position_error : float
         Norm of the wanted components of the position residual, m.
     angle_error : float
@@ -87,8 +87,8 @@ def inverse_kinematics(
     """Find joint values that bring the end of a chain to a point or pose.
 
     Levenberg–Marquardt on the residual from all starts at once (Wampler 1986; Sugihara 2011),
-    with joints held at a bound while the step points outwards. The answer is judged afresh by
-    forward kinematics.
+    with joints held at a bound while the step points outwards. The answer is checked by forward
+    kinematics.
 
     Parameters
     ----------
@@ -102,13 +102,13 @@ def inverse_kinematics(
         the target, in the base frame.
     guess : array_like, shape (joints,), optional
         First start; of several solutions the one whose farthest joint is nearest to it is
-        returned. Without it the search ends with the first start that arrives.
+        returned. Without it, the search ends with the first start that succeeds.
     starts : int
         Number of starts, the guess included.
     tolerance : float
         Largest norm of the residual, m and rad.
     iterations : int
-        Most steps per start.
+        Largest number of steps per start.
 
     Raises
     ------

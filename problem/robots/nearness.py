@@ -57,8 +57,8 @@ def proximity(
         Values of the joints that are held, rad (m where a joint slides); NaN for the free ones,
         which range over `Chain.span`. Held values need not keep the bounds.
     radial : bool
-        Compare distances from the base's origin only: what is left of the distance if the axes of
-        the base may be turned or mirrored.
+        Compare distances from the base's origin only, as if the axes of the base could be turned or
+        mirrored.
     tolerance : float, optional
         Wanted difference of the bounds, m; a ten-thousandth of the reach by default. With many
         free joints the search may stop before.

@@ -67,14 +67,14 @@ class Equation(Strict):
 
 @dataclass(frozen=True)
 class EquationCheck:
-    """How far an equation holds.
+    """How well an equation holds.
 
     Attributes
     ----------
     share : float
         Share of the samples at which both sides agree, with either sign of "pm".
     largest : float
-        Largest difference of the sides over the samples; NaN where a side has no value.
+        Largest difference of the sides over the samples; NaN if a side has no value.
     """
 
     text: str

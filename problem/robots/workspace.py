@@ -80,7 +80,7 @@ class Workspace:
 def sample_workspace(chain: Chain, count: int, seed: int) -> Workspace:
     """Sample the positions that the end of a chain can take.
 
-    Joint values are uniform, positions therefore are not: they crowd where the arm is folded.
+    Joint values are uniform, so positions are not: they concentrate where the arm is folded.
 
     Parameters
     ----------

@@ -98,7 +98,7 @@ def select_instances(wanted: str) -> tuple[BenchmarkInstance, ...]:
 
 
 def select_curve(word: str) -> tuple[BenchmarkInstance, ...]:
-    """Instances whose name, or whose curve's, has a word; empty where none has.
+    """Instances whose name, or whose curve's name, contains a word; empty if there is none.
 
     Parameters
     ----------

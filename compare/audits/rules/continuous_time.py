@@ -176,8 +176,8 @@ def _limits_statement(study: Study, claim: StatementClaim) -> Iterator[Finding]:
                 else f"Every printed set of durations ({every}) keeps"
             )
             sentences = [
-                f"{which} the limits for all t, as printed or for some values that round or are "
-                f"cut off to {'their' if len(judged) == 1 else 'its'} digits."
+                f"{which} the limits for all t, as printed or for some values that are rounded or "
+                "cut off to give the printed digits."
             ]
         else:
             verdict = ClaimVerdict.NOT_CHECKABLE

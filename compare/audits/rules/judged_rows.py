@@ -74,7 +74,7 @@ def judged_row(row: PrintedRow[AnyClaim]) -> JudgedRow:
     bound = rounding.lower_bound_of_worst
     if rounding.verdict is Rounding.BREAKS and bound is not None:
         said.append(
-            f"However the digits were rounded, a limit is exceeded by a factor of at least "
+            f"In every case, a limit is exceeded by a factor of at least "
             f"{shown_bound(bound, 'lower')}."
         )
     if rounding.verdict is Rounding.BREAKS:
