@@ -207,7 +207,7 @@ def clean_table(rows: Sequence[Row]) -> str:
         f"Of {claims:,} claims {judged / claims:.1%} were judged: {_share(rows, 'supported')} "
         f"supported, {_share(rows, 'depends')} depend on a reading that was offered beside the "
         f"true one, {_share(rows, 'unchecked')} not checkable. "
-        f"One audit takes {sum(r.ms for r in rows) / papers:.0f} ms of processor time in the mean.",
+        f"One audit takes {sum(r.ms for r in rows) / papers:.0f} ms of processor time on average.",
     ]
     wrong = [f"{r.seed} ({r.against})" for r in rows if r.seen or r.errors]
     lines += ["", f"Seeds in error: {', '.join(wrong) if wrong else 'none'}."]
@@ -260,7 +260,8 @@ def fault_table(rows: Sequence[Row]) -> str:
 def room_table(rows: Sequence[Row]) -> str:
     """What digits hide of each fault, the smallest that was seen, the largest that was not."""
     lines = [
-        "| fault | median of what digits hide | smallest seen | largest not seen | its multiple |",
+        "| fault | median of what rounding hides | smallest seen | largest not seen | its "
+        "multiple |",
         "|---|---|---|---|---|",
     ]
     for fault in FAULTS:

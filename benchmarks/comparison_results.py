@@ -76,7 +76,7 @@ ON = {
     "woa": "eight seeded way-points, since the paper prints none",
     "ga": "the paper's way-points",
 }
-APART = "each joint by itself"  # the paper's procedure: each segment takes the longest duration
+APART = "each joint separately"  # the paper's procedure: each segment takes the longest duration
 JOINT = ", joint "
 
 

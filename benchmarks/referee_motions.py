@@ -6,7 +6,7 @@ outputs) nothing is done here. The rest are timings s(t) of a known path q(s):
 - `timed`: s(t) is a polynomial on each piece (copp's TOPP2: constant path acceleration; Drake's
   ``Toppra``: a ``PiecewisePolynomial``), so q(s(t)) is one too, exactly.
 - `third_order`: copp's TOPP3 documents s'' linear in s between stations, and s cubic in t on the
-  stationary intervals at the ends. The first is no polynomial in t, but its Taylor series has a
+  stationary intervals at the ends. The first is not a polynomial in t, but its Taylor series has a
   closed form; pieces are cut until what the series leaves out is below rounding.
 """
 

@@ -81,7 +81,7 @@ def link_inside(_app: Any, _page: str, source: list[str]) -> None:
 def plain_bars(
     _app: Any, _what: str, _name: str, _of: Any, _options: Any, lines: list[str]
 ) -> None:
-    """Absolute values, |v|, are no substitutions of reStructuredText."""
+    """Absolute values, |v|, are not substitutions of reStructuredText."""
     lines[:] = [
         "``".join(
             part if k % 2 else part.replace("|", "\\|") for k, part in enumerate(line.split("``"))

@@ -11,7 +11,7 @@ from .objective import Bounds, Objective
 
 
 class State(Protocol):
-    """What every algorithm's state shows to the loop."""
+    """Attributes that the loop reads from every algorithm's state."""
 
     @property
     def best(self) -> Array:
@@ -26,7 +26,7 @@ S = TypeVar("S", bound=State)
 
 
 class Algorithm(Protocol[S]):
-    """A frozen record of settings that starts a search and moves it on."""
+    """A frozen record of settings that starts a search and advances it."""
 
     @property
     def kind(self) -> str:
@@ -45,17 +45,17 @@ class Algorithm(Protocol[S]):
         """Fitness of an infeasible position."""
 
     def init(self, bounds: Bounds, rng: np.random.Generator, objective: Objective) -> S:
-        """Start a search; the state that it returns is judged."""
+        """Start a search and return its first, evaluated state."""
 
     def step(
         self, state: S, bounds: Bounds, rng: np.random.Generator, objective: Objective, /
     ) -> S:
-        """Move the search on by one iteration."""
+        """Advance the search by one iteration."""
 
 
 @runtime_checkable
 class Search(Protocol):
-    """A frozen record of settings for a search that owns its loop, such as a library's."""
+    """A frozen record of settings for a search with its own loop, such as a library's."""
 
     @property
     def kind(self) -> str:
@@ -74,4 +74,4 @@ class Search(Protocol):
         """Fitness of an infeasible position."""
 
     def search(self, bounds: Bounds, rng: np.random.Generator, objective: Objective) -> None:
-        """Search until done or until the objective stops it; what counts is what it judged."""
+        """Search until done or until the objective stops it; only evaluated positions count."""

@@ -112,7 +112,7 @@ def searched(
     Raises
     ------
     TrajgapError
-        If it judged nothing, or handed over something that is no batch of positions.
+        If it judged nothing, or handed over something that is not a batch of positions.
     """
     per, blocks = search.per_iteration, search.iterations + 1
     budgeted = Budgeted(objective, bounds.lower.size, per * blocks)
@@ -120,7 +120,7 @@ def searched(
         search.search(bounds, rng, budgeted)
     if budgeted.best is None:
         raise TrajgapError(
-            f"{search.kind}: judged no position; call the objective that it is given"
+            f"{search.kind}: evaluated no position; call the objective that it is given"
         )
     judged = budgeted.judged
     ends = np.minimum(np.arange(1, blocks + 1) * per, judged) - 1

@@ -30,13 +30,13 @@ class TentCollapse:
     Attributes
     ----------
     start : Fraction
-        As a decimal; the double orbit starts at the double beside it.
+        As a decimal; the double orbit starts at the nearest double.
     doubles : ndarray, shape (steps + 1,)
     exact : tuple of Fraction, length steps + 1
     zero_at : int or None
         First step at which the double orbit is exactly 0, where it stays.
     exact_zero_at : int or None
-        The same of the exact orbit.
+        The same for the exact orbit.
     period : tuple of int or None
         (n, p) if the exact orbit repeats itself from step n on every p steps.
     """
@@ -52,7 +52,7 @@ class TentCollapse:
 def tent_collapse(
     start: str = "0.37", steps: int = 100, beta: Fraction = Fraction(1, 2)
 ) -> TentCollapse:
-    """Run the tent map (23) in double precision beside the exact one.
+    """Run the tent map (23) in double precision and exactly.
 
     With β = 1/2 no step of the double orbit rounds: x/β and 1 − x are exact there. But every
     double is a whole number over a power of two, each step takes one factor from that power, and

@@ -82,17 +82,17 @@ def _stepped(
 
 @dataclass(frozen=True, eq=False)
 class AskedRun:
-    """What one run is asked.
+    """The specification of one run.
 
     Attributes
     ----------
     problem : Problem
-        Its coupling is not looked at.
+        Its coupling is ignored.
     seed : int
     stream : tuple of int
         Spawn key under the seed.
     handling : str
-        What happens to vectors that break a limit, see `Handling`.
+        Treatment of vectors that break a limit; see `Handling`.
     """
 
     problem: Problem
@@ -122,13 +122,13 @@ def _alone(method: Method, start: Start) -> tuple[Array, Array, int]:
 
 
 def run_asked(method: Method, questions: Sequence[AskedRun]) -> list[Run]:
-    """Run an algorithm on several questions, side by side where it can: the same bits either way.
+    """Run an algorithm on several questions, side by side if it can, with the same results.
 
     Parameters
     ----------
     method : Algorithm or Search
     questions : sequence of AskedRun
-        Neighbours that share problem and handling are judged in one call.
+        Neighbours with the same problem and handling are evaluated in one call.
 
     Returns
     -------
@@ -156,7 +156,7 @@ def run_asked(method: Method, questions: Sequence[AskedRun]) -> list[Run]:
 def run_as_left(
     method: Method, question: AskedRun, trace: Array, position: Array, evaluations: int
 ) -> Run:
-    """The run that an earlier search left behind, with its answer judged again.
+    """The run of an earlier search, with its answer evaluated again.
 
     Parameters
     ----------
@@ -172,8 +172,8 @@ def run_as_left(
     Raises
     ------
     TrajgapError
-        As `run`, or if this is not what a search can leave: the objective gives the position
-        another total than the trace ends with, to the last bit, or the trace is no best so far.
+        As `run`, or if no search can have produced it: the objective gives the position a total
+        that differs from the end of the trace, or the trace does not decrease.
     """
     judge = judge_of(question.problem, method.penalty, question.handling)
     if position.shape != (question.problem.segments,) or trace.shape != (method.iterations + 1,):
@@ -181,7 +181,7 @@ def run_as_left(
     total = float(judge(position[None])[0])
     ended = total if total < method.penalty else np.inf
     if ended != trace[-1] or not (trace[1:] <= trace[:-1]).all():
-        raise TrajgapError(f"run: its trace does not go down to {ended} s")
+        raise TrajgapError(f"run: its trace does not end at {ended} s")
     return _answered(method, question, judge, trace, position, evaluations)
 
 
@@ -226,8 +226,8 @@ def run(
     iterations : int, optional
         Replaces the algorithm's own.
     objective : str
-        What happens to vectors that break a limit: "death-penalty", "stretch" or "rescale", see
-        `Handling`. Under the latter two the durations and times of the run are stretched ones.
+        Treatment of vectors that break a limit: "death-penalty", "stretch" or "rescale"; see
+        `Handling`. With the latter two, the durations and times of the run are stretched ones.
 
     Returns
     -------
@@ -260,7 +260,7 @@ def run_per_joint(
     iterations: int | None = None,
     objective: str = Handling.DEATH_PENALTY,
 ) -> JointRuns:
-    """Search each joint by itself; each segment then takes the longest duration.
+    """Search each joint separately; each segment then takes the longest duration.
 
     Source: `puma560-mnam-pso-353`, section 4.1.
 
@@ -289,7 +289,7 @@ def run_per_joint(
 
 
 def joined_runs(problem: Problem, seed: int, runs: tuple[Run, ...]) -> JointRuns:
-    """Runs of the joints as one: every segment takes the longest of them.
+    """The runs of all joints as one: every segment takes the longest of their durations.
 
     Parameters
     ----------
@@ -381,8 +381,8 @@ def run_many(
     problem : Problem
     seeds : iterable of int
     workers : int
-        Processes. More than one costs about a second to start. The work of a process that is
-        killed is done again, once.
+        Number of processes. More than one costs about a second to start. The work of a killed
+        process is repeated once.
     iterations : int, optional
         Replaces the algorithm's own.
     progress : callable, optional

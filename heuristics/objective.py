@@ -34,7 +34,7 @@ class Bounds:
 
 @dataclass(frozen=True, eq=False)
 class DeathPenalty:
-    """Σ t where every limit is kept for all t, the penalty everywhere else.
+    """Σ t if every limit is kept for all t, otherwise the penalty.
 
     Source: `puma560-mnam-pso-353`, (13) with Step 2 (penalty ∞); `irb460-pso-353`, (18)(19) with
     its flow chart (penalty "a very large constant").
@@ -42,7 +42,7 @@ class DeathPenalty:
     Parameters
     ----------
     problem : Problem
-        All joints share one duration vector, whatever its coupling says.
+        All joints share one duration vector; its coupling is ignored.
     penalty : float
         Fitness of an infeasible vector, s.
     tolerance : float
@@ -53,13 +53,13 @@ class DeathPenalty:
     ------
     TrajgapError
         If the penalty is not positive or some admissible total reaches it, or if the curve leaves
-        derivatives free, which no duration stands for.
+        derivatives free, which durations do not determine.
 
     Notes
     -----
     A vector outside the duration bounds of the problem, or with a duration of 0 or less, is
-    infeasible. Peaks are exact, positions included, where the authors' programs sample them; jumps
-    between segments are not looked for, only `trajgap.problem.check` sees those.
+    infeasible. Peaks are exact, positions included, whereas the authors' programs sample them.
+    Jumps between segments are not detected here; only `trajgap.problem.check` detects those.
     """
 
     problem: Problem
@@ -83,12 +83,12 @@ class DeathPenalty:
             )
         if problem.ratios is not None:
             raise TrajgapError(
-                "ratios: the durations have fixed ratios, so that the total is the one unknown and "
+                "ratios: the durations have fixed ratios, so the total is the only unknown and "
                 "there is nothing to search; `solve` gives it, or leave the ratios out"
             )
 
     def decode(self, durations: Array) -> Array:
-        """Durations that positions stand for: themselves."""
+        """Durations of positions: the positions themselves."""
         return durations
 
     def __call__(self, durations: Array) -> Array:
@@ -121,7 +121,7 @@ class DeathPenalty:
 
 
 class Counted:
-    """An objective that counts how many positions it judged.
+    """An objective that counts the positions it evaluated.
 
     Parameters
     ----------
@@ -131,7 +131,7 @@ class Counted:
     Attributes
     ----------
     evaluations : int
-        Positions judged so far, the ones outside the bounds included.
+        Positions evaluated so far, including those outside the bounds.
     """
 
     def __init__(self, objective: Objective) -> None:
@@ -171,4 +171,4 @@ def check_shape(fitness: Array, count: int) -> None:
 
 def nan_returned() -> TrajgapError:
     """Error for an objective that returned NaN."""
-    return TrajgapError("objective: returned NaN; return inf for what is infeasible")
+    return TrajgapError("objective: returned NaN; return inf for infeasible positions")

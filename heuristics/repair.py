@@ -15,14 +15,14 @@ from .settings import checked
 
 
 class Handling(StrEnum):
-    """What the objective does with a vector that breaks a limit."""
+    """Treatment of a vector that breaks a limit."""
 
     DEATH_PENALTY = "death-penalty"
     """It gets the penalty, as the papers print."""
     STRETCH = "stretch"
-    """It stands for its durations times max(1, c*), the shortest stretch that repairs it."""
+    """It represents its durations times max(1, c*), the shortest stretch that repairs it."""
     RESCALE = "rescale"
-    """Every vector stands for its durations times c*: one that could be shorter is shortened."""
+    """Every vector represents its durations times c*: one that could be shorter is shortened."""
 
 
 class Judge(Protocol):
@@ -41,17 +41,16 @@ class Stretch:
 
     Stretching all durations by c divides velocity, acceleration and jerk by c, c², c³; c* is the
     factor that makes a vector exactly tight. It has no parameter, and it needs one evaluation, as
-    the death penalty does. The search goes on from the position as it stands, only its judgement
-    changes: so it serves every algorithm alike and leaves its equations as printed.
+    the death penalty does. The search continues from the unchanged position; only its fitness
+    changes. It therefore works with every algorithm and leaves the equations as printed.
 
     Parameters
     ----------
     problem : Problem
-        All joints share one duration vector, whatever its coupling says.
+        All joints share one duration vector; its coupling is ignored.
     penalty : float
-        Fitness where no stretch helps, s: a duration of 0 or less, stretched durations outside the
-        problem's bounds, a joint with limit 0 that moves, a path beyond a position limit, which
-        no stretch moves.
+        Fitness if no stretch helps, s: for a duration of 0 or less, stretched durations outside the
+        problem's bounds, a moving joint with limit 0, or a path beyond a position limit.
     shorten : bool
         Whether a vector with c* < 1 is shortened too.
 
@@ -64,7 +63,7 @@ class Stretch:
     -----
     Peaks of the stretched vector are at the limit up to rounding, which grows with the spread of
     the durations: below 1e-10 for C4 quintic splines with durations that differ 1,000-fold, near
-    the checker's tolerance where they differ 100,000-fold. The checker remains the judge.
+    the checker's tolerance if they differ 100,000-fold. The checker decides.
     """
 
     problem: Problem
@@ -75,8 +74,8 @@ class Stretch:
         DeathPenalty(self.problem, self.penalty)
         if not self.problem.curve.homogeneous:
             raise TrajgapError(
-                "stretch: a prescribed derivative is not 0, stretching would change it; "
-                "use the death penalty"
+                "stretch: a prescribed derivative is not 0, and stretching would change it; use "
+                "the death penalty"
             )
 
     def _stretched(self, durations: Array) -> tuple[Array, NDArray[np.bool_]]:
@@ -96,7 +95,7 @@ class Stretch:
         return stretched, kept
 
     def decode(self, durations: Array) -> Array:
-        """Durations that positions stand for; a position that no stretch repairs is left as it is.
+        """Durations that positions represent; a position that no stretch repairs is unchanged.
 
         Parameters
         ----------
@@ -137,7 +136,7 @@ def judge_of(problem: Problem, penalty: float, handling: str = Handling.DEATH_PE
     ----------
     problem : Problem
     penalty : float
-        Fitness of what remains infeasible, s.
+        Fitness of vectors that remain infeasible, s.
     handling : str
         "death-penalty", "stretch" or "rescale".
 
@@ -153,9 +152,7 @@ def judge_of(problem: Problem, penalty: float, handling: str = Handling.DEATH_PE
 
 
 def compile_judge(problem: Problem, handling: str = Handling.DEATH_PENALTY) -> None:
-    """Compile what judges vectors of a problem, so that it lies on disk.
-
-    Processes that start afterwards find it there; otherwise each of them compiles it once more.
+    """Compile the objective of a problem and store it on disk, where later processes find it.
 
     Parameters
     ----------

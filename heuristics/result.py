@@ -26,15 +26,15 @@ class Run:
     algorithm : str
         Kind of the algorithm.
     settings : Algorithm or Search
-        The record that ran, with the number of iterations that it ran.
+        The settings that were used, with the number of iterations that were run.
     problem : str
         Name of the problem.
     seed : int
     stream : tuple of int
         Spawn key of the random stream under the seed; empty for the seed's own.
     durations : ndarray, shape (segments,)
-        Best segment durations as the algorithm left them, s; under a stretch, what its best
-        position stands for.
+        Best segment durations as the algorithm found them, s; with a stretch, those that its best
+        position represents.
     reported_time : float
         What the algorithm reports, Σ t by its own objective, s; inf if nothing feasible was found.
     trace : ndarray, shape (iterations + 1,)
@@ -47,9 +47,9 @@ class Run:
         Whether the algorithm's own objective found a feasible vector. `trajgap.problem.check`
         remains the only judge of the answer.
     objective : Handling
-        What was done with vectors that break a limit.
+        Treatment of vectors that break a limit.
     position : ndarray, shape (segments,)
-        Best position as searched, s; it differs from the durations only under a stretch.
+        Best position as searched, s; it differs from the durations only with a stretch.
     """
 
     algorithm: str
@@ -85,7 +85,7 @@ class Run:
 
 @dataclass(frozen=True, eq=False)
 class JointRuns:
-    """Each joint searched by itself; every segment then takes the longest of the joints.
+    """Separate searches of the joints; every segment then takes the longest of their durations.
 
     Attributes
     ----------
@@ -98,8 +98,8 @@ class JointRuns:
     reported_time : float
         Their sum, s; inf if some joint found nothing feasible.
     feasible : bool
-        Whether every joint found something feasible. That says nothing of the longest durations:
-        a joint that keeps its limits with its own may break them with longer ones.
+        Whether every joint found something feasible. This does not hold for the longest durations:
+        a joint that keeps its limits with its own durations may break them with longer ones.
     """
 
     algorithm: str
@@ -119,6 +119,7 @@ class JointRuns:
     def __str__(self) -> str:
         found = f"{self.reported_time:.6f} s" if self.feasible else "some joint found nothing"
         return (
-            f"{self.algorithm} on {self.problem}, each joint by itself, seed {self.seed}: {found}\n"
+            f"{self.algorithm} on {self.problem}, each joint separately, seed {self.seed}: "
+            f"{found}\n"
             f"durations       {np.array2string(self.durations, precision=6)} s (longest)"
         )

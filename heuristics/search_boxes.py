@@ -22,11 +22,11 @@ def looked_in(method: Algorithm[Any] | Search, problem: Problem) -> Bounds:
 
 
 def search_box(problem: Problem) -> Bounds:
-    """Duration bounds of a problem, finite ones in the place of those that it does not state.
+    """Duration bounds of a problem, with finite bounds in place of missing ones.
 
     Equal durations, stretched until they keep every limit, have some total T; no segment of a
-    shorter motion takes T or longer. So T bounds every duration and cuts off no optimum. It bounds
-    where a search looks, not what is admissible: a vector that is stretched beyond it still counts.
+    shorter motion takes T or longer. So T bounds every duration and excludes no optimum. It limits
+    the search, not what is admissible: a vector that is stretched beyond it still counts.
 
     Parameters
     ----------

@@ -24,14 +24,14 @@ _SEED = Annotated[int, whole(0)]
 
 @dataclass(frozen=True, eq=False)
 class BudgetedRun:
-    """What one search found within its budget, by the objective's own account.
+    """The result of one search within its budget, as recorded by the objective.
 
     Attributes
     ----------
     durations : ndarray, shape (segments,)
-        Of the best position judged, s; under a stretch, what it stands for.
+        Durations of the best position evaluated, s; with a stretch, those that it represents.
     reported_time : float
-        Its fitness, s; inf if nothing feasible was judged.
+        Its fitness, s; inf if no feasible vector was evaluated.
     totals : ndarray, shape (evaluations,)
         Best fitness after each evaluation, s; inf before anything feasible was judged.
     """
@@ -55,18 +55,18 @@ def run_within(
     seconds: float | None = None,
     stream: tuple[int, ...] = (),
 ) -> BudgetedRun:
-    """Search until the method ends by itself or its budget is spent.
+    """Search until the method ends or its budget is spent.
 
-    The objective counts: a method cannot see more evaluations than its budget, and its answer is
-    the best position that it had judged, whatever it reports.
+    The objective counts evaluations: a method cannot exceed its budget, and its answer is the best
+    position that was evaluated, whatever it reports.
 
     Parameters
     ----------
     method : Algorithm or Search
         From `find_optimizer`, for the same budget.
     problem : Problem
-        All joints share one duration vector. Where it states no upper bound, a search that owns its
-        loop looks within `search_box`.
+        All joints share one duration vector. If it states no upper bound, a search with its own
+        loop is restricted to `search_box`.
     seed : int
     budget : int
         Evaluations.
@@ -84,8 +84,8 @@ def run_within(
     Raises
     ------
     TrajgapError
-        If the objective cannot judge the problem, or the search judged nothing, went on after its
-        budget was spent, or took too long.
+        If the objective cannot judge the problem, or the search evaluated nothing, continued after
+        its budget was spent, or took too long.
 
     Examples
     --------
@@ -115,16 +115,18 @@ def run_within(
         pass
     except TimeSpent:
         raise TrajgapError(
-            f"{method.kind}: took longer than {seconds:g} s; raise the time limit, or look where "
+            f"{method.kind}: took longer than {seconds:g} s; raise the time limit, or find where "
             "it hangs"
         ) from None
     if budgeted.refused > 1:
         raise TrajgapError(
-            f"{method.kind}: went on after its budget of {budget} evaluations was spent; let the "
-            "exception of the objective pass"
+            f"{method.kind}: continued after its budget of {budget} evaluations was spent; do not "
+            "catch the exception of the objective"
         )
     if budgeted.best is None:
-        raise TrajgapError(f"{method.kind}: judged no position; call the function that it is given")
+        raise TrajgapError(
+            f"{method.kind}: evaluated no position; call the function that it is given"
+        )
     totals = budgeted.totals
     totals[totals >= method.penalty] = np.inf
     return BudgetedRun(

@@ -60,9 +60,9 @@ _LIMIT: ContextVar[RunClock] = ContextVar("limit")
 
 @contextmanager
 def stopping_after(seconds: float) -> Iterator[None]:
-    """Let every local search within end after so many seconds, at its next step.
+    """End every local search within this context after a number of seconds, at its next step.
 
-    A limit within another one ends with the earlier.
+    Of nested limits, the earlier one applies.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The papers' other procedure: each joint by itself, then the longest duration per segment."""
+"""The papers' other procedure: each joint separately, then the longest duration per segment."""
 
 from __future__ import annotations
 
@@ -192,7 +192,7 @@ class Range:
 
 
 def longest_status(joints: tuple[Solution, ...]) -> Status:
-    """The worst status among the joints; *converged* at best, for the output is no optimum."""
+    """The worst status among the joints; *converged* at best, because there is no optimum."""
     order = [
         Status.OPTIMAL,
         Status.CONVERGED,
@@ -207,11 +207,11 @@ def longest_status(joints: tuple[Solution, ...]) -> Status:
 
 @dataclass(frozen=True, eq=False)
 class PerJointSolution(SearchResult):
-    """Each joint's own optimum, and what the longest-per-segment procedure makes of them.
+    """Each joint's own optimum, and the total that the longest duration per segment gives.
 
     Its durations are the longest of the joints', per segment, judged with all joints. The total of
-    the procedure is its output, not an optimum of anything: where a joint's optimum is flat, many
-    totals are equally justified, and `ranges` says which.
+    the procedure is its output, not an optimum: if a joint's optimum is flat, many totals are
+    equally justified, and `ranges` gives them.
 
     Attributes
     ----------
@@ -231,13 +231,15 @@ class PerJointSolution(SearchResult):
 
     @property
     def evidence(self) -> Evidence:
-        """Of the output, which is no optimum: best known at most, where every search converged."""
+        """Evidence of the output: best known at most, because it is not an optimum."""
         if self.vector is None:
             return Evidence.NONE
         return weakest([Evidence.BEST_KNOWN, self.joint_evidence])
 
     def __str__(self) -> str:
-        lines = [f"{self.problem.name}: each joint by itself, then the longest per segment"]
+        lines = [
+            f"{self.problem.name}: each joint separately, then the longest duration per segment"
+        ]
         for label, s in zip(self.problem.joints, self.joints, strict=True):
             shown = ", ".join(f"{d:.4f}" for d in s.durations) if s.found else s.why
             lines.append(f"joint {label:<9} {s.total_time:.6f} s  ({shown})  {s.status}")
@@ -259,15 +261,15 @@ def solve_per_joint(
     solver: Callable[[Problem], Solution] = solve,
     search: Callable[[list[Near]], Sequence[list[Array]]] = _all_nearby,
 ) -> PerJointSolution:
-    """Optimise each joint by itself and take the longest duration of each segment.
+    """Optimise each joint separately and take the longest duration of each segment.
 
-    Where the problem fixes the ratios of its durations, that is the longest of the joints' totals,
-    and the optimum with shared durations too.
+    If the problem fixes the ratios of its durations, this is the longest of the joints' totals, and
+    also the optimum with shared durations.
 
     Parameters
     ----------
     problem : Problem
-        Its coupling is not looked at.
+        Its coupling is ignored.
     slacks : tuple of float
         Excesses over each joint's own optimum, s, for which the range of the procedure's total
         is reported; none for an empty tuple.

@@ -33,16 +33,16 @@ class Verdict(StrEnum):
     PASS = "pass"
     """Every limit is kept within the tolerance, rounding errors included."""
     VIOLATED = "violated"
-    """Some limit is exceeded by more than the tolerance, whatever the rounding errors."""
+    """Some limit is exceeded by more than the tolerance, rounding errors included."""
     DISCONTINUOUS = "discontinuous"
-    """Position or velocity jumps at a break (or acceleration, where jerk is limited)."""
+    """Position or velocity jumps at a break (or acceleration, if jerk is limited)."""
     UNDECIDED = "undecided"
     """The bound on rounding errors does not separate the peak from its limit."""
 
 
 @dataclass(frozen=True)
 class Peak:
-    """The largest value of one quantity of one joint, set beside its limit.
+    """The largest value of one quantity of one joint, compared with its limit.
 
     Attributes
     ----------
@@ -54,7 +54,7 @@ class Peak:
     segment : int
         Segment, from 0.
     time : float or None
-        Where on the trajectory, s.
+        Time on the trajectory, s.
     value, limit : float
         In rad, s; the limit of a derivative as a size, that of the side with the larger ratio.
     ratio : float
@@ -74,7 +74,7 @@ class Peak:
 
     @property
     def margin(self) -> float:
-        """1 − ratio: what is left of the limit."""
+        """1 − ratio: the remaining share of the limit."""
         return 1.0 - self.ratio
 
 
@@ -84,14 +84,14 @@ _DERIVATIVES = ("position", *QUANTITIES)
 
 @dataclass(frozen=True, eq=False)
 class Check(InNotebooks):
-    """What the checker found about one duration vector.
+    """The result of a check of one duration vector.
 
     Attributes
     ----------
     verdict : Verdict
     limits : Verdict
-        The verdict about the limits alone, jumps apart: pass, violated or undecided. Inside the
-        pieces every limit may be kept while the motion jumps between them.
+        The verdict on the limits alone, apart from jumps: pass, violated or undecided. The limits
+        may be kept inside every piece although the motion jumps between pieces.
     worst : Peak or None
         Largest ratio; None if nothing is limited. A duration counts only beyond its bound.
     peaks : tuple of Peak
@@ -103,7 +103,8 @@ class Check(InNotebooks):
     stretch : float
         c* = max (|v|/V, √(|a|/A), ∛(|j|/J)): stretching all durations by it makes them tight.
     feasible_time, tight_time : float or None
-        T·max(1, c*), the uniform repair; T·c*, the free rescaling. None with the reason beside.
+        T·max(1, c*), the uniform repair; T·c*, the free rescaling. None if there is none; a reason
+        is given.
     tolerance : float
         Relative excess that counts as kept.
     """
@@ -266,17 +267,17 @@ def _rescaled(
     stretched = h * factor
     slack = 1 + TOLERANCE
     if not np.isfinite(factor):
-        return None, "a joint with limit 0 moves; no stretch repairs that"
+        return None, "a joint with limit 0 moves, which no stretch repairs"
     if factor != 1.0 and not problem.curve.homogeneous:
-        return None, "a prescribed end derivative is not 0; stretching would change it"
+        return None, "a prescribed end derivative is not 0, and stretching would change it"
     if any(p.quantity == "position" and p.ratio > 1 + TOLERANCE for p in peaks):
-        return None, "a position limit is exceeded; stretching does not move the path"
+        return None, "a position limit is exceeded, and stretching does not change the path"
     if (stretched * slack < problem.duration_lower).any():
         return None, "a stretched duration falls below its lower bound"
     if (stretched > problem.duration_upper * slack).any():
         return None, "a stretched duration exceeds its upper bound"
     if factor == 0.0:
-        return None, "nothing moves or nothing is limited; the total time can shrink to 0"
+        return None, "nothing moves or nothing is limited, so the total time can shrink to 0"
     return float(stretched.sum()), None
 
 
@@ -286,7 +287,7 @@ def check(
     nodal: ArrayLike | None = None,
     tolerance: float = TOLERANCE,
 ) -> Check:
-    """Judge one duration vector, for all t, knowing nothing of who produced it.
+    """Judge one duration vector at all t, whatever produced it.
 
     Parameters
     ----------
@@ -351,10 +352,10 @@ def _judged(problem: Problem, h: Array, found: Enclosed, tolerance: float) -> tu
     tight_time, tight_why = _rescaled(problem, h, stretch, peaks)
     if serious:
         feasible_time, tight_time = None, None
-        feasible_why = tight_why = "the motion jumps at a break; stretching does not repair that"
+        feasible_why = tight_why = "the motion jumps at a break, which stretching does not repair"
     elif any(p.quantity in roots and _slack(problem, p) >= 1.0 for p in peaks):
         feasible_time, tight_time = None, None
-        feasible_why = tight_why = "rounding hides whether a stretch repairs it"
+        feasible_why = tight_why = "rounding errors hide whether a stretch repairs it"
     judged = Check(
         verdict=verdict,
         limits=about_limits,

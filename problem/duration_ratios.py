@@ -105,7 +105,7 @@ def _by_word(word: str, waypoints: Array, segments: int) -> Array:
 
 
 def no_formula(curve: Curve) -> str | None:
-    """Why the shortest total at fixed ratios is no formula for a curve; None if it is one.
+    """Why the shortest total at fixed ratios is not a formula for a curve; None if it is one.
 
     Parameters
     ----------
@@ -116,15 +116,15 @@ def no_formula(curve: Curve) -> str | None:
     str or None
         With what to do about it.
     """
-    fix = "leave the ratios out, so that each duration is chosen"
+    fix = "leave the ratios out, so that each duration is free"
     if curve.free:
         return (
-            f"ratios: {curve.name} leaves {curve.free} coefficients per joint free, so that the "
-            f"total is not the one unknown; add conditions, or {fix}"
+            f"ratios: {curve.name} leaves {curve.free} coefficients per joint free, so the total "
+            f"is not the only unknown; add conditions, or {fix}"
         )
     if not curve.homogeneous:
         return (
-            f"ratios: {curve.name} prescribes derivatives other than 0, which another total at "
-            f"the same ratios does not keep; prescribe 0, or {fix}"
+            f"ratios: {curve.name} prescribes derivatives other than 0, which change with the "
+            f"total; prescribe 0, or {fix}"
         )
     return None

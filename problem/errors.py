@@ -15,7 +15,7 @@ class TrajgapError(ValueError):
 
 
 class RatiosError(TrajgapError):
-    """Ratios of durations that cannot be.
+    """Ratios of durations that are impossible.
 
     Parameters
     ----------
@@ -29,7 +29,7 @@ class RatiosError(TrajgapError):
 
 
 class ProcessError(TrajgapError):
-    """Processes that compute ended or cannot be started; it says nothing about a problem."""
+    """A worker process ended or cannot be started; this says nothing about a problem."""
 
 
 class CurveError(TrajgapError):
@@ -55,7 +55,7 @@ class CurveError(TrajgapError):
 
 
 class SingularError(CurveError):
-    """Durations at which rounding hides the curve: its linear system is singular in float64.
+    """Durations at which rounding errors hide the curve: its linear system is singular in float64.
 
     Nothing is known of such a curve, neither that it keeps a limit nor that it breaks one.
 
@@ -85,9 +85,9 @@ class CaseError(TrajgapError):
         Path of the field inside it, such as ``waypoints.joint_rows[2]``; empty if the file as a
         whole is at fault.
     reason : str
-        What is wrong, and after a semicolon how to fix it.
+        What is wrong and, after a semicolon, how to fix it.
     others : sequence of (str, str)
-        Field and reason of every further fault, so that one refusal tells all of them.
+        Field and reason of every further fault, so that one message reports all of them.
 
     Notes
     -----

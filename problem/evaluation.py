@@ -120,7 +120,7 @@ def keeps_limits(problem: Problem, durations: Array, tolerance: float) -> NDArra
     Returns
     -------
     ndarray of bool, shape (batch,)
-        What a death penalty asks.
+        The condition of a death penalty.
     """
     if problem.limits.uneven:
         ratios = _uneven_ratios(problem, durations)
@@ -236,7 +236,7 @@ def _capped_question(problem: Problem, tolerance: float) -> _Question:
 def reachable_total(
     problem: Problem, durations: ArrayLike, lower: ArrayLike, upper: ArrayLike
 ) -> float | None:
-    """A total that these durations, stretched, keep for every way-point in a box.
+    """A total with which these durations, stretched, keep the limits for every way-point in a box.
 
     For fixed durations the curve is linear in the way-points, so its peaks over the box are at
     most those at ``problem.waypoints`` plus, for each way-point, its deviation times the peaks of

@@ -146,14 +146,16 @@ def _ratio_word(raw: object) -> str:
     if raw not in RATIO_CHOICES:
         shown = repr(raw) if isinstance(raw, str) else describe(raw)
         words = ", ".join(f'"{word}"' for word in RATIO_CHOICES)
-        raise TrajgapError(f"{shown} is no ratio; give one number per segment, or one of {words}")
+        raise TrajgapError(
+            f"{shown} is not a ratio; give one number per segment, or one of {words}"
+        )
     return str(raw)
 
 
 def _upper_limit(raw: object) -> Printed | None:
     sign = _infinite(raw)
     if sign == "-":
-        raise TrajgapError("-inf is negative; write inf where there is no limit")
+        raise TrajgapError("-inf is negative; write inf for no limit")
     return None if raw is None or sign else _not_negative(read_number(raw))
 
 
@@ -164,7 +166,7 @@ class LimitPair:
     Attributes
     ----------
     lower, upper : Printed or None
-        0 or less, and 0 or more; None where there is no limit.
+        0 or less, and 0 or more; None if there is no limit.
     """
 
     lower: Printed | None

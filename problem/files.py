@@ -44,7 +44,7 @@ _stepping: set[Path] = set()
 
 
 def read_regular(path: Path, largest: int, fix: str) -> bytes:
-    """Read a regular file of bounded size; never waits for one that is none.
+    """Read a regular file of bounded size; never wait for another kind of file.
 
     Parameters
     ----------
@@ -88,7 +88,9 @@ def read_regular(path: Path, largest: int, fix: str) -> bytes:
 
 
 def check_regular(path: Path) -> None:
-    """Refuse what is no regular file, whose reading might never end; absence is no fault here.
+    """Refuse what is not a regular file, because reading it might never end.
+
+    A file that does not exist is not refused here.
 
     Raises
     ------
@@ -116,7 +118,7 @@ def check_name(name: str) -> None:
 
 def _check_regular(name: str, status: os.stat_result) -> None:
     if stat.S_ISDIR(status.st_mode):
-        raise CaseError(name, "", "is a directory; name a file in it")
+        raise CaseError(name, "", "is a directory; give a file in it")
     if not stat.S_ISREG(status.st_mode):
         raise CaseError(name, "", "is not a regular file; name a text file")
 
@@ -131,7 +133,7 @@ def _without_waiting(path: str, flags: int) -> int:
 
 @contextmanager
 def new_file(path: Path) -> Iterator[Callable[[str | bytes], None]]:
-    """Reserve a new file; what is written appears under its name at once and complete.
+    """Reserve a new file, which appears under its name only when complete.
 
     Parameters
     ----------
@@ -162,12 +164,12 @@ def new_file(path: Path) -> Iterator[Callable[[str | bytes], None]]:
 
 
 def replace_file(path: Path, text: str) -> None:
-    """Write a file under its name at once and complete, in the place of an earlier one.
+    """Write a complete file in a single step, replacing an earlier one.
 
     Parameters
     ----------
     path : Path
-        Folders on the way to it are made.
+        Missing parent folders are created.
     text : str
 
     Raises
@@ -182,7 +184,7 @@ def replace_file(path: Path, text: str) -> None:
 
 
 def replace_folder(folder: Path, files: Mapping[str, str]) -> None:
-    """Write a folder under its name at once and complete, in the place of an earlier one.
+    """Write a complete folder in a single step, replacing an earlier one.
 
     However the process ends, the earlier folder or the new one is there, or `recover_folder`
     brings the earlier one back.
@@ -190,7 +192,7 @@ def replace_folder(folder: Path, files: Mapping[str, str]) -> None:
     Parameters
     ----------
     folder : Path
-        Folders on the way to it are made.
+        Missing parent folders are created.
     files : mapping
         Path inside the folder, with slashes, to text.
 
@@ -213,7 +215,7 @@ def replace_folder(folder: Path, files: Mapping[str, str]) -> None:
 
 
 def recover_folder(folder: Path) -> None:
-    """Bring a folder back that stepped aside for its successor when the process was killed.
+    """Restore a folder that was renamed for its successor when the process was killed.
 
     Parameters
     ----------
@@ -235,7 +237,7 @@ def recover_folder(folder: Path) -> None:
 
 
 def try_writing_in(folder: Path) -> None:
-    """Find out whether files can be written into a folder, which need not exist yet.
+    """Check whether files can be written into a folder, which need not exist yet.
 
     Parameters
     ----------

@@ -26,6 +26,7 @@ def peak_gradients(
     Returns
     -------
     PeakGradients
-        By the way-points with everything else held, also parameters that are taken from chords.
+        With respect to the way-points, with everything else fixed, including parameters from
+        chords.
     """
     return problem.curve.value_gradients(problem.waypoints, durations, points, nodal)

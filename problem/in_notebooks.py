@@ -6,7 +6,7 @@ from html import escape
 
 
 class InNotebooks:
-    """A result whose text a notebook shows as it is printed, in columns."""
+    """A result that a notebook shows as printed text, in columns."""
 
     def _repr_html_(self) -> str:
         return f"<pre>{escape(str(self))}</pre>"

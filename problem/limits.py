@@ -58,7 +58,7 @@ class Limits:
         for each joint, the least at most 0 and the largest at least 0. ``inf`` means no limit; 0
         means that the joint must not move, or not to that side.
     position_lower, position_upper : array_like, shape (joints,) or scalar
-        Position range, rad; infinite where there is none.
+        Position range, rad; infinite if there is none.
     joints : int, optional
         Number of joints; needed only when everything given is a scalar.
 
@@ -66,8 +66,8 @@ class Limits:
     ------
     TrajgapError
         If a limit is not a number, NaN or negative, a range leaves out 0 or is empty, or the
-        lengths differ. Also on reading ``velocity``, ``acceleration`` or ``jerk`` where the two
-        sides of a joint differ: there is no one size then, and `sides` gives both.
+        lengths differ. Also on reading ``velocity``, ``acceleration`` or ``jerk`` if the two sides
+        of a joint differ: there is then no single size, and `sides` gives both.
 
     Notes
     -----
@@ -103,7 +103,7 @@ class Limits:
                     f"got shape {array.shape}"
                 )
             if np.isnan(array).any():
-                raise TrajgapError(f"limits.{name}: is NaN; write inf where there is no limit")
+                raise TrajgapError(f"limits.{name}: is NaN; write inf for no limit")
             if paired:
                 full = _paired(name, array)
             else:
@@ -176,8 +176,8 @@ class Limits:
     def hull(self) -> Limits:
         """The narrowest limits of equal sides that allow all that these allow.
 
-        Every motion within these is within those: what is proved of the shortest motion there is
-        a lower bound here. Without uneven limits they are these limits themselves.
+        Every motion within these limits is within the hull, so a lower bound for the hull is also
+        one here. Without uneven limits they are these limits themselves.
         """
         return self.with_derivatives(self.widest) if self.uneven else self
 
@@ -236,5 +236,5 @@ def _paired(name: str, pairs: Array) -> Array:
 
 
 def half_range(low: float, high: float, limit: float) -> float:
-    """What an excess of position is set beside, so that its ratio is 1 at the limit."""
+    """Scale for an excess of position, so that its ratio is 1 at the limit."""
     return float((high - low) / 2) if np.isfinite(high - low) else max(1.0, abs(limit))

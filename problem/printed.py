@@ -49,7 +49,7 @@ def read_float(text: str) -> float:
     Raises
     ------
     TrajgapError
-        If it is none, or so large that it would silently become infinite.
+        If it is not a number, or so large that it would silently become infinite.
 
     Examples
     --------
@@ -60,7 +60,7 @@ def read_float(text: str) -> float:
     if word.lower() in _INFINITE:
         return float(word)
     if _NUMBER.fullmatch(word) is None:
-        raise TrajgapError(f"{text[:40]!r} is no number")
+        raise TrajgapError(f"{text[:40]!r} is not a number")
     found = float(word)
     if math.isinf(found):
         raise TrajgapError(f"{text[:40]!r} is beyond the range of float64")
@@ -96,8 +96,8 @@ class Printed:
         The digits, for example ``"0.660"`` or ``"−1.6336"`` (any minus sign). The text is kept,
         with an ASCII minus sign.
     exact : bool
-        Whether the number is meant exactly. A printed number is not: it stands for every value
-        that rounds to its digits.
+        Whether the number is exact. A printed number is not: it stands for every value that rounds
+        to its digits.
 
     Raises
     ------
@@ -187,7 +187,7 @@ class Printed:
     def interval(self) -> Interval:
         """Every value that rounds to the digits: half a unit of the last place either side.
 
-        Both ends belong to it, since ties round either way.
+        Both ends belong to it, because ties may round either way.
         """
         return Interval(self.fraction - self.unit / 2, self.fraction + self.unit / 2)
 
@@ -227,7 +227,7 @@ class Printed:
                     yield Printed(f"{text[:at]}{digit}{text[at + 1 :]}")
 
     def slips(self) -> Iterator[Printed]:
-        """The number as it may have been meant if it is misprinted by one slip.
+        """The numbers that may have been meant if it contains one misprint.
 
         `one_digit_off`; ten times more or less, or the point put where none is printed; the other
         sign.

@@ -22,7 +22,8 @@ class Coupling(StrEnum):
     SHARED = "shared"
     """All joints pass each way-point at the same time; their total is minimised together."""
     PER_JOINT = "per-joint"
-    """Each joint is optimised by itself; each segment then takes the longest of them."""
+    """Each joint is optimised separately; each segment then takes the longest of their
+    durations."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,9 +45,9 @@ class Problem:
         Joint labels; "1", "2", ... by default.
     name : str
     ratios : array_like, shape (segments,), or {"equal", "chord"}, optional
-        Ratios of the durations, of any scale: then the total is the one unknown. "chord" takes the
-        lengths between the way-points, all joints together, and turns into these numbers here, so
-        that the question of one joint keeps them. Without ratios each duration is chosen.
+        Ratios of the durations, of any scale: then the total is the only unknown. "chord" uses the
+        distances between the way-points over all joints; they are computed here, so that the
+        problem of one joint keeps them. Without ratios each duration is free.
     linear : tuple of bool
         Whether each joint slides instead of turning, so that its numbers are in m instead of rad;
         none does by default.
@@ -54,7 +55,8 @@ class Problem:
     Raises
     ------
     TrajgapError
-        If shapes disagree, a value is not finite, or a bound is negative or crosses its partner.
+        If shapes disagree, a value is not finite, or a bound is negative or a lower bound exceeds
+        its upper one.
 
     Examples
     --------
@@ -161,7 +163,7 @@ class Problem:
         object.__setattr__(self, "linear", linear)
         if isinstance(self.ratios, str) and self.ratios == "chord" and len(set(linear)) > 1:
             raise TrajgapError(
-                'ratios: "chord" adds angles and lengths, so that they depend on units; give '
+                'ratios: "chord" adds angles and lengths, so the ratios depend on units; give '
                 'numbers, or "equal"'
             )
         if self.ratios is not None:
@@ -169,7 +171,7 @@ class Problem:
 
     @property
     def shares(self) -> Array | None:
-        """Share of each segment in the total, where ratios fix it; None where they do not."""
+        """Share of each segment in the total, if ratios fix it; otherwise None."""
         if self.ratios is None:
             return None
         largest = np.max(np.asarray(self.ratios, dtype=np.float64))
@@ -178,7 +180,7 @@ class Problem:
 
     @property
     def unscaled(self) -> str | None:
-        """Why the shortest total at the ratios is no formula; None if it is, or without ratios."""
+        """Why no formula gives the shortest total at the ratios; None if one does."""
         return None if self.ratios is None else no_formula(self.curve)
 
     @property
@@ -193,26 +195,26 @@ class Problem:
         Raises
         ------
         TrajgapError
-            If it is of another kind.
+            If the curve is of another kind.
         """
         polynomials = as_piecewise(self.curve)
         if polynomials is None:
             raise TrajgapError(
-                f"curve: {self.curve.name} is no piecewise polynomial with breaks at "
-                "the way-points, which is needed here"
+                f"curve: {self.curve.name} is not a piecewise polynomial with breaks at the "
+                "way-points, which is required here"
             )
         return polynomials
 
     @property
     def hull(self) -> Problem:
-        """The same question within the `Limits.hull`: its optimum is a lower bound on this one's.
+        """The same problem within `Limits.hull`: its optimum is a lower bound on this one's.
 
-        Without uneven limits it is this problem itself.
+        Without uneven limits, it is this problem itself.
         """
         return replace(self, limits=self.limits.hull) if self.limits.uneven else self
 
     def joint(self, index: int) -> Problem:
-        """The same question for one joint alone, with shared coupling."""
+        """The same problem for one joint only, with shared coupling."""
         return replace(
             self,
             curve=self.curve.for_joint(self.waypoints, index),

@@ -183,7 +183,7 @@ def in_processes(
 def kept_processes() -> Iterator[None]:
     """Keep idle processes of every `Processes` inside for the next one, and end them at the end.
 
-    A process imports for two seconds before its first work, often longer than that work takes.
+    A process spends two seconds on imports before its first work, which is often shorter than that.
     """
     idle = _Idle()
     before = _KEPT.set(idle)

@@ -12,7 +12,7 @@ from .errors import CaseError
 from .files import read_regular
 
 LARGEST_BYTES = 5_000_000
-"""Two hundred times the longest case file shipped: what is larger is no case file."""
+"""Two hundred times the longest case file shipped: what is larger is not a case file."""
 
 
 def read_text(path: Path) -> str:
@@ -81,7 +81,7 @@ def parse_toml(text: str, file: str) -> dict[str, Any]:
     Raises
     ------
     CaseError
-        If the text is no TOML, is nested too deeply, or holds a number out of range.
+        If the text is not TOML, is nested too deeply, or contains a number out of range.
     """
     try:
         return tomllib.loads(text, parse_float=Decimal)

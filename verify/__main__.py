@@ -32,7 +32,7 @@ def main() -> int:
     """Judge every file that is named; 0 if all prove their claims, else 1."""
     package = _package()
     parser = argparse.ArgumentParser(
-        prog="verify", description="Prove certificates again, without any solver."
+        prog="verify", description="Verify certificates without any solver."
     )
     parser.add_argument("files", nargs="+", metavar="FILE", help="a certificate, or a state")
     parser.add_argument(

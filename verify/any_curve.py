@@ -78,7 +78,7 @@ class _Row:
         if self.kind == "change":  # A·h ≥ ∓(v₁ − v₀)
             return bend, Fraction(sign), Fraction(-sign), Zero
         way = sign * step
-        need(way >= 0, "a row looks the wrong way")
+        need(way >= 0, "a row points in the wrong direction")
         m0, m1 = Fraction(self.m0, TANGENT_UNIT), Fraction(self.m1, TANGENT_UNIT)
         if self.kind == "reach":
             n = Fraction(self.n, TANGENT_UNIT) / v_max

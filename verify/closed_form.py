@@ -72,7 +72,7 @@ class EachAlone(ClosedForm):
             apart &= all(set(range(1, order + 1)) <= set(held) for order, held in inner)
         need(
             apart or self.problem.curve == UNIFORM,
-            "declaration not covered: no curve whose segments stand alone",
+            "declaration not covered: the segments of the curve are not independent",
         )
         return [Fraction(1)] * self.problem.segments
 

@@ -51,7 +51,7 @@ def pieces(problem: StatedProblem, h: Sequence[Fraction], clock: Clock) -> Piece
             ({4 * n - 3: one, 4 * n - 2: 3 * one, 4 * n - 1: 6 * one}, none),
         ]
     else:
-        declared = required(declared, "the curve is no declared piecewise polynomial")
+        declared = required(declared, "the curve is not a declared piecewise polynomial")
         rows = conditions(declared, problem.waypoints, h)
     first = first_columns(declared)
     need(len(rows) == first[-1], "the conditions do not determine the curve")

@@ -70,7 +70,7 @@ class StatedProblem:
     shortest: list[Fraction]
     longest: list[Fraction | None]
     declaration: Declaration | None
-    """None for a curve that is no piecewise polynomial with breaks at the way-points."""
+    """None for a curve that is not a piecewise polynomial with breaks at the way-points."""
     curve: str | None
     """Name of such a curve."""
     ends: list[list[Fraction | None]]
@@ -78,7 +78,7 @@ class StatedProblem:
     shares: list[Fraction] | None = None
     """Of the segments in the total, where ratios fix them."""
     chord: bool = False
-    """Whether they are fixed by chord lengths, which are no rational numbers; without shares."""
+    """Whether they are fixed by chord lengths, which are not rational numbers; without shares."""
 
     @property
     def joints(self) -> int:

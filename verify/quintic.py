@@ -43,7 +43,7 @@ class QuinticSpline(Boxes):
         own = total / second
         need(
             ranges.within(own, ranges.SHORTEST_TOTAL) and Fraction(float(own)) == own,
-            "a total that is no float of usual size is not proved",
+            "a total that is not a float of usual size is not proved",
         )
         sizes = [abs(d) for row in steps for d in row if d]
         sizes += [x for row in limits for x in row if x is not None]

@@ -92,7 +92,7 @@ def fields(
     value: Any, what: str, names: Iterable[str], optional: Iterable[str] = ()
 ) -> dict[str, Any]:
     """An object with these keys, and no other."""
-    need(type(value) is dict, f"malformed: {what} is no object")
+    need(type(value) is dict, f"malformed: {what} is not an object")
     missing = [key for key in names if key not in value]
     need(not missing, f"malformed: {what}: {', '.join(missing)}: missing")
     unknown = sorted(set(value) - {*names, *optional}, key=repr)
@@ -222,4 +222,4 @@ def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 
 
 def _no_integer(digits: str) -> NoReturn:
-    raise Refused(f"malformed: {shown(digits)} is no integer; other numbers are text")
+    raise Refused(f"malformed: {shown(digits)} is not an integer; other numbers are text")

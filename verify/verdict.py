@@ -103,7 +103,7 @@ class CertificateVerdict:
     altered : bool
         Whether it, or the problem in it, differs from what was written.
     out_of_time : bool
-        The time was over before anything was decided.
+        The time ran out before anything was decided.
     lower, upper : Fraction or None
         The optimum lies between; ``upper`` is None where none is claimed.
     infeasible : bool
@@ -197,7 +197,7 @@ def _document(data: Any) -> dict[str, Any]:
     need(type(data) is dict, "no JSON object; name a certificate")
     found = data.get("format")
     if type(found) is str and found in OLD_FORMATS:
-        raise Refused(f"{found}: an old format; `trajgap solve CASE --certify` makes it again")
+        raise Refused(f"{found}: an old format; `trajgap solve CASE --certify` recreates it")
     wanted = type(found) is str and found in (CERTIFICATE_FORMAT, STATE_FORMAT)
     need(wanted, f"no {CERTIFICATE_FORMAT}; name a certificate")
     state = found == STATE_FORMAT
@@ -223,7 +223,7 @@ def _judged(document: dict[str, Any], clock: Clock, spread: Spread | None) -> Ce
     answer = _read_answer(problem, claim, subject)
     kind, total = _read_proof(document, problem, clock)
     if kind is not None:
-        need(subject is kind.subject, f"this kind of proof speaks about {kind.subject}")
+        need(subject is kind.subject, f"this kind of proof is about {kind.subject}")
     need(lower <= total, "the lower bound exceeds the total that is proved")
     upper, least = None, None
     if answer is not None:
@@ -287,7 +287,7 @@ def _read_proof(
     proof = document["proof"]
     if proof is None and document["format"] == STATE_FORMAT:
         return None, Fraction(0)  # nothing is proved yet
-    need(type(proof) is dict, "malformed: proof is no object")
+    need(type(proof) is dict, "malformed: proof is not an object")
     name = proof.get("kind")
     known = type(name) is str and name in KINDS
     need(known, f"unknown kind of proof {shown(repr(name))}")
@@ -295,7 +295,8 @@ def _read_proof(
     own = (name == _OF_RATIOS) == (problem.chord or problem.shares is not None)
     need(
         own or make.subject is Subject.ANY,
-        f"at fixed ratios of the durations the kind of proof is {_OF_RATIOS}, and only there",
+        f"the kind of proof {_OF_RATIOS} is required at fixed ratios of the durations, and "
+        "allowed only there",
     )
     proof = fields(proof, "proof", ("kind", "total", "tree", *make.keys))
     total = number(proof["total"])

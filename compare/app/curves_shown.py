@@ -17,7 +17,7 @@ _OFFERED = (
     ("cubic-spline", "Cubic spline", "acceleration continuous, not 0 at the ends"),
     ("cubic-spline-virtual", "Cubic spline, two virtual points", "acceleration 0 at the ends"),
     ("quintic-spline", "Quintic spline", "jerk and snap continuous"),
-    ("rest-to-rest", "Quintic, at rest at each point", "stops at every way-point"),
+    ("rest-to-rest", "Quintic, at rest at each way-point", "stops at every way-point"),
 )
 """Family, as case files name it, its name, and what tells it apart."""
 _POINTS = "a\n0\n0.7\n1.2\n0.5"

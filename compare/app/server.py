@@ -70,7 +70,7 @@ def make_server(port: int = 0) -> BaseWSGIServer:
     try:
         return bound(ADDRESS, port, app, threaded=True)
     except (OSError, SystemExit):
-        raise TrajgapError(f"--port: {port} cannot be used; name another one") from None
+        raise TrajgapError(f"--port: {port} cannot be used; choose another one") from None
 
 
 def make_form() -> Flask:
@@ -159,7 +159,7 @@ def make_form() -> Flask:
 
     @app.errorhandler(500)
     def _failed(_: Exception) -> Any:
-        said = "a fault of trajgap itself; please report the lines in the terminal"
+        said = "this is a bug in trajgap; please report the lines in the terminal"
         return form_page(_fields(), {"table": said}), 500
 
     @app.errorhandler(413)

@@ -50,7 +50,9 @@ def case_of(fields: Mapping[str, str]) -> tuple[str, Case]:
     """
     table = fields.get("table", "").strip()
     if not table:
-        raise FormError({"table": "paste the way-points: a row each, with a header of joints"})
+        raise FormError(
+            {"table": "paste the way-points, one per row, below a header with the joint names"}
+        )
     limits = {one: fields[one].strip() for one in QUANTITIES if fields.get(one, "").strip()}
     asked = ("position", *limits, "time")
     units = {one: fields.get(f"{one}_unit", "") for one in asked}
@@ -115,10 +117,12 @@ def judge_motion(
         If the file or a field cannot be used.
     """
     if not content:
-        raise FormError({"motion": "choose a file: a CSV with a column of time, or JSON, or YAML"})
+        raise FormError({"motion": "choose a file: CSV with a time column, JSON or YAML"})
     given = {one: fields.get(f"motion_{one}", "").strip() or None for one in QUANTITIES}
     if not any(given.values()):
-        raise FormError({"motion_velocity": "give a limit, so that there is something to judge"})
+        raise FormError(
+            {"motion_velocity": "give at least one limit, which the motion is judged by"}
+        )
     with TemporaryDirectory() as folder:
         path = Path(folder, "motion").with_suffix(Path(name).suffix[:8])
         path.write_bytes(content)

@@ -51,7 +51,7 @@ def verdict_card(
     limits, judged = limits_line(study, words)
     before = any(on_doubted_points(words[one]) for one in judged if one in words)
     if before:
-        limits = f"Way-points are doubted; {limits[:1].lower()}{limits[1:]}"
+        limits = f"Some way-points are doubtful. {limits}"
     optimum = optimum_line(study, waterfalls, words, before)
     improvement, improved = _improvement(study, words)
     # What the first lines have said is not said again.
@@ -85,13 +85,15 @@ def verdict_card(
     return VerdictCard(
         limits=limits,
         optimum=optimum,
-        reached=known(near, "no run of the paper's algorithm is committed, or it has no room"),
-        improvement=Why("an error says it")
+        reached=known(
+            near, "no run of the paper's algorithm is committed, or there is no room for it"
+        ),
+        improvement=Why("an error above covers it")
         if covered
         else known(improvement, "no improvement is claimed"),
         errors=errors,
         more=more,
-        explanation=known(explanation, "none that was tried fits, or has room"),
+        explanation=known(explanation, "none that was tried fits, or there is no room for it"),
     )
 
 
@@ -140,7 +142,7 @@ def _explanation(causes: Sequence[Cause], room: int) -> str | None:
     for cause in causes:
         for explanation in [e for e in cause.explanations if e.settles][:1]:
             plain = explanation.change
-            called = f"An innocent explanation: {plain[:1].lower()}{plain[1:]}"
+            called = f"A possible explanation: {plain[:1].lower()}{plain[1:]}"
             # What it explains and what follows matter more than what it is called.
             effects = dict.fromkeys((explanation.effect, explanation.brief or explanation.effect))
             said = [f"{one} {effect}" for effect in effects for one in (called, plain)]
@@ -169,7 +171,7 @@ def _improvement(study: Study, words: Mapping[str, Judgement]) -> tuple[str | No
     doubted = any(c.kind is CaveatKind.DOUBTED for c in judgement.caveats)
     if judgement.verdict is ClaimVerdict.SUPPORTED and shown != "improvement" and not doubted:
         digits = f"{claim.percent} %" if claim.percent is not None else f"{claim.seconds} {unit}"
-        return f"The printed totals give the claimed {digits}.", {claim.id}
+        return f"The claimed {digits} follows from the printed totals.", {claim.id}
     what = {
         ClaimVerdict.SUPPORTED: "follows from the printed totals"
         + (", which other printed numbers contradict" if doubted else ""),

@@ -25,7 +25,7 @@ from ..documents import (
     quoted,
 )
 from .roots import TABLES
-from .stated import place
+from .stated import at_place, place
 
 
 def plainly(
@@ -82,29 +82,30 @@ def _plain(
     where = _places(claim, also, case)
     printed, computed = head.printed or "", head.computed or ""
     sentence = {
-        "TG101": f"{_inside(where)} the parts add up to {computed}, not {printed}",
-        "TG102": f"The longest durations in {where} are not those of its rows",
+        "TG101": f"{at_place(where)}, the durations add up to {computed}, not {printed}",
+        "TG102": f"The longest durations {at_place(where)} do not follow from its rows",
         "TG103": f"From the printed totals {_claimed(claim)} would be {computed}, not {printed}",
         "TG105": f"{place(claim)} prints {printed} for a total that {_other(case, head)} gives as "
         f"{computed}",
-        "TG107": f"{_inside(where)} there are {computed}{f', not {printed}' if printed else ''}",
-        "TG109": f"{where} prints {printed}, and the curve has {computed}",
-        "TG201": f"The total in {where} is shorter than any motion within the limits"
+        "TG107": f"{where} has {computed}{f', not {printed}' if printed else ''}",
+        "TG109": f"{where} prints {printed}, but the curve has {computed}",
+        "TG201": f"The total {at_place(where)} is shorter than any motion within the limits"
         if isinstance(claim, TotalTimeClaim)
-        else f"The durations in {where} break a limit"
+        else f"The durations {at_place(where)} break a limit"
         + (", unless digits were cut off" if head.verdict is ClaimVerdict.SUPPORTED else ""),
         "TG202": f"The motion of {where} is not continuous",
-        "TG203": f"A printed peak is not that of the printed durations ({where})",
-        "TG208": f"A printed mean or integral is not that of the printed durations ({where})",
-        "TG209": f"A printed peak exceeds its printed limit, which {where} calls kept",
-        "TG210": f"The durations in {where} break a limit",
-        "TG211": f"A printed value is not that of the printed durations ({where})",
-        "TG205": f"Control vertices in {where} do not follow from the way-points",
-        "TG301": "Under velocity limits alone, times scale inversely: the printed two "
-        "cannot both be shortest",
-        "TG304": f"The total in {where} is not that of the shortest profile"
+        "TG203": f"A printed peak does not follow from the printed durations ({where})",
+        "TG208": f"A printed mean or integral does not follow from the printed durations ({where})",
+        "TG209": f"A printed peak exceeds its printed limit, although {where} says that the limit "
+        "is kept",
+        "TG210": f"The durations {at_place(where)} break a limit",
+        "TG211": f"A printed value does not follow from the printed durations ({where})",
+        "TG205": f"Control vertices {at_place(where)} do not follow from the way-points",
+        "TG301": "Shortest times scale inversely with velocity limits: the printed two cannot both "
+        "be shortest",
+        "TG304": f"A printed total is not that of the shortest profile ({where})"
         if isinstance(claim, TotalTimeClaim)
-        else f"What {where} prints of a profile is not that profile's",
+        else f"A printed number does not follow from its profile ({where})",
         "TG601": "Printed joint angles and positions do not fit the printed robot",
     }.get(cause.rule)
     if cause.rule == "TG103" and not computed:
@@ -124,13 +125,13 @@ def _not_optimal(case: Case, head: Finding, cause: Cause, far: Collection[str]) 
     Beside it whether it says under which readings.
     """
     if head.kind == "breaks":
-        return "no answer within the limits", False
+        return "the motion breaks a limit", False
     readings, every = cause.readings, len(case.readings)
     if not isinstance(head.gap, Gap):
         if cause.elsewhere:
-            return f"every reading allows a faster motion or finds {cause.elsewhere}", True
+            return f"under every reading a faster motion exists or {cause.elsewhere}", True
         where = f"under {among(readings, every, far)} " if 0 < len(readings) < every else ""
-        return f"{where}the same curve is faster within the limits", bool(where)
+        return f"{where}a faster motion on the same curve keeps the limits", bool(where)
     # Rounded down, for it is a bound: way-points that round to the digits allow other optima.
     share = f"{at_least_percent(head.gap.lowest)} longer than"
     if head.gap.many_times:
@@ -183,8 +184,3 @@ def _other(case: Case, head: Finding) -> str:
     """The other place of a contradiction."""
     places = [place(case.claim(one)) for one in head.between if one != head.claim]
     return places[0] if places else "another place"
-
-
-def _inside(where: str) -> str:
-    """A place as the beginning of a sentence."""
-    return f"{'On' if where.startswith('page') else 'In'} {where}"

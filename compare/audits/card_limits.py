@@ -28,7 +28,7 @@ from .digit_ranges import implausible
 from .own_result import meant_to_keep, own_results, said_to_keep
 from .printed_row import printed_rows
 from .rules import blended, judge_row
-from .stated import place, prints_durations
+from .stated import at_place, place, prints_durations
 from .study import Study
 
 FEW = 2
@@ -52,9 +52,9 @@ def limits_line(study: Study, words: Mapping[str, Judgement]) -> tuple[str, set[
         Of each claim, by its id.
     """
     case = study.case
-    unknown = "Whether the limits are kept is not checkable"
+    unknown = "Whether the limits are kept cannot be checked"
     if not study.has_problems:
-        return f"{unknown}: the text that was read has no way-points.", set()
+        return f"{unknown}: the text that was read contains no way-points.", set()
     about = [
         c
         for c in case.claims
@@ -66,12 +66,12 @@ def limits_line(study: Study, words: Mapping[str, Judgement]) -> tuple[str, set[
     timed = [c for c in case.claims if isinstance(c, TimeClaim) and c.other_curve is None]
     bare = timed and all(isinstance(c, TotalTimeClaim) for c in timed)
     if bare and not about and not any(prints_durations(c) for c in case.claims):
-        return f"{unknown}: totals are printed, durations are not.", set()
+        return f"{unknown}: totals are printed, but durations are not.", set()
     apart = {c.id for c in elsewhere}
     if not rows and elsewhere and all(apart.issuperset(c.of) for c in about):
-        return f"{unknown}: printed durations are of another curve.", set()
+        return f"{unknown}: the printed durations belong to another curve.", set()
     if not rows and not about:
-        return "No printed durations are said to keep limits.", set()
+        return "The text does not claim that any durations keep limits.", set()
     own = own_results(case, rows)
     held = {c.id: _of_limits(study, c) for c in rows}
     stated = {c.id: words[c.id].readings for c in about}
@@ -84,7 +84,7 @@ def limits_line(study: Study, words: Mapping[str, Judgement]) -> tuple[str, set[
     broken = sum(ClaimVerdict.REFUTED in each for each in under.values())
     kept = sum(each == {ClaimVerdict.SUPPORTED} for each in under.values())
     if kept == len(under) and not any(map(study.limited, study.pairs)):
-        return f"No limits are stated, so that none can be broken{_jumping(words, asked)}.", set()
+        return f"No limits are stated, so none can be broken{_jumping(words, asked)}.", set()
     # A statement that names other rows too has its own sentence where one of those breaks a limit.
     mine = {c.id for c in own}
     spoken = {*asked, *(c.id for c in about if not own or mine.issuperset(c.of))}
@@ -95,7 +95,7 @@ def limits_line(study: Study, words: Mapping[str, Judgement]) -> tuple[str, set[
         return f"{_broken(study, own, held)}.", spoken
     if not broken and not kept:
         where = _in_doubt(own, held)
-        return f"Whether the limits{where} are kept is not decided by the printed digits.", spoken
+        return f"The printed digits do not decide whether the limits{where} are kept.", spoken
     return f"{_differing(study, under, _in_doubt(own, held))}{jump}.", spoken
 
 
@@ -117,7 +117,9 @@ def _whose(study: Study, own: Sequence[_Row], held: _Held) -> str:
     apart = where and not {place(c) for c in others}.intersection(map(place, own))
     if not others:
         return "The printed durations"
-    return f"The durations in {where}" if apart else "The durations of the paper's own result"
+    return (
+        f"The durations {at_place(where)}" if apart else "The durations of the paper's own result"
+    )
 
 
 def _within(study: Study, own: Sequence[_Row]) -> str:
@@ -167,7 +169,7 @@ def _differing(study: Study, found: Mapping[str, set[ClaimVerdict]], where: str)
         which = " and ".join(quoted(one, study.case.labels) for one in own)
         mark = " (implausible)" if all(one in far for one in own) else ""
         parts.append(f"{word} under {which}{mark}")
-    return f"Limits{where} are {', '.join(parts)}"
+    return f"Limits{where} are {' and '.join(parts)}"
 
 
 def _of_limits(study: Study, claim: AnyClaim) -> dict[str, ClaimVerdict]:
@@ -199,7 +201,7 @@ def _in_doubt(own: Sequence[AnyClaim], held: _Held) -> str:
     """Where the durations stand that may break a limit, unless that is everywhere."""
     doubtful = [c for c in own if set(held[c.id].values()) != {ClaimVerdict.SUPPORTED}]
     where = _places(doubtful)
-    return f" in {where}" if where and len(doubtful) < len(own) else ""
+    return f" {at_place(where)}" if where and len(doubtful) < len(own) else ""
 
 
 def _jumping(words: Mapping[str, Judgement], asked: Iterable[str]) -> str:
@@ -212,11 +214,11 @@ def _broken(study: Study, own: Sequence[_Row], held: _Held) -> str:
     """Which of the durations break a limit, and whether anything printed says that they keep it."""
     every = "however the digits were rounded"
     if not own:
-        return f"No motion as short as what is said to keep the limits keeps them, {every}"
+        return f"No motion as short as the one said to keep the limits keeps them, {every}"
     wrong = [c for c in own if set(held[c.id].values()) == {ClaimVerdict.REFUTED}] or list(own)
     whose = _whose(study, wrong, held)
     if len(wrong) < len(own) and not _places(wrong):
         whose = f"{len(wrong)} of {len(own)} printed sets of durations"
     if any(said_to_keep(study.case, c) for c in wrong):
         return f"{whose} break a limit {every}"
-    return f"{whose} break a limit {every}; nothing printed says that they keep it"
+    return f"{whose} break a limit {every}, but the text does not claim that they keep it"

@@ -74,7 +74,7 @@ def optimum_line(
         return _without_totals(study, words)
     where = ["under the default reading"] if len(study.readings) > 1 else []
     if any(w.claim in words and on_doubted_points(words[w.claim]) for w in main if w.claim):
-        where.insert(0, "through them" if before else "on doubted way-points")
+        where.insert(0, "with these way-points" if before else "with doubtful way-points")
     sentence = ", ".join([*where, _side_by_side(beside)])
     return f"{sentence[:1].upper()}{sentence[1:]}."
 
@@ -101,7 +101,7 @@ def _side_by_side(parts: Sequence[_Part]) -> str:
         said.append(f"{len(differing) - FEW} more below")
     said += [_agreement(agreeing, bool(others), len(parts))] if agreeing else []
     for why in dict.fromkeys(part.why for part in unknown):
-        said.append(f"elsewhere {why}" if len(unknown) < len(parts) else why)
+        said.append(f"elsewhere, {why}" if len(unknown) < len(parts) else why)
     return "; ".join(said)
 
 
@@ -131,8 +131,10 @@ def _without_totals(study: Study, words: Mapping[str, Judgement]) -> str:
     curves = dict.fromkeys(c.other_curve for c in timed if c.other_curve is not None)
     if curves:
         named = ", ".join(curves)
-        return f"Printed times are of another curve ({named}): no optimum stands beside them."
-    return "No printed total stands beside an optimum."
+        return (
+            f"The printed times belong to another curve ({named}), so no optimum applies to them."
+        )
+    return "No printed total can be compared with an optimum."
 
 
 def _above_shortest(study: Study, claims: Sequence[ProfiledClaim]) -> str:
@@ -142,8 +144,8 @@ def _above_shortest(study: Study, claims: Sequence[ProfiledClaim]) -> str:
     above = {row.problem: above_shortest(row) for row in rows}
     longer = [f"{100 * more:.2g} %" for more in above.values() if more > _LONGER]
     if len(longer) > 1:
-        return f" Totals of the algorithm are {' and '.join(longer)} above the shortest profiles."
-    return f" A total of the algorithm is {longer[0]} above the shortest profile." if longer else ""
+        return f" The algorithm's totals are {' and '.join(longer)} above the shortest totals."
+    return f" One total of the algorithm is {longer[0]} above the shortest." if longer else ""
 
 
 def _beside_profiles(verdicts: Sequence[ClaimVerdict], profiles: Sequence[str]) -> str:
@@ -153,7 +155,7 @@ def _beside_profiles(verdicts: Sequence[ClaimVerdict], profiles: Sequence[str]) 
     if len(verdicts) == 1:
         own = profile_called(profiles)
         if not agree and not differ:
-            return f"Whether the printed time agrees with the {own} is open."
+            return f"It is open whether the printed time agrees with the {own}."
         return f"The printed time {'agrees' if agree else 'does not agree'} with the {own}."
     which = f"{agree} of {len(verdicts)}"
     if agree == len(verdicts):
@@ -183,7 +185,7 @@ class _Above:
     best: str
 
     def __str__(self) -> str:
-        far = f"{self.least}{self.far} above the {self.name} {self.best}"
+        far = f"{self.least}{self.far} above the {self.name} of {self.best}"
         return f"{_remarked(self.shown, self.remark)} is {far}"
 
 
@@ -243,7 +245,7 @@ def _together(parts: Sequence[_Above]) -> str:
         )
     )
     least, name = parts[0].least if alike else "", _PLURALS[parts[0].name]
-    return f"{shown} are {least}{shares} above the {name} {bests}"
+    return f"{shown} are {least}{shares} above the {name} of {bests}"
 
 
 def _beside(study: Study, waterfall: Waterfall) -> list[_Part]:
@@ -252,7 +254,7 @@ def _beside(study: Study, waterfall: Waterfall) -> list[_Part]:
     solution = study.optimum(pair)
     why = _unknown(solution)
     if why and not study.limited(pair):
-        why = "there are no limits, so that no motion is the shortest"
+        why = "no limits are stated, so there is no shortest motion"
     if why:
         return [_Unknown(why)]
     claim = _totalled(study, waterfall)
@@ -270,13 +272,13 @@ def _one_beside(row: PrintedRow[TimeClaim], solution: Solution) -> _Part | None:
     span = _span(solution)
     shown_best = f"{span}{_together_where_apart(study, row.pair)}"
     shown_best += at_ratios(solution.problem)
-    best = f"{name} {shown_best}"
+    best = f"{name} of {shown_best}"
     total = row.total
     if total is None:
         return None
     shown, (low, high) = study.total_digits(row.claim), total.interval
     if off_ratios(row) is not None:
-        return f"{shown} is of durations in other ratios than the reading fixes"
+        return f"{shown} belongs to durations in ratios other than those that the reading fixes"
     seconds = _seconds(row)
     share = seconds / solution.best - 1
     minimised = other_objective(study.case, row.claim)
@@ -286,16 +288,16 @@ def _one_beside(row: PrintedRow[TimeClaim], solution: Solution) -> _Part | None:
         called = f" ({minimised})" if count_words(minimised) <= _OBJECTIVE_WORDS else ""
         return (
             f"{shown} was not minimised for time alone{called}; the {motion} takes "
-            f"{span}{', proven' if certified else ''}"
+            f"{span}{' (proven)' if certified else ''}"
         )
     remark = _kept_there(row)
     said = _remarked(shown, remark)
     joints = _joint_by_joint(row, seconds)
     if joints is not None:
-        return f"{said} {joints}{'' if all_exact(row) else ', as printed'}"
+        return f"{said} {joints}"
     floor = solution.lower_bound
     if floor is not None and " to " in span and low <= solution.best and floor <= high:
-        return f"{said} lies in the interval that is proven to hold the optimum, {shown_best}"
+        return f"{said} lies in the proven interval of the optimum, {shown_best}"
     own, cut = _printed_range(row)
     if low <= solution.best <= high or own[0] <= solution.best <= own[1]:
         return _Agrees(said, name, best)
@@ -377,7 +379,7 @@ def _kept_there(row: PrintedRow[TimeClaim]) -> str:
 
 
 def _together_where_apart(study: Study, pair: Pair) -> str:
-    """What the optimum is of, where the paper plans each joint by itself: that has another one."""
+    """What the optimum is of, where the paper plans each joint separately: that has another one."""
     return " of all joints together" if planned_apart(study.problem(pair)) else ""
 
 
@@ -395,15 +397,17 @@ def _joint_by_joint(row: PrintedRow[TimeClaim], seconds: float) -> str | None:
     wide = answer.ranges[0]
     proven = answer.joint_evidence is Evidence.CERTIFIED
     # The joints' optima may be proven; the range that they leave is the widest that is found.
-    own = "obtained by optimising each joint separately" + ("" if proven else " (best known)")
+    own = "from optimising each joint separately"
+    own += "" if all_exact(row) else " at the printed digits"
+    own += "" if proven else " (best known)"
     span = f"{ranged(wide.lowest, wide.highest, '.4f')} s"
     low, high = total.interval
     if meet((low, high), (wide.lowest, wide.highest)):
-        return f"agrees with {span}, {own}"
+        return f"agrees with {span} {own}"
     longer = seconds > wide.highest
     shares = sorted(abs(seconds / one - 1) for one in (wide.highest, wide.lowest))
     shown = " to ".join(dict.fromkeys(map(_percent_digits, shares)))
-    return f"is {shown} % {'above' if longer else 'below'} {span}, {own}"
+    return f"is {shown} % {'above' if longer else 'below'} {span} {own}"
 
 
 def _seconds(row: PrintedRow[TimeClaim]) -> float:
@@ -429,13 +433,15 @@ def _unknown(solution: Solution) -> str:
         return "no shortest motion was found: the total falls as a duration goes to 0"
     if solution.status is Status.INFEASIBLE:
         where = "through the printed way-points" + at_ratios(solution.problem)
-        return f"no motion {where} keeps the limits: proved"
+        return f"no motion {where} keeps the limits (proven)"
     if solution.problem.unscaled is not None:
-        return "the shortest total at these ratios is not checkable: it is no formula of this curve"
+        return (
+            "the shortest total at these ratios cannot be checked: this curve has no formula for it"
+        )
     if not solution.found:
-        return "the optimum is not checkable: the solver found no motion within the limits"
+        return "the optimum cannot be computed: the solver found no motion within the limits"
     if solution.evidence not in (Evidence.CERTIFIED, Evidence.BEST_KNOWN):
-        return "the optimum is not checkable: the solver did not converge"
+        return "the optimum cannot be computed: the solver did not converge"
     return ""
 
 

@@ -47,7 +47,7 @@ from .draft import advise
 from .explanations import explained
 from .instances import examinable, examined, examined_entry
 from .judging import judge, rested, weigh
-from .options import USUAL, AuditOptions
+from .options import SEEDS, AuditOptions
 from .paper_runs import reached
 from .printed_row import PrintedRow, printed_rows
 from .provenance import provenance
@@ -69,8 +69,8 @@ _ENDING = (CaseError, ProcessError)
 class CaseAudit(InNotebooks):
     """Findings and verdicts of one case, with the study they were drawn from.
 
-    What informs and decides nothing is computed when it is asked for: waterfalls, the readings side
-    by side, the card.
+    What is information only is computed on first use: waterfalls, the readings side by side, the
+    card.
     """
 
     case: Case
@@ -78,20 +78,20 @@ class CaseAudit(InNotebooks):
     findings: tuple[Finding, ...]
     judgements: tuple[Judgement, ...]
     causes: tuple[Cause, ...] = ()
-    """What speaks against something printed, each once; the gravest first."""
+    """Evidence against printed statements, each once; the gravest first."""
 
     day: date | None = None
-    """Of the audit; that on which its document is made if None."""
+    """Date of the audit; by default the day on which its document is made."""
 
     made: VerdictCard | None = None
-    """The card, where it was made by hand; otherwise `card` makes it."""
+    """A card made by hand; otherwise `card` makes it."""
 
     made_waterfalls: tuple[Waterfall, ...] | None = None
-    """The waterfalls, where they were made by hand; otherwise `waterfalls` computes them."""
+    """Waterfalls made by hand; otherwise `waterfalls` computes them."""
 
     @property
     def draft(self) -> bool:
-        """Whether the case is its author's draft, who wants to know what to change."""
+        """Whether the case is an author's draft, for which the audit lists what to change."""
         return self.study.options.draft
 
     @cached_property
@@ -145,7 +145,7 @@ class CaseAudit(InNotebooks):
 
     @cached_property
     def document(self) -> AuditedCase:
-        """What the audit says of the case, as terminal, page, Markdown and JSON print it."""
+        """The result of the audit, as terminal, page, Markdown and JSON print it."""
         blocks = examinable(self.study)
         return AuditedCase(
             case=self.case.id,
@@ -191,12 +191,12 @@ class AuditReport(InNotebooks):
 
     @property
     def kept(self) -> int:
-        """Proofs of earlier runs that were proved again and count here."""
+        """Proofs of earlier runs that were verified and count here."""
         return sum(one.study.intervals.kept for one in self.cases)
 
     @property
     def document(self) -> AuditDocument:
-        """What `trajgap audit` answers."""
+        """The document that `trajgap audit` prints."""
         return AuditDocument(cases=tuple(one.document for one in self.cases))
 
     def __str__(self) -> str:
@@ -205,18 +205,46 @@ class AuditReport(InNotebooks):
 
 def audit(
     cases: Iterable[str | Path | Case] | str | Path | Case | None = None,
-    options: AuditOptions = USUAL,
-    **given: Any,
+    *,
+    seeds: int = SEEDS,
+    workers: int | None = 1,
+    problem: str | None = None,
+    reading: str | None = None,
+    progress: Callable[[str], None] | None = None,
+    certify_seconds: float | None = None,
+    certificates: Sequence[dict[str, Any]] = (),
+    certificates_folder: str | None = None,
+    draft: bool = False,
+    cache: bool | Path = False,
 ) -> AuditReport:
-    """Audit published claims against the exact optimum of the very problems they state.
+    """Audit published claims against the exact optimum of the problems that they state.
 
     Parameters
     ----------
     cases : str, Path, Case, or iterable of these, optional
         Ids of shipped cases or case files; all shipped cases by default.
-    options : AuditOptions
-    **given
-        Fields of the options that are others here, such as ``seeds=20``.
+    seeds : int
+        Number of seeds of each replay, counted from 0.
+    workers : int or None
+        Number of processes for the replays, chosen by their length if None; the result does not
+        depend on it.
+    problem, reading : str, optional
+        Keep to one problem or reading.
+    progress : callable, optional
+        Called with a short text before each long computation.
+    certify_seconds : float, optional
+        Time per case for certifying optima that no certificate proves; 0 turns it off. With it,
+        what is certified depends on the machine. Without it, boxes are counted, and nothing depends
+        on the machine. The audit lists what was left out.
+    certificates : sequence of dict
+        Certificates in addition to the shipped ones; each is verified before it counts.
+    certificates_folder : str, optional
+        Their folder, for the command that reproduces the audit.
+    draft : bool
+        Whether to list, for each case, what its author can change before submitting.
+    cache : bool or Path
+        Whether proofs, optima and replays are kept for later audits, and kept ones are used after
+        they were verified or judged again: in the user's cache folder, or in the folder given.
 
     Returns
     -------
@@ -231,7 +259,19 @@ def audit(
         cases = published_ids()
     chosen = [cases] if isinstance(cases, str | Path | Case) else list(cases)
     loaded = [one if isinstance(one, Case) else load_case(one) for one in chosen]
-    studies = [Study(one, options, **given) for one in loaded]
+    options = AuditOptions(
+        seeds=seeds,
+        workers=workers,
+        problem=problem,
+        reading=reading,
+        progress=progress,
+        certify_seconds=certify_seconds,
+        certificates=certificates,
+        certificates_folder=certificates_folder,
+        draft=draft,
+        cache=cache,
+    )
+    studies = [Study(one, options) for one in loaded]
     for study in studies:
         for algorithm in study.case.algorithms:
             # Settings that are wrong end the audit, before anything is computed.

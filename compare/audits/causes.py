@@ -118,7 +118,7 @@ def _elsewhere(
     left = {reading.id for reading in study.case.readings} - readings
     breaking = {f.reading for f in against if f.claim == first.claim and f.kind == "breaks"}
     broken = first.kind == "longer" and left and left <= breaking
-    return "limits broken" if broken else ""
+    return "a limit is broken" if broken else ""
 
 
 def _mildest(study: Study, first: Finding, group: list[Finding]) -> Finding:

@@ -14,7 +14,8 @@ from .study import Study
 
 _FIXES = {
     "TG104": "Two of your tables are alike: put the right numbers into one of them.",
-    "TG107": "Drop conditions or raise a degree until they are as many as the coefficients.",
+    "TG107": "Drop conditions or raise a degree until their number equals that of the "
+    "coefficients.",
     "TG109": "Print one duration for each segment.",
     "TG202": "Name a curve that is continuous, or say that its velocity jumps.",
     "TG601": "Compare joint angles and positions with your model of the robot.",
@@ -71,7 +72,7 @@ def advise(
                     urgency=Urgency.OPEN,
                     where=claim.where,
                     claim=claim.id,
-                    says=f"A reader cannot check this: {judgement.why}",
+                    says=f"Readers cannot check this: {judgement.why}",
                     change="Print what is missing, or drop the claim.",
                     edits=(),
                 )
@@ -126,7 +127,7 @@ def _told(study: Study, about: AnyClaim | None, edits: Sequence[Edit]) -> str:
     for claim_id, keys in groups.items():
         if claim_id is None:
             (meant,) = next(iter(keys.values())).becomes
-            said.append(f"The numbers here take {_why(study, meant)}.")
+            said.append(f"The numbers given here assume {_why(study, meant)}.")
             continue
         claim = study.case.claim(claim_id)
         sentence = _sentence(study, claim, keys)
@@ -151,7 +152,7 @@ def _sentence(study: Study, claim: AnyClaim, keys: dict[str, Edit]) -> str:
         total = f"(total {sum(map(Decimal, edit.becomes))} {unit})"
         shown = f"{', '.join(edit.becomes)} {unit} {total}"
         if isinstance(claim, MaximumClaim):
-            return f"Print {shown}, the longest of each segment over the rows."
+            return f"Print {shown}, the longest duration of each segment over the rows."
         trigger = None if edit.trigger is None else study.case.claim(edit.trigger)
         if isinstance(trigger, StatementClaim) and trigger.checks == "optimal":
             return (
@@ -171,7 +172,7 @@ def _sentence(study: Study, claim: AnyClaim, keys: dict[str, Edit]) -> str:
     if key == "seconds":
         return f"Print {shown} {unit}."
     pairs = zip(edit.printed, edit.becomes, strict=True)
-    return f"Print {', '.join(f'{new} in place of {old}' for old, new in pairs if old != new)}."
+    return f"Print {', '.join(f'{new} instead of {old}' for old, new in pairs if old != new)}."
 
 
 def _of_readings(
@@ -188,7 +189,7 @@ def _of_readings(
         claim=claim.id,
         says=f"Your text can be read in {len(judgement.readings)} ways, and this is "
         f"{'; '.join(parts)}.",
-        change="Say in the text which is meant: units, curve, knots and ends."
+        change="State in the text which is meant: units, curve, knots and ends."
         + (f" {_told(study, claim, edits)}" if edits else ""),
         edits=edits,
     )
@@ -218,6 +219,6 @@ def _left_open(study: Study) -> Iterator[Advice]:
                 where=block.where or block.name,
                 claim=None,
                 says=f"Left open for {block.name}: {line}",
-                change="Print it, so that others can run the algorithm again.",
+                change="Print this choice, so that others can rerun the algorithm.",
                 edits=(),
             )

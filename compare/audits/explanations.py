@@ -74,12 +74,12 @@ _CONTRADICTED = (ClaimVerdict.REFUTED, ClaimVerdict.INCONSISTENT)
 """Verdicts that speak against a claim."""
 _SETTLED = {
     "TG101": "the printed total is the sum of its parts",
-    "TG102": "the longest durations are those of the rows",
+    "TG102": "the longest durations follow from the rows",
     "TG103": "the improvement follows from the totals",
     "TG105": "both places print the same total",
-    "TG203": "the printed peaks are those of the printed durations",
-    "TG208": "the printed means are those of the printed durations",
-    "TG211": "the printed values are those of the printed durations",
+    "TG203": "the printed peaks follow from the printed durations",
+    "TG208": "the printed means follow from the printed durations",
+    "TG211": "the printed values follow from the printed durations",
 }
 """What holds where a change settles what a rule found."""
 
@@ -219,8 +219,8 @@ def explained(
         return (
             Explanation(
                 change="One table may have been printed twice by mistake.",
-                effect="Then the numbers of one of them are not in print, both statements can be "
-                "true, and nothing that rests on the missing numbers can be checked.",
+                effect="Then the paper does not print the numbers of one of them, both statements "
+                "can be true, and nothing that rests on the missing numbers can be checked.",
             ),
         )
     claim = study.case.claim(finding.claim) if finding.claim else None
@@ -245,11 +245,11 @@ def _at_samples(
     """Limits that were held at some times only."""
     pair = Pair(str(finding.problem), str(finding.reading))
     held = held_otherwise(PrintedRow(study, claim, pair))
-    effect = "Then they are broken between the samples, and the samples do not show it"
+    effect = "Then they are broken only between the samples"
     if isinstance(held, HeldOtherwise) and held.sampled <= 1.0 < held.everywhere:
         yield Explanation(
-            change="The limits may have been held at sampled times only: at ten steps a segment "
-            "none is broken.",
+            change="The limits may have been enforced at sampled times only: at ten samples per "
+            "segment none is broken.",
             effect=f"{effect}{under}.",
             in_any=f"{effect}.",
         )
@@ -313,7 +313,11 @@ def _by_slips(trial: _Trial, under: str, default: bool) -> list[Explanation]:
     first = judged[0]
     alike = [one for one in judged if one.rank == first.rank]
     others = len(alike) - _NAMED
-    more = f" At least {others} other change{'s' * (others > 1)} would do so." if others > 0 else ""
+    more = (
+        f" At least {others} other change{'s' * (others > 1)} would have the same effect."
+        if others > 0
+        else ""
+    )
     named = [(one, more) for one in alike[:_NAMED]]
     kinds = {one.slip.kind for one, _ in named}
     # What explains as much at the cost of more slips, or without reaching a limit, comes after.

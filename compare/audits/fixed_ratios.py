@@ -12,10 +12,10 @@ from .printed_row import PrintedRow
 from .rounding import ROUNDING, RoundingBox
 
 BELOW_AT_RATIOS = (
-    "The whole printed interval lies below it: other ratios of the durations, other limits, "
-    "another reading or other digits explain that."
+    "The whole printed interval lies below it; other ratios of the durations, other limits, "
+    "another reading or other digits may explain that."
 )
-"""What is said of a printed total below the shortest one at fixed ratios; it is no accusation."""
+"""What explains a printed total below the shortest one at fixed ratios."""
 
 
 def optimum_called(problem: Problem, evidence: Evidence) -> str:
@@ -30,7 +30,7 @@ def at_ratios(problem: Problem) -> str:
 
 
 def planned_apart(problem: Problem) -> bool:
-    """Whether a paper plans each joint by itself, with another outcome than for all together.
+    """Whether a paper plans each joint separately, with another outcome than for all together.
 
     At fixed ratios the longest of the joints' totals is the shortest total of all.
     """
@@ -82,8 +82,8 @@ def of_other_ratios(row: PrintedRow[Claim], shown: str, other: str) -> Finding:
         kind="other ratios",
         sentences=(
             f"Printed are {other}.",
-            "They answer another question than the shortest total at these ratios, and are not set "
-            "beside it.",
+            "They answer a question other than the shortest total at these ratios, and are not "
+            "compared with it.",
         ),
         decides=False,
     )

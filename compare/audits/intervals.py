@@ -15,7 +15,7 @@ from .options import AuditOptions
 ALLOWANCES = 3.0
 """For all problems of a case, in what one problem is allowed: most declared and short spline
 problems are certified in it, and a usual audit still ends in about a minute. Boxes are counted and
-not seconds, so that no verdict depends on how busy the machine is."""
+not seconds, so no verdict depends on how busy the machine is."""
 _GAP = 1e-4
 """Relative width that is asked for: far below the digits that papers print, and cheap to reach."""
 _SHARE = 1 / 3
@@ -43,7 +43,7 @@ class Intervals:
         self._progress = options.progress
         self._cache = options.cache
         self.kept = 0
-        """Proofs of earlier runs that were proved again and count here."""
+        """Proofs of earlier runs that were verified and count here."""
         self._found: dict[ExactProblem, ProvedInterval | None] = {}
         self.left_out: list[str] = []
         """Problems that are covered and were not certified, and totals that were not excluded for
@@ -90,7 +90,8 @@ class Intervals:
         boxes = max(1.0, round(share * most)) if self._counted else math.inf
         seconds = math.inf if self._counted else share
         amount = f"{boxes:.0f} boxes" if self._counted else f"{seconds:.0f} s"
-        self._progress(f"certifying {called}, at most {amount}")
+        if self._progress is not None:
+            self._progress(f"certifying {called}, at most {amount}")
         began = time.monotonic()
         try:
             answer = certify(problem, gap=_GAP, seconds=seconds, boxes=boxes, cache=self._cache)

@@ -32,7 +32,7 @@ WORTH_PROCESSES = 50_000
 """Iterations of all seeds of a replay from which further processes pay: fewer take some seconds
 side by side, and each process takes two to import what it needs."""
 Replays = tuple[Run, ...] | tuple[JointRuns, ...]
-"""Runs of one algorithm, one for each seed: of all joints, or of each joint by itself."""
+"""Runs of one algorithm, one for each seed: of all joints, or of each joint separately."""
 
 
 class AskedReplay(NamedTuple):

@@ -1,4 +1,4 @@
-"""What an audit is asked beside its cases: one record, passed on from `audit` to each study."""
+"""Options of an audit: one record, passed from `audit` to each study."""
 
 from __future__ import annotations
 
@@ -13,38 +13,9 @@ SEEDS = 100
 """Seeds of a replay by default: independent runs enough for a probability to a few per cent."""
 
 
-def _silent(_: str) -> None:
-    pass
-
-
 @dataclass(frozen=True, kw_only=True)
 class AuditOptions:
-    """Options of an audit.
-
-    Attributes
-    ----------
-    seeds : int
-        Seeds of each replay, counted from 0.
-    workers : int or None
-        Processes for the replays, as many as pay if None; the result does not depend on it.
-    problem, reading : str or None
-        Keep to one problem or reading.
-    progress : callable
-        Called with a short text before anything that takes a while.
-    certify_seconds : float or None
-        For each case: time for certifying optima that no certificate proves; 0 turns it off. What
-        is certified in it depends on the machine. Without it boxes are counted, and nothing depends
-        on the machine. What was left out is said.
-    certificates : sequence of dict
-        Certificates beside the shipped ones; each is proved again before it counts.
-    certificates_folder : str or None
-        Where these lie, for the command that makes the audit again.
-    draft : bool
-        Whether to say, for each case, what its author can change before submitting.
-    cache : bool or Path
-        Whether proofs that the audit finds, optima and replays are kept for later ones, and those
-        that were kept are used once they are proved or judged again: in the user's cache folder, or
-        in the folder given.
+    """Options of an audit; the fields are the parameters of `audit`.
 
     Raises
     ------
@@ -56,7 +27,7 @@ class AuditOptions:
     workers: int | None = 1
     problem: str | None = None
     reading: str | None = None
-    progress: Callable[[str], None] = _silent
+    progress: Callable[[str], None] | None = None
     certify_seconds: float | None = None
     certificates: Sequence[dict[str, Any]] = ()
     certificates_folder: str | None = None

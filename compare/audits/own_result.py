@@ -66,7 +66,7 @@ def _meant(case: Case, ids: Iterable[str], answers: Sequence[_Time]) -> list[_Ti
     return [c for c in answers if c.id in named or c.algorithm in by]
 
 
-UNSAID = "Nothing printed says that these durations keep the limits."
+UNSAID = "The text does not claim that these durations keep the limits."
 """What follows a broken limit where no word of the paper is contradicted by it."""
 
 

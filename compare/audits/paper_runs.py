@@ -60,7 +60,7 @@ class KeptRuns(_Strict):
     """Its id in the case; of drawn way-points, what the study calls them."""
     reading: str
     apart: bool
-    """Each joint by itself: a run is then a search of every joint, its total that of the longest
+    """Each joint separately: a run is then a search of every joint, its total that of the longest
     durations."""
     algorithm: str
     handling: str
@@ -189,7 +189,8 @@ def searched_for(study: Study, pair: Pair) -> Reference | None:
     """What a paper's procedure would find if each of its searches were exact.
 
     That is the optimum, or, where each joint is planned by itself, what the joints' own optima
-    give: the longest duration of each segment. The latter is no optimum, and runs may end below it.
+    give: the longest duration of each segment. The latter is not an optimum, and runs may end
+    below it.
     """
     if not planned_apart(study.problem(pair)):
         return reference_of(study.optimum(pair))
@@ -200,10 +201,10 @@ def searched_for(study: Study, pair: Pair) -> Reference | None:
 def _searched(study: Study, group: KeptRuns) -> str:
     if not group.seal:
         number = int(group.problem.rpartition("-")[2]) + 1
-        return f"drawn way-points, set {number}, since the paper prints none"
+        return f"drawn way-points, set {number}, because the paper prints none"
     titles = {p.id: p.title for p in study.case.problems}
     head = f"{titles[group.problem]}: " if len(titles) > 1 else ""
     if group.apart:
-        return f"{head}each joint by itself, longest duration per segment"
+        return f"{head}each joint separately, longest duration per segment"
     several = len(study.problem(group.pair).joints) > 1
     return f"{head}{'all joints together' if several else 'the one joint'}"

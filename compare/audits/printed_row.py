@@ -45,12 +45,12 @@ T = TypeVar("T")
 
 @dataclass(frozen=True)
 class PrintedRow(Generic[C]):
-    """A claim under a problem and a reading; what is computed of it is kept in its study.
+    """A claim under a problem and a reading; its study keeps what is computed for it.
 
     Attributes
     ----------
     claim : Claim
-        With durations or a total where a motion or a time is asked for.
+        A claim with durations or a total, for methods that return a motion or a time.
     pair : Pair
         Problem and reading.
     """
@@ -76,20 +76,20 @@ class PrintedRow(Generic[C]):
 
     @property
     def statement(self) -> Statement:
-        """What the case states of the problem under the reading."""
+        """The problem under the reading, in printed digits."""
         return self.study.case.statement(*self.pair)
 
     def finding(self, rule: str, **facts: Any) -> Finding:
-        """What a rule finds on the claim under this problem and reading."""
+        """A finding of a rule on the claim under this problem and reading."""
         about = {"claim": self.claim.id, "problem": self.problem, "reading": self.reading}
         return Finding(rule=rule, **about | facts)
 
     def once(self, what: str, compute: Callable[[], T], *more: object) -> T:
-        """What the study keeps of this row under a name, computed where nothing is."""
+        """A value that the study keeps for this row under a name, computed on first use."""
         return self.study.once((what, self.claim.id, self.pair, *more), compute)
 
     def measured(self, number: Printed, quantity: Quantity, joint: str | None = None) -> Measured:
-        """A printed number in the SI unit, with what rounds to its digits."""
+        """A printed number in the SI unit, with the interval that rounds to its digits."""
         return self.study.case.measured(number, quantity, *self.pair, joint)
 
     def _unit(self, quantity: str, joint: str | None) -> tuple[str | None, bool]:
@@ -102,14 +102,14 @@ class PrintedRow(Generic[C]):
         return statement.unit(quantity, place), linear  # type: ignore[arg-type]
 
     def unit(self, quantity: str, joint: str | None = None) -> str:
-        """The unit that a quantity is printed in, as a sentence writes it; SI where none is stated.
+        """The printed unit of a quantity, as a sentence writes it; SI if none is stated.
 
         Parameters
         ----------
         quantity : str
             "position", "velocity", "acceleration", "jerk" or "time".
         joint : str, optional
-            Label of the joint whose unit it is; needed where units differ.
+            Label of the joint; needed if units differ.
         """
         unit, linear = self._unit(quantity, joint)
         if unit is not None:
@@ -117,16 +117,16 @@ class PrintedRow(Generic[C]):
         return si_unit(quantity, linear) if quantity in UNITS else "s"
 
     def in_units(self, quantity: str, value: float, joint: str | None = None) -> float:
-        """A number in rad or m and s, in the unit that its quantity is printed in; as `unit`."""
+        """A number in rad or m and s, converted to the printed unit of its quantity; see `unit`."""
         unit, _ = self._unit(quantity, joint)
         return value if unit is None else from_si(value, unit)
 
     def time(self, number: Printed) -> Measured:
-        """A printed time of the claim, s, with what rounds to its digits."""
+        """A printed time of the claim, s, with the interval that rounds to its digits."""
         return self.study.case.measured(number, "time", self.claim.problem, self.reading)
 
     def posed(self, digits: Digits = Digits.PRINTED) -> Problem:
-        """The problem the claim's durations belong to: one joint's, or that of all joints."""
+        """The problem of the claim's durations: that of one joint, or of all joints."""
         study, label = self.study, self.claim.joint
         problem = study.problem(self.pair)
         if digits is not Digits.PRINTED:
@@ -139,7 +139,7 @@ class PrintedRow(Generic[C]):
 
     @property
     def durations(self) -> DurationBox:
-        """The printed durations, s, with what rounds to them."""
+        """The printed durations, s, with the intervals that round to them."""
         return self.study.case.claim_durations(self.claim, self.reading)
 
     @property
@@ -155,9 +155,9 @@ class PrintedRow(Generic[C]):
 
     @property
     def longest_total(self) -> float:
-        """The longest total (s) of which the digits may have been rounded or cut off.
+        """The longest total (s) from which the digits may have been rounded or cut off.
 
-        Each number by itself: durations may be cut off beside a total that is rounded.
+        Each number is treated separately: durations may be cut off although the total is rounded.
         """
         found, number = [], own_total(self.claim)
         if prints_durations(self.claim):
@@ -185,8 +185,8 @@ class PrintedRow(Generic[C]):
             return None
         many = f"{curve.free} coefficient{'s' if curve.free > 1 else ''}"
         return (
-            f"the curve ({curve.name}) leaves {many} per joint free, so that durations alone "
-            "define no motion"
+            f"the curve ({curve.name}) leaves {many} per joint free, so durations alone define no "
+            "motion"
         )
 
     def _determined(self) -> Problem:
@@ -203,7 +203,7 @@ class PrintedRow(Generic[C]):
 
     @property
     def check_or_none(self) -> Check | None:
-        """`check`; None where the printed numbers define no motion, as a finding says."""
+        """`check`; None if the printed numbers define no motion, which a finding reports."""
         try:
             return self.check
         except TrajgapError:
@@ -222,19 +222,19 @@ class PrintedRow(Generic[C]):
 
     @property
     def kept(self) -> bool:
-        """Whether durations are printed that keep the limits, as printed or within rounding."""
+        """Whether the printed durations keep the limits, as printed or within rounding."""
         if not prints_durations(self.claim) or self.unmoved is not None:
             return False
         return self.rounding.verdict in (Rounding.KEEPS, Rounding.CONSISTENT)
 
     @property
     def cut(self) -> RoundingVerdict:
-        """The same over a wider box, of inputs whose digits were rounded or cut off."""
+        """The same over the wider box of inputs whose digits were rounded or cut off."""
         return self.once("cut", lambda: self._judged_box(cut=True))
 
     @property
     def keeping(self) -> Keeping:
-        """Whether the motion keeps the limits, its digits rounded or cut off."""
+        """Whether the motion keeps the limits, with digits rounded or cut off."""
         verdict = self.rounding.verdict
         if verdict is Rounding.BREAKS:
             verdict = self.cut.verdict
@@ -262,7 +262,7 @@ class PrintedRow(Generic[C]):
         self.study.progress(f"{what} of {place(self.claim)}; {self.words}")
 
     def waypoint_box(self, problem: Problem) -> RoundingBox:
-        """The way-points of ``problem``, all of its joints or one, and what rounds to them."""
+        """The way-points of ``problem``, for all joints or one, and the box that rounds to them."""
         lower, upper = self.study.case.waypoint_box(*self.pair)
         labels = self.study.problem(self.pair).joints
         columns = [labels.index(label) for label in problem.joints]
@@ -275,16 +275,16 @@ class PrintedRow(Generic[C]):
 
     @property
     def boxes(self) -> tuple[RoundingBox, RoundingBox]:
-        """Durations and way-points of the claim's motion, and what rounds to them."""
+        """Durations and way-points of the claim's motion, and the boxes that round to them."""
         return self._duration_box, self.waypoint_box(self.posed())
 
     def reachable(self, durations: Array) -> float | None:
-        """A total (s) that some stretch of ``durations`` keeps whatever the digits stand for.
+        """A total (s) at which stretched ``durations`` keep the limits, whatever the digits hide.
 
         It holds for every way-point that rounds to the printed digits or is cut off to them, and
         every limit that rounds to them; None if there is no such stretch, if durations alone
-        define no motion, or if the curve itself is printed in rounded numbers. Where exact ratios
-        are fixed, the durations take them first.
+        define no motion, or if the curve itself is printed in rounded numbers. If exact ratios are
+        fixed, the durations take them first.
         """
         try:
             problem = self.posed(Digits.TIGHTEST)
@@ -329,7 +329,7 @@ class PrintedRow(Generic[C]):
 
 
 def printed_rows(study: Study, claim: C) -> Iterator[PrintedRow[C]]:  # type: ignore[misc]
-    """A claim under each problem and reading that it speaks about; none where it fits none."""
+    """A claim under each problem and reading that it fits; none if it fits none."""
     return (PrintedRow(study, claim, pair) for pair in study.pairs if study.fits(claim, pair))
 
 

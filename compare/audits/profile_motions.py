@@ -369,8 +369,8 @@ def out_of_range(problem: Problem, motion: ProfileMotion) -> str | None:
         room = FEW_ROUNDINGS * max(map(abs, places))
         if places.min() < low - room or places.max() > high + room:
             return (
-                f"The shortest profile leaves the position range of joint {label}, within which "
-                "no profile is computed."
+                f"The shortest profile leaves the position range of joint {label}, and no profile "
+                "that stays within it is computed."
             )
     return None
 

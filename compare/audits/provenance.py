@@ -67,7 +67,7 @@ def today() -> date:
     Raises
     ------
     TrajgapError
-        If SOURCE_DATE_EPOCH is no number of seconds.
+        If SOURCE_DATE_EPOCH is not a number of seconds.
     """
     epoch = os.environ.get(_EPOCH)
     if not epoch:
@@ -76,7 +76,7 @@ def today() -> date:
         return datetime.fromtimestamp(int(epoch), UTC).date()
     except (ValueError, OverflowError, OSError):
         raise TrajgapError(
-            f"{_EPOCH}: {epoch!r} is no time; give seconds since 1970, or unset it"
+            f"{_EPOCH}: {epoch!r} is not a time; give seconds since 1970, or unset it"
         ) from None
 
 

@@ -78,9 +78,7 @@ def readings_summary(
         labels=study.case.labels,
         implausible=implausible(study),
         default=study.case.default_reading.id,
-        default_why=known(
-            study.case.default_reading.default_why, "the case file gives no reason of its own"
-        ),
+        default_why=known(study.case.default_reading.default_why, "the case file gives no reason"),
         clues=reading_clues(study),
         answers=(),
         holding=(),
@@ -98,7 +96,7 @@ def _outcome(study: Study, waterfall: Waterfall) -> ReadingOutcome:
     solution = study.optimum(pair)
     reference = reference_of(solution)
     keeping: Keeping | Why = Why("no durations are printed for all joints of this problem")
-    distance: Gap | Why = Why("no printed total stands beside an optimum")
+    distance: Gap | Why = Why("no printed total can be compared with an optimum")
     held: HeldOtherwise | Why = Why("no durations are printed for all joints of this problem")
     stretch: float | None = None
     excesses: tuple[Excess, ...] = ()
@@ -109,7 +107,7 @@ def _outcome(study: Study, waterfall: Waterfall) -> ReadingOutcome:
         unmoved = row.unmoved
         if unmoved is not None:
             keeping, held = Why(unmoved), Why(unmoved)
-        elif not isinstance(claim, TotalTimeClaim):  # a total alone is no motion
+        elif not isinstance(claim, TotalTimeClaim):  # a total alone is not a motion
             found = row.check
             keeping = row.keeping
             jumps = sum(jump.order == 1 for jump in found.jumps)
@@ -229,8 +227,8 @@ def segments(excesses: Sequence[Excess]) -> str:
 def _of_answers(summary: ReadingsSummary, called: Callable[[str, str], str]) -> Iterable[str]:
     if not summary.outcomes:
         yield (
-            f"Under none of {len(summary.admissible)} readings can limits, optimum or gap be "
-            f"computed, since {summary.outcomes_why}."
+            f"Limits, optimum and gap cannot be computed under any of the "
+            f"{len(summary.admissible)} readings, because {summary.outcomes_why}."
         )
         return
     by_answer: defaultdict[tuple[str, str], list[ReadingOutcome]] = defaultdict(list)
@@ -248,7 +246,7 @@ def _of_answers(summary: ReadingsSummary, called: Callable[[str, str], str]) -> 
         said = ", ".join(
             f"{KEPT[k]} {under(found[k], summary.admissible, named, why=True)}" for k in words
         )
-        limits = f"the limits are {said}" if said else "limits cannot be judged"
+        limits = f"the limits are {said}" if said else "the limits cannot be judged"
         yield f"{called(claim, problem)}: {limits}.{_of_gaps(own, summary)}"
 
 
@@ -263,7 +261,7 @@ def _of_gaps(own: Sequence[ReadingOutcome], summary: ReadingsSummary) -> str:
     parts = []
     for group, where in (
         (kept, " where the limits are kept"),
-        ([o for o in plain if o not in kept], " elsewhere" if kept else ""),
+        ([o for o in plain if o not in kept], " otherwise" if kept else ""),
     ):
         gaps = [o.gap for o in group if isinstance(o.gap, Gap)]
         if gaps:
@@ -276,7 +274,9 @@ def _of_gaps(own: Sequence[ReadingOutcome], summary: ReadingsSummary) -> str:
     }.get(evidence, "best known total")
     left = len(own) - len(plain)
     without = f" ({left} implausible reading{'s' * (left > 1)} left out)" if left else ""
-    return f" Printed total beside the {beside}: {', and '.join(parts)}{without}." if parts else ""
+    if not parts:
+        return ""
+    return f" Printed total compared with the {beside}: {', and '.join(parts)}{without}."
 
 
 def _away(low: float, high: float) -> str:
@@ -315,7 +315,7 @@ def _of_fit(summary: ReadingsSummary, called: Callable[[str, str], str]) -> Iter
         *(["the velocity jumps"] if any(o.jumps for o in own) else []),
     ]
     if len(nearest) == len(summary.fits):
-        which = "The printed durations lie alike under every reading"
+        which = "The printed durations are equally far from the limits under every reading"
     else:
         best = under(nearest, summary.admissible, _names(summary), most=3)
         which = f"The printed durations fit best {best}"

@@ -88,7 +88,7 @@ def hull(number: Printed) -> Interval:
 
 @dataclass(frozen=True, eq=False)
 class RoundingBox:
-    """Printed numbers, and the bounds of all that round to them.
+    """Printed numbers with bounds on all values that round to them.
 
     Parameters
     ----------
@@ -111,7 +111,9 @@ class RoundingBox:
             array.setflags(write=False)
             object.__setattr__(self, name, array)
         if not self.value.shape == self.lower.shape == self.upper.shape:
-            raise TrajgapError("box: value, lower and upper differ in shape; give them alike")
+            raise TrajgapError(
+                "box: value, lower and upper differ in shape; give all three the same shape"
+            )
         if not all(np.isfinite(a).all() for a in (self.value, self.lower, self.upper)):
             raise TrajgapError("box: a number is not finite; give finite bounds")
         if (self.lower > self.value).any() or (self.value > self.upper).any():
@@ -123,7 +125,7 @@ class RoundingBox:
         return cls(value, value, value)
 
     def inside(self) -> tuple[Array, Array]:
-        """Ends moved inwards by the rounding that a printed interval's ends may carry."""
+        """The box with its ends moved inwards by their own rounding errors."""
         step = 4.0 * np.maximum(np.spacing(np.abs(self.lower)), np.spacing(np.abs(self.upper)))
         step = np.where(self.upper - self.lower > 4.0 * step, step, 0.0)
         return self.lower + step, self.upper - step
@@ -180,25 +182,25 @@ def judge_rounding(
     loosest: Problem | None = None,
     loose_ends: bool = False,
 ) -> RoundingVerdict:
-    """Judge a printed solution however its digits were rounded.
+    """Judge a printed solution for all values that round to its digits.
 
     Parameters
     ----------
     problem : Problem
-        All its joints share the durations; take `Problem.joint` for the row of one joint. Its
+        All its joints share the durations; use `Problem.joint` for the row of one joint. Its
         limits and duration bounds are those printed.
     durations : RoundingBox, shape (segments,)
         s.
     waypoints : RoundingBox, shape (way-points, joints), optional
-        rad, in place of the problem's own; those, exactly, by default.
+        rad, instead of the problem's own, which are used as exact by default.
     tolerance : float
         Relative excess over a limit that still counts as keeping it, as in `check`.
     loosest : Problem, optional
-        The same question with every limit and bound on durations where its printed digits allow
-        most; by default they are exact.
+        The same problem with every limit and every bound on durations as loose as its printed
+        digits allow; by default they are exact.
     loose_ends : bool
         Whether derivatives at the ends are printed numbers. No proof covers what rounds to them,
-        so that nothing is said to break then.
+        so nothing is called broken then.
 
     Raises
     ------
@@ -209,8 +211,8 @@ def judge_rounding(
     Notes
     -----
     `keeps` and `consistent` rest on `check` at one point. `breaks` rests on a proof that no
-    rounding can upset (`bound` and `interval`). A velocity that jumps is no excess over a limit:
-    where nothing else is wrong, the answer is `undecided`.
+    rounding can upset (`bound` and `interval`). A velocity that jumps is not an excess over a
+    limit: where nothing else is wrong, the answer is `undecided`.
     """
     if loose_ends:
         found = judge_rounding(problem, durations, waypoints, tolerance, loosest)
@@ -246,7 +248,7 @@ def _judge(
     if q.value.shape != problem.waypoints.shape:
         raise TrajgapError(
             f"waypoints: the box has shape {q.value.shape}, "
-            f"the problem {problem.waypoints.shape}; give them alike"
+            f"but the problem has {problem.waypoints.shape}; give both the same shape"
         )
     printed = replace(problem, waypoints=q.value)
     at_print = check(printed, durations.value, tolerance=tolerance)

@@ -92,7 +92,7 @@ def misprints(spot: Spot, signed: bool = False) -> Iterator[Slip]:
             continue
         ratio = float(other.fraction / was.fraction) if was.fraction else 0.0
         yield Slip(
-            change=f"{spot.name} may be misprinted: {other.text} in place of {was.text}.",
+            change=f"{spot.name} may be misprinted: {other.text} instead of {was.text}.",
             edits=((spot.path, Printed(other.text, exact=was.exact)),),
             slips=1,
             share=max(ratio, 1 / ratio) if ratio > 0 else float("inf"),
@@ -222,7 +222,7 @@ def of_rows(case: Case, claim: AnyClaim) -> Iterator[Slip]:
         longest = max((row[k] for row in rows if k < len(row)), key=lambda n: n.fraction)
         if longest.fraction > spot.number.fraction > 0:
             yield Slip(
-                change=f"{spot.name} may have been taken from another row: {longest.text} in place "
+                change=f"{spot.name} may have been taken from another row: {longest.text} instead "
                 f"of {spot.number.text}.",
                 edits=((spot.path, longest),),
                 slips=1,
@@ -239,7 +239,7 @@ def turns(spots: Sequence[Spot], joint: str, unit: str, radians: Sequence[float]
             number = spot.number.decimal + sign * turn
             yield Slip(
                 change=f"The angle of joint {joint} at way-point {w + 1} may be meant modulo a "
-                f"full turn: {radians[w] + sign * tau:.6g} rad in place of {radians[w]:.6g} rad.",
+                f"full turn: {radians[w] + sign * tau:.6g} rad instead of {radians[w]:.6g} rad.",
                 edits=((spot.path, Printed(f"{number:f}", exact=spot.number.exact)),),
                 slips=2,
                 share=1.0,

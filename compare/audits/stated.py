@@ -180,6 +180,11 @@ def place(claim: Claim) -> str:
     return ", ".join(head.split(", ")[:2])
 
 
+def at_place(where: str) -> str:
+    """A place with its preposition: on a page, in anything else."""
+    return f"{'on' if where.startswith('page') else 'in'} {where}"
+
+
 _MOST = 8
 """Numbers of a row that a sentence repeats at most; of a longer one it gives the total."""
 _MEASURES = {
@@ -204,10 +209,10 @@ _STATEMENTS = {
     "jumps": "the acceleration{of} jumps",
     "at_rest": "the motion is at rest at both ends",
     "optimal": "the motion is optimal",
-    "kinematics": "joint angles and positions belong together",
+    "kinematics": "the joint angles and the positions agree",
     "varies_most": "joint {joint} varies most",
     "varies_much": "joint {joint} varies much",
-    "equations": "the kinematic equations hold on the printed robot",
+    "equations": "the kinematic equations hold for the printed robot",
     "above": "one position lies above another",
     "none": "a sentence that cannot be checked",
 }

@@ -91,7 +91,10 @@ def what_agrees(count: int, sums: int) -> str:
     if not sums:
         return "Every printed total agrees with"
     if sums < count:
-        return "Every printed total, or sum of printed durations where none is printed, agrees with"
+        return (
+            "Every printed total, or the sum of the printed durations if none is printed, agrees "
+            "with"
+        )
     if count == 1:
         return "The sum of the printed durations agrees with"
     return "The sum of the durations of each row agrees with"

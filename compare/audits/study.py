@@ -71,16 +71,16 @@ class Total(NamedTuple):
 
 
 class Study:
-    """A case, the problems and readings that are looked at, and what was computed of them.
+    """A case, the selected problems and readings, and what was computed for them.
 
-    Optima, checks and replays are computed when they are asked for, each once.
+    Optima, checks and replays are computed on first use, each once.
 
     Parameters
     ----------
     case : Case
     options : AuditOptions
     **given
-        Fields of the options that are others here.
+        Fields of the options to change.
     """
 
     def __init__(self, case: Case, options: AuditOptions = USUAL, **given: Any) -> None:
@@ -100,11 +100,12 @@ class Study:
         self.intervals = Intervals(options)
 
     def progress(self, doing: str) -> None:
-        """Say what is being done of the case, before anything that takes a while."""
-        self.options.progress(f"{self.case.id}: {doing}")
+        """Report the next long computation."""
+        if self.options.progress is not None:
+            self.options.progress(f"{self.case.id}: {doing}")
 
     def once(self, key: tuple[Any, ...], compute: Callable[[], T]) -> T:
-        """What was kept under a key, computed where nothing is; errors are kept too."""
+        """The value kept under a key, computed on first use; errors are kept too."""
         if key not in self._kept:
             try:
                 self._kept[key] = compute()
@@ -116,7 +117,7 @@ class Study:
         return cast(T, found)
 
     def only(self, *claims: AnyClaim, pair: Pair | None = None) -> Self:
-        """The same study, asked about some claims alone, and about one problem and reading."""
+        """The same study, restricted to some claims, and to one problem and reading."""
         view = copy(self)
         view.claims = claims
         if pair is not None:
@@ -131,7 +132,7 @@ class Study:
 
     @property
     def has_problems(self) -> bool:
-        """Whether way-points are printed, so that there are problems to solve."""
+        """Whether way-points are printed, so there are problems to solve."""
         return bool(self.pairs)
 
     @property
@@ -175,7 +176,7 @@ class Study:
         return f"{', '.join(map(str, self.case.printed_durations(claim)))} {self.time_unit}"
 
     def claim_total(self, claim: Claim, reading: str) -> Total | None:
-        """A claim's total; None where it has none."""
+        """A claim's total; None if it has none."""
         shown = self.total_digits(claim)
         printed = printed_total(claim)
         total = None
@@ -203,11 +204,13 @@ class Study:
 
     @property
     def not_replayed(self) -> tuple[str, ...]:
-        """Algorithms without an implementation here, each as one sentence with the nearest kind."""
+        """Algorithms that are not implemented here, each in one sentence with the nearest kind."""
         found = []
         for block in self.case.algorithms:
             if block.kind is None:
-                found.append(f"{block.name}: the case file names no algorithm that trajgap has.")
+                found.append(
+                    f"{block.name}: the case file names no algorithm that trajgap implements."
+                )
             elif block.kind not in KINDS:
                 try:
                     from_settings(block.kind, {})
@@ -216,14 +219,14 @@ class Study:
         return tuple(found)
 
     def called(self, algorithm_id: str) -> str:
-        """An algorithm as a sentence calls it, by its name."""
+        """The name of an algorithm, for use in a sentence."""
         return f"the {next(a.name for a in self.case.algorithms if a.id == algorithm_id)}"
 
     def unreplayed(self, algorithm_id: str, pair: Pair) -> str | None:
         """Why an algorithm is not replayed on a problem, as a sentence; None if it is."""
         algorithm, name = self.algorithm(algorithm_id), capital(self.called(algorithm_id))
         if algorithm is None:
-            return f"{name} is of a kind that is not implemented here."
+            return f"{name} is an algorithm that is not implemented here."
         problem = self.problem(pair)
         try:
             # What judges the positions of every run says whether it can.
@@ -308,10 +311,10 @@ class Study:
         return self.once(("optimum", pair, joint), compute)
 
     def known_motions(self, pair: Pair, joint: str | None = None) -> Array:
-        """Durations that the study has anyway, printed and replayed: what keeps is an incumbent.
+        """Printed and replayed durations; those that keep the limits serve as incumbents.
 
         Shape (motions, segments), s. Replays are run for the main reading, whose pages show them;
-        of other readings those count that are there.
+        for other readings only existing ones count.
         """
         problem = self.problem(pair)
         alone = joint if len(problem.joints) > 1 else None
@@ -334,10 +337,10 @@ class Study:
         return np.array(positive).reshape(-1, problem.segments)
 
     def per_joint(self, pair: Pair) -> PerJointSolution:
-        """Each joint by itself, with the ranges within half a printed digit and 1e-6 s."""
+        """Each joint separately, with the ranges within half a printed digit and 1e-6 s."""
 
         def compute() -> PerJointSolution:
-            self.progress(f"each joint by itself; {in_words(self.case, *pair)}")
+            self.progress(f"each joint separately; {in_words(self.case, *pair)}")
             slacks = tuple(dict.fromkeys((*self.half_digits(pair), OPTIMUM_SLACK)))
             problem = self.problem(pair)
             try:
@@ -372,13 +375,13 @@ class Study:
         return (max(halves),) if halves else ()
 
     def relaxed(self, pair: Pair) -> Solution:
-        """Optimum of the relaxed family: at least quintic everywhere, C2, the rest left free."""
+        """Optimum of the relaxed family: at least quintic everywhere, C2, other terms free."""
 
         def compute() -> Solution:
             problem = self.problem(pair)
             given = as_piecewise(problem.curve)
             if given is None:
-                why = "only a declared piecewise polynomial is a member of its relaxed family"
+                why = "only declared piecewise polynomials have a relaxed family"
                 return Solution(problem, Status.FAILED, why)
             self.progress(f"relaxed family; {in_words(self.case, *pair)}")
             inner = problem.segments - 1
@@ -408,7 +411,7 @@ class Study:
         return self.once(("relaxed", pair), compute)
 
     def freed(self, pair: Pair) -> Solution:
-        """The optimum with each duration chosen; where no ratios are fixed, `optimum`."""
+        """The optimum with each duration free; equal to `optimum` if no ratios are fixed."""
         problem, own = self.problem(pair), self.optimum(pair)
         if problem.ratios is None:
             return own

@@ -124,7 +124,11 @@ def _waterfall(study: Study, pair: Pair) -> Waterfall:
         steps.append(_known(FREED_OPTIMUM, _converged(study.freed(pair))))
     relaxed = _converged(study.relaxed(pair))
     steps.append(
-        _known("relaxed family", relaxed, "degree 5 or more in every segment, C2, freedom used")
+        _known(
+            "relaxed family",
+            relaxed,
+            "degree 5 or more in every segment, C2, remaining freedom optimised",
+        )
     )
     steps.append(_retimed(RELAXED_RETIMED, relaxed))
     steps.append(_free(study, pair))
@@ -147,7 +151,7 @@ def stands_in(study: Study) -> bool:
 
 
 def _converged(solution: Solution) -> Solution:
-    """The solution, without its answer where the search did not converge: that is no optimum."""
+    """The solution, without its answer if the search did not converge."""
     if solution.evidence is not Evidence.UNCONVERGED:
         return solution
     why = f"the search did not converge ({solution.why}): no optimum of this family is known"
@@ -242,7 +246,7 @@ def _retimed(name: str, solution: Solution) -> Step:
     if not solution.found:
         return Step.missing(name, "no path")
     if solution.boundless is not None:
-        return Step.missing(name, "no shortest motion, so no path")
+        return Step.missing(name, "there is no shortest motion, so no path")
     problem = solution.problem
     trajectory = fit(problem.curve, problem.waypoints, solution.durations, solution.nodal)
     if name == OPTIMUM_RETIMED and jerk_limited_path(trajectory, problem.limits):
@@ -252,7 +256,8 @@ def _retimed(name: str, solution: Solution) -> Step:
         return Step(
             name=THIRD_ORDER,
             time=time,
-            note=f"an estimate: limits hold at the ends of {cells} cells, not between them",
+            note=f"an estimate: limits hold at the ends of {cells} cells, but not necessarily "
+            "between them",
         )
     answer = retime(trajectory, problem.limits)
     if not answer.applicable or answer.extrapolated is None:

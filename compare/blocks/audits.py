@@ -74,7 +74,7 @@ def distances_table(waterfall: Waterfall, caption: str = "") -> Grid:
          s.note if s.name in _NOTED else None)
         for s in known
     ]  # fmt: skip
-    columns = ("step", ">total", ">the first against this", "evidence", "found how")
+    columns = ("step", ">total", ">first step relative to this one", "evidence", "found how")
     return table(columns, rows, caption)
 
 
@@ -99,11 +99,11 @@ REACHED_MEANING = (
     "choices that the case lists. A vector of durations that breaks a limit gets a penalty "
     "(death penalty), counts with the shortest uniform stretch that keeps every limit (stretch), "
     "or is scaled until one limit is tight (rescale). Every total is that of a motion that keeps "
-    "its limits. Gaps are measured from the proven interval of the optimum where there is one. "
+    "its limits. Gaps are measured from the proven interval of the optimum, if there is one. "
     "Evaluations are those of a run, and those that restarts need on average until one run comes "
-    "so near; where each joint is planned by itself, until every joint is so near its own optimum, "
+    "this near; if each joint is planned separately, until every joint is this near its own "
     "all joints counted. "
-    "Operators and seeds are not printed, so these runs inform and refute nothing."
+    "Operators and seeds are not printed, so these runs are information and refute nothing."
 )
 """What the table means."""
 _COLUMNS = ("~algorithm", "limits broken in the search", ">median, its gap", ">best, its gap",

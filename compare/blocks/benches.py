@@ -80,7 +80,7 @@ def _optimum_said(optimum: Reference) -> str:
     return (
         f"Optimum: {shown_bound(lower, 'lower', places=7)} to "
         f"{shown_bound(optimum.upper, 'upper', places=7)} s, {optimum.evidence}; it may lie {far} "
-        "below the value that gaps are set against."
+        "below the value from which gaps are measured."
     )
 
 

@@ -264,7 +264,7 @@ class Page:
     doi: str = ""
     """Of the paper; empty where it is not named."""
     links: tuple[tuple[str, str], ...] = ()
-    """Words and files that the head of the page leads to, where it is no page of an audit."""
+    """Words and files that the head of the page leads to, where it is not a page of an audit."""
 
     @property
     def filled(self) -> Page:

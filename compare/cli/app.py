@@ -22,15 +22,15 @@ from .options import ENDS, INTERRUPTED
 
 COMMANDS = {
     "cases": "List the published cases.",
-    "show": "Show what a case holds, and what it leaves open.",
+    "show": "Show what a case contains, and what it leaves open.",
     "check": "Judge a motion, or a case's durations, against limits.",
     "solve": "Solve a case exactly: all its problems under all its readings.",
-    "verify": "Prove certificates again, apart from the solver.",
+    "verify": "Verify certificates independently of the solver.",
     "audit": "Audit every claim of the cases, and write pages with pictures.",
     "explain": "Explain a rule or a word of the reports.",
-    "study": "Run optimisers on many problems; what is finished is kept.",
+    "study": "Run optimisers on many problems; finished runs are kept.",
     "bench": "Show how far optimisers end from the optimum of a case or suite.",
-    "new": "Start a case file from a table of way-points.",
+    "new": "Create a case file from a table of way-points.",
     "suite": "List problems whose optimum is known within proved bounds.",
     "case": "Work on case files.",
     "app": "Open a form in the browser.",
@@ -82,7 +82,7 @@ BAD_INPUT, FAULT, CLOSED_PIPE = 2, 70, 141
 """Exit codes: that of argument parsers, EX_SOFTWARE, and what a shell says of SIGPIPE."""
 _BEGIN = """To begin:
   trajgap audit puma560-mnam-pso-353           judge a published paper
-  trajgap new mine.toml --from table.csv       start a case file for your own (see new --help)
+  trajgap new mine.toml --from table.csv       create a case file of your own (see new --help)
   trajgap check motion.csv --urdf arm.urdf     judge a motion against limits
   trajgap solve points.csv --urdf arm.urdf     find the fastest motion through way-points
 """
@@ -189,7 +189,7 @@ def _run(arguments: Sequence[str]) -> int:
         if isinstance(error, TrajgapError):
             return _fail(str(error), BAD_INPUT)
         traceback.print_exc()
-        return _fail("a fault of trajgap itself, please report the lines above", FAULT)
+        return _fail("this is a bug in trajgap; please report the lines above", FAULT)
 
 
 def _unwritten(error: OSError) -> int:

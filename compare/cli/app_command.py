@@ -9,7 +9,7 @@ import typer
 
 def app(
     port: Annotated[
-        int, typer.Option(min=0, max=65535, help="Of this machine; 0 for any that is free.")
+        int, typer.Option(min=0, max=65535, help="Port on this machine; 0 for any free one.")
     ] = 8350,
     browser: Annotated[bool, typer.Option(help="Open the form in the browser.")] = True,
 ) -> int:

@@ -51,40 +51,44 @@ def audit(
     ] = None,
     problem: ProblemId = None,
     reading: ReadingId = None,
-    seeds: Annotated[int, typer.Option(min=2, max=MOST, help="Seeds of each replay.")] = 100,
+    seeds: Annotated[
+        int, typer.Option(min=2, max=MOST, help="Number of seeds for each replay.")
+    ] = 100,
     workers: Workers = None,
     certify_seconds: Annotated[
         float | None,
         typer.Option(
             metavar="SECONDS",
             min=0.0,
-            help="For each case: time to certify optima that no certificate proves; 0 for none. "
-            "By default boxes are counted, so that no verdict depends on the machine.",
+            help="Time per case to certify optima that no certificate proves; 0 for none. "
+            "By default boxes are counted, so no verdict depends on the machine.",
         ),
     ] = None,
     certificates: Annotated[
         Path | None,
         typer.Option(
             metavar="FOLDER",
-            help="Certificates to use beside the shipped ones; each is proved again.",
+            help="Certificates to use in addition to the shipped ones; each is verified.",
         ),
     ] = None,
     draft: Annotated[
         bool,
-        typer.Option("--draft", help="Your own draft: say what to change before you submit it."),
+        typer.Option(
+            "--draft", help="Judge your own draft, and list what to change before you submit it."
+        ),
     ] = False,
     no_cache: NoCache = False,
     strict: Annotated[
         bool, typer.Option("--strict", help="Exit with 1 if a finding has severity error.")
     ] = False,
     as_json: Annotated[
-        bool, typer.Option("--json", help="Print JSON; write pages only where --out says.")
+        bool, typer.Option("--json", help="Print JSON; write pages only with --out.")
     ] = False,
     out: Annotated[
         Path | None,
         typer.Option(
             metavar="FOLDER",
-            help="Where the pages go: a new or an empty folder, or that of an earlier audit.",
+            help="Folder for the pages: new, empty, or that of an earlier audit.",
             show_default="trajgap-audit",
         ),
     ] = None,
@@ -159,11 +163,11 @@ def audited(document: AuditDocument, cases: Sequence[Case]) -> list[Block]:
         for title, runs in searches[:_SEARCHES]:
             parts += [
                 Prose(""),
-                Prose(f"How near its algorithms get: {title}"),
+                Prose(f"How near the paper's algorithms get: {title}"),
                 replace(reached_table(runs).without(*_NO_ROOM), columns=_RUNS),
             ]
         more = len(searches) - _SEARCHES
-        parts += [Prose(f"{more} more searches on the pages.", "note")] if more > 0 else []
+        parts += [Prose(f"{more} more searches are on the pages.", "note")] if more > 0 else []
         parts += [Prose(f"{words}: {value}", "note") for words, value in facts(case)]
     return parts
 
@@ -182,7 +186,7 @@ def _rows(case: AuditedCase) -> list[tuple[str, str, str]]:
 
 
 _SEARCHES = 2
-"""Searches that a terminal shows, such as that of each joint by itself and of all together."""
+"""Searches that a terminal shows, such as that of each joint separately and of all together."""
 _NO_ROOM = (3, 4, 6)
 """Columns of a page that do not fit a terminal: best, quartiles, evaluations."""
 _RUNS = ("algorithm", "limits broken", "median, its gap", "no answer")
@@ -205,7 +209,7 @@ def _unchecked(case: AuditedCase) -> list[str]:
     places = {one.claim: one.where for one in case.claims}
     reasons: dict[str, list[str]] = {}
     for one in case.verdicts:
-        # What only informs stands with the claim on its page: it is no reason.
+        # What only informs stands with the claim on its page: it is not a reason.
         if one.verdict is ClaimVerdict.NOT_CHECKABLE and not one.informs:
             reasons.setdefault(one.sentences[0].rstrip("."), []).append(places[one.claim])
     lines = [
@@ -213,7 +217,7 @@ def _unchecked(case: AuditedCase) -> list[str]:
         for why, where in list(reasons.items())[:_REASONS]
     ]
     more = len(reasons) - len(lines)
-    rest = [f"{more} more reason{'s' if more > 1 else ''} on the pages."] if more else []
+    rest = [f"{more} more reason{'s are' if more > 1 else ' is'} on the pages."] if more else []
     return lines + rest
 
 

@@ -67,14 +67,16 @@ def bench(
     problem: ProblemId = None,
     reading: Annotated[
         str | None,
-        typer.Option("--reading", metavar="ID", help="Under this reading, not the default one."),
+        typer.Option(
+            "--reading", metavar="ID", help="Use this reading instead of the default one."
+        ),
     ] = None,
     seeds: Annotated[
         int | None,
         typer.Option(
             min=1,
             max=MOST,
-            help="Runs of each optimiser.",
+            help="Number of runs of each optimiser.",
             show_default="30; 15 with --against",
         ),
     ] = None,
@@ -83,7 +85,7 @@ def bench(
         typer.Option(
             min=1,
             max=10**7,
-            help="Evaluations of each run.",
+            help="Number of evaluations of each run.",
             show_default="6000; a paper's algorithm makes its own iterations; 1000 with --against",
         ),
     ] = None,
@@ -91,7 +93,7 @@ def bench(
         str,
         typer.Option(
             metavar="death-penalty|stretch|rescale",
-            help="What happens to durations that break a limit.",
+            help="Treatment of durations that break a limit.",
         ),
     ] = "death-penalty",
     baselines: Annotated[
@@ -99,25 +101,24 @@ def bench(
         typer.Option(help="Random search, equal durations, local searches, CMA-ES with repair."),
     ] = True,
     seconds: Annotated[
-        float, typer.Option("--time", metavar="SECONDS", min=0.001, help="Limit of each run.")
+        float, typer.Option("--time", metavar="SECONDS", min=0.001, help="Time limit of each run.")
     ] = SECONDS,
     workers: Annotated[int, run_workers()] = 1,
     as_json: Annotated[
-        bool, typer.Option("--json", help="Print JSON; write a page only where --out says.")
+        bool, typer.Option("--json", help="Print JSON; write a page only with --out.")
     ] = False,
     out: Annotated[
         Path | None,
         typer.Option(
             metavar="FOLDER",
-            help="Where the page goes: a new or an empty folder, or that of an earlier bench, "
-            "which is replaced.",
+            help="Folder for the page: new, empty, or that of an earlier bench, which is replaced.",
             show_default="trajgap-bench",
         ),
     ] = None,
     against: Annotated[
         str | None,
         typer.Option(
-            metavar="leaderboard", help="Show where the optimisers stand among committed results."
+            metavar="leaderboard", help="Show where the optimisers rank among committed results."
         ),
     ] = None,
     store: Annotated[Path | None, run_store()] = None,
@@ -131,7 +132,7 @@ def bench(
         unused = {"--json": as_json, "--out": out, "--problem": problem, "--reading": reading}
         for name, value in unused.items():
             if value:
-                raise typer.BadParameter(f"{name} does not go with --against")
+                raise typer.BadParameter(f"{name} cannot be combined with --against")
         return board.stand_against(
             against,
             case,
@@ -231,9 +232,9 @@ def _coupling_said(case: Case, one: Selected, plan: BenchPlan) -> BenchPlan:
     if stated is Coupling.SHARED or len(one.problem.joints) == 1:
         return plan
     note = (
-        "The case searches each joint by itself; here all joints share their durations. So this "
-        "optimum is not the one that the audit sets the paper's total beside, which is what the "
-        "joints' own optima give."
+        "The case searches each joint separately; here all joints share their durations. The audit "
+        "compares the paper's total with another optimum, which follows from the joints' own "
+        "optima."
     )
     return replace(plan, notes=(note, *plan.notes))
 
@@ -293,13 +294,13 @@ def _optimum(case: Case, one: Selected) -> Solution | Reference:
         why = answer.why or str(answer.status)
         raise TrajgapError(
             f"{case.file}: {asked_as(case, one.problem_id, one.reading_id)}: no positive optimum "
-            f"to measure gaps against ({why})"
+            f"from which gaps could be measured ({why})"
         )
     return answer
 
 
 _RESTARTS = (
-    "Evaluations to a gap: what restarts need on average until one run reaches it, so the number "
+    "Evaluations to a gap: the number that restarts need on average until one run reaches it; it "
     "may exceed the budget of one run."
 )
 """Said under a table with such a number."""

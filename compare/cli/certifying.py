@@ -108,7 +108,7 @@ def certify_case(
     states = _states(resume, asked)
     folder = CERTIFICATE_FOLDER if folder is None and not as_json else folder
     if not 0 <= gap < 1:
-        why = f"{gap:g} is no relative width; give 0 or more, below 1"
+        why = f"{gap:g} is not a relative width; give 0 or more, below 1"
         raise CaseError(case.file, "--gap", why)
     if folder is not None:
         check_certificates(folder)
@@ -160,10 +160,12 @@ def read_certificates(folder: Path) -> list[dict[str, Any]]:
     Raises
     ------
     CaseError
-        If it is no folder, or holds no certificate.
+        If it is not a folder, or holds no certificate.
     """
     if not folder.is_dir():
-        raise CaseError(str(folder), "--certificates", "is no folder; name the one with your files")
+        raise CaseError(
+            str(folder), "--certificates", "is not a folder; give the one with your files"
+        )
     documents = [_read(path) for path in sorted(folder.glob("*.json"))]
     found = [one for one in documents if one.get("format") == CERTIFICATE_FORMAT]
     if not found:
@@ -231,15 +233,15 @@ def _states(resume: Sequence[Path], asked: Sequence[Question]) -> dict[str, Stat
         ]
         if not fits:
             raise CaseError(
-                state.name, "problem", "is none of those selected; name the case and reading of it"
+                state.name, "problem", "is none of those selected; select its case and reading"
             )
         found |= dict.fromkeys(fits, state)
     return found
 
 
 WIDENED = (
-    "lower and upper limits differ, and this kind of proof takes the larger size on both sides: "
-    "the lower bound holds, and more time need not close the gap"
+    "lower and upper limits differ, and this kind of proof uses the larger size on both sides: "
+    "the lower bound holds, but more time need not close the gap"
 )
 """Said of intervals that are wide for another reason than time."""
 
@@ -253,10 +255,10 @@ def _why(found: Certified | str) -> str | None:
             return WIDENED
         if found.left_out is None:
             return None
-        return f"{found.left_out}; --time was too short, and resume goes on with more"
+        return f"{found.left_out}; --time was too short; resume with more time"
     if found.verdict.out_of_time:
-        return "the proof found was not verified within --time; resume with more"
-    return f"the proof found is refused: {found.verdict.reason}"
+        return "the proof was not verified within --time; resume with more time"
+    return f"the proof was refused: {found.verdict.reason}"
 
 
 def _file(folder: Path, one: Question, kind: str = "") -> Path:
@@ -269,7 +271,9 @@ def _check_files(folder: Path, asked: Sequence[Question]) -> None:
         for kind, wanted in (("", CERTIFICATE_FORMAT), (".state", STATE_FORMAT)):
             path = _file(folder, one, kind)
             if path.exists() and _read(path).get("format") not in (wanted, *OLD_FORMATS):
-                raise CaseError(str(path), "--certificates", f"is no {wanted}; name another folder")
+                raise CaseError(
+                    str(path), "--certificates", f"is not a {wanted}; name another folder"
+                )
 
 
 def _read(path: Path) -> dict[str, Any]:
@@ -383,7 +387,7 @@ def _certified(document: CertifyDocument, case: Case) -> list[Block]:
     parts += by_question(rows, columns, apart, case)
     reasons = dict.fromkeys(r.outcome_why for r in results if r.outcome_why)
     parts += [Prose(reason, "note") for reason in reasons]
-    return parts + [Prose(f"go on with --resume {r.state}") for r in results if r.state]
+    return parts + [Prose(f"continue with --resume {r.state}") for r in results if r.state]
 
 
 def _cells(result: CertifiedResult) -> tuple[object, ...]:

@@ -78,8 +78,8 @@ def check(
         str | None,
         typer.Option(
             metavar="0.961,1.258,1.078",
-            help="Of a case: segment durations as printed, in the case's unit of time (s if it "
-            "states none). Each number is taken as rounded to its digits.",
+            help="For a case: segment durations as printed, in the case's unit of time (s if it "
+            "states none). Each number counts as rounded to its digits.",
         ),
     ] = None,
     problem: ProblemId = None,
@@ -102,7 +102,7 @@ def check(
     strict: Annotated[
         bool,
         typer.Option(
-            "--strict", help="Of a motion: exit with 1 unless it passes and all of it is judged."
+            "--strict", help="For a motion: exit with 1 unless it passes and all of it is judged."
         ),
     ] = False,
     repair: Annotated[
@@ -110,8 +110,8 @@ def check(
         typer.Option(
             "--repair",
             metavar="OUT",
-            help="Of a motion that breaks a limit: write it to this new file as it came in (a "
-            "table as CSV, a message as JSON), slowed down until it keeps every limit.",
+            help="For a motion that breaks a limit: write it to this new file in its own format "
+            "(a table as CSV, a message as JSON), slowed down until it keeps every limit.",
         ),
     ] = None,
     plot: Annotated[
@@ -119,8 +119,8 @@ def check(
         typer.Option(
             "--plot",
             metavar="FILE",
-            help="Of a motion: draw it with its limits to this new file (.png, .svg or .pdf), what "
-            "breaks them in red.",
+            help="For a motion: draw it with its limits to this new file (.png, .svg or .pdf); "
+            "violations are red.",
         ),
     ] = None,
     as_json: AsJson = False,
@@ -156,14 +156,16 @@ def check(
         plot,
     )
     if math.isnan(tolerance):
-        raise typer.BadParameter("--tolerance is no number; give one from 0 to 1")
+        raise typer.BadParameter("--tolerance is not a number; give one from 0 to 1")
     if durations is not None:
         if options.names:
-            raise typer.BadParameter(f"{options.names[0]} is of a motion; --durations of a case")
+            raise typer.BadParameter(
+                f"{options.names[0]} is for a motion, but --durations is for a case"
+            )
         return _check_durations(case, durations, problem, reading, coupling, as_json, out)
     for name, value in (("problem", problem), ("reading", reading), ("coupling", coupling)):
         if value is not None:
-            raise typer.BadParameter(f"--{name} is of a case, which needs --durations")
+            raise typer.BadParameter(f"--{name} is for a case, which needs --durations")
     if case in published_ids() or case.startswith("suite:") or case.endswith(".toml"):
         raise MissingOption("Missing option '--durations'", ctx=context)
     return check_file(case, options, as_json, out)
@@ -239,7 +241,7 @@ def check_result(
     durations : sequence of float
         s.
     joints : iterable of (str, Check, RoundingVerdict), optional
-        The same for each joint by itself, by label.
+        The same for each joint separately, by label.
     """
     alone = tuple(CheckedJoint(joint=label, **dict(_judged(c, r))) for label, c, r in joints)
     return CheckResult(
@@ -288,7 +290,7 @@ def _tables(document: CheckDocument, case: Case) -> list[Block]:
     results = document.results
     shown = " ".join(f"{d:.6g}" for d in results[0].segment_durations)
     note = (
-        "verdict: the printed numbers themselves, for all t. rounding: however the digits were "
+        "verdict: for the printed numbers themselves, at all t. rounding: however the digits were "
         "rounded."
     )
     return [

@@ -71,7 +71,7 @@ def stand_against(
         If there are no committed results of this kind, or an optimiser is unknown.
     """
     if word != LEADERBOARD:
-        raise CaseError("--against", "", f"{word!r} is unknown; the word is {LEADERBOARD}")
+        raise CaseError("--against", "", f"{word!r} is unknown; use {LEADERBOARD}")
     board = _board(budget, handling)
     instances = _instances(board, source)
     labels = _labels(names, board)
@@ -101,8 +101,8 @@ def stand_against(
         Prose(""),
         brief_board(found, labels),
         Prose(
-            f"{handling}, {budget:,} evaluations, {many}. Rows "
-            "with * were run now; the others are the committed ones of the leaderboard."
+            f"{handling}, {budget:,} evaluations, {many}. Rows with * were run now; the others "
+            "are the committed rows of the leaderboard."
         ),
     ]))  # fmt: skip
     return NEVER_RAN if any(one.failed == one.runs for one in standing) else 0
@@ -130,7 +130,7 @@ def _instances(board: Board, source: str | None) -> tuple[str, ...]:
     chosen = tuple(name for name in names if name in asked)
     if not chosen:
         some = ", ".join(SUITE_PREFIX + name for name in names[:3])
-        raise CaseError(source, "", f"no instance of the leaderboard; it has {some}, ...")
+        raise CaseError(source, "", f"not an instance of the leaderboard; it has {some}, ...")
     return chosen
 
 

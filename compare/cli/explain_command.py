@@ -21,7 +21,8 @@ def explain(
     asked: Annotated[
         list[str] | None,
         typer.Argument(
-            metavar="[RULE|WORD]...", help="Such as TG201 or certified; all are listed by default."
+            metavar="[RULE|WORD]...",
+            help="For example TG201 or certified; all are listed by default.",
         ),
     ] = None,
     as_json: AsJson = False,
@@ -51,7 +52,7 @@ def _document(asked: Sequence[str]) -> ExplainDocument:
         if one not in known:
             near = get_close_matches(one, known, n=1) or [name for name in known if one in name]
             meant = f"did you mean {known[near[0]]!r}?" if near else "`trajgap explain` lists all"
-            raise CaseError(repr(said), "", f"is no rule and no word of the reports; {meant}")
+            raise CaseError(repr(said), "", f"is not a rule or a word of the reports; {meant}")
     return ExplainDocument(
         rules=tuple(one for one in rules if one.id.casefold() in wanted),
         words=tuple(one for one in words if one.word.casefold() in wanted),
@@ -75,7 +76,7 @@ def _in_full(document: ExplainDocument) -> list[Block]:
         parts += [
             Prose(f"{rule.id}: {rule.title}", "heading"),
             Prose(rule.asks),
-            Prose(f"What it may say: {rule.concludes}"),
+            Prose(f"Possible verdicts: {rule.concludes}"),
             Prose(f"Example: {rule.example}"),
             Prose(""),
         ]

@@ -74,7 +74,7 @@ def read_case(source: str) -> Case:
         If it cannot be loaded.
     """
     if not source:
-        raise CaseError("CASE", "", "is empty; name a published case or a file")
+        raise CaseError("CASE", "", "is empty; give a published case or a file")
     try:
         return load_case(source)
     except OSError as error:
@@ -97,7 +97,7 @@ def read_cases(sources: Sequence[str]) -> list[Case]:
             raise CaseError(
                 source,
                 "id",
-                f"{case.id!r} is also the id of {cases[case.id].file}; name each case once",
+                f"{case.id!r} is also the id of {cases[case.id].file}; give each case once",
             )
         cases[case.id] = case
     return list(cases.values())

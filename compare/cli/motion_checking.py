@@ -97,7 +97,7 @@ def check_file(source: str, options: MotionOptions, as_json: bool, out: Path | N
             read,
             how,
             found,
-            slower or Why(found.feasible_why or "--repair asks for it"),
+            slower or Why(found.feasible_why or "--repair needs it"),
             plot,
         )
         if kind is not None:
@@ -126,7 +126,9 @@ def judged(
     content = read.content
     if isinstance(content, Motion):
         if how is not None:
-            raise CaseError("--interpolation", "", "is of samples; polynomials are the motion")
+            raise CaseError(
+                "--interpolation", "", "applies to samples only; polynomials are the motion itself"
+            )
         return None, check_motion(content, limits, tolerance)
     if how is None:
         how = Interpolation.CONTROLLER if read.controller else Interpolation.NONE
@@ -146,8 +148,8 @@ def _of_exact_times(verdict: Verdict) -> tuple[str, ...]:
     if verdict is Verdict.UNDECIDED:
         return ()
     return (
-        "If the times are exact, as those of a planner's grid are, the verdict is "
-        f"{verdict}: state --time-noise 0.",
+        f"If the times are exact, like those of a planner's grid, the verdict is {verdict}: add "
+        "--time-noise 0.",
     )
 
 
@@ -185,7 +187,9 @@ def _kind_of_picture(path: Path) -> str:
     kind = path.suffix.lower().removeprefix(".")
     if kind not in KINDS:
         known = ", ".join(f".{one}" for one in KINDS)
-        raise CaseError(str(path), "--plot", f"is no name of a picture; end it with one of {known}")
+        raise CaseError(
+            str(path), "--plot", f"is not a name of a picture; end it with one of {known}"
+        )
     return kind
 
 
@@ -237,7 +241,7 @@ def stated_limits(joints: Sequence[str], factors: Array, options: MotionOptions)
     limits = merge(joints, sources)
     ends = (limits.lower, limits.upper, limits.deceleration)
     if all(np.isinf(one).all() for one in ends):
-        raise CaseError("limits", "", "none is finite, so that nothing is judged; give one")
+        raise CaseError("limits", "", "none is finite, so nothing can be judged; give one")
     return limits
 
 
@@ -309,9 +313,7 @@ def repaired(
     endings = _ENDINGS[read.form]
     if out.suffix.lower() not in endings:
         known = " or ".join(endings)
-        raise CaseError(
-            str(out), "--repair", f"the motion would be read as something else; use {known}"
-        )
+        raise CaseError(str(out), "--repair", f"no motion file has this ending; use {known}")
     if found.feasible_time is None:
         advice = read.content.advice
         return Why(f"{found.feasible_why}. {advice}" if advice else str(found.feasible_why))

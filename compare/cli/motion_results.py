@@ -140,7 +140,7 @@ def _verdict(document: MotionCheckDocument, units: Mapping[str, str]) -> list[Bl
     elif result.slow_down > 1 + result.tolerance:
         slower = shown_bound(result.slow_down, "upper", places=6)
         whole = shown_bound(repaired, "upper", places=6)
-        parts.append(Prose(f"repair: {slower} times slower keeps the limits, {whole} s"))
+        parts.append(Prose(f"repair: {slower} times slower keeps the limits, in {whole} s"))
     floor = value_or_none(result.floor)
     if floor is None:
         parts.append(Prose(f"floor: none, {result.floor}", "note"))
@@ -176,7 +176,7 @@ _SENTENCES = {
 """What a verdict means, in a few words."""
 
 
-_STATE_IT = "What is not judged: state its limit, or inf where it has none. --strict refuses it."
+_STATE_IT = "To judge the rest, state its limit, or inf if it has none. --strict fails otherwise."
 """How the verdict comes to speak of everything."""
 
 

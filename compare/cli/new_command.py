@@ -17,7 +17,7 @@ from .options import FAMILY, LIMIT, USUAL
 from .output import new_output, say, warn
 from .solve_files import limits_of_table
 
-_UNITS = "One for all joints, or one for each with commas between: deg,deg,mm."
+_UNITS = "One for all joints, or one per joint, separated by commas: deg,deg,mm."
 """Said of each option that takes a unit of joints."""
 
 
@@ -37,8 +37,8 @@ def new(
         typer.Option(
             "--urdf",
             metavar="FILE",
-            help="Limits that are not given below, of the URDF's joints that the table names or "
-            "numbers.",
+            help="URDF with the limits that are not given below, for the joints that the table "
+            "names or numbers.",
         ),
     ] = None,
     velocity: Annotated[str | None, typer.Option(help=LIMIT)] = None,
@@ -58,17 +58,21 @@ def new(
         str | None, typer.Option("--id", help="Id of the case.", show_default="the name of OUT")
     ] = None,
     family: Annotated[str | None, typer.Option(help=FAMILY, show_default=USUAL)] = None,
-    degree: Annotated[int | None, typer.Option(help="Of a curve that needs one.")] = None,
+    degree: Annotated[int | None, typer.Option(help="Degree, for a curve that needs one.")] = None,
     durations: Annotated[
         str | None,
-        typer.Option(metavar="H1,H2,...", help="Printed durations of the segments: a claim."),
+        typer.Option(
+            metavar="H1,H2,...", help="Printed durations of the segments, recorded as a claim."
+        ),
     ] = None,
-    total: Annotated[str | None, typer.Option(help="Printed total time: a claim.")] = None,
+    total: Annotated[
+        str | None, typer.Option(help="Printed total time, recorded as a claim.")
+    ] = None,
     where: Annotated[
-        str | None, typer.Option(metavar="PLACE", help="Where these are printed: Table 2.")
+        str | None, typer.Option(metavar="PLACE", help="Place where these are printed: Table 2.")
     ] = None,
 ) -> int:
-    """Start a case file from a table of way-points.
+    """Create a case file from a table of way-points.
 
     Units that are not given are asked for.
     """
@@ -120,7 +124,7 @@ def new(
             if _known(answer, name):
                 given[name] = answer
             else:
-                said = f"{answer!r} is no unit of {name}" if answer else "is missing"
+                said = f"{answer!r} is not a unit of {name}" if answer else "is missing"
                 faults.append((f"--{name}-unit", f"{said}; give one of {', '.join(CHOICES[name])}"))
         if faults:
             raise CaseError(file, *faults[0], faults[1:])

@@ -7,10 +7,11 @@ from typing import Annotated, Any
 
 import typer
 
-LIMIT = "Limit of every joint, or one for each with commas between."
+LIMIT = "One limit for all joints, or one per joint, separated by commas."
 """Help of the three options of `new` that take limits."""
 FAMILY = (
-    "Curve, as case files or the literature name it, or the degrees of its segments: 3-5-3, "
+    "Curve, by its name in case files or in the literature, or by the degrees of its segments: "
+    "3-5-3, "
     "4-3-3-4, natural-cubic, cubic-b-spline, quintic-polynomials..."
 )
 """Help of the option that names the curve through a table of way-points."""
@@ -20,12 +21,11 @@ ENDS = """\b
 Exit codes:
   0    done
   1    audit --strict, and a finding has severity error; verify, and a file is refused;
-       case diff, and the files differ; check --strict, and a motion does not pass or
-       something of it has no stated limit;
-       bench and study, and every run of an optimiser on a problem failed
+       case diff, and the files differ; check --strict, and a motion does not pass or something in
+       it has no stated limit; bench and study, and every run of an optimiser on a problem failed
   2    bad input; one line on standard error says how to fix it
   3    solve --certify, and an interval is wider than asked for or nothing is proved
-  70   a fault of trajgap itself
+  70 a bug in trajgap
   130  interrupted
 """
 """What every command's --help ends with."""
@@ -57,7 +57,7 @@ ReadingId = Annotated[
 Coupled = Annotated[
     str | None,
     typer.Option(
-        "--coupling", metavar="shared|per-joint", help="Instead of what the case file says."
+        "--coupling", metavar="shared|per-joint", help="Replaces the coupling of the case file."
     ),
 ]
 Workers = Annotated[
@@ -65,8 +65,8 @@ Workers = Annotated[
     typer.Option(
         min=1,
         max=MOST,
-        help="Processes for the replays; the result does not depend on it. Starting one takes "
-        "longer than a hundred short replays.",
+        help="Number of processes for the replays; the result does not depend on it. Starting a "
+        "process takes longer than a hundred short replays.",
         show_default="all cores; 1 for short replays",
     ),
 ]
@@ -76,7 +76,7 @@ ProofWorkers = Annotated[
         "--workers",
         min=1,
         max=MOST,
-        help="With --certify: cores for the proof; the result does not depend on it.",
+        help="With --certify: number of cores for the proof; the result does not depend on it.",
         show_default="all cores",
     ),
 ]
@@ -84,16 +84,16 @@ NoCache = Annotated[
     bool,
     typer.Option(
         "--no-cache",
-        help="Neither keep proofs and replays for later runs nor use those that earlier ones kept; "
-        "each of these is proved or judged again before it counts.",
+        help="Neither keep proofs and replays for later runs nor use kept ones. Kept ones are "
+        "verified or judged again before they count.",
     ),
 ]
 Crate = Annotated[
     Path | None,
     typer.Option(
         metavar="FILE.zip",
-        help="Also write an RO-Crate to this new file: case files, pages, JSON, certificates "
-        "and environment, for an archive.",
+        help="Also write an RO-Crate for archives to this new file: case files, pages, JSON, "
+        "certificates and environment.",
     ),
 ]
 
@@ -102,7 +102,7 @@ MotionSource = Annotated[
     str,
     typer.Argument(
         metavar="CASE|FILE",
-        help="A motion: .csv, .parquet, .json, .yaml or a rosbag. With --durations the id of a "
+        help="A motion: .csv, .parquet, .json, .yaml or a rosbag. With --durations: the id of a "
         "published case, suite:NAME, or a case file.",
     ),
 ]
@@ -110,13 +110,13 @@ MotionSource = Annotated[
 
 def run_workers(usual: str | bool = True) -> Any:
     """The option of `bench` and `study` that says how many processes run; and its default."""
-    said = "Processes; the rows do not depend on it."
+    said = "Number of processes; the rows do not depend on it."
     return typer.Option("--workers", min=1, max=MOST, help=said, show_default=usual)
 
 
 def run_store(usual: str | bool = True) -> Any:
     """The option of both that says where runs are kept; and its default."""
-    said = "Where finished runs are kept; what it holds is not run again."
+    said = "File that keeps finished runs; these are not repeated."
     return typer.Option("--store", metavar="FILE", help=said, show_default=usual)
 
 
@@ -144,7 +144,8 @@ Between = Annotated[
     str | None,
     typer.Option(
         metavar="WORD",
-        help="Between samples: none, linear, cubic, quintic, spline, or controller as ROS does.",
+        help="Interpolation between samples: none, linear, cubic, quintic, spline, or controller "
+        "(as in ROS).",
         show_default="none; controller for ROS",
     ),
 ]
@@ -152,7 +153,7 @@ Noise = Annotated[
     str | None,
     typer.Option(
         metavar="N",
-        help="What positions may be off by: one number, or one a joint; 0 if all are exact.",
+        help="Uncertainty of the positions: one number, or one per joint; 0 if all are exact.",
         show_default="half a unit of the last digit in the file",
     ),
 ]
@@ -162,7 +163,7 @@ TimeNoise = Annotated[
         "--time-noise",
         metavar="S",
         min=0.0,
-        help="What times may be off by, s; 0 if they are exact.",
+        help="Uncertainty of the times, s; 0 if they are exact.",
         show_default="half a unit of the last digit in the file",
     ),
 ]
@@ -170,7 +171,8 @@ MotionUnits = Annotated[
     str | None,
     typer.Option(
         metavar="UNIT",
-        help="Of table and flags: rad, deg, m, cm or mm, one or one a joint; ROS has rad and m.",
+        help="Units of the table and the flags: rad, deg, m, cm or mm; one, or one per joint. ROS "
+        "uses rad and m.",
         show_default="rad",
     ),
 ]
@@ -181,7 +183,11 @@ JointNames = Annotated[
 Topic = Annotated[str | None, typer.Option(metavar="/NAME", help="Of a rosbag.")]
 Tolerance = Annotated[
     float,
-    typer.Option(min=0.0, max=1.0, help="Of a motion: relative excess that counts as kept."),
+    typer.Option(
+        min=0.0,
+        max=1.0,
+        help="For a motion: relative excess over a limit that still counts as kept.",
+    ),
 ]
 SamplesFile = Annotated[
     Path | None,
@@ -195,7 +201,7 @@ Retimed = Annotated[
     bool,
     typer.Option(
         "--retimed",
-        help="With --samples: the path of the answer as TOPPRA times it, under velocity and "
+        help="With --samples: the path of the answer, re-timed by TOPPRA under velocity and "
         "acceleration limits only.",
     ),
 ]

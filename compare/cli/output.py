@@ -64,7 +64,7 @@ def say(text: str) -> None:
     except OSError as error:
         reason = error.strerror or type(error).__name__
         raise CaseError(
-            "standard output", "", f"cannot be written ({reason}); send it elsewhere"
+            "standard output", "", f"cannot be written ({reason}); redirect it elsewhere"
         ) from None
 
 
@@ -192,7 +192,7 @@ def progress(label: str, total: int | None = None, rate: bool = False) -> Iterat
 
 @contextmanager
 def new_output(path: Path | None, field: str = "--out") -> Iterator[Callable[[str | bytes], None]]:
-    """Reserve a new file; what is written appears under its name at once and complete.
+    """Reserve a new file, which appears under its name only when complete.
 
     Parameters
     ----------
@@ -218,7 +218,7 @@ def new_output(path: Path | None, field: str = "--out") -> Iterator[Callable[[st
     with ExitStack() as stack:
         with _writing(name, field), _taken(name, field):
             if path.is_dir():
-                raise CaseError(name, field, "is a directory; name a file in it")
+                raise CaseError(name, field, "is a directory; give a file in it")
             put = stack.enter_context(new_file(path))
 
         def write(content: str | bytes) -> None:
@@ -229,7 +229,7 @@ def new_output(path: Path | None, field: str = "--out") -> Iterator[Callable[[st
 
 
 def replace_output(path: Path, text: str) -> None:
-    """Write a file under its name at once and complete, in the place of an earlier one.
+    """Write a complete file in a single step, replacing an earlier one.
 
     Raises
     ------
@@ -253,7 +253,7 @@ def check_certificates(folder: Path) -> None:
             try_writing_in(folder)
         except NotADirectoryError as error:
             raise CaseError(
-                str(error.filename), "--certificates", "is no folder; name another"
+                str(error.filename), "--certificates", "is not a folder; give another"
             ) from None
 
 
@@ -263,7 +263,7 @@ def _taken(name: str, field: str) -> Iterator[None]:
         yield
     except FileExistsError:
         raise CaseError(
-            name, field, "exists already; name another file or delete this one"
+            name, field, "already exists; give another file or delete this one"
         ) from None
 
 
@@ -274,7 +274,7 @@ def _writing(name: str, field: str) -> Iterator[None]:
     except OSError as error:
         reason = error.strerror or type(error).__name__
         raise CaseError(
-            name, field, f"cannot be written ({reason}); name a place that can"
+            name, field, f"cannot be written ({reason}); give a writable place"
         ) from None
 
 
@@ -383,4 +383,4 @@ def kept_proofs(count: int) -> str:
     with and without what was kept.
     """
     proofs = "1 kept proof was" if count == 1 else f"{count} kept proofs were"
-    return f"{proofs} proved again instead of searched; --no-cache searches anew\n"
+    return f"{proofs} verified instead of searched; --no-cache searches again\n"

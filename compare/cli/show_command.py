@@ -21,7 +21,7 @@ def show(
     as_json: AsJson = False,
     out: Out = None,
 ) -> int:
-    """Show what a case holds, and what it leaves open."""
+    """Show what a case contains, and what it leaves open."""
     with new_output(out) as write:
         found = read_case(case)
         document = show_document(found, problem, reading)
@@ -56,17 +56,17 @@ def _tables(document: ShowDocument, case: Case) -> list[Block]:
         *(Prose(said) for said in lines),
         table(("problem", "~title"), problems),
         *_asked(document, case),
-        table(("reading", "~what it means, and why it is admissible"), readings),
+        table(("reading", "~meaning, and why it is admissible"), readings),
     ]
     if document.claims:
         claims = [
             (c.id, digits_of(case, c), f"{claim_text(case, c)} ({c.where})")
             for c in document.claims
         ]
-        parts.append(table(("claim", "printed", "~what is said, and where"), claims))
+        parts.append(table(("claim", "printed", "~statement, and its place"), claims))
     if document.assumptions:
         choices = [(str(k), f"{a.text} {a.choice}") for k, a in enumerate(document.assumptions, 1)]
-        parts.append(table(("choice", "~what is left open, and what was chosen"), choices))
+        parts.append(table(("choice", "~open point, and the choice made"), choices))
     return parts
 
 

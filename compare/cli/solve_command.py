@@ -79,21 +79,23 @@ def solve(
         typer.Argument(
             metavar="CASE|FILE",
             help="Id of a published case, suite:NAME, a case file, or a table of way-points (CSV) "
-            "with limits beside it.",
+            "with limits as options.",
         ),
     ],
     problem: ProblemId = None,
     reading: ReadingId = None,
     coupling: Coupled = None,
-    starts: Annotated[int, typer.Option(min=1, max=MOST, help="Starts of the solver.")] = 4,
+    starts: Annotated[
+        int, typer.Option(min=1, max=MOST, help="Number of starts of the solver.")
+    ] = 4,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the random starts.")] = 0,
     prove: Annotated[
         float,
         typer.Option(
             min=0.0,
             metavar="B",
-            help="Boxes for the proof of each optimum, as a share of what an audit allows: 0 for "
-            "no proof, 1 for some ten seconds.",
+            help="Boxes for the proof of each optimum, as a share of those that an audit allows: "
+            "0 for no proof, 1 for about ten seconds.",
         ),
     ] = 0.1,
     certify: Annotated[
@@ -114,7 +116,8 @@ def solve(
             "--time",
             min=0.0,
             metavar="S",
-            help="Seconds for each problem; then the best motion, or interval, is left.",
+            help="Time limit for each problem, s; the best motion or interval found by then is "
+            "returned.",
             show_default="none; 60 with --certify",
         ),
     ] = None,
@@ -122,14 +125,15 @@ def solve(
         bool,
         typer.Option(
             "--any-curve",
-            help="With --certify: over every motion through the way-points, whatever its curve.",
+            help="With --certify: prove a bound for every motion through the way-points, on any "
+            "curve.",
         ),
     ] = False,
     certificates: Annotated[
         Path | None,
         typer.Option(
             metavar="FOLDER",
-            help="With --certify: where certificates go, and states of stopped runs.",
+            help="With --certify: folder for certificates and for states of stopped runs.",
             show_default="trajgap-certificates; none with --json",
         ),
     ] = None,
@@ -137,8 +141,8 @@ def solve(
         list[Path] | None,
         typer.Option(
             metavar="FILE",
-            help="With --certify: go on from this state file, every part of it proved again. "
-            "May be given several times.",
+            help="With --certify: continue from this state file, which is verified. May be "
+            "repeated.",
         ),
     ] = None,
     workers: ProofWorkers = None,
@@ -151,7 +155,7 @@ def solve(
     urdf: UrdfFile = None,
     units: MotionUnits = None,
     family: Annotated[str | None, typer.Option(help=FAMILY, show_default=USUAL)] = None,
-    degree: Annotated[int | None, typer.Option(help="Of a curve that needs one.")] = None,
+    degree: Annotated[int | None, typer.Option(help="Degree, for a curve that needs one.")] = None,
     samples: SamplesFile = None,
     rate: Rate = None,
     form: Form = None,
@@ -197,7 +201,7 @@ def solve(
             read, problem, reading, coupling, starts, seed, prove, seconds, as_json, out, asked
         )
     if samples is not None or rate is not None or form is not None or retimed:
-        raise typer.BadParameter("--samples is of a solution; leave --certify out")
+        raise typer.BadParameter("--samples needs a solution; leave --certify out")
     return certify_case(
         read,
         problem,
@@ -222,7 +226,9 @@ def _read(source: str, stated: MotionOptions, family: str | None, degree: int | 
         return points_case(source, stated, family, degree)
     curve = [name for name, one in (("--family", family), ("--degree", degree)) if one is not None]
     for name in (*stated.names, *curve):
-        raise typer.BadParameter(f"{name} is of a table of way-points (CSV); a case states its own")
+        raise typer.BadParameter(
+            f"{name} is for a table of way-points (CSV); a case states its own"
+        )
     return read_case(source)
 
 

@@ -83,7 +83,7 @@ def limits_of_table(source: str, options: MotionOptions) -> Callable[[tuple[str,
         slower = [j for j, x in zip(joints, stated.deceleration, strict=True) if np.isfinite(x)]
         doubt = slower and (
             f"deceleration has its own limit at joint {', '.join(slower)}; here the smaller value "
-            "limits acceleration and deceleration alike, so a motion that uses the larger one may "
+            "limits both, so a motion that uses the larger one may "
             "be shorter"
         )
         sources = ", ".join(dict.fromkeys(stated.sources.values()))
@@ -99,7 +99,7 @@ def _names(source: str, urdf: Path, count: int) -> tuple[str, ...]:
         raise CaseError(
             source,
             "line 1",
-            f"numbers {count} joints, and {urdf} has {len(names)} with limits "
+            f"numbers {count} joints, but {urdf} has {len(names)} with limits "
             f"({', '.join(names)}); name those of the table",
         )
     return names
@@ -195,7 +195,7 @@ def written_lines(written: WrittenMotion, case: Case) -> list[str]:
     ]
     if result.verdict != "pass" and written.form is MotionForm.CSV:
         lines.append(
-            "a break of the curve lies between two rows: --format ros has it as a point, ppoly is "
-            "the curve itself"
+            "a break of the curve lies between two rows; --format ros writes it as a point, and "
+            "ppoly writes the curve itself"
         )
     return lines

@@ -55,14 +55,17 @@ def study(
         Path,
         typer.Argument(
             metavar="FILE.toml|leaderboard",
-            help="See docs/reference/studies.md; leaderboard is the study behind the leaderboard.",
+            help="Study file (see docs/reference/studies.md), or leaderboard for the study behind "
+            "the leaderboard.",
         ),
     ],
     store: Annotated[Path | None, run_store("FILE.sqlite")] = None,
     workers: Annotated[int | None, run_workers("one for each core")] = None,
     dask: Annotated[
         str | None,
-        typer.Option(metavar="ADDRESS", help="Run on the Dask cluster of this scheduler instead."),
+        typer.Option(
+            metavar="ADDRESS", help="Run on the Dask cluster with this scheduler instead."
+        ),
     ] = None,
     export: Annotated[
         list[Path] | None,
@@ -80,25 +83,27 @@ def study(
             "is replaced.",
         ),
     ] = None,
-    retry: Annotated[bool, typer.Option("--retry", help="Run the failed ones again.")] = False,
+    retry: Annotated[bool, typer.Option("--retry", help="Repeat failed runs.")] = False,
 ) -> int:
-    """Run optimisers on many problems; what is finished is kept.
+    """Run optimisers on many problems; finished runs are kept.
 
     Ctrl-C loses nothing that is finished; the same command goes on.
     """
     if dask is not None and workers is not None:
-        raise typer.BadParameter("--workers does not go with --dask, whose cluster has its own")
+        raise typer.BadParameter(
+            "--workers cannot be combined with --dask, whose cluster has its own"
+        )
     exports = export or []
     shipped = file == Path(LEADERBOARD)
     path = store or file.with_suffix(_ENDING)
     if path == file:
-        raise CaseError(str(path), "--store", "is the study file itself; name another")
+        raise CaseError(str(path), "--store", "is the study file itself; give another")
     for one in exports:
         check_export(one)
         if exports.count(one) > 1:
             raise CaseError(str(one), "--export", "is named twice; name it once")
     if summary is not None and summary.suffix != ".csv":
-        raise CaseError(str(summary), "--summary", "is no .csv file; name one")
+        raise CaseError(str(summary), "--summary", "is not a .csv file; give one")
     plan = leaderboard_study() if shipped else load_study(file)
     again = ["trajgap", "study", str(file), *_options("--store", [] if store is None else [store])]
     with Store(path) as kept:
@@ -112,7 +117,7 @@ def study(
                     session = now
                     step(_going(now, time.monotonic() - begun))
 
-                step("the optima that gaps are set against")
+                step("the optima from which gaps are measured")
                 with _interruptible():
                     session = run_study(plan, kept, engine, retry=retry, progress=show)
         except KeyboardInterrupt:
@@ -177,8 +182,8 @@ def _going(now: StudySession, seconds: float) -> str:
 def _interrupted(session: StudySession, again: Sequence[str]) -> str:
     done = session.resumed + session.run
     return (
-        f"interrupted; {done:,} of {session.total:,} runs are stored, "
-        f"`{shlex.join(again)}` goes on from there"
+        f"interrupted; {done:,} of {session.total:,} runs are stored; `{shlex.join(again)}` "
+        "continues from there"
     )
 
 
@@ -207,19 +212,22 @@ def _summary(
         cells = (*named, len(runs), len(bad), passed, *_gaps(runs))
         found.setdefault((problem, reading), []).append(cells)
     parts: list[Block] = [
-        Prose(f"{path}: {session.run:,} runs done now, {session.resumed:,} were there", "heading"),
+        Prose(
+            f"{path}: {session.run:,} runs were done now, {session.resumed:,} were already stored",
+            "heading",
+        ),
         *(_boards(plan, kept) if plan.file == LEADERBOARD else _tables(plan, found)),
         Prose("A gap is that of the feasible time, (T − U)/U against the best known total U."),
     ]
     for message, count in sorted(messages.items(), key=lambda one: -one[1])[:_MESSAGES]:
         parts.append(Prose(f"failed, {count:,} times: {message}", "warning"))
     if len(messages) > _MESSAGES:
-        parts.append(Prose(f"and {len(messages) - _MESSAGES:,} other messages, in the exports"))
+        parts.append(Prose(f"and {len(messages) - _MESSAGES:,} other messages (see the exports)"))
     if session.run:
         parts.append(Prose(f"{session.seconds / session.run:.3g} s a run", "note"))
     parts += [Prose(f"written: {one}") for one in exports]
     if failed:
-        parts.append(Prose(f"run the failed ones again: {shlex.join([*again, '--retry'])}"))
+        parts.append(Prose(f"to repeat the failed runs: {shlex.join([*again, '--retry'])}"))
     if not exports:
         name = f"{Path(plan.file).stem}.csv"
         parts.append(Prose(f"next: {shlex.join([*again, '--export', name])}"))

@@ -41,7 +41,10 @@ suite = typer.Typer(
 )
 
 Folder = Annotated[
-    Path, typer.Argument(metavar="FOLDER", help="A new or an empty folder, or one written so.")
+    Path,
+    typer.Argument(
+        metavar="FOLDER", help="A new or an empty folder, or one written by this command."
+    ),
 ]
 
 

@@ -47,7 +47,8 @@ def verify(
         typer.Option(
             "--case",
             metavar="CASE",
-            help="Id of a published case, or case file: compare the problems, number by number.",
+            help="Compare the problems, number by number, with those of this published case or "
+            "case file.",
         ),
     ] = None,
     seconds: Annotated[
@@ -57,7 +58,7 @@ def verify(
     as_json: AsJson = False,
     out: Out = None,
 ) -> int:
-    """Prove certificates again, apart from the solver.
+    """Verify certificates independently of the solver.
 
     The code that does so imports nothing of it.
     """
@@ -113,7 +114,9 @@ def _about(
                 return one.asked
     own = replace(verdict.question, case_sha256=None)
     named = [why for q, why in differs.items() if replace(q, case_sha256=None) == own]
-    return f"its problem differs in {named[0]}" if named else "no problem of the case is this one"
+    return (
+        f"its problem differs in {named[0]}" if named else "the case does not contain this problem"
+    )
 
 
 def _verified(document: VerifyDocument, case: Case | None) -> list[Prose]:

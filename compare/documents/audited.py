@@ -65,7 +65,7 @@ class StatedSource(Entry):
 
 
 class Consequence(Entry):
-    """What follows from a cause and is no fault of its own."""
+    """What follows from a cause and is not a fault of its own."""
 
     rule: str
     """Permanent id of the rule that saw it."""
@@ -189,7 +189,7 @@ class AuditedCase(Entry):
     errors: Count
     """How many causes have severity error."""
     causes: tuple[Cause, ...]
-    """What speaks against something printed, each once; the gravest first."""
+    """Evidence against printed statements, each once; the gravest first."""
     advice: OrWhy[tuple[Advice, ...]]
     """With `--draft`: what its author can change before submitting, the gravest first."""
     claims: tuple[StatedClaim, ...]

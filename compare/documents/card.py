@@ -98,7 +98,7 @@ _KNOWN = {
 
 def more_errors(count: int) -> str:
     """The sentence for errors that a card has no room for."""
-    return f"{count} more error{'s stand' if count > 1 else ' stands'} below."
+    return f"{count} more error{'s are' if count > 1 else ' is'} listed below."
 
 
 def counted(verdict: str, count: int) -> str:

@@ -22,7 +22,7 @@ class CertifiedResult(Entry):
     joint: str | None
     """The joint that was optimised by itself; null for all together."""
     subject: Subject
-    """What the interval speaks about."""
+    """Curves that the interval covers."""
     outcome: Outcome | Uncovered
     outcome_why: str | None
     lower: OrWhy[float]

@@ -74,7 +74,7 @@ def _opening(data: dict[str, Any]) -> str | None:
 
 
 class Reference(Entry):
-    """A reference time: the best known value, and a certified lower bound where there is one."""
+    """A reference time: the best known value, and a certified lower bound if there is one."""
 
     upper: Real
     """Total of a feasible trajectory, s."""
@@ -121,12 +121,12 @@ class Gap(Entry):
 
     @property
     def many_times(self) -> bool:
-        """Whether the time is so many times the reference that a percentage says nothing."""
+        """Whether the time is too many times the reference for a percentage."""
         return self.lowest > 10
 
     @property
     def percent(self) -> str:
-        """The interval in percent; a factor instead where the time is many times the reference."""
+        """The interval in percent, or as a factor if the time is many times the reference."""
         if self.many_times:
             return f"{shown_bound(1 + self.lowest, 'lower', digits=4)} times the reference"
         ends = percent_digits(100 * self.lowest, 100 * self.highest)
@@ -162,7 +162,7 @@ class Finding(Entry):
     """The printed digits, with units."""
     computed: str | None = None
     """What was computed, with units."""
-    gap: OrWhy[Gap] = Why("no time is set beside an optimum")
+    gap: OrWhy[Gap] = Why("no time is compared with an optimum")
     kind: Annotated[str, Field(min_length=1)]
     """What findings of a rule have in common that say the same in other numbers."""
     sentences: Annotated[tuple[str, ...], AfterValidator(_begun)] = Field(exclude=True)
@@ -248,7 +248,7 @@ class Judgement(Entry):
     caveats_in_short: tuple[str, ...] = ()
     """Each of them without its reason."""
     beside: str = ""
-    """What stands beside the word wherever it is shown, such as "but on doubted numbers"."""
+    """What stands beside the word wherever it is shown, such as "but on doubtful numbers"."""
     readings: dict[str, ClaimVerdict]
     """The verdict under each reading by itself."""
     informs: bool = Field(default=False, exclude=True)

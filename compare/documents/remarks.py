@@ -1,4 +1,4 @@
-"""What goes with the word of a verdict, in the same breath: doubted numbers, truisms, definitions.
+"""What goes with the word of a verdict, in the same breath: doubtful numbers, truisms, definitions.
 
 A word of its own is not needed for these: the verdict is what it is, and the reader learns at once
 what it is worth.
@@ -15,7 +15,7 @@ from .vocabulary import ClaimVerdict, Confidence
 
 DOUBTED = "rests on numbers that other printed numbers contradict"
 """How a caveat begins where a claim rests on a contradiction in print."""
-POINTS = "rests on doubted way-points"
+POINTS = "rests on doubtful way-points"
 """How one begins where a claim was judged by motions through way-points that a finding doubts."""
 BUILT = "true of any such curve"
 """How one begins where nothing that is printed could make the claim false."""
@@ -47,16 +47,16 @@ and then they are in doubt for it as they are for one in its favour."""
 
 def built_remark() -> str:
     """The caveat of a claim that holds by construction."""
-    return f"{BUILT}, whatever the durations, so that it is no evidence for the printed numbers"
+    return f"{BUILT}, whatever the durations, so it is no evidence for the printed numbers"
 
 
 def nature_caveat(nature: Nature) -> Caveat:
     """The caveat of a sentence that claims nothing that numbers could decide."""
     why = {
-        Nature.DEFINITION: "it says how something is called or made, and claims no result",
-        Nature.IDENTITY: "it holds whatever this paper prints",
-        Nature.AIM: "it says what is wanted, not what was reached",
-        Nature.JUDGEMENT: "no measure is named that could be computed",
+        Nature.DEFINITION: "it says how something is named or made, and claims no result",
+        Nature.IDENTITY: "it is true whatever this paper prints",
+        Nature.AIM: "it states a goal, not a result",
+        Nature.JUDGEMENT: "it names no measure that could be computed",
     }
     kind = _KINDS[nature]
     return Caveat(kind, _BESIDE[kind][1], why[nature])
@@ -73,7 +73,7 @@ def qualified(verdict: str, beside: str) -> str:
     Returns
     -------
     str
-        Such as "supported, but on doubted numbers".
+        Such as "supported, but on doubtful numbers".
     """
     return f"{verdict}, {beside}" if beside else verdict
 
@@ -84,7 +84,7 @@ def said_beside(verdict: ClaimVerdict, caveats: Iterable[Caveat]) -> str:
     Returns
     -------
     str
-        Such as "but on doubted numbers"; empty where nothing does.
+        Such as "but on doubtful numbers"; empty where nothing does.
     """
     doubts, *others = _beside(verdict, caveats)
     joins = "and" if verdict is ClaimVerdict.DEPENDS else "but"
@@ -97,7 +97,7 @@ def _beside(verdict: ClaimVerdict, caveats: Iterable[Caveat]) -> list[str]:
     found = {k: said for k, (word, said) in _BESIDE.items() if word is verdict and k in kinds}
     doubts = [what for k, (words, what) in _DOUBTS.items() if verdict in words and k in kinds]
     doubted = bool(doubts) and CaveatKind.BUILT not in found
-    return [f"on doubted {' and '.join(doubts)}" if doubted else "", *found.values()]
+    return [f"on doubtful {' and '.join(doubts)}" if doubted else "", *found.values()]
 
 
 def worth_little(judgements: Sequence[Judgement]) -> str:
@@ -106,7 +106,7 @@ def worth_little(judgements: Sequence[Judgement]) -> str:
     Returns
     -------
     str
-        Such as "18 on doubted numbers, 2 by construction".
+        Such as "18 on doubtful numbers, 2 by construction".
     """
     counts = Counter(
         ", ".join(filter(None, _beside(judgement.verdict, judgement.caveats)))

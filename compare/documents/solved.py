@@ -13,7 +13,7 @@ from .entry import Count, Document, Entry, OrLeftOut, OrWhy, Real, Why, known
 from .finding import UNCERTIFIED
 from .vocabulary import Limited
 
-NO_OTHER_ROUTE = "no second route knows this curve and this many durations"
+NO_OTHER_ROUTE = "no second route handles this curve with this many durations"
 """Why a total stands by itself: descents take few durations, all of them determined."""
 NOT_ASKED = "not asked for"
 """Why a path is not retimed, where nobody wanted it."""
@@ -220,22 +220,22 @@ def _procedure(answer: PerJointSolution) -> Answer:
     return Answer.of(
         answer,
         status_why="; ".join(unsettled)
-        or "of the joints' own optima; the total is what their longest durations add up to",
+        or "of the joints' own optima; the total is the sum of their longest durations",
         total_time=answer.total_time if answer.check else Why(none),
-        segment_durations=Why("each joint has durations of its own, see joints"),
+        segment_durations=Why("each joint has its own durations, see joints"),
         infimum=Why("the longest durations of a procedure, not an optimum"),
         lower_bound=UNCERTIFIED,
         max_violation=answer.check.max_violation if answer.check else Why(none),
         kkt_residual=max(residuals) if len(residuals) == len(joints) else Why(none),
-        route=Why("each joint has a route of its own, see joints"),
-        other_route_total=Why("each joint has a route of its own, see joints"),
+        route=Why("each joint has its own route, see joints"),
+        other_route_total=Why("each joint has its own route, see joints"),
         active=tuple(_active(a) for s in joints for a in s.active),
         starts=sum(s.starts for s in joints),
         starts_at_best=sum(s.starts_at_best for s in joints),
         # Joints of one kind share one NLP, which is built once.
         build_seconds=max(s.build_seconds for s in joints),
         solve_seconds=sum(s.solve_seconds for s in joints),
-        toppra=Why("each joint has a path of its own, see joints"),
+        toppra=Why("each joint has its own path, see joints"),
     )
 
 
@@ -270,7 +270,7 @@ def _toppra(
     if not retiming.applicable:
         return Why(retiming.why or "not applicable"), None
     runs = zip(retiming.durations, retiming.gridpoints, strict=True)
-    order = "the durations agree within the solver's accuracy, or show no one order"
+    order = "the durations agree within the solver's accuracy, or show no single order"
     return tuple(RetimedPath(duration=d, gridpoints=n) for d, n in runs), Extrapolated(
         duration=known(retiming.extrapolated, retiming.why),
         error=known(retiming.error, retiming.why),

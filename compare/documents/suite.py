@@ -25,7 +25,7 @@ class MeasuredHardness(Entry):
     """Share of its runs in which a baseline ends within 1 % of the best known total."""
     baseline_runs: Count
     baseline_budget: Count
-    """Evaluations of each run."""
+    """Number of evaluations of each run."""
 
 
 class SuiteInstance(Entry):
@@ -53,7 +53,7 @@ class SuiteInstance(Entry):
     """Its file, as the suite ships it."""
     certificate_sha256: OrWhy[str]
     command: str
-    """What makes the certificate."""
+    """Command that creates the certificate."""
     hardness: OrWhy[MeasuredHardness]
 
 
@@ -111,6 +111,6 @@ def instance_document(one: BenchmarkInstance, file: str | None) -> SuiteShowDocu
         source=case.source.title,
         verify=known(
             None if file is None else f"python -m trajgap.verify {file}",
-            f"no certificate is shipped; make it: {one.command}",
+            f"no certificate is shipped; create it: {one.command}",
         ),
     )

@@ -21,13 +21,13 @@ class Severity(StrEnum):
     """How much a finding weighs; tied to its conclusion, never to a digit."""
 
     ERROR = "error"
-    """A proof contradicts something printed, or shows that two printed things contradict each
-    other, whatever the reading."""
+    """A proof contradicts something printed, or shows that two printed statements contradict each
+    other, under any reading."""
     WARNING = "warning"
     """A proof contradicts something printed under some readings and not under all, printed things
     do not fit together, or a best known value speaks against a statement."""
     INFO = "info"
-    """A fact beside the claim, or support for it."""
+    """A fact about the claim, or support for it."""
 
 
 class Urgency(StrEnum):
@@ -36,11 +36,11 @@ class Urgency(StrEnum):
     CONTRADICTED = "contradicted"
     """A reader can prove it wrong from the draft alone."""
     DOUBTFUL = "doubtful"
-    """Wrong under some reading, or it does not fit what stands beside it."""
+    """Wrong under some reading, or it contradicts another printed number."""
     FOLLOWS = "follows"
-    """Right as it is, and wrong once the other changes are made."""
+    """Right as it is, but wrong once the other changes are made."""
     OPEN = "open"
-    """Nobody can check it, or check it in one way only, from what is printed."""
+    """It cannot be checked from what is printed, or the answer depends on the reading."""
 
 
 class ClaimVerdict(StrEnum):
@@ -53,11 +53,12 @@ class ClaimVerdict(StrEnum):
     conditions, an enclosure that holds however the digits were rounded, a scaling law, or a
     checked motion that is shorter than one called optimal."""
     NOT_CHECKABLE = "not checkable"
-    """Nothing that the text carries decides it, and the reason is given."""
+    """The text contains nothing that decides it, and the reason is given."""
     INCONSISTENT = "inconsistent"
-    """Two printed things contradict each other; neither alone is refuted."""
+    """Two printed statements contradict each other; neither alone is refuted."""
     DEPENDS = "depends on the reading"
-    """The admissible readings of the text give different words; each stands beside its reading."""
+    """The admissible readings of the text give different verdicts; the report shows each with its
+    reading."""
 
 
 class Scope(StrEnum):
@@ -83,18 +84,19 @@ class Basis(StrEnum):
     CHECK = "check"
     """True peaks at the printed point."""
     COMPUTED = "computed"
-    """The same; what rounding of other digits, or sampling, changes is estimated, not enclosed."""
+    """The same, but the effect of rounding in other digits, and of sampling, is estimated, not
+    enclosed."""
     IDENTITY = "identity"
     """A scaling law that needs no solver."""
     OPTIMUM = "optimum"
-    """A reference value of the exact side, or a motion of its own that was checked."""
+    """A reference value of the exact side, or a checked motion."""
     REPLAY = "replay"
-    """Seeded runs of the algorithm under the listed choices. It can say that something is not
-    reproduced, never that it is refuted."""
+    """Seeded runs of the algorithm under the listed choices. They may fail to reproduce a number,
+    but never refute it."""
     KINEMATICS = "kinematics"
     """Forward kinematics of the printed table of the robot."""
     TEXT = "text"
-    """What the extracted text carries or does not."""
+    """What the extracted text contains or lacks."""
 
 
 class Confidence(StrEnum):
@@ -102,13 +104,13 @@ class Confidence(StrEnum):
 
     DIGITS = "printed digits"
     """It follows from the printed digits alone, whatever the reading: sums, percentages, counts of
-    conditions, tables set side by side."""
+    conditions, comparisons of tables."""
     PROVEN = "proven under a reading"
     """It follows from the curve, way-points and limits as a reading has them: by an enclosure over
     the rounding, by exact extrema of the printed motion, or by a certified bound."""
     COMPUTED = "computed under a reading"
-    """It follows from exact extrema of the printed motion as a reading has it; what the rounding of
-    the other printed digits, or sampling, makes of them is estimated, not enclosed."""
+    """It follows from exact extrema of the printed motion as a reading has it; the effect of
+    rounding in the other printed digits, or of sampling, is estimated, not enclosed."""
     BEST_KNOWN = "best known"
     """It rests on the best motion found under a reading, with nothing proved below it."""
     UNCONVERGED = "not converged"
@@ -156,8 +158,8 @@ class GapKind(StrEnum):
     """What a gap is a gap of."""
 
     OPTIMALITY = "optimality gap"
-    """(T − U)/U for a motion that keeps its limits, with U the reference total; the whole interval
-    where T is printed. Never clipped: below the reference it is negative."""
+    """(T − U)/U for a motion that keeps its limits, with U the reference total; an interval if T is
+    printed. Never clipped: below the reference it is negative."""
     REPORTED = "difference of reported time"
     """The same number for a time whose motion is not shown to keep its limits."""
 
@@ -179,11 +181,11 @@ class Worth(StrEnum):
     PROVES = "proves"
     """Its claim is proved."""
     ALTERED = "altered, still proves"
-    """Its claim is proved, but a seal does not match: this is not what was written."""
+    """Its claim is proved, but a seal does not match: the file was altered."""
     REFUSED = "refused"
     """Its claim is not proved."""
     OUT_OF_TIME = "out of time"
-    """The time was over before anything was decided."""
+    """The time ran out before anything was decided."""
 
 
 class Uncovered(StrEnum):
@@ -197,7 +199,7 @@ class MotionQuantity(StrEnum):
     """What is limited of a joint."""
 
     POSITION = "position"
-    """Angle, or place of a sliding joint."""
+    """Angle, or position of a sliding joint."""
     VELOCITY = "velocity"
     """Its derivative."""
     ACCELERATION = "acceleration"
@@ -218,11 +220,11 @@ class Limited(StrEnum):
     JERK = "jerk"
     """Of a joint."""
     POSITION = "position"
-    """Angle of a joint, or its place where it slides."""
+    """Angle of a joint, or position of a sliding joint."""
     DURATION = "duration"
     """Of a segment."""
     CURVE = "curve"
-    """The durations define none."""
+    """The durations define no curve."""
 
 
 UNITS = {"position": "rad", "velocity": "rad/s", "acceleration": "rad/s²", "jerk": "rad/s³"}
@@ -303,32 +305,33 @@ TIMES = {
     "feasible time": "T·max(1, c*): all durations stretched until every limit is kept.",
     "tight time": "T·c*: all durations rescaled until a limit is just reached.",
 }
-"""Times that are no member of an enumeration and stand beside the gaps."""
+"""Times that are not members of an enumeration and stand beside the gaps."""
 
 TERMS = {
     "reading": "One way to understand what the text leaves open; everything is computed under each "
     "reading that the text admits.",
-    "shared durations": "All joints pass each way-point together, so that they share the segment "
+    "shared durations": "All joints pass each way-point together, so they share the segment "
     "durations.",
-    "at these ratios": "The question fixes the ratios of the segment durations, so that their "
-    "total alone is chosen. Durations in other ratios answer another question.",
+    "at these ratios": "The question fixes the ratios of the segment durations, so only their "
+    "total is chosen. Durations in other ratios answer another question.",
     "relaxed family": "Curves of degree 5 or more in every segment, C2, through the same "
-    "way-points, within the same limits and end conditions; the optimiser uses the freedom left.",
+    "way-points, within the same limits and end conditions; the optimiser uses the remaining "
+    "freedom.",
     "TOPPRA": "The fastest motion along the path of a given curve, under velocity and acceleration "
     "limits only; on grids, extrapolated.",
-    "any curve through the way-points": "The fastest motion of bounded velocity and acceleration, "
-    "whatever the curve; joints meet at the way-points only.",
-    "KKT residual": "How far the answer is from meeting the first-order conditions of an optimum, "
-    "scaled; near 0 it meets them, which proves no global optimum.",
-    "on doubted numbers": "Printed numbers that a verdict rests on are contradicted by others in "
-    "the same paper; neither side is taken.",
-    "on doubted way-points": "A verdict was reached with way-points of which a finding says that "
-    "they may be misprinted.",
-    "by construction": "True of every curve of that kind, whatever the printed numbers: no "
-    "evidence for them.",
+    "any curve through the way-points": "The fastest motion of bounded velocity and acceleration "
+    "on any curve; the joints are synchronised at the way-points only.",
+    "KKT residual": "Scaled distance from the first-order conditions of an optimum; a value near "
+    "0 means that they hold, which does not prove a global optimum.",
+    "on doubtful numbers": "A verdict rests on printed numbers that others in the same paper "
+    "contradict; neither side is taken.",
+    "on doubtful way-points": "A verdict rests on way-points that may be misprinted, according to "
+    "a finding.",
+    "by construction": "True of every curve of that kind, whatever the printed numbers, so it is "
+    "no evidence for them.",
     "starts at best": "How many starts of the local solver ended at the lowest total found.",
 }
-"""Terms of the pages that are no member of an enumeration: steps, optima and runs."""
+"""Terms of the pages that are not members of an enumeration: steps, optima and runs."""
 
 
 @dataclass(frozen=True)

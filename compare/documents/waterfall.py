@@ -15,7 +15,7 @@ EXACT = Why("a single value, not an interval")
 PUBLISHED = "published"
 """Name of the step that is the printed total."""
 OWN_OPTIMA = "each joint at its optimum, longest per segment"
-"""Name of the step that such a total is set beside where the paper plans each joint by itself."""
+"""Name of the step that such a total is set beside where the paper plans each joint separately."""
 SHARED_OPTIMUM = "optimum of the same curve, shared durations"
 """Name of the step that distances are counted from."""
 STAND_IN_OPTIMUM = "optimum of the case file's curve, of which no time is printed"
@@ -119,4 +119,4 @@ class Waterfall(Entry):
         if isinstance(why, Why):
             return (f"No optimum: {why}.",)
         beside = next((s.time for s in self.steps if s.name == OPTIMUM_RETIMED), None)
-        return (f"TOPPRA is not asked: {beside}.",) if isinstance(beside, Why) else ()
+        return (f"TOPPRA is not run: {beside}.",) if isinstance(beside, Why) else ()

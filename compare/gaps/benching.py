@@ -42,8 +42,8 @@ _FIRST_RANGES = ("position_initial", "position_range")
 """Settings of the papers' algorithms that say where their first positions are drawn."""
 
 _REPAIRED = (
-    "cma, stretch: CMA-ES with repair. For it alone, durations that break a limit count with the "
-    "shortest uniform stretch that keeps all limits."
+    "cma, stretch: CMA-ES with repair. Only for CMA-ES, durations that break a limit count with "
+    "the shortest uniform stretch that keeps all limits."
 )
 """What a reader must know of the baseline that is judged otherwise than the rest."""
 
@@ -53,14 +53,14 @@ Named = str | Callable[..., object]
 
 @dataclass(frozen=True)
 class Entrant:
-    """An optimiser as it takes part."""
+    """An optimiser with its settings, as it takes part in a bench."""
 
     optimizer: str
     """As `find_optimizer` takes it."""
     settings: Mapping[str, Any]
-    """What is set; the rest has its default."""
+    """Settings; the others have their defaults."""
     handling: str
-    """What happens to vectors that break a limit."""
+    """Treatment of vectors that break a limit."""
     label: str
     """Its name in tables and pictures."""
 
@@ -73,9 +73,9 @@ class Entrant:
     def stream(self) -> int:
         """Key of its random stream under every seed.
 
-        Optimisers of equal seeds would begin with the same draws, so that their runs were no
-        independent samples. The key depends on nothing but the entrant, so that its rows are the
-        same in any company.
+        With equal seeds alone, optimisers would begin with the same draws, and their runs would not
+        be independent samples. The key depends only on the entrant, so its rows do not depend on
+        the others.
         """
         digest = hashlib.sha256(canonical(self.identity).encode()).digest()
         return int.from_bytes(digest[:4], "big")
@@ -95,14 +95,14 @@ class BenchPlan:
     """By entrant, then by seed."""
     budget: int
     seeds: int
-    """Evaluations of a run of what has no iterations of its own; seeds of each optimiser."""
+    """Evaluations of a run, for optimisers without own iterations; seeds of each optimiser."""
     notes: tuple[str, ...]
-    """What was chosen so that the optimisers can run."""
+    """Choices that were made so that the optimisers can run."""
 
 
 @dataclass(frozen=True, eq=False)
 class Runs:
-    """What a bench leaves: a row for each of its trials, in their order."""
+    """The rows of a bench, one for each of its trials, in their order."""
 
     plan: BenchPlan
     rows: tuple[Row, ...]
@@ -130,9 +130,9 @@ def bench(
     Parameters
     ----------
     engine : Engine, optional
-        Where the runs are made, such as `on_this_machine`; by default here, one by one.
+        Where the runs are made, such as `on_this_machine`; by default in this process, one by one.
     progress : callable, optional
-        Called with each row as it comes.
+        Called with each row as it arrives.
     **options
         ``seeds``, ``budget``, ``handling``, ``settings``, ``baselines``, ``seconds``, ``name`` and
         ``reading``, as `plan_bench` takes them.
@@ -145,7 +145,7 @@ def bench(
     Raises
     ------
     TrajgapError
-        As `plan_bench`. What an optimiser does wrong while it runs is in its rows.
+        As `plan_bench`. Faults of an optimiser during a run are recorded in its rows.
     """
     return run_bench(plan_bench(problem, optimizers, **options), engine, progress)
 
@@ -163,20 +163,21 @@ def plan_bench(
     name: str = "",
     reading: str = "",
 ) -> BenchPlan:
-    """Lay out the runs of a bench.
+    """Plan the runs of a bench.
 
     Parameters
     ----------
     problem : Problem
-        Searched with one duration vector for all its joints. Where it has no upper bound on a
-        duration, searches look within the total that equal durations reach; the notes say so.
+        Searched with one duration vector for all its joints. If it has no upper bound on a
+        duration, searches are restricted to the total that equal durations reach; the notes say so.
     optimizers : str, callable, or iterable of them
         As `find_optimizer` takes them; a callable must be a function of a module.
     seeds : int
-        Runs of each optimiser; one of those that draw no random numbers.
+        Runs of each optimiser; one run if it draws no random numbers.
     budget : int, optional
-        Evaluations of each run; the objective stops a run that asks for more. Without it a paper's
-        algorithm makes its own iterations, printed by its paper, and anything else has 6000.
+        Evaluations of each run; the objective stops a run that asks for more. Without it, a paper's
+        algorithm runs the iterations that its paper prints, and any other optimiser has 6000
+        evaluations.
     handling : str
         "death-penalty", "stretch" or "rescale".
     settings : mapping, optional
@@ -187,7 +188,7 @@ def plan_bench(
     seconds : float
         Time limit of one run; a run that takes longer has failed.
     name, reading : str
-        What rows call the problem.
+        Names of the problem in the rows.
 
     Raises
     ------
@@ -197,8 +198,8 @@ def plan_bench(
 
     Notes
     -----
-    Each optimiser has a random stream of its own under each seed (`Entrant.stream`): runs of
-    different optimisers are independent samples, also where their seeds are called alike.
+    Each optimiser has its own random stream under each seed (`Entrant.stream`): runs of different
+    optimisers are independent samples, even with equal seeds.
     """
     judge_of(problem, float("inf"), handling)  # one line now, instead of one in every row
     names = [optimizers] if isinstance(optimizers, str) or callable(optimizers) else optimizers
@@ -250,8 +251,8 @@ def bounds_note(problem: Problem) -> tuple[str, ...]:
     sides = zip(box.lower, box.upper, strict=True)
     said = ", ".join(dict.fromkeys(f"{low:g} to {high:g} s" for low, high in sides))
     return (
-        f"Not every duration has an upper bound. Searched: {said} for each; equal durations reach "
-        "a total of that size, so no shorter motion has a longer one.",
+        f"Some durations have no upper bound. Searched: {said} for each; equal durations reach a "
+        "total of that size, so no shorter motion has a longer duration.",
     )
 
 
@@ -263,7 +264,7 @@ def run_bench(
 ) -> Runs:
     """Make the runs of a bench; parameters as `bench`. The rows are the same on every engine.
 
-    With a store, runs that it holds are not made again, and each new one is in it as it ends.
+    With a store, stored runs are not repeated, and each new run is stored as it ends.
     """
     report = progress or (lambda _: None)
     found: dict[str, Row] = {}
@@ -287,7 +288,7 @@ def run_bench(
 
 
 def measure_gaps(runs: Runs, optimum: Solution | Reference | float) -> BenchResult:
-    """Gap quantiles, success rates and comparisons of what a bench left.
+    """Gap quantiles, success rates and comparisons of the runs of a bench.
 
     Parameters
     ----------
@@ -302,7 +303,7 @@ def measure_gaps(runs: Runs, optimum: Solution | Reference | float) -> BenchResu
     Raises
     ------
     TrajgapError
-        If the optimum is no positive finite time.
+        If the optimum is not a positive finite time.
     """
     plan = runs.plan
     return bench_result(
@@ -341,7 +342,9 @@ def enter(
         entrants[name] = Entrant(name, own, str(handling), name)
     for name in settings:
         if name not in entrants:
-            raise TrajgapError(f"settings of {name!r}: it does not take part; name it too")
+            raise TrajgapError(
+                f"settings of {name!r}: this optimiser does not take part; name it too"
+            )
     if baselines:
         for name in BASELINES:
             entrants.setdefault(name, Entrant(name, {}, str(handling), name))
@@ -374,7 +377,7 @@ def _path(function: Callable[..., object]) -> str:
     module, name = getattr(function, "__module__", ""), getattr(function, "__qualname__", "")
     if not module or not name or "<" in name:
         raise TrajgapError(
-            f"optimizer {name or function!r}: give a function that is defined at the top of a "
-            "module, so that it can be found again"
+            f"optimizer {name or function!r}: give a function that is defined at the top level of "
+            "a module, so that it can be imported"
         )
     return f"{module}:{name}"

@@ -42,8 +42,8 @@ def run_apart(trial: Trial, processes: Processes | None = None) -> TrialOutcome:
     Returns
     -------
     TrialOutcome
-        A run whose process ends is done again, once, in a fresh process. The row is a failed one
-        if that ends too, or if the run takes longer than the trial allows.
+        A run whose process ends is repeated once in a new process. The run has failed if that
+        process ends too, or if the run takes longer than the trial allows.
 
     Raises
     ------
@@ -71,7 +71,7 @@ class Engine:
     name: str
     """Words for people."""
     run: Callable[[Trial], TrialOutcome] = run_apart
-    """What the executor is given with each trial."""
+    """Function that the executor calls with each trial."""
 
 
 @contextmanager
@@ -81,7 +81,7 @@ def on_this_machine(workers: int) -> Iterator[Engine]:
     Parameters
     ----------
     workers : int
-        1 runs one trial after another, in a process of its own all the same.
+        1 runs one trial after another, still in a separate process.
     """
     name = f"{workers} {'process' if workers == 1 else 'processes'}"
     # The processes end first: a thread that waits for an answer could not be joined.
@@ -127,7 +127,7 @@ def _threads(client: Any) -> int:
 def outcomes(trials: Iterable[Trial], engine: Engine) -> Iterator[TrialOutcome]:
     """Run trials; outcomes come as they finish, in any order.
 
-    Only a few trials are handed out at a time, so that memory does not grow with their number.
+    Only a few trials are submitted at a time, so memory does not grow with their number.
 
     Parameters
     ----------
@@ -137,7 +137,7 @@ def outcomes(trials: Iterable[Trial], engine: Engine) -> Iterator[TrialOutcome]:
     Raises
     ------
     ProcessError
-        If the engine itself fails; trials that have not come back are then not done.
+        If the engine itself fails; trials that have not returned are then not done.
     """
     pending: dict[Future[TrialOutcome], Trial] = {}
     room = _AHEAD * engine.slots()
@@ -174,7 +174,7 @@ def _finished(pending: dict[Future[TrialOutcome], Trial], engine: Engine) -> Ite
         elif type(error).__name__ == "KilledWorker":
             # Dask has tried on several workers, and each has died.
             yield TrialOutcome(
-                failed(trial, f"{trial.optimizer}: workers died at it, several times"), 0
+                failed(trial, f"{trial.optimizer}: workers died repeatedly while running it"), 0
             )
         elif isinstance(error, TrajgapError):
             raise error
@@ -185,6 +185,6 @@ def _finished(pending: dict[Future[TrialOutcome], Trial], engine: Engine) -> Ite
 def _lost(engine: Engine, error: BaseException | None) -> ProcessError:
     said = "cancelled" if error is None else f"{type(error).__name__}: {error}"
     return ProcessError(
-        f"{engine.name}: lost ({' '.join(said.split())}); what is finished is stored, the same "
-        "command goes on"
+        f"{engine.name}: lost ({' '.join(said.split())}); finished runs are stored, and the same "
+        "command continues"
     )

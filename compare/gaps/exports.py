@@ -59,7 +59,7 @@ _NOTHING = sys.float_info.max
 
 
 def export_rows(rows: Iterable[Row], path: Path) -> int:
-    """Write rows in the format that a name ends with; the file appears at once and complete.
+    """Write rows in the format of the name's ending; the file appears complete or not at all.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ def export_rows(rows: Iterable[Row], path: Path) -> int:
     Returns
     -------
     int
-        Rows written. IOHprofiler's format has no place for a run that judged nothing.
+        Rows written. IOHprofiler's format cannot hold a run that evaluated nothing.
 
     Raises
     ------
@@ -85,7 +85,7 @@ def export_rows(rows: Iterable[Row], path: Path) -> int:
 
 
 def check_export(path: Path) -> None:
-    """Find out whether rows could be exported to a path, before anything is computed.
+    """Check whether rows can be exported to a path, before anything is computed.
 
     Raises
     ------
@@ -93,11 +93,11 @@ def check_export(path: Path) -> None:
     """
     name = str(path)
     if path.suffix not in _WRITERS:
-        raise CaseError(name, "--export", f"has no known ending; use {', '.join(_WRITERS)}")
+        raise CaseError(name, "--export", f"has an unknown ending; use {', '.join(_WRITERS)}")
     if os.path.lexists(path):
-        raise CaseError(name, "--export", "exists already; name another or delete this one")
+        raise CaseError(name, "--export", "already exists; give another or delete this one")
     if not path.parent.is_dir():
-        raise CaseError(name, "--export", "its folder is not there; make it first")
+        raise CaseError(name, "--export", "its folder does not exist; create it first")
     if path.suffix == ".parquet":
         _arrow(name)
 
@@ -111,7 +111,7 @@ def _drafted(path: Path) -> Iterator[Path]:
     except OSError as error:
         reason = error.strerror or type(error).__name__
         raise CaseError(
-            str(path), "--export", f"cannot be written ({reason}); name a place that can"
+            str(path), "--export", f"cannot be written ({reason}); give a writable place"
         ) from None
     finally:
         with suppress(OSError):

@@ -27,11 +27,11 @@ SIZES = ("1 to 3 segments", "4 to 6 segments", "7 to 10 segments")
 
 @dataclass(frozen=True, eq=False)
 class Ranked:
-    """One optimiser over all problems of a leaderboard, each counting alike.
+    """One optimiser over all problems of a leaderboard, which have equal weight.
 
     Notes
     -----
-    Intervals come from resampling the problems: they say how far the numbers depend on the choice
+    Intervals come from resampling the problems: they show how much the numbers depend on the choice
     of problems.
     """
 
@@ -66,7 +66,7 @@ class Board:
 
     @property
     def searches(self) -> tuple[Ranked, ...]:
-        """Those that see durations alone: all but this package's descent, a reference."""
+        """Optimisers that see durations only: all but the descent, which is a reference."""
         return tuple(one for one in self.standings if one.optimizer != DESCENT)
 
     def place(self, one: Ranked) -> int | None:
@@ -90,8 +90,8 @@ def leaderboard_rows() -> tuple[Summary, ...]:
 def boards(found: Iterable[Summary]) -> tuple[Board, ...]:
     """Standings for each budget and handling.
 
-    An optimiser stands in a board only with all its runs on all problems of the board, which are
-    those that at least half of the optimisers have finished.
+    A board contains only optimisers with all their runs on all its problems, which are those that
+    at least half of the optimisers have finished.
 
     Returns
     -------

@@ -85,8 +85,8 @@ def _order(standing: OverallStanding) -> tuple[float, float]:
 def relative_rows(results: Iterable[tuple[BenchResult, Runs]]) -> dict[str, list[Row]]:
     """Rows of every optimiser over all problems, times as multiples of each optimum.
 
-    What is asked of one problem, such as `share_of_targets`, can so be asked of all together, with
-    an optimum of 1.
+    Functions for one problem, such as `share_of_targets`, then work for all together, with an
+    optimum of 1.
     """
     found: dict[str, list[Row]] = {}
     for result, runs in results:

@@ -12,7 +12,7 @@ from .rows import Bracket
 
 
 def reference_of(solution: Solution) -> Reference | None:
-    """The reference interval of a solution, or None where it has no positive time."""
+    """The reference interval of a solution, or None if it has no positive time."""
     best = solution.best
     return _reference(solution) if 0 < best < float("inf") else None
 
@@ -43,7 +43,7 @@ def gap(
     Returns
     -------
     Gap
-        Negative values are kept: a time below the best known value is news.
+        Negative values are kept: a time below the best known value is a new best value.
 
     Raises
     ------

@@ -30,7 +30,8 @@ class RowStatus(StrEnum):
     FINISHED = "finished"
     """By itself, or because its budget was spent."""
     FAILED = "failed"
-    """It raised, judged nothing, ran too long, or its process ended; the message says which."""
+    """It raised an exception, evaluated nothing, ran too long, or its process ended; the message
+    says which."""
 
 
 @dataclass(frozen=True)
@@ -46,12 +47,12 @@ class Bracket:
         if not 0 < self.upper < float("inf"):
             raise TrajgapError(f"reference: {self.upper} s is not a positive finite time")
         if self.lower is not None and not 0 < self.lower <= self.upper:
-            raise TrajgapError(f"reference: {self.lower} s is no lower bound of {self.upper} s")
+            raise TrajgapError(f"reference: {self.lower} s is not a lower bound of {self.upper} s")
 
     def gap(self, time: float) -> tuple[float, float]:
         """Relative distance of a time, [(T − U)/U, (T − L)/L]; negative values are kept.
 
-        Without a certified lower bound both ends are set against U.
+        Without a certified lower bound, both ends are relative to U.
         """
         base = self.upper if self.lower is None else self.lower
         return (time - self.upper) / self.upper, (time - base) / base
@@ -63,7 +64,7 @@ def canonical(value: object) -> str:
     Raises
     ------
     TrajgapError
-        If something in it is no JSON.
+        If some of it is not JSON.
     """
     try:
         return json.dumps(
@@ -94,11 +95,11 @@ class Trial:
     budget : int
         Evaluations; the objective enforces it.
     stream : tuple of int
-        Spawn key under the seed; (j,) for joint j searched by itself, as `run_per_joint` does.
+        Spawn key under the seed; (j,) if joint j is searched separately, as in `run_per_joint`.
     origin : str
         Where the optimiser comes from: a package with its version, or a hash of its source.
     reference : Bracket or None
-        What the gaps of the row are set against.
+        Reference for the gaps of the row.
     seconds : float
         A run that takes longer has failed.
     problem_sha256 : str
@@ -148,7 +149,7 @@ class Trial:
 
 @dataclass(frozen=True)
 class Row:
-    """What one run leaves behind; nothing is clipped, and no clock enters."""
+    """The record of one run; nothing is clipped, and no clock time is recorded."""
 
     key: str
     """Of the trial, as all up to `budget` are."""
@@ -171,7 +172,7 @@ class Row:
     evaluations: int = 0
     """Duration vectors judged, at most the budget."""
     durations: tuple[float, ...] | None = None
-    """What the best position stands for, s; None if nothing feasible was judged."""
+    """Durations of the best position, s; None if no feasible vector was evaluated."""
     reported_time: float | None = None
     """Its total by the objective, s."""
     verdict: str | None = None
@@ -181,22 +182,22 @@ class Row:
     feasible_time: float | None = None
     """T·max(1, c*) as `check` finds it, s."""
     feasible_why: str = ""
-    """Why there is none; empty otherwise."""
+    """Why there is no such time; empty otherwise."""
     reference_upper: float | None = None
     reference_lower: float | None = None
-    """What the gaps are set against, s."""
+    """Reference for the gaps, s."""
     reported_gap: tuple[float, float] | None = None
     feasible_gap: tuple[float, float] | None = None
     """Of either time, [(T − U)/U, (T − L)/L]. That of the reported time is an optimality gap only
     if the verdict is "pass", else a difference of reported time."""
     trace: tuple[tuple[int, float], ...] = field(default=())
-    """Best total by the objective after so many evaluations, s, at log-spaced numbers of them and
+    """Number of evaluations and the best total by the objective after them, s, at log-spaced and
     only where it changed: the last entry at or before an evaluation holds there, and before the
     first nothing feasible was known."""
 
     @classmethod
     def begun(cls, trial: Trial, **known: Any) -> Row:
-        """The row of a trial with what is known of its run: nothing, or further fields."""
+        """The row of a trial, with further fields of its run if they are known."""
         reported, feasible = known.get("reported_time"), known.get("feasible_time")
         return cls(
             key=trial.key,
@@ -236,7 +237,7 @@ class Row:
         Raises
         ------
         TrajgapError
-            If it is no such text.
+            If it is not such a text.
         """
         try:
             found: dict[str, Any] = json.loads(text)
@@ -247,7 +248,9 @@ class Row:
                 found[name] = None if found[name] is None else tuple(found[name])
             return cls(**found)
         except (ValueError, TypeError, KeyError) as error:
-            raise TrajgapError(f"row: cannot be read ({error}); was the file altered?") from None
+            raise TrajgapError(
+                f"row: cannot be read ({error}); the file may have been altered"
+            ) from None
 
 
 @lru_cache(maxsize=64)
@@ -279,12 +282,12 @@ def trace_of(totals: Array) -> tuple[tuple[int, float], ...]:
 
 
 def failed(trial: Trial, message: str) -> Row:
-    """The row of a trial whose run came to nothing."""
+    """The row of a trial whose run failed."""
     return Row.begun(trial, status=RowStatus.FAILED, message=message)
 
 
 def against(row: Row, reference: Bracket | None) -> Row:
-    """The same row with its gaps set against another reference, or against none."""
+    """The same row with gaps relative to another reference, or without gaps."""
     return replace(row, **_gaps(reference, row.reported_time, row.feasible_time))
 
 

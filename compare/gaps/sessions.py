@@ -18,18 +18,18 @@ _SOFTWARE = ("trajgap", "numpy", "scipy", "casadi", "numba")
 
 @dataclass(frozen=True)
 class StudySession:
-    """How a session stands."""
+    """Progress of a session."""
 
     total: int
     """Trials of the study."""
     resumed: int
-    """Of them in the store before the session began."""
+    """Trials in the store before the session began."""
     run: int = 0
     """Of them run since then."""
     failed: int = 0
     """Runs of this session that failed."""
     seconds: float = 0.0
-    """That the runs of this session took together."""
+    """Total time of the runs of this session."""
 
     @property
     def left(self) -> int:
@@ -59,14 +59,14 @@ def run_study(
     retry: bool = False,
     progress: Callable[[StudySession], None] = lambda _: None,
 ) -> StudySession:
-    """Run what the store does not hold yet.
+    """Run the trials that are not in the store yet.
 
-    Whatever ends the session, a row that came back is in the store, and the next session goes on.
+    However the session ends, every returned row is in the store, and the next session continues.
 
     Parameters
     ----------
     retry : bool
-        Run the failed ones again.
+        Repeat failed runs.
     progress : callable
         Called before the first run and after each.
 

@@ -40,7 +40,7 @@ _UNBOUNDED = "in some samples of the runs none reached it"
 
 
 def totals_of(rows: Sequence[Row]) -> Array:
-    """Feasible times of runs, s; inf for a run without answer.
+    """Feasible times of runs, s; inf for a run without an answer.
 
     The feasible time is T·max(1, c*) as `trajgap.problem.check` finds it, whatever the optimiser
     reports.
@@ -140,7 +140,7 @@ def target_reached(wanted: float, hits: Array, spent: Array) -> TargetReached:
     wanted : float
         The relative gap.
     hits, spent : ndarray, shape (runs,)
-        Evaluations until each run reaches it, inf where it does not, and those of the whole run.
+        Evaluations until each run reaches it, inf if it does not, and those of the whole run.
     """
     reached = int(np.isfinite(hits).sum())
     lowest, highest = success_interval(reached, hits.size)

@@ -94,14 +94,14 @@ def share_of_pairs(slower: Array, faster: Array, reduction: float) -> float:
 
 
 def share_of_luck(totals: Array, reduction: float) -> float:
-    """The same for two different runs of one algorithm: what luck alone shows."""
+    """The same for two different runs of one algorithm: the share due to chance alone."""
     return _share(totals, totals, reduction, ~np.eye(totals.size, dtype=bool))
 
 
 def share_interval(slower: Array, faster: Array, reduction: float) -> tuple[float, float]:
     """95 % interval of `share_of_pairs`, by resampling the runs of both algorithms.
 
-    Pairs of the same runs depend on each other, so that runs are drawn and not pairs. Percentiles
+    Pairs that share a run depend on each other, so runs are resampled, not pairs. Percentiles
     of 1,000 samples, with a fixed seed.
 
     Parameters
@@ -199,8 +199,8 @@ def compare_pair(first: Array, second: Array) -> tuple[float, float, float, floa
 def compare_pairs(totals: Mapping[str, Array]) -> tuple[PairCompared, ...]:
     """Every pair of optimisers, with Mann and Whitney's test and Holm's correction.
 
-    The test is for independent samples: the streams of two optimisers differ even where the seeds
-    are called alike (see `bench`), so runs are not paired and no signed-rank test is made.
+    The test is for independent samples: the streams of two optimisers differ even for equal seeds
+    (see `bench`), so runs are not paired and no signed-rank test is made.
 
     Parameters
     ----------

@@ -32,18 +32,18 @@ CREATE TABLE notes (name TEXT PRIMARY KEY, text TEXT NOT NULL) WITHOUT ROWID;
 class Store:
     """Rows of finished runs by the key of their trial.
 
-    Several processes may use one store. A row is on disk before `put` returns, and is never
-    changed after that: the row that was there first stays.
+    Several processes may use one store. A row is on disk before `put` returns, and never changes
+    after that: the first row stays.
 
     Parameters
     ----------
     path : Path
-        Made if it is not there.
+        Created if it does not exist.
 
     Raises
     ------
     CaseError
-        If it is no store, is one of another version, or cannot be read or written.
+        If it is not a store, is one of another version, or cannot be read or written.
     """
 
     def __init__(self, path: Path) -> None:
@@ -63,7 +63,7 @@ class Store:
         (found,) = self._data.execute("PRAGMA application_id").fetchone()
         (tables,) = self._data.execute("SELECT count(*) FROM sqlite_master").fetchone()
         if found not in (0, _APPLICATION) or (found == 0 and tables):
-            raise CaseError(str(self.path), "", "is a database of another program; name a new file")
+            raise CaseError(str(self.path), "", "is a database of another program; give a new file")
         self._data.execute("PRAGMA journal_mode = WAL")
         self._data.execute("PRAGMA synchronous = FULL")
         with self._writing():
@@ -77,8 +77,8 @@ class Store:
                 raise CaseError(
                     str(self.path),
                     "",
-                    f"holds rows of version {version}, this program writes {ROW_FORMAT}; "
-                    "name a new file",
+                    f"contains rows of version {version}, but this program writes {ROW_FORMAT}; "
+                    "give a new file",
                 )
 
     @contextmanager
@@ -98,11 +98,11 @@ class Store:
         except sqlite3.Error as error:
             name = str(self.path)
             if error.sqlite_errorcode == sqlite3.SQLITE_NOTADB:
-                fix = "is no store of trajgap; name a new file"
+                fix = "is not a store of trajgap; give a new file"
             elif self.path.parent.is_dir():
-                fix = f"cannot be used ({error}); check the disk, or name another file"
+                fix = f"cannot be used ({error}); check the disk, or give another file"
             else:
-                fix = f"cannot be made ({error}); make its folder first"
+                fix = f"cannot be created ({error}); create its folder first"
             raise CaseError(name, "", fix) from None
 
     def __enter__(self) -> Self:
@@ -126,7 +126,7 @@ class Store:
         Parameters
         ----------
         seconds : float
-            That the run took.
+            Duration of the run.
 
         Returns
         -------
@@ -145,13 +145,13 @@ class Store:
             return self._data.total_changes > before
 
     def status(self, key: str) -> RowStatus | None:
-        """How the run of a key ended; None if it is not here."""
+        """How the run of a key ended; None if it is not stored."""
         with self._telling():
             found = self._data.execute("SELECT status FROM runs WHERE key = ?", (key,)).fetchone()
         return None if found is None else RowStatus(found[0])
 
     def row(self, key: str) -> Row | None:
-        """The row of a key; None if it is not here."""
+        """The row of a key; None if it is not stored."""
         with self._telling():
             found = self._data.execute("SELECT row FROM runs WHERE key = ?", (key,)).fetchone()
         return None if found is None else self._read(found[0])
@@ -169,31 +169,31 @@ class Store:
             raise CaseError(str(self.path), "", str(error)) from None
 
     def tally(self) -> Counter[RowStatus]:
-        """How many runs ended in which way."""
+        """Number of runs by the way they ended."""
         with self._telling():
             found = self._data.execute("SELECT status, count(*) FROM runs GROUP BY status")
             return Counter({RowStatus(status): count for status, count in found})
 
     def seconds(self) -> float:
-        """Seconds that all runs took together."""
+        """Total time of all runs, s."""
         with self._telling():
             (found,) = self._data.execute("SELECT total(seconds) FROM runs").fetchone()
         return float(found)
 
     def optimum(self, problem: str, solve: Callable[[], Bracket | None]) -> Bracket | None:
-        """Where the optimum of a problem lies: the same answer in every process and session.
+        """Interval of the optimum of a problem: the same in every process and session.
 
         Parameters
         ----------
         problem : str
             Its hash.
         solve : callable
-            Asked once, if the store does not know.
+            Called once, if the interval is not stored.
 
         Returns
         -------
         Bracket or None
-            None if there is none to set gaps against.
+            None if there is no reference for gaps.
         """
         asking = "SELECT upper, lower FROM optima WHERE problem = ?"
         with self._telling():

@@ -53,22 +53,22 @@ class StudyProblem:
     problem_id: str
     """Its id there."""
     joint: str | None
-    """The joint that is searched by itself; None for all together."""
+    """The joint that is searched separately; None for all joints together."""
     problem: Problem
     """As stated."""
     box: Bounds
-    """Where searches look for durations."""
+    """Box in which durations are searched."""
     stream: tuple[int, ...]
     """Part of the spawn key of its random numbers: (j,) for joint j of several."""
     solve: Callable[[], Bracket | None]
-    """Finds where the optimum of the problem as stated lies."""
+    """Returns the interval of the optimum of the problem as stated."""
     notes: tuple[str, ...]
-    """What was chosen so that optimisers can search it."""
+    """Choices that were made so that optimisers can search it."""
 
 
 @dataclass(frozen=True, eq=False)
 class StudyPlan:
-    """What a study file asks for."""
+    """The runs that a study file specifies."""
 
     file: str
     document: StudyFile
@@ -88,13 +88,14 @@ class StudyPlan:
         Parameters
         ----------
         store : Store, optional
-            Knows or keeps the optima that gaps are set against; without it, rows have no gaps.
+            Provides and stores the optima from which gaps are measured; without it, rows have no
+            gaps.
         """
         for _, trials in self.groups(store):
             yield from trials
 
     def groups(self, store: Store | None = None) -> Iterator[tuple[str, tuple[Trial, ...]]]:
-        """The trials that differ by their seeds alone, with the label of their optimiser.
+        """Groups of trials that differ only in their seeds, with the label of their optimiser.
 
         Parameters
         ----------
@@ -128,7 +129,7 @@ class StudyPlan:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What was run where the file states no budget, and what was left out."""
+        """Notes on budgets that the file does not state, and on what was left out."""
         budget = None if self.document.budget is None else self.document.budget[0]
         entrants = [replace(one, label=one.optimizer) for one in self._entrants()]
         return (*dict.fromkeys(budget_notes(entrants, budget)), *self.missing)
@@ -171,7 +172,7 @@ def parse_study(text: str, file: str, folder: Path) -> StudyPlan:
     file : str
         Name for messages.
     folder : Path
-        Where the paths in it start.
+        Folder to which its paths are relative.
 
     Raises
     ------
@@ -323,5 +324,5 @@ def _pairs(case: Case, block: ProblemsBlock) -> list[tuple[str, str]]:
     }
     stated = [pair for pair in found if case.statement(*pair).complete]
     if not stated:
-        raise CaseError(case.file, "", "states no problem in full; name another case")
+        raise CaseError(case.file, "", "states no complete problem; choose another case")
     return stated

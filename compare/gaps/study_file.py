@@ -87,7 +87,7 @@ class StudyFile(Strict):
     handlings: Annotated[tuple[Handling, ...], BeforeValidator(_several), Field(min_length=1)] = (
         Handling.DEATH_PENALTY,
     )
-    """What happens to vectors that break a limit."""
+    """Treatment of vectors that break a limit."""
     seeds: Annotated[int, Field(strict=True, ge=1, le=_MOST)] = 30
     """Number of seeds: independent runs of each combination."""
     first_seed: Annotated[int, Field(strict=True, ge=0, le=2**62)] = 0

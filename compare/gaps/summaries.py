@@ -28,7 +28,7 @@ _QUANTILES = (0.25, 0.5, 0.75)
 
 @dataclass(frozen=True)
 class Summary:
-    """What the runs of one optimiser on one problem came to, whatever their seeds."""
+    """Summary of the runs of one optimiser on one problem, over all seeds."""
 
     problem: str
     """As rows call it."""
@@ -52,7 +52,7 @@ class Summary:
 
 
 def summary_of(label: str, rows: Sequence[Row]) -> Summary:
-    """Sum up rows that differ by their seeds alone.
+    """Summarise rows that differ only in their seeds.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ def summary_of(label: str, rows: Sequence[Row]) -> Summary:
 
 
 def summed_up(study: StudyPlan, store: Store) -> Iterator[Summary]:
-    """Sum up what a store holds of a study, leaving out what is not complete.
+    """Summarise the complete parts of a study in a store.
 
     Yields
     ------

@@ -21,7 +21,7 @@ millionth above it."""
 
 
 def hit(row: Row, total: float) -> float:
-    """Evaluations after which a run knew a total at most this large, s; inf if it never did.
+    """Evaluations after which the best total of a run was at most this large (s); inf if never.
 
     Counted at the log-spaced evaluations of the row's trace, so up to 7.5 % too many and never
     too few. A run whose answer fails `trajgap.problem.check` never hits.
@@ -34,9 +34,9 @@ def hit(row: Row, total: float) -> float:
 def expected_running_time(hits: Array, evaluations: Array) -> float:
     """Evaluations that independent restarts need on average until the first one hits.
 
-    The evaluations of all runs, up to the hit where there is one, over the number of hits. Source:
-    Hansen, Auger, Ros, Mersmann, Tušar, Brockhoff, "COCO: a platform for comparing continuous
-    optimizers in a black-box setting", 2021, section 5.
+    The evaluations of all runs, up to the hit if there is one, divided by the number of hits.
+    Source: Hansen, Auger, Ros, Mersmann, Tušar, Brockhoff, "COCO: a platform for comparing
+    continuous optimizers in a black-box setting", 2021, section 5.
 
     Parameters
     ----------
@@ -115,8 +115,8 @@ def share_of_targets(
 def share_within(totals: Array, optimum: float) -> tuple[Array, Array]:
     """Performance profile against the optimum: share of runs that end within each ratio to it.
 
-    Unlike a profile against the best of the optimisers compared, it does not change with their
-    company.
+    Unlike a profile against the best optimiser compared, it does not depend on the other
+    optimisers.
 
     Parameters
     ----------
@@ -148,7 +148,7 @@ def band(rows: Sequence[Row], optimum: float, levels: Sequence[float]) -> tuple[
     -------
     evaluations : ndarray, shape (points,)
     gaps : ndarray, shape (levels, points)
-        Relative; inf where too few runs know an answer.
+        Relative; inf if too few runs have an answer.
     """
     points = sorted({at for row in rows for at, _ in row.trace} | {max(r.budget for r in rows)})
     known = np.full((len(rows), len(points)), np.inf)

@@ -31,8 +31,8 @@ LIBRARIES = {"scipy": "scipy", "mealpy": "mealpy", "pymoo": "pymoo", "pygmo": "p
 """Distribution that an optimiser's prefix names: its version can change what a run finds."""
 
 DESCENT = "descent"
-"""What a study calls this package's own solver: it is no optimiser that a paper could use, since it
-knows the derivatives of the limits, and stands beside them as a reference."""
+"""What a study calls this package's own solver: it is not an optimiser that a paper could use,
+since it knows the derivatives of the limits, and stands beside them as a reference."""
 
 _MOST_PROBLEMS = 64
 """Problems that a process remembers."""
@@ -42,7 +42,7 @@ _PROBLEMS: dict[str, Problem] = {}
 
 @dataclass(frozen=True)
 class TrialOutcome:
-    """A row, and what is measured beside it and differs from run to run.
+    """A row, and the measured time, which differs from run to run.
 
     Attributes
     ----------
@@ -129,9 +129,9 @@ def run_trial(trial: Trial) -> Row:
     Returns
     -------
     Row
-        Failed, with a message, if the optimiser is not found, raises, judges nothing, leaves the
-        rules or takes too long. One that hangs in compiled code, or ends the process, is caught
-        by the engines alone.
+        Failed, with a message, if the optimiser is not found, raises an exception, evaluates
+        nothing, breaks a rule or takes too long. Only the engines detect one that hangs in compiled
+        code or ends the process.
     """
     if trial.optimizer == DESCENT:
         return _descended(trial)
@@ -207,7 +207,7 @@ def _row(trial: Trial, found: BudgetedRun) -> Row:
         "trace": trace_of(found.totals),
     }
     if not math.isfinite(found.reported_time):
-        return Row.begun(trial, **known, feasible_why="nothing feasible was judged")
+        return Row.begun(trial, **known, feasible_why="no feasible vector was evaluated")
     judged = check(trial.problem, found.durations)
     worst = judged.worst
     return Row.begun(

@@ -52,7 +52,7 @@ from .writer import page_text
 
 _QUARTILES = (0.25, 0.5, 0.75)
 """Of the runs, in the picture of the gaps."""
-_WHAT = "bench"
+_WHAT = "a bench"
 """What its folder is called in messages."""
 _PAGE = "index.html"
 """The page; like the next three a file of a bench, and a folder that holds others is kept."""
@@ -324,25 +324,25 @@ def _drawn(at: int | str, name: str, picture: Picture) -> Drawn:
 def _reading() -> Section:
     said = (
         ("median gap", "how far above the optimum the middle run ends: (T − U)/U, where U is the "
-         "upper end of the optimum's interval. Of an even number it is the mean of the two middle "
-         "runs; none if either has no answer"),
+         "upper end of the optimum's interval. For an even number of runs it is the mean of the "
+         "two middle runs; none if either has no answer"),
         ("T", "the total that the checker finds for the answer, stretched if it broke a limit"),
         ("quartiles, best", "a quarter of the runs end below the first and a quarter above the "
-         "second, with the same rule where that falls between two runs; the closest run"),
+         "second, with the same rule if that falls between two runs; the closest run"),
         ("feasible", "answers that keep every limit at all times"),
         ("≤ 1 %", "share of runs that come within that gap"),
-        ("evaluations to 1 %", "what restarts need on average until one reaches the gap, which may "
-         "be more than one run's budget: all evaluations of all runs, up to the hit, over the "
-         "number of hits; in brackets a 95 % interval"),
+        ("evaluations to 1 %", "evaluations that restarts need on average until one reaches the "
+         "gap, which may exceed one run's budget: all evaluations of all runs, up to the hit, "
+         "divided by the number of hits; in brackets a 95 % interval"),
         ("(run, target) pairs reached", f"each run has {len(CURVE_TARGETS)} targets, gaps from "
-         "100 % to 0.0001 %; the share of those of all runs that are reached so far"),
+         "100 % to 0.0001 %; the share of the targets of all runs that are reached so far"),
         ("random, rescale, multistart", "baselines: uniform draws; one duration for all segments; "
          "local searches from random starts"),
-        ("death-penalty, stretch, rescale", "under Settings: what happens to durations that break "
-         "a limit. They get a penalty; or count with the shortest uniform stretch that keeps all "
-         "limits; or are stretched or shortened until one limit is tight"),
+        ("death-penalty, stretch, rescale", "under Settings: the treatment of durations that "
+         "break a limit. They get a penalty; or count with the shortest uniform stretch that keeps "
+         "all limits; or are stretched or shortened until one limit is tight"),
         ("A₁₂", "probability that a run of the first is shorter than one of the second"),
-        ("p, Holm", "Mann and Whitney's test; every optimiser draws from a random stream of its "
-         "own, so runs are independent and not paired"),
+        ("p, Holm", "Mann and Whitney's test; every optimiser has its own random stream, so runs "
+         "are independent and not paired"),
     )  # fmt: skip
     return Section("reading", "How to read it", (Terms(said),), folded=True)

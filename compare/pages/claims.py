@@ -36,9 +36,9 @@ def against(one: CaseAudit) -> Section:
     if causes:
         blocks += [Prose("The causes", "heading"), *(_behind(one, c) for c in causes)]
     if not chosen:
-        title = "What speaks against something printed"
+        title = "Evidence against printed statements"
     else:
-        title = "Claims refuted, contradicted or open to the reading"
+        title = "Claims refuted, contradicted or dependent on the reading"
     return Section("against", title, tuple(blocks))
 
 
@@ -99,6 +99,6 @@ def advised(one: CaseAudit) -> Section:
     )
     blocks: list[Block] = [pressing] if pressing.rows else []
     if left_open.rows:
-        title = f"{len(left_open.rows)} things that a reader cannot check"
+        title = f"{len(left_open.rows)} points that readers cannot check"
         blocks.append(Folded(title, (left_open,)))
     return Section("before-you-submit", "Before you submit", tuple(blocks))

@@ -102,7 +102,9 @@ def _add(crate: Any, folder: Path, texts: dict[str, str], what: str) -> list[Any
 def _cases(report: AuditReport) -> Iterator[tuple[str, str]]:
     for one in report.cases:
         if one.case.sha256 is None:
-            raise TrajgapError(f"{one.case.id}: was not read from a file; a crate holds case files")
+            raise TrajgapError(
+                f"{one.case.id}: was not read from a file, but a crate contains case files"
+            )
         text, digest = PUBLISHED.hashed(one.case.file)
         if digest != one.case.sha256:
             raise TrajgapError(

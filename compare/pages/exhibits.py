@@ -87,7 +87,7 @@ def _jumps_of(
     where = "; ".join(dict.fromkeys(c.where for c in claims))
     caption = (
         f"{where}.{noted(study, row.reading)} The velocity jumps under {len(jumping)} of "
-        f"{len(moved)} readings. Limits are judged apart from jumps, inside the segments."
+        f"{len(moved)} readings. Limits are judged inside the segments, separately from jumps."
     )
     yield _drawn(file_name("jumps", problem, first.id), picture, caption)
     grid = tuple(
@@ -133,9 +133,10 @@ def _polygons(study: Study) -> Iterator[Block]:
         )
         both = "both are" if statement.unit("position") else "both of each joint are"
         caption = (
-            f"{claim.where} beside the vertices computed from the printed way-points "
-            f"({statement.waypoints.where}). A grey bar holds every difference that rounding of "
-            f"both explains. No reading enters: {both} printed in one unit, and time plays no part."
+            f"{claim.where} compared with the vertices computed from the printed way-points "
+            f"({statement.waypoints.where}). A grey bar covers every difference that the rounding "
+            f"of both explains. No reading enters: {both} printed in one unit, and time is not "
+            "involved."
         )
         yield _drawn(file_name("polygon", claim.id), picture, caption)
 
@@ -157,7 +158,8 @@ def _workspaces(study: Study) -> Iterator[Block]:
     dh = study.case.dh
     if dh is None:
         return
-    # By the stated convention alone: what another one keeps out of reach is no fault of the paper.
+    # By the stated convention alone: what another one keeps out of reach is not a fault of the
+    # paper.
     chain = study.case.chain()
     assert chain is not None
     try:
@@ -176,13 +178,13 @@ def _workspaces(study: Study) -> Iterator[Block]:
     ranges = (
         "their ranges"
         if np.isfinite(chain.upper - chain.lower).all()
-        else "their ranges, or one turn where none is printed"
+        else "their ranges, or one turn if none is printed"
     )
     caption = (
         f"{dh.where or 'The table'}, {chain.convention} convention. Joints uniform in {ranges}."
     )
     if dh.alpha_signs == "uncertain":
-        caption += " Twists have their printed signs, of which the text may have lost some."
+        caption += " Twists have their printed signs; the text may have lost some of them."
     yield _drawn("workspace", picture, caption + (f" {path.said}" if path else ""))
 
 
@@ -208,11 +210,11 @@ def _printed_path(study: Study, dh: DhTable, chain: Chain) -> _Path | None:
     where = "; ".join(dict.fromkeys(place.where for place in places))
     said = f"Way-points as printed ({where}). "
     if far:
-        said += f"Whatever the joints, the end misses {', '.join(far)} at least."
+        said += f"For any joint values, the end misses {', '.join(far)} at least."
     else:
         said += (
-            "Some joint values reach each of them within rounding; whether they are the printed "
-            "ones is the question of TG601."
+            "Some joint values reach each of them within rounding; TG601 examines whether these "
+            "are the printed values."
             if reached
             else "None is shown to be out of reach."
         )
@@ -239,7 +241,7 @@ def _joint_path(study: Study, chain: Chain) -> _Path | None:
         said = (
             f"The way-points are not drawn: joint {chain.labels[j]} at {name}, {q[k, j]:.4f} rad, "
             f"lies outside the range of this table, {chain.lower[j]:.4f} to {chain.upper[j]:.4f} "
-            "rad, so the text may count its angles from another position."
+            "rad, so the text may measure its angles from another zero."
         )
         return _Path(np.empty((0, 3)), (), (), said)
     points = np.asarray(forward_kinematics(chain, q)[..., :3, 3])

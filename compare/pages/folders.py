@@ -31,17 +31,17 @@ def check_folder(out: Path, foreign: Foreign, what: str, option: str = "--out") 
     with _writing(out, option):
         recover_folder(out)
         if os.path.lexists(out) and (not out.is_dir() or out.is_symlink()):
-            raise CaseError(str(out), option, "is no folder; name a new or an empty one")
+            raise CaseError(str(out), option, "is not a folder; give a new or an empty one")
         there = sorted(p.relative_to(out).as_posix() for p in out.rglob("*") if not p.is_dir())
         found = foreign(out, there) if there else None
         if found is not None:
             raise CaseError(
                 str(out),
                 option,
-                f"holds {found}, which is no {what}; name a new or an empty folder",
+                f"contains {found}, which is not {what}; give a new or an empty folder",
             )
         if out.name in ("", "..") or out.is_mount():
-            raise CaseError(str(out), option, "cannot be replaced as a whole; name a folder in it")
+            raise CaseError(str(out), option, "cannot be replaced as a whole; give a folder in it")
         out.parent.mkdir(parents=True, exist_ok=True)
         try_writing_in(out.parent)
 
@@ -62,5 +62,5 @@ def _writing(out: Path, option: str) -> Iterator[None]:
     except OSError as error:
         reason = error.strerror or type(error).__name__
         raise CaseError(
-            str(out), option, f"cannot be written ({reason}); name another place"
+            str(out), option, f"cannot be written ({reason}); give another place"
         ) from None

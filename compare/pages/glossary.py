@@ -56,7 +56,7 @@ def glossary() -> Section:
     blocks: list[Block] = [
         Prose(
             "A verdict is about a printed number or sentence, under named readings of the text. "
-            "What a check of one motion means for printed digits is the rounding verdict's to say."
+            "The rounding verdict shows what the check of one motion means for printed digits."
         )
     ]
     for title, words in word_groups():

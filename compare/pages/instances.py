@@ -38,8 +38,8 @@ def _examined(study: Study, result: InstancesResult, entry: ExaminedInstances) -
     return [
         *(Prose(said) for said in (placed(result), " ".join(attributed(result))) if said),
         Prose(
-            "The instances are not the paper's: they inform and decide nothing, and the absolute "
-            "times stay not checkable.",
+            "The instances are not the paper's: they are information and decide nothing, and the "
+            "absolute times remain not checkable.",
             "note",
         ),
         Terms(_design(study, result)),
@@ -60,7 +60,7 @@ def _design(study: Study, result: InstancesResult) -> tuple[tuple[str, str], ...
     block, slow, fast = result.block, result.slower, result.faster
     points = result.samples[0].waypoints
     steps = ", ".join(f"{step:g}" for step in block.lengths)
-    kind = "largest change of any joint" if block.kind == "joint" else "way of the end"
+    kind = "largest change of any joint" if block.kind == "joint" else "path of the end"
     objectives = "; ".join(f"{name}: {HANDLED[name]}" for name in block.objectives)
     pairs = [
         ("compared", f"the faster one, {_procedure(study.case, fast)}, against the slower one, "

@@ -130,7 +130,7 @@ def _joint_by_joint(tables: str, rows: list[_Row]) -> Drawn:
     picture = motion_picture(
         study.problem(pair),
         np.array([row.durations.value for row in rows]),
-        title=f"Printed durations of each joint by itself: {tables}",
+        title=f"Printed durations of each joint separately: {tables}",
         note=f"however the digits were rounded: {words}",
         units=paper_units(study.case.statement(*pair)),
     )
@@ -171,8 +171,8 @@ def searches(one: CaseAudit) -> Section:
     last = study.options.seeds - 1
     lead = Prose(
         f"Each algorithm was run with seeds 0 to {last} under the choices listed below, "
-        f"and under settings spread over all that the text leaves open."
-        f"{noted(study, study.main_reading)} Replays inform and decide nothing.",
+        f"and under settings spread over everything that the text leaves open."
+        f"{noted(study, study.main_reading)} Replays are information and decide nothing.",
         "note",
     )
     shown = (lead, *blocks) if blocks else ()
@@ -214,7 +214,7 @@ def _convergence(study: Study, pair: Pair, runs: dict[str, Runs], name: str) -> 
         rounding=max(widths),
         evidence=str(weakest(s.evidence for s in solutions)),
         joints=problem.joints,
-        title=f"Best total so far: {name}" + (", each joint by itself" if by_joint else ""),
+        title=f"Best total so far: {name}" + (", each joint separately" if by_joint else ""),
     )
     yield _drawn(
         file_name("convergence", pair.problem),
@@ -298,7 +298,7 @@ def landscapes(one: CaseAudit) -> Section:
                 )
             break
         if single:
-            blocks.append(Folded(f"Each joint by itself: {name}", tuple(single)))
+            blocks.append(Folded(f"Each joint separately: {name}", tuple(single)))
     shown = tuple(blocks) if any(not isinstance(b, Prose) for b in blocks) else ()
     return Section("landscapes", "Landscapes of the total time", shown, folded=True)
 
@@ -328,5 +328,5 @@ def _landscape(
     yield _drawn(
         name,
         picture,
-        "Exact totals: any shares, stretched until the first limit is reached for all t.",
+        "Exact totals: durations of any shares, stretched until the first limit is reached.",
     )

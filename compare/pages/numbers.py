@@ -196,7 +196,7 @@ def _answer(solution: Solution) -> tuple[object, ...]:
 
 
 def optima(one: CaseAudit) -> Section:
-    """Optimum of each formulation, then each joint by itself where the text does that."""
+    """Optimum of each formulation, then each joint separately where the text does that."""
     study = one.study
     rows: list[tuple[object, ...]] = []
     blocks: list[Block] = []
@@ -257,7 +257,7 @@ def _joints(study: Study, pair: Pair) -> Iterator[Block]:
         )
     names = ("joint", *_ANSWER, "printed", "gap")
     named = problem_cell(study.case, pair.problem) or "each segment takes the longest duration"
-    yield Prose(f"Each joint by itself: {named}{only_under(study, pair.reading)}", "heading")
+    yield Prose(f"Each joint separately: {named}{only_under(study, pair.reading)}", "heading")
     yield table(names, rows)
     yield Prose(_procedure(answer), "note")
 
@@ -267,7 +267,7 @@ def _procedure(answer: PerJointSolution) -> str:
         return f"The longest durations are not known: {answer.why}."
     parts = [
         f"Longest duration of each segment at these optima: {answer.total_time:.6f} s "
-        f"(check: {answer.check.verdict}). That total is a procedure's output, not an optimum."
+        f"(check: {answer.check.verdict}). That total is the output of a procedure, not an optimum."
     ]
     for r in answer.ranges:
         parts.append(
@@ -282,7 +282,7 @@ def _procedure(answer: PerJointSolution) -> str:
 
 def sensitivities(one: CaseAudit) -> Section:
     """What 10 % more of each active limit buys, to first order."""
-    title = "What 10 % more of a limit buys"
+    title = "Effect of raising a limit by 10 %"
     rows = []
     for pair in one.study.pairs:
         solution = one.study.optimum(pair)
@@ -303,8 +303,8 @@ def sensitivities(one: CaseAudit) -> Section:
                 )
             )
     note = Prose(
-        "First-order change of the total for 10 % more of each limit that is reached, "
-        "from the multipliers of the optimum with shared durations.",
+        "First-order change of the total if a limit that is reached is raised by 10 %, from the "
+        "multipliers of the optimum with shared durations.",
         "note",
     )
     names = ("problem", "reading", "limit of", "quantity", ">peaks at it", ">changes the total",

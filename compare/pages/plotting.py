@@ -27,12 +27,12 @@ def plot(result: Plotted, beside: ArrayLike | Solution | JointLimits | None = No
     ----------
     result : Solution, Problem, Motion, Samples, Runs, CaseAudit, AuditReport or Waterfall
         A solution and a problem with durations: the motion, with limits and largest values. A
-        motion or samples from elsewhere with limits: the same, and what breaks them. Runs of
+        motion or samples from elsewhere with limits: the same, with violations marked. Runs of
         `bench`: gaps over the evaluations. An audit of one case, and a waterfall: where the time
         goes.
     beside : array_like, shape (segments,), or JointLimits or Solution or float, optional
-        The durations of a problem, s; the limits of a motion; the optimum against which runs are
-        set.
+        The durations of a problem, s; the limits of a motion; the optimum with which runs are
+        compared.
 
     Returns
     -------
@@ -66,7 +66,7 @@ def plot(result: Plotted, beside: ArrayLike | Solution | JointLimits | None = No
         return motion_picture(result, beside, title=_motion(result), check=judged)
     if isinstance(result, Motion | Samples):
         if not isinstance(beside, JointLimits):
-            raise TrajgapError("plot: give the limits beside the motion, plot(motion, limits)")
+            raise TrajgapError("plot: give the limits as well, plot(motion, limits)")
         if isinstance(result, Samples):
             found = check_samples(result, beside)
         else:
@@ -74,7 +74,7 @@ def plot(result: Plotted, beside: ArrayLike | Solution | JointLimits | None = No
         return checked_picture(result, beside, found, title="Motion, with its limits")
     if isinstance(result, Runs):
         if beside is None or isinstance(beside, JointLimits):
-            raise TrajgapError("plot: give the optimum beside the runs, plot(runs, solution)")
+            raise TrajgapError("plot: give the optimum as well, plot(runs, solution)")
         optimum = beside if isinstance(beside, Solution) else float(cast(float, beside))
         return bench_picture(measure_gaps(result, optimum), result)
     if isinstance(result, AuditReport):

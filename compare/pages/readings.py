@@ -67,10 +67,10 @@ def _argued(one: CaseAudit, summary: ReadingsSummary) -> Iterator[Block]:
         note = "None of this decides a verdict: an implausible reading stays admissible."
         blocks += [table(columns, rows), Prose(note, "note")]
     if blocks:
-        yield Folded("What speaks for and against the readings", tuple(blocks))
+        yield Folded("Evidence for and against the readings", tuple(blocks))
     held = [o for o in summary.outcomes if not isinstance(o.held, Why)]
     if held:
-        yield Folded("If the limits were held elsewhere", _held(one, held))
+        yield Folded("If the limits were enforced elsewhere", _held(one, held))
 
 
 def _held(one: CaseAudit, outcomes: list[ReadingOutcome]) -> tuple[Block, ...]:
@@ -100,7 +100,7 @@ def _held(one: CaseAudit, outcomes: list[ReadingOutcome]) -> tuple[Block, ...]:
     note = (
         "Largest ratio of the printed durations to a limit; above 1 it is broken. Every verdict "
         f"means all t. Samples: {steps} steps a segment. Control vertices bound velocity and "
-        "acceleration of a B-spline from outside, so that limits on them are stricter."
+        "acceleration of a B-spline from outside, so limits on them are stricter."
     )
     return table(columns, rows).filled, Prose(note, "note")
 
@@ -118,10 +118,10 @@ def _outcomes(one: CaseAudit, summary: ReadingsSummary) -> list[Block]:
         where = place(one.case.claim(claim)) if claim else problem_cell(one.case, problem)
         grids.append(table(names, rows, where).filled)
     note = (
-        "Limits are judged for all the ways in which the digits may have been rounded or cut off; "
-        "jumps and the segments over a limit are those of the printed point. × to limits: all "
-        "durations times this just reach the limits, jumps apart. The printed total is "
-        "beside the optimum."
+        "Limits are judged for all ways in which the digits may have been rounded or cut off; "
+        "jumps and violated segments are those of the printed point. × to limits: the factor on "
+        "all durations with which they just reach the limits, apart from jumps. The printed total "
+        "stands next to the optimum."
     )
     return [*grids, Folded("How to read this table", (Prose(note, "note"),))]
 
@@ -181,7 +181,7 @@ def _without_problems(one: CaseAudit) -> Grid:
     units = ("", "") if slides else (", rad/s", ", rad/s²")
     limited = (f"velocity limits{units[0]}", f"acceleration limits{units[1]}")
     names = ("reading", "problem", "curve", *limited)
-    return table(names, rows, "What each reading poses, way-points apart").filled
+    return table(names, rows, "The problem under each reading, apart from way-points").filled
 
 
 def _listed(statement: Statement, quantity: str, limits: Iterable[float]) -> str:
@@ -208,5 +208,8 @@ def _determined(case: Case) -> list[Block]:
     )
     grid = table((">degree", "knots", "count", "~what holds"), rows)
     return [
-        Folded(f"Degrees and knots through {count} way-points, and what they determine", (grid,))
+        Folded(
+            f"Degrees and knots through {count} way-points, and what the conditions determine",
+            (grid,),
+        )
     ]

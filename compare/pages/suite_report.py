@@ -70,7 +70,7 @@ def instance_page(one: BenchmarkInstance) -> Page:
 
 def _verified(one: BenchmarkInstance) -> tuple[Block, ...]:
     if one.certificate is None:
-        said = "The certificate is too large to ship. This makes and verifies it:"
+        said = "The certificate is too large to ship. This command creates and verifies it:"
         return Prose(said), Prose(one.command, "source")
     library = "the standard library of Python"
     library = f"numpy and {library}" if one.name.startswith("quintic") else library

@@ -39,7 +39,7 @@ def _problems(study: Study) -> Grid:
     for pair in study.pairs:
         p = study.problem(pair)
         slides |= any(p.linear)
-        how = "shared durations" if p.coupling is Coupling.SHARED else "each joint by itself"
+        how = "shared durations" if p.coupling is Coupling.SHARED else "each joint separately"
         rows.append(
             (
                 *asked_cells(study, pair),
@@ -53,7 +53,7 @@ def _problems(study: Study) -> Grid:
     names = ("problem", "reading", "joints × way-points", "curve", "limits", "durations",
              "coupling")  # fmt: skip
     base = "rad, m and s" if slides else "rad and s"
-    caption = f"Problems posed; in brackets {base} where the paper has other units"
+    caption = f"Problems; {base} in brackets if the paper has other units"
     return table(names, rows, caption).filled
 
 
@@ -190,7 +190,7 @@ def foundations(one: CaseAudit) -> list[Section]:
         ),
         Section(
             "assumptions",
-            "What the text leaves open, and what was chosen",
+            "Points that the text leaves open, and the choices made",
             (*choices, *opened),
             folded=True,
         ),

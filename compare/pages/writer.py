@@ -44,7 +44,7 @@ MARK = "audit.json"
 """The file by which the folder of an earlier report is known."""
 _LARGEST_MARK = 1_000_000_000
 """Bytes that are read to know an earlier report: hundreds of times the largest one shipped."""
-_WHAT = "audit"
+_WHAT = "an audit"
 """What the folder is called in messages."""
 _INDEX = "index.html"
 """The page that leads to those of the cases."""
@@ -64,7 +64,7 @@ class _Mark(BaseModel):
 
 
 def write_report(report: AuditReport, out: Path) -> None:
-    """Write the pages of an audit into a folder; all of them appear together.
+    """Write the pages of an audit into a folder; they all appear together.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ def write_report(report: AuditReport, out: Path) -> None:
     Raises
     ------
     CaseError
-        If the folder holds anything else, two cases would share a file, or it cannot be written.
+        If the folder contains anything else, two cases would share a file, or it cannot be written.
     """
     check_report_folder(Path(out), [one.case for one in report.cases], option="")
     write_folder(Path(out), report_files(report), _foreign, _WHAT, option="")
@@ -240,8 +240,8 @@ def _not_computed(one: CaseAudit) -> Section:
     # Where there are several readings, the section above has said why.
     reason = "" if one.readings is not None else f" ({why})"
     said = Prose(
-        f"No problem is posed, since way-points are not printed{reason}: there are no optima, "
-        "motions, replays or landscapes of its own."
+        f"No problem is posed, because way-points are not printed{reason}. The case has no "
+        "optima, motions, replays or landscapes of its own."
     )
     return Section("not-computed", "Not computed", (said,))
 
@@ -266,6 +266,6 @@ def _reproduced(one: CaseAudit) -> Section:
     proved = tuple((c.file, f"SHA-256 {c.sha256}; about {c.subject}") for c in made.certificates)
     blocks: list[Block] = [Prose(made.citation, "source"), Terms(tuple(pairs))]
     if proved:
-        blocks.append(Folded(f"{len(proved)} certificates, proved again", (Terms(proved),)))
-    title = "Cite this audit, and make it again"
+        blocks.append(Folded(f"{len(proved)} certificates, verified", (Terms(proved),)))
+    title = "Cite and reproduce this audit"
     return Section("reproducibility", title, tuple(blocks), folded=True)

@@ -71,7 +71,7 @@ SERIES: tuple[tuple[str, Line], ...] = ((BLUE, "-"), (ORANGE, "--"), (GREEN, "-.
 _STYLE: dict[str, Any] = {
     "font.family": ["DejaVu Sans"],
     "font.size": 9.0,
-    # Labels come from case files; a dollar sign in them is no formula.
+    # Labels come from case files; a dollar sign in them is not a formula.
     "text.parse_math": False,
     "text.color": INK,
     "axes.labelcolor": INK,

@@ -174,7 +174,7 @@ def _legend(
     labels.append("optimum" if uncertainty is not None else "best known, no lower bound proved")
     if uncertainty:
         handles.append(Patch(facecolor=GRID))
-        labels.append(f"where the optimum may lie: {_plain(100 * uncertainty)} %")
+        labels.append(f"interval of the optimum: {_plain(100 * uncertainty)} %")
     return handles, labels
 
 

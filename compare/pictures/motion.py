@@ -37,7 +37,7 @@ def motion_picture(
     Parameters
     ----------
     durations : array_like, shape (segments,) or (joints, segments)
-        Segment durations, s, shared by all joints or of each joint by itself.
+        Segment durations, s, shared by all joints or of each joint separately.
     check : Check, optional
         Its verdict is written below the picture.
     note : str

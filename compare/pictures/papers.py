@@ -88,7 +88,7 @@ def papers_picture(bars: Sequence[PaperBar], *, title: str) -> Picture:
                 "optimum, proven",
                 "best known, no proof",
                 "printed total above it",
-                "the same, where rounding may explain it",
+                "the same, but rounding may explain it",
             ],
             loc="outside lower left",
             ncols=4,

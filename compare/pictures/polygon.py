@@ -62,7 +62,7 @@ def polygon_picture(
     own = [[v for v in vertices if v.joint == label] for label in joints]
     if w.ndim != 2 or w.shape[1] != len(joints) or any(len(o) != len(w) + 2 for o in own):
         raise TrajgapError(
-            f"polygon_picture: way-points of shape {w.shape} beside {len(vertices)} vertices of "
+            f"polygon_picture: way-points of shape {w.shape} for {len(vertices)} vertices of "
             f"{len(joints)} joints; give two vertices more than way-points for each joint"
         )
     computed = control_vertices(w)

@@ -26,7 +26,7 @@ from .drawing import (
 )
 
 Runs = Sequence[Run] | Sequence[JointRuns]
-"""Runs of one algorithm: of all joints, or of each joint by itself."""
+"""Runs of one algorithm: of all joints, or of each joint separately."""
 _DASHES = ((0, (1, 1.5)), (0, (5, 2)), (0, (7, 2, 1, 2)), (0, (3, 1, 1, 1, 1, 1)))
 """Of the printed totals, in their order; none is a line style of the algorithms."""
 _LINEAR = 0.01

@@ -11,7 +11,7 @@ from ...nlp import Evidence
 from ..documents import Step, Waterfall, Why, value_or_none
 from .drawing import BLUE, GRID, INK, MUTED, ORANGE, PAPER, Picture, drawing, finish, shown
 
-_HEADING = "the first against this"
+_HEADING = "first step relative to this one"
 """Above the column that sets the first step beside each: one percentage per distance."""
 _EDGES = (1.2, 1.36)
 """Right edges of the seconds and the percent in that column (bars end at 1)."""

@@ -65,7 +65,7 @@ def workspace_picture(
     Raises
     ------
     TrajgapError
-        If the way-points are no finite positions, or labels or marks are not one each.
+        If the way-points are not finite positions, or labels or marks are not one each.
     """
     path = _positions(waypoints)
     for name, given in (("labels", labels), ("missed", missed)):

@@ -58,7 +58,7 @@ from .suite import InstanceShown, SuiteTable
 _NONE = "–"
 """A cell without a value."""
 _OPEN_SEARCHES = 2
-"""Searches that stand in the open, such as that of each joint by itself and of all together."""
+"""Searches that stand in the open, such as that of each joint separately and of all together."""
 _OPEN_ROWS = 8
 """Rows of readings that stand in the open; of more, those of the default reading do."""
 
@@ -118,7 +118,7 @@ def wanted_words(option: str) -> list[str]:
     Raises
     ------
     TrajgapError
-        If one is no verdict on a claim: such a list would be empty whatever the case says.
+        If one is not a verdict on a claim: such a list would be empty whatever the case says.
     """
     words = [" ".join(word.split()) for word in option.split(",") if word.strip()]
     for word in words:
@@ -162,7 +162,7 @@ def readings_of(case: AuditedCase) -> list[Block]:
     """Paragraphs and the table of a case's readings; one paragraph where there is one reading."""
     said = case.readings
     if isinstance(said, Why):
-        return [Prose("The text leaves nothing open: there is one reading.")]
+        return [Prose("The text leaves nothing open, so there is one reading.")]
     labels, far = said.labels, said.implausible
     marked = {
         one: noted(label, "implausible" if one in far else "") for one, label in labels.items()
@@ -237,7 +237,7 @@ class WaterfallShown(FromResults):
                     *(Prose(capital(one), "note") for one in (*said, *found.without_optimum)),
                     Folded("Step by step", (steps_table(found),)),
                 ]
-        raise TrajgapError(f"{name}: no waterfall of {asked or 'any problem'}; look into the JSON")
+        raise TrajgapError(f"{name}: no waterfall of {asked or 'any problem'}; see the JSON")
 
 
 class ReachedShown(FromResults):
@@ -314,7 +314,7 @@ class SourceShown(FromResults):
             self.env.note_dependency(str(path))
             verdict = proved_again(path, one.sha256)
             rows.append((code(one.file), badge(worth(verdict)), verdict.reason))
-        note = Prose("Each certificate was proved again when this page was built.")
+        note = Prose("Each certificate was verified when this page was built.")
         count = f"{len(rows)} certificate{'' if len(rows) == 1 else 's'}"
         return [Folded(count, (note, table(("file", "evidence", "what it proves"), rows)))]
 

@@ -26,11 +26,13 @@ def shown(value: object, form: str) -> str:
         If the value is none, or not of the format's kind.
     """
     if value is None or isinstance(value, dict | list):
-        raise TrajgapError(f"{value!r} is no single value; name a key further down")
+        raise TrajgapError(f"{value!r} is not a single value; add another key")
     try:
         return format(value, form)
     except (TypeError, ValueError):
-        raise TrajgapError(f"{value!r} cannot be written as {form!r}; change the format") from None
+        raise TrajgapError(
+            f"{value!r} cannot be formatted as {form!r}; change the format"
+        ) from None
 
 
 def value_role(

@@ -33,7 +33,7 @@ from .docutils_nodes import nodes_of
 
 _HANDLINGS = {
     "death-penalty": "Death penalty: a motion beyond a limit is rejected",
-    "stretch": "Stretch: it is slowed down until it keeps every limit",
+    "stretch": "Stretch: a motion beyond a limit is slowed down until it keeps every limit",
 }
 """What each handling does, as the title of its panel."""
 _MIDDLE = SOLVED.index(1e-3)
@@ -72,7 +72,7 @@ def said(penalty: Board, stretch: Board) -> tuple[str, ...]:
         f"{_share(loose[0])}.",
         f"The best of the papers' algorithms are {_papers_best(strict)} under the death penalty, "
         f"and {_papers_best(loose)} under the stretch.",
-        "A descent that knows the derivatives of the limits ends within 0.01\N{NBSP}% on "
+        "A descent that uses the derivatives of the limits ends within 0.01\N{NBSP}% on "
         f"{solved} of {reference.problems} instances.",
     )
 

@@ -176,7 +176,7 @@ def cited(source: StatedSource) -> str:
     if not authors:
         return ""
     names = [one.strip() for one in re.split(r",| and ", authors) if one.strip()]
-    # Initials and "et al." are no part of the name that a sentence gives.
+    # Initials and "et al." are not part of the name that a sentence gives.
     plain = [re.sub(r"( [A-Z]\.)+$", "", one.removesuffix("et al.").strip()) for one in names]
     plain = [one for one in plain if one]
     many = len(plain) > 2 or "et al." in authors
@@ -195,7 +195,7 @@ def reached_of(case: AuditedCase) -> str:
 def distance_of(case: AuditedCase) -> Distance | None:
     """The printed total of the first problem beside its optimum.
 
-    The optimum is that of shared durations; where the paper plans each joint by itself, it is what
+    The optimum is that of shared durations; where the paper plans each joint separately, it is what
     the joints' own optima give.
 
     Returns

@@ -34,13 +34,13 @@ def proved_again(path: Path, sha256: str | None = None) -> CertificateVerdict:
     try:
         if sha256 is not None and hashlib.sha256(path.read_bytes()).hexdigest() != sha256:
             raise TrajgapError(
-                f"{path}: is not the certificate with SHA-256 {sha256}; make the result again"
+                f"{path}: is not the certificate with SHA-256 {sha256}; recreate the result"
             )
         verdict = verify_certificate(read_document(path))
     except (Refused, OSError) as error:
         raise TrajgapError(f"{path}: {error}") from None
     if not verdict.proves:
-        raise TrajgapError(f"{path}: is not proved: {verdict.reason}")
+        raise TrajgapError(f"{path}: its claim is not proved: {verdict.reason}")
     return verdict
 
 
@@ -48,5 +48,5 @@ def proof_said(path: Path, sha256: str | None = None, name: str = "") -> Prose:
     """What a certificate proves, in a paragraph; parameters as there, and its name if not empty."""
     verdict = proved_again(path, sha256)
     shown = f" ({name})" if name else ""
-    said = f"{capital(verdict.reason)}. Proved again when this page was built{shown}."
+    said = f"{capital(verdict.reason)}. Verified when this page was built{shown}."
     return Prose(said, word=worth(verdict))

@@ -41,13 +41,13 @@ class Results:
         path = self.folder / f"{name}.json"
         if name not in self.names:
             known = ", ".join(self.names) or "none"
-            raise TrajgapError(f"{path}: there is no such result; there are: {known}")
+            raise TrajgapError(f"{path}: there is no such result; known: {known}")
         try:
             read = json.loads(path.read_text(encoding="utf-8"))
         except ValueError:
-            raise TrajgapError(f"{path}: is no JSON; make it again") from None
+            raise TrajgapError(f"{path}: is not JSON; recreate it") from None
         if not isinstance(read, dict):
-            raise TrajgapError(f"{path}: is no document of trajgap; make it again")
+            raise TrajgapError(f"{path}: is not a document of trajgap; recreate it")
         return read
 
     def case(self, name: str) -> dict[str, Any]:
@@ -61,8 +61,8 @@ class Results:
         cases = self.document(name).get("cases")
         if not isinstance(cases, list) or len(cases) != 1:
             raise TrajgapError(
-                f"{self.folder / name}.json: holds no audit of one case; "
-                "print it with `trajgap audit CASE --json`"
+                f"{self.folder / name}.json: does not contain the audit of one case; print it "
+                "with `trajgap audit CASE --json`"
             )
         found: dict[str, Any] = cases[0]
         return found
@@ -109,7 +109,7 @@ def _inside(here: Any, part: str, key: str) -> Any:
             return found
         return here[int(part)]
     except (KeyError, IndexError, TypeError, ValueError):
-        raise TrajgapError(f"{key}: nothing stands at {part!r}; look into the JSON") from None
+        raise TrajgapError(f"{key}: there is nothing at {part!r}; see the JSON") from None
 
 
 def _read(value: Any) -> Any:

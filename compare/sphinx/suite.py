@@ -82,12 +82,10 @@ class InstanceShown(SphinxDirective):
     def _proof(self, one: BenchmarkInstance) -> Prose:
         file = one.certificate_file()
         if file is None:
-            return Prose(f"No certificate is shipped; make it with {one.command}.")
+            return Prose(f"No certificate is shipped; create it with {one.command}.")
         path = Path(str(file))
         self.env.note_dependency(str(path))
         if one.verify_seconds is not None and one.verify_seconds > PROVED_WITHIN:
-            later = (
-                f"Its proof takes {one.verify_seconds:g} s and was not made again by this build."
-            )
+            later = f"Its proof takes {one.verify_seconds:g} s and is not part of this build."
             return Prose(later, word=str(one.evidence))
         return proof_said(path, one.certificate_sha256)

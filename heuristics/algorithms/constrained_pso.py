@@ -30,7 +30,7 @@ OPEN_CHOICES = (
     "from the best ones; both at random",
     "draws: r1 and r2 are 'any values in [0, 1]'; one pair for each coordinate",
     "penalty: 'a very large constant', not printed; 1e6 s",
-    "a velocity stays as it is where its position was set to the bound",
+    "a velocity does not change if its position was set to the bound",
     "budget: N iterations are N moves after the initial evaluation, N + 1 evaluations of the swarm",
 )
 """What the paper leaves open, and what was chosen."""

@@ -40,11 +40,11 @@ from .swarm import spread
 OPEN_CHOICES = (
     "q_best, q_worst: q_y and q_s of (13), not printed; 0.2 and 0.05",
     "pool_rule: how many are drawn from the middle half is not printed; as many as fill the pool "
-    "beside the best quarter, 3/4 of the population",
+    "with the best quarter, 3/4 of the population",
     "best_quarter: 'directly selected as parents of the next generation' may mean that they enter "
     "the mating pool, to be crossed and mutated, or that they survive; they enter the pool",
     "M of (13) is 1 in the first generation that is bred, Z in the last",
-    "f_ave/f_max of a population without any feasible individual is 0/0; taken as 1, all alike",
+    "f_ave/f_max of a population without any feasible individual is 0/0; taken as 1, all equal",
     "(14)(15): the rates hold for the whole population; at arcsin = π/6 the branches with ≥ hold",
     *(line for line in SHARED_OPEN if line != ELITE_OPEN),
 )

@@ -19,7 +19,7 @@ onto the bounds round there. It is set to the bound before it is judged."""
 
 @dataclass(frozen=True, eq=False)
 class BorrowedTask:
-    """What an optimiser gets to work with.
+    """The task that is passed to an optimiser.
 
     Attributes
     ----------
@@ -29,7 +29,7 @@ class BorrowedTask:
     box : ndarray, shape (dimensions, 2)
         Least and largest value of each coordinate, finite, s.
     budget : int
-        Positions that may be judged; the search is stopped at the next one.
+        Number of positions that may be evaluated; the search is stopped at the next one.
     rng : numpy.random.Generator
         The only source of randomness; see `number` for libraries that take a number.
     penalty : float
@@ -84,14 +84,14 @@ class Guarded:
         Raises
         ------
         TrajgapError
-            If a position has the wrong shape, is no number, or leaves the bounds.
+            If a position has the wrong shape, is not a number, or leaves the bounds.
         """
         if self.fault is not None:
             raise self.fault
         try:
             x = np.asarray(positions, dtype=np.float64)
         except (TypeError, ValueError):
-            raise self._wrong("asked for the fitness of something that is not numbers") from None
+            raise self._wrong("asked for the fitness of something that is not numeric") from None
         count = len(self._box)
         if x.ndim not in (1, 2) or x.shape[-1] != count:
             raise self._wrong(
@@ -146,7 +146,7 @@ class Guarded:
 
 @dataclass(frozen=True)
 class Borrowed:
-    """A search that owns its loop and is held to the rules of `Guarded`.
+    """A search with its own loop that must follow the rules of `Guarded`.
 
     Unlike for the papers' algorithms, which are run as printed, a position out of bounds or with a
     NaN is a fault of the search and ends it with a message.
@@ -156,15 +156,15 @@ class Borrowed:
     kind : str
         Name of the search.
     searching : callable
-        ``searching(task)``; picklable. What it returns is looked at for faults only.
+        ``searching(task)``; picklable. Its return value is only checked for faults.
     iterations : int
         Blocks of evaluations after the first one.
     per_iteration : int
         Evaluations that count as one iteration.
     penalty : float
-        Fitness of an infeasible position, s; finite, since many searches subtract.
+        Fitness of an infeasible position, s; finite, because many searches subtract.
     options : mapping
-        What was passed on to the search, for the record.
+        Options that were passed to the search, for the record.
     """
 
     kind: str

@@ -47,7 +47,7 @@ def load_function(name: str) -> Callable[..., object]:
             raise TrajgapError(f"{name}: module {module!r} has no {attribute!r}; check its name")
         found = getattr(found, part)
     if not callable(found):
-        raise TrajgapError(f"{name}: is no function f(fun, bounds, budget, rng)")
+        raise TrajgapError(f"{name}: is not a function f(fun, bounds, budget, rng)")
     function: Callable[..., object] = found
     return function
 

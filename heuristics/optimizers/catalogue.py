@@ -68,7 +68,7 @@ BASELINES: tuple[str, ...] = tuple(_BASELINES)
 def find_optimizer(
     name: str | Callable[..., object], budget: int | None = None, **settings: object
 ) -> Algorithm[Any] | Search:
-    """Optimiser of a name, ready to be run within a budget of evaluations.
+    """Optimiser with a name, ready to run within a budget of evaluations.
 
     Parameters
     ----------
@@ -82,10 +82,10 @@ def find_optimizer(
         takes one vector or a batch, ``bounds`` has shape (dimensions, 2), s.
     budget : int, optional
         Evaluations. An algorithm of the papers gets as many iterations as use it up, unless the
-        settings name ``iterations``; without a budget it has its own, which its paper prints.
-        Anything else has 6000 evaluations then.
+        settings name ``iterations``; without a budget it has the iterations that its paper prints.
+        Any other optimiser then has 6000 evaluations.
     **settings
-        Of the optimiser; what is left out takes its own default.
+        Settings of the optimiser; those left out keep their defaults.
 
     Returns
     -------
@@ -146,7 +146,7 @@ def optimizer_name(text: str) -> str:
     Returns
     -------
     str
-        Anything else as it is.
+        Any other name is returned unchanged.
 
     Examples
     --------

@@ -103,7 +103,7 @@ def joined(problem: Problem) -> Array | str | None:
     low, high = _box(problem)
     for k, reason in enumerate(wide.reasons):
         if not wide.low[k] <= wide.high[k] or np.isposinf(wide.low[k]):
-            return f"the {reason} jumps at way-point {k + 1}, whatever the durations"
+            return f"the {reason} jumps at way-point {k + 1} for any durations"
     slack = float(np.log(SURE))
     late = np.flatnonzero(_least(low, wide) > high + slack)
     if late.size:
@@ -201,7 +201,7 @@ def _least(low: Array, ratios: _Ratios) -> Array:
     return z
 
 
-FORMULA = "at fixed ratios the total is the one unknown, in closed form"
+FORMULA = "at fixed ratios the total is the only unknown, and has a closed form"
 """Beside every optimum at fixed ratios: no search stands behind it."""
 
 
@@ -224,7 +224,7 @@ def tight_at_ratios(problem: Problem) -> Array | Solution:
     assert shares is not None
     at_one = check(problem, shares)
     if any(p.quantity == "curve" for p in at_one.peaks):
-        why = f"at these ratios there is no curve: {at_one.feasible_why}"
+        why = f"no curve exists at these ratios: {at_one.feasible_why}"
         return Solution(problem, Status.FAILED, why)
     for p in at_one.peaks:
         if np.isinf(p.ratio) and p.quantity in QUANTITIES:
@@ -247,7 +247,7 @@ def tight_at_ratios(problem: Problem) -> Array | Solution:
     )
     if verdict is Verdict.VIOLATED:
         return Solution(problem, Status.INFEASIBLE, said)
-    return Solution(problem, Status.NONE_FOUND, f"{said}; rounding hides which is the larger")
+    return Solution(problem, Status.NONE_FOUND, f"{said}; rounding errors hide which is larger")
 
 
 def refused_at_ratios(problem: Problem, h: Array) -> Solution:
@@ -262,7 +262,7 @@ def refused_at_ratios(problem: Problem, h: Array) -> Solution:
             f"position limit of {worst.limit:.6g} {unit}, whatever the total"
         )
         return Solution(problem, Status.INFEASIBLE, why)
-    why = "rounding hides whether any total keeps the limits at these ratios"
+    why = "rounding errors hide whether any total keeps the limits at these ratios"
     if verdict.jumps:
         jump = max(verdict.jumps, key=lambda one: (-one.order, abs(one.size)))
         what = ("position", "velocity", "acceleration")[jump.order]
@@ -270,9 +270,9 @@ def refused_at_ratios(problem: Problem, h: Array) -> Solution:
     return Solution(problem, Status.NONE_FOUND, why)
 
 
-CUT_SHORT = "the time ran out: what was not searched may hold a shorter motion"
+CUT_SHORT = "the time ran out; what was not searched may contain a shorter motion"
 """Beside the answer of a search that its time limit ended."""
-OUT_OF_TIME = "the time ran out, which says nothing about whether there are any"
+OUT_OF_TIME = "the time ran out, so it is unknown whether there are any"
 """Beside the word that nothing was found, by a search that its time limit ended."""
 
 
@@ -298,7 +298,7 @@ def unsearched(problem: Problem) -> Solution | None:
         shares = np.full(problem.segments, 1.0 / problem.segments)
     else:
         why = (
-            "at durations in proportion to the way nothing accelerates, and no velocity is "
+            "at durations in proportion to the distance nothing accelerates, and no velocity is "
             "limited: the total falls to 0"
         )
         straight = straight_shares(problem)

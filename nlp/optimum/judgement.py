@@ -79,7 +79,7 @@ def judged(
     status = Status.FEASIBLE if notes or beyond > SAME else Status.CONVERGED
     if beyond > KKT_TOLERANCE:
         longer = f"longer by {beyond:.1e} (relative) than a tight motion"
-        notes += [f"{longer}, which rounding errors blur"]
+        notes += [f"{longer}, within rounding errors"]
     if answer.verdict.verdict is Verdict.DISCONTINUOUS:
         jumps = sum(jump.order < 2 for jump in answer.verdict.jumps)
         notes += [f"limits kept inside the segments; {jumps} jumps of velocity between them"]
@@ -124,7 +124,7 @@ def on_floor(durations: Array, floor: Array) -> NDArray[np.bool_]:
 
 
 def still_falling(durations: Array, floor: Array) -> str | None:
-    """Why an answer is no shortest motion, if a duration lies on a least one of the search."""
+    """Why an answer is not the shortest motion, if a duration lies on a least one of the search."""
     at = np.flatnonzero(on_floor(durations, floor)).tolist()
     if not at:
         return None

@@ -84,6 +84,6 @@ def as_answer(problem: Problem, found: Solution) -> Solution | None:
     answer = replace(found, problem=problem, nodal=values[0], check=verdict)
     if same_motions(problem):
         return answer
-    note = "the joints without a limit of their jerk are held as smooth as the others"
+    note = "joints without a jerk limit are kept as smooth as the others"
     why = note if found.why is None else f"{found.why}; {note}"
     return replace(answer, status=Status.FEASIBLE, why=why)

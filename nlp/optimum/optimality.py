@@ -35,7 +35,7 @@ MORE = 0.1
 
 @dataclass(frozen=True)
 class Active:
-    """A limit that is reached, with what it costs.
+    """A limit that is reached, with its multiplier.
 
     Attributes
     ----------
@@ -46,7 +46,7 @@ class Active:
     segment : int
         Segment, from 0.
     time : float or None
-        Where on the trajectory, s.
+        Time on the trajectory, s.
     multiplier : float
         Lagrange multiplier of ratio ≤ 1, s; of a position of its excess over the limit's size, or
         over 1 rad or m where that is larger.
@@ -147,13 +147,13 @@ def kkt(
     Returns
     -------
     KKT
-        Multipliers by non-negative least squares; an infinite residual where rounding hides the
+        Multipliers by non-negative least squares; an infinite residual if rounding errors hide the
         curve.
 
     Notes
     -----
-    Where ratios are fixed, log T is the one unknown: all z_k change alike, and their equations are
-    added up.
+    If ratios are fixed, log T is the only unknown: all z_k change equally, and their equations are
+    added.
     """
     rows = exact_rows(problem, durations, nodal)
     found = _Weighed.of(problem, rows, active) if rows.worst < np.inf else None

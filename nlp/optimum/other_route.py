@@ -1,4 +1,4 @@
-"""The same optimum once more by the other route: what two programs agree on is no slip of one."""
+"""The same optimum once more by the other route, to rule out an error of one program."""
 
 from __future__ import annotations
 

@@ -4,7 +4,7 @@ The derivatives q⁽ʳ⁾, r = 1..d, at the left end of a piece determine its po
 series gives the values at the right end. The conditions of the curve are equalities between them,
 limits at left ends are bounds on variables, and limits inside pieces are rows at places that
 follow the extrema. Derivatives are in time and not in the piece's parameter, so that a limit is
-one number whatever the duration. Of a curve with a fixed shape those derivatives are no variables
+one number whatever the duration. Of a curve with a fixed shape those derivatives are not variables
 but constants over powers of a duration, and limits at left ends are rows too.
 
 Every matrix is (pieces, joints): no expression is written once a piece, so that building takes a

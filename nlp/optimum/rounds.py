@@ -82,7 +82,7 @@ Motion = tuple[Array, Array | None]
 
 
 def build(problem: Problem) -> Program:
-    """The exact NLP of a problem, not solved: ``print(build(problem))`` says what it consists of.
+    """The exact NLP of a problem, not solved: ``print(build(problem))`` lists its parts.
 
     Returns
     -------

@@ -68,10 +68,10 @@ class Route(StrEnum):
 
 
 class Evidence(StrEnum):
-    """What stands behind a reference value."""
+    """The evidence for a reference value."""
 
     CERTIFIED = "certified"
-    """Lower and upper bound within the stated gap, re-checked."""
+    """Lower and upper bound within the stated gap, verified again."""
     BEST_KNOWN = "best known"
     """The best value found and checked, with nothing proved below it. A gap against it is a lower
     estimate of the true one."""
@@ -79,8 +79,8 @@ class Evidence(StrEnum):
     """The value of a checked motion at which the search stopped before it met the conditions of an
     optimum: shorter ones are to be expected."""
     NONE = "none"
-    """No value. A verdict that rests on none rests on the printed digits, a count, a check of what
-    is printed, or a shorter motion that was checked and needs no optimum beside it."""
+    """No value. A verdict without a reference rests on the printed digits, a count, a check of what
+    is printed, or a shorter motion that was checked and needs no optimum for comparison."""
 
 
 def weakest(evidence: Iterable[Evidence]) -> Evidence:
@@ -149,11 +149,11 @@ class Solution(SearchResult):
     route : Route or None
         How it was found; None without durations.
     other_total : float or None
-        Total by the other route, s, where it was asked for: of the NLP beside a descent or a
-        formula, of a descent beside the NLP. See `with_other_route`.
+        Total by the other route, s, if requested: that of the NLP for a descent or a formula, that
+        of a descent for the NLP. See `with_other_route`.
     infimum : float or None
-        For `not_attained`: the value that the totals found approach, s. It is the infimum where
-        `approach_proved` says so, and otherwise the best known estimate of it.
+        For `not_attained`: the value that the totals found approach, s. It is the infimum if
+        `approach_proved` is true, and otherwise the best known estimate of it.
     lower_bound : float or None
         A lower bound that `trajgap.verify` has proved, s.
     kkt_residual : float or None
@@ -182,9 +182,9 @@ class Solution(SearchResult):
 
     @property
     def best(self) -> float:
-        """The infimum where it is not attained, else the total, s; inf without an answer.
+        """The infimum if it is not attained, otherwise the total, s; inf without an answer.
 
-        Where nothing keeps the total from 0, what the floors of the search left of it is not given.
+        If nothing keeps the total from 0, the value at the floors of the search is not returned.
         """
         if self.boundless is not None:
             return 0.0
@@ -192,7 +192,7 @@ class Solution(SearchResult):
 
     @property
     def approach_proved(self) -> bool:
-        """Whether nothing lies below the value approached: it is 0, or a proved bound meets it."""
+        """Whether the value approached is proved to be the infimum: it is 0, or equals a bound."""
         if self.infimum is None:
             return False
         return self.best == 0.0 or (self.lower_bound or 0.0) >= self.infimum * (
@@ -201,12 +201,12 @@ class Solution(SearchResult):
 
     @property
     def boundless(self) -> str | None:
-        """Why nothing keeps the total from 0, so that there is no time to set others beside."""
+        """Why nothing keeps the total from 0, so there is no time for comparison."""
         if self.infimum is None or self.infimum > _VANISHING * self.total_time:
             return None
         if not np.isfinite(self.problem.limits.sides).any():
             return "without limits there is no shortest motion (not checkable)"
-        return "nothing that is limited keeps the total from 0, so that no motion is the shortest"
+        return "no limit keeps the total from falling to 0, so there is no shortest motion"
 
     @property
     def settled(self) -> bool:
@@ -215,7 +215,7 @@ class Solution(SearchResult):
 
     @property
     def evidence(self) -> Evidence:
-        """Certified with a lower bound within 1 %; best known only where the search converged."""
+        """Certified with a lower bound within 1 %; best known only if the search converged."""
         if self.vector is None:
             return Evidence.NONE
         if self.lower_bound is not None and close(self.lower_bound, self.best):
@@ -248,7 +248,7 @@ class Solution(SearchResult):
         Raises
         ------
         TrajgapError
-            If there are no durations, or the step is no time.
+            If there are no durations, or the step is not a time.
         """
         return sampled(self.trajectory, dt, self.problem.joints)
 

@@ -43,7 +43,7 @@ time of a wide search and dense descents, at 10 segments in twice it."""
 RATIOS = 12
 """Random ratios from which rounds look for a motion without a jump: every second of them finds
 one, where there is any."""
-ONLY_TOLERANCE = "the limits leave no room: they are kept within the tolerance of the check alone"
+ONLY_TOLERANCE = "the limits leave no room: they are kept only within the tolerance of the check"
 """Beside an answer that exact limits would not let pass."""
 
 
@@ -74,8 +74,9 @@ def solve(
     """Best known total time of a problem with shared durations.
 
     Up to 24 segments a wide search on exact totals finds basins, and a descent on the exact extrema
-    goes down in each. Beyond, and where the curve leaves derivatives free, rounds of the exact NLP
-    (`build`) answer. Where the problem fixes the ratios of its durations, the total is a formula.
+    runs in each. For more segments, or if the curve leaves derivatives free, rounds of the exact
+    NLP (`build`) find the answer. If the problem fixes the ratios of its durations, the total is
+    given by a formula.
 
     Parameters
     ----------
@@ -89,18 +90,18 @@ def solve(
     initial : array_like, shape (starts, segments), optional
         Starts to use instead, s.
     known : array_like, shape (motions, segments), optional
-        Durations, s, that somebody already has: printed ones, replays, a certificate's. Each that
-        `check` passes, as it is or stretched uniformly, is an incumbent: the answer is never worse.
-        The others do no harm.
+        Durations, s, that are already known: printed ones, replays, those of a certificate. Each
+        that `check` passes, as it is or stretched uniformly, is an incumbent: the answer is never
+        worse. The others do no harm.
     known_nodal : array_like, shape (motions, free, joints), optional
-        Their free derivatives, where the curve leaves some open; without them those motions are
-        not determined, and not used.
+        Their free derivatives, if the curve leaves some open; without them, those motions are not
+        determined and not used.
     seconds : float
         Time limit, kept to within a step of the search: the best motion so far is the answer, and
-        `why` says that the time ran out. What is found then depends on the machine.
+        `why` says that the time ran out. The result then depends on the machine.
     lower : float
-        A proved lower bound of the total, s. It saves searches, and is no part of the answer: where
-        a known motion is within a millionth of it, no other basin is looked for.
+        A proved lower bound of the total, s. It saves searches, and is not part of the answer:
+        if a known motion is within a millionth of it, no other basin is searched.
 
     Returns
     -------
@@ -141,7 +142,7 @@ def _at_ratios(problem: Problem) -> Solution:
     if not answer.found:
         return refused_at_ratios(problem, h)
     if check(problem, h).stretch == 0.0 and not problem.duration_lower.any():
-        why = "nothing that moves is limited, so that the total falls to 0"
+        why = "nothing that moves is limited, so the total falls to 0"
         found = replace(answer, status=Status.NOT_ATTAINED, why=why, infimum=0.0)
         return replace(found, kkt_residual=None, active=())
     if answer.status is not Status.CONVERGED:
@@ -341,7 +342,7 @@ def _without_jumps(problem: Problem, solution: Solution) -> Solution:
     equations = len(places) - problem.curve.free * len({j for *_, j in places})
     if equations <= ratios:
         return solution
-    why = f"it would take {ratios} ratios of durations that meet {equations} equations"
+    why = f"{ratios} ratios of durations would have to satisfy {equations} equations"
     return replace(solution, why=f"{solution.why}; {why}")
 
 

@@ -47,7 +47,7 @@ def keeps_limits(
     Raises
     ------
     OutOfTime
-        If the clock ends it.
+        If the time runs out.
     """
     try:
         check_answer(stated_problem(problem), durations, clock or Clock(math.inf))
@@ -68,7 +68,7 @@ def prove_feasible(
     Raises
     ------
     OutOfTime
-        If the clock ends it.
+        If the time runs out.
     """
     stated = stated_problem(problem)
     for room in (0.0, *ROOMS):

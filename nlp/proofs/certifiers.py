@@ -144,8 +144,8 @@ def certify(
     Parameters
     ----------
     problem : Problem or ExactProblem
-        The floats of a `Problem` are taken as exact; `printed_problem` gives the printed one. Its
-        coupling is not looked at.
+        The floats of a `Problem` count as exact; `printed_problem` gives the problem in printed
+        digits. Its coupling is ignored.
     subject : Subject
         Curves of the declared kind, or any curve: all C1 motions through the way-points with
         |v| ≤ V and |a| ≤ A and the declared end velocities. Limits of jerk and position only make
@@ -154,38 +154,38 @@ def certify(
     gap : float
         Relative width of the interval to reach.
     seconds : float, optional
-        Time limit of all of it: proving a state again, the search, and proving the result with
-        `trajgap.verify`, for which the search leaves time. At the limit, or at Ctrl-C, the best
-        interval proved so far is returned; a proof that could not be verified in time is left in
-        the state alone. It is kept to within a second and one step: a part of a search, or a step
-        of the local solver. An answer whose exact proof was cut short is none;
+        Time limit of everything: verification of a state, the search, and verification of the
+        result with `trajgap.verify`, for which the search leaves time. At the limit, or at Ctrl-C,
+        the best interval proved so far is returned; a proof that could not be verified in time is
+        kept only in the state. The limit holds to within a second and one step: a part of a search,
+        or a step of the local solver. An answer whose exact proof was cut short does not count;
         `Certified.left_out` says so.
     boxes : float, optional
-        Boxes after which the search ends. Without ``seconds`` they alone limit it, and the result
-        does not depend on how busy the machine is. Without either of them a search has `MINUTE`
-        times the boxes that an audit allows.
+        Boxes after which the search ends. Without ``seconds``, only this number limits it, and the
+        result does not depend on how busy the machine is. Without either of them a search has
+        `MINUTE` times the boxes that an audit allows.
     seed : int
         Of the starts of the local solver that finds the answer.
     resume : Certified or dict, optional
-        A stopped run, or its `state_document`: `trajgap.verify` proves it again.
+        A stopped run, or its `state_document`, which `trajgap.verify` verifies.
     report : callable, optional
         Called with a `Progress` after every batch of boxes.
     workers : int
-        Parts of search and judging that run at a time; the result does not depend on it. Closed
-        forms take one core: they are over at once.
+        Number of parts of the search and the verification that run at a time; the result does not
+        depend on it. Closed forms use one core.
     executor : concurrent.futures.Executor, optional
         Where parts run, such as processes or a Dask cluster's `get_executor()`. Without one they
         run in processes that are started after a second and end with the run.
     cache : bool or Path
         Whether a proof that settles the question is kept for later runs, and one that an earlier
-        run kept is used: in the user's cache folder, or in the folder given. Nothing that is kept
-        is trusted: it counts if `trajgap.verify` proves it again, to this question and this gap.
-        A run that goes on from a state does neither.
+        run kept is used: in the user's cache folder, or in the folder given. Kept proofs are not
+        trusted: one counts only if `trajgap.verify` verifies it for this question and this gap. A
+        run that continues from a state does neither.
     known : array_like, shape (segments,), optional
-        Durations that a local search has found already, s: where they are proved feasible, no
-        other search begins.
+        Durations that a local search has already found, s: if they are proved feasible, no other
+        search begins.
     certifier : Certifier, optional
-        The kind of proof; the preferred one of those that cover the problem without.
+        The kind of proof; by default the preferred one of those that cover the problem.
 
     Returns
     -------
@@ -195,8 +195,8 @@ def certify(
     Raises
     ------
     TrajgapError
-        If the curve is not covered, nothing limits the total, or ``resume`` does not prove what
-        it says.
+        If the curve is not covered, nothing limits the total, or ``resume`` does not prove its
+        claim.
     """
     exact = exact_problem(problem) if isinstance(problem, Problem) else problem
     why = covered(exact, subject)

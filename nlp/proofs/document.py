@@ -90,7 +90,7 @@ def stated_problem(problem: ExactProblem) -> StatedProblem:
 
 
 def _ratios(problem: ExactProblem) -> dict[str, Any]:
-    """Ratios of the durations, where they are fixed: a word where they are no rational numbers."""
+    """Ratios of the durations, where they are fixed: a word where they are not rational numbers."""
     if problem.chord:
         return {"ratios": CHORD}
     return {} if problem.shares is None else {"ratios": [decimal(x) for x in problem.shares]}
@@ -102,7 +102,7 @@ def problem_seal(problem: Problem) -> str:
     Parameters
     ----------
     problem : Problem
-        Neither its name nor its coupling is looked at.
+        Its name and its coupling are ignored.
 
     Returns
     -------
@@ -264,14 +264,14 @@ def shipped_folder() -> Path:
 
 
 def shipped(problem: ExactProblem, subject: Subject = Subject.DECLARED) -> dict[str, Any] | None:
-    """Certificate of exactly this question that comes with the package, not yet proved again.
+    """Certificate of exactly this question that comes with the package, not yet verified.
 
     Parameters
     ----------
     problem : ExactProblem
         Its name does not matter.
     subject : Subject
-        What the certificate is to speak about.
+        The curves that the certificate must cover.
 
     Returns
     -------
@@ -285,7 +285,7 @@ def shipped(problem: ExactProblem, subject: Subject = Subject.DECLARED) -> dict[
 
 
 def shipped_file(problem: ExactProblem, subject: Subject = Subject.DECLARED) -> Path | None:
-    """File of the certificate that `shipped` returns; None where there is none."""
+    """File of the certificate that `shipped` returns; None if there is none."""
     place = _place(problem, subject)
     return _suite_file(problem, subject) if place is None else _shipped_paths()[place]
 

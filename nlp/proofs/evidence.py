@@ -23,7 +23,7 @@ from .outcome import GAP
 
 @dataclass(frozen=True)
 class ProvedInterval:
-    """What a certificate proves, after it was proved again.
+    """The interval that a verified certificate proves.
 
     Attributes
     ----------
@@ -44,13 +44,13 @@ class ProvedInterval:
 
 @lru_cache(maxsize=1024)
 def proved(problem: ExactProblem, subject: Subject = Subject.DECLARED) -> ProvedInterval | None:
-    """The interval of a shipped certificate, or of a closed form; proved again, once a process.
+    """The interval of a shipped certificate, or of a closed form, verified once per process.
 
     Parameters
     ----------
     problem : ExactProblem
     subject : Subject
-        Curves that the interval speaks about.
+        Curves that the interval covers.
 
     Returns
     -------
@@ -125,7 +125,7 @@ def interval_in(
 
 
 def printed_problem_or_none(statement: Statement, joint: int | None = None) -> ExactProblem | None:
-    """`printed_problem` of all joints or of one; None where it cannot be stated exactly."""
+    """`printed_problem` of all joints or of one; None if it cannot be stated exactly."""
     try:
         exact = printed_problem(statement)
     except TrajgapError:
@@ -146,9 +146,9 @@ def with_interval(solution: Solution, found: ProvedInterval | None) -> Solution:
     -------
     Solution
         Solved once more from the certificate's durations if these are shorter; at these durations
-        if the answer lies below the bound by no more than a descent takes for kept. It is *optimal*
-        where the bound comes within a millionth of its total. Unchanged if nothing is proved, or if
-        the answer lies farther below the bound: then one of the two is wrong.
+        if the answer lies below the bound by no more than the tolerance of a descent. It is
+        *optimal* if the bound is within a millionth of its total. Unchanged if nothing is proved,
+        or if the answer lies farther below the bound: then one of the two is wrong.
     """
     if found is None or found.upper is None or found.durations is None:
         return solution

@@ -26,8 +26,8 @@ from ...problem.curves import Derivatives
 from .shares import exact_shares, printed_shares
 
 MOVING = (
-    "prescribes derivatives other than 0, which the proof for its kind of problem does not cover; "
-    "what --any-curve proves over any curve is a lower bound for it"
+    "prescribes derivatives other than 0, which this kind of proof does not cover; --any-curve "
+    "proves a lower bound"
 )
 """Why there is no proof of a curve at fixed ratios, of a B-spline, or in units of a proof for cubic
 and quintic splines; and what still holds."""
@@ -111,8 +111,8 @@ class ExactProblem:
         One row per way-point, in ``unit``.
     limits : tuple of tuple
         Per joint: velocity, acceleration, jerk as `Real` in ``unit``/sʳ, or None. Sizes that hold
-        on both sides; of a pair in ``pairs`` the larger one, so that what is proved of the least
-        total within them holds within the pairs too.
+        on both sides; for a pair in ``pairs`` the larger one, so a bound on the least total within
+        them also holds within the pairs.
     position_lower, position_upper : tuple
         Per joint, a `Real` in ``unit`` or None.
     duration_lower : tuple of Fraction
@@ -120,17 +120,19 @@ class ExactProblem:
     duration_upper : tuple of Fraction or None
         s.
     unit : str
-        That of the way-points, "rad" or "deg"; "m", "cm" or "mm" of joints that slide. Of joints
-        that differ all of them, with commas between.
+        Unit of the way-points, "rad" or "deg", or "m", "cm" or "mm" for sliding joints; if joints
+        differ, all units, separated by commas.
     pairs : tuple of ((joint, order), pair)
-        Sizes of the lower and the upper limit, where they differ: all that
-        an answer has to keep beside ``limits``.
+        Sizes of the lower and the upper limit, if they differ, which an answer has to keep in
+        addition to ``limits``.
     prescribed : tuple or None
-        What the curve prescribes at its breaks, exact, where its own floats are only near to it.
+        Exact derivatives that the curve prescribes at its breaks, if its floats only approximate
+        them.
     shares : tuple of Fraction or None
-        Share of each segment in the total, where ratios fix it.
+        Share of each segment in the total, if ratios fix it.
     chord : bool
-        Whether they are those of chord lengths that are no rational numbers; without ``shares``.
+        Whether the ratios are those of chord lengths that are not rational numbers; then without
+        ``shares``.
     """
 
     name: str
@@ -176,14 +178,14 @@ class ExactProblem:
         Raises
         ------
         TrajgapError
-            If it is of another kind.
+            If the curve is of another kind.
         """
         if not isinstance(self.curve, Interpolant):
-            raise TrajgapError(f"certify: {self.curve.name} is no declared piecewise polynomial")
+            raise TrajgapError(f"certify: {self.curve.name} is not a declared piecewise polynomial")
         return self.curve
 
     def joint(self, index: int) -> ExactProblem:
-        """The same question for one joint alone."""
+        """The same problem for one joint only."""
         one = slice(index, index + 1)
         curve = self.curve
         if isinstance(curve, Interpolant):
@@ -219,7 +221,9 @@ def one_velocity(end: Derivatives) -> float | None:
     """
     value = dict(end).get(1)
     if isinstance(value, tuple):
-        raise TrajgapError("certify: end velocities that differ are those of polynomials alone")
+        raise TrajgapError(
+            "certify: end velocities that differ between joints are covered for polynomials only"
+        )
     return value
 
 
@@ -229,7 +233,7 @@ def exact_problem(problem: Problem) -> ExactProblem:
     Parameters
     ----------
     problem : Problem
-        Its coupling is not looked at.
+        Its coupling is ignored.
 
     Returns
     -------
@@ -272,7 +276,7 @@ def printed_problem(statement: Statement) -> ExactProblem:
     Returns
     -------
     ExactProblem
-        Each joint in the unit of its way-points; a limit in another unit of angle carries π.
+        Each joint in the unit of its way-points; a limit in another unit of angle contains π.
 
     Raises
     ------
@@ -394,6 +398,6 @@ def _derivative(number: Printed, order: int, statement: Statement, joint: int) -
     if other.pi != base.pi:
         raise TrajgapError(
             "certify: a derivative at an end is in another unit of angle than the way-points, "
-            "so that no certificate states it exactly; give both in the same"
+            "so no certificate can state it exactly; give both in the same unit"
         )
     return number.fraction * other.rational / base.rational

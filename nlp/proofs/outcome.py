@@ -34,7 +34,7 @@ class Outcome(StrEnum):
 
 @dataclass(frozen=True)
 class Progress:
-    """What a long run reports: bounds in s, relative gap, open boxes, boxes per second."""
+    """Progress of a long run: bounds in s, relative gap, open boxes, boxes per second."""
 
     lower: float
     upper: float
@@ -115,22 +115,22 @@ class Certified:
     proof : Argument or None
         What proves ``lower``; None if nothing is proved.
     stopped : bool
-        Whether a state of it is worth going on from.
+        Whether its state is worth continuing from.
     proposals : Argument or None
-        What a stopped run had not finished.
+        Parts that a stopped run had not finished.
     subject : Subject
-        What the interval speaks about.
+        Curves that the interval covers.
     speeds : tuple or None
-        Of the answer at the way-points, if it is one of any curve.
+        Velocities of the answer at the way-points, if it is an answer for any curve.
     verdict : CertificateVerdict or None
-        What `trajgap.verify` says of the certificate; None if nothing is proved.
+        The verdict of `trajgap.verify` on the certificate; None if nothing is proved.
     left_out : str or None
-        What the time limit was too short for, in words, where that is all that is known.
+        What the time limit was too short for, in words, if nothing more is known.
     widened : bool
         Whether the bound was proved within the larger size of limits whose sides differ: it holds,
-        and may stay below the optimum whatever the time.
+        but may stay below the optimum for any time limit.
     kept : bool
-        Whether the proof is that of an earlier run, proved again in this one.
+        Whether the proof comes from an earlier run and was verified in this one.
     """
 
     problem: ExactProblem

@@ -43,12 +43,12 @@ def solve(
     seconds: float = math.inf,
     prove: float = PROVING,
 ) -> Solution:
-    """Shortest total time with shared durations: from an exact NLP, and proved where it can be.
+    """Shortest total time with shared durations, found by an exact NLP and proved if possible.
 
-    Where a certificate that ships with the package is about this very problem, it is proved again.
-    Else a branch and bound looks for a lower bound, where the curve has one. What `trajgap.verify`
-    proves stands beside the answer: with it the optimum lies between ``lower_bound`` and the total.
-    The answer is *optimal* where both are a millionth apart.
+    If a certificate for exactly this problem ships with the package, it is verified. Otherwise a
+    branch and bound searches for a lower bound, if the kind of curve has one. The answer includes
+    the bound that `trajgap.verify` proves: the optimum then lies between ``lower_bound`` and the
+    total. The answer is *optimal* if both are at most a millionth apart.
 
     Parameters
     ----------
@@ -56,14 +56,14 @@ def solve(
         Its coupling is not looked at: durations are shared by all joints of the problem. See
         `solve_per_joint` for the other procedure.
     exact : ExactProblem, optional
-        The same problem in the numbers that are printed. Without it the floats are exact, unless a
-        certificate that ships is about the printed numbers that they round.
+        The same problem in the numbers that are printed. Without it the floats count as exact,
+        unless a shipped certificate is about the printed numbers to which they are rounded.
     starts, seed, initial, known, known_nodal, seconds
         As in `trajgap.nlp.optimum.solve`.
     prove : float
         Budget of the branch and bound, as a share of what an audit allows one problem; 0 turns it
-        off. Boxes are counted and not seconds, so that no answer depends on how busy the machine
-        is; it ends with ``seconds`` all the same.
+        off. Boxes are counted, not seconds, so no answer depends on how busy the machine is;
+        ``seconds`` still ends it.
 
     Returns
     -------

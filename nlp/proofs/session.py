@@ -28,9 +28,9 @@ UNBOUNDED = "the time ended before a lower bound was proved"
 """What was left out where a search had to end before its first proof."""
 BARE = "the time ended before a bound better than that of the mean velocities was proved"
 """What was left out where all that is proved is what needs no search."""
-BOXED = "the boxes that were allowed ended before a lower bound was proved"
+BOXED = "the allowed number of boxes was used up before a lower bound was proved"
 """The same where boxes were counted, and no time was limited."""
-UNPROVED = "a motion was found, and the exact proof that it keeps its limits was cut short"
+UNPROVED = "a motion was found, but the exact proof that it keeps its limits was cut short"
 """What was left out where `Session.answering` is over."""
 
 

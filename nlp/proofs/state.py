@@ -78,7 +78,7 @@ def read_state(path: str | Path) -> StateFile:
     Raises
     ------
     TrajgapError
-        If it is no state file, or differs from what was written. The seal guards against damage
+        If it is not a state file, or differs from what was written. The seal guards against damage
         alone: `certify` proves everything in it again.
     """
     name = str(path)
@@ -88,10 +88,10 @@ def read_state(path: str | Path) -> StateFile:
     except Refused as error:
         raise TrajgapError(f"{name}: {error}") from None
     if not isinstance(document, dict) or document.get("format") != STATE_FORMAT:
-        raise TrajgapError(f"{name}: is no {STATE_FORMAT}; name a state file")
+        raise TrajgapError(f"{name}: is not a {STATE_FORMAT}; name a state file")
     rest = {key: value for key, value in document.items() if key != "seal"}
     if sealed(rest)["seal"] != document.get("seal"):
-        raise TrajgapError(f"{name}: differs from what was written; start without it")
+        raise TrajgapError(f"{name}: was altered; start without it")
     return StateFile(name, document)
 
 
@@ -135,5 +135,5 @@ def resumed(
     if not verdict.proves:
         raise TrajgapError(f"resume: the state is not proved ({verdict.reason})")
     if not fits(document, problem, subject):
-        raise TrajgapError("resume: the state is about another problem; start without it")
+        raise TrajgapError("resume: the state belongs to another problem; start without it")
     return claimed(problem, document, verdict, gap, subject)

@@ -21,19 +21,19 @@ def retimed_motion(
 
     Between grid points the path speed's square is linear in arc length, as in TOPPRA; the motion is
     given by cubic Hermite polynomials between grid points, whose acceleration may exceed the limits
-    by an error of the grid's order: `check_motion` says by how much.
+    by an error of the order of the grid; `check_motion` gives the amount.
 
     Parameters
     ----------
     trajectory : Trajectory
-        Its path counts, and its path speeds at the two ends.
+        Its path and its path speeds at the two ends are used.
     limits : Limits
         Velocity and acceleration.
     joints : tuple of str, optional
         Labels.
     cells : int
-        Of each piece between standstills, of up to five segments; the finest grid of the comparison
-        by default.
+        Number of cells of each piece between standstills, of up to five segments; by default the
+        finest grid of the comparison.
 
     Returns
     -------
@@ -66,7 +66,7 @@ def retimed_motion(
             )
         speeds = found[1]
         if (speeds[1:] + speeds[:-1] <= 0).any():
-            raise TrajgapError(f"TOPPRA stands still inside piece {number}; take other limits")
+            raise TrajgapError(f"TOPPRA stops inside piece {number}; choose other limits")
         steps = 2.0 * np.diff(path.s) / (speeds[1:] + speeds[:-1])
         skip = 1 if positions else 0  # a standstill ends one piece and begins the next
         times += (times[-1] + np.cumsum(steps)).tolist()

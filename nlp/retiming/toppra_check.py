@@ -23,7 +23,7 @@ class Retiming:
     Attributes
     ----------
     applicable : bool
-        False if there is nothing to compare with; `why` says the reason.
+        False if there is nothing to compare with; `why` gives the reason.
     why : str or None
         Why it is not applicable, or why the inequality is not asserted.
     trajectory_time : float
@@ -100,7 +100,7 @@ def retime(
     Returns
     -------
     Retiming
-        Never raises for a trajectory to which it does not apply: `applicable` says so.
+        Never raises for a trajectory to which it does not apply; `applicable` is then False.
 
     Raises
     ------
@@ -210,11 +210,13 @@ def not_applicable(trajectory: Trajectory, limits: Limits) -> str | None:
     if not moving.any():
         return "nothing moves"
     if limits.uneven:
-        return "the two sides of a limit differ in size, and paths are retimed within equal ones"
+        return (
+            "the two sides of a limit differ in size, and paths are re-timed only within equal ones"
+        )
     if np.isfinite(limits.jerk[moving]).any():
-        return "jerk is limited, and TOPPRA knows velocity and acceleration limits only"
+        return "jerk is limited, but TOPPRA handles velocity and acceleration limits only"
     if np.isinf(limits.acceleration[moving]).all():
-        return "no acceleration is limited; speed along the path could jump"
+        return "no acceleration is limited, so the speed along the path could jump"
     for name, values in (("velocity", limits.velocity), ("acceleration", limits.acceleration)):
         stuck = np.flatnonzero(moving & (values == 0))
         if stuck.size:

@@ -46,7 +46,7 @@ _ONLY_READING = Reading(id="as-printed", why="the numbers and units as printed",
 
 @dataclass(frozen=True)
 class DurationBox:
-    """Claimed durations in seconds: as printed, and the box of all that round to them.
+    """Claimed durations in seconds: as printed, and the box of all values that round to them.
 
     Each array has shape (segments,).
     """
@@ -63,9 +63,9 @@ class Case:
     Parameters
     ----------
     file : str
-        What it was loaded from, for messages.
+        Name of the file, for messages.
     sha256 : str or None
-        Of the file's bytes; None where the case was not read from a file.
+        Hash of the file; None if the case was not read from a file.
     """
 
     document: CaseFile
@@ -109,7 +109,7 @@ class Case:
 
     @property
     def clues(self) -> tuple[AnyClue, ...]:
-        """What speaks for or against readings beside the claims."""
+        """Evidence for or against readings, apart from the claims."""
         return self.document.clues
 
     @property
@@ -283,7 +283,7 @@ class Case:
     def problem_at(
         self, digits: Digits, problem_id: str | None = None, reading_id: str | None = None
     ) -> Problem:
-        """Problem whose limits and bounds take one end of what their printed digits stand for.
+        """Problem whose limits and bounds are at one end of the intervals of their printed digits.
 
         A limit given as a bare number is exact, and the same at either end.
 
@@ -373,12 +373,12 @@ class Case:
         problem_id, reading_id : str, optional
             As in `problem`.
         joint : str, optional
-            Label of its joint, needed where units differ.
+            Label of its joint; needed if units differ.
 
         Raises
         ------
         CaseError
-            If the file states no unit for the quantity, or several and no joint is named.
+            If the file states no unit for the quantity, or states several and no joint is named.
         """
         place = None if joint is None else self.robot.joints.index(joint)
         return self.statement(problem_id, reading_id).si(number, quantity, joint=place)
@@ -395,7 +395,7 @@ class Case:
         if known is None:
             chain = self.chain()
             if chain is None or chain.labels != self.robot.joints:
-                why = "needs the robot's table, and all its joints in robot.joints; add them"
+                why = "needs the robot's table with all its joints in robot.joints; add them"
                 raise CaseError(self.file, "waypoints.line", why + selected)
             if unit is None:
                 choices = ", ".join(CHOICES["position"])

@@ -18,7 +18,7 @@ def _day(text: str) -> str:
     try:
         return date.fromisoformat(text).isoformat()
     except ValueError:
-        raise TrajgapError(f"{text!r} is no day; write it as 2026-01-31") from None
+        raise TrajgapError(f"{text!r} is not a day; write it as 2026-01-31") from None
 
 
 Day = Annotated[Text, AfterValidator(_day)]
@@ -95,14 +95,15 @@ class DurationsClaim(TimeClaim):
         for key in ("blends", "blend_acceleration"):
             if getattr(self, key) is not None and self.other_curve is None:
                 raise fault(
-                    f".{key}", "goes with other_curve; name the curve there as the paper does"
+                    f".{key}", "requires other_curve; name the curve there as the paper does"
                 )
         if self.end_blends is not None and self.blends is None and self.blend_acceleration is None:
-            raise fault(".end_blends", "goes with blends or blend_acceleration; add one of them")
+            raise fault(".end_blends", "requires blends or blend_acceleration; add one of them")
         if self.blends is not None and self.blend_acceleration is not None:
             raise fault(
                 ".blend_acceleration",
-                "stands beside blends; keep one of the two, as the other follows from it",
+                "cannot be combined with blends; keep one of the two, because the other follows "
+                "from it",
             )
         return self
 
@@ -153,9 +154,9 @@ class ProfiledClaim(TimeClaim):
     @model_validator(mode="after")
     def _on_another_curve(self) -> Self:
         if self.profile is not None and self.other_curve is None:
-            raise fault(".profile", "goes with other_curve; name the curve there as the paper does")
+            raise fault(".profile", "requires other_curve; name the curve there as the paper does")
         if self.path is not None and self.profile is None:
-            raise fault(".path", "goes with profile; add it, or leave this out")
+            raise fault(".path", "requires profile; add it, or leave this out")
         for key, profile, needed in (
             ("deceleration", "trapezoidal", False),
             ("snap", "fourth-order", True),
@@ -218,7 +219,7 @@ class ImprovementClaim(Claim):
         if self.slower == self.faster:
             raise fault(".faster", "is the same claim as slower; name two claims")
         if self.base is not None and self.percent is None:
-            raise fault(".base", "goes with percent; add it, or leave this out")
+            raise fault(".base", "requires percent; add it, or leave this out")
         return self
 
 
@@ -238,9 +239,9 @@ class MotionValueClaim(Claim):
     @model_validator(mode="after")
     def _one_or_each(self) -> Self:
         if (self.value is None) == (self.values is None):
-            raise fault(".value", "or values is needed, and not both; give one of them")
+            raise fault(".value", "or values is needed, but not both; give one of them")
         if self.values is not None and self.joint is not None:
-            raise fault(".joint", "does not go with values, one per joint; leave it out")
+            raise fault(".joint", "cannot be combined with values, one per joint; leave it out")
         return self
 
     @property
@@ -285,7 +286,7 @@ class ValueClaim(MotionValueClaim):
     @model_validator(mode="after")
     def _one_place(self) -> Self:
         if (self.place is None) == (self.time is None):
-            raise fault(".place", "or time is needed, and not both; give one of them")
+            raise fault(".place", "or time is needed, but not both; give one of them")
         return self
 
 
@@ -357,8 +358,9 @@ class StatementClaim(Claim):
         "none",
     ]
     """How it can be checked on the claims named in ``of``; "jumps" says that acceleration does,
-    "at_rest" that velocity is 0 at both ends. Without ``of``: "kinematics" says that joint angles
-    and positions belong together, "varies_most" and "varies_much" that ``joint`` does, "above" that
+    "at_rest" that velocity is 0 at both ends. Without ``of``: "kinematics" says that the joint "
+    "angles and the positions agree, "varies_most" and "varies_much" that ``joint`` does, "above" "
+    "that
     the first of ``positions`` lies above the second, "equations" that those of the file hold on the
     printed robot."""
     of: tuple[Id, ...] = ()
@@ -375,20 +377,22 @@ class StatementClaim(Claim):
     @model_validator(mode="after")
     def _reason(self) -> Self:
         if self.nature is not None and self.checks != "none":
-            raise fault(".nature", 'goes with checks = "none" only; leave it out, or check nothing')
+            raise fault(".nature", 'requires checks = "none"; leave it out, or set checks so')
         if (self.checks == "none") != bool(self.not_checkable):
             raise fault(
                 ".not_checkable",
-                'goes with checks = "none" and only with it; say why it cannot be checked, '
-                "or how it can",
+                'is required with checks = "none", and allowed only there; state why the sentence '
+                "cannot be checked, or choose another check",
             )
         if (self.checks == "above") != (len(self.positions) == 2):
-            raise fault(".positions", 'names two positions, and goes with checks = "above" only')
+            raise fault(
+                ".positions", 'names two positions, and is allowed only with checks = "above"'
+            )
         if self.checks in ("varies_most", "varies_much") and self.joint is None:
             how = self.checks.removeprefix("varies_")
             raise fault(".joint", f"is missing; name the joint that is said to vary {how}")
         if self.against is not None and self.algorithm is None:
-            raise fault(".against", "goes with algorithm; name the one that is compared with it")
+            raise fault(".against", "requires algorithm; name the one that is compared with it")
         return self
 
 

@@ -77,7 +77,7 @@ def _check_claim(
         if statement.waypoints.number != 2:
             faults.add(
                 f"{at}.phases",
-                f"are of one segment, and there are {statement.waypoints.number} way-points; "
+                f"describe one segment, but there are {statement.waypoints.number} way-points; "
                 f"state a total instead{statement.selected}",
             )
         for key in ("phases", "ramps"):
@@ -103,7 +103,7 @@ def _check_claim(
             number(claim.time, "time", "time")
         elif claim.place not in (known := named_places(statement)):
             fix = spelling_hint(claim.place or "", known)
-            faults.add(f"{at}.place", f"{claim.place!r} is no place of the motion; {fix}")
+            faults.add(f"{at}.place", f"{claim.place!r} is not a place of the motion; {fix}")
     if isinstance(claim, ControlVerticesClaim):
         _check_vertices(claim, statement, f"{at}.joint_rows")
 
@@ -272,13 +272,13 @@ def _check_motion_value(
     for motion in [*meant, *([] if profile is None else [profile])]:
         if motion.problem != claim.problem:
             raise statement.fail(
-                f"{at}.of", f"{motion.id!r} is about another problem; name a motion of this one"
+                f"{at}.of", f"{motion.id!r} belongs to another problem; name a motion of this one"
             )
     if len(meant) > 1:
         names = ", ".join(repr(c.id) for c in meant[:-1])
         raise statement.fail(
             f"{at}.of",
-            f"is missing, and the {claim.quantity} may be that of {names} or {meant[-1].id!r}; "
+            f"is missing, but the {claim.quantity} may belong to {names} or {meant[-1].id!r}; "
             f"name the motion: of = {' or of = '.join(json.dumps(c.id) for c in meant)}",
         )
 

@@ -60,7 +60,7 @@ class DataSheetClue(Clue):
             at = f"[{index}]" if isinstance(self.unit, tuple) else ""
             _check_unit(self.quantity, unit, at)
         if any(value.fraction <= 0 for value in self.values):
-            raise fault(".values", "hold a number that is not positive; a limit is")
+            raise fault(".values", "contain a number that is not positive; limits are positive")
         return self
 
     def units(self, count: int) -> tuple[str, ...]:
@@ -97,4 +97,4 @@ CLUE_KINDS = ("axis", "data-sheet", "smooth", "half-turns")
 def _check_unit(quantity: Known, unit: str, at: str = "") -> None:
     if unit not in CHOICES[quantity]:
         known = ", ".join(CHOICES[quantity])
-        raise fault(f".unit{at}", f"{unit!r} is no unit of {quantity}; use one of {known}")
+        raise fault(f".unit{at}", f"{unit!r} is not a unit of {quantity}; use one of {known}")

@@ -63,7 +63,7 @@ def _polynomials(block: InterpolantBlock, count: int, ends: Ends) -> Curve:
 
 
 def _spline(made: Callable[..., Curve]) -> Callable[[InterpolantBlock, int, Ends], Curve]:
-    """A spline of one degree: a segment between breaks, of which virtual ones are no way-points."""
+    """A spline of one degree with a segment between breaks; virtual breaks are not way-points."""
 
     def declared(block: InterpolantBlock, count: int, ends: Ends) -> Curve:
         virtual = block.virtual or ()
@@ -189,7 +189,7 @@ class InterpolantBlock(Strict):
             if getattr(self, key) is None:
                 raise fault(f".{key}", f"is missing; family {self.family!r} needs it")
         for key in self.model_fields_set - {"family", "where", *family.needed, *family.allowed}:
-            raise fault(f".{key}", f"does not go with family {self.family!r}; leave it out")
+            raise fault(f".{key}", f"is not used by family {self.family!r}; leave it out")
         if self.degree is not None:
             allowed_degrees = (3, 5, 7, 9) if self.family == "rest-to-rest" else range(3, 8)
             if self.degree not in allowed_degrees:
@@ -216,7 +216,9 @@ class InterpolantBlock(Strict):
             if given and numbers is None:
                 raise fault(f".{listed}", f'is missing; {key} = "given" needs it')
             if numbers is not None and not given:
-                raise fault(f".{listed}", f'is for {key} = "given"; leave it out, or write that')
+                raise fault(
+                    f".{listed}", f'is used only with {key} = "given"; leave it out, or write that'
+                )
             if numbers is not None:
                 _check_rising(f".{listed}", numbers, repeats=listed == "knot_vector")
         if self.knot_vector is not None and self.parameter_values is not None:
@@ -289,7 +291,7 @@ def _check_rising(key: str, numbers: tuple[Printed, ...], repeats: bool) -> None
                 f"{key}[{index}]", f"{other} follows {one}, but must {rule}; correct one of them"
             )
     if numbers[0].fraction == numbers[-1].fraction:
-        raise fault(key, "has one number alone, repeated; give the whole vector")
+        raise fault(key, "repeats a single number; give the whole vector")
 
 
 def _check_values(key: str, values: Values | None, orders: tuple[int, ...]) -> None:

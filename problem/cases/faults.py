@@ -94,8 +94,8 @@ def all_faults(error: ValidationError) -> list[tuple[str, str]]:
 
 
 _MISSING = {
-    "iterations": 'is missing; give the printed number. Where the paper says "converges to the '
-    'optimum" and prints none, take quantity = "statement" with checks = "optimal"',
+    "iterations": 'is missing; give the printed number. If the paper says "converges to the '
+    'optimum" without a number, use quantity = "statement" with checks = "optimal"',
 }
 """How to fix a missing key that the paper may not print."""
 
@@ -119,11 +119,11 @@ def _read(detail: Mapping[str, Any]) -> list[tuple[str, str]]:
         if given is None:
             return [(f"{path}.{key}", f"is missing; add one of {', '.join(kinds)}")]
         fix = spelling_hint(str(given), kinds)
-        return [(f"{path}.{key}", f"{_short(given)} is no {name}; {fix}")]
+        return [(f"{path}.{key}", f"{_short(given)} is not a {name}; {fix}")]
     if kind == "missing" and detail["loc"][-1] in _MISSING:
         return [(path, _MISSING[detail["loc"][-1]])]
     if kind == "string_too_short" and detail["loc"][-1] == "where":
-        return [(path, 'is empty; say where it is printed, such as "Table 2"')]
+        return [(path, 'is empty; state where it is printed, such as "Table 2"')]
     return [(path, _reason(kind, raw, context, detail["msg"]))]
 
 

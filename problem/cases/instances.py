@@ -48,7 +48,7 @@ class InstancesBlock(Strict):
     def _proper(cls, steps: tuple[Printed, ...]) -> tuple[Printed, ...]:
         for index, step in enumerate(steps):
             if step.value <= 0:
-                raise fault(f"[{index}]", "is 0; a step moves something, give more")
+                raise fault(f"[{index}]", "is 0; give a positive step")
             if step.value in [other.value for other in steps[:index]]:
                 raise fault(f"[{index}]", f"{step} is given twice; leave one out")
         return steps

@@ -46,7 +46,7 @@ def _misfit(clue: AnyClue, labels: Sequence[str], linear: Sequence[bool]) -> tup
     """Field and reason where a clue's unit is not that of its joints."""
     slides = dict(zip(labels, linear, strict=True))
     if isinstance(clue, HalfTurnsClue) and slides.get(clue.joint, False):
-        return "joint", f"joint {clue.joint!r} slides, and half turns are of angles; name another"
+        return "joint", f"joint {clue.joint!r} slides, but half turns apply to angles; name another"
     if isinstance(clue, AxisClue):
         meant = slides.values() if clue.joint is None else [slides.get(clue.joint)]
         if None not in meant and is_linear(clue.unit) not in meant:

@@ -65,7 +65,7 @@ _PARAMETERS = {
 """What its knots are placed by."""
 _SITES = {"times": "way-points at the times", "given": "way-points at printed parameters"}
 """Where the way-points lie among printed knots."""
-_TIME = {"stretched": "each segment stretched in time by itself", "timed": "smooth time"}
+_TIME = {"stretched": "each segment stretched in time separately", "timed": "smooth time"}
 """How time enters a B-spline."""
 _TIME_ENDS = {
     "equal-vertices": "time ending in equal vertices",
@@ -226,7 +226,7 @@ def ratio_words(value: object) -> str:
 def _coupling(document: CaseFile, reading: Reading) -> Iterator[str]:
     if reading.coupling is not None:
         shared = reading.coupling is Coupling.SHARED
-        yield "durations shared by the joints" if shared else "each joint timed by itself"
+        yield "durations shared by the joints" if shared else "each joint timed separately"
 
 
 def _and(parts: Sequence[str]) -> str:

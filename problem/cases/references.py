@@ -219,7 +219,7 @@ def _check_instances(document: CaseFile, faults: Faults, block: InstancesBlock, 
         if side.algorithm is None or (side.problem is None and document.problems):
             faults.add(
                 f"{at}.claim",
-                f"claim {side.id!r} does not name its problem and its algorithm; add both there",
+                f"claim {side.id!r} does not name its problem and its algorithm; add both to it",
             )
     if document.robot.dh is None and document.robot.model is None:
         faults.add(f"{at}.id", "way-points are drawn from the robot's workspace; add robot.dh")
@@ -248,7 +248,7 @@ def check_kinematics(document: CaseFile, faults: Faults, chain: Chain | None) ->
         if block.kind == "joint" and chain is not None and not chain.revolute.all():
             faults.add(
                 f"families[{index}].kind",
-                '"joint" measures a step as an angle, and a joint of the robot slides; take "end"',
+                '"joint" measures a step as an angle, but a joint of the robot slides; use "end"',
             )
     waypoints = document.waypoints
     printed = list(document.robot.joints)
@@ -267,7 +267,7 @@ def check_kinematics(document: CaseFile, faults: Faults, chain: Chain | None) ->
         if listed and column.unit not in CHOICES["position"]:
             faults.add(
                 f"{field}.unit",
-                f"is needed where units.position lists one per joint of the robot's; use one of "
+                f"is needed if units.position lists one unit per joint; use one of "
                 f"{', '.join(CHOICES['position'])}",
             )
         printed.append(column.joint)
@@ -279,12 +279,14 @@ def check_kinematics(document: CaseFile, faults: Faults, chain: Chain | None) ->
     named = [entry.waypoint for entry in document.cartesian]
     for index, name in enumerate(named):
         if name is None and any(named):
-            faults.add(f"cartesian[{index}].waypoint", "is missing, others name theirs; add it")
+            faults.add(
+                f"cartesian[{index}].waypoint", "is missing, although others name theirs; add it"
+            )
         known = () if waypoints is None else waypoints.labels
         if name is not None and name not in known:
             faults.add(
                 f"cartesian[{index}].waypoint",
-                f"{name!r} is no label of a way-point; {spelling_hint(name, known)}",
+                f"{name!r} is not a label of a way-point; {spelling_hint(name, known)}",
             )
     if named and None in named and waypoints is not None and len(named) != waypoints.number:
         faults.add(

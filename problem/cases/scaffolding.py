@@ -50,7 +50,7 @@ class FileLimits:
     source : str
         Name of the file.
     doubt : str
-        What they leave out, in a sentence; empty for nothing.
+        What the limits leave out, in a sentence; empty if nothing.
     """
 
     joints: tuple[str, ...]
@@ -94,9 +94,9 @@ def scaffold(
         way-points; else the cubic spline with two virtual way-points, or without a jerk limit,
         which it needs to have a shortest motion, the one at rest at both ends.
     degree : int, optional
-        Of families that need one, such as rest-to-rest.
+        Degree, for families that need one, such as rest-to-rest.
     velocity, acceleration, jerk : str, optional
-        Limit of every joint, or one for each, with commas between; meant exactly.
+        One limit for all joints, or one for each, separated by commas; they count as exact.
     durations, total : str, optional
         Printed durations of the segments, with commas between, and printed total time: each
         becomes a claim, with its digits as given.
@@ -107,15 +107,15 @@ def scaffold(
         Given the names in the header, the limits that a file states of these joints. A limit that
         is also given above takes precedence.
     warn : callable, optional
-        Called with a sentence on what may not be meant as it was taken.
+        Called with a sentence about input that may have been misread.
 
     Returns
     -------
     str
-        TOML with every number as it stands in the table, and comments on what to add. It loads.
+        TOML with every number as in the table, and comments on what to add. It can be loaded.
         Angles with decimals are in quotes, which stand for all
         that rounds to them; whole radians, and whole degrees where all are multiples of 5, are
-        settings and meant exactly.
+        exact.
 
     Raises
     ------
@@ -194,8 +194,8 @@ def scaffold(
         warn(f"{name}: {doubt}")
     if found.counted and warn is not None:
         warn(
-            f"{name}: line 1 is taken for the names of the joints, {', '.join(joints)}; if these "
-            "are a way-point, put a header above it"
+            f"{name}: line 1 is read as the names of the joints, {', '.join(joints)}; if it is a "
+            "way-point, put a header above it"
         )
     return text(segments)
 
@@ -231,7 +231,7 @@ def _curve(
     """Lines of the block that declares the curve, with the reason for it."""
     why = "as given"
     if family is None and points == 4:
-        family, why = "3-5-3", "usual for four way-points; change it to what the paper says"
+        family, why = "3-5-3", "usual for four way-points; change it to the paper's curve"
     elif family is None and jerk:
         family, why = "cubic-spline-virtual", "C2 cubics at rest at both ends; change it if needed"
     elif family is None:
@@ -381,7 +381,7 @@ def _angles(table: WaypointTable, unit: str | tuple[str, ...]) -> dict[str, Any]
         rows.append(f"[{', '.join(shown)}],  # {_comment(label)}")
     remark = ""
     if whole and exact:
-        remark = "Whole numbers are settings and meant exactly; quote those that the paper rounds."
+        remark = "Whole numbers count as exact; quote those that the paper rounds."
     elif whole:
         at = next(k for k, cell in enumerate(cells) if cell in whole)
         own = unit if isinstance(unit, str) else unit[at % len(table.joints)]

@@ -84,7 +84,7 @@ class Robot(Strict):
             if label in self.joints[:index]:
                 raise fault(f".joints[{index}]", f"joint {label!r} is named twice; rename one")
         if self.dh is not None and self.model is not None:
-            raise fault(".model", "stands beside dh; keep one of the two")
+            raise fault(".model", "cannot be combined with dh; keep one of the two")
         return self
 
 
@@ -149,11 +149,12 @@ class Waypoints(Strict):
                 )
         count = len(self.points)
         if count < 2:
-            raise fault(f".{name}", "holds one way-point only; give at least two")
+            raise fault(f".{name}", "contains only one way-point; give at least two")
         if count > MOST_WAYPOINTS:
             raise fault(
                 f".{name}",
-                f"holds {count:,} way-points, at most {MOST_WAYPOINTS:,} are read; leave some out",
+                f"holds {count:,} way-points, but at most {MOST_WAYPOINTS:,} are read; leave some "
+                "out",
             )
         self._check_labels()
         return self
@@ -161,7 +162,7 @@ class Waypoints(Strict):
     def _check_absent(self) -> None:
         if (self.joint_rows, self.waypoint_rows, self.line) != (None, None, None):
             name = "count" if self.not_printed is None else "not_printed"
-            raise fault(f".{name}", "goes without rows only; leave it out, or the rows")
+            raise fault(f".{name}", "cannot be combined with rows; leave out one of the two")
         for name in ("not_printed", "count"):
             if getattr(self, name) is None:
                 raise fault(f".{name}", "is missing; way-points without rows need both")
@@ -262,9 +263,9 @@ class Reading(Override):
     @model_validator(mode="after")
     def _changes_one(self) -> Self:
         if self.default_why is not None and not self.default:
-            raise fault(".default_why", "goes with default = true; add it, or leave this out")
+            raise fault(".default_why", "requires default = true; add it, or leave this out")
         if self.interpolant_of and self.interpolant is None:
-            raise fault(".interpolant_of", "goes with an interpolant; add it, or leave this out")
+            raise fault(".interpolant_of", "requires an interpolant; add it, or leave this out")
         return self
 
 
@@ -277,7 +278,7 @@ def _setting(raw: object) -> object:
         return float(raw)
     if isinstance(raw, bool | int | float | str):
         return raw
-    raise TrajgapError(f"{describe(raw)} is no setting; give a number, a string or a list")
+    raise TrajgapError(f"{describe(raw)} is not a setting; give a number, a string or a list")
 
 
 Setting = Annotated[
@@ -305,7 +306,7 @@ class AlgorithmBlock(Strict):
     @model_validator(mode="after")
     def _printed_or_chosen(self) -> Self:
         for key in self.chosen.keys() & self.settings.keys():
-            raise fault(f".chosen.{key}", "is printed and chosen at once; keep one of the two")
+            raise fault(f".chosen.{key}", "is both printed and chosen; keep one of the two")
         return self
 
     @property

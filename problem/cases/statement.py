@@ -125,7 +125,7 @@ class Statement:
             raise self.fail(
                 field or quantity,
                 f"{number} {unit} lies outside the magnitudes from {1 / _LARGEST:g} to "
-                f"{_LARGEST:g} {'m' if is_linear(unit) else 'rad'} and s that are computed with; "
+                f"{_LARGEST:g} {'m' if is_linear(unit) else 'rad'} and s that can be computed; "
                 "correct digits or unit",
             )
         return measured
@@ -172,7 +172,7 @@ class Statement:
                 listed = ", ".join(self.labels)
                 raise self.fail("turns", f"joint {label!r} is unknown; robot.joints lists {listed}")
             if self.linear[self.labels.index(label)]:
-                why = f"joint {label!r} slides, and turns are of angles; leave it out"
+                why = f"joint {label!r} slides, but turns apply to angles; leave it out"
                 raise self.fail(f"turns.{label}", why)
             if len(given) != count:
                 raise self.fail(
@@ -220,7 +220,7 @@ class Statement:
         if block.parameters == "chord" and len({self.linear[j] for j in self.joints}) > 1:
             raise self.fail(
                 "interpolant.parameters",
-                '"chord" adds angles and lengths, so that its knots depend on their units; take '
+                '"chord" adds angles and lengths, so its knots depend on their units; use '
                 '"joint-chord" or "times"',
             )
         start = self._end("end_derivatives", block.end_derivatives, block.orders)
@@ -241,8 +241,8 @@ class Statement:
         if polynomials is not None and polynomials.free and polynomials.coefficients > MOST_OPEN:
             raise self.fail(
                 "interpolant",
-                f"leaves {polynomials.free} of {polynomials.coefficients} coefficients free, and "
-                f"at most {MOST_OPEN} are computed with where some are; add conditions",
+                f"leaves {polynomials.free} of {polynomials.coefficients} coefficients free, but "
+                f"at most {MOST_OPEN} coefficients are supported if some are free; add conditions",
             )
         if polynomials is not None and polynomials.free != block.free:
             raise self.fail(

@@ -50,16 +50,16 @@ class Difference:
 
 
 def compare_transcriptions(first: Case, second: Case, words: bool = False) -> list[Difference]:
-    """Compare what two case files hold, whatever their layout.
+    """Compare the contents of two case files, regardless of layout.
 
     Digits are compared as printed: ``"0.66"``, ``"0.660"`` and a bare ``0.66`` are three things.
-    Way-points by rows and by columns are the same table. Entries of lists are matched by their
-    ids, so that those must be agreed on; their order does not count.
+    Way-points by rows and by columns are the same table. Entries of lists are matched by their ids,
+    which must therefore agree; their order does not count.
 
     Parameters
     ----------
     words : bool
-        Whether titles, notes and places count too, which each transcriber words otherwise.
+        Whether titles, notes and places are compared too, which each transcriber words differently.
     """
     one, two = (_held(case) for case in (first, second))
     return list(_differences("", one, two, words))

@@ -82,7 +82,7 @@ def read_waypoint_table(faults: Faults, text: str) -> WaypointTable:
             _refuse_count(faults, [row[0] for row in whole], header[0])
     for line, row in lines[1:]:
         if len(row) != many:
-            cells = f"has {len(row)} cells, the header {many}"
+            cells = f"has {len(row)} cells, but the header has {many}"
             faults.add(f"line {line}", f"{cells}; fill or remove cells")
         for column, cell in enumerate(row[first:], first + 1):
             add_digits(faults, f"line {line}, column {column}", cell)
@@ -94,7 +94,7 @@ def read_waypoint_table(faults: Faults, text: str) -> WaypointTable:
         numbers = [list(column) for column in zip(*numbers, strict=True)]
     points = len(numbers) if transposed else len(lines) - 1
     if points < 2:
-        faults.add("", f"holds {points} way-points; give at least two rows of numbers")
+        faults.add("", f"contains {points} way-points; give at least two rows of numbers")
     return WaypointTable(
         joints=tuple(names),
         labels=tuple(labels),
@@ -135,7 +135,7 @@ def _cells(faults: Faults, text: str) -> list[tuple[int, list[str]]]:
     for line, row in found[1:]:
         parts = row[0].split()
         if len(row) == 1 and len(parts) > 1 and all(map(_is_number, parts)):
-            why = f"holds {len(parts)} numbers with spaces between, in one cell"
+            why = f"contains {len(parts)} numbers in one cell, separated by spaces"
             raise CaseError(
                 faults.file, f"line {line}", f"{why}; put commas between, in every line"
             )
@@ -148,9 +148,9 @@ def _name_joints(faults: Faults, names: Sequence[str], first: int, down: bool = 
         faults.add("line 1", "names no joint; head one column per joint")
     if any(map(_is_number, names)) and not _counts(names):
         if down:
-            faults.add("column 1", "holds numbers; name each joint there, such as J1")
+            faults.add("column 1", "contains numbers; name each joint there, such as J1")
         else:
-            why = "holds numbers; the first line names the joints, put a header above it"
+            why = "contains numbers, but the first line must name the joints; put a header above it"
             faults.add("line 1", why)
         return
     for at, name in enumerate(names):
@@ -160,7 +160,7 @@ def _name_joints(faults: Faults, names: Sequence[str], first: int, down: bool = 
         elif name in names[:at]:
             faults.add(where, f"joint {name!r} is named twice; rename one")
         elif _TIME_HEADER.fullmatch(name):
-            faults.add(where, f"{name!r} is no joint; leave instants out, and print durations")
+            faults.add(where, f"{name!r} is not a joint; leave instants out, and print durations")
 
 
 def _refuse_count(faults: Faults, cells: Sequence[str], header: str) -> None:
@@ -168,8 +168,8 @@ def _refuse_count(faults: Faults, cells: Sequence[str], header: str) -> None:
     if len(cells) > 2 and _counts(cells):
         faults.add(
             "column 1",
-            f'numbers the rows; head it "point" in place of {header!r}, or write '
-            "1.0 if it is a joint's",
+            f'numbers the rows; head it "point" instead of {header!r}, or write '
+            "1.0 if it belongs to a joint",
         )
 
 

@@ -54,13 +54,13 @@ class ClampedBSpline(ClampedDeclaration, StretchedCurve):
         p, 3 to 7; z1 does not print it.
     knots : Knots or str
     parameters : Parameters or str
-        What the knots are placed by. With chords the inner knots lie at fixed fractions of the
+        What determines the knots. With chords the inner knots lie at fixed fractions of the
         total time.
     time : Timing or str
-        "timed": e is time, the way-points are passed where the durations say. "stretched": the
-        way-points sit at the parameters themselves and each segment is stretched in time by
-        itself, so that velocity may jump; with parameters from the times there is no difference,
-        and it is refused.
+        "timed": e is time, the way-points are passed where the durations say. "stretched": the "
+        "way-points lie at the parameters themselves and each segment is stretched in time "
+        "separately, so the velocity may jump; with parameters from the times there is no "
+        "difference, so this is refused.
     end_orders : tuple of int
         Derivatives that are 0 at both ends.
     fractions : tuple, optional
@@ -89,7 +89,7 @@ class ClampedBSpline(ClampedDeclaration, StretchedCurve):
         return tuple((r, 0.0) for r in self.end_orders) if ends else ()
 
     def smooth_order(self, break_index: int) -> int:
-        """The spline's own, unless every segment is stretched by itself."""
+        """The spline's own order, unless every segment is stretched separately."""
         return 0 if self.stretched else self.degree - 1
 
     def smooth_shares(self, waypoints: Array) -> Array | None:
@@ -175,7 +175,7 @@ class ClampedReading:
     curve : ClampedBSpline or None
         The declaration, if it is determined.
     words : str
-        What holds of this reading, and the nearest one that works.
+        A description of this reading, and the nearest one that works.
     """
 
     degree: int
@@ -243,17 +243,14 @@ def _read(
     counted = counts_in_words(conditions, points, "control points")
     count, curve, why = Count.OVER, None, nearest_reading(knots, degree, end_orders)
     if inner < 0:
-        words = (
-            f"impossible as the text has it: degree {degree} needs more way-points; "
-            "lower the degree"
-        )
+        words = f"impossible as printed: degree {degree} needs more way-points; lower the degree"
     elif points == conditions:
         count = Count.DETERMINED
         curve = ClampedBSpline(waypoints, degree, knots, parameters, time, end_orders)
         words = f"determined, {counted}{'' if parameters is Parameters.TIMES else _CHORDS[time]}"
     elif points < conditions:
         # Only the printed rule, taken at its letter, is called impossible.
-        literal = "impossible as the text has it: " if knots is Knots.AVERAGED else ""
+        literal = "impossible as printed: " if knots is Knots.AVERAGED else ""
         words = f"{literal}over-determined, {counted}; {why}"
     else:
         count, free = Count.UNDER, points - conditions
@@ -273,8 +270,9 @@ _CHORDS = {
         "the chords' proportions"
     ),
     Timing.STRETCHED: (
-        "; chords place knots and way-points, velocity jumps where a segment's duration leaves the "
-        "chords' proportions. With one u = t/T for all, only the total is left of the durations"
+        "; chords place knots and way-points, and the velocity jumps if a segment's duration "
+        "leaves the chords' proportions. With one u = t/T for all, only the total of the durations "
+        "remains free"
     ),
 }
 """What is added to the words of a determined reading with chord parameters."""

@@ -39,7 +39,7 @@ class Parameters(StrEnum):
     CHORD = "chord"
     """Chord lengths of the joint vector, (4) and (5) of z1."""
     JOINT_CHORD = "joint-chord"
-    """Chord lengths of each joint by itself."""
+    """Chord lengths of each joint separately."""
     GIVEN = "given"
     """Printed numbers."""
 
@@ -67,7 +67,7 @@ def inner_fractions(vector: Sequence[float], degree: int) -> tuple[float, ...]:
     Raises
     ------
     TrajgapError
-        If it is no clamped vector of that degree whose inner knots are all different.
+        If it is not a clamped vector of that degree whose inner knots are all different.
     """
     ends, knots = degree + 1, [float(u) for u in vector]
     if not all(map(isfinite, knots)):
@@ -93,7 +93,7 @@ def inner_fractions(vector: Sequence[float], degree: int) -> tuple[float, ...]:
         if one == other:
             raise TrajgapError(
                 f"interpolant.knot_vector: the inner knot {one:g} stands {knots.count(one)} times; "
-                "each may stand once, so that the curve is smooth there"
+                "each may stand once, to keep the curve smooth there"
             )
     return tuple((u - knots[0]) / (knots[-1] - knots[0]) for u in knots[ends : len(knots) - ends])
 
@@ -127,8 +127,8 @@ def nearest_reading(knots: Knots, degree: int, end_orders: tuple[int, ...]) -> s
     rest = 2 * len(end_orders)
     if knots is Knots.WAYPOINTS:
         return (
-            f"with knots at the way-points degree {rest + 1} is determined, with the index "
-            f"continued degree {degree} is"
+            f"with knots at the way-points, degree {rest + 1} is determined; with the index "
+            f"continued, degree {degree} is"
         )
     return f"continue the averaging index at both ends, one knot for each of the {rest} conditions"
 
@@ -145,7 +145,7 @@ def chord_fractions(waypoints: NDArray[np.generic]) -> Fractions:
     if not (chords > 0).all():
         k = int(np.argmin(chords))
         raise TrajgapError(
-            f"waypoints: {k} and {k + 1} coincide, chord parameters do not tell them apart; "
+            f"waypoints: {k} and {k + 1} coincide, so chord parameters cannot distinguish them; "
             "take the parameters from the times"
         )
     along = np.concatenate([[0.0], np.cumsum(chords)])
@@ -222,7 +222,7 @@ class ClampedDeclaration:
         given = self.knots is Knots.GIVEN
         if given != bool(self.knot_vector):
             raise TrajgapError(
-                'interpolant.knot_vector: is missing where knots are "given"; name all of them'
+                'interpolant.knot_vector: is missing, although knots are "given"; list all knots'
                 if given
                 else 'interpolant.knot_vector: is for knots that are "given"; leave it out'
             )
@@ -238,7 +238,7 @@ class ClampedDeclaration:
         if given and self.parameters is not fitting:
             where = "printed parameters" if self.stretched else "the times"
             raise TrajgapError(
-                f'interpolant.parameters: where knots are "given" and time is "{self.time}", '
+                f'interpolant.parameters: if knots are "given" and time is "{self.time}", '
                 f'way-points are passed at {where}; write "{fitting}"'
             )
 
@@ -311,7 +311,7 @@ class ClampedDeclaration:
 
 
 def fractions_of(curve: ClampedDeclaration, waypoints: Array) -> Fractions | None:
-    """Parameters that are no times; None where they are."""
+    """Parameters that are not times; None where they are."""
     if curve.fractions is not None or curve.parameters is Parameters.TIMES:
         return curve.fractions
     if curve.parameters is Parameters.CHORD:

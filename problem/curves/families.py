@@ -28,7 +28,8 @@ def piecewise(
     ends : tuple of (order, value)
         Derivatives prescribed at both ends, rad/sᵒʳᵈᵉʳ: one value for all joints, or one for each.
     finish : tuple of (order, value), optional
-        What is prescribed at the last way-point, where it differs; ``ends`` is the start then.
+        Derivatives prescribed at the last way-point, if they differ; ``ends`` then applies to the
+        start.
     virtual : tuple of int
         Breaks without a way-point, counted among all breaks with the first way-point as 0.
 
@@ -74,7 +75,8 @@ def cubic_spline(
     ends : tuple of (order, value)
         Derivatives prescribed at both ends, rad/sᵒʳᵈᵉʳ: one value for all joints, or one for each.
     finish : tuple of (order, value), optional
-        What is prescribed at the last way-point, where it differs; ``ends`` is the start then.
+        Derivatives prescribed at the last way-point, if they differ; ``ends`` then applies to the
+        start.
     virtual : tuple of int
         As `piecewise` takes them.
 

@@ -100,7 +100,7 @@ class Interpolant(Curve):
         if any(not 0 < b < n for b in self.virtual):
             raise TrajgapError(
                 "interpolant.virtual: only interior breaks can be virtual, "
-                f"{f'1 to {n - 1}' if n > 1 else 'of which one segment has none'}"
+                f"{f'1 to {n - 1}' if n > 1 else 'and one segment has none'}"
             )
         # Long declarations state few different things: each is looked at once.
         keys = list(map(id, self.prescribed))
@@ -347,8 +347,8 @@ class Interpolant(Curve):
         """
         if len(self.free_derivatives) < self.free:
             raise TrajgapError(
-                f"interpolant {self.name}: {self.free} free coefficients, of which only "
-                f"{len(self.free_derivatives)} are nodal derivatives; raise the continuity"
+                f"interpolant {self.name}: {self.free} free coefficients, but only "
+                f"{len(self.free_derivatives)} of them are nodal derivatives; raise the continuity"
             )
         entries = [dict(e) for e in self.prescribed]
         virtual = list(self.virtual)
@@ -440,5 +440,5 @@ def _values(entries: Derivatives) -> list[float]:
 
 
 def as_piecewise(curve: Curve) -> Interpolant | None:
-    """The declaration as polynomials with breaks at the ends of segments, where it is one."""
+    """The declaration as polynomials with breaks at the ends of segments, if it is one."""
     return curve if isinstance(curve, Interpolant) else None

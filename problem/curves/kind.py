@@ -29,7 +29,7 @@ class Timing(StrEnum):
     """How time enters a curve that is given in a parameter e."""
 
     STRETCHED = "stretched"
-    """Each segment by itself: time grows linearly in e, so velocity may jump between segments."""
+    """Each segment separately: time grows linearly in e, so velocity may jump between segments."""
     TIMED = "timed"
     """Time is itself a smooth function of e, or e is time."""
 
@@ -107,7 +107,7 @@ class Curve(ABC):
     """The declaration of a curve through way-points, with all that follows from it.
 
     `Interpolant` is one kind; the B-splines of `uniform` and `clamped` are others. The checker, the
-    batch evaluator and the heuristics know a curve by these methods alone.
+    batch evaluator and the heuristics use only these methods of a curve.
     """
 
     @property
@@ -136,7 +136,7 @@ class Curve(ABC):
 
     @property
     def prescribed_joints(self) -> int | None:
-        """Number of joints for which derivatives are prescribed apart; None where all agree."""
+        """Number of joints for which derivatives are prescribed separately; None if all agree."""
         return None
 
     @property
@@ -256,7 +256,7 @@ class Curve(ABC):
         return self
 
     def shape(self, waypoints: Array) -> Shape | None:
-        """The curve in its parameter, where each segment is stretched in time by itself."""
+        """The curve in its parameter, if each segment is stretched in time separately."""
         return None
 
     def polynomial_form(self) -> Curve:
@@ -278,7 +278,7 @@ def fit(
     durations : array_like, shape (segments,)
         Segment durations, s.
     nodal : array_like, shape (free, joints), optional
-        Values of the free derivatives where the declaration leaves some open.
+        Values of the free derivatives, if the declaration leaves some open.
 
     Returns
     -------
@@ -311,7 +311,7 @@ def merged_values(entries: Derivatives) -> Derivatives:
 def as_curve(given: object) -> Curve:
     """A curve of any kind, or a clear refusal."""
     if not isinstance(given, Curve):
-        raise TrajgapError(f"curve: {type(given).__name__} is no kind of curve known here")
+        raise TrajgapError(f"curve: {type(given).__name__} is not a kind of curve known here")
     return given
 
 
@@ -361,8 +361,8 @@ def are_durations(h: Array) -> NDArray[np.bool_]:
 def masked(reach: Array, asked: Asked, valid: NDArray[np.bool_]) -> Array:
     """What `Curve.batch_reach` returns, from the numbers that were found, in place.
 
-    Nothing lies on a side of 0 that no value is on; what is no number, or of vectors that define no
-    curve, is infinite.
+    Nothing lies on a side of 0 that no value is on; what is not a number, or of vectors that
+    define no curve, is infinite.
     """
     np.maximum(reach, 0.0, out=reach)
     reach[np.isnan(reach)] = np.inf

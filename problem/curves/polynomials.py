@@ -179,7 +179,7 @@ def _turns(a: Array) -> tuple[Array, NDArray[np.bool_]]:
 def _next_level(a: Array, cuts: Array) -> tuple[Array, NDArray[np.bool_]]:
     """Roots of polynomials that are monotone between ascending cuts, one more than cuts.
 
-    Where a piece has none its lower end stands for it, and is no sign change.
+    Where a piece has none its lower end stands for it, and is not a sign change.
     """
     edge = np.zeros((1, cuts.shape[1]))
     ends = np.concatenate([edge, cuts, edge + 1.0])

@@ -29,8 +29,8 @@ def shape_of(curve: Curve, waypoints: Array) -> Shape:
     form = curve.shape(waypoints)
     if form is None:
         raise TrajgapError(
-            f"curve: the segments of {curve.name} are not stretched in time by themselves, "
-            "which is needed here"
+            f"curve: the segments of {curve.name} are not stretched in time separately, which is "
+            "required here"
         )
     return form
 

@@ -124,7 +124,7 @@ class ClockedTrajectory(Trajectory):
         return np.array(values).reshape(*t.shape, self.joints)
 
     def turns(self, order: int, pieces: NDArray[np.int64] | None = None) -> tuple[Array, Array]:
-        """As `Trajectory.turns`, of derivatives that are no polynomials."""
+        """As `Trajectory.turns`, of derivatives that are not polynomials."""
         if order == 0:
             return super().turns(0, pieces)
         own = slice(None) if pieces is None else pieces
@@ -135,7 +135,7 @@ class ClockedTrajectory(Trajectory):
         return places, in_time(self.numerators[order - 1][:, own], speed, order, places)
 
     def derivative(self, segment: int, joint: int | slice, order: int) -> Array:
-        """Refuse: a derivative in time is no polynomial.
+        """Refuse: a derivative in time is not a polynomial.
 
         Raises
         ------
@@ -144,7 +144,9 @@ class ClockedTrajectory(Trajectory):
         """
         if order == 0:
             return super().derivative(segment, joint, 0)
-        raise TrajgapError("trajectory: time is not linear here, derivatives are no polynomials")
+        raise TrajgapError(
+            "trajectory: time is not linear here, so derivatives are not polynomials"
+        )
 
     @property
     def path(self) -> Trajectory:

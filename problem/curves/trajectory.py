@@ -64,9 +64,9 @@ class Trajectory:
 
     @property
     def path(self) -> Trajectory:
-        """The same way through the joint angles, as polynomials of a parameter, in the same time.
+        """The same path through the joint angles, as polynomials of a parameter, in the same time.
 
-        The trajectory itself where its pieces are polynomials in time.
+        The trajectory itself if its pieces are polynomials in time.
         """
         return self
 

@@ -23,12 +23,12 @@ def limits_of_flags(
         Quantity to text: ``6``, ``6,8,inf``, or ``-1:2`` for a range; of positions a range, or a
         number that stands for both sides. None where there is no flag.
     factors : ndarray, shape (joints,)
-        What a number is in rad.
+        Size of the unit in rad.
 
     Raises
     ------
     CaseError
-        If one is no number, or they are not as many as joints.
+        If one is not a number, or their number differs from that of the joints.
     """
     ranges: dict[str, dict[str, Range]] = {joint: {} for joint in joints}
     for quantity, text in given.items():
@@ -54,7 +54,7 @@ def _range(flag: str, word: str, quantity: str) -> Range:
     except TrajgapError as error:
         raise CaseError(flag, "", f"{error}; give 6, or -1:2") from None
     if len(numbers) > 2:
-        raise CaseError(flag, "", f"{word[:40]!r} is no limit; give 6, or -1:2")
+        raise CaseError(flag, "", f"{word[:40]!r} is not a limit; give 6, or -1:2")
     if len(numbers) == 1:
         if numbers[0] < 0:
             raise CaseError(flag, "", f"{word} is negative; give a size, or a range LOW:HIGH")

@@ -35,13 +35,13 @@ def read_moveit(path: Path) -> StatedLimits:
         Under ``joint_limits``, for each joint: ``has_velocity_limits`` and ``max_velocity``, the
         same of acceleration, deceleration and jerk, and ``has_position_limits`` with
         ``min_position`` and ``max_position``; rad, or m. A ``has_...`` that is false says that
-        there is no limit; one that is missing is taken from what stands beside it. The default
-        scaling factors of planners are no limits and are left aside.
+        there is no limit; a missing one follows from the other keys. The default
+        scaling factors of planners are not limits and are left aside.
     """
     name = str(path)
     documents = read_yaml(path)
     if len(documents) > 1:
-        raise CaseError(name, "", f"holds {len(documents)} documents; keep one")
+        raise CaseError(name, "", f"contains {len(documents)} documents; keep one")
     found = documents[0] if documents else None
     # As a file of ROS parameters it is wrapped: node, ros__parameters, robot_description_planning.
     for _ in range(4):
@@ -52,10 +52,10 @@ def read_moveit(path: Path) -> StatedLimits:
     ranges: dict[str, dict[str, Range]] = {}
     for joint, block in found["joint_limits"].items():
         if not isinstance(joint, str) or not isinstance(block, Mapping):
-            raise CaseError(name, f"joint_limits.{joint}", "is no block of limits; see MoveIt")
+            raise CaseError(name, f"joint_limits.{joint}", "is not a block of limits; see MoveIt")
         ranges[joint] = _ranges(name, f"joint_limits.{joint}", block)
     if not ranges:
-        raise CaseError(name, "joint_limits", "holds no joint; name the joints of the arm")
+        raise CaseError(name, "joint_limits", "contains no joint; name the joints of the arm")
     return StatedLimits(name, ranges)
 
 
@@ -99,11 +99,11 @@ def _number(name: str, field: str, block: Mapping[Any, Any], key: str) -> float 
     if value is None:
         return None
     if isinstance(value, bool) or not isinstance(value, int | float):
-        raise CaseError(name, f"{field}.{key}", f"{str(value)[:40]!r} is no number; fix it")
+        raise CaseError(name, f"{field}.{key}", f"{str(value)[:40]!r} is not a number; fix it")
     try:
         found = float(value)
     except OverflowError:
         found = math.inf
     if math.isnan(found):
-        raise CaseError(name, f"{field}.{key}", "is NaN; leave it out where there is no limit")
+        raise CaseError(name, f"{field}.{key}", "is NaN; leave it out if there is no limit")
     return found

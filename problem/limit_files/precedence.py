@@ -14,13 +14,13 @@ from ..motions import BRAKING, ORDERS, JointLimits, check_range
 Range = tuple[float, float]
 """Lower and upper limit, rad and s; infinite where that side has none."""
 
-_UNKNOWN = "is no joint with limits there; rename it or add it;"
+_UNKNOWN = "is not a joint with limits there; rename it or add it;"
 """What is said of a joint that a file does not know, before the nearest name."""
 
 
 @dataclass(frozen=True)
 class StatedLimits:
-    """What one source states: ranges by joint and quantity, and nothing of the rest.
+    """The limits that one source states: ranges by joint and quantity.
 
     Attributes
     ----------
@@ -50,13 +50,13 @@ class StatedLimits:
         Raises
         ------
         CaseError
-            If one of them is not known here.
+            If one of them is unknown.
         """
         return merge(joints, [self])
 
 
 def merge(joints: Sequence[str], sources: Sequence[StatedLimits]) -> JointLimits:
-    """The limits of joints: of sources that state the same one the first counts.
+    """The limits of joints; if several sources state the same limit, the first one applies.
 
     Parameters
     ----------
@@ -66,8 +66,8 @@ def merge(joints: Sequence[str], sources: Sequence[StatedLimits]) -> JointLimits
     Raises
     ------
     CaseError
-        If no file knows a joint, or one has a joint of nearly its name instead; or if a file knows
-        none of the joints.
+        If no file contains a joint, or a file has a joint with nearly the same name; or if a file
+        contains none of the joints.
     """
     _check_names(joints, sources)
     count = len(joints)
@@ -93,7 +93,7 @@ def merge(joints: Sequence[str], sources: Sequence[StatedLimits]) -> JointLimits
             raise CaseError(
                 said[joint, BRAKING],
                 BRAKING,
-                f"joint {joint} has two-sided acceleration limits beside it; state one of the two",
+                f"joint {joint} also has two-sided acceleration limits; state one of the two",
             )
     return JointLimits(tuple(joints), lower, upper, braking, said)
 

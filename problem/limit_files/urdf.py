@@ -27,15 +27,15 @@ def read_urdf(path: Path) -> StatedLimits:
     Parameters
     ----------
     path : Path
-        Of ``<limit lower upper velocity acceleration deceleration jerk>`` each attribute that is
-        there counts; ``lower`` or ``upper`` alone leaves the other at 0, as the format says. A
-        continuous joint with limits is stated to have no range. Fixed, floating and planar joints
-        and those that mimic another are left aside.
+        Of ``<limit lower upper velocity acceleration deceleration jerk>`` every attribute that is
+        present is read; ``lower`` or ``upper`` alone leaves the other at 0, as the format says. A
+        continuous joint with limits has no position range. Fixed, floating and planar joints and
+        those that mimic another are ignored.
 
     Raises
     ------
     CaseError
-        If it is no URDF, or declares entities.
+        If it is not a URDF, or declares entities.
     """
     name = str(path)
     data = read_regular(path, LARGEST_URDF, "give the URDF alone, without meshes")
@@ -85,7 +85,7 @@ class _Reader:
         if len(self.path) > 50:
             raise self.fault("", "is nested too deeply; give a URDF")
         if not self.path and tag != "robot":
-            raise self.fault("", f"begins with <{tag[:40]}>; a URDF begins with <robot>")
+            raise self.fault("", f"begins with <{tag[:40]}>, but a URDF begins with <robot>")
         self.path.append(tag)
         if self.path == ["robot", "joint"]:
             self.joint, self.kind = attributes.get("name", ""), attributes.get("type", "")

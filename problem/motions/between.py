@@ -29,7 +29,7 @@ from .judged import (
 )
 from .samples import Samples
 
-_EXACTLY = "The numbers are taken exactly: state --noise for what measuring may change."
+_EXACTLY = "The numbers count as exact; state --noise for measured ones."
 """Said where nothing is known of noise: a last digit accuses nobody."""
 _STRIDES = 12
 """Doublings of the stride: at 4,096 samples noise is as small as any limit can ask for."""
@@ -38,7 +38,7 @@ _STRIDES = 12
 def check_samples(
     samples: Samples, limits: JointLimits, tolerance: float = MOTION_TOLERANCE
 ) -> MotionCheck:
-    """Judge every motion through samples, whatever happens between them.
+    """Judge all motions through samples, without an assumption about what happens between them.
 
     Parameters
     ----------
@@ -50,8 +50,8 @@ def check_samples(
     Returns
     -------
     MotionCheck
-        Its verdict is *violated* where every such motion breaks a limit, else *undecided*: no
-        samples show that a motion keeps its limits between them.
+        Its verdict is *violated* if every such motion breaks a limit, otherwise *undecided*:
+        samples cannot show that a motion keeps its limits between them.
     """
     check_same_joints(samples.joints, limits)
     peaks: list[MotionPeak] = []
@@ -77,7 +77,7 @@ def check_samples(
         if sentence and not broken and any(p.ratio > 1 + tolerance for p in peaks)
     ]
     if broken:
-        concluded = "Every motion through these samples breaks a limit, whatever lies between them."
+        concluded = "Every motion through these samples breaks a limit."
     else:
         concluded = f"The samples ({states}) prove no limit broken."
     return MotionCheck(
@@ -90,15 +90,15 @@ def check_samples(
         stretch=stretch,
         feasible_time=None,
         feasible_why=why
-        or "what lies between the samples is not known"
+        or "the motion between the samples is unknown"
         + (f"; slower by {stretch:.6g} is not enough" if stretch > 1 else ""),
         floor=None,
         floor_why="samples alone do not show where the motion stands still",
         concluded=(concluded, samples.assumed or _EXACTLY),
         open=(
             *noise,
-            "Between the samples nothing can be checked: state an --interpolation for a verdict "
-            "for all t.",
+            "Nothing can be checked between the samples; state an --interpolation for a verdict "
+            "at all t.",
         ),
         tolerance=tolerance,
         not_judged=limits.unstated,

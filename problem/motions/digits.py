@@ -25,7 +25,7 @@ _ROUNDED_UP = 1.0 + 2.0**-50
 
 @dataclass(frozen=True, eq=False)
 class HalfUnits:
-    """What the numbers of a file may be off by because they were rounded when written.
+    """Uncertainty of the numbers in a file from rounding when they were written.
 
     Attributes
     ----------

@@ -27,7 +27,7 @@ class Floor:
     stops : int
         Standstills of all joints, start and end included.
     waiting : float
-        s that the motion stands still; the floor has none of it.
+        Time that the motion stands still, s; the floor does not include it.
     above : float
         (T − time)/time of the judged motion.
     """
@@ -39,16 +39,16 @@ class Floor:
 
     def __str__(self) -> str:
         return (
-            f"{self.time:.6f} s over any motion between the {self.stops} standstills, whatever "
-            f"it passes in between ({100 * self.above:.1f} % above it)"
+            f"{self.time:.6f} s for any motion between the {self.stops} standstills, whatever its "
+            f"path ({100 * self.above:.1f} % above it)"
         )
 
 
 def shortest(distance: float, velocity: float, acceleration: float, jerk: float) -> float:
     """Shortest time of one joint from rest to rest, also with jerk limits (at rest a = 0).
 
-    The optimal profile speeds up and slows down alike; its top speed v follows from the distance,
-    v·t(v) = d with t(v) = v/A + A/J, or 2√(v/J) where A is not reached.
+    The optimal profile speeds up and slows down symmetrically; its top speed v follows from the
+    distance, v·t(v) = d with t(v) = v/A + A/J, or 2√(v/J) where A is not reached.
 
     Parameters
     ----------
@@ -113,12 +113,12 @@ def least_time(
     still = np.asarray((speed <= standing).all(axis=1))
     if not (still[0] and still[-1]):
         which = "start" if not still[0] else "end"
-        return None, f"that the motion {which}s at rest is not shown, so its ends set no floor"
+        return None, f"it is not shown that the motion {which}s at rest, so its ends set no floor"
     sizes = np.maximum(np.abs(limits.lower[:, 1:]), np.abs(limits.upper[:, 1:]))
     braking = np.isfinite(limits.deceleration)
     sizes[braking, 1] = np.maximum(sizes[braking, 1], limits.deceleration[braking])
     if not np.isfinite(sizes).any():
-        return None, "nothing is limited but positions"
+        return None, "only positions are limited"
     begun, ended = motion.at_ends(2)
     at = np.nonzero(still)[0]
     places = np.vstack([motion.scaled[:, 0], motion.scaled[-1:].sum(axis=1)])

@@ -30,14 +30,14 @@ def as_motion(given: Any, joints: Sequence[str] = ()) -> Motion:
         ``SplineInterpolator``, ``ParametrizeSpline`` or ``ParametrizeConstAccel``; Ruckig's
         ``Trajectory``; Drake's ``PiecewisePolynomial`` or ``BsplineTrajectory``; a message
         ``JointTrajectory`` of ROS, or any message with one as plain values, as the controller
-        follows it; or what `fit` gives.
+        follows it; or the result of `fit`.
     joints : sequence of str, optional
-        Labels; "1", "2", ... by default. A message names its own.
+        Labels; "1", "2", ... by default. A message contains its own names.
 
     Raises
     ------
     TrajgapError
-        If it is none of them, or no polynomial of time on each piece.
+        If it is none of them, or not a polynomial in time on each piece.
     """
     if isinstance(given, Motion):
         return given
@@ -45,7 +45,7 @@ def as_motion(given: Any, joints: Sequence[str] = ()) -> Motion:
         if applies(given):
             return read(given, joints)
     raise TrajgapError(
-        f"{type(given).__name__} is no motion known here; give scipy's PPoly, or Samples of it"
+        f"{type(given).__name__} is not a motion known here; give scipy's PPoly, or Samples of it"
     )
 
 
@@ -83,7 +83,7 @@ def _b_spline(given: Any, joints: Sequence[str]) -> Motion:
 
 def _trajectory(given: Any, joints: Sequence[str]) -> Motion:
     if not given.polynomial_in_time:
-        raise TrajgapError("its pieces are no polynomials in time; sample it and give Samples")
+        raise TrajgapError("its pieces are not polynomials in time; sample it and give Samples")
     return Motion.of_polynomial(given.polynomial, joints, "the curve of trajgap")
 
 
@@ -101,7 +101,7 @@ def _toppra_steps(given: Any, joints: Sequence[str]) -> Motion:
 
     path = getattr(given._path, "cspl", None)
     if path is None:
-        raise TrajgapError("ParametrizeConstAccel: its path is no spline; sample it")
+        raise TrajgapError("ParametrizeConstAccel: its path is not a spline; sample it")
     grid, clock = np.asarray(given._ss, float), np.asarray(given._ts, float)
     speeds = np.asarray(given._velocities, float)
     powers = path.c.shape[0]
@@ -225,7 +225,7 @@ def _message(given: Any, joints: Sequence[str]) -> Motion:
     """A JointTrajectory of ROS: a message, or its plain values, as its controller follows it."""
     held = list(trajectories(given if isinstance(given, Mapping) else plain_message(given)))
     if len(held) != 1:
-        raise TrajgapError(f"the message holds {len(held)} trajectories; give one")
+        raise TrajgapError(f"the message contains {len(held)} trajectories; give one")
     samples = samples_of_message(held[0], "JointTrajectory", text=False)
     if joints and tuple(joints) != samples.joints:
         raise TrajgapError(

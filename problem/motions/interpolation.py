@@ -23,7 +23,7 @@ def interpolated(samples: Samples, how: Interpolation) -> Motion:
     Returns
     -------
     Motion
-        With bounds on what noise and rounding may change.
+        With bounds on the effect of noise and rounding.
 
     Raises
     ------
@@ -31,7 +31,7 @@ def interpolated(samples: Samples, how: Interpolation) -> Motion:
         If the interpolation needs a derivative that is not given.
     """
     if how is Interpolation.NONE:
-        raise TrajgapError("interpolation: 'none' is no motion; check_samples judges samples")
+        raise TrajgapError("interpolation: 'none' is not a motion; check_samples judges samples")
     if how is Interpolation.SPLINE:
         return not_a_knot_spline(samples)
     velocities, accelerations = samples.has(1), samples.has(2)
@@ -66,4 +66,4 @@ def _words(how: Interpolation, degree: NDArray[np.int64]) -> str:
     names = {1: "straight lines", 3: "cubic Hermite", 5: "quintic Hermite"}
     used = [names[d] for d in (1, 3, 5) if (degree == d).any()]
     said = " and ".join(used) + " between samples"
-    return f"{said}, as joint_trajectory_controller" if how is Interpolation.CONTROLLER else said
+    return f"{said}, as in joint_trajectory_controller" if how is Interpolation.CONTROLLER else said

@@ -30,10 +30,10 @@ class JointLimits:
     lower, upper : ndarray, shape (joints, 4)
         Range of derivative 0 to 3, rad, s; infinite where there is none.
     deceleration : ndarray, shape (joints,)
-        Largest |acceleration| while the joint's speed falls, rad/s²; where it is given,
-        ``acceleration`` holds while the speed grows. inf where it is not.
+        Largest |acceleration| while the joint's speed falls, rad/s²; if it is given, the
+        acceleration limit applies only while the speed grows. inf if it is not given.
     sources : mapping
-        (joint, quantity) to where the limit is stated, also where it is stated that there is none.
+        (joint, quantity) to the source of the limit, or of the statement that there is none.
 
     Raises
     ------
@@ -78,8 +78,7 @@ class JointLimits:
     ) -> JointLimits:
         """Symmetric limits, one value or one per joint, rad and s.
 
-        None states nothing, and what is not stated is not judged; inf states that there is no
-        limit.
+        None means that nothing is stated, so nothing is judged; inf states that there is no limit.
         """
         count = len(joints)
 
@@ -133,8 +132,8 @@ class JointLimits:
     def two_sided(self) -> Limits:
         """The same limits for `Problem` and `solve`, each side of its own size.
 
-        A deceleration has no place there: where it is given, the smallest of it and of both sides
-        of the acceleration counts on both.
+        These have no separate deceleration: if it is given, the smallest of the deceleration and
+        both sides of the acceleration is used on both sides.
 
         Raises
         ------
@@ -160,13 +159,13 @@ class JointLimits:
             lacking = sum(quantity == other for _, other in unstated)
             if quantity != ORDERS[0] and lacking < len(self.joints):
                 raise TrajgapError(
-                    f"{quantity} of joint {joint}: no limit is stated, and other joints have one; "
-                    "state it, or inf where there is none"
+                    f"{quantity} of joint {joint}: no limit is stated, but other joints have one; "
+                    "state it, or inf for none"
                 )
 
 
 def unstated_words(unstated: Sequence[tuple[str, str]], joints: Sequence[str]) -> str:
-    """What is not judged, in words; empty if all is: whole joints, whole quantities, the rest."""
+    """What is not judged: whole joints, whole quantities, the rest; empty if all is judged."""
     lacks = {one: [q for q in ORDERS if (one, q) in set(unstated)] for one in joints}
     free = [one for one in joints if len(lacks[one]) == len(ORDERS)]
     others = [one for one in joints if one not in free]
@@ -194,14 +193,16 @@ def check_range(low: float, high: float, quantity: str, joint: str) -> None:
     """Refuse a range that no motion can keep."""
     name = f"{quantity} of joint {joint}"
     if np.isnan(low) or np.isnan(high):
-        raise TrajgapError(f"{name}: is NaN; leave it out where there is no limit")
+        raise TrajgapError(f"{name}: is NaN; leave it out if there is no limit")
     if low > high:
         raise TrajgapError(f"{name}: the lower limit {low:g} lies above the upper one {high:g}")
     if quantity != "position" and not low <= 0.0 <= high:
-        raise TrajgapError(f"{name}: {low:g} to {high:g} leaves out 0; a range includes standing")
+        raise TrajgapError(
+            f"{name}: {low:g} to {high:g} excludes 0; a range must include standstill"
+        )
     if any(np.isfinite(end) and abs(end) > LARGEST for end in (low, high)):
-        raise TrajgapError(f"{name}: is beyond {LARGEST:g}; write inf where there is no limit")
+        raise TrajgapError(f"{name}: is beyond {LARGEST:g}; write inf for no limit")
     if any(0 < abs(end) < 1 / LARGEST for end in (low, high)):
-        raise TrajgapError(f"{name}: is below {1 / LARGEST:g}; write 0 where nothing may move")
+        raise TrajgapError(f"{name}: is below {1 / LARGEST:g}; write 0 if nothing may move")
     if low == np.inf or high == -np.inf:
-        raise TrajgapError(f"{name}: leaves nothing; leave it out where there is no limit")
+        raise TrajgapError(f"{name}: leaves nothing; leave it out if there is no limit")

@@ -26,7 +26,7 @@ _JUMP = 1e-9
 """Relative to the terms of a derivative: what differs less at a break is rounding."""
 _ROUNDING = 32 * 2.0**-52
 """Relative to a polynomial's absolute terms: Horner's rounding of ten coefficients is 20 · 2⁻⁵³."""
-_BLURRED = "What rounding may change is as large as what is left to a limit."
+_BLURRED = "Rounding may change the result by as much as the distance to a limit."
 """Why a motion is not decided whose numbers are taken exactly."""
 
 
@@ -72,7 +72,7 @@ class MotionJump:
     size : float
         rad/sᵒʳᵈᵉʳ; value after less value before.
     count : int
-        Breaks at which it jumps.
+        Number of breaks at which it jumps.
     """
 
     joint: str
@@ -84,12 +84,12 @@ class MotionJump:
 
 @dataclass(frozen=True, eq=False)
 class MotionCheck:
-    """What is true of a motion, or of all motions through samples.
+    """The result of a check of a motion, or of all motions through samples.
 
     Attributes
     ----------
     limits : Verdict
-        About the limits alone, jumps apart.
+        Verdict on the limits alone, apart from jumps.
     worst : MotionPeak or None
         Largest ratio; None if nothing is limited.
     peaks : tuple of MotionPeak
@@ -97,16 +97,16 @@ class MotionCheck:
     total_time : float
         s.
     stretch : float
-        Uniform slow-down that repairs: every duration times this keeps the limits; at least 1. For
-        all motions through samples: no smaller one can.
+        Uniform slow-down that repairs the motion: all durations times this factor keep the limits;
+        at least 1. For samples: no smaller factor can repair any motion through them.
     feasible_time : float or None
-        ``total_time`` times ``stretch``; None with the reason beside.
+        ``total_time`` times ``stretch``; None if there is none, with a reason.
     floor : Floor or None
         No motion between the same standstills is shorter.
     concluded, open : tuple of str
-        What follows from the file, and what does not.
+        Conclusions from the file, and what remains open.
     not_judged : tuple of (str, str)
-        Joint and quantity wherever no limit is stated: the verdict is silent about them.
+        Joint and quantity wherever no limit is stated: the verdict does not cover them.
     """
 
     verdict: Verdict
@@ -183,9 +183,9 @@ def check_motion(
         verdict = Verdict.UNDECIDED
     stretch, why = slow_down(peaks, tolerance)
     if jumping:
-        why = "the motion jumps; going slower does not repair that"
+        why = "the motion jumps, which slowing down does not repair"
     elif may_jump and why is None:
-        why = "the motion may jump; going slower would not repair that"
+        why = "the motion may jump, which slowing down would not repair"
     floor, floor_why = least_time(motion, limits, standing)
     every = "The bounds hold for" if verdict is Verdict.UNDECIDED else "The verdict holds for"
     concluded = f"{every} every instant: {motion.between}."
@@ -234,7 +234,7 @@ def blurred(peaks: Sequence[MotionPeak], tolerance: float) -> list[str]:
     reach = f"{math.ceil(1e4 * most) / 1e4:g}" if most < 1e6 else "more than a million"
     return [
         f"The {one.quantity} of joint {one.joint} may be anything from {least:g} to {reach} times "
-        "its limit; the numbers of the file do not say more."
+        "its limit; the numbers in the file are not precise enough to say more."
     ]
 
 
@@ -262,9 +262,9 @@ def slow_down(peaks: Sequence[MotionPeak], tolerance: float) -> tuple[float, str
     Where the noise leaves open which factor that is, the factor is one below which none can be.
     """
     if any(p.quantity == "position" and p.least_ratio > 1 + tolerance for p in peaks):
-        return 1.0, "a position limit is exceeded; going slower does not move the path"
+        return 1.0, "a position limit is exceeded, and slowing down does not change the path"
     if any(p.quantity == "position" and p.most_ratio > 1 + tolerance for p in peaks):
-        return 1.0, "a position limit may be exceeded; going slower does not move the path"
+        return 1.0, "a position limit may be exceeded, and slowing down does not change the path"
     powers = {"velocity": 1, "acceleration": 2, BRAKING: 2, "jerk": 3}
 
     def factor(ratio: Callable[[MotionPeak], float]) -> float:
@@ -273,12 +273,12 @@ def slow_down(peaks: Sequence[MotionPeak], tolerance: float) -> tuple[float, str
 
     least = factor(lambda p: p.least_ratio)
     if not np.isfinite(least):
-        return least, "a joint that must stand still moves; going slower does not repair that"
+        return least, "a joint that must stand still moves, which slowing down does not repair"
     most = factor(lambda p: p.most_ratio)
     if most > least * (1 + max(tolerance, MOTION_TOLERANCE)):
         needed = f"{math.floor(1e6 * least) / 1e6:.6f} times slower or more is needed, but "
         return least, (
-            f"{needed if least > 1 + tolerance else ''}what the numbers may be off by leaves open "
+            f"{needed if least > 1 + tolerance else ''}the uncertainty of the numbers leaves open "
             "which slow-down is enough"
         )
     return factor(lambda p: p.ratio), None

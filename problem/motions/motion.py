@@ -30,7 +30,7 @@ EPS = 2.0**-52
 
 @dataclass(frozen=True, eq=False)
 class Motion:
-    """Joint values over time, whoever planned them.
+    """Joint values over time, from any source.
 
     Attributes
     ----------
@@ -39,16 +39,16 @@ class Motion:
     scaled : ndarray, shape (pieces, powers, joints)
         Ascending coefficients in s = (t − t_k)/h_k, rad (m for sliding joints).
     error : ndarray, shape (pieces, 4, joints)
-        Bound on what derivatives 0 to 3 may be off by anywhere on a piece, rad/sᵒʳᵈᵉʳ, apart from
-        the rounding of evaluating the polynomial; inf where nothing is known.
+        Bound on the error of derivatives 0 to 3 anywhere on a piece, rad/sᵒʳᵈᵉʳ, apart from
+        rounding errors of the evaluation; inf if nothing is known.
     between : str
-        What is taken to happen between the points of the file, in words.
+        The assumption about the motion between the points of the file, in words.
     smooth : int
-        Derivatives up to this one are continuous by construction; −1 where nothing says so.
+        Derivatives up to this one are continuous by construction; −1 if none is known to be.
     assumed : str
-        What the numbers of the file may be off by, in words; empty where they are the motion.
+        Uncertainty of the numbers in the file, in words; empty if they are exact.
     advice : str
-        What to do where that leaves the verdict open.
+        Advice if this leaves the verdict open.
 
     Raises
     ------
@@ -88,7 +88,7 @@ class Motion:
                 )
 
     def slowed(self, factor: float) -> Motion:
-        """The same way, so many times slower."""
+        """The same path, slower by a factor."""
         start = self.breaks[0]
         powers = factor ** -np.arange(4.0)
         return replace(
@@ -241,5 +241,5 @@ def check_times(times: Array, field: str) -> None:
         raise TrajgapError(f"{field}: a step or a time is out of range; give seconds")
     if clock_error(times).max() > 1e-3:
         raise TrajgapError(
-            f"{field}: a step is lost in the digits of its time; let time start near 0"
+            f"{field}: a step is too small for the digits of its time; let time start near 0"
         )

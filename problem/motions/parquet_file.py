@@ -34,7 +34,8 @@ def read_parquet(path: Path, joints: Sequence[str] = ()) -> Samples:
     Raises
     ------
     CaseError
-        If it is no such table, a column has a type without a reading, or pyarrow is not installed.
+        If it is not such a table, a column has a type without a reading, or pyarrow is not
+        installed.
     """
     name = str(path)
     check_regular(path)
@@ -50,7 +51,7 @@ def read_parquet(path: Path, joints: Sequence[str] = ()) -> Samples:
         names, rows = list(file.schema_arrow.names), file.metadata.num_rows
         check_size(name, rows, len(names))
         if not names or rows == 0:
-            raise CaseError(name, "", "holds no rows; give one row per sample")
+            raise CaseError(name, "", "contains no rows; give one row per sample")
         rows_read = file.read()
         time, _ = column_meaning(name, names)
         read = [
@@ -77,7 +78,7 @@ def _numbers(name: str, label: str, column: Any) -> tuple[Array, float]:
         raise CaseError(name, label, "is the index of a data frame; write it with index=False")
     numeric = (types.is_integer, types.is_floating, types.is_decimal, types.is_null)
     if not any(one(kind) for one in numeric):
-        raise CaseError(name, label, f"holds {kind}, which is no number; give rad or m")
+        raise CaseError(name, label, f"holds {kind}, which is not a number; give rad or m")
     found = np.asarray(column.cast(float64()).to_numpy(), dtype=np.float64)
     if types.is_decimal(kind):
         return found, 0.5 * 10.0**-kind.scale
@@ -106,7 +107,7 @@ def _times(name: str, label: str, column: Any) -> tuple[Array, float]:
         second = 1 if types.is_date32(kind) else _A_SECOND[getattr(kind, "unit", "ms")]
         start = 0 if types.is_duration(kind) else int(whole[0])
         if max(abs(int(whole.max()) - start), abs(int(whole.min()) - start)) >= 2**63:
-            raise CaseError(name, label, "spans more than is read; give seconds")
+            raise CaseError(name, label, "spans more time than can be read; give seconds")
         return np.asarray((whole - start) / second, dtype=np.float64), 0.5 / second
     whole_numbers = types.is_integer(kind) or (types.is_decimal(kind) and kind.scale <= 0)
     if whole_numbers and label.strip().lower() in _NO_UNIT:

@@ -54,7 +54,7 @@ def parse_json(data: bytes, name: str) -> Any:
 def read_yaml(path: Path) -> list[Any]:
     """Read the documents of a YAML file: plain values, no merge keys, no tags of programs.
 
-    What YAML 1.1 reads in a way that nobody expects of a number is refused: ``010`` (octal),
+    Numbers that YAML 1.1 reads in an unexpected way are refused: ``010`` (octal),
     ``1:30`` (to base 60), ``1.0e+400`` (infinite); and keys that occur twice.
     """
     name = str(path)
@@ -120,7 +120,8 @@ def _odd_number(name: str, node: Any) -> CaseError:
     return CaseError(
         name,
         _place(node.start_mark),
-        f"{node.value[:40]!r} is another number in YAML than it seems; write plain decimal digits",
+        f"{node.value[:40]!r} is a different number in YAML than it appears; write plain decimal "
+        "digits",
     )
 
 

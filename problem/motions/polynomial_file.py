@@ -43,10 +43,10 @@ def motion_of_json(found: Any, name: str, factors: Array | float = 1.0) -> Motio
     breaks = _array(name, "breaks" if "breaks" in found else "x", found, 1)
     c = _array(name, key, found, 3)
     if c.size > 10 * MOST_VALUES:
-        raise CaseError(name, key, f"{c.size} coefficients are more than is read; keep fewer")
+        raise CaseError(name, key, f"{c.size} coefficients are too many; keep fewer")
     labels = found.get("joints") or ()
     if not isinstance(labels, list | tuple) or not all(isinstance(x, str) and x for x in labels):
-        raise CaseError(name, "joints", "is no list of names; give one name per joint")
+        raise CaseError(name, "joints", "is not a list of names; give one name per joint")
     c = c.transpose(axes)
     if c.shape[0] == 0 or c.shape[1] != breaks.size - 1:
         raise CaseError(
@@ -73,7 +73,7 @@ def _array(name: str, key: str, found: Any, axes: int) -> Array:
     # numpy would read "1" and true as numbers.
     for kind in set(map(type, level)) - {int, float}:
         odd = next(one for one in level if type(one) is kind)
-        raise CaseError(name, key, f"holds {str(odd)[:40]!r}, which is no number; give numbers")
+        raise CaseError(name, key, f"holds {str(odd)[:40]!r}, which is not a number; give numbers")
     try:
         array = np.array(value, dtype=np.float64)
     except (ValueError, OverflowError):

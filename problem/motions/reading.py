@@ -37,14 +37,14 @@ class Stated:
 
 @dataclass(frozen=True, eq=False)
 class ForeignFile:
-    """What a file holds.
+    """The content of a file.
 
     Attributes
     ----------
     content : Samples or Motion
         rad (m), s.
     units : tuple of str
-        Of each joint, in the file and for what is printed.
+        Unit of each joint, in the file and in output.
     controller : bool
         Whether a controller's interpolation is known: ROS trajectories.
     """
@@ -61,15 +61,15 @@ class ForeignFile:
 
     @property
     def form(self) -> MotionForm:
-        """The format that holds the same in writing; CSV for every table."""
+        """The format for writing the same content; CSV for every table."""
         if isinstance(self.content, Motion):
             return MotionForm.PPOLY
         return MotionForm.ROS if self.controller else MotionForm.CSV
 
     def slowed(self, factor: float) -> ForeignFile:
-        """The same way, taken so many times slower from its start.
+        """The same path, slower by a factor from its start.
 
-        The numbers of the slower motion are meant exactly: no digit of it was rounded off.
+        The numbers of the slower motion count as exact, because none of its digits was rounded.
         """
         return replace(self, content=self.content.slowed(factor))
 
@@ -109,14 +109,15 @@ def read_motion(
         One for all joints, or one each: of tables, and of polynomials that state none; rad by
         default. ROS has rad and m.
     noise : sequence of float, optional
-        What positions may be off by, in those units; one, or one each. 0 says that positions,
-        velocities and accelerations are exact; without it their digits say what they may be off by.
+        Uncertainty of the positions, in those units; one number, or one per joint. 0 means that
+        positions, velocities and accelerations are exact; by default the uncertainty follows from
+        their digits.
     joints : sequence of str, optional
         Names, for a table without a header.
     topic : str, optional
         Of a rosbag with several trajectories.
     time_noise : float, optional
-        What times may be off by, s; without it their digits say so.
+        Uncertainty of the times, s; by default it follows from their digits.
     """
     name, ending = str(path), path.suffix.lower()
     stated = Stated(noise, time_noise)
@@ -148,12 +149,12 @@ def read_motion(
 
 
 def factors_of(units: Sequence[str], count: int, name: str) -> Array:
-    """What a number of each joint is in rad or m.
+    """Size of each joint's unit in rad or m.
 
     Raises
     ------
     CaseError
-        If there are neither one nor as many units as joints.
+        If the number of units is neither one nor that of the joints.
     """
     if len(units) not in (1, count):
         raise CaseError(
@@ -200,7 +201,9 @@ def _polynomials(
 ) -> ForeignFile:
     if any(stated.noise or ()) or stated.time_noise:
         option = "--noise" if any(stated.noise or ()) else "--time-noise"
-        raise CaseError(name, option, "is of samples; polynomials are the motion itself")
+        raise CaseError(
+            name, option, "applies to samples only; polynomials are the motion itself itself"
+        )
     motion = motion_of_json(found, name)
     in_file, count = _stated_units(name, found.get("units", {})), len(motion.joints)
     if in_file and units and _each(in_file, count) != _each(units, count):
@@ -233,10 +236,12 @@ def _message(
     held = list(trajectories(found))
     if not held:
         raise CaseError(
-            name, "", "holds no trajectory; give joint_names and points, or breaks and coefficients"
+            name,
+            "",
+            "contains no trajectory; give joint_names and points, or breaks and coefficients",
         )
     if len(held) > 1:
-        raise CaseError(name, "", f"holds {len(held)} trajectories; keep one")
+        raise CaseError(name, "", f"contains {len(held)} trajectories; keep one")
     return _ros(name, samples_of_message(held[0], name), units, stated, words)
 
 

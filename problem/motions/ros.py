@@ -86,19 +86,19 @@ def samples_of_message(message: Mapping[str, Any], name: str, text: bool = True)
     """
     joints, points = message["joint_names"], message["points"]
     if not isinstance(joints, list) or not all(isinstance(x, str) and x for x in joints):
-        raise CaseError(name, "joint_names", "is no list of names; give the joints' names")
+        raise CaseError(name, "joint_names", "is not a list of names; give the joints' names")
     if not 1 <= len(joints) <= MOST_JOINTS:
         raise CaseError(name, "joint_names", f"{len(joints)} names; give 1 to {MOST_JOINTS}")
     if not isinstance(points, list) or len(points) < 2:
         raise CaseError(name, "points", "fewer than two points; a motion needs two or more")
     if len(points) * len(joints) > MOST_VALUES:
-        raise CaseError(name, "points", f"{len(points)} points are more than is read; keep fewer")
+        raise CaseError(name, "points", f"{len(points)} points are too many; keep fewer")
     times = np.empty(len(points))
     values = np.full((3, len(points), len(joints)), np.nan)
     for k, point in enumerate(points):
         field = f"points[{k}]"
         if not isinstance(point, Mapping):
-            raise CaseError(name, field, "is no point; give positions and time_from_start")
+            raise CaseError(name, field, "is not a point; give positions and time_from_start")
         for key in point:
             near = None if key in _POINT else spelt_like(str(key), _POINT)
             if near:
@@ -136,7 +136,7 @@ def _rounding(times: Array, values: Array, text: bool) -> HalfUnits:
 
 def _number(value: Any, name: str, field: str) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float):
-        raise CaseError(name, field, f"{str(value)[:40]!r} is no number; fix it")
+        raise CaseError(name, field, f"{str(value)[:40]!r} is not a number; fix it")
     try:
         found = float(value)
     except OverflowError:

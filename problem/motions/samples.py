@@ -15,10 +15,10 @@ from .motion import EPS, LARGEST, MOST_VALUES, check_joints, check_times, number
 
 
 class Interpolation(StrEnum):
-    """What is taken to happen between samples."""
+    """The assumption about the motion between samples."""
 
     NONE = "none"
-    """Nothing is: only what every motion through the samples does is concluded."""
+    """Nothing is assumed; conclusions hold for every motion through the samples."""
     LINEAR = "linear"
     """Straight lines; velocity jumps at the samples."""
     CUBIC = "cubic"
@@ -34,7 +34,7 @@ class Interpolation(StrEnum):
 
 @dataclass(frozen=True, eq=False)
 class Samples:
-    """Rows of time and position of every joint, with derivatives where they are given.
+    """Rows of time and position of every joint, with derivatives if they are given.
 
     Attributes
     ----------
@@ -43,13 +43,13 @@ class Samples:
     position : ndarray, shape (rows, joints)
         rad (m for sliding joints).
     velocity, acceleration : ndarray, shape (rows, joints), or None
-        Where given; NaN in rows without them.
+        Derivatives, if given; NaN in rows without them.
     noise : float or ndarray, shape (joints,)
         Each position is measured to within this, rad.
     time_noise : float
         Each time is measured to within this, s.
     rounding : HalfUnits
-        What all numbers may be off by because they were rounded when written; beside the noise.
+        Uncertainty of all numbers from rounding when they were written, in addition to the noise.
 
     Raises
     ------
@@ -103,11 +103,15 @@ class Samples:
                 object.__setattr__(self, name, None)
         noise = np.broadcast_to(np.asarray(self.noise, dtype=np.float64), (count,))
         if not ((noise >= 0) & (noise <= LARGEST)).all():
-            raise TrajgapError("noise: is not a length; give what positions may be off by, or 0")
+            raise TrajgapError(
+                "noise: is not a length; give the uncertainty of the positions, or 0"
+            )
         object.__setattr__(self, "noise", np.array(noise))
         for clock in (self.time_noise, self.rounding.time):
             if not (np.isfinite(clock) and clock >= 0):
-                raise TrajgapError("time noise: is no time; give what times may be off by, or 0")
+                raise TrajgapError(
+                    "time noise: is not a time; give the uncertainty of the times, or 0"
+                )
 
     def _check_finite(
         self, name: str, values: Array, rows: NDArray[np.bool_] | None = None
@@ -124,12 +128,12 @@ class Samples:
 
     @property
     def margin(self) -> Array:
-        """What each joint's positions may be off by, shape (joints,), rad."""
+        """Uncertainty of each joint's positions, shape (joints,), rad."""
         return np.asarray(self.noise + self.rounding.of(0, len(self.joints)))
 
     @property
     def clock(self) -> float:
-        """What each time may be off by, s."""
+        """Uncertainty of each time, s."""
         return self.time_noise + self.rounding.time
 
     @property
@@ -138,13 +142,13 @@ class Samples:
         return np.asarray(self.clock + EPS * np.abs(self.time))
 
     def error(self, order: int) -> Array:
-        """What stated values may be off by, rounding to float64 included, (rows, joints)."""
+        """Uncertainty of stated values, rounding to float64 included, (rows, joints)."""
         given = self.given(order)
         assert given is not None
         return np.asarray(self.doubt(order) + EPS * np.abs(given))
 
     def doubt(self, order: int) -> Array:
-        """What the values of derivative ``order`` may be off by, shape (joints,)."""
+        """Uncertainty of the values of derivative ``order``, shape (joints,)."""
         return self.margin if order == 0 else self.rounding.of(order, len(self.joints))
 
     def given(self, order: int) -> Array | None:
@@ -159,7 +163,7 @@ class Samples:
         return np.asarray(~np.isnan(given).any(axis=1))
 
     def slowed(self, factor: float) -> Samples:
-        """The same way, so many times slower; its numbers are meant exactly, stated noise apart."""
+        """The same path, slower by a factor; numbers count as exact, apart from stated noise."""
         start = self.time[0]
         return replace(
             self,
@@ -171,12 +175,12 @@ class Samples:
 
     @property
     def as_given(self) -> Samples:
-        """The same samples with their digits taken exactly, stated noise apart."""
+        """The same samples with digits that count as exact, apart from stated noise."""
         return replace(self, rounding=HalfUnits())
 
     @property
     def assumed(self) -> str:
-        """What the numbers may be off by, in a sentence; empty where they are taken exactly."""
+        """Uncertainty of the numbers, in a sentence; empty if they count as exact."""
         parts = []
         if self.clock:
             parts.append(f"times to {self.clock:.3g} s")
@@ -199,17 +203,17 @@ class Samples:
             )
             if holds
         )
-        return f"Numbers are known only so far: {', '.join(parts)} ({why})."
+        return f"Uncertainty of the numbers: {', '.join(parts)} ({why})."
 
     @property
     def advice(self) -> str:
-        """What to do where that leaves a verdict open."""
+        """Advice if this leaves a verdict open."""
         rounded = bool(np.any(self.rounding.values)) or self.rounding.time > 0
         return (
-            "Write more digits, of the times too; or state --noise 0 and --time-noise 0 if the "
-            "numbers of the file are exact."
+            "Write more digits, also for the times, or state --noise 0 and --time-noise 0 if the "
+            "numbers in the file are exact."
             if rounded
-            else "State a smaller noise if the numbers are known better."
+            else "State a smaller noise if the numbers are more precise."
             if self.assumed
             else ""
         )

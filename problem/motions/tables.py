@@ -56,7 +56,7 @@ def read_csv(path: Path, joints: Sequence[str] = ()) -> Samples:
     Raises
     ------
     CaseError
-        If it is no such table; the line says where and how to fix it.
+        If it is not such a table; the line says where and how to fix it.
     """
     name = str(path)
     data = read_regular(path, LARGEST_FILE, "split it, or keep fewer rows")
@@ -74,7 +74,7 @@ def parse_csv(text: str, name: str, joints: Sequence[str] = ()) -> Samples:
     """`read_csv` of a text; ``name`` is for messages."""
     first = next((x for x in _lines(text[:100_000]) if x), "")
     if not first:
-        raise CaseError(name, "", "holds no rows; give one row per sample")
+        raise CaseError(name, "", "contains no rows; give one row per sample")
     separator = next((s for s in (",", ";", "\t") if s in first), None)
     cells = [x.strip().strip("\"'") for x in first.split(separator)]
     header = not all(_is_number(x) for x in cells)
@@ -102,9 +102,7 @@ def _is_number(word: str) -> bool:
 def check_size(name: str, rows: int, columns: int) -> None:
     """Refuse tables that are too large to be read."""
     if rows * columns > 4 * MOST_VALUES or columns > 3 * MOST_JOINTS + 1:
-        raise CaseError(
-            name, "", f"{rows} rows of {columns} columns are more than is read; keep fewer"
-        )
+        raise CaseError(name, "", f"{rows} rows of {columns} columns are too many; keep fewer")
 
 
 def _numbers(text: str, name: str, separator: str | None, skip: bool, columns: int) -> Array:
@@ -121,7 +119,7 @@ def _numbers(text: str, name: str, separator: str | None, skip: bool, columns: i
     except (ValueError, OverflowError, UnicodeError):
         raise _bad_row(text, name, separator, skip, columns) from None
     if found.size == 0:
-        raise CaseError(name, "", "holds no rows of numbers; give one row per sample")
+        raise CaseError(name, "", "contains no rows of numbers; give one row per sample")
     if found.shape[1] != columns:
         raise _bad_row(text, name, separator, skip, columns)
     return np.asarray(found, dtype=np.float64)
@@ -141,7 +139,7 @@ def _bad_row(text: str, name: str, separator: str | None, skip: bool, columns: i
             return CaseError(
                 name,
                 f"line {number}",
-                f"{len(cells)} cells, the first line has {columns}; give every row as many",
+                f"{len(cells)} cells, but the first line has {columns}; give every row as many",
             )
         for k, cell in enumerate(cells, 1):
             if not _is_number(cell.strip()):
@@ -150,9 +148,9 @@ def _bad_row(text: str, name: str, separator: str | None, skip: bool, columns: i
                 return CaseError(
                     name,
                     f"line {number}, column {k}",
-                    f"{shown!r} is no number{comma or '; fix it'}",
+                    f"{shown!r} is not a number{comma or '; fix it'}",
                 )
-    return CaseError(name, "", "is no table of numbers; give one row per sample")
+    return CaseError(name, "", "is not a table of numbers; give one row per sample")
 
 
 def samples_of_columns(
@@ -206,7 +204,9 @@ def samples_of_columns(
 def _check_seconds(name: str, times: Array) -> None:
     latest = float(np.abs(times).max())
     if _LATEST < latest < np.inf:
-        raise CaseError(name, "time", f"is {latest:g}, no time in seconds; convert it to seconds")
+        raise CaseError(
+            name, "time", f"is {latest:g}, which is not a time in seconds; convert it to seconds"
+        )
 
 
 def column_meaning(name: str, header: Sequence[str]) -> tuple[int, dict[tuple[str, int], int]]:

@@ -57,14 +57,14 @@ def sampled(
     Parameters
     ----------
     step : float
-        Between rows, s; the last row is the end, however near.
+        Step between rows, s; the last row is the end, which may be nearer.
     joints : tuple of str, optional
         Labels; those of the motion, or "1", "2", ....
     breaks : bool
-        Whether the motion's breaks are rows too, so that quintic Hermite interpolation gives a
-        motion of degree 5 or less back exactly.
+        Whether the motion's breaks are rows too, so that quintic Hermite interpolation reproduces a
+        motion of degree 5 or less exactly.
     whole_nanoseconds : bool
-        Whether times are rounded to those, as messages of ROS have them.
+        Whether times are rounded to whole nanoseconds, as in ROS messages.
 
     Raises
     ------
@@ -74,7 +74,7 @@ def sampled(
     begin, end = float(motion.breaks[0]), float(motion.breaks[-1])
     total = end - begin
     if not (np.isfinite(step) and step > 0):
-        raise TrajgapError(f"step: {step} is no time between samples; give seconds, more than 0")
+        raise TrajgapError(f"step: {step} is not a time between samples; give seconds, more than 0")
     if total / step > MOST_VALUES:
         raise TrajgapError(f"step: {total / step:.3g} samples are too many; take a longer step")
     times = _rows(np.asarray(motion.breaks) - begin, step, breaks)
@@ -110,24 +110,24 @@ def _rows(breaks: Array, step: float, all_breaks: bool) -> Array:
 def csv_text(samples: Samples, units: Array | float = 1.0) -> str:
     """Samples as CSV with the 17 digits that determine a float64.
 
-    Zeros at the end are written too: the digits of a file say how far its numbers are known.
+    Trailing zeros are written too, because the digits of a file determine its uncertainty.
 
     Parameters
     ----------
     units : float or ndarray, shape (joints,)
-        What 1 of the written positions is, in rad or m; times are in s.
+        Unit of the written positions, in rad or m; times are in s.
 
     Raises
     ------
     TrajgapError
-        If the name of a joint holds a separator.
+        If the name of a joint contains a separator.
     """
     given = [("", samples.position), (" velocity", samples.velocity)]
     given.append((" acceleration", samples.acceleration))
     there = [(word, values) for word, values in given if values is not None]
     head = ["time", *(f"{joint}{word}" for word, _ in there for joint in samples.joints)]
     if any(sign in "".join(head) for sign in ',;\t\n\r#"'):
-        raise TrajgapError("joints: a name holds a separator; rename it for CSV")
+        raise TrajgapError("joints: a name contains a separator; rename it for CSV")
     table = np.column_stack([samples.time, *(values / units for _, values in there)])
     stream = io.StringIO()
     stream.write(",".join(head) + "\n")
@@ -157,7 +157,7 @@ def motion_text(
     Raises
     ------
     TrajgapError
-        As `sampled`; of polynomials if the motion is none.
+        As `sampled`; for polynomials also if the motion is not polynomial.
     """
     if form is MotionForm.CSV:
         return csv_text(sampled(motion, step, joints))
@@ -170,7 +170,7 @@ def motion_text(
 
 
 def read_back(text: str, form: MotionForm, name: str) -> Motion:
-    """The motion that a reader makes of a written file: samples by quintic Hermite polynomials."""
+    """The motion that a reader obtains from a file, by quintic Hermite polynomials."""
     if form is MotionForm.PPOLY:
         return motion_of_json(parse_json(text.encode(), name), name)
     if form is MotionForm.ROS:

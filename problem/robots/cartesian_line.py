@@ -39,7 +39,7 @@ class CartesianLine:
 
     @property
     def table(self) -> str:
-        """The way-points as a table that `scaffold` makes a case file from, every bit kept."""
+        """The way-points as a table for `scaffold`, without loss of any bit."""
         lines = [",".join(("waypoint", *self.chain.labels))]
         for k, row in enumerate(self.waypoints, 1):
             lines.append(",".join((str(k), *(repr(float(q)) for q in row))))
@@ -48,7 +48,7 @@ class CartesianLine:
     def deviation(self, trajectory: Trajectory, samples: int = 1001) -> float:
         """Largest distance of the end from the line on a joint trajectory, m.
 
-        Sampled, not proved: a picture of how many points the line needs, no verdict.
+        Sampled, not proved: it shows how many points the line needs and is not a verdict.
         """
         t = np.linspace(0.0, trajectory.breaks[-1], samples)
         ends = forward_kinematics(self.chain, trajectory(t))[:, :3, 3]
@@ -77,7 +77,7 @@ def ctraj(
 
     Position moves on a line, orientation about one fixed axis, in equal steps; each pose is
     solved from the joints of the one before, so that the branch of the inverse stays the same.
-    When the way-points are passed is left to the durations.
+    The durations determine when the way-points are passed.
 
     Parameters
     ----------
@@ -143,7 +143,7 @@ def _poses(first: ArrayLike, last: ArrayLike, points: int) -> Array:
     ends = [np.asarray(pose, dtype=np.float64) for pose in (first, last)]
     for name, pose in zip(("first", "last"), ends, strict=True):
         if pose.shape != (4, 4) or not np.isfinite(pose).all():
-            raise TrajgapError(f"ctraj: {name} is no pose; give a finite 4 by 4 transform")
+            raise TrajgapError(f"ctraj: {name} is not a pose; give a finite 4 by 4 transform")
     share = np.linspace(0.0, 1.0, points)
     poses = np.tile(np.eye(4), (points, 1, 1))
     a, b = (pose[:3, 3] for pose in ends)

@@ -97,7 +97,7 @@ class Chain:
             )
         allowed = {"lower": -np.inf, "upper": np.inf}.get(name)
         if not (np.isfinite(row) | (row == allowed if allowed is not None else False)).all():
-            raise TrajgapError(f"chain.{name}: holds a number that is not finite; correct it")
+            raise TrajgapError(f"chain.{name}: contains a number that is not finite; correct it")
         full = np.array(np.broadcast_to(row.ravel() if optional else row, (count,)))
         full.setflags(write=False)
         return full
@@ -177,7 +177,7 @@ class Chain:
                 f"joint values: shape {given.shape}; give (..., {self.joints}), one per joint"
             )
         if not np.isfinite(given).all():
-            raise TrajgapError("joint values: one is not finite; give rad (m where it slides)")
+            raise TrajgapError("joint values: one is not finite; give rad (m for sliding joints)")
         return given
 
 

@@ -45,7 +45,7 @@ def closed_form_inverse(chain: Chain, target: ArrayLike, tolerance: float = TOLE
     Raises
     ------
     TrajgapError
-        If the chain is of another kind, or the target is no pose.
+        If the chain is of another kind, or the target is not a pose.
 
     Examples
     --------
@@ -58,7 +58,9 @@ def closed_form_inverse(chain: Chain, target: ArrayLike, tolerance: float = TOLE
     _check_kind(chain)
     goal, rows = question(target, None)
     if len(rows) < 6:
-        raise TrajgapError("target: is a point; give a (4, 4) pose, as orientation fixes the wrist")
+        raise TrajgapError(
+            "target: is a point; give a (4, 4) pose, because the orientation determines the wrist"
+        )
     a2, a3 = chain.a[1], chain.a[2]
     px, py, pz = goal[:3, 3]
     (nx, ox, ax), (ny, oy, ay), (_, _, az) = goal[:3, :3]
@@ -95,6 +97,6 @@ def _check_kind(chain: Chain) -> None:
         and chain.a[1:3].all()
     ):
         raise TrajgapError(
-            "closed form: is that of a palletiser, five revolute joints with two links between "
-            "joints 2 and 4, by the standard convention; take inverse_kinematics for this chain"
+            "closed form: applies to a palletiser with five revolute joints and two links between "
+            "joints 2 and 4, in the standard convention; use inverse_kinematics for this chain"
         )

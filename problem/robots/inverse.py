@@ -47,8 +47,8 @@ class IkSolution:
     Attributes
     ----------
     joints : ndarray, shape (joints,)
-        Joint variables, rad (m where a joint slides), within the bounds; where nothing was
-        solved, the values with the smallest residual.
+        Joint variables, rad (m where a joint slides), within the bounds; if nothing was solved, the
+        values with the smallest residual.
     position_error : float
         Norm of the wanted components of the position residual, m.
     angle_error : float
@@ -87,8 +87,8 @@ def inverse_kinematics(
     """Find joint values that bring the end of a chain to a point or pose.
 
     Levenberg–Marquardt on the residual from all starts at once (Wampler 1986; Sugihara 2011),
-    with joints held at a bound while the step points outwards. The answer is judged afresh by
-    forward kinematics.
+    with joints held at a bound while the step points outwards. The answer is checked by forward
+    kinematics.
 
     Parameters
     ----------
@@ -102,25 +102,25 @@ def inverse_kinematics(
         the target, in the base frame.
     guess : array_like, shape (joints,), optional
         First start; of several solutions the one whose farthest joint is nearest to it is
-        returned. Without it the search ends with the first start that arrives.
+        returned. Without it, the search ends with the first start that succeeds.
     starts : int
         Number of starts, the guess included.
     tolerance : float
         Largest norm of the residual, m and rad.
     iterations : int
-        Most steps per start.
+        Largest number of steps per start.
 
     Raises
     ------
     TrajgapError
-        If the target is no pose or point, a component is unknown or not given by the target, a
+        If the target is not a pose or point, a component is unknown or not given by the target, a
         joint slides without bounds, or a number is out of range.
     """
     goal, rows = question(target, components)
     if not (starts >= 1 and iterations >= 1 and 0 < tolerance < np.inf):
         raise TrajgapError(
             f"inverse kinematics: {starts} starts, {iterations} iterations, tolerance {tolerance}; "
-            "give at least 1, at least 1, and a positive number"
+            "give at least 1 start, at least 1 iteration, and a positive tolerance"
         )
     begin = _starts(chain, np.random.default_rng(seed), starts, guess)
     near = guess is not None
@@ -164,7 +164,7 @@ def question(target: ArrayLike, components: Sequence[str] | None) -> tuple[Array
         skew = np.abs(rotation @ rotation.T - np.eye(3)).max()
         last = np.array_equal(given[3], [0, 0, 0, 1])
         if skew > _ROTATION_TOLERANCE or np.linalg.det(rotation) < 0 or not last:
-            raise TrajgapError("target: is no pose; give a rotation and the last row 0, 0, 0, 1")
+            raise TrajgapError("target: is not a pose; give a rotation and the last row 0, 0, 0, 1")
         pose = given
     else:
         pose[:3, 3] = given

@@ -57,8 +57,8 @@ def proximity(
         Values of the joints that are held, rad (m where a joint slides); NaN for the free ones,
         which range over `Chain.span`. Held values need not keep the bounds.
     radial : bool
-        Compare distances from the base's origin only: what is left of the distance if the axes of
-        the base may be turned or mirrored.
+        Compare distances from the base's origin only, as if the axes of the base could be turned or
+        mirrored.
     tolerance : float, optional
         Wanted difference of the bounds, m; a ten-thousandth of the reach by default. With many
         free joints the search may stop before.
@@ -70,11 +70,11 @@ def proximity(
     """
     goal, given = np.asarray(point, dtype=np.float64), np.asarray(held, dtype=np.float64)
     if goal.shape != (3,) or not np.isfinite(goal).all():
-        raise TrajgapError("point: is no finite position; give three numbers, m")
+        raise TrajgapError("point: is not a finite position; give three numbers, m")
     if given.shape != (chain.joints,) or np.isinf(given).any():
         raise TrajgapError(
-            f"held: shape {given.shape} for {chain.joints} joints; give one number each, "
-            "NaN where a joint is free"
+            f"held: shape {given.shape} for {chain.joints} joints; give one number each, NaN for "
+            "a free joint"
         )
     free = np.isnan(given)
     kept = chain.with_bounds(np.where(free, chain.lower, given), np.where(free, chain.upper, given))

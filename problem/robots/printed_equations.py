@@ -61,20 +61,20 @@ class Equation(Strict):
     def _together(self) -> Self:
         if (self.mended is None) != (self.mend is None):
             missing = ".mend" if self.mend is None else ".mended"
-            raise fault(missing, "is missing; mended and mend stand together")
+            raise fault(missing, "is missing; mended and mend must be given together")
         return self
 
 
 @dataclass(frozen=True)
 class EquationCheck:
-    """How far an equation holds.
+    """How well an equation holds.
 
     Attributes
     ----------
     share : float
         Share of the samples at which both sides agree, with either sign of "pm".
     largest : float
-        Largest difference of the sides over the samples; NaN where a side has no value.
+        Largest difference of the sides over the samples; NaN if a side has no value.
     """
 
     text: str
@@ -105,7 +105,7 @@ def check_equation(chain: Chain, text: str, samples: int = SAMPLES, seed: int = 
     Raises
     ------
     TrajgapError
-        If the text is no equation of that language.
+        If the text is not an equation of that language.
 
     Examples
     --------
@@ -116,11 +116,11 @@ def check_equation(chain: Chain, text: str, samples: int = SAMPLES, seed: int = 
     *definitions, sides = (part.split("=") for part in text.split(";"))
     if len(text) > LONGEST_EQUATION or any(len(part) != 2 for part in (*definitions, sides)):
         raise TrajgapError(
-            f"{_short(text)} is no equation; write left = right, in at most "
+            f"{_short(text)} is not an equation; write left = right, in at most "
             f"{LONGEST_EQUATION} characters"
         )
     if chain.joints > 9 or not chain.revolute.all():
-        raise TrajgapError("equations: are those of fewer than ten joints that all turn")
+        raise TrajgapError("equations: apply only to chains of fewer than ten joints that all turn")
     q = np.random.default_rng(seed).uniform(*chain.span(), (samples, chain.joints))
     frames = link_frames(chain, q)
     differences = []
@@ -142,7 +142,9 @@ def _apart(left: Array, right: Array, wraps: bool) -> Array:
     try:
         apart = left - right
     except ValueError:
-        raise TrajgapError("equations: a number stands against a transform; compare like") from None
+        raise TrajgapError(
+            "equations: a number is compared with a transform; compare like with like"
+        ) from None
     if wraps:
         return np.asarray(np.abs(apart - 2 * np.pi * np.round(apart / (2 * np.pi))))
     size = np.maximum(1.0, np.maximum(np.abs(left), np.abs(right)))
@@ -155,7 +157,7 @@ def _value(text: str, chain: Chain, q: Array, frames: Array, names: dict[str, An
     try:
         tree = ast.parse(text.strip(), mode="eval").body
     except (SyntaxError, ValueError):
-        raise TrajgapError(f"{_short(text)} is no expression; see check_equation") from None
+        raise TrajgapError(f"{_short(text)} is not an expression; see check_equation") from None
 
     def value(node: ast.AST) -> Any:
         match node:
@@ -171,14 +173,16 @@ def _value(text: str, chain: Chain, q: Array, frames: Array, names: dict[str, An
                 name in _FUNCTIONS and len(given) == _FUNCTIONS[name][0]
             ):
                 return _FUNCTIONS[name][1](*map(value, given))
-        raise TrajgapError(f"{_short(ast.unparse(node))} is not read; see check_equation")
+        raise TrajgapError(f"{_short(ast.unparse(node))} is not supported; see check_equation")
 
     try:
         return value(tree)
     except TrajgapError:
         raise
     except ValueError:
-        raise TrajgapError(f"{_short(text)} mixes numbers and transforms; compare like") from None
+        raise TrajgapError(
+            f"{_short(text)} mixes numbers and transforms; compare like with like"
+        ) from None
 
 
 def _named(name: str, chain: Chain, q: Array, frames: Array) -> Any:
@@ -202,7 +206,7 @@ def _named(name: str, chain: Chain, q: Array, frames: Array) -> Any:
     if inside and re.fullmatch(r"T\d", name):
         before = frames[:, joints[0] - 1] if joints[0] else np.eye(4)
         return np.linalg.inv(before) @ frames[:, joints[0]]
-    raise TrajgapError(f"{_short(name)} is no name of this robot; see check_equation")
+    raise TrajgapError(f"{_short(name)} is not a name of this robot; see check_equation")
 
 
 def _short(text: str) -> str:

@@ -80,7 +80,7 @@ class Workspace:
 def sample_workspace(chain: Chain, count: int, seed: int) -> Workspace:
     """Sample the positions that the end of a chain can take.
 
-    Joint values are uniform, positions therefore are not: they crowd where the arm is folded.
+    Joint values are uniform, so positions are not: they concentrate where the arm is folded.
 
     Parameters
     ----------
@@ -144,7 +144,7 @@ def waypoint_sequences(
     if not (count >= 1 and waypoints >= 2 and 0 < step < np.inf):
         raise TrajgapError(
             f"{count} sequences of {waypoints} way-points, step {step}; "
-            "give at least 1, at least 2, and a positive length"
+            "give at least 1 sequence, at least 2 way-points, and a positive length"
         )
     try:
         kind = StepKind(kind)
@@ -183,6 +183,6 @@ def _stepped(
         if found.solved:
             return found.joints
     raise TrajgapError(
-        f"step: none of the {len(workspace.points)} sampled positions is reached at {step:g} m "
-        "from a way-point; take more samples or another step"
+        f"step: none of the {len(workspace.points)} sampled positions lies {step:g} m from a "
+        "way-point; take more samples or another step"
     )

@@ -25,7 +25,7 @@ Hash = Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
 
 
 class BoundEvidence(StrEnum):
-    """What the bounds of an instance rest on."""
+    """Evidence for the bounds of an instance."""
 
     CERTIFIED = "certified"
     """Both bounds are proved by `trajgap.verify`, and at most 1 % apart."""
@@ -55,7 +55,7 @@ class Hardness(_Strict):
     baseline_runs: Count = 0
     """Runs of each baseline; one of those that draw no random numbers."""
     baseline_budget: Count = 0
-    """Evaluations of each run."""
+    """Number of evaluations of each run."""
 
 
 class BenchmarkInstance(_Strict):
@@ -93,17 +93,17 @@ class BenchmarkInstance(_Strict):
     problem_hash: Hash | None
     """Of the problem as the certificate states it."""
     certificate: str | None
-    """Name of its file; None where it is too large to ship, or where there is none."""
+    """Name of its file; None if it is too large to ship, or if there is none."""
     certificate_sha256: Hash | None
     certificate_bytes: Count | None
     gap_asked: float
     """Relative width that `command` asks for."""
     boxes: Count
-    """That the search for the proof visited."""
+    """Boxes that the search for the proof visited."""
     seconds: Seconds
     """Processor time of that search, on one core of a shared machine."""
     verify_seconds: Seconds | None
-    """Processor time of proving the certificate again."""
+    """Processor time for verifying the certificate."""
     hardness: Hardness | None
     """None until it is measured."""
 
@@ -114,7 +114,7 @@ class BenchmarkInstance(_Strict):
 
     @property
     def command(self) -> str:
-        """What makes the certificate."""
+        """Command that creates the certificate."""
         over = "" if self.lower_subject == "the declared curve" else " --any-curve"
         seconds = max(60, round(10 * self.seconds, -1))
         return (
@@ -130,7 +130,7 @@ class BenchmarkInstance(_Strict):
         return self.case().problem()
 
     def certificate_file(self) -> Traversable | None:
-        """The certificate, as package data; None where none is shipped."""
+        """The certificate, as package data; None if none is shipped."""
         if self.certificate is None:
             return None
         return files(__package__ or "").joinpath("certificates", self.certificate)

@@ -90,7 +90,7 @@ def select_instances(wanted: str) -> tuple[BenchmarkInstance, ...]:
         fits = [one.name for one in list_instances() if fnmatchcase(one.name, pattern)]
         if not fits and any(sign in pattern for sign in "*?["):
             raise TrajgapError(
-                f"suite: no instance fits {pattern!r}; `trajgap suite` lists them, * stands for "
+                f"suite: no instance fits {pattern!r}; `trajgap suite` lists them; * stands for "
                 "any letters"
             )
         found |= dict.fromkeys(fits or [load_instance(pattern).name])
@@ -98,7 +98,7 @@ def select_instances(wanted: str) -> tuple[BenchmarkInstance, ...]:
 
 
 def select_curve(word: str) -> tuple[BenchmarkInstance, ...]:
-    """Instances whose name, or whose curve's, has a word; empty where none has.
+    """Instances whose name, or whose curve's name, contains a word; empty if there is none.
 
     Parameters
     ----------

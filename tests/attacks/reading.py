@@ -114,7 +114,7 @@ def damaged_solve(rng: Rng, folder: Path) -> str:
 
 
 def raw_bytes(rng: Rng, folder: Path) -> str:
-    """Bytes that are no case file at all, and odd kinds of files."""
+    """Bytes that are not case files at all, and odd kinds of files."""
     drawn = draw_case(rng).text.encode()
     match int(rng.integers(6)):
         case 0:
@@ -208,7 +208,7 @@ ATTACKS = (
         quick=3,
     ),
     Attack(
-        "bytes that are no case file",
+        "bytes that are not case files",
         "random bytes, other encodings, cut files, deep nesting, long digits; `show`",
         "the same",
         raw_bytes,

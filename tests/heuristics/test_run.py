@@ -183,7 +183,7 @@ def test_joints_by_themselves() -> None:
     np.testing.assert_array_equal(found.durations, np.where(a > b, a, b))
     assert found.reported_time == found.durations.sum()
     assert found.feasible
-    assert "each joint by itself" in str(found)
+    assert "each joint separately" in str(found)
 
 
 def test_a_joint_that_finds_nothing() -> None:

@@ -23,7 +23,7 @@ MARKS = "<!-- plan: folders -->\n", "<!-- end -->"
 
 @cache
 def modules() -> dict[str, Path]:
-    """Dotted name and file of every module that is no face."""
+    """Dotted name and file of every module that is not a face."""
     every = {name: path for folder in MAY_IMPORT for name, path in source_modules(folder).items()}
     return {name: path for name, path in every.items() if path.name != "__init__.py"}
 

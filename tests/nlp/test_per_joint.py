@@ -1,4 +1,4 @@
-"""Each joint by itself: the longest durations, and the ranges of near optima by two methods."""
+"""Each joint separately: the longest durations, and the ranges of near optima by two methods."""
 
 from dataclasses import replace
 from functools import cache

@@ -53,7 +53,7 @@ def main() -> int:
         with Crew(ROOT, options.n) as crew:
             plant(faults, folders, crew, results, options)
     except KeyboardInterrupt:
-        print("interrupted: the same command goes on from here", file=sys.stderr)
+        print("interrupted: the same command continues from here", file=sys.stderr)
         return 130
     except UnfitError as error:
         print(error, file=sys.stderr)

@@ -55,7 +55,7 @@ class Fault:
         for before, token in pairwise(tokens):
             words = before[-1].isidentifier() and (token[0].isalnum() or token[0] == "_")
             parts.append((r"\s+" if words else r"\s*") + re.escape(token))
-        # A word of the text is no part of a longer word of the source.
+        # A word of the text is not part of a longer word of the source.
         start = r"(?<!\w)" if re.match(r"\w", tokens[0]) else ""
         end = r"(?!\w)" if re.match(r"\w", tokens[-1]) else ""
         return re.compile(start + "".join(parts) + end)

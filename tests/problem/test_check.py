@@ -210,7 +210,7 @@ def test_velocity_jump_is_discontinuous() -> None:
     assert result.verdict is Verdict.DISCONTINUOUS
     assert [(j.order, j.break_index) for j in result.jumps] == [(1, 1), (1, 2)]
     assert result.feasible_time is result.tight_time is None
-    assert result.feasible_why == "the motion jumps at a break; stretching does not repair that"
+    assert result.feasible_why == "the motion jumps at a break, which stretching does not repair"
     assert result.tight_why == result.feasible_why
     # a limit that is exceeded is said first
     slow = one_joint([0.3, 1.0, 0.6, 0.8], lines, velocity=1.0)
@@ -246,7 +246,9 @@ def test_nothing_limited_or_nothing_moves(limited: bool) -> None:
     assert limited or (result.worst, result.peaks) == (None, ())
     assert result.feasible_time == pytest.approx(h.sum())
     assert result.tight_time is None
-    assert result.tight_why == "nothing moves or nothing is limited; the total time can shrink to 0"
+    assert (
+        result.tight_why == "nothing moves or nothing is limited, so the total time can shrink to 0"
+    )
     assert not evaluate(problem, [h]).ratios.any()
 
 
@@ -258,7 +260,7 @@ def test_what_rounding_hides_has_no_repair() -> None:
     assert hidden.worst is not None
     assert hidden.worst.error > hidden.worst.limit
     assert hidden.feasible_time is hidden.tight_time is None
-    assert hidden.feasible_why == "rounding hides whether a stretch repairs it"
+    assert hidden.feasible_why == "rounding errors hide whether a stretch repairs it"
     assert hidden.tight_why == hidden.feasible_why
     seen = check(one_joint([13.8194, 10.6226], line, acceleration=126.6), [5.6e-3])
     assert seen.verdict is Verdict.PASS

@@ -242,7 +242,7 @@ def test_only_regular_files_are_read(tmp_path: Path) -> None:
     for path, reason in (
         (pipe, "is not a regular file; name a text file"),
         (Path("/dev/zero"), "is not a regular file; name a text file"),
-        (tmp_path, "is a directory; name a file in it"),
+        (tmp_path, "is a directory; give a file in it"),
     ):
         for read in (lambda p: read_regular(p, 9, ""), load_case, check_regular):
             with pytest.raises(CaseError, match=reason):

@@ -96,7 +96,7 @@ def test_what_was_given_is_copied_and_frozen() -> None:
         ({"acceleration": np.ones((2, 3))}, r"limits.acceleration: .* got shape \(2, 3\)"),
         ({"acceleration": np.ones((2, 2))}, r"limits.acceleration: 1 to 1 leaves out 0"),
         ({"velocity": [1, 2], "joints": 3}, r"limits.velocity: expected one value or 3"),
-        ({"velocity": [1, np.nan]}, r"limits.velocity: is NaN; write inf where there is no limit"),
+        ({"velocity": [1, np.nan]}, r"limits.velocity: is NaN; write inf for no limit"),
         ({"position_upper": np.nan}, r"limits.position_upper: is NaN"),
         ({"jerk": [-1, 2]}, r"limits.jerk: is negative; give the largest absolute value, 0 or"),
         ({"velocity": -np.inf}, r"limits.velocity: is negative"),

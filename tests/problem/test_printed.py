@@ -125,7 +125,7 @@ def test_a_case_error_is_one_line_with_its_evidence():
         ("-1e309", "beyond the range"),
         ("9" * 65, "a number of 65 characters"),
         *(
-            (text, "is no number")
+            (text, "is not a number")
             for text in ("", "nan", "1_000", "0x10", "1,5", "\u0663", "1e", "+")
         ),
     ],

@@ -147,7 +147,7 @@ def _repair(
     if order == 0:
         assert found.stretch == 0.0
         assert (found.feasible_time is None) == beyond
-        assert not beyond or "stretching does not move the path" in str(found.feasible_why)
+        assert not beyond or "stretching does not change the path" in str(found.feasible_why)
         return
     stretch = ratio ** (1.0 / order)
     assert found.stretch == pytest.approx(stretch, rel=1e-9)

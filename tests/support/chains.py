@@ -36,7 +36,7 @@ def elementary(chain: Chain, q) -> np.ndarray:
 
 
 def number(low: float, high: float):
-    """Two decimals: a twist of 1e-8 is no test of kinematics but of arithmetic."""
+    """Two decimals: a twist of 1e-8 is not a test of kinematics but of arithmetic."""
     return st.floats(low, high).map(lambda x: round(x, 2))
 
 

@@ -243,11 +243,11 @@ FAULTS = {
     returns_nan: "returned NaN",
     leaves_bounds: "asked for the fitness of 10 s for duration 2, outside its bounds 0.1 to 3 s",
     returns_outside: "returned -0.9 s for duration 1, outside its bounds 0.1 to 3 s",
-    swallows: "went on after its budget of 40 evaluations was spent",
+    swallows: "continued after its budget of 40 evaluations was spent",
     hides_faults: "asked for the fitness of NaN",
     raises: "one",
     judges_nothing: "judged no position",
     wrong_shape: r"asked for the fitness of shape \(2,\); give \(3,\) or \(batch, 3\)",
-    asks_words: "asked for the fitness of something that is not numbers",
+    asks_words: "asked for the fitness of something that is not numeric",
 }
 """What each is told within bounds of 0.1 to 3 s on three segments and a budget of 40."""

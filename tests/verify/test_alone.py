@@ -30,7 +30,7 @@ def alone(folder: Path, *arguments: str | Path) -> subprocess.CompletedProcess[s
 
 @pytest.fixture(scope="module")
 def copied(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The folder under a name that is no identifier, and without what Python left in it."""
+    """The folder under a name that is not an identifier, and without what Python left in it."""
     to = tmp_path_factory.mktemp("elsewhere") / "a copy-1"
     shutil.copytree(FOLDER, to, ignore=shutil.ignore_patterns("__pycache__"))
     return to

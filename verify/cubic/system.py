@@ -31,7 +31,7 @@ class Cubic:
     """The problem in its own units: equations, conditions, and what the limits imply."""
 
     def __init__(self, problem: StatedProblem, proof: dict[str, Any]) -> None:
-        declared = required(problem.declaration, "the curve is no declared piecewise polynomial")
+        declared = required(problem.declaration, "the curve is not a declared piecewise polynomial")
         self.ends, self.virtual = kind_of_ends(declared)
         self.n, self.m, self.joints = problem.segments, len(problem.waypoints) - 1, problem.joints
         need(self.n <= MOST_CUBIC_SEGMENTS, f"more than {MOST_CUBIC_SEGMENTS} segments")
@@ -179,5 +179,5 @@ def root_below(x: Fraction) -> Fraction:
 
 
 def least_of(bounds: Iterable[Fraction | None]) -> Fraction | None:
-    """The least of some bounds; None is no bound."""
+    """The least of some bounds; None is not a bound."""
     return min((x for x in bounds if x is not None), default=None)

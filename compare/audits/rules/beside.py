@@ -20,7 +20,9 @@ SAMPLES = (50, 100, 200, 500, 1000)
 _ROOTS = (2, 3, 5)
 """Numbers whose square roots closed forms of peaks hold, such as 10/√3 of degree 5 and 84√5/25 of
 degree 7: one that is lost in print is named as an explanation."""
-UNEXPLAINED = "off by more than rounding, cut-off or sampling was found to explain"
+UNEXPLAINED = (
+    "and neither rounding, cut-off digits nor sampling was found to explain the difference"
+)
 """Said of a printed number of a motion that is not that of the printed durations."""
 _CORNERS = 6
 """Corners of the rounding box that are looked at in turn at most, each way; a search of all of its
@@ -40,7 +42,7 @@ _LENGTH_FACTORS = {
     10.0: "as between millimetres and centimetres",
     60.0: "as per minute instead of per second",
 }
-"""The same of joints that slide, whose numbers are no angles."""
+"""The same of joints that slide, whose numbers are not angles."""
 _NEAR_FACTOR = 0.01
 """Relative distance from such a ratio below which the unit is named as an explanation."""
 
@@ -137,10 +139,10 @@ class Beside:
         """A number of a motion by its name, with what is printed and how the two agree."""
         how = {
             Agreement.ROUNDING: "equal within the rounding of the printed digits",
-            Agreement.CUT_OFF: "as digits that are cut off instead of rounded give it",
-            Agreement.SAMPLING: f"as {SAMPLES[0]} or more samples of the motion give it",
+            Agreement.CUT_OFF: "which fits if digits were cut off instead of rounded",
+            Agreement.SAMPLING: f"which {SAMPLES[0]} or more samples of the motion give",
         }.get(self.kind, UNEXPLAINED)
-        return f"{name} is {self.exact:.6g} {self.unit}, printed is {self.printed}, {how}"
+        return f"{name} is {self.exact:.6g} {self.unit}, printed as {self.printed}, {how}"
 
     @property
     def root(self) -> int | None:

@@ -114,7 +114,7 @@ def _on_axis(study: Study, clue: AxisClue, reading: str) -> _Said:
         return Speaks.AGAINST, f"{beside}: the curve would be a flat line"
     if reach > last + step:
         return Speaks.AGAINST, f"{beside}: the curve would leave the axis"
-    return Speaks.FOR, beside + (" of an axis that may go on for one step" if reach > last else "")
+    return Speaks.FOR, beside + (" of an axis that may extend by one step" if reach > last else "")
 
 
 def _data_sheet(study: Study, clue: DataSheetClue, reading: str) -> _Said:
@@ -194,14 +194,16 @@ def held_otherwise(row: PrintedRow[AnyClaim]) -> HeldOtherwise | Why:
     """The largest ratio to a limit if the limits were held otherwise than for all t."""
     worst = row.check.worst
     if worst is None or worst.quantity in ("curve", "duration"):
-        return Why("the printed durations define no motion whose limits are held")
+        return Why("the printed durations define no motion whose limits could be checked")
     problem = row.posed()
     durations = row.durations.value
     sampled = _at_samples(problem, durations, row.motion)
     vertices: float | Why = Why("the curve has no control vertices in time")
     declared = row.statement.declaration
     if problem.limits.uneven:
-        vertices = Why("lower and upper limits differ, and vertices are set beside equal ones")
+        vertices = Why(
+            "lower and upper limits differ, but vertices are compared with equal ones only"
+        )
     elif (declared.family, declared.time) == ("uniform-cubic-b-spline", "stretched"):
         vertices = _on_vertices(problem.waypoints, durations, problem.limits.sides[1])
     return HeldOtherwise(

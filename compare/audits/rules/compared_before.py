@@ -137,11 +137,13 @@ _STRONG = 0.75
 
 @rule_group(
     TG405=Explained(
-        "A comparison of two algorithms beside a committed study of it",
-        "Was the comparison of the two algorithms run at length: many seeds, every handling of "
-        "limits, settings spread over what is open, each improvement taken away?",
+        "A comparison of two algorithms, repeated in a committed study",
+        "Does a larger study confirm the comparison of two algorithms: many seeds, every handling "
+        "of "
+        "limits, settings spread over what is open, each improvement removed?",
         INFORMS + " The results are committed with the command that makes them.",
-        "B is at least 10 % shorter than A in 2 % of the pairs of runs, and typically so in 3 of "
+        "B is at least 10 % shorter than A in 2 % of the pairs of runs, and typically so for 3 of "
+        ""
         "256 pairs of settings.",
     ),
     without_waypoints=True,
@@ -160,7 +162,7 @@ def cite_comparisons(study: Study) -> Iterator[Finding]:
             decides=False,
             claim=claim.id,
             printed=known.printed,
-            computed=f"shows in {_percent(first.shown.share)} of the pairs",
+            computed=f"holds in {_percent(first.shown.share)} of the pairs",
             kind="study",
             sentences=tuple(comparison_words(known.model_copy(update=both), study.case)),
         )
@@ -171,11 +173,12 @@ def comparison_words(known: Comparison, case: Case) -> Iterator[str]:
     what = f"at least {100 * known.advantage:.4g} % shorter" if known.advantage else "shorter"
     runs = known.listed[0].shown.runs
     yield (
-        f"A committed study ran both on {known.on}, {known.budget:,} evaluations a run, "
+        f"A committed study ran both on {known.on}, with {known.budget:,} evaluations per run and "
+        f""
         f"{min(runs)} independent runs each."
     )
     yield (
-        f"Under the listed choices one run of {known.improved} is {what} than one of "
+        f"Under the listed choices, one run of {known.improved} is {what} than one of "
         f"{known.standard} {_each(known.listed)}."
     )
     if known.designed:
@@ -186,8 +189,8 @@ def comparison_words(known: Comparison, case: Case) -> Iterator[str]:
         ]
         best = max(known.designed, key=lambda one: one.most or 0.0)
         yield (
-            f"With everything that the text leaves open varied together, this is typical (in at "
-            f"least half of the pairs of runs) in {' and in '.join(counts)}"
+            f"If everything that the text leaves open is varied together, this is typical (true "
+            f"of at " f"least half of the pairs of runs) for {' and for '.join(counts)}"
             + (f", most often with {_settings(known, best)} ({_percent(best.most)})." if best.most
                else ".")
         )  # fmt: skip
@@ -249,8 +252,8 @@ def _taken_away(ablated: Sequence[Ablated], case: Case) -> Iterator[str]:
             if one.problem == problem
         ]
         yield (
-            f"{noted('Share of pairs', searched)} in which the whole algorithm is shorter than "
-            f"itself without {', '.join(parts)}."
+            f"{noted('Share of pairs', searched)} in which the complete algorithm is shorter than "
+            f"without one improvement: {', '.join(parts)}."
         )
 
 

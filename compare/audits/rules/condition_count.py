@@ -25,19 +25,19 @@ digits moves it by less."""
 @rule_group(
     TG107=Explained(
         "The conditions stated fit the number of coefficients",
-        "Can the conditions that the paper states hold together? They are counted against the "
+        "Can a curve satisfy all conditions that the paper states? They are counted against the "
         "coefficients of the polynomials, segment by segment.",
-        "Refuted if the printed count is another one, or if no polynomial of the stated "
-        "degree meets the conditions. More conditions than coefficients get a warning: they "
-        "can hold together only for special way-points.",
-        "A cubic has four coefficients. If position, velocity and acceleration are given at "
-        "both ends, six conditions meet four coefficients.",
+        "Refuted if the printed count differs, or if no polynomial of the stated degree satisfies "
+        "the conditions. More conditions than coefficients get a warning: all of them can hold "
+        "only for special way-points.",
+        "A cubic has four coefficients. If position, velocity and acceleration are given at both "
+        "ends, there are six conditions for four coefficients.",
     ),
     TG207=Explained(
         "The motion is at rest where it is said to be",
-        "Is the motion at rest where the paper says so? The derivatives at both ends are computed.",
+        "Is the motion at rest if the paper says so? The derivatives at both ends are computed.",
         "Supported if they vanish, inconsistent if one does not.",
-        "“Starts and ends at rest” on a natural cubic spline that starts at 68 °/s.",
+        "A paper says “starts and ends at rest”, but its natural cubic spline starts at 68 °/s.",
     ),
 )
 def judge_counts(study: Study) -> Iterator[Finding]:
@@ -93,12 +93,12 @@ def _counted(study: Study, claim: ConditionsClaim) -> Finding:
     elif impossible := _impossible_segments(study, claim):
         verdict, severity, kind = ClaimVerdict.REFUTED, Severity.ERROR, "impossible"
         more = (
-            f"No polynomial of that degree meets them in segment{'s' * (len(impossible) > 1)} "
+            f"No polynomial of that degree satisfies them in segment{'s' * (len(impossible) > 1)} "
             f"{' and '.join(map(str, impossible))}, where the way-points differ."
         )
     elif wanted > available:
         verdict, severity, kind = ClaimVerdict.NOT_CHECKABLE, Severity.WARNING, "too many"
-        more = "They can hold together only for special way-points."
+        more = "All of them can hold only for special way-points."
     return Finding(
         rule="TG107",
         severity=severity,

@@ -35,35 +35,36 @@ _NARROW = 0.01
 @rule_group(
     TG201=Explained(
         "Printed durations keep the limits for all t, over the rounding box",
-        "Do the printed durations keep the printed limits at every instant? The motion is "
-        "built again from the printed durations and way-points, and its extrema are exact.",
+        "Do the printed durations keep the printed limits at every instant? The motion is rebuilt "
+        "from the printed durations and way-points, and its extrema are exact.",
         "Supported if the limits are kept by the printed numbers, or by some values that "
         "round to them. Refuted only if a limit is broken however the digits were rounded, and "
         "however they were cut off.",
-        "A velocity of 2.0004 rad/s against a limit of 2 rad/s is no fault if durations "
+        "A velocity of 2.0004 rad/s against a limit of 2 rad/s is not a fault if durations "
         "printed with two decimals explain it; 2.6 rad/s is one.",
     ),
     TG202=Explained(
         "Position, velocity and acceleration are continuous",
         "Are position, velocity and acceleration continuous, as the paper says?",
         "Supported if the motion built from the printed numbers is continuous under the "
-        "reading, inconsistent if it jumps. Limits are judged apart from jumps.",
-        "Cubic segments that are stretched one by one have equal slopes only if equal "
-        "durations follow each other; else the velocity jumps at the via-points.",
+        "reading, inconsistent if it jumps. Limits are judged separately from jumps.",
+        "Cubic segments that are stretched one by one have equal slopes only if neighbouring "
+        "durations are equal; otherwise the velocity jumps at the via-points.",
     ),
     TG204=Explained(
-        "The limits are used up by the printed durations",
-        "Which limits do the printed durations use up? The shortest motion reaches at least one.",
+        "The printed durations reach the limits",
+        "Which limits do the printed durations reach? The shortest motion reaches at least one.",
         INFORMS + " A motion that reaches no limit could be shorter.",
         "The largest velocity is 62 % of its limit and the largest acceleration 71 %: all "
-        "durations could be shortened alike.",
+        "durations could be shortened by the same factor.",
     ),
     TG206=Explained(
         "Acceleration jumps where it is said to",
-        "Does the acceleration jump where the paper says that a method makes it jump?",
-        "Supported if it does. A reading under which it does not speaks against that reading.",
-        "“The acceleration of the 3-5-3 curve changes suddenly at the via-points” is set "
-        "beside the accelerations on both sides of each via-point.",
+        "Does the acceleration jump if the paper says that a method makes it jump?",
+        "Supported if it does. If it does not jump under a reading, that speaks against the "
+        "reading.",
+        "“The acceleration of the 3-5-3 curve changes suddenly at the via-points” is compared "
+        "with the accelerations on both sides of each via-point.",
     ),
 )
 def judge_motions(study: Study) -> Iterator[Finding]:
@@ -144,8 +145,8 @@ def _jumps(study: Study, claim: AnyClaim) -> Iterator[Finding]:
             kind="velocity jumps",
             sentences=(
                 f"The motion is discontinuous under this reading: velocity jumps {len(velocity)} "
-                f"times at the via-points, most {most}.",
-                "Limits are judged apart from jumps.",
+                f"times at the via-points, the largest jump {most}.",
+                "Limits are judged separately from jumps.",
             ),
             decides=False,
         )
@@ -176,7 +177,7 @@ def _limits_statement(study: Study, claim: StatementClaim) -> Iterator[Finding]:
             )
             sentences = [
                 f"{which} the limits for all t, as printed or for some values that are rounded or "
-                f"cut off to {'their' if len(judged) == 1 else 'its'} digits."
+                "cut off to give the printed digits."
             ]
         else:
             verdict = ClaimVerdict.NOT_CHECKABLE
@@ -219,7 +220,7 @@ def _elsewhere(
             judged = JudgedRow(row.verdict, row.severity, row.sentences, _ELSEWHERE)
             yield claim, str(row.problem), judged
     if not rows:
-        said = "No motion is built from these durations here, so that they are not judged."
+        said = "No motion is built from these durations here, so they are not judged."
         judged = JudgedRow(ClaimVerdict.NOT_CHECKABLE, Severity.INFO, (said,), _ELSEWHERE)
         yield claim, claim.problem, judged
 
@@ -304,14 +305,14 @@ def _said_to_jump(study: Study, claim: StatementClaim) -> Iterator[Finding]:
             )
             verdict, kind = ClaimVerdict.SUPPORTED, "jumps"
             message = (
-                f"Under this reading the acceleration{whose} jumps at {len(jumps)} breaks, most "
-                f"{most}."
+                f"Under this reading the acceleration{whose} jumps at {len(jumps)} breaks, the "
+                f"largest jump {most}."
             )
         else:
             verdict, kind = ClaimVerdict.NOT_CHECKABLE, "agrees"
             message = (
                 f"Under this reading the acceleration{whose} agrees on both sides of every break; "
-                "steep is not the same as discontinuous, and the figures are not in the text."
+                "a steep change is not a discontinuity, and the figures are not in the text."
             )
         yield Finding(
             rule="TG206",

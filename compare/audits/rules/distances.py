@@ -49,18 +49,21 @@ from ..study import Study, Total
 from .judged_rows import broken
 from .rule_group import INFORMS, Explained, rule_group
 
-_BELOW = "All of it is below the best known total: a misprint or a better optimum may explain it."
+_BELOW = (
+    "The whole printed interval is below the best known total; a misprint or a better optimum may "
+    "explain it."
+)
 """What is said of a printed total below a best known one."""
 _BELOW_BOUND = (
-    "The whole printed interval lies below the proved lower bound of this problem as printed: "
-    "a misprinted total, limit or way-point, or another reading, may explain it."
+    "The whole printed interval lies below the proved lower bound of this problem; a misprinted "
+    "total, limit or way-point, or another reading, may explain it."
 )
 """What is said of a printed total below a proved bound."""
 
 
 @rule_group(
     TG302=Explained(
-        "A printed total beside the optimum of its own formulation",
+        "Distance of a printed total from the optimum of its own formulation",
         "How far is a printed total from the optimum of the paper's own problem: its curve, "
         "its way-points, its limits?",
         "A distance alone supports and refutes nothing. “Optimal” is refuted by a shorter "
@@ -68,11 +71,11 @@ _BELOW_BOUND = (
         "3.172 s is printed for joint 3, whose proven optimum is 3.126 s: 1.5 % above it.",
     ),
     TG303=Explained(
-        "A printed total beside the optimum with shared durations",
-        "The same distance where all joints pass each way-point together, though the paper "
-        "times each joint by itself.",
+        "Distance of a printed total from the optimum with shared durations",
+        "The same distance if all joints pass each way-point together, although the paper times "
+        "each joint separately.",
         INFORMS,
-        "Each joint is optimised by itself, and each segment then takes the longest of their "
+        "Each joint is optimised separately, and each segment then takes the longest of their "
         "durations: 3.53 s. Optimised together, the joints need 3.30 s.",
     ),
 )
@@ -168,12 +171,12 @@ def _below(row: PrintedRow[AnyClaim], interval: tuple[float, float]) -> str | No
     timed, solution = not isinstance(row.claim, TotalTimeClaim), row.optimum
     if timed and row.rounding.verdict is Rounding.CONSISTENT:
         return (
-            "The rounding of the printed digits explains it: some values that round to them keep "
-            "every limit with these durations."
+            "Rounding explains it: some values that round to the printed digits keep every limit "
+            "with these durations."
         )
     if timed and broken(row) is not None:
         return (
-            f"Below the {solution.evidence} total, which keeps the limits; these durations do not."
+            f"It is below the {solution.evidence} total because these durations break the limits."
         )
     if loose := row.statement.declaration.loose:
         return f"{loose} are rounded numbers, which may explain it."
@@ -232,9 +235,9 @@ def _beside_procedure(row: PrintedRow[AnyClaim], total: Total) -> Iterator[Findi
     message = (
         f"Each joint at its own {answer.joint_evidence} optimum, then the longest per segment, "
         f"gives {ranged(wide.lowest, wide.highest, '.4f')} s while every joint stays within "
-        f"{wide.slack:g} s of its optimum, and {answer.total_time:.4f} s at the optima found"
+        f"{wide.slack:g} s of its optimum, and {answer.total_time:.4f} s at these optima"
         + (f" (free rescaling of that motion: {tight:.4f} s)" if tight is not None else "")
-        + f"; printed is {shown}, {'inside' if inside else 'outside'} that range."
+        + f"; the printed {shown} lies {'inside' if inside else 'outside'} that range."
     )
     yield row.finding(
         "TG302",
@@ -275,7 +278,7 @@ def _weigh(row: PrintedRow[AnyClaim], sides: _Sides) -> None:
     name = called_under(row.study.case, claim, row.problem)
     other = off_ratios(row)
     if other is not None:
-        sides.open.append(f"{name}: printed are {other}, so that it is not of this question")
+        sides.open.append(f"{name}: printed are {other}, which answer another question")
         return
     solution = row.optimum
     shorter = _shorter(row, total)
@@ -301,7 +304,7 @@ def _weigh(row: PrintedRow[AnyClaim], sides: _Sides) -> None:
     if apart:
         sides.open.append(
             f"{name}: printed {shown}, and also {' and '.join(apart)}; these contradict each "
-            "other, and neither is taken"
+            "other, and neither is used"
         )
         return
     if not found:
@@ -318,7 +321,7 @@ def _weigh(row: PrintedRow[AnyClaim], sides: _Sides) -> None:
     sides.open.append(
         f"{name}: printed {shown} {set_beside(distance)} the "
         f"{optimum_called(solution.problem, solution.evidence)} {solution.best:.6f} s, "
-        "and no proof decides whether that is more than the rounding of the digits explains"
+        "and no proof decides whether rounding explains the difference"
     )
 
 
@@ -335,7 +338,7 @@ def _no_optimum(solution: Solution) -> str:
     if solution.status is Status.NOT_ATTAINED:
         limits = solution.problem.limits
         free = not np.isfinite(limits.sides).any()
-        said = "no limit is printed, so that no motion is the shortest"
+        said = "no limit is printed, so there is no shortest motion"
         return (said if free else "no shortest motion was found") + why
     if solution.status is Status.INFEASIBLE:
         of = at_ratios(solution.problem)
@@ -348,7 +351,7 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
 
     Shorter means: for every way-point and limit that rounds to the printed digits, the same checked
     durations, stretched as far as those may need, take less than the low end of the printed total.
-    Durations that break the limits are no answer within them.
+    Durations that break the limits are not answers within them.
     """
     for reading in study.readings:
         sides = _Sides()
@@ -360,13 +363,13 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
             else:
                 name = called_under(study.case, row.claim, row.problem)
                 sides.open.append(
-                    f"{name}: minimised for {minimised}, not for time alone, so that a shorter "
+                    f"{name}: minimised for {minimised}, not for time alone, so a shorter "
                     "motion contradicts nothing"
                 )
         if not (sides.longer or sides.breaking or sides.agreeing or sides.open):
             continue
         for one in left_out(study, named, reading):
-            sides.open.append(f"{called(one)}: of another curve, beside which no optimum stands")
+            sides.open.append(f"{called(one)}: on another curve, so the optimum does not apply")
         evidence = weakest(one.evidence for one in sides.solutions)
         longer, breaking = sides.longer, sides.breaking
         if longer or breaking:
@@ -376,14 +379,14 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
             said = [f"{one}." for one in longer]
             if longer:
                 said[0] = f"Not the shortest, {every}: {said[0]}"
-            said += ["Not an answer within the limits.", *breaking] if breaking else []
+            said += ["The printed motion breaks a limit.", *breaking] if breaking else []
         elif sides.open:
             verdict = ClaimVerdict.NOT_CHECKABLE
             said = [f"Not decided: {'; '.join(sides.open)}."]
         else:
             verdict = ClaimVerdict.SUPPORTED
             called_so = {optimum_called(one.problem, evidence) for one in sides.solutions}
-            rounded = ", digits rounded up so that the limits are kept" if sides.rounded_up else ""
+            rounded = " if digits were rounded up to keep the limits" if sides.rounded_up else ""
             which = " or the ".join(sorted(called_so))
             whose = what_agrees(len(sides.agreeing), sides.summed)
             said = [f"{whose} the {which}{rounded}."]
@@ -395,7 +398,7 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
             claim=statement.id,
             reading=reading,
             sentences=tuple(said),
-            gap=known(sides.most, "no time is set beside a motion"),
+            gap=known(sides.most, "no time is compared with a motion"),
             farthest=sides.farthest,
             kind="longer" if longer else "breaks" if breaking else str(evidence),
             root=f"{OPTIMAL} {statement.id}" if longer else "",

@@ -26,11 +26,11 @@ _SHARE_OF = {"slower": "the longer total", "faster": "the shorter total"}
 @rule_group(
     TG103=Explained(
         "A printed improvement follows from the printed totals",
-        "Does a printed improvement follow from the two totals that it compares? A percentage "
-        "may be a share of either total unless the text says of which.",
-        "Supported if some values that round to the printed totals give it, else refuted; "
-        "inconsistent where two places print different totals. Where only the order of two "
-        "totals is claimed, a longer total that is called the better one is refuted. " + ON_DIGITS,
+        "Does a printed improvement follow from the two totals that it compares? A percentage may "
+        "be a share of either total, unless the text says which.",
+        "Supported if some values that round to the printed totals give it, otherwise refuted; "
+        "inconsistent if two places print different totals. If only the order of two totals is "
+        "claimed, a longer total that is called the better one is refuted. " + ON_DIGITS,
         "From 4.00 s to 3.60 s the total falls by 9.8 to 10.2 % of the longer total, or by 11 "
         "% of the shorter one. “10 %” and “11 %” are supported; “15 %” is refuted.",
     ),
@@ -185,10 +185,11 @@ def _unquantified(
         if contradicted(study, sides):
             verdict = ClaimVerdict.INCONSISTENT
             more = (
-                "Their tables agree in every number, and elsewhere in print the two results differ."
+                "Their tables agree in every number, but elsewhere the paper prints different "
+                "results."
             )
     elif seconds.lower > 0 and not study.has_problems:
-        message += ", in the order that is claimed; neither can be computed from the text"
+        message += ", in the claimed order; neither can be computed from the text"
     elif seconds.lower > 0:
         verdict = ClaimVerdict.SUPPORTED
     elif hull(slower).upper < hull(faster).lower:
@@ -238,7 +239,8 @@ def _against_tables(
         kind="of the tables",
         sentences=(
             f"{own} the totals printed in the tables ({where}: {slower} and {faster}) the "
-            f"reduction is {span(allowed, 3)} %, whatever was rounded or cut off, not {percent} %.",
+            f"reduction is {span(allowed, 3)} %, however digits were rounded or cut off, not "
+            f"{percent} %.",
         ),
         follows=doubted(study, [t for t in tables if t is not None]),
         between=(claim.id, *(t.id for t in tables if t is not None)),

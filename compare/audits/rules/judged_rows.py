@@ -64,8 +64,8 @@ def judged_row(row: PrintedRow[AnyClaim]) -> JudgedRow:
         jumps = sum(jump.order == 1 for jump in found.jumps)
         explained = (
             "The motion is discontinuous: the printed numbers keep every limit inside the "
-            f"segments, and the velocity jumps {jumps} times between them, which takes an infinite "
-            "acceleration"
+            f"segments, but the velocity jumps {jumps} times between them, which requires "
+            "infinite acceleration"
         )
     said = [f"{explained}.", f"At the printed numbers {at_print}."]
     loose = row.statement.declaration.loose
@@ -74,7 +74,7 @@ def judged_row(row: PrintedRow[AnyClaim]) -> JudgedRow:
     bound = rounding.lower_bound_of_worst
     if rounding.verdict is Rounding.BREAKS and bound is not None:
         said.append(
-            f"Whatever the rounding, a limit is exceeded by a factor of at least "
+            f"In every case, a limit is exceeded by a factor of at least "
             f"{shown_bound(bound, 'lower')}."
         )
     if rounding.verdict is Rounding.BREAKS:
@@ -82,9 +82,9 @@ def judged_row(row: PrintedRow[AnyClaim]) -> JudgedRow:
         if cut is not Rounding.BREAKS:
             kept = cut is not Rounding.UNDECIDED
             verdict = ClaimVerdict.SUPPORTED if kept else ClaimVerdict.NOT_CHECKABLE
-            said.append(f"With digits cut off instead of rounded: {cut}.")
+            said.append(f"If digits were cut off instead of rounded: {cut}.")
             return JudgedRow(verdict, Severity.WARNING, tuple(said), kind)
-        said.append("The same holds with digits cut off instead of rounded.")
+        said.append("The same holds if digits were cut off instead of rounded.")
     return JudgedRow(verdict, severity, tuple(said), kind)
 
 
@@ -98,9 +98,9 @@ def _judged_total(row: PrintedRow[AnyClaim]) -> JudgedRow:
         )
         return JudgedRow(ClaimVerdict.REFUTED, Severity.ERROR, (excluded,), "total excluded")
     said = (
-        f"Only the total is printed, {printed}, and no durations, so that whether its motion keeps "
-        "the limits cannot be computed.",
-        "It was not shown that every motion of that length breaks them.",
+        f"Only the total is printed, {printed}, without durations, so it cannot be computed "
+        "whether the motion keeps the limits.",
+        "No proof shows that every motion of that length breaks them.",
     )
     return JudgedRow(ClaimVerdict.NOT_CHECKABLE, Severity.INFO, said, "total open")
 

@@ -54,8 +54,8 @@ class _Found:
         "Do linear segments with parabolic blends keep the limits with the printed durations and "
         "blends?",
         "Refuted if a speed or an acceleration exceeds its limit, or blends overlap, however the "
-        "digits were rounded and wherever the end blends lie. No optimum stands "
-        "beside such a motion: it does not pass its via-points.",
+        "digits were rounded and wherever the end blends lie. Such a motion is not compared with "
+        "an optimum, because it does not pass its via-points.",
         "Durations of 2, 1 and 3 s and blends of 0.4 s turn joint 1 from 12.5 to -10 °/s at the "
         "first via-point, which takes 56 °/s². The limit is 50 °/s².",
     ),
@@ -89,7 +89,7 @@ def _beside(row: PrintedRow[DurationsClaim]) -> Finding:
     computed, at_print, passes = "", "", ""
     if len(claim.durations) != segments:
         message = (
-            f"{len(claim.durations)} durations are printed, and {segments} straight segments join "
+            f"{len(claim.durations)} durations are printed, but {segments} straight segments join "
             "the way-points, so no motion can be built from them."
         )
     else:
@@ -99,8 +99,8 @@ def _beside(row: PrintedRow[DurationsClaim]) -> Finding:
         computed = "; ".join(worst)
         at_print = f"At the printed numbers {worst[0]}."
         passes = (
-            "Such a motion passes via-points at a distance, so that no optimum of a curve through "
-            "them is set beside it, and its acceleration steps, so that its jerk is not judged."
+            "Such a motion misses its via-points, so it is not compared with the optimum of a "
+            "curve through them. Its acceleration jumps, so its jerk is not judged."
         )
         if len(worst) > 1:
             at_print = (

@@ -62,7 +62,7 @@ class MotionMeasure:
         return {
             " of the norm over the joints": self.norm,
             " of the largest joint": float(self.joints.max()),
-            " of the joints in the mean": float(self.joints.mean()),
+            " averaged over the joints": float(self.joints.mean()),
         }
 
 
@@ -342,13 +342,15 @@ def _word(one: Beside) -> str:
 
 judge_peaks = rule_group(
     TG203=Explained(
-        "Printed peaks are those of the printed durations",
-        "Is a printed peak that of the motion it describes?",
-        "Supported within rounding, with digits cut off, or slightly below, as sampling gives "
-        "it; one number for all joints may be the largest of them or their largest norm. "
-        "Inconsistent if none of these explains it. A factor between two units is named.",
-        "The exact peak is 21.351 rad/s². Printed 21.35 is rounding, 21.34 is sampling, and "
-        "1223 is the same number in degrees.",
+        "Printed peaks follow from the printed durations",
+        "Does a printed peak belong to the motion that it describes?",
+        "Supported if it agrees within rounding or with digits cut off, or is slightly lower, as "
+        "sampling would give; one number for all joints may be the largest of them or their "
+        "largest norm. "
+        "Inconsistent if none of these explains it. If the ratio is that of two units, the report "
+        "names them.",
+        "The exact peak is 21.351 rad/s². A printed 21.35 is rounded, 21.34 comes from sampling, "
+        "and 1223 is the same number in degrees.",
     ),
 )(
     MotionNumbers(
@@ -356,17 +358,17 @@ judge_peaks = rule_group(
         PeakClaim,
         beside,
         peak_described,
-        "No durations are printed whose motion could have this peak.",
+        "No durations are printed from which this peak could be computed.",
     ).judge
 )
 """Findings of TG203."""
 judge_measures = rule_group(
     TG208=Explained(
-        "Printed means and integrals are those of the printed durations",
-        "Is a printed mean, root mean square or integral of velocity, acceleration or jerk that of "
-        "the motion it describes?",
-        "Supported within rounding, with digits cut off, or as 50 samples or more give it; one "
-        "number for all joints may be of their norm, of the largest joint, or their mean. "
+        "Printed means and integrals follow from the printed durations",
+        "Does a printed mean, root mean square or integral of velocity, acceleration or jerk "
+        "belong to the motion that it describes?",
+        "Supported if it agrees within rounding, with digits cut off, or with 50 samples or more; "
+        "one number for all joints may be of their norm, of the largest joint, or their mean. "
         "Inconsistent if none of these explains it.",
         "The root mean square of jerk is 5.1920 rad/s³, and 1000 samples give the printed 5.1908.",
     ),
@@ -382,11 +384,11 @@ judge_measures = rule_group(
 """Findings of TG208."""
 judge_values = rule_group(
     TG211=Explained(
-        "Printed values at one place are those of the printed durations",
-        "Is a printed position or derivative at a way-point, at an instant or at its largest that "
-        "of the printed durations?",
-        "Inconsistent if it differs by more than the printed digits allow. Where a derivative "
-        "jumps, either side may be meant; of a largest or smallest value, samples too.",
+        "Printed values at one place follow from the printed durations",
+        "Does a printed position or derivative at a way-point, at an instant or at its largest "
+        "value follow from the printed durations?",
+        "Inconsistent if it differs by more than the printed digits allow. If a derivative jumps, "
+        "either side may be meant; a largest or smallest value may also come from samples.",
         "At the second way-point a table prints -175.7 °/s. The spline through the way-points in "
         "the printed times passes it at -175.71 °/s.",
     ),

@@ -37,9 +37,9 @@ _informing = partial(Finding, rule="TG404", basis=Basis.REPLAY, decides=False)
 
 @rule_group(
     TG404=Explained(
-        "A relative claim beside instances drawn from the robot's workspace",
-        "Where no way-points are printed: how large is the improvement on instances that are "
-        "drawn from the workspace of the robot?",
+        "A relative claim, tried on instances drawn from the robot's workspace",
+        "If no way-points are printed, how large is the improvement on instances that are drawn "
+        "from the workspace of the robot?",
         INFORMS + " The instances are not the paper's.",
         "On 50 instances one run of B is 8 to 14 % shorter than one of A; 10.5 % is printed.",
     ),
@@ -67,18 +67,16 @@ def placed(result: InstancesResult) -> str:
     """Where the printed reduction lies among those of the runs, over all readings."""
     drawn = f"{result.instances} instances drawn from the robot's workspace"
     if result.printed is None:
-        return f"No reduction is printed to set beside {drawn}."
+        return f"No reduction is printed that could be compared with {drawn}."
     inside = [r for r in result.readings if reproduced(result, r)]
     sides: dict[str, list[str]] = {}
     for reading in result.readings:
         if reading not in inside:
             sides.setdefault(_aside(result, reading), []).append(reading)
-    said = (
-        f"On {drawn}, the reduction of {percent_range(*result.printed)} by the printed numbers is "
-    )
+    said = f"On {drawn}, the printed reduction of {percent_range(*result.printed)} is "
     middle = f"the middle {100 * MIDDLE:g} % of the reductions of one run against one run"
     parts = (
-        [f"usual under {', '.join(quoted(one, result.labels) for one in inside)}, within {middle}"]
+        [f"usual under {', '.join(quoted(one, result.labels) for one in inside)}(within {middle})"]
         if inside
         else []
     )
@@ -104,8 +102,7 @@ def attributed(result: InstancesResult) -> Iterator[str]:
         span = medians(result, Effect.ALGORITHM, at)
         if span is not None:
             yield (
-                f"The algorithm alone, where {HANDLED[objective]}: "
-                f"{percent_range(*span, digits=1)}."
+                f"The algorithm alone, if {HANDLED[objective]}: {percent_range(*span, digits=1)}."
             )
 
 
@@ -154,28 +151,30 @@ def _under(result: InstancesResult, reading: str) -> Finding:
             ("usual", "within") if reproduced(result, reading) else ("unusual", "outside")
         )
         parts.append(
-            f"The reduction of {percent_range(*result.printed)} by the printed numbers is {usual} "
-            f"here: it lies {inside} the middle {100 * MIDDLE:g} % of the reductions, and "
+            f"The printed reduction of {percent_range(*result.printed)} is {usual} "
+            f"here: it "
+            f"lies {inside} the middle {100 * MIDDLE:g} % of the reductions, and "
             f"{100 * least:.3g} % of them are at least as large."
         )
     steps = ", ".join(f"{step:g}" for step in block.lengths)
     parts += [
-        f"The reductions are those of one run against one run on {result.instances} instances, at "
-        f"steps of {steps} {block.unit}, with {block.runs} runs each: {both}.",
-        f"The paper's procedure is the faster one in {100 * both.shorter:.3g} % of the pairs.",
+        f"Reductions of one run against one run on {result.instances} instances, at "
+        f"steps of "
+        f"{steps} {block.unit}, with {block.runs} runs each: {both}.",
+        f"The paper's procedure is faster in {100 * both.shorter:.3g} % of the pairs.",
     ]
     low, high = result.median_interval(reading, Effect.BOTH)
     if np.isfinite(low):
         parts.append(
-            f"The median of an instance lies in {percent_range(low, high, digits=1)} "
+            f"The median over the instances lies in {percent_range(low, high, digits=1)} "
             "(95 % interval, instances resampled)."
         )
     parts += _totals(result, reading)
     curve = distribution(result.reductions(reading, Effect.CURVE))
     alone = distribution(result.reductions(reading, Effect.ALGORITHM))
     parts += [
-        f"The curve alone saves, at the best known optima: {curve}.",
-        f"The algorithm alone saves, on the paper's curve: {alone}.",
+        f"Saving by the curve alone, at the best known optima: {curve}.",
+        f"Saving by the algorithm alone, on the paper's curve: {alone}.",
     ]
     for at, objective in enumerate(block.objectives[1:], start=1):
         pair = [
@@ -183,12 +182,13 @@ def _under(result: InstancesResult, reading: str) -> Finding:
             for effect in (Effect.BOTH, Effect.ALGORITHM)
         ]
         parts.append(
-            f"Where {HANDLED[objective]}, both together save {pair[0]}, and the algorithm alone "
-            f"{pair[1]}."
+            f"If {HANDLED[objective]}, curve and algorithm together save {pair[0]}, and the "
+            f"algorithm alone "
+            f"saves {pair[1]}."
         )
     failed = result.failed(reading)
     if failed:
-        parts.append(f"{failed} runs found nothing that keeps its limits.")
+        parts.append(f"{failed} runs found no motion within the limits.")
     printed = None if result.printed is None else percent_range(*result.printed)
     return _informing(
         claim=block.claim,
@@ -207,9 +207,9 @@ def _totals(result: InstancesResult, reading: str) -> Iterator[str]:
         if printed is None or not totals.size:
             continue
         low, middle, high = np.quantile(totals, [0.0, 0.5, 1.0])
-        which = "compared with the paper's" if route == 0 else "of the paper"
+        which = "it is compared with" if route == 0 else "of the paper"
         yield (
-            f"Where {printed} is printed, the procedure {which} takes {middle:.3g} s at the median "
+            f"The paper prints {printed}; the procedure {which} takes {middle:.3g} s at the median "
             f"({ranged(low, high, '.3g')} s)."
         )
 

@@ -14,7 +14,7 @@ from .rule_group import Explained, rule_group
 @rule_group(
     TG501=Explained(
         "Not checkable from the text",
-        "What does the text not carry that a claim would need?",
+        "What information does the text lack that a claim needs?",
         "Not checkable, with the reason.",
         "Way-points are shown in a figure only.",
     ),
@@ -41,7 +41,7 @@ def _without_waypoints(study: Study) -> Iterator[Finding]:
         if said or isinstance(claim, ImprovementClaim):
             continue
         why = (study.case.statement(claim.problem).waypoints.not_printed or "").removesuffix(".")
-        sentence = f"Without the way-points there is nothing to compute: {why}."
+        sentence = f"Without the way-points, nothing can be computed: {why}."
         yield _listed(claim.id, "way-points", sentence)
 
 

@@ -24,7 +24,7 @@ _CLOSE = 0.01
 """Share by which a row may miss the limits of another and still be said to fit it."""
 
 _informing = partial(Finding, rule="TG108", decides=False)
-"""Nothing here decides: a printer's slip is no fault of the numbers."""
+"""Nothing here decides: a printer's slip is not a fault of the numbers."""
 
 
 @rule_group(
@@ -32,8 +32,8 @@ _informing = partial(Finding, rule="TG108", decides=False)
         "Printed numbers fit their own row, column or table best",
         "Would printed numbers fit another row, column or table better than their own?",
         "Information, with both distances. It does not say that anything was exchanged. " + INFORMS,
-        "The peak printed for joint 2 lies 40 % from that of its motion and 0.1 % from that "
-        "of joint 3, and the other way round.",
+        "The peak printed for joint 2 differs by 40 % from that of its motion and by 0.1 % from "
+        "that of joint 3, and vice versa.",
     ),
 )
 def judge_places(study: Study) -> Iterator[Finding]:
@@ -142,7 +142,7 @@ def _equal_rows(study: Study) -> Iterator[Finding]:
             kind="equal rows",
             sentences=(
                 f"{called(first)} and {called(second)} print the same {len(texts[0])} durations "
-                "for different things, distance 0.",
+                "for different things.",
             ),
         )
 

@@ -250,18 +250,18 @@ def peak_described(row: PrintedRow[AnyClaim], claim: PeakClaim, one: Beside) -> 
     """One printed peak beside the exact one, with the class of their distance."""
     whose = "" if one.joint is None else f"joint {one.joint}: "
     exact = one.around
-    said = f"{whose}the exact peak of {claim.derivative} is {exact}, printed is {one.printed}"
+    said = f"{whose}the exact peak of {claim.derivative} is {exact}, printed as {one.printed}"
     room = ""
     if one.exact and one.reach > _WIDE * one.exact:
-        room = f", which leaves {100 * one.reach / one.exact:.2g} % either way"
+        room = f", which allows {100 * one.reach / one.exact:.2g} % either way"
     norm = "" if one.norm is None else _of_norm(one.norm)
     away = f"{100 * one.distance:+.2g} %"
     return (
         said
         + {
             Agreement.ROUNDING: f", equal within the rounding of the printed digits{room}",
-            Agreement.CUT_OFF: f" ({away}), as digits that are cut off instead of rounded give it",
-            Agreement.SAMPLING: f" ({away}), slightly below it, as sampling the motion gives it",
+            Agreement.CUT_OFF: f" ({away}), which fits if digits were cut off instead of rounded",
+            Agreement.SAMPLING: f" ({away}), slightly below it, as sampling the motion would give",
             Agreement.NORM: f" ({away}), {norm}",
             Agreement.UNIT: f" ({away}); their ratio is near {one.factor}",
             Agreement.ROOT: f" ({away}); a factor √{one.root} may have been lost in print",
@@ -274,8 +274,8 @@ def _of_norm(one: Beside) -> str:
     """How a printed peak that is not that of a joint is the norm over the joints."""
     norm = f"the largest norm over the joints, {one.around}"
     return {
-        Agreement.CUT_OFF: f"as {norm}, cut off instead of rounded gives it",
-        Agreement.SAMPLING: f"slightly below {norm}, as sampling the motion gives it",
+        Agreement.CUT_OFF: f"which fits {norm}, if digits were cut off instead of rounded",
+        Agreement.SAMPLING: f"slightly below {norm}, as sampling the motion would give",
     }.get(one.kind, f"equal to {norm}, within rounding")
 
 
@@ -305,10 +305,11 @@ def jump_unit(row: PrintedRow[Claim], jump: Jump) -> str:
 
 @rule_group(
     TG209=Explained(
-        "Printed peaks lie within the limits that they keep",
-        "Does a printed peak lie above the limit that its motion is said to keep?",
-        "Inconsistent if no value that the digits of peak and limit stand for, rounded, raised or "
-        "cut off, lies within. A number for several joints at once may be a norm and is left out.",
+        "Printed peaks lie within the limits that the text calls kept",
+        "Does a printed peak exceed the limit that its motion is said to keep?",
+        "Inconsistent if the peak exceeds the limit however the digits of both were rounded, "
+        "rounded up or cut off. A number for several joints at once may be a norm and is not "
+        "compared.",
         "A table prints 3.665 rad/s² for the acceleration of joint 2, another the limit 3.6, and "
         "the abstract says that no limit is exceeded.",
     ),

@@ -63,12 +63,12 @@ class _Match:
     TG601=Explained(
         "Joint and Cartesian way-points are consistent with the printed chain",
         "Do printed joint angles and printed positions fit the printed table of the robot? "
-        "Positions are computed from the angles; where joints are not printed, any angle is "
-        "allowed.",
+        "Positions are computed from the angles; joints that are not printed may have any angle.",
         "Supported if they fit within rounding; inconsistent, with a warning, if no angles "
-        "reach a position. Where extracted text may have lost signs of the table, every sign "
-        "is tried.",
-        "Whatever joints 1 and 3 do, the end stays 0.78 m away from a printed position.",
+        "reach a position. If extracted text may have lost signs of the table, every sign is "
+        "tried.",
+        "For any angles of joints 1 and 3, the end stays at least 0.78 m away from a printed "
+        "position.",
     ),
 )
 def judge_kinematics(study: Study) -> Iterator[Finding]:
@@ -130,7 +130,7 @@ def _compared(
             if apart
             else "the numbers of positions and way-points differ"
         )
-        return _not_checkable(rid, f"Positions cannot be set against joint angles: {why}.")
+        return _not_checkable(rid, f"Positions cannot be compared with joint angles: {why}.")
     matches = []
     for convention in dh.conventions:
         flips: list[tuple[int, ...]] = [()]
@@ -282,7 +282,8 @@ _OPEN = {
     "may have lost, no printed position is shown to be out of reach.",
     "other twists": "With other signs of the twists, which the text may have lost, the end meets "
     "every printed position.",
-    "undecided": "Whether rounding explains the distances to the printed positions is not decided.",
+    "undecided": "It is not decided whether rounding explains the distances to the printed "
+    "positions.",
 }
 """Why nothing is decided, by the kind of the finding."""
 
@@ -322,7 +323,7 @@ def _judged(
         rounding = ", ".join(_up(s) for s in matches[0].slack)
         nearest = (
             given,
-            f"The end then comes no nearer to the printed positions than {listed}.",
+            f"The end then stays at least this far from the printed positions: {listed}.",
             f"Rounding explains at most {rounding} m.",
         )
         lost = any(m.signed and m.misses and m.unsigned is None for m in matches)
@@ -351,7 +352,7 @@ def _judged(
         problem=pid,
         reading=rid,
         printed="; ".join(dict.fromkeys(place.where for _, place in places)),
-        computed=f"farthest position, as near as it gets: {worst}",
+        computed=f"smallest distance from the farthest position: {worst}",
         kind=kind,
         sentences=said,
         doubts=tuple(printed) if verdict is ClaimVerdict.INCONSISTENT else (),
@@ -375,15 +376,15 @@ def _whatever(matches: list[_Match], names: list[str]) -> Iterator[str]:
     if missed:
         worst = enumerated(f"{names[at]} {_down(far)} m ({m.convention})" for m, at, far in missed)
         yield (
-            "Whatever signs the twists, the angles and the positions have, the end stays away "
-            f"from them: {worst} at least."
+            "For all signs of the twists, the angles and the positions, the end misses a printed "
+            f"position: {worst} at least."
         )
     turned = [f"{_down(m.radial)} m ({m.convention})" for m in matches if m.radial > 0]
     if turned:
         met = [str(m.convention) for m in matches if not m.radial > 0]
-        besides = f"; in the {enumerated(met)} convention it need not" if met else ""
+        besides = f"; in the {enumerated(met)} convention it may agree" if met else ""
         yield (
-            "With any other axes of the base, the distance from its origin still misses by up to "
+            "For any other axes of the base, the distance from its origin still differs by up to "
             f"{enumerated(turned)}{besides}."
         )
 

@@ -26,33 +26,33 @@ _SIGNIFICANT = 4
         "A printed total is the sum of its printed parts",
         "Do the printed durations of the segments add up to the printed total? Every printed "
         "number is taken as rounded to its digits.",
-        "Supported if some values that round to the digits add up; refuted, with severity error, "
-        "if none do. " + ON_DIGITS,
+        "Supported if some values that round to the digits add up to the total; refuted, with "
+        "severity error, if none do. " + ON_DIGITS,
         "The durations 1.20, 0.85 and 1.10 s add up to between 3.135 and 3.165 s. A printed "
         "total of 3.15 s is supported, 3.51 s is refuted, and the report says that two "
         "exchanged digits would explain it.",
     ),
     TG102=Explained(
         "Printed longest durations are the longest of the printed rows",
-        "Where the joints share the longest duration of each segment, are these printed "
-        "durations the longest in the rows of the joints?",
-        "Supported if they are, refuted if they are not, with each segment that differs.",
+        "If the joints share the longest duration of each segment, are these printed durations "
+        "the longest in the rows of the joints?",
+        "Supported if they are; otherwise refuted, naming each segment that differs.",
         "Joint 1 prints 0.90 and 1.30 s, joint 2 prints 1.10 and 1.20 s. The longest are 1.10 "
         "and 1.30 s; 1.10 and 1.20 s would be refuted.",
     ),
     TG106=Explained(
         "Unrelated columns do not repeat each other's digits",
-        "Do way-points repeat the digits of a column of another kind, such as lengths of links?",
-        "A warning: the digits alone do not tell which column, if either, is wrong. No "
-        "claim is judged by it.",
+        "Do way-points repeat the digits of an unrelated column, such as lengths of links?",
+        "A warning: the digits alone do not show which column, if either, is wrong. No claim is "
+        "judged by it.",
         "Three of four angles of joint 2 print the digits of the link offsets: 0.4318, "
         "0.1501, 0.4331.",
     ),
     TG109=Explained(
         "As many durations are printed as there are segments",
         "Are as many durations printed as the curve has segments?",
-        "A warning if not: no motion can be built from them. A slip in the case file looks "
-        "the same, so that is to be ruled out first.",
+        "A warning if not: no motion can be built from them. A slip in the case file has the same "
+        "effect, so rule that out first.",
         "Five way-points make four segments, and the table prints three durations.",
     ),
     without_waypoints=True,
@@ -137,7 +137,9 @@ def compared(
     verdict, severity = ClaimVerdict.SUPPORTED, Severity.WARNING
     if kind is Agreement.OFF:
         verdict, severity = ClaimVerdict.REFUTED, Severity.ERROR
-        message = f"{what} allows {computed}; printed is {digits}, however it was rounded."
+        message = (
+            f"{what} allows {computed}, but the printed value is {digits}, however it was rounded."
+        )
     elif kind is not Agreement.ROUNDING:
         if_only, allowed = {
             Agreement.CUT_OFF: ("digits are cut off instead of rounded", cut),
@@ -146,16 +148,16 @@ def compared(
             Agreement.RAISED_PARTS: ("parts were rounded up", raised or whole),
         }[kind]
         message = (
-            f"{what} allows {computed} with rounded digits; printed is {digits}, which fits only "
-            f"if {if_only} ({span(allowed)} {unit})."
+            f"{what} allows {computed} with rounded digits; the printed {digits} fits only if "
+            f"{if_only} ({span(allowed)} {unit})."
         )
     else:
         severity = Severity.INFO
-        message = f"{what} allows {computed}; printed is {digits}."
+        message = f"{what} allows {computed}; the printed value is {digits}."
         if plain and plain != printed.text:
             message = (
                 f"{what} is {plain} {unit} digit by digit, and {computed} for all values that "
-                f"round to the digits; printed is {digits}, which rounding explains."
+                f"round to the digits; rounding explains the printed {digits}."
             )
     return Finding(
         rule=rule,
@@ -255,7 +257,7 @@ def _lengths(study: Study) -> Iterator[Finding]:
                 computed=_many(segments, "segment"),
                 kind="other length",
                 sentences=(
-                    f"{claim.where} prints {count}, and the curve through the way-points has "
+                    f"{claim.where} prints {count}, but the curve through the way-points has "
                     f"{_many(segments, 'segment')}, so no motion can be built from them.",
                     "If the paper prints another number, correct the case file.",
                 ),
@@ -277,9 +279,11 @@ def _maxima(study: Study) -> Iterator[Finding]:
             longest = Interval(max(c.lower for c in column), max(c.upper for c in column))
             if not meet(hull(printed), longest):
                 wrong.append(f"segment {k + 1}: printed {printed}, longest {span(longest)}")
-        message = f"The printed longest durations are those of the {len(rows)} rows."
+        message = f"The printed longest durations follow from the {len(rows)} rows."
         if wrong:
-            message = "The printed longest durations are not those of the rows: " + "; ".join(wrong)
+            message = "The printed longest durations do not follow from the rows: " + "; ".join(
+                wrong
+            )
         yield Finding(
             rule="TG102",
             verdict=ClaimVerdict.REFUTED if wrong else ClaimVerdict.SUPPORTED,
@@ -321,8 +325,8 @@ def _repeated_digits(study: Study) -> Iterator[Finding]:
                     sentences=(
                         f"{len(repeated)} of the {len(entries)} way-points of joint {label} "
                         f"({statement.waypoints.where}: {', '.join(repeated)}) repeat digits of "
-                        f"{where}, a quantity of another kind.",
-                        "The digits alone do not tell whether one column is meant differently.",
+                        f"{where}, which states another quantity.",
+                        "The digits alone do not show whether one of the columns is wrong.",
                     ),
                 )
 

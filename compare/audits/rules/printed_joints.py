@@ -18,23 +18,23 @@ from .rule_group import Explained, rule_group
 
 @rule_group(
     TG110=Explained(
-        "A joint that is said to vary most does, among the printed joints",
-        "Does a joint go through the range that the text speaks of? Its largest and smallest "
-        "printed angles are set beside those of the other printed joints.",
-        "Where the joint is said to vary most: supported if all joints are printed and no range "
-        "is larger; inconsistent, with a warning, if one is larger however the digits were "
-        "rounded. Where it is only said to vary much, nothing is decided: no text "
-        "says how much that is.",
+        "A joint varies most among the printed joints if the text says so",
+        "Does a joint cover the range that the text describes? Its largest and smallest printed "
+        "angles are compared with those of the other printed joints.",
+        "If the joint is said to vary most: supported if all joints are printed and no range is "
+        "larger; inconsistent, with a warning, if one is larger however the digits were rounded. "
+        "If it is only said to vary much, nothing is decided, because no text says how much that "
+        "is.",
         "Joint 3 is said to vary most. Its printed angles lie within 0.6 rad, those of joint 1 "
         "within 4.6 rad.",
     ),
     TG602=Explained(
-        "A position that is said to lie above another does",
-        "Does a position that is said to lie above another do so?",
+        "A position lies above another if the text says so",
+        "Does a position lie above another if the text says so?",
         "Supported if the two agree in the plane within rounding and the first is higher. "
         "Otherwise not checkable, with both distances: signs are easily lost in print and in "
         "extracted text.",
-        "“Above the table” stands 0.30 m beside the table; with another sign of y it would be 0 m.",
+        "“Above the table” lies 0.30 m beside the table; with another sign of y it would be 0 m.",
     ),
     without_waypoints=True,
 )
@@ -67,7 +67,7 @@ def _varies(study: Study, claim: StatementClaim) -> Finding:
     )
     said = [
         f"The printed angles of joint {claim.joint} span "
-        f"{_middle(*own):.2f}, beside {shown or 'no other joint in print'} (printed unit)."
+        f"{_middle(*own):.2f}, compared with {shown or 'no other printed joint'} (printed unit)."
     ]
     chain = study.case.chain()
     missing = [] if chain is None else [one for one in chain.labels if one not in printed]
@@ -95,7 +95,7 @@ def _in_other_units(
     units = statement.units.position
     listed = ", ".join(dict.fromkeys(units)) if isinstance(units, tuple) else str(units)
     said = [
-        f"Joints are printed in different units ({listed}), so that nothing says which of them "
+        f"Joints are printed in different units ({listed}), so it cannot be said which of them "
         "varies more.",
         f"The printed positions of joint {claim.joint} span {_middle(*own):.2f} (printed unit).",
     ]
@@ -124,7 +124,7 @@ def _above(study: Study, claim: StatementClaim) -> Finding:
     beside = _beside(upper, lower)
     rise = upper.values[2].interval
     floor = lower.values[2].interval
-    names = f"{upper.label or upper.id} stands {{}} {upper.unit} beside {lower.label or lower.id}"
+    names = f"{upper.label or upper.id} lies {{}} {upper.unit} beside {lower.label or lower.id}"
     height = float(upper.values[2].fraction - lower.values[2].fraction)
     said = [f"{names.format(f'{beside[0]:.4g}')} and {height:.4g} {upper.unit} above it."]
     if _meets(upper, lower) and rise.lower > floor.upper:
@@ -133,7 +133,7 @@ def _above(study: Study, claim: StatementClaim) -> Finding:
     if least[0] < beside[0]:
         said.append(
             f"With another sign of {' and '.join(least[1])} it would be {least[0]:.4g} "
-            f"{upper.unit}; signs may be lost in the text, so that nothing is decided."
+            f"{upper.unit}; signs may be lost in the text, so nothing is decided."
         )
     return _finding(claim, "beside and above", said)
 
@@ -179,9 +179,10 @@ def _beside(
         "Printed kinematic equations hold on the printed chain",
         "Do the printed kinematic equations hold on the printed robot? Both sides are computed at "
         "random joint angles.",
-        "Supported if all hold as the text carries them. Otherwise not checkable, with what would "
-        "make each of them hold: signs, exponents and indices are easily lost in extracted text.",
-        "13 of 16 equations hold; another holds with a plus sign that the text lacks.",
+        "Supported if all hold as printed. Otherwise not checkable, with the correction that "
+        "would make each of them hold: signs, exponents and indices are easily lost in extracted "
+        "text.",
+        "13 of 16 equations hold; another holds once a missing plus sign is added.",
     ),
     without_waypoints=True,
 )
@@ -214,18 +215,18 @@ def _judged(claim: StatementClaim, equations: tuple[Equation, ...], chain: Chain
         f"{listed}."
     ]
     if mended:
-        said.append(f"Others hold once mended: {'; '.join(mended)}.")
+        said.append(f"Others hold once corrected: {'; '.join(mended)}.")
     if apart:
-        said.append(f"Not as the text has them: {', '.join(apart)}.")
+        said.append(f"These do not hold as printed: {', '.join(apart)}.")
     if mended or apart:
-        said.append("Whether the paper or the extraction lost what is missing cannot be told.")
+        said.append("It is unknown whether the paper or the extraction lost what is missing.")
     return Finding(
         rule="TG603",
         verdict=ClaimVerdict.NOT_CHECKABLE if mended or apart else ClaimVerdict.SUPPORTED,
         basis=Basis.KINEMATICS,
         claim=claim.id,
         printed="; ".join(equation.where for equation in equations),
-        computed=f"{len(held)} hold as they are, {len(mended)} once mended",
+        computed=f"{len(held)} hold as printed, {len(mended)} once corrected",
         kind="in part" if mended or apart else "all",
         sentences=tuple(said),
     )
@@ -237,4 +238,4 @@ def _name(equation: Equation) -> str:
 
 def _partly(found: EquationCheck) -> str:
     """How often it holds as it is, where it does at some poses."""
-    return f"({found.share:.0%} of the poses as it is) " if found.share else ""
+    return f"({found.share:.0%} of the poses as printed) " if found.share else ""

@@ -34,17 +34,17 @@ _FEWEST = 4
     TG104=Explained(
         "Tables under different names print different digits",
         "Do two tables of different algorithms print the same numbers, digit by digit?",
-        "Inconsistent, with severity error, if something else in the paper says that the two "
-        "results differ; otherwise information. Two algorithms that both find the optimum "
-        "print the same, and the report says so where that explains it.",
+        "Inconsistent, with severity error, if the paper says elsewhere that the two results "
+        "differ; otherwise information. Two algorithms that both find the optimum print the same "
+        "numbers; the report says so if that explains it.",
         "Table 2 (standard algorithm) and Table 3 (improved algorithm) agree in all 28 "
         "numbers, yet the abstract says that the improved one is 10 % faster.",
     ),
     TG105=Explained(
         "Two places that print the same total agree",
-        "Where one total is printed in two places, do the two agree?",
-        "Inconsistent if no value rounds to both; neither place is taken to be the right one. "
-        "Totals that the file keeps apart, by method, curve, table or improvement, are not "
+        "If one total is printed in two places, do the two agree?",
+        "Inconsistent if no value rounds to both; the audit does not choose between them. "
+        "Totals that the file distinguishes by method, curve, table or improvement are not "
         "compared.",
         "The abstract prints 3.9 s and the table 3.52 s for the same motion.",
     ),
@@ -135,8 +135,8 @@ def _tables_alike(study: Study) -> Iterator[Finding]:
         optimal = None if apart else _at_optimum(study, rows[0])
         besides = "; elsewhere the two results differ" if apart else ""
         explained = (
-            "Their totals are the optimum within the rounding of the digits (reading "
-            f"{optimal}), which explains it: two algorithms that both find it print the same."
+            f"Their totals are the optimum within rounding (reading {optimal}), which explains it: "
+            "two algorithms that both find the optimum print the same numbers."
         )
         yield Finding(
             rule="TG104",
@@ -287,7 +287,8 @@ def _rival(claim: TotalTimeClaim) -> Finding:
         printed=str(claim.value),
         kind="printed once",
         sentences=(
-            "The total of a named method, printed once: nothing in print can be set against it.",
+            "This total of a named method is printed only once, so nothing printed can contradict "
+            "it.",
         ),
     )
 
@@ -317,7 +318,7 @@ def _same_total(study: Study) -> Iterator[Finding]:
             verdict, kind = ClaimVerdict.NOT_CHECKABLE, "none of them"
             places = "; ".join(f"{c.where}: {_total_shown(study, c)[0]}" for c in others)
             message = (
-                f"{claim.where} prints {printed}, which is none of the totals printed elsewhere "
+                f"{claim.where} prints {printed}, which differs from all totals printed elsewhere "
                 f"({places}); the text does not say that it is one of them."
             )
         elif not agreeing and weight is not None:

@@ -58,8 +58,8 @@ class Vertex:
     TG205=Explained(
         "Printed control vertices follow from the printed way-points",
         "Do printed control vertices follow from the printed way-points?",
-        "Supported if each lies within what the rounding of the way-points allows, else refuted; "
-        "not checkable on another curve than the uniform cubic B-spline.",
+        "Supported if each lies within the interval that the rounding of the way-points allows, "
+        "otherwise refuted; not checkable on curves other than the uniform cubic B-spline.",
         "The vertex computed from the way-points lies between 0.4317 and 0.4319; 0.4318 is "
         "supported and 0.4381 refuted.",
     ),
@@ -99,8 +99,8 @@ def _found(claim: ControlVerticesClaim, statement: Statement) -> Finding:
         claim=claim.id,
         kind="other curve",
         sentences=(
-            "Control vertices are computed for the uniform cubic B-spline alone, and the curve of "
-            f"the case is another one ({statement.declaration.family}).",
+            "Control vertices are computed only for the uniform cubic B-spline; the case has "
+            f"another curve ({statement.declaration.family}).",
         ),
     )
 
@@ -133,7 +133,7 @@ def _judged(claim: ControlVerticesClaim, found: tuple[Vertex, ...], apart: bool)
     outside = [v for v in found if not v.inside]
     beyond = [v for v in outside if v.agreement is Agreement.OFF]
     most = shown_bound(float(max(v.width for v in found)), "upper", digits=2)
-    widest = f", at most {most} either side of the value"
+    widest = f", which reaches at most {most} to either side of the value"
     widest = "" if apart else widest + " computed from the digits"
     if beyond:
         verdict, severity, kind = ClaimVerdict.REFUTED, Severity.ERROR, "outside"
@@ -143,8 +143,9 @@ def _judged(claim: ControlVerticesClaim, found: tuple[Vertex, ...], apart: bool)
             for v in beyond[:5]
         )
         message = (
-            f"{len(beyond)} of {len(found)} printed control vertices lie outside what the printed "
-            f"way-points allow on the uniform cubic B-spline, digits rounded or cut off: {shown}."
+            f"{len(beyond)} of {len(found)} printed control vertices lie outside the intervals "
+            f"that the printed way-points allow on the uniform cubic B-spline, with digits "
+            f"rounded or cut off: {shown}."
         )
     elif outside:
         verdict, severity, kind = ClaimVerdict.SUPPORTED, Severity.WARNING, "cut off"

@@ -97,14 +97,16 @@ class _Asked:
 
 @rule_group(
     TG304=Explained(
-        "What is printed of a profile beside the profile that the limits allow",
+        "Printed numbers of a profile agree with the profile that the limits allow",
         "Is the printed total of a trapezoidal, S-curve or other profile the shortest that the "
-        "limits allow between the states at its ends? Are phases, peaks and values its own?",
+        "limits allow between the states at its ends? Are the phases, peaks and values those of "
+        "this profile?",
         "Supported within rounding, else inconsistent: the paper may have meant another profile. "
         "Without way-points, several totals are supported if one way serves them all. "
-        "Not checkable where the shortest total jumps within the rounding, and for several joints "
+        "Not checkable if the shortest total jumps within the rounding, or for several joints "
         "between moving ends.",
-        "140° within 150 °/s, 70 °/s² and 70 °/s³ take 4 s with a jerk that is constant in phases.",
+        "A motion of 140° within 150 °/s, 70 °/s² and 70 °/s³ takes 4 s if the jerk is constant "
+        "in phases.",
     ),
     without_waypoints=True,
 )
@@ -165,10 +167,10 @@ def _not_computed(asked: _Asked) -> str | None:
     if profile not in SHORTEST:
         return f"Phases and values of the {profile} profile are not computed."
     if several and asked.row.claim.path is None:
-        return "Several joints, each by itself, have no one profile."
+        return "Several joints that move separately have no common profile."
     states = end_states(asked.row.statement)[..., 0]
     if profile == ALGORITHM and states[..., 1].any():
-        return "The algorithm of Biagiotti and Melchiorri has no acceleration at its ends."
+        return "The algorithm of Biagiotti and Melchiorri assumes zero acceleration at both ends."
     if profile == PRESCRIBED:
         return _not_prescribed(asked, states)
     every = motions(asked.row, profile)
@@ -228,22 +230,24 @@ def _total_beside(asked: _Asked) -> Finding:
     number, unit = row.time(claim.value), row.study.time_unit
     straight = claim.path == "straight"
     notes: tuple[str, ...] = ()
-    verdict, kind, said = ClaimVerdict.SUPPORTED, "fits", "which fits"
+    verdict, kind, said = ClaimVerdict.SUPPORTED, "fits", "fits"
     # The closed forms grow with the way and fall with the limits: two of them enclose all others.
     enclosed = asked.resting and asked.profile in RESTING
     if enclosed:
         how = f"from rest to rest, {_PATHS[straight]},"
         plain, fits = _fitted(asked, number, straight)
         if plain == 0.0 < number.value:
-            verdict, kind, said = ClaimVerdict.NOT_CHECKABLE, "at rest", "and no joint moves"
+            verdict, kind, said = (
+                ClaimVerdict.NOT_CHECKABLE,
+                "at rest",
+                "cannot be compared, because no joint moves",
+            )
         elif plain == inf:
             verdict, kind = ClaimVerdict.NOT_CHECKABLE, "limit 0"
-            said = "and a joint moves whose limit is 0"
+            said = "cannot be compared, because a joint with limit 0 moves"
         elif not fits and not straight and _fitted(asked, number, True)[1]:
             verdict, kind = ClaimVerdict.NOT_CHECKABLE, "straight"
-            said = (
-                'which fits where the joints stay on a straight line: path = "straight" if they do'
-            )
+            said = 'fits if the joints stay on a straight line: add path = "straight" if they do'
     else:
         how = asked.between
         totals = asked.range(lambda motion: [motion.total_time])
@@ -251,11 +255,11 @@ def _total_beside(asked: _Asked) -> Finding:
         notes = _notes(asked, totals)
         if not fits and totals.spans(number.lower, number.cut_off().upper):
             verdict, kind = ClaimVerdict.NOT_CHECKABLE, "jump"
-            said = "which lies where it jumps"
+            said = "lies within its jump"
     if verdict is ClaimVerdict.SUPPORTED and not fits:
         verdict, kind = ClaimVerdict.INCONSISTENT, "other total"
         away = f"{100 * abs(number.value / plain - 1):.2f} % " if plain else ""
-        said = f"which is {away}{'shorter' if number.value < plain else 'longer'}"
+        said = f"is {away}{'shorter' if number.value < plain else 'longer'}"
     return _found(
         asked,
         verdict,
@@ -264,7 +268,7 @@ def _total_beside(asked: _Asked) -> Finding:
         printed=f"{claim.value} {unit}",
         computed=f"{plain:.6g} s",
         sentences=(
-            f"The {asked.called} {how} takes {plain:.6g} s; printed is {claim.value} {unit}, "
+            f"The {asked.called} {how} takes {plain:.6g} s; the printed {claim.value} {unit} "
             f"{said}.",
             *notes,
         ),
@@ -296,7 +300,7 @@ def _notes(asked: _Asked, totals: NumberRange) -> tuple[str, ...]:
     every = asked.every()
     if every and every[0].starts_outside:
         notes.append(
-            "The start lies outside the limits: the profile brakes into them at once, and is the "
+            "The start lies outside the limits: the profile brakes into them at once and is the "
             "shortest from there."
         )
     if asked.profile == ALGORITHM:
@@ -342,7 +346,7 @@ def _phases_beside(asked: _Asked) -> Finding:
     shown = ", ".join(f"{one.plain:.5g}" for one in found)
     digits = ", ".join(map(str, printed))
     kind = "fits" if fits else "other phases" if totals.jump is None else "jump"
-    how = "fit" if fits else "are others"
+    how = "fit" if fits else "do not fit"
     if kind == "other phases" and not all(one.in_order for one in asked.every()):
         ends = [one.cut_off() for one in sizes[:3]]
         if totals.meets(sum(one.lower for one in ends), sum(one.upper for one in ends)):
@@ -363,7 +367,7 @@ def _phases_beside(asked: _Asked) -> Finding:
         computed=f"{shown} s",
         sentences=(
             f"The {asked.called} {asked.between} takes {totals.plain:.6g} s in phases"
-            f"{ramps} of {shown} s; printed are {digits} {unit}, which {how}.",
+            f"{ramps} of {shown} s; the printed {digits} {unit} {how}.",
             *_notes(asked, totals),
         ),
     )
@@ -399,11 +403,11 @@ def _numbers_beside(asked: _Asked) -> Finding:
         plain.append(f"{shown:.6g} {row.unit(claim.derivative, joint)}")
         whose = "all joints" if joint is None else f"joint {joint}"
         said.append(
-            f"the {size_word}{claim.derivative} of {whose}{where} is {plain[-1]}, printed is "
-            f"{number}, {'which fits' if fits else 'which is another'}"
+            f"the {size_word}{claim.derivative} of {whose}{where} is {plain[-1]}; the printed "
+            f"{number} {'fits' if fits else 'does not fit'}"
         )
     if not said:
-        return _unknown(asked, "The profile is not of a joint whose number is printed.")
+        return _unknown(asked, "No number is printed for the joints of this profile.")
     return _found(
         asked,
         ClaimVerdict.INCONSISTENT if wrong else ClaimVerdict.SUPPORTED,

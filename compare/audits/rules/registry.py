@@ -61,7 +61,7 @@ _AUDIT = {
         "Not computed for this problem; the message says why",
         "What could not be computed here, and why?",
         "Not checkable, with the reason.",
-        "The solver found no motion within the limits, so that no distance can be given.",
+        "The solver found no motion within the limits, so no distance can be given.",
     )
 }
 """What no group finds."""

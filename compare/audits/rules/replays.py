@@ -43,7 +43,7 @@ _TOLERANCES = (SETTLED, 5 * SETTLED)
 
 @rule_group(
     TG401=Explained(
-        "An improvement beside the spread over seeds",
+        "An improvement compared with the spread over seeds",
         "How likely is a printed improvement if each algorithm is run once? Both are run "
         "again with many seeds.",
         INFORMS
@@ -51,16 +51,16 @@ _TOLERANCES = (SETTLED, 5 * SETTLED)
         "In 100 runs each, one run of B beats one run of A by at least 10 % in 4 % of the pairs.",
     ),
     TG402=Explained(
-        "A printed total beside replays of its algorithm",
-        "Where does a printed total lie among runs of the algorithm that is said to have found it?",
-        INFORMS + " The settings are named under which the printed total is typical.",
+        "A printed total compared with replays of its algorithm",
+        "Where does a printed total lie among runs of the algorithm that found it?",
+        INFORMS + " The report names the settings under which the printed total is typical.",
         "3.53 s is printed. With an inertia weight of 0.65 the median is 3.30 s, with 1.0 it "
         "is 3.51 s.",
     ),
     TG403=Explained(
-        "Convergence within a number of iterations, beside replays",
+        "Convergence within a number of iterations, compared with replays",
         "Do runs of the algorithm settle within the printed number of iterations?",
-        INFORMS + " The share of runs is given at two tolerances, since papers name none.",
+        INFORMS + " The share of runs is given at two tolerances, because papers name none.",
         "By iteration 60, 27 % of the runs are within 0.1 % of their final value, and 86 % "
         "within 0.5 %.",
     ),
@@ -131,10 +131,11 @@ def _improvement(study: Study, claim: ImprovementClaim) -> Iterator[Finding]:
         most = max(each, key=lambda pair: -1.0 if np.isnan(each[pair]) else each[pair])
         said = [
             f"In {study.options.seeds} independent runs each, {one} reaches {spread(slower)} and "
-            f"{other} {spread(faster)} under the listed choices.",
-            f"One run of {other} is shorter than one of {one} by at least {100 * least:.4g} % "
-            f"with probability {_percent(shows)} ({sure}); one run of {one} than another of its "
-            f"own with {_percent(luck)}.",
+            f"{other} reaches {spread(faster)} under the listed choices.",
+            f"One run of {other} is at least {100 * least:.4g} % shorter than one of {one} "
+            f"with probability {_percent(shows)} ({sure}). For two runs of {one}, this "
+            f"probability "
+            f"is {_percent(luck)}.",
         ]
         if len(each) > 1:
             said.append(
@@ -175,7 +176,7 @@ def _compared(study: Study, claim: StatementClaim, against: str) -> Iterator[Fin
         low, high = share_interval(totals[other], totals[own], 0.0)
         settled = "; ".join(
             f"{name} stays within {100 * tolerance:g} % of its final total from iteration "
-            f"{int(np.median(_settled(found, tolerance)))} on at the median"
+            f"{int(np.median(_settled(found, tolerance)))} onwards (median)"
             for tolerance in _TOLERANCES
             for name, found in runs.items()
         )
@@ -184,7 +185,9 @@ def _compared(study: Study, claim: StatementClaim, against: str) -> Iterator[Fin
             kind="runs",
             sentences=(
                 f"In {seeds} independent runs each under the listed choices, {own} reaches "
-                f"{spread(totals[own])} and {other} {spread(totals[other])}; one run of {own} is "
+                f""
+                f"{spread(totals[own])} and {other} reaches {spread(totals[other])}; one run "
+                f"of {own} is "
                 f"no longer than one of {other} with probability {_percent(shorter)} "
                 f"({interval_words(low, high)}): {settled}.",
             ),
@@ -211,8 +214,9 @@ def _total(study: Study, claim: AnyClaim) -> Iterator[Finding]:
         minimised = other_objective(study.case, claim)
         if minimised is not None:
             said = (
-                f"A replay minimises time alone, and {shown} was minimised for {minimised}: they "
-                "are not set beside each other."
+                f"A replay minimises time alone, but {shown} was minimised for {minimised}, so "
+                "the two "
+                "are not compared."
             )
             yield found(kind="other objective", sentences=(said,))
             continue
@@ -223,7 +227,7 @@ def _total(study: Study, claim: AnyClaim) -> Iterator[Finding]:
             kind="runs",
             sentences=(
                 f"{capital(study.called(claim.algorithm))} under the listed choices reaches "
-                f"{listed} in {listed.runs} independent runs; printed is {shown}.",
+                f"{listed} in {listed.runs} independent runs; the printed total is {shown}.",
                 *_typical(spreads, low, high),
             ),
         )
@@ -239,8 +243,9 @@ def _typical(spreads: dict[str, Spread], low: float, high: float) -> Iterator[st
     inside = [n for n, s in spreads.items() if s.lowest <= high and s.highest >= low]
     yield (
         f"With everything that the text leaves open varied together ({len(medians)} settings), "
-        f"medians are {ranged(min(medians.values()), max(medians.values()), '.4f')} s; nearest to "
-        f"the printed total is {medians[nearest]:.4f} s with {nearest}."
+        f"medians are {ranged(min(medians.values()), max(medians.values()), '.4f')} s; the "
+        f"nearest "
+        f"to the printed total is {medians[nearest]:.4f} s, with {nearest}."
     )
     if inside:
         return
@@ -250,7 +255,10 @@ def _typical(spreads: dict[str, Spread], low: float, high: float) -> Iterator[st
     elif all(s.highest < low for s in answered):
         yield "Every run under every one of these settings is shorter."
     else:
-        yield "Under each of these settings all runs lie on one side of it."
+        yield (
+            "Under each of these settings, all runs are shorter or all are longer than the "
+            "printed total."
+        )
 
 
 def _traces(runs: Sequence[Run] | Sequence[JointRuns]) -> list[Run]:

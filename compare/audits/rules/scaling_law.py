@@ -22,13 +22,12 @@ from .rule_group import Explained, rule_group
 @rule_group(
     TG301=Explained(
         "Totals of one path under two velocity limits obey the scaling law",
-        "One path is timed under two velocity limits, and nothing else is limited. Then "
-        "the shortest time multiplied by the limit is constant, with no solver needed. Do the two "
-        "printed totals obey that?",
-        "Where both are called optimal and one is longer than the law allows, refuted. The "
-        "rounding of way-points, limits and durations is allowed for.",
+        "If one path is timed under two velocity limits and nothing else is limited, the shortest "
+        "time multiplied by the limit is constant. Do the two printed totals obey this law?",
+        "Refuted if both are called optimal and one is longer than the law allows, with the "
+        "rounding of way-points, limits and durations taken into account.",
         "At 80 °/s the total is 1.87 s. At 110 °/s the same motion, run faster, takes 1.36 s. "
-        "A printed optimum of 1.60 s at 110 °/s is not the shortest.",
+        "A printed optimum of 1.60 s at 110 °/s is therefore not the shortest.",
     ),
 )
 def judge_scaling(study: Study) -> Iterator[Finding]:
@@ -41,7 +40,7 @@ def judge_scaling(study: Study) -> Iterator[Finding]:
         if slow.problem == fast.problem or slow.joint != fast.joint:
             continue
         if other_objective(study.case, fast) is not None:
-            continue  # its total is no shortest one, and need not scale
+            continue  # its total is not the shortest one, and need not scale
         for reading in study.readings:
             yield from _stretched(study, slow, fast, reading, statements)
 
@@ -122,7 +121,10 @@ def _stretched(
     exact = f"{summed * factor:.6g} s"
     allowed = f"{reachable:.6g} s"
     if allowed != exact:
-        exact += f", or {allowed} with the rounding of way-points, limits and durations allowed for"
+        exact += (
+            f", or {allowed} with the rounding of way-points, limits and durations taken into "
+            "account"
+        )
     places = [called_under(study.case, row.claim, row.problem) for row in (slow, fast)]
     beside = Finding(
         rule="TG301",
@@ -137,7 +139,7 @@ def _stretched(
         kind="not both shortest",
         sentences=(
             "With velocity limits only, the shortest time multiplied by the limit is constant, so "
-            "the two printed results cannot both be shortest.",
+            "the two printed results cannot both be the shortest.",
             f"The durations in {places[0]} sum to {summed:.6g} s.",
             f"Multiplied by {factor:.6g}, the ratio of the two limits, that is {exact}.",
             f"Scaled in this way, they keep the limit of {places[1]}; the {shown} printed there is "

@@ -3,7 +3,7 @@ A swarm against the optimum
 ===========================
 
 The best total so far of twenty seeds, with median and quartiles, beside the optimum. A search
-that repairs an answer by stretching it ends closer than one that punishes it.
+that repairs an answer by stretching it ends closer than one that penalises it.
 """
 
 from trajgap.compare.pictures import convergence

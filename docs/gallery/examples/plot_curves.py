@@ -2,7 +2,7 @@
 What the choice of the curve costs
 ==================================
 
-The same way-points and limits, four kinds of curve: smoothness is paid for in seconds. The last
+The same way-points and limits, four kinds of curve: smoothness costs seconds. The last
 curve stands still at every way-point.
 """
 

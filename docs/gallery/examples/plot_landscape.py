@@ -2,7 +2,7 @@
 The landscape that a swarm searches
 ===================================
 
-Three segments leave two ratios free, so that all problems of this kind fit into a triangle.
+Three segments leave two ratios free, so all problems of this kind fit into a triangle.
 Height is the least total of durations in that ratio. Dots show where ten runs of a swarm ended.
 """
 

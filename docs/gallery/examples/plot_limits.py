@@ -4,7 +4,7 @@ Where a motion meets its limits
 
 The fastest motion through four way-points under limits on velocity, acceleration and jerk. Every
 row is a joint, every column a derivative. The largest value of each is exact, at whatever instant
-it stands.
+it occurs.
 """
 
 from trajgap.compare.pictures import motion_picture

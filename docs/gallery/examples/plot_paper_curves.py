@@ -2,9 +2,9 @@
 The curves of a paper, drawn again
 ==================================
 
-Figures 5 to 7 of the PUMA 560 paper show how its two swarms converge on joints 1 to 3; no figure
-is in the text that the case was read from. Here both are run again with the printed settings and
-200 iterations, on each joint by itself as the paper does. Figures 8 to 10, the motion with the
+Figures 5 to 7 of the PUMA 560 paper show how its two swarms converge on joints 1 to 3; the text
+that the case was read from contains no figures. Here both are run again with the printed settings
+and 200 iterations, on each joint separately, as in the paper. Figures 8 to 10, the motion with the
 longest printed time of each segment, follow from the printed numbers alone.
 """
 

@@ -1,10 +1,10 @@
 """
-A chaotic map that dies in double precision
+A chaotic map that collapses in double precision
 ===========================================
 
 Figure 1 of the whale paper as printed: thirty points in [0, 5]², filled by the tent map with
 β = 0.5. An orbit for each coordinate spreads them. In exact arithmetic no orbit ever rests; in
-double precision each is exactly 0 after some fifty steps, so that one orbit through all the points
+double precision each is exactly 0 after about fifty steps, so one orbit through all the points
 leaves the last ones in a corner. The paper's search has seven coordinates, not two.
 """
 

@@ -38,7 +38,7 @@ class AnyCurveEstimate:
         Why nothing was computed, or why the total is not attained.
     starts, starts_at_best : int
     totals : tuple of float
-        Of the starts that led to an answer, s.
+        Totals of the starts that led to an answer, s.
     """
 
     total_time: float | None
@@ -77,9 +77,9 @@ def estimate_any_curve(
 ) -> AnyCurveEstimate:
     """Least total time through the way-points over all C1 curves with |v| ≤ V and |a| ≤ A.
 
-    The joints share their segment durations and nothing else; acceleration may jump. Of the
-    interpolant only the velocities prescribed at the two ends count. A segment in which nothing
-    moves, and whose duration has no lower bound, is passed in no time.
+    The joints share their segment durations and nothing else; acceleration may jump. From the
+    interpolant, only the velocities prescribed at the two ends are used. A segment in which nothing
+    moves, and whose duration has no lower bound, takes no time.
 
     Parameters
     ----------
@@ -106,7 +106,7 @@ def estimate_any_curve(
     -----
     In a segment a joint makes the displacement Δq between nodal velocities v₀ and v₁ if and only
     if |v₁ − v₀| ≤ A h, D(p) ≥ Δq for some p ≤ V, and the same mirrored (`reach.furthest` says
-    why). So durations, nodal velocities and peaks p are all the unknowns there are. The problem
+    why). So durations, nodal velocities and peaks p are the only unknowns. The problem
     is not convex in them: several starts, and nothing is claimed below the value.
     """
     given = _initial(problem, initial)
@@ -118,7 +118,7 @@ def estimate_any_curve(
     short = np.flatnonzero(question.lower > question.upper * (1 + TOLERANCE))
     if short.size:
         return AnyCurveEstimate(
-            None, why=f"segment {short[0] + 1} cannot be done within its upper bound"
+            None, why=f"segment {short[0] + 1} cannot be traversed within its upper bound"
         )
     bounded = np.isfinite(question.acceleration)
     durations = question.lower.copy()

@@ -55,8 +55,8 @@ class FreeQuestion:
 def question(problem: ExactProblem) -> FreeQuestion:
     """Strip a problem of what does not matter for curves of any kind.
 
-    Of the interpolant only the velocities prescribed at the two ends count. Limits of jerk and
-    position are not looked at.
+    From the interpolant, only the velocities prescribed at the two ends are used. Limits of jerk
+    and position are not looked at.
     """
     stated = stated_problem(problem)
     limits = [[*row[:2], None] for row in stated.limits]

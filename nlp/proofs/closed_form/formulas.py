@@ -146,8 +146,8 @@ def _missing(problem: ExactProblem) -> str | None:
     curve = problem.curve
     if problem.chord:
         return (
-            "chord lengths of several joints are no rational numbers, so that no certificate "
-            "states them exactly; write the ratios as numbers"
+            "chord lengths of several joints are not rational numbers, so no certificate can "
+            "state them exactly; write the ratios as numbers"
         )
     formula = "at fixed ratios the optimum is a formula, and `solve` gives it"
     if isinstance(curve, Interpolant) and curve.free:

@@ -78,7 +78,7 @@ class _Run:
             return
         tried = session.stretched(h[None] * float(system.exact.second))[0]
         known = math.inf if session.upper is None else float(session.upper)
-        # A solve costs more than a box: what is shorter by less than a millionth is no start.
+        # A solve costs more than a box: what is shorter by less than a millionth is not a start.
         if tried.sum() < min(known, self._shortest_tried) * (1 - 1e-6):
             self._shortest_tried = float(tried.sum())
             session.seek(tried)

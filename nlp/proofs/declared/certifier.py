@@ -47,7 +47,7 @@ _SAFE = 1e-12
 _FINE = 1e-9
 """A gap below it may be too narrow for the rounding of floats: no stage before it is left out."""
 _DIGITS = 11
-"""Of a total after its first: short in a certificate, and 1e-11 of a gap is no loss."""
+"""Of a total after its first: short in a certificate, and 1e-11 of a gap is not a loss."""
 _JUDGING = 0.4
 """Seconds that judging takes for one of search: 0.1 to 0.3 were measured."""
 _ABOVE = 1 + Fraction(1, 2**40)

@@ -9,7 +9,7 @@ from ....problem import Array
 _EXACT = 1e-12
 """A gain below it is none: values are about 1."""
 _PIVOT = 1e-10
-"""An entry below it is no pivot, for the same reason."""
+"""An entry below it is not a pivot, for the same reason."""
 _TURNS = 12
 """Pivots for each row of a program, after which the weights found so far are taken."""
 

@@ -142,7 +142,7 @@ def test_a_motion_is_judged(client: Any) -> None:
         (b"", {"motion_velocity": "1"}, "motion", "choose a file"),
         (b"time,j1\n0,a\n", {"motion_velocity": "1"}, "motion", "line 2"),
         (b"\xff\xfe\x00", {"motion_velocity": "1"}, "motion", ""),
-        (MOTION, {}, "motion_velocity", "give a limit"),
+        (MOTION, {}, "motion_velocity", "give at least one limit"),
         (MOTION, {"motion_jerk": "x"}, "motion_jerk", "'x'"),
         (MOTION, {"motion_velocity": "1", "between": "straight"}, "between", "'straight'"),
     ],

@@ -26,7 +26,7 @@ def line(*parts: str, rows: Any = TWO_JOINTS, coupling: str = "shared", velocity
 @pytest.mark.parametrize(
     ("coupling", "said"),
     [
-        ("per-joint", "4.0000 to 4.0010 s, obtained by optimising each joint separately"),
+        ("per-joint", "4.0000 to 4.0010 s from optimising each joint separately"),
         ("shared", "the "),
     ],
 )
@@ -76,7 +76,7 @@ def test_a_total_that_was_cut_off_is_said_to_agree_if_it_was(value: str, end: st
 @pytest.mark.parametrize(
     ("verdicts", "said"),
     [
-        ("not checkable", "shortest s-curve profile is open."),
+        ("not checkable", "whether the printed time agrees with the shortest s-curve profile."),
         ("inconsistent", "does not agree with the shortest s-curve profile."),
         ("supported, refuted, not checkable", "1 of 3 printed times agree with"),
         ("supported, refuted, not checkable", "; 1 is open."),
@@ -87,7 +87,7 @@ def test_a_time_that_was_not_judged_is_not_said_to_disagree(verdicts: str, said:
     assert said in _beside_profiles(words, ["s-curve"])
 
 
-OPTIMUM = "the proven optimum 2.0000 s"
+OPTIMUM = "the proven optimum of 2.0000 s"
 EXPLAINED = "at the printed digits, whose rounding may explain it."
 
 
@@ -123,7 +123,7 @@ def test_a_distance_that_two_totals_share_is_said_once() -> None:
         for one, limit in (("a", 1.5), ("b", 1))
     )
     assert line(*parts, *asked, rows=[[0, 2]]) == (
-        "2.100 s and 3.150 s are 5.0 % above the proven optima 2.0000 s and 3.0000 s."
+        "2.100 s and 3.150 s are 5.0 % above the proven optima of 2.0000 s and 3.0000 s."
     )
 
 
@@ -239,7 +239,7 @@ def test_a_wrong_sum_breaks_no_limit() -> None:
 
 
 def test_a_named_method_has_a_total_of_its_own() -> None:
-    """A rival's 2.50 s is no other print of the paper's 1.90 s, nor its answer on the card."""
+    """A rival's 2.50 s is not another print of the paper's 1.90 s, nor its answer on the card."""
     named, own = algorithms("a"), total("own", "1.90")
     one = audited_text(asked(OWN, named, total("rival", "2.50", algorithm="a")))
     assert set(verdicts(one).values()) == {"supported", "not checkable"}
@@ -257,8 +257,8 @@ def test_a_total_of_another_aim_is_another_total() -> None:
     time = total("time", "2.50", algorithm="a")
     low = total("low", "2.90", algorithm="a", objective="energy")
     by = {j.claim: j for j in audited_text(asked(algorithms("a"), OWN, time, low)).judgements}
-    assert "nothing in print can be set against it" in by["time"].why
-    assert "nothing in print can be set against it" in by["low"].why
+    assert "nothing printed can contradict it" in by["time"].why
+    assert "nothing printed can contradict it" in by["low"].why
 
 
 def test_what_only_cut_off_digits_keep_is_not_called_rounding() -> None:
@@ -277,4 +277,6 @@ def test_a_total_within_a_proven_interval_neither_agrees_nor_differs() -> None:
         said = optimum_line(study, found, {}, False)
     assert said.startswith("1.86 s")
     # Floats end at 1.875 s or one bit above it, which rounds up.
-    assert re.search(r"is proven to hold the optimum, 1\.8400 to 1\.875[01] s\.$", said)
+    assert re.search(
+        r"lies in the proven interval of the optimum, 1\.8400 to 1\.875[01] s\.$", said
+    )

@@ -58,7 +58,7 @@ def test_a_motion_and_a_scaling_law_that_refute_one_claim_are_one_error() -> Non
     effects = {e.change: e.effect for e in broken.explanations}
     # Joint 5 reaches 119.07 °/s; the exchange keeps 110 °/s and does not reach it.
     first, *others = effects
-    assert first == "The limit of velocity may be misprinted: 119 in place of 110."
+    assert first == "The limit of velocity may be misprinted: 119 instead of 110."
     assert "every limit is kept within rounding and one is reached" in effects[first]
     assert "Durations 1 and 3 may have been exchanged in print." in others
 
@@ -71,7 +71,7 @@ def test_what_was_judged_on_doubted_way_points_says_so() -> None:
         assert said.kind in (CaveatKind.POINTS, CaveatKind.SOME_POINTS)
         assert "Table 2" in said.why
     assert qualified(by["durations-80"].verdict, by["durations-80"].beside) == (
-        "supported, but on doubted way-points"
+        "supported, but on doubtful way-points"
     )
     # The law of scaling refutes it whatever the way-points are.
     assert by["time-optimal"].caveats[0].kind is CaveatKind.SOME_POINTS
@@ -123,7 +123,7 @@ def test_what_is_too_long_is_told_by_the_least_distance_of_all_readings() -> Non
 
 
 def test_a_longest_duration_of_another_row_is_named() -> None:
-    """Joints that need 2, 1, 2 s and 1, 2, 1 s; the last row takes 1 s in place of 2 s."""
+    """Joints that need 2, 1, 2 s and 1, 2, 1 s; the last row takes 1 s instead of 2 s."""
     last = {"durations": ["2.000", "1.000", "2.000"], "total": "6.000"}
     text = paper(
         [[0, 2, 3, 5], [0, 1, 3, 4]],
@@ -139,7 +139,7 @@ def test_a_longest_duration_of_another_row_is_named() -> None:
     assert {c.rule for c in errors} == {"TG101", "TG102", "TG201"}
     for error in errors:
         assert error.explanations[0].change == (
-            "The duration of segment 2 may have been taken from another row: 2.000 in place of "
+            "The duration of segment 2 may have been taken from another row: 2.000 instead of "
             "1.000."
         )
 
@@ -159,8 +159,8 @@ def test_an_angle_is_tried_modulo_a_full_turn() -> None:
     said = [e for e in one.causes[0].explanations if "modulo a full turn" in e.change]
     assert [e.effect for e in said] == ["Then every limit is kept."] * 2
     assert {e.change.split(": ")[1] for e in said} == {
-        "6.38319 rad in place of 0.1 rad.",
-        "0.0168147 rad in place of 6.3 rad.",
+        "6.38319 rad instead of 0.1 rad.",
+        "0.0168147 rad instead of 6.3 rad.",
     }
 
 
@@ -179,7 +179,7 @@ def test_what_explains_one_row_does_not_speak_for_another() -> None:
     one = judged([0, 3, 4.2], 1.9, "2.062 1.190", "4.152", *other)
     by = {(c.rule, c.claim): c for c in one.causes}
     (first, *_) = by["TG201", "d"].explanations
-    assert first.change.endswith("misprinted: 2.962 in place of 2.062.")
+    assert first.change.endswith("misprinted: 2.962 instead of 2.062.")
     assert first.effect == (
         "Then the durations in d keep every limit, one is reached and the printed total is "
         "the sum of its parts; those in e still break one."
@@ -191,10 +191,10 @@ def test_what_explains_one_row_does_not_speak_for_another() -> None:
     ("limit", "end", "named"),
     [
         # 15/8 of 1 rad in 1.5 s is 1.25 rad/s; of 1.4 rad it would be 1.75 rad/s.
-        ("0.125", "1.20", "The limit of velocity of joint 1 may be misprinted: 1.25 in place"),
-        ("1.25", "2.20", "Way-point B of joint 1 may be misprinted: 1.20 in place of 2.20."),
-        ("1.25", "120", "Way-point B of joint 1 may be misprinted: 1.20 in place of 120."),
-        ("1.25", "-1.20", "Way-point B of joint 1 may be misprinted: 1.20 in place of -1.20."),
+        ("0.125", "1.20", "The limit of velocity of joint 1 may be misprinted: 1.25 instead"),
+        ("1.25", "2.20", "Way-point B of joint 1 may be misprinted: 1.20 instead of 2.20."),
+        ("1.25", "120", "Way-point B of joint 1 may be misprinted: 1.20 instead of 120."),
+        ("1.25", "-1.20", "Way-point B of joint 1 may be misprinted: 1.20 instead of -1.20."),
     ],
 )
 def test_a_misprint_is_found_where_the_reading_takes_the_number(
@@ -226,4 +226,6 @@ def test_limits_that_hold_at_samples_are_explained_by_them(limit: float, explain
     one = judged([0.1, 1.3, 0.9], limit, "0.83000 0.71000", "1.54000", curve=curve)
     (cause,) = one.causes
     assert cause.rule == "TG201"
-    assert any("at ten steps a segment none" in e.change for e in cause.explanations) is explained
+    assert (
+        any("at ten samples per segment none" in e.change for e in cause.explanations) is explained
+    )

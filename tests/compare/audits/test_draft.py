@@ -89,7 +89,7 @@ def test_a_total_that_is_no_sum_is_replaced_by_one_number() -> None:
     other = drafted("1.000 1.000 1.000", "2.500", "jumps")
     (found,) = [a for a in other.advice if "add up" in a.says]
     assert "3.0" in found.change
-    assert advised(other).blocks[-1].title == "1 things that a reader cannot check"
+    assert advised(other).blocks[-1].title == "1 points that readers cannot check"
     assert "The causes" in str(against(other).blocks)
 
 
@@ -129,7 +129,7 @@ def test_an_optimum_whose_digits_were_rounded_up_is_not_refuted_and_a_longer_one
     one = drafted(digits(shorter, more), f"{sum(shorter) + 3 * more:.3f}", "optimal")
     (judged,) = [j for j in one.judgements if j.claim == "said"]
     assert judged.verdict == word
-    assert ("digits rounded up" in judged.why) == (more == 0.0)
+    assert ("digits were rounded up" in judged.why) == (more == 0.0)
 
 
 def applied(text: str) -> tuple[CaseAudit, CaseAudit]:

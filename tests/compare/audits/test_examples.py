@@ -96,7 +96,7 @@ SAID = {
     ("riboli2023-iptp-16-tasks", "task-15-time"): "With 9.4 rad/s it takes 0.964148 s, which fits",
     ("robotics1-2017-04-11", "phases"): "phases of 0.225, 0.99583, 0.675 s",
     ("ruckig-issue-128", "reached"): "brakes into them at once",
-    ("ruckig-issue-128", "reported"): "takes 0.167347 s; printed is 0.230593 s, which is 37.79 %",
+    ("ruckig-issue-128", "reported"): "takes 0.167347 s; the printed 0.230593 s is 37.79 %",
     ("ruckig-issue-204", "first-total"): "it jumps from 0.28564",
     ("ruckig-issue-204", "second-total"): "it jumps from 0.28564",
     ("wang2025-mim-wafer-stage", "total"): "takes 0.210003 s",

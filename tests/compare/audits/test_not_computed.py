@@ -170,7 +170,7 @@ def test_wrong_settings_of_an_algorithm_end_an_audit_before_it_begins() -> None:
     ("kind", "said"),
     [
         ('kind = "psso"', ("PSO: algorithm kind: 'psso' is unknown; did you mean 'pso'?",)),
-        ("", ("PSO: the case file names no algorithm that trajgap has.",)),
+        ("", ("PSO: the case file names no algorithm that trajgap implements.",)),
         ('kind = "pso"', ()),
     ],
 )

@@ -46,7 +46,7 @@ def phased(*phases: tuple[float, float, float]) -> AxisProfile:
             [(0.1, 0, 5), (0.2, 0.5, 0), (0.1, 0.5, -5), (0.4, 0, 0), (0.3, -0.2, 0)],
             (0.4, 0.4, 0.3, 0.1, 0.0),
         ),
-        # Braked, and speeding up once more: that is no second first part.
+        # Braked, and speeding up once more: that is not a second first part.
         (
             [(0.2, 0, 4), (0.1, 0.8, -8), (0.1, 0, -3), (0.1, -0.3, 3), (0.2, 0.5, 0)],
             (0.3, 0.0, 0.4, 0.2, 0.0),

@@ -90,7 +90,7 @@ def test_the_date_is_that_of_the_environment(monkeypatch):
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "86400")
     assert today() == date(1970, 1, 2)
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "tomorrow")
-    with pytest.raises(TrajgapError, match="SOURCE_DATE_EPOCH: 'tomorrow' is no time"):
+    with pytest.raises(TrajgapError, match="SOURCE_DATE_EPOCH: 'tomorrow' is not a time"):
         today()
 
 

@@ -89,7 +89,7 @@ def test_a_wide_box_is_not_enclosed():
 
 
 def test_rounding_is_part_of_the_radius():
-    # 1/3 and its powers are no floats: an enclosure without rounding would miss them.
+    # 1/3 and its powers are not floats: an enclosure without rounding would miss them.
     third = interval.quotient_power(
         Ball.exact(np.ones(3)), Ball.exact(np.full(3, 3.0)), np.array([1, 2, 5])
     )

@@ -67,20 +67,20 @@ def message(name: str, reading: str = "rpm", *changes: Change) -> str:
 @pytest.mark.parametrize(
     ("name", "reading", "said"),
     [
-        ("velocities", "rpm", "the exact peak of velocity is 11.3899 ± 0.03 rpm, printed is 11.4"),
-        ("velocities", "rpm", "the exact peak of velocity is 48.5371 ± 0.1 °/s, printed is 48.5"),
-        ("velocities", "rpm", "peak of velocity is 107.564 ± 0.2 mm/s, printed is 107.6, equal"),
+        ("velocities", "rpm", "the exact peak of velocity is 11.3899 ± 0.03 rpm, printed as 11.4"),
+        ("velocities", "rpm", "the exact peak of velocity is 48.5371 ± 0.1 °/s, printed as 48.5"),
+        ("velocities", "rpm", "peak of velocity is 107.564 ± 0.2 mm/s, printed as 107.6, equal"),
         # The same digits in degrees per second are another motion.
-        ("velocities", "deg-s", "68.3395 ± 0.2 °/s, printed is 11.4 (-83 %)"),
+        ("velocities", "deg-s", "68.3395 ± 0.2 °/s, printed as 11.4 (-83 %)"),
         ("accelerations", "rpm", "d3: the exact peak of acceleration is 0.275933 ± 0.0006 m/s²"),
         ("fast", "rpm", "the acceleration of joint d3 reaches 1.26694 m/s², limit 0.5 m/s²"),
         ("fast", "deg-s", "the velocity of joint 1 reaches 148.758 °/s, limit 30 °/s"),
         ("rest", "rpm", "joint 1 starts with a acceleration of 185.8 °/s²"),
         ("rest", "rpm", "joint d3 ends with a acceleration of 0.2759 m/s²"),
-        ("means", "rpm", "is 78.3058 mm/s, printed is 78.3"),
-        ("means", "rpm", "is 6.41658 rpm, printed is 6.42"),
+        ("means", "rpm", "is 78.3058 mm/s, printed as 78.3"),
+        ("means", "rpm", "is 6.41658 rpm, printed as 6.42"),
         # Angles and lengths are not compared; positions of the end follow from the slide.
-        ("most", "rpm", "Joints are printed in different units (deg, mm), so that nothing says"),
+        ("most", "rpm", "Joints are printed in different units (deg, mm), so it cannot be said"),
         ("poses", "rpm", "joints 1, 2 and d3 are read in deg, deg, mm."),
     ],
 )
@@ -97,9 +97,9 @@ def printed_as(value: float, places: int = 1) -> Change:
     [
         # 0.2332 for 233.2 mm/s is metres; 57.3 and 2π times too much are nothing at all.
         ((), "near 0.001, as a thousandth of the unit."),
-        ((printed_as(233.246 * 180 / np.pi),), "off by more than rounding"),
-        ((printed_as(233.246 * 2 * np.pi),), "off by more than rounding"),
-        ((printed_as(233.246 * 30 / np.pi),), "off by more than rounding"),
+        ((printed_as(233.246 * 180 / np.pi),), "neither rounding, cut-off digits"),
+        ((printed_as(233.246 * 2 * np.pi),), "neither rounding, cut-off digits"),
+        ((printed_as(233.246 * 30 / np.pi),), "neither rounding, cut-off digits"),
         ((printed_as(23.32, 2),), "as between millimetres and centimetres"),
         (
             (('joint = "d3"\nvalue', 'joint = "2"\nvalue'), printed_as(np.radians(105.456), 4)),

@@ -96,7 +96,7 @@ def test_a_time_limit_leaves_a_state_to_go_on_from(run: Run) -> None:
     path, state = (f"trajgap-certificates/{NAME}{end}.json" for end in ("", ".state"))
     code, out, _ = run("solve", *ONE, "--certify", "--time", "0")
     assert code == cli_certify.NOT_PROVED
-    assert f"go on with --resume {state}" in out
+    assert f"continue with --resume {state}" in out
     assert not Path(path).exists(), "nothing is proved"
     assert str(verify(state)).startswith("proves: ")
     assert run("solve", "mine.toml", "--certify", "--resume", state)[0] == 2, "another problem"
@@ -118,7 +118,7 @@ def test_a_proof_that_the_verifier_refuses_is_not_called_certified(
     code, out, _ = run("solve", *ONE, "--certify", "--gap", "0.1", "--out", "c.json")
     assert code == cli_certify.NOT_PROVED
     assert "certified" not in out
-    assert "the proof found is refused" in out
+    assert "the proof was refused" in out
     document = strict(Path("c.json").read_text())
     assert_valid(document, "certify")
     assert document["intervals"][0]["outcome"] == "open"
@@ -233,7 +233,7 @@ def test_verify_compares_with_a_case_number_by_number(run: Run, document: dict[s
     assert (code, one["in_case"]) == (1, None)
     assert "differs in duration_lower" in one["in_case_why"]
     code, one = verified("mine.toml")
-    assert (code, one["in_case_why"]) == (1, "no problem of the case is this one")
+    assert (code, one["in_case_why"]) == (1, "the case does not contain this problem")
 
 
 def test_a_certificate_of_the_old_format_is_made_again(run: Run) -> None:
@@ -241,7 +241,7 @@ def test_a_certificate_of_the_old_format_is_made_again(run: Run) -> None:
     path.parent.mkdir()
     path.write_text('{"format": "trajgap-certificate-1"}')
     _, out, _ = run("verify", str(path))
-    assert "`trajgap solve CASE --certify` makes it again" in out
+    assert "`trajgap solve CASE --certify` recreates it" in out
     assert run("solve", *ONE, "--certify", "--gap", "0.1")[0] == 0
     assert verify(path).proves
 
@@ -272,7 +272,7 @@ def test_a_state_file_that_was_edited_is_refused(run: Run) -> None:
     document: dict[str, Any] = json.loads(path.read_text())
     document["claim"]["durations"][0] = "0.1"
     path.write_text(json.dumps(document))
-    with pytest.raises(TrajgapError, match="differs from what was written"):
+    with pytest.raises(TrajgapError, match="was altered"):
         read_state(path)
     # With the seal made right again, the mathematics refuses it.
     sealed(document)

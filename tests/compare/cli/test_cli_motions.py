@@ -79,7 +79,7 @@ def test_a_grid_of_few_digits_says_what_follows_if_it_is_exact(run, limit, word)
     given = ("check", "g.csv", "--velocity", f"{limit * 15 / 16},{4 * limit}")
     told = run.done(*given, "--interpolation", "spline")
     assert "\nundecided: " in told
-    assert f"the verdict is {word}: state --time-noise 0" in " ".join(told.split())
+    assert f"the verdict is {word}: add --time-noise 0" in " ".join(told.split())
     again = run.done(*given, "--interpolation", "spline", "--time-noise", "0")
     assert f"\n{word}: " in again
 
@@ -120,7 +120,7 @@ def test_a_misspelt_joint_is_not_passed_over(run, misspelt):
     file = "l.yaml" if misspelt == "csv" else changed
     assert_refused(
         run("check", "m.csv", *sources, "--interpolation", "quintic"),
-        f"{file}: {wanted[0]}: is no joint with limits there; rename it or add it;",
+        f"{file}: {wanted[0]}: is not a joint with limits there; rename it or add it;",
         f"did you mean {wanted[1]!r}",
     )
 
@@ -242,7 +242,7 @@ def test_what_no_slow_down_repairs_is_not_written(run, folder):
     flags = ["--position", "-1:1", "--interpolation", "quintic", "--repair", "slow.csv"]
     found = run.document("check", "m.csv", *flags)
     assert found["repaired"] is None
-    assert "going slower does not move the path" in found["repaired_why"]
+    assert "slowing down does not change the path" in found["repaired_why"]
     assert not (folder / "slow.csv").exists()
     assert_refused(
         run(
@@ -279,7 +279,7 @@ def test_what_cannot_be_plotted_is_refused(run, folder):
     words = ("m.jpg", "--plot", "end it with one of .png, .svg, .pdf")
     assert_refused(run("check", "m.csv", *flags, "m.jpg"), *words)
     (folder / "there.png").write_bytes(b"")
-    assert_refused(run("check", "m.csv", *flags, "there.png"), "--plot", "exists already")
+    assert_refused(run("check", "m.csv", *flags, "there.png"), "--plot", "already exists")
     durations = ["check", "mine.toml", "--durations", "1,1,1", "--plot", "m.png"]
-    assert_refused(run(*durations), "--plot is of a motion")
+    assert_refused(run(*durations), "--plot is for a motion")
     assert not (folder / "m.png").exists()

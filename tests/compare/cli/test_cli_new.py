@@ -47,7 +47,7 @@ def test_new_warns_of_joints_that_may_be_angles(run: Run, folder: Path) -> None:
     units = ("--position-unit", "deg", "--time-unit", "s")
     code, _, err = run("new", "out.toml", "--from", "table.csv", *units)
     assert code == 0
-    assert err.startswith("trajgap: table.csv: line 1 is taken for the names of the joints, 1, 2;")
+    assert err.startswith("trajgap: table.csv: line 1 is read as the names of the joints, 1, 2;")
     assert sorted(path.name for path in folder.iterdir()) == ["mine.toml", "out.toml", "table.csv"]
 
 
@@ -156,7 +156,7 @@ def test_a_limit_that_is_given_takes_precedence_over_the_urdf(
         ("trun,swing,reach", ("arm.urdf", "trun", "did you mean 'turn'?")),
         ("1,2", ("t.csv", "numbers 2 joints", "has 3 with limits")),
         ("1,2,3,4", ("t.csv", "numbers 4 joints", "(turn, swing, reach)")),
-        ("a,b,c", ("arm.urdf", "a: is no joint", "known: turn, swing, reach")),
+        ("a,b,c", ("arm.urdf", "a: is not a joint", "known: turn, swing, reach")),
     ],
 )
 def test_joints_that_a_urdf_does_not_have(

@@ -75,7 +75,7 @@ def test_evaluations_beyond_the_budget_of_one_run_are_explained(
 def test_joints_that_the_case_searches_apart_are_named(run: Run) -> None:
     out = run.done("bench", "mine.toml", "--optimizer", "random", *SMALL)
     assert out.splitlines()[0] == "Mine (mine)"
-    assert "The case searches each joint by itself" in " ".join(out.split())
+    assert "The case searches each joint separately" in " ".join(out.split())
     assert ", certified" in out
 
 
@@ -158,10 +158,10 @@ def test_an_optimiser_that_always_fails_stands_and_is_shown_by_the_exit_code(run
         (("--optimizer", "pso"), "name a CASE, FILE or SUITE, or --against leaderboard"),
         ((*AGAINST, "pso", "--budget", "200"), "--budget: the leaderboard has 100, 1000, 10000"),
         ((*AGAINST, "pso", "--handling", "rescale"), "has death-penalty and stretch, not 'resc"),
-        ((*AGAINST, "pso", "--json"), "--json does not go with --against"),
+        ((*AGAINST, "pso", "--json"), "--json cannot be combined with --against"),
         ((*AGAINST, "psso"), "did you mean 'pso'?"),
-        (("suite:353-puma560", *AGAINST, "pso"), "no instance of the leaderboard"),
-        (("--against", "board", "--optimizer", "pso"), "the word is leaderboard"),
+        (("suite:353-puma560", *AGAINST, "pso"), "not an instance of the leaderboard"),
+        (("--against", "board", "--optimizer", "pso"), "use leaderboard"),
     ],
 )
 def test_what_cannot_stand_against_the_leaderboard(
@@ -213,18 +213,18 @@ def test_a_study_is_run_exported_and_gone_on_with(run: Run) -> None:
     code, out, err = run("study", "few.toml", "--workers", "1", "--export", "few.csv")
     assert (code, err) == (1, "")  # of one optimiser every run failed
     lines = out.splitlines()
-    assert lines[0] == "few.sqlite: 8 runs done now, 0 were there"
+    assert lines[0] == "few.sqlite: 8 runs were done now, 0 were already stored"
     assert "failed, 4 times: ZeroDivisionError: one over nothing" in " ".join(out.split())
     assert lines[1] == "Mine (mine/main, plain)"
     assert "particles 10" in out
     assert "{" not in out
-    assert "run the failed ones again: trajgap study few.toml --retry" in lines
+    assert "to repeat the failed runs: trajgap study few.toml --retry" in lines
     with open("few.csv", encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
     assert len(rows) == 8
     code, out, _ = run("study", "few.toml", "--workers", "1", "--store", "few.sqlite")
     assert code == 1
-    assert out.splitlines()[0] == "few.sqlite: 0 runs done now, 8 were there"
+    assert out.splitlines()[0] == "few.sqlite: 0 runs were done now, 8 were already stored"
     last = "next: trajgap study few.toml --store few.sqlite --export few.csv"
     assert out.splitlines()[-1] == last
     gaps = [float(row["feasible_gap_lowest"]) for row in rows[:2]]
@@ -256,10 +256,12 @@ def test_the_command_that_goes_on_still_exports(
         "study", "few.toml", "--export", "a b.csv", "--export", "few.ioh", "--workers", "1"
     )
     assert (code, out) == (130, "")
-    assert "`trajgap study few.toml --export 'a b.csv' --export few.ioh` goes on from there" in err
+    assert (
+        "`trajgap study few.toml --export 'a b.csv' --export few.ioh` continues from there" in err
+    )
     assert not (folder / "few.ioh").exists()
     _, _, err = run("study", "few.toml", "--store", "kept.sqlite", "--workers", "1")
-    assert "`trajgap study few.toml --store kept.sqlite` goes on from there" in err
+    assert "`trajgap study few.toml --store kept.sqlite` continues from there" in err
 
 
 @pytest.mark.slow

@@ -172,7 +172,7 @@ def test_a_fault_of_ours_is_told_apart(run: Run, monkeypatch: pytest.MonkeyPatch
     monkeypatch.setattr("trajgap.compare.cli.solve_command.solve_per_joint", fail)
     code, out, err = run("solve", "mine.toml", "--out", "answer.json")
     assert (code, out) == (70, "")
-    assert err.endswith("trajgap: a fault of trajgap itself, please report the lines above\n")
+    assert err.endswith("trajgap: this is a bug in trajgap; please report the lines above\n")
     assert not Path("answer.json").exists()
 
 

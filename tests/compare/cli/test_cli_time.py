@@ -126,7 +126,7 @@ def test_the_certificates_in_the_folder_are_the_same(run: Run, cache: Path) -> N
     asked = [*CERTIFY[:-1], "--certificates"]
     run(*asked, "cold")
     out = run.done(*asked, "warm")
-    assert "2 kept proofs were proved again" in out
+    assert "2 kept proofs were verified" in out
     names = sorted(file.name for file in Path("cold").iterdir())
     assert names == sorted(file.name for file in Path("warm").iterdir())
     assert all(Path("cold", n).read_bytes() == Path("warm", n).read_bytes() for n in names)

@@ -148,7 +148,7 @@ def test_what_holds_by_construction_is_counted_as_no_evidence() -> None:
         "Verdicts on 6 claims: 3 rest on proofs under a reading, 1 holds by construction, "
         "1 is open, 1 states no result."
     )
-    assert worth_little(every) == "1 by construction, 2 on doubted numbers"
+    assert worth_little(every) == "1 by construction, 2 on doubtful numbers"
     assert worth_little([judged(S), judged(R, DOUBT)]) == ""
 
 

@@ -261,7 +261,7 @@ def test_bounds_and_first_positions_are_said() -> None:
     assert (search_box(plan.problem).upper >= EXACT).all()
     own, bounds, drawn = plan.notes
     assert own == "pso: 200 iterations, the algorithm's own, in 6,030 evaluations."
-    assert bounds.startswith("Not every duration has an upper bound. Searched: 0.1 to ")
+    assert bounds.startswith("Some durations have no upper bound. Searched: 0.1 to ")
     assert drawn.startswith("pso: first positions drawn from 0.1 to ")
     assert plan_bench(TOY, "random", baselines=False).notes == ()
 
@@ -330,6 +330,6 @@ def test_the_page_the_picture_and_the_rows(runs: Runs, tmp_path: Path) -> None:
     assert 1 + float(first["feasible_gap_highest"]) == pytest.approx((1 + exact) / 0.9)
     write_bench([(result, runs)], out)  # an earlier bench is replaced
     (out / "mine.txt").write_text("kept")
-    with pytest.raises(CaseError, match=r"holds mine.txt, which is no bench"):
+    with pytest.raises(CaseError, match=r"contains mine.txt, which is not a bench"):
         write_bench([(result, runs)], out)
     assert (out / "mine.txt").read_text() == "kept"

@@ -83,7 +83,9 @@ def test_a_run_at_which_workers_of_dask_die_is_reported() -> None:
     engine = Engine(failing(KilledWorker()), lambda: 1, "far")
     (outcome,) = outcomes([small_trial()], engine)
     assert outcome.row.status is RowStatus.FAILED
-    assert outcome.row.message == "support.optimizers:draws: workers died at it, several times"
+    assert (
+        outcome.row.message == "support.optimizers:draws: workers died repeatedly while running it"
+    )
 
 
 CLOSED = ThreadPoolExecutor(1)
@@ -101,7 +103,7 @@ CLOSED.shutdown()
     ],
 )
 def test_an_engine_that_is_lost_ends_the_session(executor: Executor, said: str) -> None:
-    said = said if said == "^none$" else f"far: lost {said}; what is finished is stored"
+    said = said if said == "^none$" else f"far: lost {said}; finished runs are stored"
     with pytest.raises(ProcessError, match=said):
         list(outcomes([small_trial()], Engine(executor, lambda: 1, "far")))
 

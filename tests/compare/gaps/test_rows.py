@@ -79,7 +79,7 @@ def test_a_row_is_read_as_it_was_written(row: Row) -> None:
 
 @pytest.mark.parametrize("text", ["", "{}", "[1]", '{"key": 1}'])
 def test_what_is_no_row_is_refused(text: str) -> None:
-    with pytest.raises(TrajgapError, match=r"row: cannot be read .*was the file altered\?"):
+    with pytest.raises(TrajgapError, match=r"row: cannot be read .*the file may have been altered"):
         Row.read(text)
 
 
@@ -202,7 +202,7 @@ def test_a_database_of_somebody_else_is_not_touched(path: Path) -> None:
     with sqlite3.connect(path) as other:
         other.execute("CREATE TABLE theirs (a)")
     before = path.read_bytes()
-    with pytest.raises(CaseError, match=r"kept.sqlite: is a database of another program; name"):
+    with pytest.raises(CaseError, match=r"kept.sqlite: is a database of another program; give"):
         Store(path)
     assert path.read_bytes() == before
 
@@ -211,15 +211,17 @@ def test_a_store_of_another_version_is_not_touched(path: Path) -> None:
     Store(path).close()
     with sqlite3.connect(path) as other:
         other.execute("PRAGMA user_version = 99")
-    with pytest.raises(CaseError, match=r"holds rows of version 99, this program writes 1; name"):
+    with pytest.raises(
+        CaseError, match=r"contains rows of version 99, but this program writes 1; give"
+    ):
         Store(path)
 
 
 def test_what_is_no_database_is_refused(path: Path) -> None:
     path.write_text("format = 1\n" * 200)
-    with pytest.raises(CaseError, match=r"kept.sqlite: is no store of trajgap; name a new file"):
+    with pytest.raises(CaseError, match=r"kept.sqlite: is not a store of trajgap; give a new file"):
         Store(path)
-    with pytest.raises(CaseError, match=r"cannot be made .*; make its folder first"):
+    with pytest.raises(CaseError, match=r"cannot be created .*; create its folder first"):
         Store(path.parent / "nowhere" / "kept.sqlite")
     with pytest.raises(CaseError, match=r"is a directory"):
         Store(path.parent)
@@ -375,9 +377,9 @@ def test_iohprofiler_is_read_by_iohinspector(rows: list[Row], tmp_path: Path) ->
 @pytest.mark.parametrize(
     ("name", "said"),
     [
-        ("rows.xls", "rows.xls: --export: has no known ending; use .csv, .parquet, .ioh"),
-        ("there.csv", "there.csv: --export: exists already; name another or delete this one"),
-        ("nowhere/rows.csv", "rows.csv: --export: its folder is not there; make it first"),
+        ("rows.xls", "rows.xls: --export: has an unknown ending; use .csv, .parquet, .ioh"),
+        ("there.csv", "there.csv: --export: already exists; give another or delete this one"),
+        ("nowhere/rows.csv", "rows.csv: --export: its folder does not exist; create it first"),
     ],
 )
 def test_a_name_that_cannot_be_used_is_refused(tmp_path: Path, name: str, said: str) -> None:

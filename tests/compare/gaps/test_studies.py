@@ -137,7 +137,7 @@ def test_each_joint_is_a_problem_where_the_case_says_so(tmp_path: Path) -> None:
     first, *_, last = plan.trials()
     assert (len(first.problem.joints), first.stream[1:], last.stream[1:]) == (1, (0,), (1,))
     assert len(plan) == 2 * RUNS
-    assert "Not every duration has an upper bound" in plan.problems[0].notes[0]
+    assert "Some durations have no upper bound" in plan.problems[0].notes[0]
 
 
 def test_optimisers_without_draws_run_once(tmp_path: Path) -> None:
@@ -208,7 +208,7 @@ def test_a_lost_engine_leaves_what_is_finished(plan: StudyPlan, tmp_path: Path) 
             if session.run == 3:
                 engine.executor.shutdown(wait=False)
 
-        with pytest.raises(ProcessError, match=r"1 process: lost \(.*the same command goes on"):
+        with pytest.raises(ProcessError, match=r"1 process: lost \(.*the same command continues"):
             run_study(plan, store, engine, progress=lose)
     assert len(texts(plan, path)) >= 3
 

@@ -82,7 +82,7 @@ def test_what_does_no_harm_changes_nothing(name: str, tmp_path: Path) -> None:
     ("name", "message"),
     [
         ("support.optimizers:raises", "ZeroDivisionError: one over nothing!!!"),
-        ("support.optimizers:swallows", "went on after its budget of 200 evaluations was spent"),
+        ("support.optimizers:swallows", "continued after its budget of 200 evaluations was spent"),
         ("support.optimizers:moves_bounds", "asked for the fitness of 7 s for duration 1, outside"),
         ("support.optimizers:raises_unprintable", "ValueError: half of a pair: <U+DC80>, a cursor"),
         ("support.optimizers:raises_mute", "Mute"),
@@ -107,7 +107,7 @@ def test_a_run_that_takes_too_long_is_a_row_without_clock_times() -> None:
     assert time.monotonic() - begun < 60
     assert row == run_trial(small_trial("support.optimizers:sleeps", seconds=0.3))
     assert row.message == (
-        "support.optimizers:sleeps: took longer than 0.3 s; raise the time limit, or look where "
+        "support.optimizers:sleeps: took longer than 0.3 s; raise the time limit, or find where "
         "it hangs"
     )
 
@@ -118,7 +118,7 @@ def test_a_run_that_judges_nothing_feasible_has_no_time() -> None:
     object.__setattr__(trial.problem, "duration_upper", np.full(3, 0.21))
     row = run_trial(trial)
     assert (row.status, row.reported_time, row.trace) == (RowStatus.FINISHED, None, ())
-    assert row.feasible_why == "nothing feasible was judged"
+    assert row.feasible_why == "no feasible vector was evaluated"
 
 
 def test_where_an_optimiser_comes_from(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -120,7 +120,7 @@ def test_a_case_without_waypoints_says_once_what_is_not_computed() -> None:
     assert "not-computed" in ids
     assert not {"waterfall", "optima", "sensitivities", "motions", "landscapes"} & set(ids)
     text = markdown(page)
-    assert text.count("since way-points are not printed") == 1
+    assert text.count("because way-points are not printed") == 1
     # Why they are not stands with the readings, and once with the claims that need them.
     before, _, _ = text.partition("## Every finding")
     assert before.count("the text gives their number, 8") == 2

@@ -159,7 +159,7 @@ def test_the_card_stands_on_top_in_page_markdown_and_index(
     first = page.words.index(flat(card.limits))
     for sentence in card.sentences:
         assert flat(sentence) in page.words
-    assert first < page.words.index("Claims refuted, contradicted or open to the reading")
+    assert first < page.words.index("Claims refuted, contradicted or dependent on the reading")
     index = Tree((folder / "index.html").read_text(encoding="utf-8"))
     written = (folder / f"{ID}.md").read_text(encoding="utf-8")
     assert flat(card.limits) in index.words

@@ -155,7 +155,7 @@ def test_the_polishing_case_shows_jumps_and_polygon(irb1600: Study) -> None:
 
 
 def test_the_palletiser_reaches_every_printed_position() -> None:
-    """By the printed transforms; that the other convention keeps two out of reach is no fault."""
+    """By the printed transforms; the other convention keeps two out of reach, which is no fault."""
     (workspace,) = exhibits_of_motion(shipped("irb460-pso-353"))
     (picture,) = workspace.blocks
     assert picture.name == "workspace"

@@ -148,7 +148,7 @@ def test_limits_and_way_points_are_drawn(problem: Problem, pictures: dict[str, P
 
 @pytest.mark.parametrize("clock", [False, True])
 def test_stretches_beyond_a_limit_are_exact(problem: Problem, clock: bool) -> None:
-    """Where time is no polynomial of e, too."""
+    """Where time is not a polynomial of e, too."""
     h = 0.6 * DURATIONS
     if clock:
         rng = np.random.default_rng(5)

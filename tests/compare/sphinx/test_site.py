@@ -33,7 +33,7 @@ PROSE = [
 FIGURE = re.compile(r"(?<![\w.])\d+(?:\.\d+)?\s?%|(?<![\w.])\d+\.\d+(?:e-?\d+)?(?:\s?m?s\b)?")
 """A percentage, or a number with decimals; whole numbers count things on the page itself."""
 NO_RESULT = {"3.11": "the least Python, held by test_house", "1.0.0": "a version"}
-"""Numbers with a point that are no figures."""
+"""Numbers with a point that are not figures."""
 
 
 @cache
@@ -184,7 +184,7 @@ def test_each_key_on_the_site_says_something_and_no_altered_one_does(page, key, 
     parts = path.split(".")
     for k, part in enumerate(parts):
         wrong = "999" if part.isdigit() else f"{part}x"
-        with pytest.raises(TrajgapError, match="nothing stands at"):
+        with pytest.raises(TrajgapError, match="there is nothing at"):
             RESULTS.value(f"{name}:{'.'.join([*parts[:k], wrong, *parts[k + 1 :]])}")
     with pytest.raises(TrajgapError, match="there is no such result"):
         RESULTS.value(f"{name}x:{path}")
@@ -262,7 +262,7 @@ def test_a_foreign_project_shows_an_audit(tmp_path):
     for reading in case["readings"]["admissible"]:
         assert page.count(f'<span class="pre">{reading}</span>') == 1
     assert 'aria-labelledby="' in page
-    assert "Proved again when this page was built" in page
+    assert "Verified when this page was built" in page
     assert page.count("certified</span>") > 40  # the suite's table, of 46
     assert ">353-puma560<" in page
     assert "basins" in page

@@ -123,7 +123,7 @@ def test_against_mealpy(shift: float) -> None:
 
     Its departures: a whale moves only if it is then better; one r for A and C; δ counted from 1;
     a fresh random point in place of a random whale. The first three are settings here, the last is
-    undone there. It is no requirement of the tests: its metadata asks for numpy below 2.
+    undone there. It is not a requirement of the tests: its metadata asks for numpy below 2.
     """
     mealpy = pytest.importorskip("mealpy")
     whale = pytest.importorskip("mealpy.swarm_based.WOA")

@@ -103,7 +103,7 @@ def test_another_question_is_searched(tmp_path, searches):
         assert not certify(shifted_problem(), **({"gap": GAP} | change), cache=tmp_path).kept
     assert not certify(shifted_problem(0.01), gap=GAP, cache=tmp_path).kept
     assert len(searches) == 4
-    # What a problem is called is no part of it.
+    # What a problem is called is not part of it.
     assert certify(replace(shifted_problem(), name="other"), gap=GAP, cache=tmp_path).kept
 
 

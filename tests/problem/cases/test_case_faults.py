@@ -249,7 +249,7 @@ READING = f'{PROBLEMS}[[readings]]\nid = "r"\nwhy = "x"\n[readings.waypoints]\n{
 ANGLES = "waypoints: gives 360,000 joint angles over 40 pairs of problem and reading, at most"
 TOO_MUCH = {
     "waypoints.count: 1000000 is out of range; give at most": asking(1_000_000),
-    "waypoints.joint_rows: holds 10,001 way-points, at most 10,000 are read; ": asking(
+    "waypoints.joint_rows: holds 10,001 way-points, but at most 10,000 are read; ": asking(
         f"joint_rows = [[{numbers(10_001)}]]"
     ),
     "waypoints.waypoint_rows: has more than 10,000 entries; ": asking(

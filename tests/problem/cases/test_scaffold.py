@@ -71,9 +71,7 @@ def test_tables_of_many_forms_hold_the_same_way_points(table, text, joints, labe
         np.rad2deg(case.problem().waypoints).round(9), [[10, 20], [30, 40]]
     )
     # Numbers in their order are names, or a way-point whose header is missing.
-    warned = (
-        f"{path}: line 1 is taken for the names of the joints, 1, 2; if these are a way-point, "
-    )
+    warned = f"{path}: line 1 is read as the names of the joints, 1, 2; if it is a way-point, "
     assert said == ([warned + "put a header above it"] if text.startswith("1") else [])
 
 
@@ -194,9 +192,9 @@ def test_all_faults_of_table_and_arguments_are_named_at_once(table):
 @pytest.mark.parametrize(
     ("unit", "rows", "written", "remark"),
     [
-        ("deg", "-10,90\n60,0\n", [["-10", "90"], ["60", "0"]], "settings and meant exactly"),
-        ("rad", "1,0\n2,-3\n", [["1", "0"], ["2", "-3"]], "settings and meant exactly"),
-        ("deg", "12.5,0\n−35,7.0\n", [['"12.5"', "0"], ["-35", '"7.0"']], "settings and meant"),
+        ("deg", "-10,90\n60,0\n", [["-10", "90"], ["60", "0"]], "count as exact"),
+        ("rad", "1,0\n2,-3\n", [["1", "0"], ["2", "-3"]], "count as exact"),
+        ("deg", "12.5,0\n−35,7.0\n", [['"12.5"', "0"], ["-35", '"7.0"']], "count as exact"),
         ("deg", "37,90\n112,0\n", [['"37"', '"90"'], ['"112"', '"0"']], '"37" may be 36.5 to'),
         ("rad", "0.50,1.00\n2.10,0.00\n", [['"0.50"', '"1.00"'], ['"2.10"', '"0.00"']], None),
     ],

@@ -136,7 +136,7 @@ def test_few_waypoints() -> None:
     with pytest.raises(TrajgapError, match="at least two way-points"):
         clamped_readings(1)
     words = next(r.words for r in clamped_readings(3, degrees=(7,)) if r.knots == "averaged")
-    assert words.startswith("impossible as the text has it: degree 7 needs more way-points")
+    assert words.startswith("impossible as printed: degree 7 needs more way-points")
     two = ClampedBSpline(2, 5, "averaged-continued", "times")
     assert two.inner_knots == 0
     q, t = np.array([[0.3], [1.5]]), np.linspace(0, 2, 21)
@@ -263,7 +263,9 @@ def test_chords_need_waypoints_that_differ() -> None:
     problem, h = clamped((5, "averaged-continued", "chord", "timed"), 13)
     still = problem.waypoints.copy()
     still[4] = still[3]
-    with pytest.raises(TrajgapError, match="waypoints: 3 and 4 coincide, chord parameters do not"):
+    with pytest.raises(
+        TrajgapError, match="waypoints: 3 and 4 coincide, so chord parameters cannot"
+    ):
         fit(problem.curve, still, h)
 
 

@@ -32,7 +32,7 @@ JERK = (*REST, (3, 0.0))
         (((3, 3), (-1,), ((),) * 3), r"continuity: every order must be 0 or more"),
         (((3, 3, 3), (2, 2), ((),) * 4, (3,)), r"virtual: only interior breaks .*, 1 to 2$"),
         (((3, 3, 3), (2, 2), ((),) * 4, (0,)), r"virtual: only interior breaks .*, 1 to 2$"),
-        (((3,), (), ((),) * 2, (1,)), r"virtual: .* of which one segment has none"),
+        (((3,), (), ((),) * 2, (1,)), r"virtual: .* and one segment has none"),
         # four conditions at the start settle the first segment, whose end is a way-point
         (
             ((3,) * 6, (2,) * 5, (JERK, *((),) * 5, JERK), (2, 3, 4, 5)),

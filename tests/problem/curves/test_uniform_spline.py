@@ -52,11 +52,11 @@ def test_declarations_are_checked() -> None:
             uniform_cubic_b_spline(1, time)
         assert len(uniform_cubic_b_spline(2, time).waypoint_breaks) == 2
     assert len(uniform_cubic_b_spline(2, "timed", natural_clock=True).waypoint_breaks) == 2
-    with pytest.raises(TrajgapError, match="is no piecewise polynomial with breaks"):
+    with pytest.raises(TrajgapError, match="is not a piecewise polynomial with breaks"):
         _ = uniform("timed")[0].piecewise
-    with pytest.raises(TrajgapError, match="str is no kind of curve known here"):
+    with pytest.raises(TrajgapError, match="str is not a kind of curve known here"):
         fit("3-5-3", [[0.0]], [1.0])
-    with pytest.raises(TrajgapError, match="curve: str is no kind of curve known here"):
+    with pytest.raises(TrajgapError, match="curve: str is not a kind of curve known here"):
         Problem([[0.0], [1.0]], Limits(1.0), "rest-to-rest")
 
 

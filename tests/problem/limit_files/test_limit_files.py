@@ -159,15 +159,15 @@ def test_a_range_of_acceleration_has_no_deceleration_beside_it():
     [
         ({"velocity": "1,2,3"}, "3 limits for 2 joints"),
         ({"velocity": ""}, "0 limits for 2"),
-        ({"jerk": "fast"}, "'fast' is no number; give 6, or -1:2"),
-        ({"jerk": "nan"}, "'nan' is no number"),
-        ({"jerk": "1_000"}, "'1_000' is no number"),
+        ({"jerk": "fast"}, "'fast' is not a number; give 6, or -1:2"),
+        ({"jerk": "nan"}, "'nan' is not a number"),
+        ({"jerk": "1_000"}, "'1_000' is not a number"),
         ({"jerk": "1e400"}, "'1e400' is beyond the range of float64"),
         ({"jerk": "1e101"}, "is beyond 1e.100"),
-        ({"jerk": "1:2:3"}, "is no limit"),
+        ({"jerk": "1:2:3"}, "is not a limit"),
         ({"velocity": "-1"}, "is negative"),
         ({"deceleration": "-1:1"}, "is a range"),
-        ({"velocity": "1:2"}, "leaves out 0"),
+        ({"velocity": "1:2"}, "excludes 0"),
     ],
 )
 def test_flags_that_are_none(given, wanted):
@@ -186,14 +186,14 @@ TWO_ARMS = "joint_limits: {left_1: {max_velocity: 1}, right_1: {}}\n"
         (
             ["arm.urdf"],
             ("turn", "x"),
-            "x: is no joint with limits there; rename it or add it; known: wheel, slide",
+            "x: is not a joint with limits there; rename it or add it; known: wheel, slide",
         ),
         (["arm.urdf"], ("turm", "slyde"), "turm: .*'turn'.*; also slyde: .*'slide'"),
-        (["arm.urdf"], ("turn", "finger"), "finger: is no joint with limits there"),  # it mimics
+        (["arm.urdf"], ("turn", "finger"), "finger: is not a joint with limits there"),  # it mimics
         (["flags", "arm.urdf"], ("turn", "wheel_"), "did you mean 'wheel'"),
         # The file that counts first misspells what the other one knows.
         (["misspelt.yaml", "arm.urdf"], ("turn", "wheel"), r"misspelt.yaml: turn: .*'turm'"),
-        (["two_arms.yaml", "arm.urdf"], ("turn", "wheel"), "two_arms.yaml: turn: is no joint"),
+        (["two_arms.yaml", "arm.urdf"], ("turn", "wheel"), "two_arms.yaml: turn: is not a joint"),
         (["l.yaml", "arm.urdf"], ("turn", "wheel", "slide"), None),  # it need not name all
         (["two_arms.yaml"], ("right_1",), None),
         (["flags"], ("whatever",), None),
@@ -233,7 +233,7 @@ def test_what_is_unstated_is_known_and_goes_into_no_problem(tmp_path):
     full = merge(joints, [said, urdf])
     assert full.unstated == ()
     np.testing.assert_array_equal(full.symmetric.acceleration, [math.inf, 8.0])
-    # A quantity that no joint has is no part of the problem.
+    # A quantity that no joint has is not part of the problem.
     one = merge(joints, [limits_of_flags({"velocity": "2,3"}, joints, np.ones(2))])
     np.testing.assert_array_equal(one.two_sided.velocity, [2.0, 3.0])
     both = JointLimits.from_values(joints, velocity=2.0, jerk=math.inf)

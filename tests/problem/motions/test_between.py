@@ -188,7 +188,7 @@ def test_of_windows_that_prove_the_same_the_first_is_named() -> None:
 
 
 def test_what_overflows_proves_nothing() -> None:
-    """A difference of 2e308 is no number; the window after it is one."""
+    """A difference of 2e308 is not a number; the window after it is one."""
     times = np.array([0.0, 1.0, 2.0])
     values = np.array([-1e308, 1e308, 9e307])[:, None]
     found, _ = divided_extremes(times, values, 1, 1, np.zeros(1))

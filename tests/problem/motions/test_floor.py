@@ -93,9 +93,9 @@ def test_the_larger_side_counts(order, side):
 @pytest.mark.parametrize(
     ("speeds", "limited", "why"),
     [
-        ((0.5, 0.0), {"velocity": 2.0}, "that the motion starts at rest is not shown"),
-        ((0.0, 0.5), {"velocity": 2.0}, "that the motion ends at rest is not shown"),
-        ((0.0, 0.0), {"position": (-5.0, 5.0)}, "nothing is limited"),
+        ((0.5, 0.0), {"velocity": 2.0}, "it is not shown that the motion starts at rest"),
+        ((0.0, 0.5), {"velocity": 2.0}, "it is not shown that the motion ends at rest"),
+        ((0.0, 0.0), {"position": (-5.0, 5.0)}, "only positions are limited"),
     ],
 )
 def test_why_there_is_no_floor(speeds, limited, why):

@@ -82,7 +82,7 @@ def test_going_slower_does_not_move_the_path(least, most, why):
     position = MotionPeak("1", "position", 0.0, 1.0, 1.0, 0.9 * most, least, most, "")
     factor, said = slow_down([position], 1e-6)
     assert factor == 1.0
-    assert said == (why and f"a position limit {why}; going slower does not move the path")
+    assert said == (why and f"a position limit {why}, and slowing down does not change the path")
 
 
 @pytest.mark.parametrize("power", [-300, -40, 0, 40, 300])
@@ -166,7 +166,10 @@ def test_limits_of_a_problem_imply_those_of_the_motion_and_keep_each_side():
         (lambda: Motion.of_polynomial(PPoly(np.ones((11, 1)), [0.0, 1.0])), "at most 9"),
         (lambda: Motion.of_polynomial(PPoly([[np.inf]], [0.0, 1.0])), "not finite"),
         (lambda: Motion.of_polynomial(PPoly([[1j]], [0.0, 1.0])), "complex"),
-        (lambda: Motion.of_polynomial(PPoly([[1.0]], [1e9, 1e9 + 1e-6])), "lost in the digits"),
+        (
+            lambda: Motion.of_polynomial(PPoly([[1.0]], [1e9, 1e9 + 1e-6])),
+            "too small for the digits",
+        ),
         (lambda: Samples(("a",), [0.0, 1.0, 1.0], [[1.0], [2.0], [3.0]]), "times must increase"),
         (lambda: Samples(("a",), [0.0], [[1.0]]), "needs 2"),
         (lambda: Samples(("a",), [0.0, 1.0], [[1.0], [np.nan]]), "joint a in sample 2"),
@@ -176,7 +179,7 @@ def test_limits_of_a_problem_imply_those_of_the_motion_and_keep_each_side():
         (lambda: Samples(("a", "a"), [0.0, 1.0], np.ones((2, 2))), "twice"),
         (lambda: Samples(("a",), [0.0, np.inf], [[1.0], [2.0]]), "not finite"),
         (lambda: check_motion(as_motion(PPoly([[1.0]], [0.0, 1.0])), WIDE), "in that order"),
-        (lambda: as_motion(object()), "no motion known"),
+        (lambda: as_motion(object()), "not a motion known"),
         (lambda: JointLimits.from_values(("a",), np.nan), "NaN"),
         (lambda: JointLimits.from_values(("a",), 1e101), "beyond 1e.100; write inf"),
         (lambda: JointLimits.from_values(("a",), 1, 1, deceleration=1e101), "beyond 1e.100"),
@@ -196,7 +199,7 @@ def test_what_is_no_motion_is_refused(make, message):
 @pytest.mark.parametrize(
     ("how", "message"),
     [
-        ("none", "no motion"),
+        ("none", "not a motion"),
         ("cubic", "sample 1 has no velocity"),
         ("quintic", "sample 1 has no velocity"),
         ("spline", "needs 4"),

@@ -181,13 +181,13 @@ def test_one_clear_line(tmp_path, one: Refusal):
         ("latin.csv", b"time,gelenk-\xe4\n0,1\n", "not UTF-8"),
         ("latin.yaml", b"a: \xe4\n", "not UTF-8"),
         ("control.yaml", "a: \x07\n", "not valid YAML"),
-        ("wide.csv", ",".join(["1"] * 500) + "\n", "more than is read"),
+        ("wide.csv", ",".join(["1"] * 500) + "\n", "too many"),
         ("deep.json", "[" * 200_000, "nested too deeply"),
         ("deep.yaml", "[" * 100_000, "nested too deeply"),
         ("dashes.yaml", "- " * 100_000, "nested too deeply"),
         ("indent.yaml", "\n".join(" " * k + "a:" for k in range(3000)), "nested too deeply"),
         ("long.yaml", "a: " + "9" * 10_000, "."),
-        ("bomb.yaml", bomb(12), "joint_names: is no list"),
+        ("bomb.yaml", bomb(12), "joint_names: is not a list"),
         ("merge.yaml", merges(12), "a merge key"),
     ],
 )
@@ -224,7 +224,7 @@ def test_units_and_noise_are_checked(tmp_path):
         ((path, ("deg",), (1.0, 2.0, 3.0)), "3 numbers for 2 joints"),
         ((path, ("deg",), (-1.0,)), "noise"),
         ((ros, ("deg",)), "in rad and m"),
-        ((poly, ("deg",), (0.1,)), "is of samples"),
+        ((poly, ("deg",), (0.1,)), "applies to samples only"),
         ((stated, ("rad",)), "--units: the file itself states deg; leave it out"),
     ):
         with pytest.raises(CaseError, match=wanted):
@@ -309,13 +309,13 @@ LATER = [DAY + dt.timedelta(seconds=one) for one in STEPS]
         ("uint8()", [1, 2, 3], "holds uint8 without a unit"),
         ("decimal128(5, 0)", [Decimal(1), Decimal(2), Decimal(3)], "without a unit"),
         ("bool_()", [False, True, True], "holds bool"),
-        ("string()", ["0.1", "0.2", "0.3"], "holds string, which is no number"),
-        ("list_(float64())", [[0.1], [0.2], [0.3]], "which is no number"),
-        ("struct([('sec', int32())])", [{"sec": 1}] * 3, "which is no number"),
+        ("string()", ["0.1", "0.2", "0.3"], "holds string, which is not a number"),
+        ("list_(float64())", [[0.1], [0.2], [0.3]], "which is not a number"),
+        ("struct([('sec', int32())])", [{"sec": 1}] * 3, "which is not a number"),
         ("float64()", [0.25, None, 1.5], "has no time in row 2"),
         ("null()", [None] * 3, "has no time in row 1"),
         ("float64()", [0.25, float("nan"), 1.5], "number 2 is not finite"),
-        ("timestamp('ns')", [-(2**63) + 1, 0, 2**63 - 1], "spans more than is read"),
+        ("timestamp('ns')", [-(2**63) + 1, 0, 2**63 - 1], "spans more time than can be read"),
     ],
 )
 def test_times_of_a_parquet_file_by_their_type(tmp_path, kind, values, times):
@@ -333,7 +333,7 @@ def test_times_of_a_parquet_file_by_their_type(tmp_path, kind, values, times):
 @pytest.mark.parametrize(
     ("label", "values", "wanted"),
     [
-        ("a", [True, False], "a: holds bool, which is no number"),
+        ("a", [True, False], "a: holds bool, which is not a number"),
         ("a", ["1", "2"], "a: holds string"),
         ("a", [dt.timedelta(1), dt.timedelta(2)], "a: holds duration"),
         ("a", [DAY, DAY], "a: holds timestamp"),

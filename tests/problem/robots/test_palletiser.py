@@ -28,7 +28,7 @@ ANY = RNG.uniform(-pi, pi, (60, 5))
 def printed_pose(t1: float, t2: float, t3: float, t4: float, t5: float) -> np.ndarray:
     """Equation (1), from the five matrices that the paper prints, a2 = a3 = 0.6 m.
 
-    The text has -c5 in the first entry of the last one, with which it is no rotation.
+    The text has -c5 in the first entry of the last one, with which it is not a rotation.
     """
     c1, s1, c2, s2, c3, s3 = cos(t1), sin(t1), cos(t2), sin(t2), cos(t3), sin(t3)
     c4, s4, c5, s5 = cos(t4), sin(t4), cos(t5), sin(t5)
@@ -153,14 +153,14 @@ def test_each_printed_equation_is_judged() -> None:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("px + py", "'px + py' is no equation; write left = right"),
-        ("px = " + "1 + " * 200 + "1", "is no equation; write left = right, in at most 400"),
-        ("px = py +", "'py +' is no expression; see check_equation"),
-        ("px = t6", "'t6' is no name of this robot; see check_equation"),
-        ("px = open(py)", "'open(py)' is not read; see check_equation"),
-        ("px = 'a'", "\"'a'\" is not read; see check_equation"),
-        ("T @ px = T", "'T @ px' mixes numbers and transforms; compare like"),
-        ("T = px", "equations: a number stands against a transform; compare like"),
+        ("px + py", "'px + py' is not an equation; write left = right"),
+        ("px = " + "1 + " * 200 + "1", "is not an equation; write left = right, in at most 400"),
+        ("px = py +", "'py +' is not an expression; see check_equation"),
+        ("px = t6", "'t6' is not a name of this robot; see check_equation"),
+        ("px = open(py)", "'open(py)' is not supported; see check_equation"),
+        ("px = 'a'", "\"'a'\" is not supported; see check_equation"),
+        ("T @ px = T", "'T @ px' mixes numbers and transforms; compare like with like"),
+        ("T = px", "equations: a number is compared with a transform; compare like with like"),
     ],
 )
 def test_what_is_no_equation(text: str, message: str) -> None:
@@ -170,12 +170,16 @@ def test_what_is_no_equation(text: str, message: str) -> None:
 
 def test_robots_that_they_are_not_of() -> None:
     other = load_robot("irb460", convention=Convention.MODIFIED)
-    with pytest.raises(TrajgapError, match="closed form: is that of a palletiser, five revolute"):
+    with pytest.raises(
+        TrajgapError, match="closed form: applies to a palletiser with five revolute"
+    ):
         closed_form_inverse(other, np.eye(4))
     with pytest.raises(TrajgapError, match=re.escape("target: is a point; give a (4, 4) pose")):
         closed_form_inverse(ARM, [0.5, 0.2, 0.1])
     slide = Chain(Convention.STANDARD, [0.5], [0], [0], kinds=("prismatic",), lower=[0], upper=[1])
-    with pytest.raises(TrajgapError, match="equations: are those of fewer than ten joints that"):
+    with pytest.raises(
+        TrajgapError, match="equations: apply only to chains of fewer than ten joints"
+    ):
         check_equation(slide, "px = 0")
     with pytest.raises(TrajgapError, match="'craig' is not a valid Convention"):
         load_robot("irb460", convention="craig")

@@ -223,7 +223,9 @@ def test_positions_name_labels_that_exist():
     for i, label in enumerate("ABCD"):
         text = text.replace(f'id = "p{i}"', f'id = "p{i}"\nwaypoint = "{label}"')
     load_case_text(with_table(extra=text))
-    with pytest.raises(CaseError, match=re.escape("cartesian[3].waypoint: 'E' is no label of a")):
+    with pytest.raises(
+        CaseError, match=re.escape("cartesian[3].waypoint: 'E' is not a label of a")
+    ):
         load_case_text(with_table(extra=text.replace('"D"', '"E"')))
 
 

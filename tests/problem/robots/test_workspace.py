@@ -93,12 +93,15 @@ def test_a_longer_family_begins_with_the_shorter():
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"count": 0}, "0 sequences of 8 way-points, step 0.1; give at least 1, at least 2"),
+        ({"count": 0}, "0 sequences of 8 way-points, step 0.1; give at least 1 sequence"),
         ({"waypoints": 1}, "1 sequences of 1 way-points, step 0.1; give at least 1"),
-        ({"step": 0.0}, "1 sequences of 8 way-points, step 0.0; give at least 1, at least"),
-        ({"step": np.nan}, "step nan; give at least 1, at least 2, and a positive length"),
+        ({"step": 0.0}, "1 sequences of 8 way-points, step 0.0; give at least 1 sequence"),
+        (
+            {"step": np.nan},
+            "step nan; give at least 1 sequence, at least 2 way-points, and a positive length",
+        ),
         ({"kind": "stride"}, "kind: 'stride' is unknown; use joint, end"),
-        ({"kind": "end", "step": 9.0}, "step: none of the 4000 sampled positions is reached at 9"),
+        ({"kind": "end", "step": 9.0}, "step: none of the 4000 sampled positions lies 9"),
     ],
 )
 def test_faults(change, message):
@@ -172,7 +175,7 @@ def test_what_cannot_be_done_is_said() -> None:
     arm, first, last = ends()
     with pytest.raises(TrajgapError, match="ctraj: 1 points make no line"):
         ctraj(arm, first, last, 1)
-    with pytest.raises(TrajgapError, match="ctraj: last is no pose"):
+    with pytest.raises(TrajgapError, match="ctraj: last is not a pose"):
         ctraj(arm, first, last[:3])
     far = last.copy()
     far[:3, 3] += [0.0, 5.0, 0.0]

@@ -118,7 +118,7 @@ FORGERIES = [
     Forgery(NOT_JUDGED, "quintic-spline", {}, {"boxes.Boxes.apart": 8}, spread=_first),
     Forgery(OUTSIDE, "any-curve", _still),
     Forgery(OUTSIDE, "any-curve", _still_below),
-    Forgery("cubic/system.Cubic.__init__: the curve is no declared piecewise polynomial",
+    Forgery("cubic/system.Cubic.__init__: the curve is not a declared piecewise polynomial",
             "stretched", _other_curve),
     Forgery("cubic/system.Cubic.__init__: more than {MOST_CUBIC_SEGMENTS} segments",
             "cubic", spline(65)),

@@ -10,7 +10,9 @@ from trajgap.verify.ranges import MOST_BYTES
 
 ENTRIES = "reading.listed: malformed: {what}: not {least} to {most} entries"
 MISSING = "reading.fields: malformed: {what}: {', '.join(missing)}: missing"
-NO_INTEGER = "reading._no_integer: malformed: {shown(digits)} is no integer; other numbers are text"
+NO_INTEGER = (
+    "reading._no_integer: malformed: {shown(digits)} is not an integer; other numbers are text"
+)
 LARGE = "reading._read: larger than {MOST_BYTES} bytes; name a certificate"
 
 
@@ -72,8 +74,8 @@ FORGERIES = [
     *(Forgery("verdict._document: no {CERTIFICATE_FORMAT}; name a certificate", "file", content)
       for content in (b"{}", b'{"format": ["trajgap-certificate-2"]}',
                       b'{"format": "trajgap-certificate-3"}')),
-    *(Forgery("verdict._document: {found}: an old format; `trajgap solve CASE --certify` makes "
-              "it again", "file", _with("trajgap-certificate-2", name))
+    *(Forgery("verdict._document: {found}: an old format; `trajgap solve CASE --certify` "
+              "recreates it", "file", _with("trajgap-certificate-2", name))
       for name in ("trajgap-certificate-1", "trajgap-state-1")),
     *_every_key(),
     Forgery(MISSING, "state", {"proposals": GONE}),

@@ -40,7 +40,7 @@ def draw(seed: int, families: tuple[str, ...] = tuple(FAMILIES)) -> Draft:
 
 
 _ALONE = ("3-5-3", "clamped cubic", "rest 3", "rest 5", "C4 quintic", "4-3-4")
-"""Families of which papers also take each joint by itself."""
+"""Families of which papers also take each joint separately."""
 
 
 def time_text(draft: Draft, seconds: float, how: str | None = None, fewer: int = 0) -> str:

@@ -11,7 +11,7 @@ from scipy.interpolate import BPoly, BSpline, CubicSpline, PPoly, make_interp_sp
 
 Array = np.ndarray
 FINE = 400
-"""Points of a segment at which a curve that is no polynomial in time is sampled, before a second
+"""Points of a segment at which a curve that is not a polynomial in time is sampled, before a second
 look around the largest."""
 
 

@@ -2,7 +2,7 @@
 
 Each fault returns a draft with ``size``, how far the printed numbers are from what the fault-free
 ones would have to be, and ``room``, how far rounded or cut-off digits alone could take them, to
-first order: a fault whose size is below its room cannot be told from rounding by anybody.
+first order: a fault whose size is below its room It is unknown whether from rounding by anybody.
 """
 
 from collections.abc import Callable

@@ -158,7 +158,7 @@ def test_jumps_are_named_apart_from_the_limits(motions: list[Finding]) -> None:
     limits = {f.reading: f for f in of(motions, "TG201", "after")}
     kept = limits["angles-deg-v-rad-a-rad-stretched"]
     assert kept.verdict is ClaimVerdict.NOT_CHECKABLE
-    assert "inside the segments, and the velocity jumps 48" in kept.message
+    assert "inside the segments, but the velocity jumps 48" in kept.message
     statement = {f.reading: f for f in of(motions, "TG201", "limits-kept")}
     assert "velocity jumps 48" in statement["angles-deg-v-rad-a-rad-stretched"].message
     assert limits["angles-deg-v-rad-a-rad-timed"].verdict is ClaimVerdict.SUPPORTED
@@ -187,7 +187,7 @@ def test_the_printed_durations_are_optimal_under_no_reading() -> None:
         assert found.verdict is ClaimVerdict.REFUTED
         # Angles in radians under limits in degrees: the printed total lies below the optimum.
         if reading.startswith("angles-rad-v-rad-a-deg") or "v-deg" in reading:
-            assert found.message.startswith("Not an answer within the limits. Table 4")
+            assert found.message.startswith("The printed motion breaks a limit. Table 4")
             assert found.basis is Basis.ENCLOSURE
         else:
             said = "Not the shortest, however the digits were rounded: Table 4"
@@ -228,7 +228,7 @@ def test_a_case_without_waypoints_says_of_each_time_why_it_is_not_checkable() ->
     for name in ("b-spline-total", "quintic-total", "convergence"):
         (one,) = of(found, "TG501", name)
         assert one.verdict is ClaimVerdict.NOT_CHECKABLE
-        assert "Without the way-points there is nothing to compute" in one.message
+        assert "Without the way-points, nothing can be computed" in one.message
     assert not of(found, "TG501", "improvement")
     assert not list(judge_vertices(study))
     (improvement,) = said_of(study, "improvement", "TG103")

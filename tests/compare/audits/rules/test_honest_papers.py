@@ -172,7 +172,7 @@ def test_without_limits_no_motion_is_the_shortest_and_none_refutes() -> None:
 
 @pytest.mark.parametrize("keys", [{"state": "before"}, {}])
 def test_the_state_before_an_optimisation_breaks_no_limit(keys: dict[str, str]) -> None:
-    """No statement claims a limit here, and what an improvement starts from is no answer."""
+    """No statement claims a limit here, and what an improvement starts from is not an answer."""
     start = row("start", "0.50", **keys) + gain("start", "d")
     text = one_joint("0, 1", "1.9", "0.99", "none", start)
     found = finding(text.replace('"none"', '"none"\nnot_checkable = "a"'), "start", "TG201")
@@ -214,17 +214,22 @@ def test_two_algorithms_that_print_the_optimum_print_alike(
     [
         # 2 rad in 3 s peak at 1.25 rad/s exactly.
         ("1.2500", "3.00000", "supported", "equal within the rounding"),
-        ("1.2492", "3.00000", "supported", "as sampling the motion gives it"),  # 50 samples: 1.2490
-        ("1.2489", "3.00000", "supported", "as sampling the motion gives it"),
-        ("1.2510", "3.00000", "inconsistent", "off by more than"),
-        ("0.625", "3.00000", "inconsistent", "off by more than"),
+        (
+            "1.2492",
+            "3.00000",
+            "supported",
+            "as sampling the motion would give",
+        ),  # 50 samples: 1.2490
+        ("1.2489", "3.00000", "supported", "as sampling the motion would give"),
+        ("1.2510", "3.00000", "inconsistent", "was found to explain the difference"),
+        ("0.625", "3.00000", "inconsistent", "was found to explain the difference"),
         ("71.6", "3.00000", "inconsistent", "ratio is near 57.2958"),
         ("1250", "3.00000", "inconsistent", "ratio is near 1000"),
         ("75.0", "3.00000", "inconsistent", "ratio is near 60"),
         # In 2.1 s at 1.78571 rad/s, cut off.
         ("1.785", "2.10000000", "supported", "cut off instead of rounded"),
         # 2.4799 s printed as 2.47: its peak, 1.5121, is lower than what rounds to 2.47 allows.
-        ("1.512", "2.47", "supported", "as digits that are cut off"),
+        ("1.512", "2.47", "supported", "which fits if digits were cut off"),
         ("1.499", "2.47", "inconsistent", ""),
     ],
 )
@@ -296,7 +301,7 @@ def test_what_breaks_the_limits_is_not_optimal_within_them() -> None:
     (found,) = [f for f in one.findings if f.claim == "s"]
     assert found.verdict is ClaimVerdict.REFUTED
     assert (found.basis, found.evidence) == (Basis.ENCLOSURE, Evidence.NONE)
-    assert found.message.startswith("Not an answer within the limits. Table 2: A limit is broken")
+    assert found.message.startswith("The printed motion breaks a limit. Table 2: A limit is broken")
     beside = next(f for f in one.findings if f.rule == "TG302" and f.claim == "d")
     assert beside.severity is Severity.INFO
-    assert beside.message.endswith("which keeps the limits; these durations do not.")
+    assert beside.message.endswith("because these durations break the limits.")

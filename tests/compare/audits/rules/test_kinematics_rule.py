@@ -107,7 +107,7 @@ SLIGHTLY = positions(THIRD, elbow=(0.7004, 0.3996))
         (HANGING, TABLE, column(), "inconsistent", ""),
         (HANGING, TABLE | UNSURE, column(), "not checkable", "With other signs of the twists"),
         ([[x, y, "-900.0"] for x, y, _ in HANGING], TABLE | UNSURE, column(), "inconsistent",
-         "Whatever signs the twists, the angles and the positions have"),
+         "For all signs of the twists, the angles and the positions"),
         (LOST, TABLE | UNSURE, column(), "not checkable",
          "no printed position is shown to be out of reach"),
         (LOST, TABLE, column(), "inconsistent", ""),
@@ -119,7 +119,7 @@ SLIGHTLY = positions(THIRD, elbow=(0.7004, 0.3996))
          "With other signs of the twists"),
         # Axes of the base that are swapped keep the distance from its origin.
         ([[y, x, z] for x, y, z in PLACES], MODIFIED | OTHER_TOO, column(), "inconsistent",
-         "m (modified); in the standard convention it need not."),
+         "m (modified); in the standard convention it may agree."),
         # Nothing to say, or not enough.
         (positions(), {}, "", "not checkable", "but no table of the robot."),
         (positions(), SLIDING, "", "not checkable",
@@ -206,9 +206,13 @@ def test_equations_are_judged_and_never_held_against_a_paper() -> None:
     right = "px = c1*(0.7*c2 + 0.4*c23)"
     for (printed, mended), verdict, said in (
         ((right, None), "supported", "1 of 1 equations hold at every pose tried, as the text has"),
-        (("px = s1", right), "not checkable", "Others hold once mended: (4) with all of it."),
-        (("px = s1", "px = c1"), "not checkable", "Not as the text has them: (4)."),
-        (("t1 = atan2(py, px)", "t1 = atan2(pm*py, pm*px)"), "not checkable", "of the poses as it"),
+        (("px = s1", right), "not checkable", "Others hold once corrected: (4) with all of it."),
+        (("px = s1", "px = c1"), "not checkable", "These do not hold as printed: (4)."),
+        (
+            ("t1 = atan2(py, px)", "t1 = atan2(pm*py, pm*px)"),
+            "not checkable",
+            "of the poses as printed",
+        ),
     ):
         keys = {"printed": printed} | ({"mended": mended, "mend": "all of it"} if mended else {})
         equation = entry("equations", id="e", where="equation (4)", **keys)
@@ -218,7 +222,7 @@ def test_equations_are_judged_and_never_held_against_a_paper() -> None:
         assert (found.rule, found.claim, found.verdict) == ("TG603", "holds", verdict)
         assert found.severity is Severity.INFO
         assert said in found.message
-        assert ("cannot be told" in found.message) == (verdict == "not checkable")
+        assert ("It is unknown whether" in found.message) == (verdict == "not checkable")
 
 
 # The palletiser
@@ -258,7 +262,9 @@ def test_the_palletiser_is_inconsistent_under_both_units(palletiser, unit):
     assert found.verdict is ClaimVerdict.INCONSISTENT
     assert found.severity is Severity.WARNING
     for convention in ("modified", "standard"):
-        part = re.search(rf"(?:than|;) (pick [^;]*?) m \({convention} convention\)", found.message)
+        part = re.search(
+            rf"(?:positions:|;) (pick [^;]*?) m \({convention} convention\)", found.message
+        )
         printed = [float(x) for x in re.findall(r"\d\.\d{3}", part[1])]
         expected = distances(unit, convention)
         assert len(printed) == 4

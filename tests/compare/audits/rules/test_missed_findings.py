@@ -87,8 +87,8 @@ def test_a_broken_limit_refutes_without_an_optimum(points: Any, time: str, verdi
 
 @pytest.mark.parametrize(
     ("points", "times", "said"),
-    [("0, 1", "0.5 0.4", "2 durations, and the curve has 1 segment"),
-     ("0, 1, 2", "0.5", "1 duration, and the curve has 2 segments")],
+    [("0, 1", "0.5 0.4", "2 durations, but the curve has 1 segment"),
+     ("0, 1, 2", "0.5", "1 duration, but the curve has 2 segments")],
 )  # fmt: skip
 def test_a_table_of_another_length_loads_and_is_the_finding(
     points: str, times: str, said: str
@@ -97,7 +97,7 @@ def test_a_table_of_another_length_loads_and_is_the_finding(
     (found,) = [f for f in one.findings if f.claim == "d" and f.rule == "TG109"]
     assert (found.verdict, found.severity) == (ClaimVerdict.INCONSISTENT, Severity.WARNING)
     assert not [f for f in one.findings if f.claim == "d" and f.rule == "TG201"]
-    # A wrong count is no proof.
+    # A wrong count is not a proof.
     (cause,) = (c for c in one.causes if c.rule == "TG109")
     assert plainly(one.case, cause, brief=True) == (f"Table 2 prints {said}.",)
 

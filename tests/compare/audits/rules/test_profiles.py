@@ -158,9 +158,9 @@ STRAIGHT = {"path": "straight"}
     [
         ({}, "2.00", "supported", "as long as its slowest joint needs, takes 2 s"),
         (STRAIGHT, "2.17", "supported", "straight line in each segment, tak"),
-        (STRAIGHT, "2.00", "inconsistent", "which is 7.69 % shorter"),
-        ({}, "2.17", "not checkable", "which fits where the joints stay on a straight"),
-        ({}, "2.30", "inconsistent", "which is 15.00 % longer"),
+        (STRAIGHT, "2.00", "inconsistent", "is 7.69 % shorter"),
+        ({}, "2.17", "not checkable", "fits if the joints stay on a straight"),
+        ({}, "2.30", "inconsistent", "is 15.00 % longer"),
     ],
 )
 def test_how_the_joints_go_together_is_said(
@@ -191,7 +191,7 @@ def test_a_profile_between_moving_ends_is_not_set_beside_one_from_rest_to_rest(
 def test_a_joint_that_must_not_move_and_does_is_no_fault_of_the_total() -> None:
     found = judged("trapezoidal", "2.00", TWO, velocity=2, acceleration=[0, 4])
     assert found.verdict is ClaimVerdict.NOT_CHECKABLE
-    assert "a joint moves whose limit is 0" in found.message
+    assert "a joint with limit 0 moves" in found.message
 
 
 ONE = {"velocity": 2, "acceleration": 4, "jerk": 20}
@@ -269,7 +269,7 @@ def test_a_peak_without_a_joint_is_the_largest_of_all(
 def test_a_peak_of_a_joint_that_the_profile_lacks_is_not_checkable() -> None:
     found = of_profile("9.9", {"joint": "1"}, {"joint": "2"})
     assert found.verdict is ClaimVerdict.NOT_CHECKABLE
-    assert found.message == "The profile is not of a joint whose number is printed."
+    assert found.message == "No number is printed for the joints of this profile."
 
 
 def test_a_peak_of_a_profile_of_another_problem_is_refused() -> None:
@@ -277,7 +277,7 @@ def test_a_peak_of_a_profile_of_another_problem_is_refused() -> None:
     text = paper(
         [[0, 1]], own, peak("p", "t", "velocity", "2.0"), curve=QUINTIC, velocity=2, acceleration=4
     )
-    with pytest.raises(CaseError, match="'t' is about another problem"):
+    with pytest.raises(CaseError, match="'t' belongs to another problem"):
         parse_case(text, "made-up.toml")
 
 
@@ -308,7 +308,7 @@ def test_one_way_serves_the_totals_of_all_limits(slower: str | None, verdict: st
         ({"profile": "jerk-impulses"}, "plateau: is missing"),
         ({"profile": "trapezoidal", "deceleration": [1, 2]}, "deceleration: 2 values for 1 joints"),
         ({"quantity": "phases", "phases": [1, 0, 1]}, "profile: is missing"),
-        ({"quantity": "phases", "phases": [1, 0, 1], "profile": "s-curve"}, "are of one segment"),
+        ({"quantity": "phases", "phases": [1, 0, 1], "profile": "s-curve"}, "describe one segment"),
     ],
 )
 def test_keys_that_a_profile_does_not_have_are_refused(keys: dict[str, Any], why: str) -> None:

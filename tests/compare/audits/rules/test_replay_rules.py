@@ -110,7 +110,7 @@ def test_a_total_beside_spread_settings_names_the_nearest() -> None:
     }
     said = " ".join(_typical(spreads, 3.5275, 3.5285))
     assert "(3 settings), medians are 3.3650 to 3.8850 s" in said
-    assert "nearest to the printed total is 3.5150 s with inertia = 0.884." in said
+    assert "nearest to the printed total is 3.5150 s, with inertia = 0.884." in said
     assert "every one of these settings" not in said
     assert " ".join(_typical(spreads, 4.0, 4.001)).endswith(
         "every one of these settings is shorter."
@@ -118,7 +118,9 @@ def test_a_total_beside_spread_settings_names_the_nearest() -> None:
     assert " ".join(_typical(spreads, 3.0, 3.001)).endswith(
         "every one of these settings is longer."
     )
-    assert " ".join(_typical(spreads, 3.4, 3.401)).endswith("all runs lie on one side of it.")
+    assert " ".join(_typical(spreads, 3.4, 3.401)).endswith(
+        "all runs are shorter or all are longer than the printed total."
+    )
     assert not [*_typical({LISTED: spreads[LISTED]}, 3.5, 3.6)]
 
 
@@ -176,16 +178,17 @@ def test_a_study_is_cited_with_every_number_and_decides_nothing(
     (found,) = cite_comparisons(study)
     assert (found.rule, found.claim, found.decides) == ("TG405", "improvement", False)
     assert (found.severity, found.verdict) == (Severity.INFO, ClaimVerdict.NOT_CHECKABLE)
-    assert found.computed == "shows in 25 % of the pairs"
+    assert found.computed == "holds in 25 % of the pairs"
     own, other = study.called("mnam-pso"), study.called("standard-pso")
     for said in (
-        "ran both on the paper's way-points, 6,030 evaluations a run, 90 independent runs each",
+        "ran both on the paper's way-points, with 6,030 evaluations per run and 90 independent "
+        "runs each",
         f"one run of {own} is at least 10.85 % shorter than one of {other} with probability",
         "25 % (95 % interval 20 % to 31 %) under death-penalty; 0 % (in none of the 9,000 pairs)",
         "under 1 other problem or reading 12.5 %.",
-        f"in 12 of 256 pairs of settings, most often with {other} at inertia = 0.95 and",
+        f"for 12 of 256 pairs of settings, most often with {other} at inertia = 0.95 and",
         f"{own} at inertia_max = 0.8 (87.5 %).",
-        "than itself without niches 90 % (it helps), mutation 50 %.",
+        "than without one improvement: niches 90 % (it helps), mutation 50 %.",
     ):
         assert said in found.message
 

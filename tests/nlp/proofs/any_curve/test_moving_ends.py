@@ -40,7 +40,7 @@ def within(d: float, h: Array, v0: Any, v1: Any, top: float, bend: float) -> Any
 
 
 def best_of_a_grid(problem: Problem, near: Array) -> float:
-    """Least total over durations and speeds half-way: each joint by itself."""
+    """Least total over durations and speeds half-way: each joint separately."""
     h = near * np.linspace(0.4, 2.5, 231)[:, None]
     at_ends = problem.piecewise.ends
     speeds = [np.broadcast_to(dict(one)[1], len(problem.joints)) for one in at_ends]

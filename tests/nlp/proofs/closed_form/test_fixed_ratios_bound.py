@@ -127,7 +127,7 @@ def test_chord_lengths_of_several_joints_are_not_rational() -> None:
     case = parse_case(CASE.replace("RATIOS", '"chord"'), "made-up.toml")
     exact = printed_problem_or_none(case.statement())
     assert exact.shares is None
-    assert "chord lengths of several joints are no rational numbers" in str(covered(exact))
+    assert "chord lengths of several joints are not rational numbers" in str(covered(exact))
     # A bound over any curve holds all the same, and says which question it was asked for.
     found = certify(exact, subject=Subject.ANY, gap=0.5, seconds=20)
     document = certificate(found)

@@ -154,7 +154,7 @@ def test_the_example_s_certificate_is_fresh_and_proves() -> None:
     assert verdict.proves
     assert not verdict.altered
     assert verdict.upper - verdict.lower <= verdict.upper / 100
-    # The paper's compromise between time and jerk is no least time, and lies above.
+    # The paper's compromise between time and jerk is not the least time, and lies above.
     assert verdict.upper < Fraction("9.05")
     assert len(json.dumps(document)) < 200_000
     page = (ROOT / "docs" / "explanation" / "certificates-cubic.md").read_text("utf-8")
