@@ -131,6 +131,8 @@ def bench(
 
     Parameters
     ----------
+    problem : Problem
+    optimizers : str, callable, or iterable of them
     engine : Engine, optional
         Where the runs are made, such as `on_this_machine`; by default here, one by one.
     progress : callable, optional
@@ -293,6 +295,7 @@ def measure_gaps(runs: Runs, optimum: Solution | Reference | float) -> BenchResu
 
     Parameters
     ----------
+    runs : Runs
     optimum : Solution, Reference or float
         Of the same problem: what `solve` returned, or its total, s.
 
