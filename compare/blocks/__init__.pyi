@@ -25,7 +25,6 @@ from .suite import (
 )
 from .tree import (
     GLOSSARY as GLOSSARY,
-    Behind as Behind,
     Block as Block,
     CardShown as CardShown,
     Cell as Cell,

@@ -212,19 +212,6 @@ class Claimed:
 
 
 @dataclass(frozen=True)
-class Behind:
-    """What lies behind findings: one cause, what would explain it, and what follows."""
-
-    weight: Cell
-    """Its severity."""
-    says: str
-    explanations: tuple[str, ...]
-    follows: tuple[Cell, ...]
-    """Claims that fall with it, as links."""
-    kind: ClassVar[str] = "behind"
-
-
-@dataclass(frozen=True)
 class Folded:
     """Blocks that the reader may open."""
 
@@ -235,7 +222,7 @@ class Folded:
 
 Plain: TypeAlias = Prose | Grid | Terms | Drawn
 """What may stand anywhere."""
-Block: TypeAlias = Plain | CardShown | Claimed | Behind | Folded
+Block: TypeAlias = Plain | CardShown | Claimed | Folded
 """What a section holds."""
 
 

@@ -20,7 +20,14 @@ from ...problem.suite import instance_of, select_instances
 from .. import pages
 from ..audits import asked_as
 from ..blocks import Block, Prose, bench_blocks, overall_blocks
-from ..documents import BenchDocument, BenchResult, Reference, known, noted
+from ..documents import (
+    SHOWN_GAPS,
+    BenchDocument,
+    BenchResult,
+    Reference,
+    known,
+    noted,
+)
 from ..gaps import (
     SECONDS,
     SEEDS,
@@ -312,5 +319,11 @@ def _tables(document: BenchDocument) -> list[Block]:
         parts += overall_blocks(document.overall)
     for result in document.results if len(document.results) <= ONE_BY_ONE else ():
         parts += [Prose(result.title, "heading"), *bench_blocks(result)]
-        parts += [Prose(_RESTARTS, "note"), Prose("")]
+        beyond = any(
+            isinstance(target.evaluations, float) and target.evaluations > result.budget
+            for one in result.standings
+            for target in one.targets
+            if target.gap in SHOWN_GAPS
+        )
+        parts += [Prose(_RESTARTS, "note"), Prose("")] if beyond else [Prose("")]
     return parts

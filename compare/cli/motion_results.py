@@ -116,24 +116,13 @@ def _verdict(document: MotionCheckDocument, units: Mapping[str, str]) -> list[Bl
     ]
     worst = value_or_none(result.worst)
     if worst is not None:
-        unit = units[worst.joint] + _POWERS[worst.quantity]
-        parts.append(
-            Prose(
-                f"worst: joint {worst.joint}, {worst.quantity} "
-                f"{_number(worst.value, units[worst.joint])} {unit} against "
-                f"{_number(worst.limit, units[worst.joint])} {unit} at {worst.time:.6g} s"
-                f" (limit from {worst.source})"
-            )
-        )
+        value, limit = (_sized(size, worst, units) for size in (worst.value, worst.limit))
+        said = f"worst: joint {worst.joint}, {worst.quantity} {value} against {limit}"
+        parts.append(Prose(f"{said} at {worst.time:.6g} s (limit from {worst.source})"))
     for one in _gravest(result):
-        unit = units[one.joint] + _POWERS[one.quantity]
-        parts.append(
-            Prose(
-                f"jump: {one.quantity} of joint {one.joint} by "
-                f"{_number(one.size, units[one.joint])} {unit} at {one.time:.6g} s; "
-                f"it jumps at {one.breaks} break{'s' * (one.breaks > 1)}"
-            )
-        )
+        said = f"jump: {one.quantity} of joint {one.joint} by {_sized(one.size, one, units)}"
+        breaks = f"it jumps at {one.breaks} break{'s' * (one.breaks > 1)}"
+        parts.append(Prose(f"{said} at {one.time:.6g} s; {breaks}"))
     repaired = value_or_none(result.feasible_time)
     if repaired is None:
         parts.append(Prose(f"repair: none, {document.repaired}"))
@@ -190,6 +179,12 @@ def _sentence(result: CheckedMotion, joints: Sequence[str]) -> str:
     if silent:
         sentence += f"; not judged: {silent}"
     return f"{sentence} (relative tolerance {result.tolerance:g})"
+
+
+def _sized(value: float, one: MotionPeakShown | MotionJumpShown, units: Mapping[str, str]) -> str:
+    """A value of a joint in the unit of the file."""
+    unit = units[one.joint]
+    return f"{_number(value, unit)} {unit}{_POWERS[one.quantity]}"
 
 
 def _number(value: float, unit: str) -> str:

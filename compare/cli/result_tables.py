@@ -3,26 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import Any, Protocol, TypeVar
+from typing import Any, TypeAlias, TypeVar
 
 from ...problem import Case
 from ..audits import asked_as, in_words
 from ..blocks import Block, Prose, table
-from ..documents import ActiveLimit, Why, WorstPeak
+from ..documents import ActiveLimit, CheckResult, SolveResult, Why, WorstPeak
 
-
-class Result(Protocol):
-    """One problem under one reading, and under per-joint coupling its joints."""
-
-    @property
-    def problem(self) -> str: ...  # noqa: D102
-    @property
-    def reading(self) -> str: ...  # noqa: D102
-    @property
-    def joints(self) -> Sequence[Any] | None: ...  # noqa: D102
-
-
-R = TypeVar("R", bound=Result)
+Result: TypeAlias = CheckResult | SolveResult
+"""One problem under one reading, and under per-joint coupling its joints."""
+R = TypeVar("R", CheckResult, SolveResult)
 Cells = Callable[[Any], tuple[object, ...]]
 """What a row says of a result, or of one of its joints."""
 Rows = Sequence[Sequence[object]]

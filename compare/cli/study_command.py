@@ -23,7 +23,10 @@ import typer
 from ...problem import CaseError, replace_file
 from ..audits import in_words
 from ..blocks import Block, Prose, brief_board, table
-from ..documents import noted
+from ..documents import (
+    noted,
+    percent,
+)
 from ..gaps import (
     LEADERBOARD,
     Engine,
@@ -136,7 +139,7 @@ def study(
 _ENDING = ".sqlite"
 """Of the store beside a study file."""
 _COLUMNS = ("optimiser", "~settings", "handling", ">budget", ">runs", ">failed", ">feasible",
-            ">best gap %", ">median gap %")  # fmt: skip
+            ">best gap", ">median gap")  # fmt: skip
 """What a table says of the runs of one optimiser under one settings."""
 Cells = tuple[object, ...]
 """A row of such a table."""
@@ -284,13 +287,9 @@ def _readable(settings: str) -> str:
 
 
 def _gaps(runs: Sequence[Row]) -> tuple[str, str]:
-    """Least and median gap in percent; a run without a feasible time counts as infinite."""
+    """Least and median gap; a run without a feasible time counts as infinite."""
     if all(row.reference_upper is None for row in runs):
         return "no optimum", ""
     found = [inf if row.feasible_gap is None else row.feasible_gap[0] for row in runs]
     best, median = quantiles(np.array(found), [0.0, 0.5])
-    return _percent(best), _percent(median)
-
-
-def _percent(gap: float) -> str:
-    return "none" if gap == inf else f"{100 * gap:+.3g}"
+    return percent(best), percent(median)

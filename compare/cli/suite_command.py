@@ -107,7 +107,7 @@ def export(out: Folder) -> int:
             if certificate is not None:
                 text = certificate.read_text(encoding="utf-8")
                 found[f"certificates/{one.name}.json"] = text
-    written.write_folder(out, found, _foreign, "suite", "FOLDER")
+    written.write_folder(out, found, _foreign, "a suite", "FOLDER")
     say(f"{len(instances)} instances: {out}\n")
     return 0
 
@@ -119,7 +119,7 @@ def pages(out: Folder) -> int:
     with progress("pages", len(instances)) as step:
         found = written.suite_pages(instances, step)
     files = {**found, _MARK: json_text(suite_document(instances))}
-    written.write_folder(out, files, _foreign, "suite", "FOLDER")
+    written.write_folder(out, files, _foreign, "a suite", "FOLDER")
     say(f"pages: {out / 'index.html'}\n")
     return 0
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from pydantic import Field
 
@@ -211,7 +213,9 @@ def closest(standings: tuple[Standing, ...]) -> str:
 
 
 def percent(gap: float) -> str:
-    """A relative gap in percent, with two digits that count; a tiny one is not called none."""
+    """A relative gap in percent, with two digits that count; of an infinite one, none."""
+    if math.isinf(gap):
+        return "none"
     value = 100 * gap
     if 0 < abs(value) < _UNSEEN:
         return "< 1e-7 %" if value > 0 else "> −1e-7 %"

@@ -129,6 +129,8 @@ def bench(
 
     Parameters
     ----------
+    problem : Problem
+    optimizers : str, callable, or iterable of them
     engine : Engine, optional
         Where the runs are made, such as `on_this_machine`; by default in this process, one by one.
     progress : callable, optional
@@ -292,6 +294,7 @@ def measure_gaps(runs: Runs, optimum: Solution | Reference | float) -> BenchResu
 
     Parameters
     ----------
+    runs : Runs
     optimum : Solution, Reference or float
         Of the same problem: what `solve` returned, or its total, s.
 

@@ -8,7 +8,6 @@ from itertools import groupby
 from ...problem import file_name
 from ..audits import CaseAudit, claim_text, place, plainly
 from ..blocks import (
-    Behind,
     Block,
     Cell,
     Folded,
@@ -34,7 +33,7 @@ def against(one: CaseAudit) -> Section:
     blocks: list[Block] = [*claims_shown(one.document, chosen, words=_OPEN_WORDS)]
     causes = [c for c in one.causes if not _covered(one, c)]
     if causes:
-        blocks += [Prose("The causes", "heading"), *(_behind(one, c) for c in causes)]
+        blocks += [Prose("The causes", "heading"), *(b for c in causes for b in _behind(one, c))]
     if not chosen:
         title = "Evidence against printed statements"
     else:
@@ -63,28 +62,27 @@ def _covered(one: CaseAudit, cause: Cause) -> bool:
     return any(j.claim == cause.claim and j.verdict in _AGAINST for j in one.judgements)
 
 
-def _behind(one: CaseAudit, cause: Cause) -> Behind:
+def _behind(one: CaseAudit, cause: Cause) -> Iterator[Block]:
+    """One cause, what would explain it, and the claims that fall with it."""
     says, _ = opened(plainly(one.case, cause, names(one.document).implausible), _OPEN_WORDS)
+    yield Prose(" ".join(says), word=cause.severity)
     # The one reading of a cause stands in front of it already.
     known = len(cause.readings) == 1
+    alike = groupby(cause.explanations, lambda e: (known and e.in_any) or e.effect)
+    changes = [f"{' Or: '.join(e.change for e in each)} {effect}" for effect, each in alike]
+    shown = tuple(Prose(change, "beside") for change in changes)
+    yield from shown[:1]
+    if shown[1:]:
+        yield Folded("Other changes that would explain it", shown[1:])
     hit = dict.fromkeys(c.claim for c in cause.consequences if c.claim and c.claim != cause.claim)
-    return Behind(
-        weight=word(cause.severity),
-        says=" ".join(says),
-        explanations=tuple(
-            f"{' Or: '.join(e.change for e in alike)} {effect}"
-            for effect, alike in groupby(
-                cause.explanations, lambda e: (known and e.in_any) or e.effect
-            )
-        ),
-        follows=tuple(_to(one, claim) for claim in hit),
-    )
-
-
-def _to(one: CaseAudit, claim_id: str) -> Cell:
-    claim = one.case.claim(claim_id)
-    said = f"{claim_text(one.case, claim)} ({place(claim)})"
-    return Cell(said, target=file_name("claim", claim.id))
+    if hit:
+        claims = [one.case.claim(name) for name in hit]
+        rows = [
+            (Cell(claim_text(one.case, claim), target=file_name("claim", claim.id)), place(claim))
+            for claim in claims
+        ]
+        title = f"{len(hit)} more claim{'' if len(hit) == 1 else 's'} affected"
+        yield Folded(title, (table(("claim", "place"), rows),))
 
 
 def advised(one: CaseAudit) -> Section:

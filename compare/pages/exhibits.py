@@ -13,18 +13,16 @@ from ...problem.cases import ControlVerticesClaim, DurationsClaim, MaximumClaim
 from ...problem.robots import Chain, DhTable, proximity, sample_workspace
 from ..audits import PrintedRow, Study, place
 from ..audits.rules import has_vertices, vertices
-from ..blocks import Block, Drawn, Folded, Section, table
+from ..blocks import Block, Folded, Section, table
 from ..pictures import (
-    Picture,
     jump_picture,
     polygon_picture,
-    svg,
     tent_picture,
     tent_scatter,
     velocity_jumps,
     workspace_picture,
 )
-from .motions_shown import alike, whole_rows
+from .motions_shown import alike, drawn, whole_rows
 from .numbers import noted, only_under
 from .units import both_units, paper_units
 
@@ -51,10 +49,6 @@ def exhibits_of_search(study: Study) -> list[Section]:
     blocks = tuple(_tents(study))
     title = "The tent map in double precision"
     return [Section("tent-map", title, blocks, folded=True)] if blocks else []
-
-
-def _drawn(name: str, picture: Picture, caption: str) -> Drawn:
-    return Drawn(name, svg(picture), picture.title, caption)
 
 
 # --- jumps ----------------------------------------------------------------------------------------
@@ -89,7 +83,7 @@ def _jumps_of(
         f"{where}.{noted(study, row.reading)} The velocity jumps under {len(jumping)} of "
         f"{len(moved)} readings. Limits are judged inside the segments, separately from jumps."
     )
-    yield _drawn(file_name("jumps", problem, first.id), picture, caption)
+    yield drawn(file_name("jumps", problem, first.id), picture, caption)
     grid = tuple(
         (
             jump.joint,
@@ -138,7 +132,7 @@ def _polygons(study: Study) -> Iterator[Block]:
             f"of both explains. No reading enters: {both} printed in one unit, and time is not "
             "involved."
         )
-        yield _drawn(file_name("polygon", claim.id), picture, caption)
+        yield drawn(file_name("polygon", claim.id), picture, caption)
 
 
 # --- workspace ------------------------------------------------------------------------------------
@@ -185,7 +179,7 @@ def _workspaces(study: Study) -> Iterator[Block]:
     )
     if dh.alpha_signs == "uncertain":
         caption += " Twists have their printed signs; the text may have lost some of them."
-    yield _drawn("workspace", picture, caption + (f" {path.said}" if path else ""))
+    yield drawn("workspace", picture, caption + (f" {path.said}" if path else ""))
 
 
 def _printed_path(study: Study, dh: DhTable, chain: Chain) -> _Path | None:
@@ -278,7 +272,7 @@ def _tents(study: Study) -> Iterator[Block]:
             f"{high:g} s; first two durations of every member. How orbits fill the population is "
             f"{printed}; the listed choice is “{built.tent_rule}”."
         )
-        yield _drawn(file_name("tent", block.id), picture, caption)
+        yield drawn(file_name("tent", block.id), picture, caption)
         lengths = {
             TentRule.COORDINATE: built.whales,
             TentRule.MEMBER: dimensions,

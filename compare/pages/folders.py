@@ -19,7 +19,7 @@ def check_folder(out: Path, foreign: Foreign, what: str, option: str = "--out") 
     Parameters
     ----------
     what : str
-        What the folder is to be, such as "bench".
+        What the folder is to be, such as "a bench".
     option : str
         What names it, for messages.
 

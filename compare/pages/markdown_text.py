@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from ...problem import visible
-from ..blocks import Behind, Block, CardShown, Claimed, Drawn, Folded, Grid, Page, Prose, Terms
+from ..blocks import Block, CardShown, Claimed, Drawn, Folded, Grid, Page, Prose, Terms
 
 _SPECIAL = re.compile(r"([\\`*_\[\]<>#|~$&])")
 """Characters that may begin markup anywhere."""
@@ -56,10 +56,6 @@ def _block(page: Page, block: Block) -> str:
         return card if block.drawn is None else f"{card}\n\n{_block(page, block.drawn)}"
     if isinstance(block, Claimed):
         return _claimed(block)
-    if isinstance(block, Behind):
-        lines = (*block.explanations, *(f"Also affected: {cell.text}" for cell in block.follows))
-        head = f"- **{plain(block.weight.text)}**: {_line(block.says)}"
-        return "\n".join([head, *(f"  - {_line(line)}" for line in lines)])
     return _grid(block)
 
 

@@ -38,7 +38,7 @@ def motions(one: CaseAudit) -> Section:
                 units=paper_units(one.study.case.statement(*pair)),
             )
             blocks.append(
-                _drawn(
+                drawn(
                     file_name("optimum", pair.problem),
                     picture,
                     noted(one.study, pair.reading).strip(),
@@ -53,7 +53,8 @@ def _optimum_of(one: CaseAudit, pid: str, solution: Solution) -> str:
     return known + (f", {problem_name(one, pid)}" if len(one.case.problems) > 1 else "")
 
 
-def _drawn(name: str, picture: Picture, caption: str) -> Drawn:
+def drawn(name: str, picture: Picture, caption: str) -> Drawn:
+    """A picture with its title, under a name that is unique in the page."""
     return Drawn(name, svg(picture), picture.title, caption)
 
 
@@ -98,7 +99,7 @@ def _printed_motions(study: Study, pair: Pair) -> Iterator[Block]:
             units=paper_units(row.statement),
         )
         where = "; ".join(r.claim.where for r in rows)
-        yield _drawn(file_name("motion", row.problem, row.claim.id), picture, f"{where}.{under}")
+        yield drawn(file_name("motion", row.problem, row.claim.id), picture, f"{where}.{under}")
     for tables, singles in _tables_by_joint(study, pair):
         if singles[0].unmoved is None:
             yield _joint_by_joint(tables, singles)
@@ -139,7 +140,7 @@ def _joint_by_joint(tables: str, rows: list[_Row]) -> Drawn:
         "Each joint with its own durations, at the printed digits. However the digits were "
         f"rounded: {each}.{noted(study, pair.reading)}"
     )
-    return _drawn(file_name("motion", pair.problem, "joints", str(first.table)), picture, caption)
+    return drawn(file_name("motion", pair.problem, "joints", str(first.table)), picture, caption)
 
 
 # --- searches -------------------------------------------------------------------------------------
@@ -160,7 +161,7 @@ def searches(one: CaseAudit) -> Section:
         ends = {each: np.array([r.reported_time for r in one]) for each, one in runs.items()}
         caption = "Vertical strokes are medians. A reported total is not clipped at the optimum."
         blocks.append(
-            _drawn(
+            drawn(
                 file_name("totals", pair.problem),
                 endings(ends, references, printed, title=title),
                 caption,
@@ -216,7 +217,7 @@ def _convergence(study: Study, pair: Pair, runs: dict[str, Runs], name: str) -> 
         joints=problem.joints,
         title=f"Best total so far: {name}" + (", each joint separately" if by_joint else ""),
     )
-    yield _drawn(
+    yield drawn(
         file_name("convergence", pair.problem),
         picture,
         "Gap to the optimum, linear up to 0.01 % and logarithmic beyond. The band around a printed "
@@ -325,7 +326,7 @@ def _landscape(
         )
     except TrajgapError:
         return
-    yield _drawn(
+    yield drawn(
         name,
         picture,
         "Exact totals: durations of any shares, stretched until the first limit is reached.",

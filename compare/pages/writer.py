@@ -68,6 +68,7 @@ def write_report(report: AuditReport, out: Path) -> None:
 
     Parameters
     ----------
+    report : AuditReport
     out : Path
         A new or an empty folder, or one with an earlier report, which is replaced. It gets
         ``index.html``, ``glossary.html`` and ``audit.json``, and for each case ``CASE.html``,

@@ -105,7 +105,7 @@ def test_show(run: Run) -> None:
     out = run.done("show", PUMA)
     # Claims by their ids, which other commands ask for, once; printed digits as they stand.
     assert all(claim.id in out for claim in load_case(PUMA).claims)
-    assert "0.961 1.258 1.078, total 3.298" in out
+    assert "0.961, 1.258, 1.078 s; total 3.298 s" in out
     document = run.document("show", PUMA, "--reading", "durations-positive", kind="show")
     assert [r["id"] for r in document["readings"]] == ["durations-positive"]
 

@@ -85,7 +85,7 @@ def test_a_folder_with_other_files_is_left_alone(
     elif mark is not None:
         (out / MARK).write_text(mark, encoding="utf-8")
     before = content(out)
-    refuses(NOTHING, out, f"holds {re.escape(named)}, which is no audit; give a new or an empty")
+    refuses(NOTHING, out, f"contains {re.escape(named)}, which is not an audit; give a new or an empty")
     assert content(out) == before
 
 
@@ -102,9 +102,9 @@ def test_what_would_share_names_or_lie_over_files_is_refused(
         for name in ("index", "audit", "glossary")
     ]
     for made, place, said in (
-        (NOTHING, "audit", r"holds pictures/mine\.png, which is no audit"),
-        (report, "file", "is no folder; name a new or an empty one"),
-        (report, "link", "is no folder; name a new or an empty one"),
+        (NOTHING, "audit", r"contains pictures/mine\.png, which is not an audit"),
+        (report, "file", "is not a folder; give a new or an empty one"),
+        (report, "link", "is not a folder; give a new or an empty one"),
         (NOTHING, "file/audit", r"cannot be written \(.+\); give another place"),
         (AuditReport(report.cases * 2), "out", f"'{ID}' is the name of another case; rename it"),
         *((one, "out", f"'{name}' is the name of another page; rename it") for one, name in named),
