@@ -10,6 +10,7 @@ import pytest
 from support.checkout import ROOT
 from support.command_line import Run, on_terminal
 from support.small_studies import HEAD, optimizers
+from trajgap.compare.documents import percent
 from trajgap.problem import load_case
 from trajgap.problem.suite import load_instance
 
@@ -228,8 +229,8 @@ def test_a_study_is_run_exported_and_gone_on_with(run: Run) -> None:
     last = "next: trajgap study few.toml --store few.sqlite --export few.csv"
     assert out.splitlines()[-1] == last
     gaps = [float(row["feasible_gap_lowest"]) for row in rows[:2]]
-    shown = next(line for line in out.splitlines() if line.startswith("pso ")).split()
-    assert shown[-2:] == [f"{100 * min(gaps):+.3g}", f"{50 * sum(gaps):+.3g}"]
+    shown = next(line for line in out.splitlines() if line.startswith("pso "))
+    assert re.findall(r"\S+ %", shown)[-2:] == [percent(min(gaps)), percent(sum(gaps) / 2)]
 
 
 def test_the_exit_code_is_0_where_each_optimiser_has_a_run(run: Run, study: Path) -> None:

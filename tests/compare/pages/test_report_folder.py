@@ -85,7 +85,7 @@ def test_a_folder_with_other_files_is_left_alone(
     elif mark is not None:
         (out / MARK).write_text(mark, encoding="utf-8")
     before = content(out)
-    refuses(NOTHING, out, f"contains {re.escape(named)}, which is not an audit; give a new or an empty")
+    refuses(NOTHING, out, f"contains {re.escape(named)}, which is not an audit; give a new")
     assert content(out) == before
 
 
