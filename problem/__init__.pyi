@@ -63,6 +63,7 @@ from .file_names import LONGEST_NAME, file_name
 from .files import (
     check_name,
     check_regular,
+    new_draft,
     new_file,
     read_regular,
     recover_folder,
@@ -194,6 +195,7 @@ __all__ = [
     "link_frames",
     "load_case",
     "load_robot",
+    "new_draft",
     "new_file",
     "parse_case",
     "parse_toml",

@@ -149,8 +149,6 @@ def new_file(path: Path) -> Iterator[Callable[[str | bytes], None]]:
     OSError
         If the file exists, is being written by another process, or cannot be written.
     """
-    if _there(path):
-        raise FileExistsError(errno.EEXIST, os.strerror(errno.EEXIST), str(path))
     with _draft(path, reserve=True) as draft:
 
         def write(content: str | bytes) -> None:
@@ -161,6 +159,33 @@ def new_file(path: Path) -> Iterator[Callable[[str | bytes], None]]:
             _publish(draft, path)
 
         yield write
+
+
+@contextmanager
+def new_draft(path: Path, is_folder: bool = False) -> Iterator[Path]:
+    """Reserve a new file or folder for a writer that needs a path.
+
+    Parameters
+    ----------
+    path : Path
+    is_folder : bool
+
+    Yields
+    ------
+    Path
+        An empty file or folder; what is in it at the end appears under the name, at once.
+
+    Raises
+    ------
+    OSError
+        As `new_file`.
+    """
+    with _draft(path, is_folder, reserve=True) as draft:
+        yield draft
+        if is_folder:
+            draft.rename(path)
+        else:
+            _publish(draft, path)
 
 
 def replace_file(path: Path, text: str) -> None:
@@ -275,6 +300,8 @@ def remove_drafts() -> None:
 @contextmanager
 def _draft(target: Path, is_folder: bool = False, reserve: bool = False) -> Iterator[Path]:
     """Make a locked draft beside its target, removed in the end; remains of others are swept."""
+    if reserve and _there(target):
+        raise FileExistsError(errno.EEXIST, os.strerror(errno.EEXIST), str(target))
     while True:
         path = target.parent / f"{_stem(target)}{uuid4().hex}.tmp"
         with _registered(path):

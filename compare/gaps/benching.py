@@ -80,6 +80,29 @@ class Entrant:
         digest = hashlib.sha256(canonical(self.identity).encode()).digest()
         return int.from_bytes(digest[:4], "big")
 
+    def trials(self, first: Trial, budget: int | None, seeds: range) -> tuple[Trial, ...]:
+        """Its runs on one problem: one for each seed, or one in all if it draws no random numbers.
+
+        Parameters
+        ----------
+        first : Trial
+            All that does not depend on the optimiser; its stream follows the entrant's own.
+        budget : int or None
+            As `run_budget` takes it.
+        seeds : range
+        """
+        one = replace(
+            first,
+            optimizer=self.optimizer,
+            settings=canonical(dict(self.settings)),
+            handling=self.handling,
+            budget=run_budget(self.optimizer, self.settings, budget),
+            stream=(self.stream, *first.stream),
+            origin=origin_of(self.optimizer),
+        )
+        drawn = seeds[:1] if self.optimizer in WITHOUT_DRAWS else seeds
+        return tuple(replace(one, seed=seed) for seed in drawn)
+
 
 @dataclass(frozen=True, eq=False)
 class BenchPlan:
@@ -208,20 +231,7 @@ def plan_bench(
     box = search_box(problem)
     entrants, notes = enter(box, list(names), handling, settings or {}, baselines)
     first = Trial(problem, name or problem.name, reading, "", seconds=seconds)
-    trials = tuple(
-        replace(
-            first,
-            optimizer=one.optimizer,
-            settings=canonical(dict(one.settings)),
-            handling=one.handling,
-            seed=seed,
-            budget=run_budget(one.optimizer, one.settings, budget),
-            stream=(one.stream,),
-            origin=origin_of(one.optimizer),
-        )
-        for one in entrants
-        for seed in range(1 if one.optimizer in WITHOUT_DRAWS else seeds)
-    )
+    trials = tuple(t for one in entrants for t in one.trials(first, budget, range(seeds)))
     return BenchPlan(
         problem, first.name, reading, entrants, trials, BUDGET if budget is None else budget, seeds,
         (*budget_notes(entrants, budget), *bounds_note(problem), *notes),

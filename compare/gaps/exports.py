@@ -7,17 +7,14 @@ import io
 import json
 import os
 import re
-import shutil
 import sys
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from itertools import groupby, islice
 from pathlib import Path
 from typing import Any, TextIO
-from uuid import uuid4
 
-from ...problem import CaseError
+from ...problem import CaseError, new_draft
 from .rows import Row, canonical
 
 COLUMNS: dict[str, str] = {
@@ -80,8 +77,14 @@ def export_rows(rows: Iterable[Row], path: Path) -> int:
         for the format is missing.
     """
     check_export(path)
-    with _drafted(path) as draft:
-        return _WRITERS[path.suffix](rows, draft)
+    try:
+        with new_draft(path, is_folder=path.suffix == ".ioh") as draft:
+            return _WRITERS[path.suffix](rows, draft)
+    except OSError as error:
+        reason = error.strerror or type(error).__name__
+        raise CaseError(
+            str(path), "--export", f"cannot be written ({reason}); name a place that can"
+        ) from None
 
 
 def check_export(path: Path) -> None:
@@ -209,7 +212,6 @@ def _write_ioh(rows: Iterable[Row], folder: Path) -> int:
     """
     algorithms, functions = _Numbered(), _Numbered()
     count = 0
-    folder.mkdir()
     useful = (row for row in rows if row.evaluations)
     for (ours, theirs), runs in groupby(useful, lambda row: (_algorithm(row), _function(row))):
         optimizer, settings, handling, origin = ours

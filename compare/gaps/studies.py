@@ -32,13 +32,12 @@ from .benching import (
     bounds_note,
     budget_notes,
     first_range,
-    run_budget,
 )
 from .optimality_gap import bracket_of
 from .rows import Bracket, Trial, canonical
 from .store import Store
 from .study_file import STUDY_FORMAT, OptimizerBlock, ProblemsBlock, StudyFile
-from .trials import DESCENT, origin_of
+from .trials import DESCENT
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,27 +104,18 @@ class StudyPlan:
         asked = self.document
         for budget in asked.budget or (None,):
             for entry in self.problems:
-                bare = Trial(entry.problem, entry.name, entry.reading, "")
-                reference = None
+                first = Trial(
+                    entry.problem, entry.name, entry.reading, "",
+                    stream=entry.stream, seconds=asked.seconds,
+                )  # fmt: skip
                 if store is not None:
-                    reference = store.optimum(bare.problem_sha256, entry.solve)
+                    reference = store.optimum(first.problem_sha256, entry.solve)
+                    first = replace(first, reference=reference)
                 for one in self._entrants():
-                    name = one.optimizer
-                    own = {**one.settings, **first_range(name, one.settings, entry.box)}
-                    first = replace(
-                        bare,
-                        optimizer=name,
-                        settings=canonical(own),
-                        handling=one.handling,
-                        seed=asked.first_seed,
-                        budget=run_budget(name, own, budget),
-                        stream=(replace(one, settings=own).stream, *entry.stream),
-                        origin=origin_of(name),
-                        reference=reference,
-                        seconds=asked.seconds,
-                    )
-                    seeds = range(asked.first_seed, asked.first_seed + _seeds(name, asked))
-                    yield one.label, tuple(replace(first, seed=seed) for seed in seeds)
+                    drawn = first_range(one.optimizer, one.settings, entry.box)
+                    entrant = replace(one, settings={**one.settings, **drawn})
+                    seeds = range(asked.first_seed, asked.first_seed + asked.seeds)
+                    yield one.label, entrant.trials(first, budget, seeds)
 
     @property
     def notes(self) -> tuple[str, ...]:
