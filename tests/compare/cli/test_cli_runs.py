@@ -229,7 +229,7 @@ def test_a_study_is_run_exported_and_gone_on_with(run: Run) -> None:
     assert out.splitlines()[-1] == last
     gaps = [float(row["feasible_gap_lowest"]) for row in rows[:2]]
     shown = next(line for line in out.splitlines() if line.startswith("pso ")).split()
-    assert shown[-2:] == [f"{100 * min(gaps):+.3g}", f"{50 * sum(gaps):+.3g}"]
+    assert shown[-4:] == [f"{100 * min(gaps):.2g}", "%", f"{50 * sum(gaps):.2g}", "%"]
 
 
 def test_the_exit_code_is_0_where_each_optimiser_has_a_run(run: Run, study: Path) -> None:
