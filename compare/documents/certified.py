@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from fractions import Fraction
+from typing import Any
 
 from ...nlp import Certified, Outcome
 from ...nlp.proofs import decimal
@@ -81,56 +82,33 @@ def certify_result(
     why : str or None
         Why the outcome is what it is, where that needs to be said.
     """
+    same: dict[str, Any] = {
+        "case": case, "problem": problem, "reading": reading, "joint": joint, "subject": subject,
+        "certificate": certificate, "state": state,
+    }  # fmt: skip
     if isinstance(found, str):
-        nothing = Why(found)
-        return CertifiedResult(
-            case=case,
-            problem=problem,
-            reading=reading,
-            joint=joint,
-            subject=subject,
-            outcome=Uncovered.NOT_COVERED,
-            outcome_why=found,
-            lower=nothing,
-            upper=nothing,
-            gap=nothing,
-            nodes=nothing,
-            open_nodes=nothing,
-            seconds=nothing,
-            lower_exact=None,
-            upper_exact=None,
-            segment_durations=nothing,
-            certificate=None,
-            state=None,
-        )
+        missing = ("lower", "upper", "gap", "nodes", "open_nodes", "seconds", "segment_durations")
+        same |= dict.fromkeys(missing, Why(found)) | {"lower_exact": None, "upper_exact": None}
+        return CertifiedResult(**same, outcome=Uncovered.NOT_COVERED, outcome_why=found)
     lower, upper = found.lower if found.proof is not None else None, found.upper
     none = (
         "infeasible" if found.outcome is Outcome.INFEASIBLE else "no feasible durations were found"
     )
     unproved = "nothing is proved yet"
-    return CertifiedResult(
-        case=case,
-        problem=problem,
-        reading=reading,
-        joint=joint,
-        subject=subject,
-        outcome=found.outcome,
+    wide = lower is None or not math.isfinite(found.gap)
+    return CertifiedResult.of(
+        found,
+        **same,
         outcome_why=why,
         lower=outwards(lower, unproved, -1),
         upper=outwards(upper, none, 1),
-        gap=found.gap
-        if math.isfinite(found.gap) and lower is not None
-        else Why(none if upper is None else unproved),
-        nodes=found.nodes,
+        gap=Why(none if upper is None else unproved) if wide else found.gap,
         open_nodes=found.open_boxes,
-        seconds=found.seconds,
         lower_exact=None if lower is None else decimal(lower),
         upper_exact=None if upper is None else decimal(upper),
         segment_durations=known(
-            None if found.durations is None else tuple(float(h) for h in found.durations), none
+            None if found.durations is None else tuple(map(float, found.durations)), none
         ),
-        certificate=certificate,
-        state=state,
     )
 
 
