@@ -83,9 +83,6 @@ class CaseAudit(InNotebooks):
     day: date | None = None
     """Of the audit; that on which its document is made if None."""
 
-    made: VerdictCard | None = None
-    """The card, where it was made by hand; otherwise `card` makes it."""
-
     made_waterfalls: tuple[Waterfall, ...] | None = None
     """The waterfalls, where they were made by hand; otherwise `waterfalls` computes them."""
 
@@ -111,8 +108,6 @@ class CaseAudit(InNotebooks):
     @cached_property
     def card(self) -> VerdictCard:
         """The verdict in at most 80 words."""
-        if self.made is not None:
-            return self.made
         return verdict_card(self.study, self.judgements, self.causes, self.waterfalls, self.reached)
 
     @cached_property
