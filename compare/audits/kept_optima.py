@@ -62,7 +62,7 @@ class KeptOptima:
             len(asked),
             lambda: map(_solved, asked),
             _left,
-            lambda at, left: _judged(asked[at], *left),
+            lambda at, left: _judged(asked[at], left),
             (lambda at: _solved(asked[at])) if again else None,
         )
 
@@ -102,25 +102,13 @@ def _left(found: Solution) -> list[Any]:
     ]
 
 
-def _judged(
-    asked: AskedOptimum,
-    status: str,
-    why: str | None,
-    durations: str,
-    infimum: str,
-    lower_bound: str,
-    nodal: str | None,
-    route: str,
-    other: str | None,
-    residual: str,
-    active: str,
-    search: list[Any],
-) -> Solution:
+def _judged(asked: AskedOptimum, left: Sequence[Any]) -> Solution:
     """The answer that left this; raises if its durations do not bear out its status.
 
     What no durations bear out is searched for again: that there are none, or that the other route
     ends elsewhere.
     """
+    status, why, durations, _, _, nodal, route, other, *_, search = left
     if status not in (Status.CONVERGED, Status.FEASIBLE):
         return _solved(asked)
     problem, h = asked.problem, from_text(durations)
