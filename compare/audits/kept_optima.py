@@ -42,6 +42,11 @@ class KeptOptima:
     def __init__(self, where: bool | Path) -> None:
         self._files = KeptFiles(where, "optima")
 
+    @property
+    def searches(self) -> int:
+        """How often a group had to be searched."""
+        return self._files.searches
+
     def solved(self, asked: Sequence[AskedOptimum], again: bool = True) -> Sequence[Solution]:
         """Answers of `solve`: those of an earlier audit, or else found now and kept.
 
@@ -95,7 +100,7 @@ def _left(found: Solution) -> list[Any]:
         repr(found.lower_bound),
         nodal,
         None if found.route is None else str(found.route),
-        found.other_total and repr(found.other_total),
+        None if found.other_total is None else repr(found.other_total),
         repr(found.kkt_residual),
         repr(found.active),
         search,

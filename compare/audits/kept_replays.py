@@ -55,6 +55,11 @@ class KeptReplays:
     def __init__(self, where: bool | Path) -> None:
         self._files = KeptFiles(where, "runs")
 
+    @property
+    def searches(self) -> int:
+        """How often a group had to be searched."""
+        return self._files.searches
+
     def runs(
         self, asked: Sequence[AskedReplay], compute: Callable[[], Iterable[Run]]
     ) -> tuple[Run, ...]:

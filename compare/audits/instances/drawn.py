@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable
-from contextlib import ExitStack, closing
+from collections.abc import Callable, Generator, Iterable, Sequence
+from contextlib import closing
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, cast
 
 import numpy as np
 
-from ....heuristics import Algorithm, AskedRun, Run, compile_judge, in_processes, run_asked
+from ....heuristics import Algorithm, AskedRun, Run, in_processes, run_asked
 from ....nlp import Solution
 from ....problem import (
     TOLERANCE,
@@ -55,6 +55,11 @@ class Task:
     replays: KeptReplays
     optima: KeptOptima
 
+    @property
+    def searches(self) -> int:
+        """How often something had to be searched, in this process."""
+        return self.replays.searches + self.optima.searches
+
 
 def examine(
     tasks: Iterable[Task],
@@ -73,19 +78,28 @@ def examine(
         Called with a few words after each instance.
     """
     todo = list(tasks)
-    workers = max(1, min(workers, len(todo)))
     found: list[Sample] = []
-    with ExitStack() as stack:
-        results: Iterable[tuple[Sample, ...]] = map(_of_task, todo)
-        if workers > 1:
-            for problem in (todo[0].slower[0], todo[0].faster[0]):
-                compile_judge(_fast_form(problem), todo[0].objectives[0])
-            results = stack.enter_context(closing(in_processes(_of_task, todo, workers)))
+    with closing(_each(todo, workers)) as results:
         for done, samples in enumerate(results, start=1):
             found += samples
             if progress is not None:
                 progress(f"instance {done} of {len(todo)}")
     return tuple(found)
+
+
+def _each(todo: Sequence[Task], workers: int) -> Generator[tuple[Sample, ...], None, None]:
+    """Samples of each task: of the first here, so that what all call is compiled once.
+
+    The others are spread over processes if it had to search: what an earlier audit left takes less
+    than the start of a process.
+    """
+    first, *others = todo
+    before = first.searches
+    yield _of_task(first)
+    if first.searches > before and min(workers, len(others)) > 1:
+        yield from in_processes(_of_task, others, min(workers, len(others)))
+    else:
+        yield from map(_of_task, others)
 
 
 Kept = dict[tuple[object, ...], Any]
