@@ -24,6 +24,7 @@ import resource
 import subprocess
 import sys
 import time
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -43,6 +44,7 @@ CLOSED = "scipy CubicSpline, extrema in closed form"
 MX = "whole-array CasADi MX, 5 places a segment"
 OPTI = "plain CasADi Opti, 5 places a segment"
 SLSQP = "scipy SLSQP, exact extrema"
+BY_WAYPOINTS = "ours, by way-points"
 DIFFERENCES = "numpy loadtxt, finite differences"
 ROWS = [
     *(("check", "ours", c, 7, n) for c in ("cubic", "quintic") for n in (100, 1000, 10**4, 10**5)),
@@ -58,6 +60,7 @@ ROWS = [
     *(("solve", MX, "cubic", 6, n) for n in (30, 100, 300, 1000)),
     *(("solve", OPTI, "cubic", 6, n) for n in (30, 100)),
     *(("solve", SLSQP, "cubic", 6, n) for n in (10, 30)),
+    *(("gradients", c, "B-spline", 6, n) for c in ("ours", BY_WAYPOINTS) for n in (30, 100, 300)),
 ]
 PLACES = 5
 
@@ -70,10 +73,14 @@ def walk(segments, joints):
 
 def problem_of(curve, segments, joints):
     """The problem of a row."""
-    from trajgap.problem import Limits, Problem, cubic_spline, quintic_spline
+    import trajgap.problem as p
 
-    declared = {"cubic": cubic_spline, "quintic": quintic_spline}[curve](segments)
-    return Problem(walk(segments, joints), Limits(*LIMITS, joints=joints), declared)
+    declared = {
+        "cubic": p.cubic_spline,
+        "quintic": p.quintic_spline,
+        "B-spline": lambda n: p.uniform_cubic_b_spline(n + 1, "timed"),
+    }[curve](segments)
+    return p.Problem(walk(segments, joints), p.Limits(*LIMITS, joints=joints), declared)
 
 
 def check_ours(curve, joints, segments):
@@ -260,7 +267,18 @@ def solve_slsqp(curve, joints, segments):
     return run
 
 
+def gradients(curve, joints, segments, by="durations"):
+    """Of one joint's extrema of acceleration, on a uniform B-spline whose time is one too."""
+    from trajgap.problem import extrema, fit, peak_gradients
+
+    problem, h = problem_of(curve, segments, joints), np.ones(segments)
+    points = extrema(fit(problem.curve, problem.waypoints, h), joints - 1, 2)
+    return lambda: np.abs(getattr(peak_gradients(problem, h, points), by)).max()
+
+
 CODES = {
+    ("gradients", "ours"): gradients,
+    ("gradients", BY_WAYPOINTS): partial(gradients, by="waypoints"),
     ("check", "ours"): check_ours,
     ("check", SCIPY): check_scipy,
     ("check", CLOSED): check_closed,
@@ -276,7 +294,7 @@ CODES = {
 def measure(question, code, curve, joints, segments):
     """One row in this process: seconds, peak memory, answer."""
     make = CODES[question, code]
-    small = {"check": 130, "check FILE": 130, "solve": 26}[question] if code == "ours" else 4
+    small = {"solve": 26, "gradients": 4}.get(question, 130) if code == "ours" else 4
     make(curve, 2, small)()  # imports, and loads compiled kernels, or compiles them
     run = make(curve, joints, segments)
     began = time.process_time()
@@ -319,9 +337,8 @@ def read():
 
 def exponent(rows):
     """Growth exponent: the slope of log seconds over log segments; None from one size."""
-    sizes = [math.log(int(row["segments"])) for row in rows]
-    seconds = [math.log(float(row["seconds"])) for row in rows]
-    return float(np.polyfit(sizes, seconds, 1)[0]) if len(rows) > 1 else None
+    logs = [[math.log(float(row[key])) for row in rows] for key in ("segments", "seconds")]
+    return float(np.polyfit(*logs, 1)[0]) if len(rows) > 1 else None
 
 
 def tables(rows):
@@ -331,8 +348,9 @@ def tables(rows):
         "cubic": "C2 cubic spline",
         "quintic": "C4 quintic spline",
         "samples": "CSV of samples",
+        "B-spline": "uniform B-spline",
     }
-    for question in ("check", "check FILE", "solve"):
+    for question in ("check", "check FILE", "solve", "gradients"):
         for curve, title in titles.items():
             some = [row for row in rows if row["question"] == question and row["curve"] == curve]
             if not some:

@@ -1,5 +1,6 @@
 from .audits import (
     RULES,
+    AuditOptions,
     AuditReport,
     CaseAudit,
     Pair,
@@ -32,6 +33,7 @@ from .pages import plot, write_report
 
 __all__ = [
     "RULES",
+    "AuditOptions",
     "AuditReport",
     "Basis",
     "CaseAudit",

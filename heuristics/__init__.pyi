@@ -34,7 +34,7 @@ from .optimizers import (
     find_optimizer,
     optimizer_name,
 )
-from .repair import Handling, Stretch, compile_judge, judge_of
+from .repair import Handling, Stretch, judge_of
 from .result import JointRuns, Run
 from .search_boxes import search_box
 from .within_budget import BudgetedRun, run_within

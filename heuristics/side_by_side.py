@@ -11,7 +11,7 @@ import numpy as np
 
 from ..problem import Array
 from .algorithm import Algorithm
-from .objective import Bounds, Counted
+from .objective import Bounds, Counted, Objective, Recalling
 from .repair import Judge
 
 TOGETHER = 100
@@ -52,11 +52,12 @@ def stepped_together(
     Parameters
     ----------
     algorithm : Algorithm
-        One that `moves_together`.
+        One that `moves_together`. Where its class says that it ``makes_copies``, positions of one
+        step that stood in the step before are not judged again.
     starts : sequence of Start
         At least one; all of the same number of dimensions.
     """
-    judges = _Judges(starts)
+    judges = _Judges(starts, vars(type(algorithm)).get("makes_copies", False))
     bounds = Bounds(
         np.stack([one.bounds.lower for one in starts])[:, None],
         np.stack([one.bounds.upper for one in starts])[:, None],
@@ -103,12 +104,14 @@ class _Streams:
 class _Judges:
     """Objective of positions of shape (runs, members, dimensions)."""
 
-    def __init__(self, starts: Sequence[Start]) -> None:
+    def __init__(self, starts: Sequence[Start], copies: bool) -> None:
         self._parts: list[tuple[slice, Counted]] = []
         at = 0
         for _, group in groupby(starts, key=lambda one: one.judge):
             alike = list(group)
-            self._parts.append((slice(at, at + len(alike)), Counted(alike[0].judge)))
+            judge: Objective = alike[0].judge
+            judge = Recalling(judge) if copies else judge
+            self._parts.append((slice(at, at + len(alike)), Counted(judge)))
             at += len(alike)
 
     def __call__(self, positions: Array) -> Array:

@@ -111,8 +111,6 @@ class CaseAudit(InNotebooks):
     @cached_property
     def card(self) -> VerdictCard:
         """The verdict in at most 80 words."""
-        if self.made is not None:
-            return self.made
         return verdict_card(self.study, self.judgements, self.causes, self.waterfalls, self.reached)
 
     @cached_property

@@ -34,6 +34,11 @@ class KeptOptima(KeptFiles):
 
     kind = "optima"
 
+    @property
+    def searches(self) -> int:
+        """How often a group had to be searched."""
+        return self._files.searches
+
     def solved(self, asked: Sequence[AskedOptimum], again: bool = True) -> Sequence[Solution]:
         """Answers of `solve`: those of an earlier audit, or else found now and kept.
 
@@ -54,7 +59,7 @@ class KeptOptima(KeptFiles):
             len(asked),
             lambda: map(_solved, asked),
             _left,
-            lambda at, left: _judged(asked[at], *left),
+            lambda at, left: _judged(asked[at], left),
             (lambda at: _solved(asked[at])) if again else None,
         )
 
@@ -87,32 +92,20 @@ def _left(found: Solution) -> list[Any]:
         repr(found.lower_bound),
         nodal,
         None if found.route is None else str(found.route),
-        found.other_total and repr(found.other_total),
+        None if found.other_total is None else repr(found.other_total),
         repr(found.kkt_residual),
         repr(found.active),
         search,
     ]
 
 
-def _judged(
-    asked: AskedOptimum,
-    status: str,
-    why: str | None,
-    durations: str,
-    infimum: str,
-    lower_bound: str,
-    nodal: str | None,
-    route: str,
-    other: str | None,
-    residual: str,
-    active: str,
-    search: list[Any],
-) -> Solution:
+def _judged(asked: AskedOptimum, left: Sequence[Any]) -> Solution:
     """The answer that left this; raises if its durations do not bear out its status.
 
     What no durations bear out is searched for again: that there are none, or that the other route
     ends elsewhere.
     """
+    status, why, durations, _, _, nodal, route, other, *_, search = left
     if status not in (Status.CONVERGED, Status.FEASIBLE):
         return _solved(asked)
     problem, h = asked.problem, from_text(durations)

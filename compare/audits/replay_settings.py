@@ -7,8 +7,10 @@ from dataclasses import fields, replace
 from enum import StrEnum
 from typing import Any, cast
 
+import numpy as np
+
 from ...heuristics import Algorithm
-from ...problem import TrajgapError
+from ...problem import Array, TrajgapError
 
 LISTED = "as listed"
 """Name of the settings that the case lists."""
@@ -70,9 +72,7 @@ def spread_settings(
             open_.append((one.name, _OPEN_NUMBERS[one.name]))
     if not open_:
         return found
-    from scipy.stats import qmc  # half a second, and few need it
-
-    for row in qmc.LatinHypercube(len(open_), rng=0).random(DESIGN):
+    for row in latin_hypercube(len(open_)):
         changes = {
             name: _drawn(name, getattr(algorithm, name), of, share)
             for (name, of), share in zip(open_, row, strict=True)
@@ -84,6 +84,22 @@ def spread_settings(
         said = ", ".join(f"{name} = {_shown(value)}" for name, value in changes.items())
         found[said] = cast(Algorithm[Any], changed)
     return found
+
+
+def latin_hypercube(dimensions: int) -> Array:
+    """`DESIGN` places in the unit cube: on each axis, each of as many equal parts holds one.
+
+    They are those of ``scipy.stats.qmc.LatinHypercube`` with seed 0, which takes half a second to
+    import.
+
+    Returns
+    -------
+    ndarray, shape (DESIGN, dimensions)
+    """
+    (rng,) = np.random.default_rng(0).spawn(1)
+    inside = rng.uniform(size=(DESIGN, dimensions))
+    parts = np.array([rng.permutation(DESIGN) for _ in range(dimensions)])
+    return np.asarray((parts.T + 1 - inside) / DESIGN)
 
 
 def _drawn(name: str, current: Any, of: tuple[Any, ...], share: float) -> Any:

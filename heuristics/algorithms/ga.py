@@ -120,6 +120,7 @@ class GA:
 
     kind: ClassVar[str] = "ga"
     side_by_side: ClassVar[bool] = True
+    makes_copies: ClassVar[bool] = True
     open_choices: ClassVar[tuple[str, ...]] = OPEN_CHOICES
 
     population: Annotated[int, whole(2)] = 40

@@ -151,6 +151,7 @@ class ImprovedGA:
 
     kind: ClassVar[str] = "improved-ga"
     side_by_side: ClassVar[bool] = True
+    makes_copies: ClassVar[bool] = True
     open_choices: ClassVar[tuple[str, ...]] = OPEN_CHOICES
 
     population: Annotated[int, whole(2)] = 40

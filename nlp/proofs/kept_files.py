@@ -69,6 +69,8 @@ class KeptFiles:
     def __init__(self, where: bool | Path) -> None:
         self._folder = cache_folder() if where is True else (where or None)
         self._format = f"trajgap kept {self.kind} 1"
+        self.searches = 0
+        """Groups of answers that no file had."""
 
     @property
     def used(self) -> bool:
@@ -154,12 +156,17 @@ class KeptFiles:
         -------
         tuple
         """
-        if self._folder is None or count == 0:
+
+        def searched() -> tuple[A, ...]:
+            self.searches += 1
             return tuple(compute())
+
+        if self._folder is None or count == 0:
+            return searched()
         try:
             asked = question()
         except TrajgapError:
-            return tuple(compute())
+            return searched()
         try:
             kept = self.read(asked)
             parts = kept["answers"]
@@ -174,7 +181,7 @@ class KeptFiles:
                 if again is not None and left(again(at)) != parts[at]:
                     raise ValueError("another answer")
         except UNREADABLE:
-            found = tuple(compute())
+            found = searched()
             parts = [left(one) for one in found]
             self.write(asked, {"answers": parts, "seal": seal([asked, parts])})
         return found

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Generator, Iterable, Sequence
 from contextlib import closing
 from dataclasses import dataclass, replace
 from functools import partial
@@ -56,6 +56,11 @@ class Task:
     replays: KeptReplays
     optima: KeptOptima
 
+    @property
+    def searches(self) -> int:
+        """How often something had to be searched, in this process."""
+        return self.replays.searches + self.optima.searches
+
 
 def examine(
     tasks: Iterable[Task],
@@ -74,17 +79,31 @@ def examine(
         Called with a few words after each instance.
     """
     todo = list(tasks)
-    workers = max(1, min(workers, len(todo)))
     found: list[Sample] = []
     if workers > 1:
         for problem in (todo[0].slower[0], todo[0].faster[0]):
             compile_judge(_fast_form(problem), todo[0].objectives[0])
-    with closing(in_processes(_of_task, todo, workers)) as results:
+    with closing(_each(todo, workers)) as results:
         for done, samples in enumerate(results, start=1):
             found += samples
             if progress is not None:
                 progress(f"instance {done} of {len(todo)}")
     return tuple(found)
+
+
+def _each(todo: Sequence[Task], workers: int) -> Generator[tuple[Sample, ...], None, None]:
+    """Samples of each task: of the first here, so that what all call is compiled once.
+
+    The others are spread over processes if it had to search: what an earlier audit left takes less
+    than the start of a process.
+    """
+    first, *others = todo
+    before = first.searches
+    yield _of_task(first)
+    if first.searches > before and min(workers, len(others)) > 1:
+        yield from in_processes(_of_task, others, min(workers, len(others)))
+    else:
+        yield from map(_of_task, others)
 
 
 Kept = dict[tuple[object, ...], Any]

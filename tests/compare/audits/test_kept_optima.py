@@ -6,13 +6,14 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from trajgap.compare.audits import kept_optima
 from trajgap.compare.audits.instances.drawn import _ended
 from trajgap.compare.audits.kept_optima import AskedOptimum, KeptOptima
 from trajgap.nlp import Solution
 from trajgap.nlp.optimum import solve
-from trajgap.problem import Limits, Problem, rest_to_rest, three_five_three
+from trajgap.problem import Interpolant, Limits, Problem, rest_to_rest, three_five_three
 from trajgap.verify import seal
 
 WAYPOINTS = [[0.1, 0.5], [0.7, 0.2], [1.2, -0.4], [0.9, 0.3]]
@@ -54,6 +55,20 @@ def test_kept_optima_are_what_the_search_finds(tmp_path: Path, made: list[Proble
     assert plain == cold == warm
     KeptOptima(tmp_path).solved([ASKED[0]._replace(starts=3)])
     assert len(made) == 2 * len(ASKED) + 4
+
+
+def test_an_answer_of_both_routes_is_judged_and_not_searched(tmp_path: Path, made) -> None:
+    ends = PROBLEM.curve.prescribed[0], PROBLEM.curve.prescribed[-1]
+    free = replace(PROBLEM, curve=Interpolant((5, 5, 5), (2, 2), (ends[0], (), (), ends[1])))
+    for problem, other in ((PROBLEM, True), (free, False)):
+        asked = AskedOptimum(problem, known=np.full((1, 3), 9.0), lower=0.1, other_route=other)
+        cold, warm = (KeptOptima(tmp_path).optimum(asked) for _ in range(2))
+        assert made.pop() is problem
+        assert made == []
+        assert kept_optima._left(cold) == kept_optima._left(warm)
+        assert (warm.other_total is not None) == other
+        KeptOptima(tmp_path).optimum(asked._replace(known=asked.known + 1e-9))
+        assert made.pop() is problem
 
 
 def stretched(left: list[Any], share: float) -> None:

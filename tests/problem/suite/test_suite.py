@@ -19,7 +19,7 @@ from support.benchmarks import benchmark
 from support.checkout import ROOT
 from trajgap.compare.gaps import Store
 from trajgap.heuristics import uniform_rescaling
-from trajgap.nlp import certify, printed_problem, proved, shipped_file, solve
+from trajgap.nlp import Outcome, certify, printed_problem, proved, shipped_file, solve
 from trajgap.nlp.proofs.document import fits
 from trajgap.problem import CaseError, TrajgapError, Verdict, check, evaluate, load_case
 from trajgap.problem.suite import (
@@ -217,10 +217,27 @@ def solved_again(name: str) -> None:
     assert best >= one.upper * (1 - 1e-5), "the answer in the table is not the best known"
 
 
+def said(name: str, folder: Path) -> list[Any]:
+    """All that a solve and a short proof say, but how long they took."""
+    one = load_instance(name)
+    found = replace(solve(one.problem(), prove=0.01), solve_seconds=0.0, build_seconds=0.0)
+    subject = Subject(one.lower_subject)
+    proof = certify(question(one), subject=subject, gap=0.05, boxes=200, cache=folder)
+    return [str(found), proof.outcome, proof.lower, proof.upper, proof.durations, proof.nodes]
+
+
 @pytest.mark.parametrize("name", HANDFUL)
-def test_a_handful_is_proved_again(name: str) -> None:
+def test_a_handful_is_proved_again(name: str, tmp_path: Path) -> None:
     prove(name)
     solved_again(name)
+    assert said(name, tmp_path) == said(name, tmp_path)
+
+
+@pytest.mark.slow
+def test_the_whole_suite_says_the_same_cold_and_warm(tmp_path: Path) -> None:
+    cold, warm = ([said(name, tmp_path) for name in NAMES] for _ in range(2))
+    assert cold == warm
+    assert sum(one[1] is Outcome.CERTIFIED for one in cold) >= 100
 
 
 def test_every_answer_keeps_the_limits() -> None:

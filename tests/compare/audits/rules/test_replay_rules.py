@@ -2,12 +2,13 @@
 
 import numpy as np
 import pytest
+from scipy.stats import qmc
 from support.benchmarks import benchmark
 from support.checkout import ROOT
 from support.findings import study_of
 from support.made_up import algorithms, paper, row
 from support.studies import hurried
-from trajgap.compare.audits.replay_settings import DESIGN, LISTED, spread_settings
+from trajgap.compare.audits.replay_settings import DESIGN, LISTED, latin_hypercube, spread_settings
 from trajgap.compare.audits.rules import compared_before as comparisons
 from trajgap.compare.audits.rules.compared_before import (
     Ablated,
@@ -37,6 +38,7 @@ def test_settings_fill_the_range_of_every_open_number() -> None:
     assert {one.particles for one in drawn} == {30}
     rules = {one.velocity_rule for one in drawn}
     assert rules == set(type(PSO().velocity_rule))
+    assert (latin_hypercube(7) == qmc.LatinHypercube(7, rng=0).random(DESIGN)).all()
 
 
 def test_the_same_settings_every_time_and_the_printed_ones_held() -> None:
