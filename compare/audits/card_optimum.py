@@ -131,9 +131,7 @@ def _without_totals(study: Study, words: Mapping[str, Judgement]) -> str:
     curves = dict.fromkeys(c.other_curve for c in timed if c.other_curve is not None)
     if curves:
         named = ", ".join(curves)
-        return (
-            f"The printed times belong to another curve ({named}), so no optimum applies to them."
-        )
+        return f"Printed times are on another curve ({named}), so no optimum applies to them."
     return "No printed total can be compared with an optimum."
 
 
@@ -435,9 +433,7 @@ def _unknown(solution: Solution) -> str:
         where = "through the printed way-points" + at_ratios(solution.problem)
         return f"no motion {where} keeps the limits (proven)"
     if solution.problem.unscaled is not None:
-        return (
-            "the shortest total at these ratios cannot be checked: this curve has no formula for it"
-        )
+        return "the shortest total at these ratios cannot be checked: the curve has no formula"
     if not solution.found:
         return "the optimum cannot be computed: the solver found no motion within the limits"
     if solution.evidence not in (Evidence.CERTIFIED, Evidence.BEST_KNOWN):
