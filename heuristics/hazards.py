@@ -237,7 +237,7 @@ class RateBranches:
     crossover_jump, mutation_jump : float
         Value at 1/2 minus the limit from below.
     negative : float
-        arcsin(f_ave/f_max) for the fitness values −2 and −1, as −T would give: NaN, since their
+        arcsin(f_ave/f_max) for the fitness values −2 and −1, as −T would give: NaN, because their
         quotient exceeds 1.
     """
 

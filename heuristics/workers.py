@@ -115,7 +115,7 @@ class _Worker:
         # Spawned, because a fork copies the locks of the compiled libraries.
         context = get_context("spawn")
         ours, theirs = context.Pipe()
-        # A daemon, so that it cannot outlive us.
+        # A daemon, so it cannot outlive us.
         process = context.Process(target=_work, args=(theirs,), daemon=True)
         try:
             process.start()

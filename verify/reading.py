@@ -202,7 +202,7 @@ def read_document(path: str | Path, clock: Clock | None = None) -> Any:
 
 
 def _read(path: str | Path, clock: Clock | None) -> bytes:
-    # Without waiting, so that a pipe that nobody writes to cannot hold us.
+    # Without waiting, so a pipe that nobody writes to cannot hold us.
     number_ = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
     with open(number_, "rb") as file:
         about = os.fstat(number_)

@@ -426,7 +426,7 @@ def _percent_digits(share: float) -> str:
 
 
 def _unknown(solution: Solution) -> str:
-    """Why there is no optimum to compare with; empty where there is one."""
+    """Why there is no optimum to compare with; empty if there is one."""
     if solution.infimum is not None or solution.status is Status.NOT_ATTAINED:
         return "no shortest motion was found: the total falls as a duration goes to 0"
     if solution.status is Status.INFEASIBLE:

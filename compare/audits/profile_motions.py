@@ -206,7 +206,7 @@ class NumberRange:
             low = self.others <= self.jump[0]
             parts = [self.others[low], self.others[~low]]
         for part in parts:
-            # As much again, since corners need not be the extremes of a curved function.
+            # As much again, because corners need not be the extremes of a curved function.
             width = float(part[-1] - part[0]) + ROUNDING * float(np.abs(part).max())
             if meet((lower, upper), (part[0] - width, part[-1] + width)):
                 return True
@@ -284,7 +284,7 @@ def questions(row: PrintedRow[ProfiledClaim]) -> list[ProfileQuestion] | None:
 def motions(row: PrintedRow[ProfiledClaim], profile: str) -> list[ProfileMotion | None] | None:
     """The profile at each of `questions`, the printed numbers first.
 
-    None stands for numbers at which no profile was found that keeps the limits, and in place of
+    None stands for numbers at which no profile was found that keeps the limits, and instead of
     all if `questions` has no answer.
 
     Parameters

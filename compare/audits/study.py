@@ -108,7 +108,7 @@ class Study:
             "reading": reading,
             "certificates": certificates_folder,
         }
-        """What the study was kept to, and given beside; None where it was not."""
+        """What the study was kept to, and given beside; None if it was not."""
         self._progress = progress or (lambda _: None)
         self._kept: dict[tuple[Any, ...], Any] = {}
         self.cache = cache
@@ -281,7 +281,7 @@ class Study:
     def settings(self, algorithm_id: str) -> dict[str, Algorithm[Any]]:
         """The algorithm as listed, and under settings spread over all that the paper leaves open.
 
-        `spread_settings` says how; empty where the algorithm's kind is not implemented.
+        `spread_settings` says how; empty if the algorithm's kind is not implemented.
         """
         algorithm = self.algorithm(algorithm_id)
         if algorithm is None:

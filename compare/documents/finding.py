@@ -151,13 +151,13 @@ class Finding(Entry):
     decides: bool = True
     """Whether the finding enters the verdict on its claim."""
     claim: str | None = None
-    """What it is about; null where it is about the case or a table and judges no claim."""
+    """What it is about; null if it is about the case or a table and judges no claim."""
     problem: str | None = None
     """Null where it depends on none."""
     reading: str | None = None
     """Null where it depends on none."""
     confidence: OrWhy[Confidence] = Field(default_factory=_confidence)
-    """How it is known; null where it decides nothing."""
+    """How it is known; null if it decides nothing."""
     printed: str | None = None
     """The printed digits, with units."""
     computed: str | None = None
@@ -247,6 +247,6 @@ class Judgement(Entry):
     beside: str = ""
     """What stands beside the word wherever it is shown, such as "but on doubtful numbers"."""
     readings: dict[str, ClaimVerdict]
-    """The verdict under each reading by itself."""
+    """The verdict under each reading separately."""
     informs: bool = Field(default=False, exclude=True)
     """Whether ``why`` is of a finding that informs, and no reason for the verdict."""

@@ -271,7 +271,7 @@ class Words:
         As docs/reference/command-line.md names it.
     enums : tuple of type
     table : str
-        Name of the table in the docs that explains them; empty where the list of keys does.
+        Name of the table in the docs that explains them; empty if the list of keys does.
     """
 
     key: str

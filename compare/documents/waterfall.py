@@ -19,7 +19,7 @@ SHARED_OPTIMUM = "optimum of the same curve, shared durations"
 STAND_IN_OPTIMUM = "optimum of the case file's curve, of which no time is printed"
 """Name of that step where every printed time is of a curve that a case file cannot name."""
 RATIOS_OPTIMUM = "shortest total of the same curve at these ratios of the durations"
-"""Name of that step where the question fixes the ratios, so that the total alone is chosen."""
+"""Name of that step where the question fixes the ratios, so the total alone is chosen."""
 FREED_OPTIMUM = "the same curve, each duration chosen"
 """Name of the step below it: what fixing the ratios costs."""
 

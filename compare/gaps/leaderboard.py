@@ -192,7 +192,7 @@ def _ranked(label: str, rows: Sequence[Summary]) -> Ranked:
 
 
 def _running_times(spent: Array, hits: Array) -> Array:
-    """Evaluations for each hit; inf where there is none."""
+    """Evaluations for each hit; inf if there is none."""
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.asarray(np.where(hits > 0, spent / hits, np.inf), dtype=np.float64)
 

@@ -43,7 +43,7 @@ class Bracket:
     upper : float
         Total of a feasible trajectory.
     lower : float or None
-        Certified lower bound; None where there is none.
+        Certified lower bound; None if there is none.
     """
 
     upper: float
@@ -141,7 +141,7 @@ class Trial:
             raise TrajgapError("trial: give a seed of 0 or more and a budget of 1 or more")
         object.__setattr__(self, "handling", str(self.handling))
         if not self.problem_sha256:
-            # Here alone, so that processes that get trials ready-made start in two thirds of it.
+            # Here alone, so processes that get trials ready-made start in two thirds of it.
             from ...nlp import problem_seal
 
             object.__setattr__(self, "problem_sha256", problem_seal(self.problem))

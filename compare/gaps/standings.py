@@ -133,7 +133,7 @@ def _gap(total: float, base: float) -> float | Why:
 
 def _target(rows: Sequence[Row], optimum: float, wanted: float) -> TargetReached:
     hits = np.array([hit(row, optimum * (1 + wanted)) for row in rows])
-    # A failed run says no longer what it spent: all of its budget, so that failing is not cheap.
+    # A failed run says no longer what it spent: all of its budget, so failing is not cheap.
     ended = [row.budget if row.status is RowStatus.FAILED else row.evaluations for row in rows]
     return target_reached(wanted, hits, np.array(ended, dtype=np.float64))
 

@@ -77,7 +77,7 @@ def summary_of(label: str, rows: Sequence[Row]) -> Summary:
     optimum = first.reference_upper
     assert optimum is not None
     hits = np.array([[hit(row, optimum * (1 + gap)) for row in rows] for gap in LADDER])
-    # A failed run says no longer what it spent: all of its budget, so that failing is not cheap.
+    # A failed run says no longer what it spent: all of its budget, so failing is not cheap.
     ended = np.array(
         [row.budget if row.status is RowStatus.FAILED else row.evaluations for row in rows]
     )

@@ -43,7 +43,7 @@ def expected_running_time(hits: Array, evaluations: Array) -> float:
     Parameters
     ----------
     hits : ndarray, shape (runs,)
-        Evaluations at the hit; inf where there is none.
+        Evaluations at the hit; inf if there is none.
     evaluations : ndarray, shape (runs,)
         Evaluations of the whole run.
 

@@ -1,4 +1,4 @@
-"""A process that runs one trial after another, so that nothing an optimiser does can end a study.
+"""A process that runs one trial after another, so nothing an optimiser does can end a study.
 
 The process itself is `main`: it reads trials from its standard input and writes rows to its
 standard output, until its input is closed.
@@ -288,7 +288,7 @@ def main() -> None:
 def _wait_for(asked: IO[bytes], trials: queue.SimpleQueue[Trial]) -> None:
     while isinstance(trial := _receive(asked), Trial):
         trials.put(trial)
-    # The parent is gone or wants no more. A search may hang, or have started others, so that this
+    # The parent is gone or wants no more. A search may hang, or have started others, so this
     # thread ends the process and its group.
     if hasattr(os, "killpg") and os.getpgrp() == os.getpid():
         os.killpg(0, signal.SIGKILL)

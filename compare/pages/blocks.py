@@ -118,7 +118,7 @@ class Drawn:
 
     @property
     def size(self) -> tuple[int, int]:
-        """Width and height in pixels, so that the page does not move when it appears."""
+        """Width and height in pixels, so the page does not move when it appears."""
         found = re.search(r'viewBox="0 0 ([0-9.]+) ([0-9.]+)"', self.document)
         width, height = (float(found[1]), float(found[2])) if found else (4.0, 3.0)
         return round(width * 4 / 3), round(height * 4 / 3)
@@ -163,7 +163,7 @@ class Claimed:
     caveats : tuple of Caveat
         Each begins and ends as a sentence does.
     answer : str
-        What the authors say; empty where they were not asked.
+        What the authors say; empty if they were not asked.
     anchor : str
         Name under which others point here.
     id : str
@@ -243,7 +243,7 @@ class Page:
     trail: str = ""
     """Who printed it, when it was audited, and with what."""
     doi: str = ""
-    """Of the paper; empty where it is not named."""
+    """Of the paper; empty if it is not named."""
     links: tuple[tuple[str, str], ...] = ()
     """Words and files that the head of the page leads to, where it is not a page of an audit."""
 
@@ -268,7 +268,7 @@ class Page:
 
     @property
     def doi_link(self) -> str:
-        """Address of the paper; empty where the DOI is none."""
+        """Address of the paper; empty if the DOI is none."""
         return f"https://doi.org/{quote(self.doi, '/')}" if _DOI.fullmatch(self.doi) else ""
 
 

@@ -119,7 +119,7 @@ def _sentence(caveat: Caveat) -> Caveat:
 
 
 def answered(claim: AnyClaim) -> str:
-    """What the authors say of a claim, or that they were asked; empty where they were not."""
+    """What the authors say of a claim, or that they were asked; empty if they were not."""
     if claim.answer is None:
         return ""
     answer = claim.answer

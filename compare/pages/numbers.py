@@ -47,7 +47,7 @@ _ON_A_LINE = 2
 _MANY = 10
 """Distance, as a share, beyond which a multiple says more than a percentage."""
 _SAME = 5e-4
-"""Distance, as a share, whose one decimal is 0, so that its sign would say nothing."""
+"""Distance, as a share, whose one decimal is 0, so its sign would say nothing."""
 _NOTED = (*OPTIMA_STEPS, OPTIMUM_RETIMED, THIRD_ORDER)
 """Steps whose note stands in the open: the optimum, its proof and routes, and its cross-check."""
 _FEW = 3
@@ -148,7 +148,7 @@ def _evidence(step: Step) -> Cell:
 
 
 def problem_cell(case: Case, pid: str) -> str:
-    """What a table calls a problem: its title; nothing where it is the only one."""
+    """What a table calls a problem: its title; nothing if it is the only one."""
     title = next((p.title for p in case.problems if p.id == pid), "") or pid
     return title if len(case.problems) > 1 else ""
 
@@ -167,7 +167,7 @@ def problem_name(one: CaseAudit, pid: str, reading: str | None = None) -> str:
 
 
 def only_under(study: Study, rid: str) -> str:
-    """Under which reading something is shown, behind its title; empty where there is one."""
+    """Under which reading something is shown, behind its title; empty if there is one."""
     return f"; {study.case.labels[rid]}" if len(study.readings) > 1 else ""
 
 

@@ -46,7 +46,7 @@ class Anytime:
     label : str
     evaluations : ndarray, shape (points,)
     gaps : ndarray, shape (3, points)
-        Lower quartile, median and upper quartile over the runs, relative; inf where that many
+        Lower quartile, median and upper quartile over the runs, relative; inf if that many
         know no answer.
     steps, shares : ndarray
         Share of pairs of run and target that are reached, from each step on.
@@ -77,7 +77,7 @@ def gap_picture(
         Their order determines colours and line styles.
     title : str
     uncertainty : float or None
-        Relative width of the optimum's certified interval, drawn below zero; None where no lower
+        Relative width of the optimum's certified interval, drawn below zero; None if no lower
         bound is certified.
     budget : int
         Evaluations of a run.

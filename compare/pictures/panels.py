@@ -74,7 +74,7 @@ class Line:
         "position", "velocity" and so on.
     unit : (str, float)
     times, values : ndarray
-        s, and rad or m; NaN where the curve jumps.
+        s, and rad or m; NaN if the curve jumps.
     limits : sequence of float
         All that hold on either side; infinite ones are none.
     marks : sequence of Mark

@@ -53,12 +53,12 @@ class Distance:
         The optimum, s; an interval where each joint is planned by itself.
     least : float or None
         How far above its optimum the total is at least, however the digits were rounded: 0 where
-        rounding may explain all of it, None where nothing bounds it.
+        rounding may explain all of it, None if nothing bounds it.
     evidence : str
     broken : bool
         Whether the printed motion breaks a limit.
     timed : bool
-        Whether time alone was minimised, so that the distance is one from the optimum.
+        Whether time alone was minimised, so the distance is one from the optimum.
     """
 
     printed: float
@@ -108,7 +108,7 @@ class PaperRow:
         Of its result.
     cited, title : str
     distance : Distance or None
-        None where no problem is complete, or no total is printed.
+        None if no problem is complete, or no total is printed.
     reached : str
         Median gap of the paper's algorithm in its own way of searching.
     found : str
@@ -245,7 +245,7 @@ def distance_of(case: Mapping[str, Any]) -> Distance | None:
     Returns
     -------
     Distance or None
-        None where no problem is complete, or no total is printed.
+        None if no problem is complete, or no total is printed.
     """
     otherwise = {c["claim"] for c in case["claims"] if c.get("objective")}
     for entry in case["waterfalls"]:

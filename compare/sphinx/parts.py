@@ -69,7 +69,7 @@ def table(
 
 
 def picture(drawn: Picture, name: str, instead: nodes.Node) -> list[nodes.Node]:
-    """A picture inside the page, so that it follows the theme; without HTML what it says."""
+    """A picture inside the page, so it follows the theme; without HTML what it says."""
     inside, elsewhere = only(expr="format_html"), only(expr="not format_html")
     inside += nodes.raw("", framed(embedded(svg(drawn), name)), format="html")
     elsewhere += instead

@@ -64,7 +64,7 @@ def wanted_words(option: str) -> list[str]:
 
 
 def none_said(wanted: Sequence[str]) -> str:
-    """A sentence in place of an empty list of claims."""
+    """A sentence instead of an empty list of claims."""
     if not wanted:
         return "No claim was audited."
     *others, last = (f"“{word}”" for word in wanted)

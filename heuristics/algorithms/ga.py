@@ -101,7 +101,7 @@ class GA:
     mutation_reach : float
         Half-width of "creep" as a share of the range; not printed.
     elite : int
-        Best individuals that survive in place of the worst children; not printed.
+        Best individuals that survive instead of the worst children; not printed.
     penalty : float
         Total of an infeasible individual, s; not printed.
 

@@ -59,7 +59,7 @@ class KeptProofs:
         Returns
         -------
         Certified or None
-            None where nothing is kept, or what is kept does not prove it in that time.
+            None if nothing is kept, or what is kept does not prove it in that time.
         """
         if not self._files.used:
             return None

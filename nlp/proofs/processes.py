@@ -20,7 +20,7 @@ _BEGIN = (
     "import importlib; importlib.import_module(room).serve()"
 )
 """What a process runs: the modules of its parent, and nothing of the program that asked for it, so
-that no program needs a guard around its beginning."""
+no program needs a guard around its beginning."""
 
 
 class ProcessGone(Exception):

@@ -267,7 +267,7 @@ class Interpolant(Curve):
 
     @cached_property
     def table(self) -> Conditions:
-        """The conditions as arrays, ordered by break, so that the linear system is banded."""
+        """The conditions as arrays, ordered by break, so the linear system is banded."""
         orders = {at: frozenset(order for order, _ in at) for at in {*self.prescribed}}
         fixed = {at: given | {0} for at, given in orders.items()}
         given = [fixed[at] for at in self.prescribed]

@@ -20,7 +20,7 @@ PERM = np.array(
 """PERM[p, r] = p!/(p − r)!: the factor of sᵖ⁻ʳ in the r-th derivative of sᵖ."""
 LOOSE = 1e-12
 """Share of a polynomial's terms that is added to a bound: far above the rounding of ten of them, so
-that what is left out by it would not have changed one bit."""
+what is left out by it would not have changed one bit."""
 Clock = tuple[Array, Array, int, Array]
 """Of derivatives N_r/t′²ʳ⁻¹: N_{r+1}, t′, r, and the least t′ of each piece."""
 _SETTLED = 2.0**-52
@@ -113,7 +113,7 @@ def roots_in_unit(a: Array) -> Array:
     Returns
     -------
     ndarray, shape (powers − 1, ...)
-        Ascending along the first axis; NaN where there are fewer.
+        Ascending along the first axis; NaN if there are fewer.
     """
     degree, flat = len(a) - 1, a.reshape(len(a), -1)
     with np.errstate(all="ignore"):

@@ -137,7 +137,7 @@ def test_an_objective_returns_one_number_each(values: list[object], said: str) -
 
 def test_fixed_ratios_leave_nothing_to_search() -> None:
     problem = Problem([[0.0], [0.5], [1.5]], Limits(1.0), cubic_spline(2), ratios="equal")
-    said = "ratios: the durations have fixed ratios, so that the total is the one unknown"
+    said = "ratios: the durations have fixed ratios, so the total is the one unknown"
     for refused in (
         lambda: DeathPenalty(problem),
         lambda: Stretch(problem),

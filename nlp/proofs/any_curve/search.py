@@ -50,7 +50,7 @@ class CutEffort:
     tolerance : float
         Excess, scaled, above which a tangent is added: that of the linear program.
     rounds : int
-        Linear programs for one box at most: a guard, since they end where tangents gain little.
+        Linear programs for one box at most: a guard, because they end where tangents gain little.
     stall : int
         Rounds in which a bound must gain a tenth of what it lacks: fewer could be one unlucky
         vertex.
