@@ -47,7 +47,7 @@ and then they are in doubt for it as they are for one in its favour."""
 
 def built_remark() -> str:
     """The caveat of a claim that holds by construction."""
-    return f"{BUILT}, whatever the durations, so it is no evidence for the printed numbers"
+    return f"{BUILT}, for any durations, so it is no evidence for the printed numbers"
 
 
 def nature_caveat(nature: Nature) -> Caveat:

@@ -377,7 +377,7 @@ REFUSED = [
     ),
     (
         lambda: run(given(searching=lambda *_: None), PROBLEM, 0),
-        "^x: judged no position; call the objective",
+        "^x: evaluated no position; call the objective",
     ),
     *(
         (lambda s=shape: run(asking(s), PROBLEM, 0), r"^objective: .* \(batch, 3\).* as x\[None\]")
