@@ -237,7 +237,7 @@ def reachable_total(
     Parameters
     ----------
     problem : Problem
-        With a determined, homogeneous curve.
+        Its curve must be determined and homogeneous.
     durations : array_like, shape (segments,)
         s.
     lower, upper : array_like, shape (way-points, joints)

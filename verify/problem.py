@@ -76,7 +76,7 @@ class StatedProblem:
     ends: list[list[Fraction | None]]
     """[0 start, 1 end][joint]: velocity prescribed there; None if it is free."""
     shares: list[Fraction] | None = None
-    """Of the segments in the total, where ratios fix them."""
+    """Shares of the segments in the total, if ratios fix them."""
     chord: bool = False
     """Whether they are fixed by chord lengths, which are not rational numbers; without shares."""
 

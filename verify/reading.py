@@ -52,7 +52,7 @@ class Clock:
         self.end = time.monotonic() + left
 
     def shorten(self, seconds: float) -> None:
-        """From now on so many seconds are left at most."""
+        """Leave at most this many seconds from now on."""
         self.end = min(self.end, time.monotonic() + seconds)
 
     @property

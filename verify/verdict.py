@@ -160,7 +160,7 @@ def verify_certificate(
     seconds : float
         Time limit, reading the file included.
     clock : Clock, optional
-        That the caller began before, instead of one of ``seconds`` from now.
+        A clock that the caller has already started; by default one of ``seconds`` from now.
     spread : callable, optional
         Where parts of a large tree are judged: given a function, what all its calls have in common
         and an iterable of the other arguments, it yields the results in this order. Without one,

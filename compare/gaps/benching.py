@@ -100,7 +100,7 @@ class BenchPlan:
     problem : Problem
         As stated.
     name, reading : str
-        What rows call it.
+        Its names in rows.
     entrants : tuple of Entrant
     trials : tuple of Trial
         By entrant, then by seed.

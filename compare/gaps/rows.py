@@ -28,7 +28,7 @@ class RowStatus(StrEnum):
     """How a run ended."""
 
     FINISHED = "finished"
-    """By itself, or because its budget was spent."""
+    """The search ended, or its budget was spent."""
     FAILED = "failed"
     """It raised an exception, evaluated nothing, ran too long, or its process ended; the message
     says which."""
@@ -91,7 +91,7 @@ class Trial:
     problem : Problem
         Searched with one duration vector for all its joints, whatever its coupling.
     name, reading : str
-        What rows call it, such as "puma560-mnam-pso-353/six-joints" and "durations-positive".
+        Its names in rows, such as "puma560-mnam-pso-353/six-joints" and "durations-positive".
     optimizer : str
         As `find_optimizer` takes it.
     settings : str
@@ -163,7 +163,7 @@ class Row:
     key : str
         Of the trial.
     problem, reading, problem_sha256, optimizer, settings, origin, handling, seed, stream, budget
-        Of the trial; ``problem`` is its name.
+        Those of the trial; ``problem`` is its name.
     segments : int
         Number of durations.
     status : RowStatus

@@ -64,7 +64,7 @@ def bench_result(
     Parameters
     ----------
     rows : mapping of str to sequence of Row
-        Of each optimiser, by its label.
+        Rows of each optimiser, by its label.
     optimum : Solution, Reference or float
     problem, reading : str
     budget, seeds : int

@@ -48,7 +48,7 @@ class StudyProblem:
     Attributes
     ----------
     name, reading : str
-        As rows state them.
+        Its names in rows.
     case : Case
         The case that states it.
     problem_id : str

@@ -33,7 +33,7 @@ class Summary:
     Attributes
     ----------
     problem : str
-        As rows call it.
+        Its name in rows.
     optimizer : str
         Label of the optimiser in its study.
     handling : str
@@ -42,8 +42,8 @@ class Summary:
     runs, failed : int
         Number of runs, and of those that raised, hung or broke the rules.
     lower_quartile, median, upper_quartile : float
-        Gap of the feasible time to the upper end of the optimum, relative; inf if so many runs have
-        no feasible answer.
+        Relative gap of the feasible time to the upper end of the optimum; inf if that quantile
+        falls on a run without a feasible answer.
     within : tuple of int
         Number of runs that come within each gap of `LADDER`.
     spent : tuple of int

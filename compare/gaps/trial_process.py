@@ -51,7 +51,7 @@ class TrialOutcome:
     ----------
     row : Row
     seconds : float
-        That the run took.
+        Duration of the run.
     """
 
     row: Row

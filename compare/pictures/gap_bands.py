@@ -39,7 +39,7 @@ _STYLES: tuple[tuple[str, Line], ...] = (
 
 @dataclass(frozen=True, eq=False)
 class Anytime:
-    """What one optimiser's runs know after so many evaluations.
+    """Quantiles of one optimiser's runs after each number of evaluations.
 
     Attributes
     ----------

@@ -38,7 +38,7 @@ class Program:
     ----------
     problem : Problem
     unit : float
-        Time unit, s. That of angles is each joint's mean way between way-points.
+        Time unit, s. The unit of angle is each joint's mean way between way-points.
     floor : ndarray, shape (segments,)
         Least durations, s.
 
@@ -364,7 +364,7 @@ class Program:
     def priced(
         self, bounds: Array, stated: Array, rows: Rows, duals: Array
     ) -> tuple[Places, Array, Array]:
-        """What multipliers say of limits at places, and of bounds on durations, in seconds.
+        """Multipliers of limits at places and of bounds on durations, in seconds.
 
         From those of the bounds on variables, of what the program states, and of the rows: places;
         the multipliers of the limits there, in shares of the larger side (positions in rad), signed

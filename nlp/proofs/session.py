@@ -74,7 +74,7 @@ class Ladder:
         return [*(g for g in self.gaps if g > self.apart * last), last]
 
     def leaps(self, gap: float, took: float, left: float) -> bool:
-        """Whether the last stage comes next, after one of ``gap`` that took some of the time."""
+        """Whether the last stage is next, after one of ``gap`` that took ``took`` seconds."""
         soon = gap <= self.near and took * self.growth <= left
         return self.near > 0.0 and (soon or left == math.inf)
 

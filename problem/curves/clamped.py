@@ -137,7 +137,7 @@ class ClampedBSpline(ClampedDeclaration, StretchedCurve):
         return super().motion_values(waypoints) if self.stretched else waypoints
 
     def batch_reach(self, values: Array, durations: Array, asked: Asked) -> Array:
-        """Of all pieces at once."""
+        """Compute it for all pieces at once."""
         if self.stretched:
             return super().batch_reach(values, durations, asked)
         return clamped_reach(self, values, as_batch(self, durations), asked)

@@ -248,7 +248,7 @@ class Interpolant(Curve):
         return values
 
     def batch_reach(self, values: Array, durations: Array, asked: Asked) -> Array:
-        """By the compiled kernel."""
+        """Compute it with the compiled kernel."""
         return reach_of(self.layout, values, as_batch(self, durations), asked)
 
     def value_gradients(

@@ -62,7 +62,7 @@ def solve_in_closed_form(curve: Curve, waypoints: ArrayLike, limits: ArrayLike) 
     waypoints : array_like, shape (way-points, joints)
         rad.
     limits : array_like, shape (joints, 3)
-        As `Limits.derivatives`; infinite for no limit.
+        Like `Limits.derivatives`; infinite for no limit.
 
     Returns
     -------

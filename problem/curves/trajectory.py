@@ -93,7 +93,7 @@ class Trajectory:
     def derivatives(self, order: int) -> Array:
         """Coefficients in s of a time derivative, (powers, pieces, joints); not to be written to.
 
-        As many powers as the highest degree leaves, at least one.
+        It has as many powers as the highest degree leaves, at least one.
         """
         if order not in self._known:
             if order == 0:

@@ -188,7 +188,7 @@ class TimedUniformBSpline(UniformBSpline):
         return np.asarray(matrix @ (waypoints - waypoints[0]), dtype=np.float64)
 
     def batch_reach(self, values: Array, durations: Array, asked: Asked) -> Array:
-        """Of all pieces at once."""
+        """Compute it for all pieces at once."""
         nodes = self.clock.astype(np.float64)
         clocks, valid = runs_forwards(nodes, as_batch(self, durations))
         found = asked.room(valid.size)
@@ -218,7 +218,7 @@ def uniform_cubic_b_spline(
     time : Timing or str
         "stretched" or "timed".
     natural_clock : bool
-        Of a timed one: as in `TimedUniformBSpline`.
+        For a timed curve, as in `TimedUniformBSpline`.
 
     Raises
     ------

@@ -74,7 +74,7 @@ class Designed(ComparedWhere):
     pairs: Count
     """Pairs of settings with two answers."""
     typical: Count
-    """Of them, those in which half of the pairs of runs or more show the printed advantage."""
+    """Settings in which at least half of the pairs of runs show the printed advantage."""
     shorter: Count
     """Those in which the improved one is shorter in more than half of the pairs of runs."""
     most: Share

@@ -79,12 +79,12 @@ def _sum(parts: Sequence[Interval]) -> Interval:
 
 
 def shown(x: Fraction | float, places: int = 6) -> str:
-    """A number with so many significant digits."""
+    """A number with this many significant digits."""
     return f"{float(x):.{places}g}"
 
 
 def span(interval: Interval, places: int = 6) -> str:
-    """Both ends of an interval, with so many significant digits; one number if they print alike."""
+    """Both ends of an interval, to this many digits; one number if they print alike."""
     return ranged(float(interval.lower), float(interval.upper), f".{places}g")
 
 

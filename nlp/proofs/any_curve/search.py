@@ -310,7 +310,7 @@ class Search:
         return self.node(box, np.concatenate([change_rows(scaled), tangents]), target, None)
 
     def exact(self, leaf: Node, digits: int) -> tuple[Fraction, list[Weighted]]:
-        """What the weights of a leaf, rounded to so many digits, prove; and its rows with them."""
+        """What a leaf's weights, rounded to this many digits, prove; and its weighted rows."""
         if not leaf.box:
             return self.cap, []
         scaled = self.scaled
