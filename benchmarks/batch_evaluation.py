@@ -4,7 +4,7 @@
 
 The first problem is the six-joint PUMA 560 one of doi 10.12677/mos.2024.136535 (Table 1 and its
 limits), beside the code that papers have; the second a C4 quintic spline through random way-points,
-beside scipy's spline, sampled. Repeats of both codes alternate, so that other load meets both; the
+beside scipy's spline, sampled. Repeats of both codes alternate, so other load meets both; the
 ratio is the median over the repeats. At population 10,000 the usual code is timed on a part of the
 particles and scaled per particle: its cost is their sum.
 """

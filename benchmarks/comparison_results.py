@@ -73,7 +73,7 @@ ORDER = (
 CLAIMS = {"pso": "improvement", "woa": "improvement", "ga": "faster-than-traditional"}
 ON = {
     "pso": "the paper's way-points",
-    "woa": "eight seeded way-points, since the paper prints none",
+    "woa": "eight seeded way-points, because the paper prints none",
     "ga": "the paper's way-points",
 }
 APART = "each joint separately"  # the paper's procedure: each segment takes the longest duration

@@ -2,7 +2,7 @@
 
     python benchmarks/first_answer.py [--only WORDS]
 
-Each command runs in a process of its own with a home folder of its own, so that nothing is compiled
+Each command runs in a process of its own with a home folder of its own, so nothing is compiled
 and no proof is kept when it runs for the first time; then it runs again. Processor seconds are
 those of the process and all that it started, user and system; beside them what the clock says. An
 audit is run a third time with what it has kept, the second time without.

@@ -11,7 +11,7 @@ death penalty.
 2. Runs per second at 6,000 evaluations: mealpy's, pymoo's and scipy's own loop called directly
    with the same objective, and the same optimiser by its name through `run_trial`.
 
-Each number is the least processor time of several rounds that take turns, so that other work on the
+Each number is the least processor time of several rounds that take turns, so other work on the
 machine hits all of them alike; everything runs in one thread.
 """
 

@@ -3,7 +3,7 @@
     python benchmarks/long_random.py             the table, some minutes
     python benchmarks/long_random.py --count 5   fewer problems of each kind
 
-Way-points are random walks of 1 to 4 joints, every fifth walk monotonic, so that some joints run at
+Way-points are random walks of 1 to 4 joints, every fifth walk monotonic, so some joints run at
 their velocity limit over several segments. Every fifth problem has no limits on jerk, every fifth
 has position limits near its way-points, every fifth a least duration. Seconds are processor seconds
 of one process, everything compiled. An answer that is not *converged* is printed with its problem.

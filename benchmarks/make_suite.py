@@ -67,7 +67,7 @@ LARGEST = 450_000
 ORDER = ("septic", "septic-c6", "353", "434", "cubic", "natural", "virtual", "quintic")
 """Curves, cheap ones first."""
 WALL = 36_000.0
-"""Seconds on the wall: only to end what hangs. Work is limited in processor seconds, so that a busy
+"""Seconds on the wall: only to end what hangs. Work is limited in processor seconds, so a busy
 machine makes no interval wider."""
 STARTS = 40
 """Random starts from which basins are counted."""
@@ -316,7 +316,7 @@ def write() -> None:
 
 
 def chosen(asked: argparse.Namespace) -> list[Written]:
-    """Instances that are asked for, short ones first, so that a stopped run has most of them."""
+    """Instances that are asked for, short ones first, so a stopped run has most of them."""
     part, parts = map(int, asked.part.split("/"))
     found = [one for one in instances() if not asked.names or one.name in asked.names]
     found.sort(key=lambda one: (ORDER.index(one.curve), one.segments, len(one.waypoints[0])))

@@ -1,7 +1,7 @@
 """Random problems of up to four segments by kind, each with a motion that is known to keep it.
 
 A kind is a curve and what the problem has beside limits of v, a and j. Limits, bounds and ranges
-leave the known motion some room, so that every problem has an answer.
+leave the known motion some room, so every problem has an answer.
 """
 
 from __future__ import annotations

@@ -21,7 +21,7 @@ from trajgap.nlp import solve
 MARKOV = {3: 18.0, 4: 96.0}
 """Of a cubic, |p'| ≤ 18 max|p| and |p''| ≤ 96 max|p| on [0, 1]."""
 LESS = 0.95
-"""Tightening goes on while it shrinks a box of durations by this factor."""
+"""Tightening continues while it shrinks a box of durations by this factor."""
 
 
 def shrunk(box, upper, limits):

@@ -1,7 +1,7 @@
 """How surely and how fast the twenty quintic problems are solved: single starts, and the default.
 
 ``python benchmarks/quintic_starts.py [--starts 20] [--only 0 7]``. Starts are log-uniform in
-[0.1, 10] times the rescaled equal durations. Timed: a whole `solve` from each start by itself, and
+[0.1, 10] times the rescaled equal durations. Timed: a whole `solve` from each start separately, and
 the default `solve`. The best is *best known*: nothing here proves it.
 """
 

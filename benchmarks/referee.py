@@ -8,7 +8,7 @@ Every planner that imports gets the same questions: way-points and limits. What 
 piecewise polynomial (`referee_motions.py`), and `check_motion` finds its true peaks. Sets:
 
 - ``paths``: five random way-points of seven joints, from seeds;
-- ``lines``: two of them, so that the path is a straight line and the optimum a closed form;
+- ``lines``: two of them, so the path is a straight line and the optimum a closed form;
 - ``states``: random states in motion at both ends (for planners that take them);
 - ``suite``: way-points and limits of the certified suite.
 
@@ -153,7 +153,7 @@ def rest_to_rest(question: Question, places: Array, order: int) -> float:
 def floor_of(setting: Setting, question: Question) -> float:
     """A time that no motion through the way-points within the limits is below, in closed form.
 
-    At rest at both ends: of every joint the sum over its monotone runs, rest to rest, since it
+    At rest at both ends: of every joint the sum over its monotone runs, rest to rest, because it
     stands still where it turns back (jerk counts only for a run that is the whole motion); and of
     every segment the time at full speed of the joint that needs longest.
     """

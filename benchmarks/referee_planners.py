@@ -49,7 +49,7 @@ class Question:
 
     @property
     def quintic(self) -> PPoly:
-        """The path under a jerk limit: the natural C4 spline, so that jerk has no steps."""
+        """The path under a jerk limit: the natural C4 spline, so jerk has no steps."""
         if self.waypoints.shape[0] == 2:
             return _line(self.waypoints)
         places = np.linspace(0.0, 1.0, self.waypoints.shape[0])

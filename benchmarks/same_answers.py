@@ -3,7 +3,7 @@
     python benchmarks/same_answers.py save FOLDER     what the trajgap on PATH answers
     python benchmarks/same_answers.py compare A B     what differs between two such folders
 
-Only the command line is used, so that a version from before a rebuilding answers too.
+Only the command line is used, so a version from before a rebuilding answers too.
 """
 
 from __future__ import annotations

@@ -5,7 +5,7 @@
     python benchmarks/scale.py --only "check ours"  rows whose beginning matches
     python benchmarks/scale.py --page               the docs page again, from its CSV
 
-Each row is a process of its own, so that its peak memory is its own; one BLAS thread. Seconds are
+Each row is a process of its own, so its peak memory is its own; one BLAS thread. Seconds are
 processor seconds after imports and after compiled kernels are loaded (a first call on a small
 problem). Way-points are random walks of six (solve) or seven (check) joints. `check FILE` reads a
 CSV of that many samples of a smooth motion and judges it, reading included.
@@ -402,7 +402,7 @@ def page(text, rows):
 
 
 def write(rows):
-    """Put rows into the CSV, in place of those of the same question, code, curve and size."""
+    """Put rows into the CSV, instead of those of the same question, code, curve and size."""
     keys = ("question", "code", "curve", "joints", "segments")
     kept = {tuple(str(row[k]) for k in keys): row for row in (*read(), *rows)}
     order = {tuple(map(str, row)): i for i, row in enumerate(ROWS)}

@@ -10,7 +10,7 @@ of ten. Brute force is differential evolution over the logarithms of the duratio
 method. It shares no code with `solve`; every motion counts only once `check` has passed it.
 
 The second takes those of every kind of `proved_problems.py`, most of which `solve` proves. A block
-of seeds that the file holds is left out: the same command goes on where it ended.
+of seeds that the file holds is left out: the same command continues where it ended.
 """
 
 from __future__ import annotations

@@ -70,7 +70,7 @@ def write_table(
     head = f'{{"format": "{FORMAT}", "version": "{version}", "instances": [\n'
     (folder / "suite.json").write_text(f"{head}{lines}\n]}}\n", encoding="utf-8")
     (folder / "suite.csv").write_text(csv_text(found), encoding="utf-8")
-    # A file without a row may be that of a run that goes on beside this one.
+    # A file without a row may be that of a run that continues beside this one.
     known = {f"{one.name}.json" for one in written}
     large = {f"{row['name']}.json" for row in found if row["certificate"] is None}
     for path in (folder / "certificates").glob("*.json"):

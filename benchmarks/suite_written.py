@@ -44,7 +44,7 @@ WORDS = {
 
 LIMITS = {
     # velocity, acceleration, jerk of a joint before its own factor; rad, s. The way-points lie
-    # within ±1.5 rad, so that a segment takes about a second.
+    # within ±1.5 rad, so a segment takes about a second.
     "v": (1.5, 40.0, 600.0),
     "a": (8.0, 4.0, 200.0),
     "j": (8.0, 20.0, 20.0),

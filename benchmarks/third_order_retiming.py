@@ -3,7 +3,7 @@
     python -m pip install ".[planners]"
     python benchmarks/third_order_retiming.py | python docs/tables.py third-order-retiming
 
-TOPPRA knows no jerk limit, so that it says nothing of how a jerk limit was treated. TOPP3 does. The
+TOPPRA knows no jerk limit, so it says nothing of how a jerk limit was treated. TOPP3 does. The
 timing of the optimum itself, s(t) = t, is one of those that it chooses from, whatever the grid. So
 TOPP3 must have an answer, and none that is longer than the optimum: otherwise one of the two takes
 the limits for others than they are. Both are asserted on three grids, and the command ends with 1

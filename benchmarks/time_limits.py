@@ -247,7 +247,7 @@ def measured(row, seconds, path):
                     child.kill()
                 word = said.removeprefix("end ") if said.startswith("end ") else ""
                 word = word or ("" if said else "no answer")
-                child.stdin.write(b"\n")  # it waited, so that its times could be read
+                child.stdin.write(b"\n")  # it waited, so its times could be read
                 with contextlib.suppress(BrokenPipeError):
                     child.stdin.flush()
     return word, took, max(0.0, took - seconds), beyond

@@ -4,7 +4,7 @@
 the shipped case anew with so many instances of each of its three steps, runs both
 procedures under every reading of the design, and writes one row per run, reading and objective.
 ``--summary`` reads the rows back. Instances are resampled, not runs: pairs of runs on one instance
-depend on each other. Totals of the printed procedures stand beside the printed ones, so that it
+depend on each other. Totals of the printed procedures stand beside the printed ones, so it
 shows under which readings such a total is usual at all.
 """
 

@@ -160,8 +160,9 @@ def elements() -> str:
     lines += [
         "Every numbered equation, table and figure, every algorithm and every claim: the file "
         "that implements it, and the test that compares that with the paper's own formulas, "
-        "written once more as scalars. What the extracted text does not carry is said. Made from "
-        "[a list](../../elements.toml), of which a test counts the numbers of each paper.",
+        "written once more as scalars. Anything missing from the extracted text is stated. Made "
+        "from "
+        "[a list](../../elements.toml), and a test counts its numbers of each paper.",
         "",
     ]
     for paper in listed["papers"]:

@@ -55,7 +55,7 @@ def uniform_rescaling(problem: Problem) -> Array:
     if beyond:
         raise TrajgapError(
             f"uniform rescaling: equal durations lead joint {beyond[0].joint} beyond a position "
-            "limit; no uniform stretch moves the path"
+            "limit, and no uniform stretch changes the path"
         )
     if found.verdict is not Verdict.PASS:
         clipped = " set to the duration bounds" if (durations != equal).any() else ""

@@ -112,7 +112,7 @@ def searched(
     Raises
     ------
     TrajgapError
-        If it judged nothing, or handed over something that is not a batch of positions.
+        If it evaluated nothing, or passed something that is not a batch of positions.
     """
     per, blocks = search.per_iteration, search.iterations + 1
     budgeted = Budgeted(objective, bounds.lower.size, per * blocks)

@@ -30,7 +30,7 @@ class TentCollapse:
     Attributes
     ----------
     start : Fraction
-        As a decimal; the double orbit starts at the nearest double.
+        Start as a decimal; the double orbit starts at the nearest double.
     doubles : ndarray, shape (steps + 1,)
     exact : tuple of Fraction, length steps + 1
     zero_at : int or None
@@ -57,7 +57,7 @@ def tent_collapse(
     With β = 1/2 no step of the double orbit rounds: x/β and 1 − x are exact there. But every
     double is a whole number over a power of two, each step takes one factor from that power, and
     after at most 54 steps (for a double in [2⁻¹, 1], or any drawn as k·2⁻⁵³) nothing is left: the
-    orbit is 0 for ever. The decimal that is meant has other factors and never ends there; its
+    orbit is 0 for ever. The intended decimal has other factors and never ends there; its
     orbit is periodic, hence not chaotic either.
 
     Parameters
@@ -237,7 +237,7 @@ class RateBranches:
     crossover_jump, mutation_jump : float
         Value at 1/2 minus the limit from below.
     negative : float
-        arcsin(f_ave/f_max) for the fitness values −2 and −1, as −T would give: NaN, since their
+        arcsin(f_ave/f_max) for the fitness values −2 and −1, as −T would give: NaN, because their
         quotient exceeds 1.
     """
 

@@ -54,7 +54,7 @@ Method = Algorithm[Any] | Search
 
 M = TypeVar("M", bound=Method)
 _SHARES = 4
-"""Pieces of work for each process, so that none waits long for the last one."""
+"""Pieces of work for each process, so none waits long for the last one."""
 
 
 def _at_once(method: Method) -> int:

@@ -21,7 +21,7 @@ class Bounds:
     Attributes
     ----------
     lower, upper : ndarray, shape (dimensions,)
-        In s for durations; infinite where there is none.
+        In s for durations; infinite if there is none.
     """
 
     lower: Array
@@ -48,7 +48,7 @@ class DeathPenalty:
         Fitness of an infeasible vector, s.
     tolerance : float
         Relative excess over a limit that still counts as keeping it: half of the checker's, so
-        that an answer at the edge passes the checker, which adds a bound on rounding errors.
+        an answer at the edge passes the checker, which adds a bound on rounding errors.
 
     Raises
     ------

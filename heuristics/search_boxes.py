@@ -13,7 +13,7 @@ from .baseline import uniform_rescaling
 from .objective import Bounds
 
 _DIGITS = 3
-"""Significant digits of a bound that is found: rounded up, so that it still holds."""
+"""Significant digits of a bound that is found: rounded up, so it still holds."""
 
 
 def looked_in(method: Algorithm[Any] | Search, problem: Problem) -> Bounds:
@@ -22,7 +22,7 @@ def looked_in(method: Algorithm[Any] | Search, problem: Problem) -> Bounds:
 
 
 def search_box(problem: Problem) -> Bounds:
-    """Duration bounds of a problem, with finite bounds in place of missing ones.
+    """Duration bounds of a problem, with finite bounds instead of missing ones.
 
     Equal durations, stretched until they keep every limit, have some total T; no segment of a
     shorter motion takes T or longer. So T bounds every duration and excludes no optimum. It limits

@@ -46,7 +46,7 @@ def _alarmed(seconds: float) -> Iterator[None]:
 
     before = signal.signal(signal.SIGALRM, over)
     try:
-        # Inside the try, so that even an alarm that comes at once is taken back.
+        # Inside the try, so even an alarm that comes at once is taken back.
         signal.setitimer(signal.ITIMER_REAL, seconds, _AGAIN)
         yield
     finally:

@@ -62,7 +62,7 @@ _LIMIT: ContextVar[RunClock] = ContextVar("limit")
 def stopping_after(seconds: float) -> Iterator[None]:
     """End every local search within this context after a number of seconds, at its next step.
 
-    Of nested limits, the earlier one applies.
+    If limits are nested, the earlier one applies.
 
     Parameters
     ----------

@@ -9,7 +9,7 @@ _SIDES = {"lower": ROUND_FLOOR, "upper": ROUND_CEILING}
 """What is at least so much is rounded down, what is at most so much up; negative numbers too."""
 _WORK = 400
 """Digits of the quotient before it is cut to decimals: more than any double has before and after
-the point, so that no rounding comes before the last one."""
+the point, so no rounding comes before the last one."""
 
 
 def shown_bound(
@@ -25,7 +25,7 @@ def shown_bound(
     digits : int, optional
         Significant digits at most; zeros at the end are left out.
     places : int, optional
-        Decimals, in place of `digits`; all of them are written.
+        Decimals, instead of `digits`; all of them are written.
 
     Returns
     -------

@@ -1,8 +1,8 @@
 """A process that ends together with everything it has started, however far removed.
 
-On Linux `keep` forks: the child goes on, and the parent becomes its keeper. The kernel hands every
-orphan among the child's descendants to the keeper, whatever session it lives in, and the keeper
-ends them all with the child. Elsewhere only a process group can be ended as a whole.
+On Linux `keep` forks: the child continues, and the parent becomes its keeper. The kernel hands
+every orphan among the child's descendants to the keeper, whatever session it lives in, and the
+keeper ends them all with the child. Elsewhere only a process group can be ended as a whole.
 """
 
 from __future__ import annotations

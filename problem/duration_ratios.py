@@ -1,4 +1,4 @@
-"""Ratios of the segment durations that a question fixes, so that the total alone is chosen."""
+"""Ratios of the segment durations that a question fixes, so the total alone is chosen."""
 
 from __future__ import annotations
 
@@ -116,7 +116,7 @@ def no_formula(curve: Curve) -> str | None:
     str or None
         With what to do about it.
     """
-    fix = "leave the ratios out, so that each duration is free"
+    fix = "leave the ratios out, so each duration is free"
     if curve.free:
         return (
             f"ratios: {curve.name} leaves {curve.free} coefficients per joint free, so the total "

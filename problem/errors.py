@@ -87,7 +87,7 @@ class CaseError(TrajgapError):
     reason : str
         What is wrong and, after a semicolon, how to fix it.
     others : sequence of (str, str)
-        Field and reason of every further fault, so that one message reports all of them.
+        Field and reason of every further fault, so one message reports all of them.
 
     Notes
     -----

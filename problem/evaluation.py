@@ -25,7 +25,7 @@ class Evaluation:
     ----------
     ratios : ndarray, shape (batch, joints, 3)
         max over t of |v|/V, |a|/A, |j|/J, each by the limit on its side; 0 where there is no
-        limit, inf where a duration is not positive and finite.
+        limit, inf if a duration is not positive and finite.
     """
 
     ratios: Array
@@ -40,7 +40,7 @@ class Evaluation:
     def positions(self) -> Array:
         """How far each joint goes towards its position limits, shape (batch, joints).
 
-        As `Peak.ratio`: 1 at a limit, above 1 beyond it; −inf where there is none. No uniform
+        As `Peak.ratio`: 1 at a limit, above 1 beyond it; −inf if there is none. No uniform
         stretch changes it where the curve is homogeneous, and `stretch` leaves it out. Computed
         on first use.
         """
@@ -179,7 +179,7 @@ def _asked_of(problem: Problem, nodal: Array | None) -> _PositionsAsked | None:
 
 @lru_cache(maxsize=64)
 def _positions_asked(problem: Problem) -> _PositionsAsked | None:
-    """Keyed by the problem's identity, as `_fixed_question`; None where no position is limited."""
+    """Keyed by the problem's identity, as `_fixed_question`; None if no position is limited."""
     return _asked_of(problem, None)
 
 
@@ -214,7 +214,7 @@ def _question(problem: Problem, nodal: Array | None) -> _Question:
     limits = problem.limits.derivatives
     wanted = np.isfinite(limits)
     values = problem.curve.motion_values(problem.waypoints, nodal)
-    # A peak that is not wanted is 0, or inf where a duration is not positive: so is its ratio.
+    # A peak that is not wanted is 0, or inf if a duration is not positive: so is its ratio.
     divisors = np.where(wanted, limits, 1.0)
     return values, divisors, Asked(wanted), bool((divisors > 0).all())
 
@@ -245,7 +245,7 @@ def reachable_total(
     Parameters
     ----------
     problem : Problem
-        With a determined, homogeneous curve.
+        Its curve must be determined and homogeneous.
     durations : array_like, shape (segments,)
         s.
     lower, upper : array_like, shape (way-points, joints)

@@ -10,13 +10,13 @@ LONGEST_NAME = 100
 """Characters of the texts that a name keeps: with hash, another name before it and an ending it
 stays far below the 255 bytes that file systems allow."""
 _UNSAFE = re.compile(r"[^a-z0-9.-]+")
-"""Capitals are unsafe too: some file systems do not tell them from small letters."""
+"""Capitals are unsafe too: some file systems do not distinguish them from lower-case letters."""
 _HASH_LENGTH = 16
 """Characters of base 32, 80 bits: nobody finds two texts with the same ones."""
 
 
 def file_name(*parts: str) -> str:
-    """Name made of texts, without an ending: small letters, digits, dots, dashes, one underscore.
+    """Name made of texts, without an ending: lower-case letters, digits, dots, dashes, "_".
 
     One text that is such a name already stays as it is, and so do two joined by a dash if the
     first has no dash. Whenever anything else was changed, joined or cut, an underscore and a hash

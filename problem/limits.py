@@ -174,7 +174,7 @@ class Limits:
 
     @property
     def hull(self) -> Limits:
-        """The narrowest limits of equal sides that allow all that these allow.
+        """The narrowest symmetric limits that contain these.
 
         Every motion within these limits is within the hull, so a lower bound for the hull is also
         one here. Without uneven limits they are these limits themselves.
@@ -236,5 +236,5 @@ def _paired(name: str, pairs: Array) -> Array:
 
 
 def half_range(low: float, high: float, limit: float) -> float:
-    """Scale for an excess of position, so that its ratio is 1 at the limit."""
+    """Scale for an excess of position, so its ratio is 1 at the limit."""
     return float((high - low) / 2) if np.isfinite(high - low) else max(1.0, abs(limit))

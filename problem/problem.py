@@ -46,10 +46,10 @@ class Problem:
     name : str
     ratios : array_like, shape (segments,), or {"equal", "chord"}, optional
         Ratios of the durations, of any scale: then the total is the only unknown. "chord" uses the
-        distances between the way-points over all joints; they are computed here, so that the
+        distances between the way-points over all joints; they are computed here, so the
         problem of one joint keeps them. Without ratios each duration is free.
     linear : tuple of bool
-        Whether each joint slides instead of turning, so that its numbers are in m instead of rad;
+        Whether each joint slides instead of turning, so its numbers are in m instead of rad;
         none does by default.
 
     Raises

@@ -209,7 +209,7 @@ _CUT_SLACK = 1.0 + 1e-9
 class Measured:
     """A printed number in radians or metres and seconds: its value and the interval it stands for.
 
-    ``lower`` and ``upper`` are rounded outwards, so that the interval contains every value that
+    ``lower`` and ``upper`` are rounded outwards, so the interval contains every value that
     has these digits. All three agree for an exact number.
     """
 

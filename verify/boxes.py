@@ -167,7 +167,7 @@ def shapes(rows: Rows, powers: int, places: int) -> Array:
 def least_of_quadratic(gradient: Array, bend: Array, e: Array) -> Array:
     """At most gᵀδ + ½ δᵀBδ for all |δ_k| ≤ e_k, box by box.
 
-    In x = δ/e: x_k x_m ≥ −½(x_k² + x_m²), so that products of two take from the squares.
+    In x = δ/e: x_k x_m ≥ −½(x_k² + x_m²), so products of two take from the squares.
     """
     each = np.arange(e.shape[1])
     bend = bend * e[:, :, None] * e[:, None, :]

@@ -38,7 +38,7 @@ class Task:
     form : Form
     caps : ndarray, shape (2, joints, 4)
         Limits of orders 0 to 3 on the lower and the upper side, as sizes with the sign of the side
-        taken off: σ q⁽ʳ⁾ ≤ caps[(1 + σ)/2]; inf where there is none.
+        taken off: σ q⁽ʳ⁾ ≤ caps[(1 + σ)/2]; inf if there is none.
     total : float
     """
 

@@ -15,7 +15,7 @@ def least_durations(problem: StatedProblem, total: Fraction) -> list[Fraction]:
     """Least durations of any feasible answer of at most this total, s; 0 where none is proved.
 
     A segment between two way-points takes at least |Δq|/V. Where the velocity is continuous, and
-    u and w at the ends, |a| ≤ A keeps it below (|u| + |w| + A·total)/2, so that V is at most that.
+    u and w at the ends, |a| ≤ A keeps it below (|u| + |w| + A·total)/2, so V is at most that.
     Where the acceleration is continuous too, v less the parabola J·t(T − t)/2 is convex for
     |j| ≤ J, and so nowhere above its chord: V is at most max(|u|, |w|) + J·total²/8. A segment that
     begins or ends at rest, with the derivatives below order r at 0, takes at least

@@ -19,7 +19,7 @@ CHORD = "chord"
 """Stands for ratios of durations that no rational numbers state: those of chord lengths."""
 
 Bounds = tuple[Fraction, Fraction] | None
-"""Rational bounds of a number that may carry π; None where there is no limit."""
+"""Rational bounds of a number that may carry π; None if there is no limit."""
 
 _POLYNOMIALS = ("degrees", "continuity", "prescribed", "virtual")
 """Keys that declare a piecewise polynomial; without them the curve is named."""
@@ -74,9 +74,9 @@ class StatedProblem:
     curve: str | None
     """Name of such a curve."""
     ends: list[list[Fraction | None]]
-    """[0 start, 1 end][joint]: velocity prescribed there; None where it is free."""
+    """[0 start, 1 end][joint]: velocity prescribed there; None if it is free."""
     shares: list[Fraction] | None = None
-    """Of the segments in the total, where ratios fix them."""
+    """Shares of the segments in the total, if ratios fix them."""
     chord: bool = False
     """Whether they are fixed by chord lengths, which are not rational numbers; without shares."""
 
@@ -144,7 +144,7 @@ def in_own_units(
     second : Fraction
     steps : list, [step][joint]
     limits : list, [joint][order − 1]
-        None where there is none; one of 0 takes no part.
+        None if there is none; one of 0 takes no part.
     """
     joints, q = problem.joints, problem.waypoints
     units = exactly(proof["powers"], "powers", joints, _power_of_two)
@@ -187,14 +187,14 @@ def _pair(entry: Any) -> tuple[Bounds, Bounds]:
 
 
 def _larger(one: Bounds, other: Bounds) -> Bounds:
-    """Bounds of the larger of two sizes; None where one of them is no limit."""
+    """Bounds of the larger of two sizes; None if one of them is no limit."""
     if one is None or other is None:
         return None
     return max(one[0], other[0]), max(one[1], other[1])
 
 
 def _bounds(entry: Any) -> Bounds:
-    """Rational bounds of a number, which may carry a factor π or 1/π; None where there is none."""
+    """Rational bounds of a number, which may carry a factor π or 1/π; None if there is none."""
     if entry is None:
         return None
     if type(entry) is str:

@@ -2,7 +2,7 @@
 
 The argument is that of docs/explanation/certificates-quintic.md. The nodal equations come from the
 jumps of q''' and q''''; arrays lead with the leaf. A sum Σ x_i v_i with |x_i| ≤ 1 is held by its
-vectors, so that products of theirs count: where vectors point to different sides, that is far less
+vectors, so products of theirs count: where vectors point to different sides, that is far less
 than their norms say. Every result is a sum of products with fewer than 2000 roundings
 on any path, 2.3e-13 of the same sum over absolute values: `ROUND` of that sum is taken off.
 """
@@ -24,7 +24,7 @@ from .reading import Refused, need
 ROUND = 1e-12
 """Of a sum over absolute values: four times what its roundings can amount to."""
 BRIEFEST = 1e-40
-"""Durations in a leaf with limits are above it, so that nothing underflows."""
+"""Durations in a leaf with limits are above it, so nothing underflows."""
 WIDEST = 0.6
 """Half-width of a leaf in 1/h, as a share of the middle, is below it: at 1 there is no bound."""
 
@@ -55,7 +55,7 @@ class Task:
     steps: Array
     """By segment and joint."""
     limits: Array
-    """By joint and order, from 1 on; inf where there is none."""
+    """By joint and order, from 1 on; inf if there is none."""
     total: float
     basis: ClassVar[Array] = HERMITE[1:]
     """Powers of s in a piece with (step, v0, v1, a0, a1)."""
@@ -193,7 +193,7 @@ class Centre:
         return np.asarray(half @ self.root)
 
     def least(self, tau: Array, rows: Rows, weights: Array) -> Array:
-        """Lower bound of each leaf's weighted sum; −inf where there is none.
+        """Lower bound of each leaf's weighted sum; −inf if there is none.
 
         ``blame``, shape (leaf, segment), is left behind: by how much what was lost grows with the
         sides of a box, which proves nothing and tells where to cut.

@@ -52,7 +52,7 @@ class Clock:
         self.end = time.monotonic() + left
 
     def shorten(self, seconds: float) -> None:
-        """From now on so many seconds are left at most."""
+        """Leave at most this many seconds from now on."""
         self.end = min(self.end, time.monotonic() + seconds)
 
     @property
@@ -202,7 +202,7 @@ def read_document(path: str | Path, clock: Clock | None = None) -> Any:
 
 
 def _read(path: str | Path, clock: Clock | None) -> bytes:
-    # Without waiting, so that a pipe that nobody writes to cannot hold us.
+    # Without waiting, so a pipe that nobody writes to cannot hold us.
     number_ = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
     with open(number_, "rb") as file:
         about = os.fstat(number_)

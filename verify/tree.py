@@ -20,7 +20,7 @@ Spread = Callable[[Callable[..., Any], Any, Iterable[tuple[Any, ...]]], Iterable
 
 _PARTS = 12
 """Parts of a tree, about: some for each of a few cores. One process walks what is above them, so
-that more would keep the others waiting."""
+more would keep the others waiting."""
 CUT, LEAF, OPEN = "/", ".", "?"
 """Tags of a cut at a stated place, of a leaf, and of a leaf that nothing proves yet.
 
@@ -59,7 +59,7 @@ class ProofKind(ABC, Generic[B]):
     keys: ClassVar[tuple[str, ...]] = ()
     """Of ``proof``, besides the three that all have."""
     apart: ClassVar[int] = 0
-    """Nodes of a part at least where what is below a box is judged by itself, so that parts of a
+    """Nodes of a part at least where what is below a box is judged by itself, so parts of a
     tree may be judged in any order and elsewhere: fewer are not worth handing out. 0 without."""
 
     def __init__(

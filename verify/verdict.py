@@ -40,7 +40,7 @@ SECONDS = 60.0
 OLD_FORMATS = ("trajgap-certificate-1", "trajgap-state-1")
 """That were once written; what is in them is not read."""
 _KEYS = ("format", "made_by", "question", "problem", "problem_hash", "claim", "proof", "seal")
-"""Of the file; all are there and no other, so that nothing in it goes unread."""
+"""Of the file; all are there and no other, so nothing in it goes unread."""
 KINDS = {
     "rest-to-rest": "closed_form.EachAlone",
     "stretched": "closed_form.EachAlone",
@@ -50,7 +50,7 @@ KINDS = {
     "quintic-spline": "quintic.QuinticSpline",
     "declared": "declared.DeclaredCurve",
 }
-"""Module and class by ``proof.kind``; imported on first use, since two need numpy."""
+"""Module and class by ``proof.kind``; imported on first use, because two need numpy."""
 _OF_RATIOS = "fixed-ratios"
 """The one kind that speaks about declared curves at fixed ratios of the durations."""
 
@@ -105,7 +105,7 @@ class CertificateVerdict:
     out_of_time : bool
         The time ran out before anything was decided.
     lower, upper : Fraction or None
-        The optimum lies between; ``upper`` is None where none is claimed.
+        The optimum lies between; ``upper`` is None if none is claimed.
     infeasible : bool
         Proved that no durations are feasible.
     subject : Subject
@@ -160,7 +160,7 @@ def verify_certificate(
     seconds : float
         Time limit, reading the file included.
     clock : Clock, optional
-        That the caller began before, instead of one of ``seconds`` from now.
+        A clock that the caller has already started; by default one of ``seconds`` from now.
     spread : callable, optional
         Where parts of a large tree are judged: given a function, what all its calls have in common
         and an iterable of the other arguments, it yields the results in this order. Without one,

@@ -109,7 +109,7 @@ def shortest_trapezoid(start: AxisState, finish: AxisState, sizes: Sizes) -> Axi
     """The shortest motion whose acceleration is limited; accelerations of the states do not count.
 
     The velocity rises to one value v, stays and falls, or the other way round. Rising through dv
-    takes the way v dv/a with a = A where the speed grows and a = D where it falls, so that rising
+    takes the way v dv/a with a = A where the speed grows and a = D where it falls, so rising
     from u to v takes g(v) − g(u), and falling from v to w takes g(−w) − g(−v), where g(v) is
     v²/(2A) for positive v and v²/(2D) for others. It rises first if the way is longer than that
     of the direct change from the first velocity to the last.

@@ -100,7 +100,7 @@ def limits_line(study: Study, words: Mapping[str, Judgement]) -> tuple[str, set[
 
 
 def _places(rows: Sequence[AnyClaim]) -> str:
-    """Where few rows stand; empty where they stand in more places."""
+    """Where few rows stand; empty if they stand in more places."""
     found = list(dict.fromkeys(map(place, rows)))
     return " and ".join(found) if 0 < len(found) <= FEW else ""
 

@@ -131,7 +131,7 @@ def _without_totals(study: Study, words: Mapping[str, Judgement]) -> str:
     curves = dict.fromkeys(c.other_curve for c in timed if c.other_curve is not None)
     if curves:
         named = ", ".join(curves)
-        return f"The printed times belong to another curve ({named}), so no optimum applies."
+        return f"Printed times are on another curve ({named}), so no optimum applies."
     return "No printed total can be compared with an optimum."
 
 
@@ -426,16 +426,14 @@ def _percent_digits(share: float) -> str:
 
 
 def _unknown(solution: Solution) -> str:
-    """Why there is no optimum to compare with; empty where there is one."""
+    """Why there is no optimum to compare with; empty if there is one."""
     if solution.infimum is not None or solution.status is Status.NOT_ATTAINED:
         return "no shortest motion was found: the total falls as a duration goes to 0"
     if solution.status is Status.INFEASIBLE:
         where = "through the printed way-points" + at_ratios(solution.problem)
         return f"no motion {where} keeps the limits (proven)"
     if solution.problem.unscaled is not None:
-        return (
-            "the shortest total at these ratios cannot be checked: this curve has no formula for it"
-        )
+        return "the shortest total at these ratios cannot be checked: the curve has no formula"
     if not solution.found:
         return "the optimum cannot be computed: the solver found no motion within the limits"
     if solution.evidence not in (Evidence.CERTIFIED, Evidence.BEST_KNOWN):

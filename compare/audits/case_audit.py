@@ -69,8 +69,8 @@ _ENDING = (CaseError, ProcessError)
 class CaseAudit(InNotebooks):
     """Findings and verdicts of one case, with the study they were drawn from.
 
-    What is information only is computed on first use: waterfalls, the readings side by side, the
-    card.
+    Information that decides nothing is computed on first use: waterfalls, the readings side by
+    side, the card.
     """
 
     case: Case

@@ -191,7 +191,7 @@ def _changes(
         yield _Tried(slips, _peaks(problem, times.reshape(-1, h.size)), sizes[None])
     with np.errstate(invalid="ignore", divide="ignore"):
         ratios = np.nan_to_num(printed / sizes, nan=0.0)
-    # A way-point moves its joint alone, so that no other joint may be beyond a limit already.
+    # A way-point moves its joint alone, so no other joint may be beyond a limit already.
     beyond = ratios.max(axis=1) > 1.0
     for j in np.flatnonzero(beyond if finding.rule == "TG201" else np.ones_like(beyond)):
         label = problem.joints[j]

@@ -24,7 +24,7 @@ class OptimumRange:
     Attributes
     ----------
     lower, upper : float or None
-        s; None where no bound is proved. A best known total of numbers that are exact is both.
+        s; None if no bound is proved. A best known total of numbers that are exact is both.
     """
 
     lower: float | None
@@ -38,7 +38,7 @@ def optimum_range(row: PrintedRow[Claim]) -> OptimumRange:
     -----
     Upper: the durations found, stretched until they keep the tightest limits at every way-point of
     the box. Lower: a motion of any problem in the box, slowed down uniformly by c, keeps the limits
-    of the printed one, so that its total is at least the printed problem's over c. Limits of order
+    of the printed one, so its total is at least the printed problem's over c. Limits of order
     r that are larger by a factor f ask for a c of f^(1/r); way-points as well where each segment
     depends on its own two alone, for there every derivative scales with their distance.
     """

@@ -219,6 +219,6 @@ def _left_open(study: Study) -> Iterator[Advice]:
                 where=block.where or block.name,
                 claim=None,
                 says=f"Left open for {block.name}: {line}",
-                change="Print this choice, so that others can rerun the algorithm.",
+                change="Print this choice, so others can rerun the algorithm.",
                 edits=(),
             )

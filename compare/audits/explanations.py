@@ -284,7 +284,7 @@ def _by_slips(trial: _Trial, under: str, default: bool) -> list[Explanation]:
     Parameters
     ----------
     under : str
-        The reading, as the end of a sentence; empty where there is one alone.
+        The reading, as the end of a sentence; empty if there is one alone.
     default : bool
         Whether that is the default reading of several, which a card names so.
     """
@@ -349,7 +349,7 @@ def _likeliest(tried: Iterable[tuple[Slip, bool]]) -> Iterator[tuple[Slip, bool]
 
 
 def _row(study: Study, finding: Finding, claim: AnyClaim) -> DurationsClaim | MaximumClaim | None:
-    """The durations whose motion a finding is about; None where it is about digits alone."""
+    """The durations whose motion a finding is about; None if it is about digits alone."""
     if finding.rule not in _OF_MOTIONS:
         return None
     if isinstance(claim, DurationsClaim | MaximumClaim):
@@ -365,7 +365,7 @@ def _row(study: Study, finding: Finding, claim: AnyClaim) -> DurationsClaim | Ma
 
 def _claims(case: Case, finding: Finding) -> list[AnyClaim]:
     """Durations and numbers beside them, which the rules judge without a search for an optimum."""
-    # Tables alike are set beside an optimum, so that totals are asked about where they must be.
+    # Tables alike are set beside an optimum, so totals are asked about where they must be.
     kinds = (*_DECIDED_AT_ONCE, TotalTimeClaim) if finding.rule == "TG105" else _DECIDED_AT_ONCE
     return [c for c in case.claims if isinstance(c, kinds)]
 

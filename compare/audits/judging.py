@@ -145,7 +145,7 @@ def _open(judgement: Judgement, where: str) -> Judgement:
 def _confidence(behind: Iterable[Finding], verdict: ClaimVerdict) -> Confidence | Why:
     """How a verdict is known.
 
-    One finding contradicts a claim, so that the strongest counts; support, and what depends on the
+    One finding contradicts a claim, so the strongest counts; support, and what depends on the
     reading, rests on all of them.
     """
     known = [f.confidence for f in behind if isinstance(f.confidence, Confidence)]

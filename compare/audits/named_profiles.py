@@ -250,7 +250,7 @@ def sine_jerk(way: float, velocity: float, acceleration: float, jerk: float) -> 
     a constant jerk of 2J/π. It is (Jτ/π)(1 − cos(πt/τ)), which with its mirror image about the
     middle of the ramp sums to the whole change, as a straight line does: velocity changes by the
     same amount over the ramp. Both profiles are mirror images about the middle of each half and of
-    the whole, so that the ways are half of velocity times time in both. The shortest total is that
+    the whole, so the ways are half of velocity times time in both. The shortest total is that
     of the S-curve within 2/π of the jerk limit.
     """
     return s_curve(way, velocity, acceleration, 2.0 / pi * jerk)
@@ -266,7 +266,7 @@ def fourth_order(
     Notes
     -----
     The velocity rises to v as the position of an S-curve does, whose limits are those of the next
-    derivatives, in the time T(v). Its rise is the mirror image of itself about its middle, so that
+    derivatives, in the time T(v). Its rise is the mirror image of itself about its middle, so
     it takes the way v·T(v)/2, and slowing down as much. The whole is v·T(v) and the cruise.
     """
 
@@ -275,7 +275,7 @@ def fourth_order(
 
     if velocity < inf and velocity * rising(velocity) <= way:
         return rising(velocity) + way / velocity
-    # At least 4 cbrt(v/(2 snap)) pass for a rise, so that v·T(v) exceeds the way at twice the speed
+    # At least 4 cbrt(v/(2 snap)) pass for a rise, so v·T(v) exceeds the way at twice the speed
     # at which it would be equal then.
     above = min(velocity, 2.0 * (way * cbrt(2.0 * snap) / 4.0) ** 0.75)
     close = 4.0 * float(np.finfo(float).eps)  # the least that `brentq` takes
@@ -296,7 +296,7 @@ def resting_total(profile: str, ways: Array, limits: Array, straight: bool = Fal
     """Total (s) through way-points at rest.
 
     Each segment takes as long as its slowest joint needs. On a straight line joint j moves by
-    way_j·s(t), while s goes from 0 to 1 by the profile, so that the derivatives of s keep the
+    way_j·s(t), while s goes from 0 to 1 by the profile, so the derivatives of s keep the
     smallest limit_j/way_j over the joints that move.
 
     Parameters
@@ -317,7 +317,7 @@ def resting_total(profile: str, ways: Array, limits: Array, straight: bool = Fal
 
 
 def _time(profile: str, way: float, limits: Array) -> float:
-    """Time of one segment, infinite where a joint moves whose limit is 0."""
+    """Time of one segment, infinite if a joint moves whose limit is 0."""
     if way == 0.0:
         return 0.0
     if not (limits > 0.0).all():

@@ -279,7 +279,7 @@ class PrintedRow(Generic[C]):
         return self._duration_box, self.waypoint_box(self.posed())
 
     def reachable(self, durations: Array) -> float | None:
-        """A total (s) at which stretched ``durations`` keep the limits, whatever the digits hide.
+        """A total (s) at which stretched ``durations`` keep the limits, however they were rounded.
 
         It holds for every way-point that rounds to the printed digits or is cut off to them, and
         every limit that rounds to them; None if there is no such stretch, if durations alone

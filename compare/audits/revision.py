@@ -33,7 +33,7 @@ _ROUNDS = 5
 no number mends is left out in the next, and one more shows that nothing is left."""
 _UNITS_UP = 20
 """Units of the last digit by which rounded durations are lengthened at most until they keep the
-limits: rounding up alone nearly always does, since longer segments are slower ones."""
+limits: rounding up alone nearly always does, because longer segments are slower ones."""
 _LIMITS = ("TG201", "TG302", "TG303")
 """Rules that speak against a time itself, and not against how it is added up or repeated."""
 _FALSE = (ClaimVerdict.REFUTED, ClaimVerdict.INCONSISTENT, ClaimVerdict.DEPENDS)
@@ -243,7 +243,7 @@ def _posed(study: Study, claim: AnyClaim) -> list[PrintedRow[AnyClaim]]:
 
 
 def _shorten(draft: _Draft, claim: AnyClaim, trigger: str) -> bool:
-    """Print the shortest motion in place of a time that is none; whether there is one."""
+    """Print the shortest motion instead of a time that is none; whether there is one."""
     for row in _posed(draft.study, claim):
         found = row.optimum
         if not found.found or found.status is Status.NOT_ATTAINED:

@@ -93,7 +93,7 @@ class RoundingBox:
     Parameters
     ----------
     value, lower, upper : array_like
-        Of one shape: durations (segments,), s, or way-points (way-points, joints), rad.
+        All of the same shape: durations (segments,), s, or way-points (way-points, joints), rad.
 
     Raises
     ------
@@ -199,7 +199,7 @@ def judge_rounding(
         The same problem with every limit and every bound on durations as loose as its printed
         digits allow; by default they are exact.
     loose_ends : bool
-        Whether derivatives at the ends are printed numbers. No proof covers what rounds to them,
+        Whether derivatives at the ends are printed numbers. No proof covers their rounding,
         so nothing is called broken then.
 
     Raises

@@ -1,4 +1,4 @@
-"""Misprints that a case may hold: one printed number in place of another, and the case with it."""
+"""Misprints that a case may hold: one printed number instead of another, and the case with it."""
 
 from __future__ import annotations
 

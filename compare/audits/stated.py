@@ -29,7 +29,7 @@ _TIME = "time"
 
 
 def prints_durations(claim: Claim) -> bool:
-    """Whether a claim prints durations, so that a motion can be built from it."""
+    """Whether a claim prints durations, so a motion can be built from it."""
     return isinstance(claim, DurationsClaim | MaximumClaim)
 
 
@@ -88,7 +88,7 @@ def claim_text(case: Case, claim: AnyClaim) -> str:
 
 
 def digits_of(case: Case, claim: AnyClaim) -> str:
-    """The digits that a claim prints, with the paper's unit; empty where it prints none."""
+    """The digits that a claim prints, with the paper's unit; empty if it prints none."""
     units = case.document.units
     time = f" {units.time}" if units.time else ""
     if isinstance(claim, DurationsClaim | MaximumClaim):
@@ -119,7 +119,7 @@ def in_words(case: Case, problem: str, reading: str) -> str:
 
 
 def in_words_among(case: Case, problem: str, reading: str) -> str:
-    """What `in_words` says; empty where there is one problem under one reading alone."""
+    """What `in_words` says; empty if there is one problem under one reading alone."""
     several = len(case.problems) > 1 or len(case.readings) > 1
     return in_words(case, problem, reading) if several else ""
 

@@ -266,7 +266,7 @@ class Study:
     def settings(self, algorithm_id: str) -> dict[str, Algorithm[Any]]:
         """The algorithm as listed, and under settings spread over all that the paper leaves open.
 
-        `spread_settings` says how; empty where the algorithm's kind is not implemented.
+        `spread_settings` says how; empty if the algorithm's kind is not implemented.
         """
         algorithm = self.algorithm(algorithm_id)
         if algorithm is None:

@@ -153,7 +153,7 @@ class Drawn:
 
     @property
     def size(self) -> tuple[int, int]:
-        """Width and height in pixels, so that the page does not move when it appears."""
+        """Width and height in pixels, so the page does not move when it appears."""
         found = re.search(r'viewBox="0 0 ([0-9.]+) ([0-9.]+)"', self.document)
         width, height = (float(found[1]), float(found[2])) if found else (4.0, 3.0)
         return round(width * 4 / 3), round(height * 4 / 3)
@@ -249,7 +249,7 @@ class Page:
     trail: str = ""
     """Who printed it, when it was audited, and with what."""
     doi: str = ""
-    """Of the paper; empty where it is not named."""
+    """Of the paper; empty if it is not named."""
     links: tuple[tuple[str, str], ...] = ()
     """Words and files that the head of the page leads to, where it is not a page of an audit."""
 
@@ -274,7 +274,7 @@ class Page:
 
     @property
     def doi_link(self) -> str:
-        """Address of the paper; empty where the DOI is none."""
+        """Address of the paper; empty if the DOI is none."""
         return doi_link(self.doi)
 
 

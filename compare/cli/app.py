@@ -36,7 +36,7 @@ COMMANDS = {
     "app": "Open a form in the browser.",
 }
 """Every command with the first line of its help: NAME_command.py holds the command NAME, and is
-imported when it is called, so that --help answers at once."""
+imported when it is called, so --help answers at once."""
 
 
 class _Commands(TyperGroup):
@@ -210,7 +210,7 @@ def _fail(message: str, code: int) -> int:
 def catch_interrupts() -> None:
     """Answer Ctrl-C with one line and exit code 130.
 
-    CasADi takes a KeyboardInterrupt for the failure of one solve and goes on, so raising one is
+    CasADi takes a KeyboardInterrupt for the failure of one solve and continues, so raising one is
     not enough.
     """
     if threading.current_thread() is threading.main_thread():

@@ -233,7 +233,7 @@ def _states(resume: Sequence[Path], asked: Sequence[Question]) -> dict[str, Stat
         ]
         if not fits:
             raise CaseError(
-                state.name, "problem", "is none of those selected; select its case and reading"
+                state.name, "problem", "is not among those selected; select its case and reading"
             )
         found |= dict.fromkeys(fits, state)
     return found

@@ -277,7 +277,7 @@ _ENDINGS = {
     MotionForm.ROS: (".json", ".yaml", ".yml"),
     MotionForm.PPOLY: (".json",),
 }
-"""How a file is called, so that it is read as what it is."""
+"""How a file is called, so it is read as what it is."""
 _ROUNDS = 3
 """Times that a file is written: whole nanoseconds may take a motion past a limit once more."""
 

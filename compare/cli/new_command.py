@@ -174,7 +174,7 @@ def _interactive() -> bool:
 
 
 def _line() -> str:
-    """The next line of standard input; empty where it has ended, or cannot be read at all."""
+    """The next line of standard input; empty if it has ended, or cannot be read at all."""
     try:
         return "" if sys.stdin is None else sys.stdin.readline()
     except OSError:

@@ -126,7 +126,7 @@ def _zeros(orders: Sequence[int], values: object, where: str) -> str:
 
 
 def _limit(one: Statement, quantity: Literal["velocity", "acceleration", "jerk"]) -> str:
-    """A limit as printed, with the unit that it is read in; empty where there is none."""
+    """A limit as printed, with the unit that it is read in; empty if there is none."""
     printed = getattr(one.limits, quantity)
     if printed is None:
         return ""

@@ -90,7 +90,7 @@ def study(
 ) -> int:
     """Run optimisers on many problems; finished runs are kept.
 
-    Ctrl-C loses nothing that is finished; the same command goes on.
+    Ctrl-C loses nothing that is finished; the same command continues.
     """
     if dask is not None and workers is not None:
         raise typer.BadParameter(

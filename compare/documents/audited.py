@@ -25,7 +25,7 @@ class StatedAnswer(Entry):
     answered: OrWhy[str]
     """Day of their answer."""
     outcome: str
-    """What came of it; empty where nothing has yet."""
+    """What came of it; empty if nothing has yet."""
 
 
 class StatedClaim(Entry):
@@ -40,7 +40,7 @@ class StatedClaim(Entry):
     where: str
     """Place in the paper: section, table, row."""
     printed: str
-    """The printed digits with their unit; empty where it prints none."""
+    """The printed digits with their unit; empty if it prints none."""
     objective: OrWhy[str]
     """What was minimised for a printed time, where that is not time alone."""
     answer: OrWhy[StatedAnswer]
@@ -98,18 +98,18 @@ class Cause(Entry):
     rule: str
     """Permanent id of the rule that saw it first."""
     claim: str | None
-    """What it is about; null where it is about the case or a table."""
+    """What it is about; null if it is about the case or a table."""
     says: str
     """One or two sentences with the numbers, under the first of its readings."""
     head: Finding | None = Field(default=None, exclude=True)
-    """Its finding under that reading; None where a cause is made by hand; not in JSON."""
+    """Its finding under that reading; None if a cause is made by hand; not in JSON."""
     readings: tuple[str, ...]
-    """The readings under which it holds; empty where it depends on none."""
+    """The readings under which it holds; empty if it depends on none."""
     elsewhere: str = Field(default="", exclude=True)
-    """What contradicts the same claim under all other readings; empty where nothing does or there
+    """What contradicts the same claim under all other readings; empty if nothing does or there
     are none; not in JSON."""
     explanations: tuple[Explanation, ...]
-    """The most charitable first; empty where none that was tried fits the numbers."""
+    """The most charitable first; empty if none that was tried fits the numbers."""
     consequences: tuple[Consequence, ...]
 
 
@@ -117,16 +117,16 @@ class Edit(Entry):
     """One printed thing that is to read otherwise; all edits of a draft hold together."""
 
     claim: str | None
-    """Id of the claim; null where the text as a whole is to say something."""
+    """Id of the claim; null if the text as a whole is to say something."""
     key: str
     """Key of the claim in the case file; `claim` where it is to be left out as a whole, `readings`
     where the text is to say which reading is meant."""
     printed: tuple[str, ...]
     """What stands there."""
     becomes: tuple[str, ...]
-    """What is to stand there; empty where nothing is."""
+    """What is to stand there; empty if nothing is."""
     trigger: str | None
-    """Id of the claim that is wrong without it; null where it follows from other edits alone."""
+    """Id of the claim that is wrong without it; null if it follows from other edits alone."""
 
 
 class Advice(Entry):
@@ -136,13 +136,13 @@ class Advice(Entry):
     where: str
     """Place in the draft."""
     claim: str | None
-    """Id of the claim; null where it is about the case, a table or an algorithm."""
+    """Id of the claim; null if it is about the case, a table or an algorithm."""
     says: str
     """What was found."""
     change: str
     """How to fix it; numbers that it names were computed and checked."""
     edits: tuple[Edit, ...]
-    """The same as facts; empty where no number mends it. After all edits of the draft, an audit
+    """The same as facts; empty if no number mends it. After all edits of the draft, an audit
     finds nothing but what has none."""
 
 

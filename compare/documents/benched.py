@@ -83,7 +83,7 @@ class BenchResult(Entry):
     """Optimisers on one problem under one reading."""
 
     problem: str
-    """As rows call it: the case and its problem."""
+    """Its name in rows: the case and its problem."""
     reading: str
     words: str = Field(default="", exclude=True)
     """What a reader calls case, problem and reading, with the ids that a command takes; not in

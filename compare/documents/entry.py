@@ -74,12 +74,12 @@ def known(value: T | None, why: str | None = None) -> T | Why:
 
 
 def value_or_none(value: T | Why) -> T | None:
-    """A value, or None where there is none."""
+    """A value, or None if there is none."""
     return None if isinstance(value, Why) else value
 
 
 def reason(value: object) -> str | None:
-    """Why JSON has null in place of a value; None if it has the value."""
+    """Why JSON has null instead of a value; None if it has the value."""
     if isinstance(value, Why):
         return value.reason
     if isinstance(value, float) and not math.isfinite(value):
@@ -160,7 +160,7 @@ def facts(entry: Entry) -> list[tuple[str, str]]:
 
 
 def _described(schema: JsonSchemaValue, field: FieldInfo) -> JsonSchemaValue:
-    """A key's schema: no default, for every key is written; no null where it is left out."""
+    """A key's schema: no default, for every key is written; no null if it is left out."""
     found = {key: value for key, value in schema.items() if key != "default"}
     if _LEFT_OUT in field.metadata:
         (there,) = (one for one in found.pop("anyOf") if one != {"type": "null"})

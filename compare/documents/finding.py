@@ -146,35 +146,35 @@ class Finding(Entry):
     scope: Scope = Scope.NO
     """Under how many admissible readings the verdict of this finding holds; the audit says."""
     evidence: Evidence = Evidence.NONE
-    """Of the reference value used; none where none is used."""
+    """Whether the reference value is best known or certified; none if none is used."""
     basis: Basis
     decides: bool = True
     """Whether the finding enters the verdict on its claim."""
     claim: str | None = None
-    """What it is about; null where it is about the case or a table and judges no claim."""
+    """What it is about; null if it is about the case or a table and judges no claim."""
     problem: str | None = None
     """Null where it depends on none."""
     reading: str | None = None
     """Null where it depends on none."""
     confidence: OrWhy[Confidence] = Field(default_factory=_confidence)
-    """How it is known; null where it decides nothing."""
+    """How it is known; null if it decides nothing."""
     printed: str | None = None
     """The printed digits, with units."""
     computed: str | None = None
     """What was computed, with units."""
     gap: OrWhy[Gap] = Why("no time is compared with an optimum")
     kind: Annotated[str, Field(min_length=1)]
-    """What findings of a rule have in common that say the same in other numbers."""
+    """Key shared by findings of a rule that differ only in their numbers."""
     sentences: Annotated[tuple[str, ...], AfterValidator(_begun)] = Field(exclude=True)
     """The result, then conditions and what was tried, all with their numbers; not in JSON."""
     message: str = Field(default_factory=_whole)
     """All sentences in one text."""
     root: str = Field(default="", exclude=True)
-    """What it shows, as a key that findings of one cause share; by itself if empty; not in JSON."""
+    """Key that findings of one cause share; empty if it shares none; not in JSON."""
     follows: tuple[str, ...] = Field(default=(), exclude=True)
-    """Roots from which it follows, where they are found; not in JSON."""
+    """Roots that imply it, if they are found; not in JSON."""
     built: bool = Field(default=False, exclude=True)
-    """Whether it holds of any curve of the declared kind, whatever is printed; not in JSON."""
+    """Whether it holds for every curve of the declared kind, whatever is printed; not in JSON."""
     between: tuple[str, ...] = Field(default=(), exclude=True)
     """Claims that contradict each other: neither side is taken; not in JSON."""
     doubts: tuple[str, ...] = Field(default=(), exclude=True)
@@ -234,7 +234,7 @@ class Judgement(Entry):
     scope: Scope
     evidence: Evidence
     confidence: OrWhy[Confidence] = Why("nothing decides it")
-    """How it is known: a contradiction as its strongest finding, support as its weakest."""
+    """How it is known: a contradiction like its strongest finding, support like its weakest."""
     sentences: tuple[str, ...] = Field(default=(), exclude=True)
     """What decides, or why nothing does; not in JSON."""
     why: str = Field(default_factory=_whole)
@@ -244,12 +244,12 @@ class Judgement(Entry):
     caveats: tuple[
         Annotated[Caveat, PlainSerializer(str), WithJsonSchema({"type": "string"})], ...
     ] = ()
-    """What goes with the word: a curve whose velocity jumps, a contradiction in print."""
+    """Remarks on the verdict, such as a curve whose velocity jumps or a contradiction in print."""
     caveats_in_short: tuple[str, ...] = ()
     """Each of them without its reason."""
     beside: str = ""
     """What stands beside the word wherever it is shown, such as "but on doubtful numbers"."""
     readings: dict[str, ClaimVerdict]
-    """The verdict under each reading by itself."""
+    """The verdict under each reading separately."""
     informs: bool = Field(default=False, exclude=True)
     """Whether ``why`` is of a finding that informs, and no reason for the verdict."""

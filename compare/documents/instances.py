@@ -51,7 +51,7 @@ class KnownOptimum(Entry):
 
 
 class Totals(Entry):
-    """Reported totals of all runs of each procedure, s; null where a run has no answer."""
+    """Reported totals of all runs of each procedure, s; null if a run has no answer."""
 
     objective: str
     slower: tuple[float | None, ...]

@@ -47,7 +47,7 @@ and then they are in doubt for it as they are for one in its favour."""
 
 def built_remark() -> str:
     """The caveat of a claim that holds by construction."""
-    return f"{BUILT}, whatever the durations, so it is no evidence for the printed numbers"
+    return f"{BUILT}, for any durations, so it is no evidence for the printed numbers"
 
 
 def nature_caveat(nature: Nature) -> Caveat:
@@ -84,7 +84,7 @@ def said_beside(verdict: ClaimVerdict, caveats: Iterable[Caveat]) -> str:
     Returns
     -------
     str
-        Such as "but on doubtful numbers"; empty where nothing does.
+        Such as "but on doubtful numbers"; empty if nothing does.
     """
     doubts, *others = _beside(verdict, caveats)
     joins = "and" if verdict is ClaimVerdict.DEPENDS else "but"
@@ -92,7 +92,7 @@ def said_beside(verdict: ClaimVerdict, caveats: Iterable[Caveat]) -> str:
 
 
 def _beside(verdict: ClaimVerdict, caveats: Iterable[Caveat]) -> list[str]:
-    """What a verdict rests on that is doubted, empty where nothing is; then what else it is."""
+    """What a verdict rests on that is doubted, empty if nothing is; then what else it is."""
     kinds = {caveat.kind for caveat in caveats}
     found = {k: said for k, (word, said) in _BESIDE.items() if word is verdict and k in kinds}
     doubts = [what for k, (words, what) in _DOUBTS.items() if verdict in words and k in kinds]
@@ -101,7 +101,7 @@ def _beside(verdict: ClaimVerdict, caveats: Iterable[Caveat]) -> list[str]:
 
 
 def worth_little(judgements: Sequence[Judgement]) -> str:
-    """How many of some claims hold by construction or on what is doubted; empty where none does.
+    """How many of some claims hold by construction or on what is doubted; empty if none does.
 
     Returns
     -------
@@ -118,7 +118,7 @@ def worth_little(judgements: Sequence[Judgement]) -> str:
 
 
 def same_reason(text: str, where: str, own: str) -> str:
-    """What stands in place of a reason that an earlier claim has given.
+    """What stands instead of a reason that an earlier claim has given.
 
     Parameters
     ----------

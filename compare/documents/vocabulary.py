@@ -44,7 +44,7 @@ class Urgency(StrEnum):
 
 
 class ClaimVerdict(StrEnum):
-    """What can be said of a claim."""
+    """Verdict on a claim."""
 
     SUPPORTED = "supported"
     """The computation agrees with the claim."""
@@ -121,7 +121,7 @@ class Confidence(StrEnum):
 
 
 class Rounding(StrEnum):
-    """What holds of printed durations, however their digits were rounded."""
+    """What holds for printed durations, however their digits were rounded."""
 
     KEEPS = "keeps"
     """The printed point itself keeps every limit for all t."""
@@ -149,7 +149,7 @@ class Speaks(StrEnum):
     """On which side a clue stands about one reading; it decides no verdict."""
 
     FOR = "for"
-    """What is computed under the reading fits what is printed or known."""
+    """The result computed under the reading agrees with what is printed or known."""
     AGAINST = "against"
     """It does not fit."""
 

@@ -18,10 +18,10 @@ OWN_OPTIMA = "each joint at its optimum, longest per segment"
 """Name of the step that such a total is set beside where the paper plans each joint separately."""
 SHARED_OPTIMUM = "optimum of the same curve, shared durations"
 """Name of the step that distances are counted from."""
-STAND_IN_OPTIMUM = "optimum of the case file's curve, of which no time is printed"
+STAND_IN_OPTIMUM = "optimum of the case file's curve, for which no time is printed"
 """Name of that step where every printed time is of a curve that a case file cannot name."""
 RATIOS_OPTIMUM = "shortest total of the same curve at these ratios of the durations"
-"""Name of that step where the question fixes the ratios, so that the total alone is chosen."""
+"""Name of that step where the question fixes the ratios, so the total alone is chosen."""
 FREED_OPTIMUM = "the same curve, each duration chosen"
 """Name of the step below it: what fixing the ratios costs."""
 
@@ -43,10 +43,10 @@ class Step(Entry):
     time: OrWhy[float]
     """Total time, s."""
     low: OrWhy[float] = EXACT
-    """Of the value, where it is an interval, s."""
+    """Lower end of the value if it is an interval, s."""
     high: OrWhy[float] = EXACT
     evidence: Evidence = Evidence.NONE
-    """Of the value: best known or certified; none for printed and derived values."""
+    """Whether the value is best known or certified; none for printed and derived values."""
     note: str = ""
     keeping: OrLeftOut[Keeping] = None
     """Whether the motion of a printed total keeps the limits; left out where nothing was judged."""
@@ -114,7 +114,7 @@ class Waterfall(Entry):
 
     @property
     def without_optimum(self) -> tuple[str, ...]:
-        """Why the optimum has no time, or TOPPRA says nothing of it, in a sentence."""
+        """Why the optimum has no time, or TOPPRA does not apply to it, in a sentence."""
         why = next((s.time for s in self.steps if s.name in OPTIMA_STEPS), None)
         if isinstance(why, Why):
             return (f"No optimum: {why}.",)

@@ -248,7 +248,7 @@ def among(readings: Sequence[str], count: int, far: Iterable[str] = ()) -> str:
 
 
 def implausibly(readings: Sequence[str], far: Iterable[str]) -> str:
-    """How many of some readings are implausible; empty where none is."""
+    """How many of some readings are implausible; empty if none is."""
     many = len(set(readings) & set(far))
     every = many == len(readings)
     return f"{'all' if every and many > 1 else many} implausible" if many else ""

@@ -391,6 +391,6 @@ def _path(function: Callable[..., object]) -> str:
     if not module or not name or "<" in name:
         raise TrajgapError(
             f"optimizer {name or function!r}: give a function that is defined at the top level of "
-            "a module, so that it can be imported"
+            "a module, so it can be imported"
         )
     return f"{module}:{name}"

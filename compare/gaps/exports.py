@@ -123,7 +123,7 @@ def _drafted(path: Path) -> Iterator[Path]:
 
 
 def flat(row: Row) -> dict[str, Any]:
-    """Values of `COLUMNS`; None where there is none."""
+    """Values of `COLUMNS`; None if there is none."""
     found = {name: getattr(row, name) for name in COLUMNS if hasattr(row, name)}
     for name in ("reported_gap", "feasible_gap"):
         low, high = getattr(row, name) or (None, None)

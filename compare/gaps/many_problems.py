@@ -14,7 +14,7 @@ from .statistics import quantiles
 
 _ALIKE = 1e-9
 """Median gaps so near each other are a tie: the checker's tolerance."""
-_HALF_WITHOUT = "half of the runs have no answer on so many problems"
+_HALF_WITHOUT = "on too many problems half of the runs have no answer"
 """Why a median over the problems is missing."""
 _FIRST_TARGET = 0.01
 """Gap by which optimisers are put in order: what a paper's digits can tell apart."""

@@ -83,7 +83,7 @@ def bracket_of(
     Returns
     -------
     Bracket or None
-        None where no positive total is attained.
+        None if no positive total is attained.
     """
     exact = None if statement is None else printed_problem_or_none(statement, joint)
     found = solve(problem, exact=exact)

@@ -28,7 +28,7 @@ class RowStatus(StrEnum):
     """How a run ended."""
 
     FINISHED = "finished"
-    """By itself, or because its budget was spent."""
+    """The search ended, or its budget was spent."""
     FAILED = "failed"
     """It raised an exception, evaluated nothing, ran too long, or its process ended; the message
     says which."""
@@ -85,7 +85,7 @@ class Trial:
     problem : Problem
         Searched with one duration vector for all its joints, whatever its coupling.
     name, reading : str
-        What rows call it, such as "puma560-mnam-pso-353/six-joints" and "durations-positive".
+        Its names in rows, such as "puma560-mnam-pso-353/six-joints" and "durations-positive".
     optimizer : str
         As `find_optimizer` takes it.
     settings : str
@@ -134,7 +134,7 @@ class Trial:
             raise TrajgapError("trial: give a seed of 0 or more and a budget of 1 or more")
         object.__setattr__(self, "handling", str(self.handling))
         if not self.problem_sha256:
-            # Here alone, so that processes that get trials ready-made start in two thirds of it.
+            # Here alone, so processes that get trials ready-made start in two thirds of it.
             from ...nlp import problem_seal
 
             object.__setattr__(self, "problem_sha256", problem_seal(self.problem))

@@ -64,7 +64,7 @@ def bench_result(
     Parameters
     ----------
     rows : mapping of str to sequence of Row
-        Of each optimiser, by its label.
+        Rows of each optimiser, by its label.
     """
     reference = gap(1.0, optimum).reference
     standings = [_standing(label, one, reference) for label, one in rows.items()]

@@ -42,7 +42,7 @@ def expected_running_time(hits: Array, evaluations: Array) -> float:
     Parameters
     ----------
     hits : ndarray, shape (runs,)
-        Evaluations at the hit; inf where there is none.
+        Evaluations at the hit; inf if there is none.
     evaluations : ndarray, shape (runs,)
         Evaluations of the whole run.
 
@@ -93,12 +93,12 @@ def success_interval(successes: int, runs: int) -> tuple[float, float]:
 def share_of_targets(
     rows: Sequence[Row], optimum: float, targets: Iterable[float] = CURVE_TARGETS
 ) -> tuple[Array, Array]:
-    """Share of pairs of run and target that are reached after so many evaluations (ECDF).
+    """Share of pairs of run and target that are reached after each number of evaluations (ECDF).
 
     Parameters
     ----------
     rows : sequence of Row
-        Of one optimiser, on one problem; for several problems average the shares.
+        Rows of one optimiser on one problem; for several problems average the shares.
     optimum : float
         s.
     targets : iterable of float
@@ -141,7 +141,7 @@ def band(rows: Sequence[Row], optimum: float, levels: Sequence[float]) -> tuple[
     Parameters
     ----------
     rows : sequence of Row
-        Of one optimiser; one that failed counts as a run without answer.
+        Rows of one optimiser; a failed one counts as a run without answer.
     optimum : float
         s.
     levels : sequence of float

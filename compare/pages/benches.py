@@ -339,8 +339,8 @@ def _reading() -> Section:
         ("random, rescale, multistart", "baselines: uniform draws; one duration for all segments; "
          "local searches from random starts"),
         ("death-penalty, stretch, rescale", "under Settings: the treatment of durations that "
-         "break a limit. They get a penalty; or count with the shortest uniform stretch that keeps "
-         "all limits; or are stretched or shortened until one limit is tight"),
+         "break a limit. They receive a penalty, count with the shortest uniform stretch that "
+         "keeps all limits, or are stretched or shortened until one limit is tight"),
         ("A₁₂", "probability that a run of the first is shorter than one of the second"),
         ("p, Holm", "Mann and Whitney's test; every optimiser has its own random stream, so runs "
          "are independent and not paired"),

@@ -29,7 +29,7 @@ from .units import both_units, paper_units
 _SAMPLES = 20_000
 """Positions of the workspace that its bounding box is taken from, as by default in case files."""
 _SEED = 0
-"""Of the sampled positions, so that every page shows the same."""
+"""Of the sampled positions, so every page shows the same."""
 _NEGLIGIBLE = 1e-9
 """Distance that float arithmetic alone could leave, m."""
 

@@ -94,7 +94,7 @@ def reached_runs(one: CaseAudit) -> Section:
 
 
 def problem_cell(case: Case, pid: str) -> str:
-    """What a table calls a problem: its title; nothing where it is the only one."""
+    """What a table calls a problem: its title; nothing if it is the only one."""
     title = next((p.title for p in case.problems if p.id == pid), "") or pid
     return title if len(case.problems) > 1 else ""
 
@@ -118,7 +118,7 @@ def problem_name(one: CaseAudit, pid: str, reading: str | None = None) -> str:
 
 
 def only_under(study: Study, rid: str) -> str:
-    """Under which reading something is shown, behind its title; empty where there is one."""
+    """Under which reading something is shown, behind its title; empty if there is one."""
     return f"; {study.case.labels[rid]}" if len(study.readings) > 1 else ""
 
 

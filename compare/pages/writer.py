@@ -234,7 +234,7 @@ def _card(one: CaseAudit) -> Section:
 
 
 def _not_computed(one: CaseAudit) -> Section:
-    """Why there are no optima; nothing where there are some."""
+    """Why there are no optima; nothing if there are some."""
     if one.study.has_problems:
         return Section("not-computed", "Not computed", ())
     why = one.case.statement().waypoints.not_printed or "none of its readings poses a problem"

@@ -16,7 +16,7 @@ from .drawing import BLUE, GREEN, GRID, INK, MUTED, ORANGE, RED
 _STEPS = 72
 """Steps of time of the slowest motion: 20 a second for motions of three or four seconds."""
 _TURN, _TILT = np.deg2rad(-55.0), np.deg2rad(22.0)
-"""Where the eye stands: beside the arm and a little above, so that no axis points at it."""
+"""Where the eye stands: beside the arm and a little above, so no axis points at it."""
 _WIDE, _HIGH, _ROOM = 300.0, 280.0, 14.0
 """Size of one panel and its margin, in its own units: three stand side by side on a page."""
 _WAY = 160
@@ -56,7 +56,7 @@ def arm_picture(
     chain : Chain
         The arm; joints of links are drawn at the origins of its frames.
     motions : sequence of ArmMotion
-        One to four; the panels share the clock, so that the fastest arm waits at its end.
+        One to four; the panels share the clock, so the fastest arm waits at its end.
     waypoints : array_like, shape (way-points, joints)
         rad; drawn where the end of the arm stands.
     name : str

@@ -120,7 +120,7 @@ class _Row:
         )
 
     def dots(self, samples: Samples, order: int) -> Line:
-        """What samples prove of a derivative; nothing where they are too inexact for the limit."""
+        """What samples prove of a derivative; nothing if they are too inexact for the limit."""
         times, values, errors = (
             one if one.ndim == 1 else one[:, self.joint] for one in neighbours(samples, order)
         )

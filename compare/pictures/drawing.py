@@ -222,7 +222,7 @@ def svg(figure: Figure) -> str:
     Returns
     -------
     str
-        A complete SVG document. Text is drawn as outlines, so that it looks the same everywhere.
+        A complete SVG document. Text is drawn as outlines, so it looks the same everywhere.
     """
     buffer = io.StringIO()
     canvas, dots = figure.canvas, figure.dpi

@@ -39,7 +39,7 @@ _STYLES: tuple[tuple[str, Line], ...] = (
 
 @dataclass(frozen=True, eq=False)
 class Anytime:
-    """What one optimiser's runs know after so many evaluations."""
+    """Quantiles of one optimiser's runs after each number of evaluations."""
 
     label: str
     evaluations: Array
@@ -68,7 +68,7 @@ def gap_picture(
     optimisers : sequence of Anytime
         Their order determines colours and line styles.
     uncertainty : float or None
-        Relative width of the optimum's certified interval, drawn below zero; None where no lower
+        Relative width of the optimum's certified interval, drawn below zero; None if no lower
         bound is certified.
     budget : int
         Evaluations of a run.

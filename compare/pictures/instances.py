@@ -89,7 +89,7 @@ def _panel(axes: Axes, result: InstancesResult, effect: Effect) -> None:
                 colour = SERIES[which % len(SERIES)][0]
                 values = 100 * result.reductions(reading, effect, at, step)
                 good = np.sort(values[np.isfinite(values)])
-                # Spread by rank, so that no picture depends on a random draw.
+                # Spread by rank, so no picture depends on a random draw.
                 jitter = 0.1 * (2 * ((np.arange(good.size) * 0.618034) % 1.0) - 1)
                 axes.scatter(
                     good, y + jitter, s=16, marker=_MARKERS[which % len(_MARKERS)],

@@ -38,7 +38,7 @@ def papers_picture(bars: Sequence[PaperBar], *, title: str) -> Picture:
     Returns
     -------
     Picture
-        On a logarithmic axis, so that no bar is cut.
+        On a logarithmic axis, so no bar is cut.
     """
     description = "; ".join(f"{one.label}: {one.said}" for one in bars)
     top = _ROOM * max([one.highest for one in bars], default=1.0)

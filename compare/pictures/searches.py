@@ -32,7 +32,7 @@ _DASHES = ((0, (1, 1.5)), (0, (5, 2)), (0, (7, 2, 1, 2)), (0, (3, 1, 1, 1, 1, 1)
 _LINEAR = 0.01
 """Gaps up to this many percent stand on a linear scale, larger ones on a logarithmic one."""
 _INVISIBLE = 0.02
-"""Share of its own height by which a curve may move unseen, so that its point is left out."""
+"""Share of its own height by which a curve may move unseen, so its point is left out."""
 _TICKS = (0.01, 0.1, 1.0, 10.0, 100.0, 1000.0, 10_000.0, 100_000.0)
 """Gaps in percent that the axis may name: decades from the end of the linear part."""
 _RUNS = 16
@@ -273,7 +273,7 @@ def endings(
     """
     lines = [(label, value, INK) for label, value in references.items()]
     lines += [(f"printed: {label}", value, RED) for label, value in printed.items()]
-    # Falling, so that each label stands below the ends of the lines to its right.
+    # Falling, so each label stands below the ends of the lines to its right.
     lines.sort(key=lambda one: -one[1])
     description = "; ".join(
         [f"{name}: {_range(one)}" for name, one in ends.items()]
@@ -286,7 +286,7 @@ def endings(
             zip(_styles(len(ends)), ends.items(), strict=True)
         ):
             good = np.sort(one[np.isfinite(one)])
-            # Spread by rank, so that no picture depends on a random draw.
+            # Spread by rank, so no picture depends on a random draw.
             offset = 0.26 * (2 * ((np.arange(good.size) * 0.618034) % 1.0) - 1)
             axes.scatter(good, row + offset, s=14, color=colour, alpha=0.65, linewidths=0, zorder=3)
             if good.size:

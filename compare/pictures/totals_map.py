@@ -140,7 +140,7 @@ def _window(shares: Array) -> Array:
     """Lower ends of the three shares of a triangle that holds all points with some room."""
     low = shares.min(axis=0)
     side = 1 - low.sum()
-    # At least a fifth of the simplex, so that a tight cloud still shows its surroundings.
+    # At least a fifth of the simplex, so a tight cloud still shows its surroundings.
     room = max(0.12 * side, (0.2 - side) / 3, 0.02)
     return np.asarray(np.maximum(low - room, 0.0))
 
@@ -178,7 +178,7 @@ def tight_total(problem: Problem, shares: Array) -> Array:
     Returns
     -------
     ndarray, shape (points,)
-        T·c* in s; inf where a joint with limit 0 moves, or the path leaves a position range.
+        T·c* in s; inf if a joint with limit 0 moves, or the path leaves a position range.
     """
     found = evaluate(problem, shares)
     if not found.positions_limited:

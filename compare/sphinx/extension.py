@@ -61,7 +61,7 @@ def value_role(
 
 
 STATIC = Path(__file__).parent / "static"
-"""Style and script of the pages: shipped, so that nothing comes from the network."""
+"""Style and script of the pages: shipped, so nothing comes from the network."""
 
 
 def setup(app: Sphinx) -> ExtensionMetadata:

@@ -201,7 +201,7 @@ def distance_of(case: AuditedCase) -> Distance | None:
     Returns
     -------
     Distance or None
-        None where no problem is complete, or no total is printed.
+        None if no problem is complete, or no total is printed.
     """
     otherwise = {c.claim for c in case.claims if not isinstance(c.objective, Why)}
     for entry in case.waterfalls:

@@ -92,8 +92,8 @@ class GA:
     position_range : tuple of float
         Range that durations are drawn, encoded and mutated in, s; not printed.
     crossover : Crossover
-        "arithmetic", "one-point" or "uniform"; not printed. Arithmetic crossover of bit strings
-        acts on what they stand for.
+        "arithmetic", "one-point" or "uniform"; not printed. Arithmetic crossover of bit strings "
+        "acts on the numbers that they encode.
     mutation : Mutation
         "redraw" or "creep"; not printed. Bits are flipped.
     mutated : MutationUnit
@@ -101,7 +101,7 @@ class GA:
     mutation_reach : float
         Half-width of "creep" as a share of the range; not printed.
     elite : int
-        Best individuals that survive in place of the worst children; not printed.
+        Best individuals that survive instead of the worst children; not printed.
     penalty : float
         Total of an infeasible individual, s; not printed.
 

@@ -222,7 +222,7 @@ def members_of(population: Array, which: NDArray[np.intp]) -> Array:
 
 
 def shuffled(pool: Array, rng: np.random.Generator) -> Array:
-    """Shuffle a mating pool, so that neighbours are random pairs."""
+    """Shuffle a mating pool, so neighbours are random pairs."""
     return members_of(pool, np.argsort(rng.random(pool.shape[-2]), axis=-1, kind="stable"))
 
 

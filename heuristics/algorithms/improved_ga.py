@@ -57,7 +57,7 @@ class PoolRule(StrEnum):
     FILL = "fill"
     """The best quarter once; the middle half gives the other three quarters."""
     DOUBLE_BEST = "double-best"
-    """The best quarter twice, in place of the worst; the middle half gives one half."""
+    """The best quarter twice, instead of the worst; the middle half gives one half."""
 
 
 class BestQuarter(StrEnum):
@@ -86,7 +86,7 @@ def rank_chances(q: float, count: int) -> Array:
 
 
 def concentration(f_mean: float, f_max: float) -> float:
-    """arcsin(f_ave/f_max)/(π/2) of (14)(15), from 0 to 1; NaN where the arcsine has no value.
+    """arcsin(f_ave/f_max)/(π/2) of (14)(15), from 0 to 1; NaN if the arcsine has no value.
 
     With every fitness 0 the quotient is 0/0; all are alike, so 1.
     """

@@ -16,7 +16,7 @@ from .population import Population, first_population, followed
 from .swarm import PositionRule, kept_in, spread
 
 COUNTER_OPEN = (
-    "counter: whether the first move has I = 0 or 1; 0, so that δ falls from 2 to 2/N and never "
+    "counter: whether the first move has I = 0 or 1; 0, so δ falls from 2 to 2/N and never "
     "reaches the 0 that it is said to fall to"
 )
 """Of the plain algorithm alone: the improved one has a reason of its own."""

@@ -12,7 +12,7 @@ from .borrowed import BorrowedTask
 _BATCH = 1000
 """Positions of a random search that are judged at a time: enough to be quick, little memory."""
 _HALVINGS = 52
-"""Bisections of one duration: as many as a double has digits, so that no more would move it."""
+"""Bisections of one duration: as many as a double has digits, so no more would move it."""
 
 
 def search_randomly(options: Mapping[str, Any], task: BorrowedTask) -> None:

@@ -17,7 +17,7 @@ from .borrowed import BorrowedTask
 _SIGMA = 0.3
 """First step of CMA-ES as a share of each range: what its manual recommends."""
 _CMA_QUIET: Mapping[str, Any] = {"verbose": -9, "verb_log": 0, "seed": np.nan}
-"""No output and no files; no seed, since the numbers come from our generator."""
+"""No output and no files; no seed, because the numbers come from our generator."""
 _PYGMO_MEMBERS = 20
 """Members of a pygmo population, which has no default: as in its tutorials."""
 

@@ -212,7 +212,7 @@ class Bound:
     lower, upper : ndarray, shape (segments,)
         The box, s.
     value : float
-        −inf where nothing was proved.
+        −inf if nothing was proved.
     place : Place or None
         The place that carries most of the proof.
     split : int

@@ -23,7 +23,7 @@ class LimitRows:
     width: Array
 
     def ratios(self) -> Array:
-        """What each row asks of t; −inf where a limit is 0."""
+        """What each row asks of t; −inf if a limit is 0."""
         value = np.array([e.value for e in self.points])
         some = self.width > 0.0
         ratio = (self.sign * value - self.offset) / np.where(some, self.width, 1.0)

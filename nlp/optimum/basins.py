@@ -45,7 +45,7 @@ class Evolution:
     """Up to which the grid reaches: a factor of 90."""
 
     def axis(self, segments: int) -> Array:
-        """Log ratios to the first duration of which a grid is made; empty where it is too large.
+        """Log ratios to the first duration of which a grid is made; empty if it is too large.
 
         Basins that are narrower than the members of a population lie apart are found there.
         """

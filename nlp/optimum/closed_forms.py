@@ -93,7 +93,7 @@ class _Ratios:
 def joined(problem: Problem) -> Array | str | None:
     """The shortest durations without a jump, s; why there are none, a proof; or None.
 
-    None where no ratio is bounded, or rounding alone would set one.
+    None if no ratio is bounded, or rounding alone would set one.
     """
     if as_piecewise(problem.curve) is None or not apart(problem):
         return None
@@ -216,7 +216,7 @@ def tight_at_ratios(problem: Problem) -> Array | Solution:
     Raises
     ------
     TrajgapError
-        If the curve has free coefficients or cannot be stretched, so that there is no formula.
+        If the curve has free coefficients or cannot be stretched, so there is no formula.
     """
     shares, why = problem.shares, problem.unscaled
     if why is not None:

@@ -31,7 +31,7 @@ LENGTHENINGS = 30
 eighth each time, and over nine decades in all."""
 NARROWER = tuple(TOLERANCE * 4.0**k for k in range(10))
 """Shares by which limits are narrowed where no stretch is possible: from what the checker tolerates
-to 3e-4, so that an answer is at most four times as far inside as it has to be."""
+to 3e-4, so an answer is at most four times as far inside as it has to be."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,7 +109,7 @@ def decided(problem: Problem, h: Array, nodal: Array | None = None) -> Local | N
     stretch repairs a motion that exceeds its limits.
     """
     found = stretched(problem, h, nodal)
-    # A descent changes each duration by itself, which fixed ratios do not allow.
+    # A descent changes each duration separately, which fixed ratios do not allow.
     descends = not problem.curve.free and problem.ratios is None and problem.segments <= DENSE
     if found is None and descends:
         found = _narrowed(problem, h) or _lengthened(problem, h)
@@ -143,7 +143,7 @@ def incumbent(problem: Problem, known: Array, nodal: Array | None) -> Local | No
 
 
 def stretched(problem: Problem, h: Array, nodal: Array | None) -> Local | None:
-    """The motion stretched until it passes, or None where the duration bounds leave no room."""
+    """The motion stretched until it passes, or None if the duration bounds leave no room."""
     for _ in range(ROUNDS):
         found = Local.of(problem, h, nodal)
         if found.feasible:

@@ -2,7 +2,7 @@
 
 No barrier, no sampled places: every limit is linearised at its true extrema, the step is the least
 point of a small quadratic program, and each accepted motion keeps every limit. It stays sharp
-where durations differ by many powers of ten, since logarithms do not see the difference.
+where durations differ by many powers of ten, because logarithms do not see the difference.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ SMALLEST_STEP = 1e-10
 GAIN = 1e-13
 """Relative gain below which a descent ends: rounding of the total."""
 SLOW, PATIENCE = 1e-9, 6
-"""A descent that gains less than this (relative) in so many steps creeps. It goes on with a new
+"""A descent that gains less than this (relative) in so many steps creeps. It continues with a new
 Hessian, and ends if it has gained no more since the last one."""
 GOOD = 0.5
 """Share of the expected gain from which the trust region grows."""

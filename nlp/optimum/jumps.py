@@ -21,7 +21,7 @@ from .solution import Solution, Status
 def smoother(problem: Problem) -> Problem | None:
     """The problem on the declaration with the continuity that the limits ask for of some joint.
 
-    None where nothing is to be raised, or no curve is left or its freedom is not nodal.
+    None if nothing is to be raised, or no curve is left or its freedom is not nodal.
     """
     curve = as_piecewise(problem.curve)
     if curve is None or not curve.free:
@@ -58,7 +58,7 @@ def same_motions(problem: Problem) -> bool:
 def carried_over(problem: Problem, values: Array, durations: Array, to: Problem) -> Array | None:
     """Free derivatives of the same motions in another declaration, shape (motions, free, joints).
 
-    None where the other declaration leaves nothing free. Durations are in s.
+    None if the other declaration leaves nothing free. Durations are in s.
     """
     if not to.curve.free:
         return None
@@ -70,7 +70,7 @@ def carried_over(problem: Problem, values: Array, durations: Array, to: Problem)
 
 
 def as_answer(problem: Problem, found: Solution) -> Solution | None:
-    """The answer of the smoother problem as one of the problem; None where it is none."""
+    """The answer of the smoother problem as one of the problem; None if it is none."""
     if not found.found:
         proved = found.status is Status.INFEASIBLE
         return replace(found, problem=problem) if proved and same_motions(problem) else None

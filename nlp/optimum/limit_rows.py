@@ -87,7 +87,7 @@ def excesses(
     Side 1 is the upper one, −1 the lower; the total of the motion is in s. Beside the excess:
 
     - the share of the limit; of others than derivatives with a limit above 0, 1 and the excess, and
-      −inf where a joint stands still beside a side of 0;
+      −inf if a joint stands still beside a side of 0;
     - what a small change of a value is divided by to be one of the excess.
     """
     limits, r, beyond = problem.limits, np.maximum(order, 1), side * value

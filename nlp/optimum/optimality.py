@@ -272,10 +272,11 @@ NEAR_BY = 1e-3
 
 
 def sharpened(problem: Problem, durations: Array) -> Array | None:
-    """Newton steps on stationarity and the active limits; None where they lead nowhere.
+    """Newton steps on stationarity and the active limits; None if they lead nowhere.
 
     A search ends where rounding hides what it gains, before the gradient vanishes as far as it can.
-    Four steps are plenty from near by, since the convergence is quadratic. The curve is determined.
+    Four steps are plenty from near by, because the convergence is quadratic. The curve is
+    determined.
     """
     first = rows = exact_rows(problem, durations)
     found = _Weighed.of(problem, first, ACTIVE)

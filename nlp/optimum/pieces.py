@@ -76,7 +76,7 @@ class Sides:
     Attributes
     ----------
     scale : ndarray, shape (joints, 3)
-        The larger side; inf where nothing is limited.
+        The larger side; inf if nothing is limited.
     low, high : ndarray, shape (joints, 3)
         Both sides in shares of it: −1 and 1 where they are equal.
     """

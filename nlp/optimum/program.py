@@ -3,11 +3,11 @@
 The derivatives q⁽ʳ⁾, r = 1..d, at the left end of a piece determine its polynomial; its Taylor
 series gives the values at the right end. The conditions of the curve are equalities between them,
 limits at left ends are bounds on variables, and limits inside pieces are rows at places that
-follow the extrema. Derivatives are in time and not in the piece's parameter, so that a limit is
+follow the extrema. Derivatives are in time and not in the piece's parameter, so a limit is
 one number whatever the duration. Of a curve with a fixed shape those derivatives are not variables
 but constants over powers of a duration, and limits at left ends are rows too.
 
-Every matrix is (pieces, joints): no expression is written once a piece, so that building takes a
+Every matrix is (pieces, joints): no expression is written once a piece, so building takes a
 tenth of a second at a thousand segments.
 """
 
@@ -38,7 +38,7 @@ class Program:
     ----------
     problem : Problem
     unit : float
-        Time unit, s. That of angles is each joint's mean way between way-points.
+        Time unit, s. The unit of angle is each joint's mean way between way-points.
     floor : ndarray, shape (segments,)
         Least durations, s.
 
@@ -311,7 +311,7 @@ class Program:
         return np.asarray(np.where(places.order == 0, (at - first[j]) / self.angle[j], side))
 
     def stated(self) -> tuple[Any, Array, Array]:
-        """Equalities, rows at ends, and that a clock goes on, with what they lie between."""
+        """Equalities, rows at ends, and that a clock continues, with what they lie between."""
         ends, zero = self.ends, np.zeros(self.equalities.numel())
         low, high = (self.rooms(ends, np.full(ends.s.size, sign)) for sign in (-1.0, 1.0))
         at_ends = self.at_places(ends, np.zeros(ends.s.size))
@@ -364,7 +364,7 @@ class Program:
     def priced(
         self, bounds: Array, stated: Array, rows: Rows, duals: Array
     ) -> tuple[Places, Array, Array]:
-        """What multipliers say of limits at places, and of bounds on durations, in seconds.
+        """Multipliers of limits at places and of bounds on durations, in seconds.
 
         From those of the bounds on variables, of what the program states, and of the rows: places;
         the multipliers of the limits there, in shares of the larger side (positions in rad), signed

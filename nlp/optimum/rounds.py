@@ -1,8 +1,8 @@
 """Local optimum by the NLP: rounds of IPOPT, with rows at the extrema of the motion before.
 
 The first round has rows at all extrema inside pieces, each later one at those of the motion before
-it that come near their limit; an exact search over all pieces says where they are, so that no
-sampled place decides. A row goes on from round to round as the extremum that it follows. Without
+it that come near their limit; an exact search over all pieces says where they are, so no
+sampled place decides. A row continues from round to round as the extremum that it follows. Without
 rows below a fifth of their limit in the first round, quintics often leave the region in which the
 others mean anything.
 """
@@ -215,7 +215,7 @@ def solve_round(
         "ipopt.compl_inf_tol": tolerance,
     }
     left = seconds_left()
-    if left < math.inf:  # each round's solver is its own, so that no limit is shared
+    if left < math.inf:  # each round's solver is its own, so no limit is shared
         options["ipopt.max_wall_time"] = max(left, SHORTEST)
     low, high = program.bounds()
     n = program.segments
@@ -251,7 +251,7 @@ def constraints(program: Program, rows: Rows) -> tuple[Any, Array, Array]:
 def program_search(
     problem: Problem, start: Array, floor: Array, nodal: Array | None = None
 ) -> Local | None:
-    """A local optimum from a start, or how far the rounds came; None where they came nowhere.
+    """A local optimum from a start, or how far the rounds came; None if they came nowhere.
 
     The curve is of any kind that an NLP is known for. Start and floor, the least durations, are in
     s; free derivatives go with the start where the declaration leaves some. The end has its

@@ -100,7 +100,7 @@ class SearchResult(InNotebooks):
     why : str or None
         The reason, where the status needs one.
     vector : ndarray, shape (segments,), or None
-        The durations, or None where there is no motion; `durations` is what users read.
+        The durations, or None if there is no motion; `durations` is what users read.
     check : Check or None
         The checker's verdict on the durations.
     solve_seconds : float
@@ -134,7 +134,7 @@ class SearchResult(InNotebooks):
 
     @property
     def total_time(self) -> float:
-        """Sum of the durations, s; inf without an answer, so that no comparison passes."""
+        """Sum of the durations, s; inf without an answer, so no comparison passes."""
         return float(self.durations.sum()) if self.vector is not None else float("inf")
 
 

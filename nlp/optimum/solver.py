@@ -33,8 +33,8 @@ from .starts import DENSE, equal_start, first_nodal, made_up, random_starts, vec
 STARTS = 4
 """Basins of the wide search from which descents start."""
 FLOORS = (1e-3, 1e-4, 1e-6, 1e-8, 1e-10)
-"""Smallest durations tried, relative to the mean, where the case sets no lower bound: each where an
-answer lies on the one before, since the total of way-points that nearly coincide may rise again."""
+"""Smallest durations tried, relative to the mean, where the case sets no lower bound: each if an
+answer lies on the one before, because the total may rise again if way-points nearly coincide."""
 DEEP = FLOORS[2:]
 """Those tried where a short way makes a second optimum likely that is decades away."""
 SPARSE = 14
@@ -42,7 +42,7 @@ SPARSE = 14
 time of a wide search and dense descents, at 10 segments in twice it."""
 RATIOS = 12
 """Random ratios from which rounds look for a motion without a jump: every second of them finds
-one, where there is any."""
+one, if there is any."""
 ONLY_TOLERANCE = "the limits leave no room: they are kept only within the tolerance of the check"
 """Beside an answer that exact limits would not let pass."""
 
@@ -312,7 +312,7 @@ def _within_tolerance(problem: Problem, ask: _Ask) -> Solution:
     """A search where limits leave no room inside them, or less than a wide search finds.
 
     So it is where a position range ends at the way-points, or bounds leave one duration vector. A
-    descent needs room to move in: it is given half the checker's tolerance, and goes on from its
+    descent needs room to move in: it is given half the checker's tolerance, and continues from its
     end within the limits themselves. Where nothing is there, the first end may pass all the same.
     """
     wide, floor = widened(problem, AIM), made_up(problem, DEEP[0])

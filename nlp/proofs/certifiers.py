@@ -165,7 +165,7 @@ def certify(
         result does not depend on how busy the machine is. Without either of them a search has
         `MINUTE` times the boxes that an audit allows.
     seed : int
-        Of the starts of the local solver that finds the answer.
+        Seed for the starts of the local solver that finds the answer.
     resume : Certified or dict, optional
         A stopped run, or its `state_document`, which `trajgap.verify` verifies.
     report : callable, optional

@@ -347,7 +347,7 @@ def question(problem: dict[str, Any], subject: Subject = Subject.DECLARED) -> di
     Returns
     -------
     dict
-        With rational numbers, so that 0.5 and 0.50 are the same.
+        With rational numbers, so 0.5 and 0.50 are the same.
     """
     same = {
         key: x if key in _WORDS or (key == "ratios" and x == CHORD) else _numbers(x)

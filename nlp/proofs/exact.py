@@ -81,7 +81,7 @@ class Real:
 Prescribed = tuple[tuple[tuple[int, tuple[Fraction, ...]], ...], ...]
 """At each break derivatives by order, one for each joint, in the problem's unit of angle and s."""
 Pair = tuple[Real | None, Real | None]
-"""Sizes of a lower and an upper limit; None where there is none."""
+"""Sizes of a lower and an upper limit; None if there is none."""
 
 
 def _joined(pairs: Mapping[tuple[int, int], Pair]) -> dict[tuple[int, int], Real | None]:

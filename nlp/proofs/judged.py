@@ -14,7 +14,7 @@ from .outcome import Certified, Outcome
 
 
 def why_too_large(problem: ExactProblem) -> str | None:
-    """Why no certificate can state a problem, since something in it is too large; or None.
+    """Why no certificate can state a problem, because something in it is too large; or None.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ def judged(
     found : Certified
     clock : RunClock
         Judging ends a second after its limit, or takes half a second. A proof that takes longer to
-        judge does not count: it becomes what a state proposes, so that a run with more time can go
+        judge does not count: it becomes what a state proposes, so a run with more time can go
         on from it.
     before : Certified, optional
         What the state that the run went on from proved, with its verdict: it holds if time is up.

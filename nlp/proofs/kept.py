@@ -51,7 +51,7 @@ class KeptProofs(KeptFiles):
         Returns
         -------
         Certified or None
-            None where nothing is kept, or what is kept does not prove it in that time.
+            None if nothing is kept, or what is kept does not prove it in that time.
         """
         if not self.used:
             return None

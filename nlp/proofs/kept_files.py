@@ -38,7 +38,7 @@ A = TypeVar("A")
 
 
 def cache_folder() -> Path | None:
-    """The folder where answers are kept; None where the environment says that none are.
+    """The folder where answers are kept; None if the environment says that none are.
 
     Returns
     -------

@@ -125,7 +125,7 @@ class Certified:
     verdict : CertificateVerdict or None
         The verdict of `trajgap.verify` on the certificate; None if nothing is proved.
     left_out : str or None
-        What the time limit was too short for, in words, if nothing more is known.
+        The step that the time limit was too short for, in words, if nothing more is known.
     widened : bool
         Whether the bound was proved within the larger size of limits whose sides differ: it holds,
         but may stay below the optimum for any time limit.

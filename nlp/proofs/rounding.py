@@ -11,14 +11,14 @@ from some roundings of a float to a tenth of the gap that is asked for by defaul
 
 
 def up(value: Fraction, digits: int) -> Fraction:
-    """The least decimal of so many digits that is not below a positive number."""
+    """The smallest decimal with this many digits that is not below a positive number."""
     places = digits - math.ceil(math.log10(max(float(value), 1e-12)))
     ten = Fraction(10) ** places
     return math.ceil(value * ten) / ten
 
 
 def down(value: Fraction, digits: int) -> Fraction:
-    """The largest decimal with so many digits after the first that is not above a number ≥ 0."""
+    """The largest decimal, with this many further digits, that is not above a number ≥ 0."""
     if value <= 0:
         return Fraction(0)
     first = Fraction(1)

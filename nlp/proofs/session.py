@@ -52,7 +52,7 @@ class Ladder:
     gaps : tuple of float
         Descending.
     share : float
-        Of the gap asked for, so that rounding has room in the last stage.
+        Of the gap asked for, so rounding has room in the last stage.
     apart : float
         No stage is nearer to the last one than by this factor.
     near : float
@@ -74,7 +74,7 @@ class Ladder:
         return [*(g for g in self.gaps if g > self.apart * last), last]
 
     def leaps(self, gap: float, took: float, left: float) -> bool:
-        """Whether the last stage comes next, after one of ``gap`` that took some of the time."""
+        """Whether the last stage is next, after one of ``gap`` that took ``took`` seconds."""
         soon = gap <= self.near and took * self.growth <= left
         return self.near > 0.0 and (soon or left == math.inf)
 
@@ -99,7 +99,7 @@ class Session:
         What proves it.
     proposals : Argument or None
         What a stopped run had not finished; a kind of proof sets it before it is interrupted. Until
-        then it is what the run goes on from.
+        then it is what the run continues from.
     judging : float
         Seconds that judging takes for one of search: what a kind of proof asks for is left to it.
     infeasible : bool
@@ -244,7 +244,7 @@ class Session:
     def seek(self, initial: Array | None = None) -> bool:
         """Look for a shorter answer with the local solver, from given durations or its own starts.
 
-        What a local search has found already is taken in place of its starts. The solver has a
+        What a local search has found already is taken instead of its starts. The solver has a
         share of the time that is left, and then what it has found is taken.
 
         Returns

@@ -21,7 +21,7 @@ def exact_shares(ratios: Iterable[Any] | None) -> tuple[Fraction, ...] | None:
 
 
 def printed_shares(statement: Statement, problem: Problem) -> tuple[Fraction, ...] | None:
-    """Exact shares of the segments from the printed ratios; None where there are none."""
+    """Exact shares of the segments from the printed ratios; None if there are none."""
     given = statement.durations.ratios
     if isinstance(given, tuple):
         return exact_shares(number.fraction for number in given)

@@ -1,4 +1,4 @@
-"""The motion that TOPPRA makes of a trajectory's path, so that it can be written and checked."""
+"""The motion that TOPPRA makes of a trajectory's path, so it can be written and checked."""
 
 from __future__ import annotations
 

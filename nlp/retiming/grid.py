@@ -11,7 +11,7 @@ from ...problem import Array
 from .path import PathPiece, SegmentPart
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(6)
-"""Gauss–Legendre of 6 nodes: exact for degree 11, so that a cell's arc length is, to rounding."""
+"""Gauss–Legendre of 6 nodes: exact for degree 11, so a cell's arc length is, to rounding."""
 _TABLE, _REFINEMENTS = 256, 4
 """Points of a stretch's first table, and rounds in which points move to where the path turns."""
 
@@ -73,7 +73,7 @@ def measure(piece: PathPiece) -> Measure:
 
     It is the mean of three: graded arc length (s ~ τ³ at a rest end, where q″ grows like
     s^(−2/3) if only jerk is non-zero there), the trajectory's time, and the angle by which the
-    path turns, so that a near-reversal gets its share of points however short it is.
+    path turns, so a near-reversal gets its share of points however short it is.
     """
     tables = [np.linspace(0.0, 1.0, _TABLE) for _ in piece.stretches]
     for refinement in range(_REFINEMENTS):

@@ -43,7 +43,7 @@ class Retiming:
     cuts : tuple of float
         Times on the trajectory at which all joints stand still, s; path speed 0 is imposed there.
     inequality_holds : bool or None
-        Whether ``extrapolated <= trajectory_time + error``. None where it need not hold.
+        Whether ``extrapolated <= trajectory_time + error``. None if it need not hold.
     """
 
     applicable: bool

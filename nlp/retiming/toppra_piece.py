@@ -83,9 +83,9 @@ class _Solver(TOPPRA):  # type: ignore[misc]
     """
 
     def compute_controllable_sets(self, sdmin: float, sdmax: float) -> Array:
-        """The programs of toppra's own loop, in its order, since each begins where one ended.
+        """The programs of toppra's own loop, in its order, because each begins where one ended.
 
-        Floats in place of its small arrays, which cost more than the programs.
+        Floats instead of its small arrays, which cost more than the programs.
         """
         solver, cells = self.solver_wrapper, self._N
         solve, fastest = solver.solve_stagewise_optim, np.zeros(solver.get_no_vars())
@@ -108,7 +108,7 @@ class _Solver(TOPPRA):  # type: ignore[misc]
     def fastest_speeds(self, start: float, end: float) -> Array | None:
         """Path speeds at the points of the grid, as `compute_parameterization` finds them.
 
-        None where there is no parametrisation.
+        None if there is no parametrisation.
         """
         sets = self.compute_controllable_sets(end, end)
         now = start**2

@@ -159,7 +159,7 @@ class Case:
 
     @property
     def complete(self) -> bool:
-        """Whether every problem has way-points under every reading, so that it can be solved."""
+        """Whether every problem has way-points under every reading, so it can be solved."""
         return all(self.statement(*pair).complete for pair in self.selections())
 
     @cached_property

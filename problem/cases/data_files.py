@@ -35,7 +35,7 @@ class Shipped:
     kind : str
         What one of them is, for messages.
     prefix : str
-        Stands before an id, so that ids of several packages cannot be confused.
+        Stands before an id, so ids of several packages cannot be confused.
     listed_by : str
         The command that lists the ids, where they are too many for a message.
     """

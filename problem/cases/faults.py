@@ -48,7 +48,7 @@ class Faults:
         self.found: list[tuple[str, str]] = []
 
     def add(self, field: str, reason: str) -> None:
-        """Note a fault; only the first at each field, since others may follow from it."""
+        """Note a fault; only the first at each field, because others may follow from it."""
         if all(field != known for known, _ in self.found):
             self.found.append((field, reason))
 

@@ -91,7 +91,7 @@ def instance_waypoints(
     columns = [chain.labels.index(label) for label in labels]
     drawn = []
     for step in block.lengths:
-        # Named by the step itself, so that adding a step leaves the others as they were.
+        # Named by the step itself, so adding a step leaves the others as they were.
         named = int(np.float64(step).view(np.uint64))
         stream = np.random.SeedSequence([block.seed, named])
         drawn.append(

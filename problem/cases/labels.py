@@ -107,7 +107,7 @@ def _differing(document: CaseFile, reading: Reading, readings: Sequence[Reading]
 
 
 def _key_value(document: CaseFile, reading: Reading, block: str, key: str) -> object:
-    """A key of a block as a reading has it, else the file; None where a problem says it."""
+    """A key of a block as a reading has it, else the file; None if a problem says it."""
     own = getattr(reading, block)
     if key in own.model_fields_set:
         return getattr(own, key)

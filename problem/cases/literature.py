@@ -182,7 +182,7 @@ def _words(name: str) -> set[str]:
 
 
 def _degrees(name: str) -> tuple[int, ...]:
-    """The degrees of which a name consists, such as 4-3-4; empty where it has other words."""
+    """The degrees of which a name consists, such as 4-3-4; empty if it has other words."""
     found = re.search(r"(?<![0-9])[1-9](?:[-‐-―−\s]?[1-9]){2,}(?![0-9])", name)
     if found is None:
         return ()

@@ -277,7 +277,7 @@ def _units(
 
 
 def identity_of(stem: str) -> str:
-    """An id made of a file's name: small letters, digits, dots and dashes."""
+    """An id made from a file's name: lower-case letters, digits, dots and dashes."""
     return re.sub(r"[^a-z0-9.]+", "-", stem.lower()).strip("-.") or "case"
 
 

@@ -183,7 +183,7 @@ class Waypoints(Strict):
 
     @property
     def points(self) -> tuple[tuple[Printed, ...], ...]:
-        """One row per way-point, one number per joint; empty where none is printed."""
+        """One row per way-point, one number per joint; empty if none is printed."""
         if self.waypoint_rows is not None:
             return self.waypoint_rows
         return tuple(zip(*(self.joint_rows or ()), strict=True))

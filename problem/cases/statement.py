@@ -72,7 +72,7 @@ class Statement:
         return linear_joints(self.units, len(self.labels))
 
     def unit(self, quantity: Quantity, joint: int | None = None) -> str | None:
-        """The unit of a quantity, None where none is stated.
+        """The unit of a quantity, None if none is stated.
 
         Parameters
         ----------
@@ -181,7 +181,7 @@ class Statement:
 
     @property
     def complete(self) -> bool:
-        """Whether the way-points are printed, so that there is a problem to solve."""
+        """Whether the way-points are printed, so there is a problem to solve."""
         return bool(self.waypoints.points)
 
     def check(self) -> None:

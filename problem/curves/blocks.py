@@ -1,16 +1,16 @@
 """Long splines: a linear system by blocks of segments, with a bound on the error of any solution.
 
-The conditions at a break are divided between the segments at its two sides, so that the system is
+The conditions at a break are divided between the segments at its two sides, so the system is
 block tridiagonal, B_k x_{k−1} + D_k x_k + C_k x_{k+1} = r_k. With T_k near the inverse of
 S_k = D_k − B_k T_{k−1} C_{k−1},
 
     w_k = T_k (r_k − z_k),    z_{k+1} = B_{k+1} w_k,    x_k = w_k − T_k C_k x_{k+1}
 
 solves it but for G_k = T_k S_k − I, which is as small as rounding: exactly, w_k has a term −G_k x_k
-more. Sizes in place of all numbers make a bound of the same recursion. Only the few numbers z_k,
+more. Sizes instead of all numbers make a bound of the same recursion. Only the few numbers z_k,
 and x_{k+1} as far as C_k meets it, pass from block to block, and the products |B_{k+1} T_k| and
 |T_k C_k| fade with the distance nearly as a derivative at a break does (by 0.27 a segment for C2
-cubics, 0.43 for C4 quintics), so that the bound stays near the error. Nothing is assumed of that.
+cubics, 0.43 for C4 quintics), so the bound stays near the error. Nothing is assumed of that.
 """
 
 from __future__ import annotations
@@ -240,7 +240,7 @@ class Blocks:
         By the recursion over sizes the error e keeps |e| ≤ F + N|e|, where F > 0 comes of the
         residuals and N of G. Take positive weights v with Nv ≤ θv, θ < 1. The bound
         u = F + Nv max(F/v)/(1 − θ) is at most v max(F/v)/(1 − θ), and so contains its own image,
-        F + Nu ≤ u. N then shrinks a positive vector, so that its spectral radius is below 1 and
+        F + Nu ≤ u. N then shrinks a positive vector, so its spectral radius is below 1 and
         |e| ≤ u; no system with such a bound is singular. The sum of F over the joints makes good
         weights, as what residuals cause has its sizes.
         """
@@ -253,7 +253,7 @@ class Blocks:
         found *= _SUMS
         found += POSITIVE
         largest = over_rows(np.maximum, found)
-        # Each joint has its share, so that F/v is nowhere above the joint's largest F.
+        # Each joint has its share, so F/v is nowhere above the joint's largest F.
         weights = (found @ (1.0 / largest))[:, None]
         more = _SUMS * self._swept(sizes, 1.0, np.zeros(weights.shape), weights)
         theta = float((more / weights).max())

@@ -78,8 +78,8 @@ class ClampedBSpline(ClampedDeclaration, StretchedCurve):
     Notes
     -----
     The way-points and end conditions are W + 2c conditions (c end orders) on as many control
-    points as there are inner knots plus p + 1. Knots at the way-points: W − 1 + p, so that p = 5
-    is determined for v = a = 0, the C4 quintic spline. Averaged as printed: W, so that no
+    points as there are inner knots plus p + 1. Knots at the way-points: W − 1 + p, so p = 5
+    is determined for v = a = 0, the C4 quintic spline. Averaged as printed: W, so no
     degree leaves room for end conditions. Averaged with the index continued: W + 2c, any degree.
     """
 
@@ -93,7 +93,7 @@ class ClampedBSpline(ClampedDeclaration, StretchedCurve):
         return 0 if self.stretched else self.degree - 1
 
     def smooth_shares(self, waypoints: Array) -> Array | None:
-        """Those of the parameters, where all joints have the same ones."""
+        """The proportions of the parameters, if all joints have the same ones."""
         rows = fractions_of(self, waypoints) if self.stretched else None
         return None if rows is None or len(rows) > 1 else np.diff(rows[0])
 
@@ -137,7 +137,7 @@ class ClampedBSpline(ClampedDeclaration, StretchedCurve):
         return super().motion_values(waypoints) if self.stretched else waypoints
 
     def batch_reach(self, values: Array, durations: Array, asked: Asked) -> Array:
-        """Of all pieces at once."""
+        """Compute it for all pieces at once."""
         if self.stretched:
             return super().batch_reach(values, durations, asked)
         return clamped_reach(self, values, as_batch(self, durations), asked)

@@ -25,7 +25,7 @@ class Knots(StrEnum):
     AVERAGED = "averaged"
     """u_{j+p} = (ū_j + … + ū_{j+p−1})/p, j = 1..n − p: (6) of z1 with its index as in the sum."""
     CONTINUED = "averaged-continued"
-    """The same with the first and last parameter repeated for each end condition, so that every
+    """The same with the first and last parameter repeated for each end condition, so every
     condition brings a knot (The NURBS Book, 9.2.2, does so for first derivatives)."""
     GIVEN = "given"
     """A printed knot vector, at fixed fractions of the whole."""
@@ -311,7 +311,7 @@ class ClampedDeclaration:
 
 
 def fractions_of(curve: ClampedDeclaration, waypoints: Array) -> Fractions | None:
-    """Parameters that are not times; None where they are."""
+    """Parameters that are not times; None if they are."""
     if curve.fractions is not None or curve.parameters is Parameters.TIMES:
         return curve.fractions
     if curve.parameters is Parameters.CHORD:
@@ -323,7 +323,7 @@ def average_matrix(curve: ClampedDeclaration) -> Array:
     """Inner knots as combinations of the way-points' parameters, shape (inner knots, W)."""
     w, p = curve.waypoints, curve.degree
     if curve.knots is Knots.GIVEN:
-        # Parameters start at 0, so that a fraction of the last one is a fraction of the whole.
+        # Parameters start at 0, so a fraction of the last one is a fraction of the whole.
         return np.outer(inner_fractions(curve.knot_vector, p), np.eye(w)[-1])
     if curve.knots is Knots.WAYPOINTS:
         return np.eye(w)[1:-1]

@@ -18,7 +18,7 @@ from .refined import contained
 from .trajectory import Trajectory
 
 _EPS = np.finfo(np.float64).eps
-"""Spacing of float64 at 1: twice the unit roundoff, so that bounds have room."""
+"""Spacing of float64 at 1: twice the unit roundoff, so bounds have room."""
 _SLIVER = 1e-12
 """Breaks nearer than this share of the whole differ by rounding alone."""
 _RESOLVED = 1e13

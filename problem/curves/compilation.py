@@ -2,7 +2,7 @@
 
 The rule is one: what is asked of one curve is array code. What loops over a population, over the
 rows of a long system or over the boxes of a proof is compiled at its first call, and lies on disk
-for the next process. Nothing is interpreted meanwhile and nothing measures itself, so that no loop
+for the next process. Nothing is interpreted meanwhile and nothing measures itself, so no loop
 stops in its middle. Whoever calls such a function imports its module there and not before, because
 numba takes a while.
 """
@@ -20,7 +20,7 @@ Function = Callable[..., Any]
 def compiler(*sources: Path) -> Callable[[Function], Function]:
     """Make a decorator for functions to be compiled, and cached where there is a writable place.
 
-    numba's cache looks at the file of the function alone, so that a function would go on calling an
+    numba's cache looks at the file of the function alone, so a function would go on calling an
     old callee from another file. Functions that call each other are compiled by one decorator, and
     the hash of all their files stands in their names.
 

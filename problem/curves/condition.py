@@ -1,7 +1,7 @@
 """The linear conditions on the coefficients of a piecewise polynomial, stated once as numbers.
 
 A condition on derivative r at break b is an equation of one segment k, the one that ends at b, or
-starts there where only that side is meant. Its unit of time is h_k, so that its entries are
+starts there where only that side is meant. Its unit of time is h_k, so its entries are
 
     Σ_p p!/(p − r)! c[k, p]                 at the end of the segment,  r! c[k, r]  at its start,
     − r! (h_k/h_b)ʳ c[b, r]                 where both sides match,
@@ -41,7 +41,7 @@ class ConditionKind(IntEnum):
 
 @dataclass(frozen=True, eq=False)
 class Conditions:
-    """Conditions in order, ordered by break, so that their linear system is banded.
+    """Conditions in order, ordered by break, so their linear system is banded.
 
     Attributes
     ----------
@@ -184,7 +184,7 @@ class Layout(Conditions):
         """Row that stands at the place of each coefficient, and the bandwidths of that order.
 
         A condition that gives a coefficient at once stands at its place; the others follow each
-        other between them, so that those of a break are divided between its two segments.
+        other between them, so those of a break are divided between its two segments.
         """
         at = np.empty(self.unknown.size, dtype=np.int64)
         right = self.kinds == ConditionKind.RIGHT_VALUE
@@ -228,7 +228,7 @@ def conditions_of(
     """The conditions of a declaration, ordered by break: left values, right values, matches.
 
     At each break the orders are given whose values are prescribed there; 0 is the position. Breaks
-    that state the same share one template, so that long declarations take no loop over conditions.
+    that state the same share one template, so long declarations take no loop over conditions.
     """
     last = len(given) - 1
     sets = {orders: i for i, orders in enumerate(dict.fromkeys(given))}

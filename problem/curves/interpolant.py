@@ -248,7 +248,7 @@ class Interpolant(Curve):
         return values
 
     def batch_reach(self, values: Array, durations: Array, asked: Asked) -> Array:
-        """By the compiled kernel."""
+        """Compute it with the compiled kernel."""
         return reach_of(self.layout, values, as_batch(self, durations), asked)
 
     def value_gradients(
@@ -267,7 +267,7 @@ class Interpolant(Curve):
 
     @cached_property
     def table(self) -> Conditions:
-        """The conditions as arrays, ordered by break, so that the linear system is banded."""
+        """The conditions as arrays, ordered by break, so the linear system is banded."""
         orders = {at: frozenset(order for order, _ in at) for at in {*self.prescribed}}
         fixed = {at: given | {0} for at, given in orders.items()}
         given = [fixed[at] for at in self.prescribed]

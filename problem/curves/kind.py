@@ -44,7 +44,7 @@ class Enclosed:
     error : ndarray, shape (pieces, 4, joints)
         Bound on the error of any extremum of derivative 0 to 3 on a piece.
     closer : callable, optional
-        Makes the same with a closer bound, at some cost; None where there is none.
+        Makes the same with a closer bound, at some cost; None if there is none.
     """
 
     trajectory: Trajectory
@@ -153,7 +153,7 @@ class Curve(ABC):
     def smooth_shares(self, waypoints: Array) -> Array | None:
         """Proportions of durations with which a curve whose segments are stretched does not jump.
 
-        None where there are none, or the curve has no parameter of its own.
+        None if there are none, or the curve has no parameter of its own.
         """
         return None
 
@@ -193,7 +193,7 @@ class Curve(ABC):
         wanted: NDArray[np.bool_],
         nodal: Array | None = None,
     ) -> Array:
-        """True peaks to each side.
+        """True peaks on each side.
 
         Parameters
         ----------
@@ -226,7 +226,7 @@ class Curve(ABC):
 
         def by_waypoints() -> Array:
             # Values are linear in the way-points: those of the curves through unit ones. All
-            # joints take part, since the knots of each may cut the pieces of all.
+            # joints take part, because the knots of each may cut the pieces of all.
             count, joints = waypoints.shape
             units = np.tile(np.eye(count), joints)
             unit = self.fixed_by(waypoints).fitted(units, durations)

@@ -22,7 +22,7 @@ CAPPED = 1e-9
 """Share of a cap within which a value is found to its last bit: far above the rounding of both."""
 LOOSE = 1e-12
 """Share of a polynomial's terms that is added to a bound: far above the rounding of ten of them, so
-that what is left out by it would not have changed one bit."""
+what is left out by it would not have changed one bit."""
 Clock = tuple[Array, int, Array]
 """Of derivatives N_r/t′²ʳ⁻¹: t, r, and the least t′ of each piece."""
 _SETTLED = 2.0**-52
@@ -148,7 +148,7 @@ def roots_in_unit(a: Array) -> Array:
     Returns
     -------
     ndarray, shape (powers − 1, ...)
-        Ascending along the first axis; NaN where there are fewer.
+        Ascending along the first axis; NaN if there are fewer.
     """
     degree, flat = len(a) - 1, a.reshape(len(a), -1)
     with np.errstate(all="ignore"):

@@ -62,12 +62,12 @@ def solve_in_closed_form(curve: Curve, waypoints: ArrayLike, limits: ArrayLike) 
     waypoints : array_like, shape (way-points, joints)
         rad.
     limits : array_like, shape (joints, 3)
-        As `Limits.derivatives`; infinite for no limit.
+        Like `Limits.derivatives`; infinite for no limit.
 
     Returns
     -------
     ndarray, shape (segments,)
-        s; 0 for a segment in which nothing that is limited moves, infinite where a joint with
+        s; 0 for a segment in which nothing that is limited moves, infinite if a joint with
         limit 0 moves.
     """
     # Largest |q′|, |q″|, |q‴| of every segment when its duration is 1 s.

@@ -15,7 +15,7 @@ from .condition import Layout
 DENSE_UNKNOWNS = 300
 """Up to this many coefficients one dense inverse takes ten milliseconds; nothing is compiled."""
 POSITIVE = 1e-290
-"""Added to every bound, so that none is 0: far below any angle, far above the least float even
+"""Added to every bound, so none is 0: far below any angle, far above the least float even
 after division by hʳ."""
 
 

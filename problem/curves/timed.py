@@ -124,7 +124,7 @@ class ClockedTrajectory(Trajectory):
         return np.array(values).reshape(*t.shape, self.joints)
 
     def turns(self, order: int, pieces: NDArray[np.int64] | None = None) -> tuple[Array, Array]:
-        """As `Trajectory.turns`, of derivatives that are not polynomials."""
+        """Like `Trajectory.turns`, for derivatives that are not polynomials."""
         if order == 0:
             return super().turns(0, pieces)
         own = slice(None) if pieces is None else pieces

@@ -59,7 +59,7 @@ class Trajectory:
 
     @property
     def polynomial_in_time(self) -> bool:
-        """Whether each piece is a polynomial in time, so that `derivative` answers."""
+        """Whether each piece is a polynomial in time, so `derivative` answers."""
         return True
 
     @property
@@ -93,7 +93,7 @@ class Trajectory:
     def derivatives(self, order: int) -> Array:
         """Coefficients in s of a time derivative, (powers, pieces, joints); not to be written to.
 
-        As many powers as the highest degree leaves, at least one.
+        It has as many powers as the highest degree leaves, at least one.
         """
         if order not in self._known:
             if order == 0:
@@ -123,7 +123,7 @@ class Trajectory:
         Returns
         -------
         places, values : ndarray, shape (places, pieces, joints)
-            Places in the pieces' own 0..1, ascending; NaN where there are fewer.
+            Places in the pieces' own 0..1, ascending; NaN if there are fewer.
         """
         if pieces is None and order in self._turned:
             return self._turned[order]

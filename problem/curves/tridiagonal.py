@@ -10,9 +10,9 @@ finish; one that prescribes a velocity has no such row. As a system in v the row
 with 2/h + 2/h' on the diagonal, twice the sum of the other entries 1/h and 1/h'. So T is regular.
 
 Bound. Velocities v̂ leave r̂ = T(v̂ − v). Let M be T with −1/h beside the diagonal. Its rows are
-dominated by the diagonal too, so that M⁻¹ ≥ 0, and M|v̂ − v| ≤ |r̂| row by row. Hence
+dominated by the diagonal too, so M⁻¹ ≥ 0, and M|v̂ − v| ≤ |r̂| row by row. Hence
 |v̂ − v| ≤ w = M⁻¹ρ for any ρ ≥ |r̂|. The solution w is found with sums of one sign alone but for the
-pivots p' = 2/h + 2/h' − 1/(h²p), where p ≥ 2/h is the last one, so that p' ≥ 3/(2h) + 2/h'. A
+pivots p' = 2/h + 2/h' − 1/(h²p), where p ≥ 2/h is the last one, so p' ≥ 3/(2h) + 2/h'. A
 relative error of p enters p' by a third at most; pivots are known to 8 spacings at 1, and w to 25
 of them for each row. A thousandth more on ρ covers this and the rounding of all bounds, for any
 number of rows that has room in memory.

@@ -18,7 +18,7 @@ from .stretched import StretchedCurve
 from .timed import clocked_reach, combined, enclosed_with_clock, runs_forwards, values_at
 
 _SIXTH = Fraction(1, 6)
-"""Weight of either neighbour in (2); exact, so that the matrices are."""
+"""Weight of either neighbour in (2); exact, so the matrices are."""
 
 
 @lru_cache(maxsize=64)
@@ -26,9 +26,9 @@ def vertex_matrix(waypoints: int, natural: bool = False) -> tuple[tuple[Fraction
     """Control vertices as exact combinations of the way-points, (m + 2) rows of m numbers.
 
     (V_{i−1} + 4 V_i + V_{i+1})/6 = W_i (2) with V_1 = V_0 and V_{m+1} = V_m (3). Rows sum to 1;
-    the sum of the absolute values of a row is at most 3, since the diagonal of the system exceeds
+    the sum of the absolute values of a row is at most 3, because the diagonal of the system exceeds
     the rest of its row by at least 2/6. A natural curve has no curvature at its ends instead of
-    (3): V_0 − 2 V_1 + V_2 = 0, so that V_1 = W_0 by (2), and the same at the other end.
+    (3): V_0 − 2 V_1 + V_2 = 0, so V_1 = W_0 by (2), and the same at the other end.
     """
     m = waypoints
     end = Fraction(1) if natural else 5 * _SIXTH
@@ -151,7 +151,7 @@ class TimedUniformBSpline(UniformBSpline):
 
     Source: `irb1600-ga-cubic-bspline`, (1) to (3), with the t″ that (7) carries. C2 in time where
     dt/de > 0, which not every set of durations gives. How time ends is not printed: closed as the
-    joints are, q″ = ±2q′ and t″ = ±2t′ at the ends, so that the acceleration is 0 there and the
+    joints are, q″ = ±2q′ and t″ = ±2t′ at the ends, so the acceleration is 0 there and the
     velocity is not; with natural ends t″ = 0, and neither is 0.
 
     Parameters
@@ -188,7 +188,7 @@ class TimedUniformBSpline(UniformBSpline):
         return np.asarray(matrix @ (waypoints - waypoints[0]), dtype=np.float64)
 
     def batch_reach(self, values: Array, durations: Array, asked: Asked) -> Array:
-        """Of all pieces at once."""
+        """Compute it for all pieces at once."""
         nodes = self.clock.astype(np.float64)
         clocks, valid = runs_forwards(nodes, as_batch(self, durations))
         found = asked.room(valid.size)
@@ -224,7 +224,7 @@ def uniform_cubic_b_spline(
     time : Timing or str
         "stretched" or "timed".
     natural_clock : bool
-        Of a timed one: as in `TimedUniformBSpline`.
+        For a timed curve, as in `TimedUniformBSpline`.
 
     Raises
     ------

@@ -21,7 +21,7 @@ def limits_of_flags(
     ----------
     given : mapping
         Quantity to text: ``6``, ``6,8,inf``, or ``-1:2`` for a range; of positions a range, or a
-        number that stands for both sides. None where there is no flag.
+        number that stands for both sides. None if there is no flag.
     factors : ndarray, shape (joints,)
         Size of the unit in rad.
 

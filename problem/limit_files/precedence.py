@@ -12,7 +12,7 @@ from ..fields import spelling_hint, spelt_like
 from ..motions import BRAKING, ORDERS, JointLimits, check_range
 
 Range = tuple[float, float]
-"""Lower and upper limit, rad and s; infinite where that side has none."""
+"""Lower and upper limit, rad and s; infinite if that side has none."""
 
 _UNKNOWN = "is not a joint with limits there; rename it or add it;"
 """What is said of a joint that a file does not know, before the nearest name."""
@@ -29,7 +29,7 @@ class StatedLimits:
     ranges : mapping
         Joint to quantity to (lower, upper), rad and s.
     named : bool
-        Whether the joints are named by the source itself, so that an unknown name is a fault.
+        Whether the joints are named by the source itself, so an unknown name is a fault.
     """
 
     source: str

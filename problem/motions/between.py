@@ -124,7 +124,7 @@ def _ranges(samples: Samples, limits: JointLimits, r: int) -> list[tuple[float, 
 
 
 def _proven(samples: Samples, r: int, ranges: list[tuple[float, float]]) -> list[Proof]:
-    """What proves most of a derivative, joint by joint; nothing where it has no limit.
+    """What proves most of a derivative, joint by joint; nothing if it has no limit.
 
     A wider window lowers the error alone: where that is far below a joint's limit nothing is to be
     gained.

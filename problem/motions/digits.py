@@ -39,7 +39,7 @@ class HalfUnits:
     values: ArrayLike = 0.0
 
     def of(self, order: int, joints: int) -> Array:
-        """Of derivative ``order`` of every joint, shape (joints,)."""
+        """Digits of derivative ``order`` of every joint, shape (joints,)."""
         each = np.broadcast_to(np.asarray(self.values, dtype=np.float64), (3, joints))
         return np.asarray(each[order])
 

@@ -55,12 +55,12 @@ def hermite(samples: Samples, degree: NDArray[np.int64], between: str) -> Motion
 
     **Bounds.** The true samples have times within τ, and positions, velocities and accelerations
     within ε₀, ε₁, ε₂ of those of the file, rounding to float64 included. The r-th derivative is
-    Hq⁽ʳ⁾ w h⁻ʳ + Σ Hv⁽ʳ⁾ v h¹⁻ʳ + Σ Ha⁽ʳ⁾ a h²⁻ʳ in the way w and the data of both ends, so that
+    Hq⁽ʳ⁾ w h⁻ʳ + Σ Hv⁽ʳ⁾ v h¹⁻ʳ + Σ Ha⁽ʳ⁾ a h²⁻ʳ in the way w and the data of both ends, so
     each term is off by at most
 
         max |H⁽ʳ⁾| (ε h*ᵐ + |x| |h*ᵐ − hᵐ|),   m = −r, 1 − r, 2 − r,
 
-    with the duration h* within 2τ of h. Position has the way's basis between 0 and 1, so that it is
+    with the duration h* within 2τ of h. Position has the way's basis between 0 and 1, so it is
     off by ε₀ and not by twice as much.
 
     Parameters

@@ -28,7 +28,7 @@ class JointLimits:
     Attributes
     ----------
     lower, upper : ndarray, shape (joints, 4)
-        Range of derivative 0 to 3, rad, s; infinite where there is none.
+        Range of derivative 0 to 3, rad, s; infinite if there is none.
     deceleration : ndarray, shape (joints,)
         Largest |acceleration| while the joint's speed falls, rad/s²; if it is given, the
         acceleration limit applies only while the speed grows. inf if it is not given.

@@ -185,7 +185,7 @@ class Motion:
 def _check_degree(degree: int) -> None:
     if degree >= MAX_COEFFICIENTS:
         raise TrajgapError(
-            f"polynomials: degree {degree}, at most {MAX_COEFFICIENTS - 1} is judged; "
+            f"polynomials: degree {degree}, but at most {MAX_COEFFICIENTS - 1} is supported; "
             "split them into pieces of a lower degree"
         )
 

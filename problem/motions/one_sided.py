@@ -42,7 +42,7 @@ def one_sided_extreme(
     """Largest |acceleration| of a joint while its speed grows (``sign`` 1) or falls (−1).
 
     Below the speed ``rest`` a joint counts as standing, and neither grows nor falls. Between roots
-    of speed, acceleration and jerk all three keep their signs, so that speed and acceleration are
+    of speed, acceleration and jerk all three keep their signs, so speed and acceleration are
     monotone there. Where the speed exceeds its error its sign is sure; on the rest of such an
     interval either sign counts for the bound above.
 

@@ -69,7 +69,7 @@ def read_parquet(path: Path, joints: Sequence[str] = ()) -> Samples:
 
 
 def _numbers(name: str, label: str, column: Any) -> tuple[Array, float]:
-    """A column of positions or derivatives, NaN where it has no value, and its half unit."""
+    """A column of positions or derivatives, NaN if it has no value, and its half unit."""
     from pyarrow import float64, types
 
     column = _plain(column)
@@ -118,7 +118,7 @@ def _times(name: str, label: str, column: Any) -> tuple[Array, float]:
 
 
 def _plain(column: Any) -> Any:
-    """A column with its values in place of the keys of a dictionary."""
+    """A column with its values instead of the keys of a dictionary."""
     from pyarrow import types
 
     kind = column.type

@@ -14,7 +14,7 @@ from ..errors import CaseError, TrajgapError
 from .motion import MOST_VALUES, Motion
 
 POLYNOMIAL_FORMAT = "trajgap-motion/1"
-"""Key `format` of such a file, so that a later form can be told from this one."""
+"""Key `format` of such a file, so a later form can be told from this one."""
 
 
 def motion_of_json(found: Any, name: str, factors: Array | float = 1.0) -> Motion:

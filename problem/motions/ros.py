@@ -77,7 +77,7 @@ def samples_of_message(message: Mapping[str, Any], name: str, text: bool = True)
         and ``nanosec``, in ROS 1 ``secs`` and ``nsecs``; a number of seconds too), and may have
         ``velocities`` and ``accelerations``.
     text : bool
-        Whether the message was written as text, so that its digits say what was rounded.
+        Whether the message was written as text, so its digits say what was rounded.
 
     Raises
     ------

@@ -32,7 +32,7 @@ _WORDS = {
 """What a column holds, said before or after the joint's name."""
 _SYMBOLS = _WORDS | {"v": 1, "a": 2}
 """The same where a number alone follows, as in q1, qd1: one letter may be a joint's name too, so
-that these count only beside a column of positions with that number."""
+these count only beside a column of positions with that number."""
 _UNIT = re.compile(r".*(?:[\[(][^\])]*[\])]|[ _./-](?P<unit>deg|degrees?|mm|cm))", re.IGNORECASE)
 """A name that ends in a unit: any in brackets, or one that is not the default."""
 _LATEST = 253_402_300_800

@@ -21,7 +21,7 @@ _Numbers = NDArray[np.floating]
 _UP = 1.0 + 1e-9
 """Covers the rounding of bounds."""
 _SLACK = 1.001
-"""By so much a solved bound is larger than asked, so that its rounding leaves it a bound where
+"""By so much a solved bound is larger than asked, so its rounding leaves it a bound where
 neighbouring durations differ a millionfold: it is checked, and may be a thousandth too wide."""
 _CORRECTIONS = 3
 """Solutions of the residual in float64: each gains some twelve digits, and fewer remain."""
@@ -83,7 +83,7 @@ def not_a_knot_spline(samples: Samples) -> Motion:
 
     where not-a-knot says M₀ = M₁ + ρ (M₁ − M₂), ρ = h₀/h₁, which makes the first row
     (2 + ρ) M₁ + (1 − ρ) M₂ = g₁, and the last one alike. In each row the diagonal exceeds the sum
-    of the others by 1 or more, so that the inverse is at most 1 in the maximum norm.
+    of the others by 1 or more, so the inverse is at most 1 in the maximum norm.
 
     **Bounds.** Let A* M* = g* be the system of the true samples, which are at times and positions
     off by what `Samples` says, and M a computed solution. Then A* (M* − M) = (g* − g) −
@@ -229,7 +229,7 @@ def _fill(clock: _Times, q: Array, doubt: Array, scaled: Array, error: Array) ->
 
 
 def _bounded(bound: _Rows | None, excess: Array) -> Array:
-    """A vector e with C e ≥ excess, checked row by row; inf where there is none."""
+    """A vector e with C e ≥ excess, checked row by row; inf if there is none."""
     nothing = np.full(excess.size, np.inf)
     if bound is None or not np.isfinite(excess).all():
         return nothing

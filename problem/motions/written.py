@@ -61,7 +61,7 @@ def sampled(
     joints : tuple of str, optional
         Labels; those of the motion, or "1", "2", ....
     breaks : bool
-        Whether the motion's breaks are rows too, so that quintic Hermite interpolation reproduces a
+        Whether the motion's breaks are rows too, so quintic Hermite interpolation reproduces a
         motion of degree 5 or less exactly.
     whole_nanoseconds : bool
         Whether times are rounded to whole nanoseconds, as in ROS messages.
@@ -79,7 +79,7 @@ def sampled(
         raise TrajgapError(f"step: {total / step:.3g} samples are too many; take a longer step")
     times = _rows(np.asarray(motion.breaks) - begin, step, breaks)
     if whole_nanoseconds:
-        # At rest the end may come a part of a nanosecond late; a motion that goes on may not.
+        # At rest the end may come a part of a nanosecond late; a motion that continues may not.
         still = not np.abs(np.asarray(motion(end, 1))).max() > _STILL
         last = (np.ceil if still else np.floor)(total * 1e9)
         whole = np.unique(np.minimum(np.append(np.round(times[:-1] * 1e9), last), last))
@@ -152,7 +152,7 @@ def motion_text(
     step : float
         s.
     linear : tuple of bool, optional
-        Whether each joint slides, so that polynomials state its positions in m; none by default.
+        Whether each joint slides, so polynomials state its positions in m; none by default.
 
     Raises
     ------

@@ -14,7 +14,7 @@ from .chain import Chain, forward_kinematics
 from .inverse import inverse_kinematics
 
 POINTS = 9
-"""Poses of a line by default: eight steps, so that a joint curve stays near the line."""
+"""Poses of a line by default: eight steps, so a joint curve stays near the line."""
 LARGEST_STEP = np.pi / 2
 """Joint motion between neighbouring poses that counts as another branch of the inverse, rad."""
 
@@ -76,7 +76,7 @@ def ctraj(
     """Joint way-points of a straight move between two poses, as the toolboxes' ``ctraj`` makes it.
 
     Position moves on a line, orientation about one fixed axis, in equal steps; each pose is
-    solved from the joints of the one before, so that the branch of the inverse stays the same.
+    solved from the joints of the one before, so the branch of the inverse stays the same.
     The durations determine when the way-points are passed.
 
     Parameters

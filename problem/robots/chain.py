@@ -114,7 +114,7 @@ class Chain:
 
     @property
     def slides(self) -> Array:
-        """Largest |d| of each link within the joint bounds, m; inf where it slides freely."""
+        """Largest |d| of each link within the joint bounds, m; inf if it slides freely."""
         far = np.maximum(np.abs(self.d + self.lower), np.abs(self.d + self.upper))
         return np.where(self.revolute, np.abs(self.d), far)
 

@@ -40,7 +40,7 @@ def closed_form_inverse(chain: Chain, target: ArrayLike, tolerance: float = TOLE
     -------
     ndarray, shape (branches, 5)
         rad, each joint in (−π, π] and within its bounds; four branches at most: both arms, the
-        base facing the target before the base turned away. Empty where none reaches.
+        base facing the target before the base turned away. Empty if none reaches.
 
     Raises
     ------

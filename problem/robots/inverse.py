@@ -24,7 +24,7 @@ _DAMPING = (1e-14, 1e-3, 1e12)
 """Least, first and largest damping, in units of the normal matrix's largest entry."""
 _FASTER, _SLOWER = 0.1, 6.0
 """Factors of the damping after a step that helped, and after one that did not: down by ten, up
-more carefully, so that a success is not undone at once."""
+more carefully, so a success is not undone at once."""
 _ROTATION_TOLERANCE = 1e-6
 """Largest entry of R Rᵀ − I of a target: room for rotations typed with seven digits."""
 

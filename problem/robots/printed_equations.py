@@ -93,7 +93,7 @@ def check_equation(chain: Chain, text: str, samples: int = SAMPLES, seed: int = 
     Parameters
     ----------
     chain : Chain
-        Of fewer than ten joints that all turn.
+        A chain of fewer than ten joints, all revolute.
     text : str
         "left = right", after definitions "K = ...;". Names: ``t1`` the angle of a joint; ``c23``
         and ``s23`` cosine and sine of the sum of the angles named; ``a2``, ``d2`` of a row of the

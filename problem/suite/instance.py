@@ -49,7 +49,7 @@ class Hardness(_Strict):
     drawn: Count
     """Durations drawn uniformly within their bounds."""
     feasible_share: Share
-    """Of them, those that keep the limits."""
+    """Share of them that keep the limits."""
     baselines: Mapping[str, Share] = {}
     """Share of runs that end within 1 % of the best known total, by the baseline's name."""
     baseline_runs: Count = 0

@@ -103,7 +103,7 @@ def select_curve(word: str) -> tuple[BenchmarkInstance, ...]:
     Parameters
     ----------
     word : str
-        In capitals or not, such as "quintic".
+        A word such as "quintic", in upper or lower case.
     """
     wanted = word.lower()
     return tuple(one for one in list_instances() if wanted in f"{one.name} {one.curve}".lower())

@@ -65,7 +65,7 @@ def main() -> int:
 
 
 def table(accounts: Sequence[Account], apart: bool) -> str:
-    """What was tried and held, as `docs/tables.py` takes it; each command by itself or not."""
+    """What was tried and held, as `docs/tables.py` takes it; each command separately or not."""
     what = ("command",) if apart else ("what is tried", "what must hold")
     seen = ("what was seen",) if apart else ()
     head = ("attack", *what, "trials", "held", "not judged", "failures", *seen)

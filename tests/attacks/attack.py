@@ -9,7 +9,7 @@ from pathlib import Path
 from attacks.cases import Rng
 
 Trial = Callable[[Rng, Path], str | None]
-"""One trial in an empty folder: the word for what was seen, or None where nothing can be judged."""
+"""One trial in an empty folder: the word for what was seen, or None if nothing can be judged."""
 
 
 class Broken(Exception):

@@ -26,7 +26,7 @@ FAMILIES = (
 )
 """Every family that a case file may name; a test compares with the schema."""
 _LATER = ("septic-spline", "quintic-spline-virtual")
-"""Families drawn in place of some quintic splines, so that the seeds of other draws keep theirs."""
+"""Families drawn instead of some quintic splines, so the seeds of other draws keep theirs."""
 CLAIMS = (
     "durations",
     "maximum",
@@ -349,7 +349,7 @@ def near_limits(rng: Rng, problem: Any, spread: float, ratio: float = 1.0) -> Ar
 
 
 def _rounded(values: Array) -> Array:
-    """The same numbers with six digits, so that text and float mean one number."""
+    """The same numbers with six digits, so text and float mean one number."""
     return np.array([float(f"{x:.6g}") for x in np.ravel(values)]).reshape(np.shape(values))
 
 

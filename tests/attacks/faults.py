@@ -115,7 +115,7 @@ WORKS: dict[str, Work] = {
 
 
 def _prepared(work: Work, folder: Path) -> None:
-    # A case with a replay, so that an audit has something to lose.
+    # A case with a replay, so an audit has something to lose.
     settings = {"particles": 6, "iterations": 8}
     text = paper(
         ["0.10 0.90 -0.30 0.40", "1.0 0.2 0.3 -0.5"],

@@ -291,7 +291,7 @@ ATTACKS = (
     _attack(
         "rounding boxes",
         "verdicts over all inputs that print alike, against random points of the box",
-        "never *breaks* where a point keeps; every exhibit keeps and lies inside",
+        "never *breaks* if some point keeps the limits; every exhibit keeps them and lies inside",
         rounding,
         1.0,
         10,

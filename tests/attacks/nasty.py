@@ -102,7 +102,7 @@ def reached(bare: Any, h: Array) -> tuple[Array, Array, Array]:
 
 
 def draw(rng: Rng) -> tuple[Any, Array] | None:
-    """A valid problem, and durations that `check` passes; None where none were drawn."""
+    """A valid problem, and durations that `check` passes; None if none were drawn."""
     from trajgap.problem import Limits, Problem, TrajgapError, check
 
     family = str(rng.choice(FAMILIES))

@@ -1,6 +1,6 @@
 """Attacks on proofs: certificates altered, grafted, forged, with right hashes.
 
-Each certificate has an answer that is known, so that a bound above it is false, and so is an answer
+Each certificate has an answer that is known, so a bound above it is false, and so is an answer
 below its bound. What an altered number of the problem itself allows is searched by brute force in
 `tests/verify/test_verify.py`; altered states are taken up again beside their certifiers.
 """

@@ -1,6 +1,6 @@
 """Commands and functions run in a forked child: bounded in processor time and memory, watched.
 
-The parent has everything imported and compiled, so that a command costs what it does and not the
+The parent has everything imported and compiled, so a command costs what it does and not the
 seconds that Python takes to start. Signals, pipes and limits are those of a process of its own.
 """
 

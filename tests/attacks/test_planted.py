@@ -1,4 +1,4 @@
-"""Each attack finds a fault planted for it: trials fork, so that a child has the fault too."""
+"""Each attack finds a fault planted for it: trials fork, so a child has the fault too."""
 
 import time
 from collections.abc import Callable, Iterator

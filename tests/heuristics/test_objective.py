@@ -126,7 +126,7 @@ def test_a_penalty_is_above_every_admissible_total(judge: type, penalty: float, 
     [
         ([1.0], r"expected 2 values .* got shape \(1,\)"),
         ([[1.0], [2.0]], r"expected 2 values .* got shape \(2, 1\)"),
-        ([1.0, np.nan], "returned NaN; return inf for what is infeasible"),
+        ([1.0, np.nan], "returned NaN; return inf for infeasible positions"),
     ],
 )
 def test_an_objective_returns_one_number_each(values: list[object], said: str) -> None:
@@ -137,7 +137,7 @@ def test_an_objective_returns_one_number_each(values: list[object], said: str) -
 
 def test_fixed_ratios_leave_nothing_to_search() -> None:
     problem = Problem([[0.0], [0.5], [1.5]], Limits(1.0), cubic_spline(2), ratios="equal")
-    said = "ratios: the durations have fixed ratios, so that the total is the one unknown"
+    said = "ratios: the durations have fixed ratios, so the total is the only unknown"
     for refused in (
         lambda: DeathPenalty(problem),
         lambda: Stretch(problem),

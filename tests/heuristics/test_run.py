@@ -327,5 +327,5 @@ def test_a_run_that_was_left_is_judged_again() -> None:
         {"position": own.position * 0.5},
         {"trace": np.append(own.trace[:-1], np.nextafter(own.trace[-1], 0))},
     ):
-        with pytest.raises(TrajgapError, match="does not go down to"):
+        with pytest.raises(TrajgapError, match="does not end at"):
             left(**wrong)

@@ -73,7 +73,7 @@ def arrows() -> dict[str, frozenset[str]]:
 
 
 def circle() -> list[str]:
-    """Modules that import each other in a loop; empty where none do."""
+    """Modules that import each other in a loop; empty if none do."""
     try:
         TopologicalSorter(arrows()).prepare()
     except CycleError as error:

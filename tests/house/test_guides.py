@@ -126,7 +126,7 @@ def whole(snippet):
     )
     shown = set(PARTS.findall(snippet))
     kept = re.split(r"(?m)^(?=\[)", base)
-    if "claims" in shown:  # what a document shows stands in place of the example's
+    if "claims" in shown:  # what a document shows stands instead of the example's
         kept = [part for part in kept if not part.startswith("[[claims]]")]
     elif "interpolant" in shown:
         kept = [part for part in kept if not part.startswith("[interpolant]")]

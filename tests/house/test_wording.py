@@ -1,4 +1,4 @@
-"""What readers read, held in one place: numbers left out, since other tests hold those.
+"""What readers read, held in one place: numbers left out, because other tests hold those.
 
 After a change of words, write the files anew and read the difference:
 `WRITE_WORDING=1 python -m pytest tests/house/test_wording.py`

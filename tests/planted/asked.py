@@ -28,7 +28,7 @@ _LRU_CACHE = functools.lru_cache
 
 
 class TooLong(BaseException):
-    """A test takes too long to be asked about faults; a base exception, so that none catches it."""
+    """A test takes too long to be asked about faults; a base exception, so none catches it."""
 
 
 class Recorder:
@@ -38,7 +38,7 @@ class Recorder:
         self._prefixes = tuple(f"{root / folder}{os.sep}" for folder in sources)
         self._root, self._tests = f"{root}{os.sep}", f"{root / 'tests'}{os.sep}"
         self._names: dict[int, str | None] = {}
-        self._codes: list[CodeType] = []  # kept, so that no other one gets the same id
+        self._codes: list[CodeType] = []  # kept, so no other one gets the same id
         self._sets: list[set[str]] = [set()]
         self._profiler = Profile()
         self._shared: dict[Any, set[str]] = {}

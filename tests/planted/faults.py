@@ -19,7 +19,7 @@ from typing import Any
 LISTS = Path(__file__).resolve().parent
 FOLDERS = ("verify", "problem", "nlp", "heuristics", "compare")
 NO_FAULTS = "no_faults"
-"""List of changes that no test can find, each with the reason in place of a number of the place."""
+"""List of changes that no test can find, each with the reason instead of a number of the place."""
 MODULE = "module"
 """Key of what stands outside of functions and classes."""
 

@@ -37,8 +37,8 @@ OPTIONS = [
 COMPILING = "tests/problem/curves/test_kernels.py"
 """Tests that call every function that numba compiles."""
 COMPILED = "\n@compiled\n"
-"""What sources of compiled functions hold. With a fault they are interpreted, since compiling takes
-longer; their callers are known of the tests beside them alone, recorded without the compiler."""
+"""What sources of compiled functions hold. With a fault they are interpreted, because compiling
+takes longer; their callers are known only from the tests recorded without the compiler."""
 ENVIRONMENT = {
     "OPENBLAS_NUM_THREADS": "1",  # cores are shared out by -n
     "OMP_NUM_THREADS": "1",
@@ -49,7 +49,7 @@ ENVIRONMENT = {
 class Copy:
     """A copy of what git knows of a checkout, in a folder that ends with it.
 
-    The folder is called as the namespace, so that the copy is imported, not what is installed.
+    The folder is called as the namespace, so the copy is imported, not what is installed.
     """
 
     def __init__(self, root: Path) -> None:
@@ -249,7 +249,7 @@ class Job:
     file: str | None = None
     source: str = ""
     interpreted: bool = False
-    """Whether functions that numba compiles run as Python, so that their calls are seen."""
+    """Whether functions that numba compiles run as Python, so their calls are seen."""
 
 
 class First:

@@ -21,7 +21,7 @@ from trajgap.problem import (
 )
 
 ODD = "half a pair \ud800"
-"""What no file can hold, so that writing it fails half-way."""
+"""What no file can hold, so writing it fails half-way."""
 
 
 def names(folder: Path) -> list[str]:

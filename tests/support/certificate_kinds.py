@@ -1,6 +1,6 @@
 """One small certificate of every kind of proof, and the true optimum of the problem in a file.
 
-Each kind of proof that `verify` knows has an entry in `KINDS`, so that attacks reach it.
+Each kind of proof that `verify` knows has an entry in `KINDS`, so attacks reach it.
 """
 
 import json
@@ -38,7 +38,7 @@ class Kind:
     make: Callable[[], Problem]
     gap: float
     optimum: Callable[[Problem], float]
-    """An upper estimate of the least total, inf where nothing is feasible."""
+    """An upper estimate of the least total, inf if nothing is feasible."""
     exact: bool = False
     """Whether the estimate is a lower one, too."""
     many: int = 1000

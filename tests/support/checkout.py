@@ -1,4 +1,4 @@
-"""Where the checkout lies, so that no test counts the folders above it."""
+"""Where the checkout lies, so no test counts the folders above it."""
 
 from pathlib import Path
 

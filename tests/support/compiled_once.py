@@ -39,7 +39,7 @@ def _waiting(compiling: Callable[..., Any]) -> Callable[..., Any]:
         folder = self.stats.cache_path
         if folder is None:  # what stays in memory is of no use to others
             return compiling(self, sig)
-        # Functions do not call each other in circles, so that no two processes wait for each other.
+        # Functions do not call each other in circles, so no two processes wait for each other.
         with alone(Path(folder), self.py_func.__qualname__):
             return compiling(self, sig)
 

@@ -17,7 +17,7 @@ SCHEMA = json.loads(
 
 
 def closed(schema: Any) -> Any:
-    """The schema with every object closed, so that an undocumented key shows."""
+    """The schema with every object closed, so an undocumented key shows."""
     if isinstance(schema, dict):
         schema = {key: closed(value) for key, value in schema.items()}
         if "properties" in schema and "required" in schema:

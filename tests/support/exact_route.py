@@ -2,7 +2,7 @@
 
 Everything is written in each segment's own time, unscaled, as the papers write it. The floats that
 go in are taken at their exact value, so what comes out is the truth that float64 has to meet.
-Where a derivative turns is found in float64 and then evaluated exactly, so that a peak is off by
+Where a derivative turns is found in float64 and then evaluated exactly, so a peak is off by
 the square of the place's error.
 """
 
@@ -134,7 +134,7 @@ def braking(
 ) -> tuple[Fraction, Fraction]:
     """Largest |acceleration| while the speed grows, and while it falls.
 
-    Between the roots of velocity, acceleration and jerk all three keep their sign, so that the
+    Between the roots of velocity, acceleration and jerk all three keep their sign, so the
     middle tells which of both it is, and |acceleration| is largest at an end. Stretches on which
     the speed stays below ``still`` are left out.
     """

@@ -246,7 +246,7 @@ FAULTS = {
     swallows: "continued after its budget of 40 evaluations was spent",
     hides_faults: "asked for the fitness of NaN",
     raises: "one",
-    judges_nothing: "judged no position",
+    judges_nothing: "evaluated no position",
     wrong_shape: r"asked for the fitness of shape \(2,\); give \(3,\) or \(batch, 3\)",
     asks_words: "asked for the fitness of something that is not numeric",
 }

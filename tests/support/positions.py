@@ -65,13 +65,13 @@ SWINGING = Problem(
 
 
 def over(reach: Array, limit: Array) -> Array:
-    """Ratios to limits: 0 where nothing moves, inf where a limit of 0 is passed."""
+    """Ratios to limits: 0 where nothing moves, inf if a limit of 0 is passed."""
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.asarray(np.where(reach > 0, reach / limit, 0.0))
 
 
 def position_ratios(ends: Array, low: Array, high: Array) -> Array:
-    """1 at a limit and more beyond, in half ranges; −inf where there is none.
+    """1 at a limit and more beyond, in half ranges; −inf if there is none.
 
     ``ends`` has the least and the largest position of each joint, shape (joints, 2).
     """

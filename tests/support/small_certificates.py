@@ -16,7 +16,7 @@ def sealed(data: Document) -> Document:
 
 
 def rest_to_rest() -> Document:
-    """Two quintics from rest to rest; |φ′| = 15/8 at the middle, so that 1.875·|Δq|/V is least."""
+    """Two quintics from rest to rest; |φ′| = 15/8 at the middle, so 1.875·|Δq|/V is least."""
     return sealed(
         {
             "format": CERTIFICATE_FORMAT,

@@ -47,7 +47,7 @@ def without(case: Case, *blocks: str) -> Case:
 
 
 def briefly(case: Case) -> Case:
-    """The case; the PUMA paper under its default reading alone, since each takes seconds."""
+    """The case; the PUMA paper under its default reading alone, because each takes seconds."""
     return without(case, "readings") if case.id == PUMA else case
 
 

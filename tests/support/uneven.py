@@ -16,7 +16,7 @@ from trajgap.problem import (
 )
 
 WAYPOINTS = np.array([[0.1, -0.4], [0.7, 0.3], [1.2, -0.5], [0.9, 0.2]])
-"""Both joints turn, so that every side of a limit is met."""
+"""Both joints turn, so every side of a limit is met."""
 LIMITS = Limits([[-0.9, 1.4], [-2, 1.1]], [[-3, 5], [-6, 2.5]], [[-40, 25], [-20, 60]])
 """No two sides alike."""
 CURVES: dict[str, Callable[[], Curve]] = {

@@ -19,7 +19,7 @@ QUICK = 2.0
 TABLE = 300
 """Entries of a table: more than looks at the clock that the limits below allow."""
 STEP = 0.01
-"""Seconds by which the clock goes on whenever it is looked at."""
+"""Seconds by which the clock continues whenever it is looked at."""
 
 
 @pytest.fixture

@@ -183,7 +183,7 @@ def _run_all(
     for problem, algorithm, objective in asked:
         for seed in range(runs):
             key = (*_key(problem), algorithm, seed, objective)
-            # The first of equal problems stands for all, so that neighbours are judged together.
+            # The first of equal problems stands for all, so neighbours are judged together.
             one = AskedRun(problem, seed, (), objective)
             todo.setdefault(algorithm, {}).setdefault(key, one)
     for algorithm, questions in todo.items():

@@ -57,7 +57,7 @@ class Sample:
         Of the two curves.
     totals : ndarray, shape (objectives, 3, runs)
         Reported totals, s, of the slower procedure, the slower one's algorithm on the faster
-        one's curve, and the faster procedure; inf where a run has no answer that keeps its limits.
+        one's curve, and the faster procedure; inf if a run has no answer that keeps its limits.
     settled : ndarray, shape (objectives, 3, runs)
         Iteration from which the best-so-far stays within `SETTLED` of its final value.
     """
@@ -188,7 +188,7 @@ class InstancesResult:
     ) -> tuple[float, float]:
         """95 % interval of the median reduction of an instance, by resampling the instances.
 
-        Pairs of runs on one instance depend on each other, so that instances are drawn, each with
+        Pairs of runs on one instance depend on each other, so instances are drawn, each with
         its median; percentiles with a fixed seed. nan with fewer than two instances with answers.
         """
         each = [distribution(s.reductions(effect, objective)).median for s in self.of(reading)]

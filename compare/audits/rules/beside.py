@@ -78,7 +78,7 @@ class Beside:
     norm : Beside, optional
         The same beside the largest norm over the joints, where one number speaks of several.
     linear : bool, optional
-        Of a peak: whether its joint slides, so that units explain a factor between the two.
+        Of a peak: whether its joint slides, so units explain a factor between the two.
     """
 
     printed: Printed
@@ -166,7 +166,7 @@ class Beside:
 def _meant_by_ratio(ratio: float, linear: bool) -> str | None:
     """The factor between two units that a ratio is near, and what it would mean.
 
-    It is None where the ratio is near none.
+    It is None if the ratio is near none.
 
     Parameters
     ----------

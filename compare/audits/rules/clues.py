@@ -82,7 +82,7 @@ def _under(study: Study, clue: AnyClue, reading: str) -> Iterator[ReadingClue]:
 
 
 _Said = tuple[Speaks, str] | None
-"""On which side a clue speaks and what was computed; None where a reading has no problem."""
+"""On which side a clue speaks and what was computed; None if a reading has no problem."""
 
 
 def _motions(study: Study, names: Sequence[str], reading: str) -> list[PrintedRow[AnyClaim]]:

@@ -18,7 +18,7 @@ _RESULTS = "comparisons.json"
 """The committed results: written by benchmarks/comparison_results.py, never by hand."""
 
 Share = Annotated[float, Field(ge=0, le=1)] | None
-"""From 0 to 1; None where no pair of runs has two answers."""
+"""From 0 to 1; None if no pair of runs has two answers."""
 Count = Annotated[int, Field(ge=0)]
 """How many."""
 
@@ -74,7 +74,7 @@ class Designed(ComparedWhere):
     pairs: Count
     """Pairs of settings with two answers."""
     typical: Count
-    """Of them, those in which half of the pairs of runs or more show the printed advantage."""
+    """Settings in which at least half of the pairs of runs show the printed advantage."""
     shorter: Count
     """Those in which the improved one is shorter in more than half of the pairs of runs."""
     most: Share
@@ -118,7 +118,7 @@ def _results() -> _Results:
 
 
 def comparison_of(case: str, claim: str) -> Comparison | None:
-    """What a study found on the comparison that a claim makes; None where none was made."""
+    """What a study found on the comparison that a claim makes; None if none was made."""
     return next(
         (one for one in _results().comparisons if (one.case, one.claim) == (case, claim)), None
     )
@@ -198,7 +198,7 @@ def comparison_words(known: Comparison, case: Case) -> Iterator[str]:
 
 
 def _called(case: Case, problems: Iterable[str]) -> dict[str, str]:
-    """What tells each of these problems from the others, in words; empty where there is one.
+    """What tells each of these problems from the others, in words; empty if there is one.
 
     A study writes a problem as its id, and behind a comma how its joints were searched.
     """

@@ -119,7 +119,7 @@ def _impossible_segments(study: Study, claim: ConditionsClaim) -> list[int]:
 
     Of each segment alone: it passes two way-points that differ for every value that rounds to their
     digits, and the derivatives vanish at the ends where the statement says so. The duration only
-    scales these equations, so that they are decided in rational numbers, once for all durations.
+    scales these equations, so they are decided in rational numbers, once for all durations.
     """
     found = set()
     for pair in study.pairs:

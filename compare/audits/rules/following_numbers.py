@@ -45,7 +45,7 @@ def summed(parts: Sequence[Printed | str], like: Printed) -> str:
 
 
 def repeated_total(study: Study, claim: TotalTimeClaim) -> AnyClaim | None:
-    """The claim whose total another place prints again; None where none is meant for sure."""
+    """The claim whose total another place prints again; None if none is meant for sure."""
     found, weight = printed_alike(study, claim)
     totals = [printed_total(one) or _plain(one) for one in found]
     close = [
@@ -133,7 +133,7 @@ def _of_motion(study: Study, claim: MotionValueClaim) -> dict[str, tuple[str, ..
 def _number(
     row: PrintedRow[AnyClaim], claim: MotionValueClaim, printed: Printed, joint: str | None
 ) -> str | None:
-    """One number of a motion; None where it has none."""
+    """One number of a motion; None if it has none."""
     if isinstance(claim, PeakClaim):
         one = beside(row, claim, printed, joint)
     elif isinstance(claim, ValueClaim):

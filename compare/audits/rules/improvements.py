@@ -95,7 +95,7 @@ def _share(slower: Interval, faster: Interval, base: str) -> Interval:
 
 
 def _divides(base: str, faster: Interval) -> bool:
-    """Whether a total is more than nothing, so that something may be a share of it."""
+    """Whether a total is more than nothing, so something may be a share of it."""
     return base == "slower" or faster.lower > 0
 
 

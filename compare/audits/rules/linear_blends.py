@@ -1,7 +1,7 @@
 """TG210: printed durations of linear segments with parabolic blends beside the limits.
 
 A joint moves at constant speed along each segment; around each way-point its speed changes at
-constant acceleration, so that it passes via-points at a distance (Craig, *Introduction to
+constant acceleration, so it passes via-points at a distance (Craig, *Introduction to
 Robotics*, section 7.3). With steps Δ_k, durations h_k and blends τ_k around way-point k:
 
     v_k = Δ_k / h_k,    a_k = (v_{k+1} − v_k) / τ_k,    τ_{k−1}/2 + τ_k/2 ≤ h_k

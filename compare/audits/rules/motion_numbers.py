@@ -274,7 +274,7 @@ class MotionNumbers(Generic[_Value]):
     kind : type
         The claims that print such numbers.
     beside : callable
-        From a row of durations, a claim, one of its numbers and its joint; None where the motion
+        From a row of durations, a claim, one of its numbers and its joint; None if the motion
         has no such number.
     described : callable
         One number beside the motion's, as a part of a sentence.

@@ -103,7 +103,7 @@ def beside(
 ) -> Beside | None:
     """A printed peak set beside the exact one of a motion.
 
-    It is None where the joint is not in that motion, or where the motion has no curve.
+    It is None if the joint is not in that motion, or where the motion has no curve.
 
     Parameters
     ----------
@@ -236,7 +236,7 @@ def _norm_top(trajectory: Trajectory, piece: int, order: int) -> tuple[float, in
 def _turning(trajectory: Trajectory, piece: int, order: int) -> Array:
     """Both ends, and every place where the norm can turn: roots of the derivative of its square.
 
-    The square Σ_j q_j² is a polynomial. Real parts of all roots, since rounding moves double ones
+    The square Σ_j q_j² is a polynomial. Real parts of all roots, because rounding moves double ones
     off the axis; a place too many changes no largest value.
     """
     square = np.polynomial.Polynomial([0.0])
@@ -280,7 +280,7 @@ def _of_norm(one: Beside) -> str:
 
 
 def largest_of_each_kind(jumps: Sequence[_Jump]) -> list[_Jump]:
-    """The largest jump of joints that turn and that of joints that slide, where there are any.
+    """The largest jump of joints that turn and that of joints that slide, if there are any.
 
     The kind of the first one stands first.
     """

@@ -41,7 +41,7 @@ class _Match:
     """Largest miss of the distance from the base's origin beyond rounding, or 0, m."""
     unsigned: tuple[int, float] | None = None
     """The position that is missed most with the best signs of twists, angles and coordinates, and
-    by how much at least, m; None where none is shown to be missed, or nothing was looked for."""
+    by how much at least, m; None if none is shown to be missed, or nothing was looked for."""
 
     @property
     def fits(self) -> bool:
@@ -173,7 +173,7 @@ def _bounded(chain: Chain, joints: Joints) -> Chain:
 
 
 def _places(study: Study, statement: Statement) -> list[tuple[int | None, Cartesian]]:
-    """Printed positions with the index of their way-point; None where there is none."""
+    """Printed positions with the index of their way-point; None if there is none."""
     labels, count = statement.waypoints.labels, len(statement.waypoints.points)
     places = study.case.cartesian
     found: list[tuple[int | None, Cartesian]] = []
@@ -230,7 +230,7 @@ def _unsigned(
 ) -> tuple[int, float] | None:
     """A position that is missed beyond rounding whatever minus signs the text has lost.
 
-    Each sign may be lost by itself, so that one position that no signs lead to is enough: those
+    Each sign may be lost by itself, so one position that no signs lead to is enough: those
     that are missed most as printed are tried first.
     """
     clearest: tuple[int, float] | None = None

@@ -79,12 +79,12 @@ def _sum(parts: Sequence[Interval]) -> Interval:
 
 
 def shown(x: Fraction | float, places: int = 6) -> str:
-    """A number with so many significant digits."""
+    """A number with this many significant digits."""
     return f"{float(x):.{places}g}"
 
 
 def span(interval: Interval, places: int = 6) -> str:
-    """Both ends of an interval, with so many significant digits; one number if they print alike."""
+    """Both ends of an interval, to this many digits; one number if they print alike."""
     return ranged(float(interval.lower), float(interval.upper), f".{places}g")
 
 
@@ -193,7 +193,7 @@ def _sums(study: Study) -> Iterator[Finding]:
 def end_blends(study: Study, claim: AnyClaim) -> tuple[Printed, ...] | None:
     """The first and the last blend of a row, which its total may count by half.
 
-    Empty where there are none; None where they are not printed as durations, or where a claim takes
+    Empty if there are none; None if they are not printed as durations, or where a claim takes
     the longest of several rows with blends.
     """
     if isinstance(claim, MaximumClaim):
@@ -332,7 +332,7 @@ def _repeated_digits(study: Study) -> Iterator[Finding]:
 
 
 def _column_groups(columns: Sequence[object]) -> list[tuple[str, list[Printed]]]:
-    """Columns of one table together, since a table's rows are given one by one."""
+    """Columns of one table together, because a table's rows are given one by one."""
     groups: dict[str, list[Printed]] = {}
     for column in columns:
         where = str(getattr(column, "where", "")).split(",")[0]

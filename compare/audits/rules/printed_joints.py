@@ -117,7 +117,7 @@ def _middle(low: Fraction, high: Fraction) -> float:
 def _above(study: Study, claim: StatementClaim) -> Finding:
     """How far one position stands beside another in the horizontal plane, and how far above it.
 
-    Signs are often lost in print and in extraction, so that no sign alone decides.
+    Signs are often lost in print and in extraction, so no sign alone decides.
     """
     by_id = {place.id: place for place in study.case.cartesian}
     upper, lower = (by_id[name] for name in claim.positions)

@@ -215,7 +215,7 @@ def printed_alike(
     """Claims that print the same total, and what it weighs if they differ.
 
     An error where the file says that they are one total, a warning where nothing else is printed
-    that it could be; None where the text leaves open whether they are one.
+    that it could be; None if the text leaves open whether they are one.
     """
     alike: list[AnyClaim] = [
         c
@@ -243,7 +243,7 @@ def printed_alike(
 def total_allowed(study: Study, claim: AnyClaim) -> Interval:
     """What the digits of a total allow, rounded or cut off.
 
-    A printed total may be the sum of printed digits, so that what its parts allow is allowed too.
+    A printed total may be the sum of printed digits, so what its parts allow is allowed too.
 
     Parameters
     ----------

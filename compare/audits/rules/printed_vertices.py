@@ -67,7 +67,7 @@ class Vertex:
 def judge_vertices(study: Study) -> Iterator[Finding]:
     """Set every printed control vertex beside the way-points of its problem.
 
-    Each kind of B-spline has vertices of its own, so that a claim is judged only under readings
+    Each kind of B-spline has vertices of its own, so a claim is judged only under readings
     whose curve is the uniform cubic one.
     """
     for claim in study.claims:

@@ -54,7 +54,7 @@ GROUPS = (
 """In the order in which their findings of one severity and id stand; a new rule adds its line."""
 
 NOT_COMPUTED = "TG502"
-"""Stands in place of a finding that a group could not compute; the audit itself says it."""
+"""Stands instead of a finding that a group could not compute; the audit itself says it."""
 
 _AUDIT = {
     NOT_COMPUTED: Explained(

@@ -102,7 +102,7 @@ def _stretched(
     if off_ratios(slow) or off_ratios(fast):
         return  # they are not durations of these questions
     try:
-        # Where the digits of the limits allow least, so that it holds for all that round to them.
+        # Where the digits of the limits allow least, so it holds for all that round to them.
         one = slow.posed(Digits.TIGHTEST)
         other = fast.posed(Digits.TIGHTEST)
     except CaseError:

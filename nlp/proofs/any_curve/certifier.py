@@ -72,7 +72,7 @@ class _Run:
         return prove_motion(self.asked, known.durations, speeds)
 
     def cap(self) -> Fraction | None:
-        """Totals below it are looked at, s; None where there is neither answer nor bound."""
+        """Totals below it are looked at, s; None if there is neither answer nor bound."""
         if self.motion is not None:
             return sum(self.motion[0], Fraction(0))
         # A proof that nothing is feasible must get above the sum of all longest durations.
@@ -150,7 +150,7 @@ def _prove(session: Session) -> bool:
 ANY_CURVE = Certifier(
     "every C1 motion", lambda _: True, missing, _prove, subject=Subject.ANY, boxes=200, moving=True
 )
-"""Takes every curve, since of a curve only the velocities at its two ends count."""
+"""Takes every curve, because of a curve only the velocities at its two ends count."""
 
 
 def _floats(asked: FreeQuestion, motion: Motion | None) -> tuple[Array, Array]:

@@ -209,7 +209,7 @@ def _initial(problem: Problem, initial: ArrayLike | None) -> NDArray[np.float64]
 
 
 def _ends(problem: Problem) -> NDArray[np.float64]:
-    """Velocities prescribed at start and end, shape (2, joints); NaN where they are free."""
+    """Velocities prescribed at start and end, shape (2, joints); NaN if they are free."""
     found = np.full((2, problem.waypoints.shape[1]), np.nan)
     for side, end in enumerate(problem.curve.ends):
         if 1 in dict(end):

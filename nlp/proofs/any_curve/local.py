@@ -17,7 +17,7 @@ from .reach import reachable
 
 CAPS = (0.25, 2.0, 16.0, 128.0)
 """Seconds that one call of IPOPT may take: it cannot be told to stop, and its limit is compiled in.
-A factor of 8 apart, so that a long run compiles few; below the first, a call ends anyway."""
+A factor of 8 apart, so a long run compiles few; below the first, a call ends anyway."""
 
 
 def call_cap() -> float | None:

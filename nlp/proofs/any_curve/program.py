@@ -9,7 +9,7 @@ from ....problem import Array
 from .tangents import Floats, Ints, matrix
 
 _EXACT = {"primal_feasibility_tolerance": 1e-10, "dual_feasibility_tolerance": 1e-10}
-"""Options of HiGHS: the smallest tolerances that it takes, since its errors weaken the bound."""
+"""Options of HiGHS: the smallest tolerances that it takes, because its errors weaken the bound."""
 
 
 def least_total(

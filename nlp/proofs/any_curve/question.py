@@ -15,7 +15,7 @@ from ..exact import ExactProblem
 from ..rounding import ROOMS, up
 
 Bounds = tuple[Fraction, Fraction] | None
-"""Rational bounds of a limit; None where there is none."""
+"""Rational bounds of a limit; None if there is none."""
 
 Number = Fraction | None
 Motion = tuple[tuple[Fraction, ...], tuple[tuple[Fraction, ...], ...]]

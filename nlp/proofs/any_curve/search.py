@@ -50,7 +50,7 @@ class CutEffort:
     tolerance : float
         Excess, scaled, above which a tangent is added: that of the linear program.
     rounds : int
-        Linear programs for one box at most: a guard, since they end where tangents gain little.
+        Linear programs for one box at most: a guard, because they end where tangents gain little.
     stall : int
         Rounds in which a bound must gain a tenth of what it lacks: fewer could be one unlucky
         vertex.
@@ -310,7 +310,7 @@ class Search:
         return self.node(box, np.concatenate([change_rows(scaled), tangents]), target, None)
 
     def exact(self, leaf: Node, digits: int) -> tuple[Fraction, list[Weighted]]:
-        """What the weights of a leaf, rounded to so many digits, prove; and its rows with them."""
+        """What a leaf's weights, rounded to this many digits, prove; and its weighted rows."""
         if not leaf.box:
             return self.cap, []
         scaled = self.scaled

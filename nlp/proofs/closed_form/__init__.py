@@ -1,4 +1,4 @@
-"""Optima in closed form, of each segment by itself, or of the total alone."""
+"""Optima in closed form, of each segment separately, or of the total alone."""
 
 import lazy_loader
 

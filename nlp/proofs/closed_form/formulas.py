@@ -1,4 +1,4 @@
-"""Optima that are formulas: of each segment by itself, or of the total at fixed ratios.
+"""Optima that are formulas: of each segment separately, or of the total at fixed ratios.
 
 The verifier gives the exact value of a derivative at a place; floats only say at which one.
 """
@@ -186,4 +186,4 @@ STRETCHED = _certifier(
     partial(_is, "stretched"),
     partial(_prove_segments, "stretched"),
 )
-"""One curve alone: its segments do not know of each other, so that each is a formula."""
+"""One curve alone: its segments do not know of each other, so each is a formula."""

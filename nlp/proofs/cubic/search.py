@@ -42,7 +42,7 @@ class NarrowingEffort:
     Attributes
     ----------
     rounds : int
-        On one box at most: a guard, since they end where one shrinks it by less than ``again``.
+        On one box at most: a guard, because they end where one shrinks it by less than ``again``.
     worth : float
         A side is moved if it gains this share of the width.
     near : float

@@ -43,7 +43,7 @@ for a gap of 0.3."""
 _WEIGHT = 2.0**12
 """Sum of the weights of a leaf, about: finer ones spare no box at 1e-8, 1 in 80 at 1e-9."""
 _SAFE = 1e-12
-"""Share of the weights by which a bound is positive, so that it is in other batches too."""
+"""Share of the weights by which a bound is positive, so it is in other batches too."""
 _FINE = 1e-9
 """A gap below it may be too narrow for the rounding of floats: no stage before it is left out."""
 _DIGITS = 11
@@ -207,7 +207,7 @@ def _rising(session: Session) -> Iterator[Fraction]:
         yield sum(longest, Fraction(0)) * _ABOVE
         return
     # The total that its own least durations add up to. They shrink as it grows, by its square at
-    # most, so that each step halves the distance in logarithms at least.
+    # most, so each step halves the distance in logarithms at least.
     before, total = Fraction(0), Fraction(1)
     while abs(total - before) > TOLERANCE * total:
         kind = _kind(session.exact, total)

@@ -25,7 +25,7 @@ class Candidates:
     rows : ndarray of int, shape (box, row, 5)
         Segment, joint, order, sign, place.
     values : ndarray, shape (box, row)
-        By what share of the limit it is exceeded there; −inf where there are fewer limits.
+        By what share of the limit it is exceeded there; −inf if there are fewer limits.
     slopes : ndarray, shape (box, row, segment)
         Its change with the logarithm of each duration.
     """
@@ -43,7 +43,7 @@ class NearLimits:
     segments, powers : int
         Pieces, and coefficients of each.
     caps : ndarray, shape (2, joints, 4)
-        Limits of orders 0 to 3 on the lower and the upper side; inf where there is none.
+        Limits of orders 0 to 3 on the lower and the upper side; inf if there is none.
     places : int
         Of a piece, in which places are counted.
     """

@@ -102,7 +102,7 @@ class Found:
     def document(self) -> dict[str, list[Any]]:
         """Rows, tree and, if there are any, windows.
 
-        What is used most stands first in its table, so that its number is short.
+        What is used most stands first in its table, so its number is short.
         """
         preorder = list(self._preorder())
         used = [self.leaves[node] for node in preorder if node in self.leaves]

@@ -13,7 +13,7 @@ from ..declared import Curves, Leaf, Middle, NearLimits
 from .windows import excluding_windows
 
 _SPARE = 1e-9
-"""Part of the limits by which a leaf must exceed them, so that another evaluation agrees."""
+"""Part of the limits by which a leaf must exceed them, so another evaluation agrees."""
 _SLIGHT = 1e-5
 """Weights below it are left out: all sum up to 1, and short leaves are cheap."""
 

@@ -15,7 +15,7 @@ from trajgap.compare.audits.named_profiles import double_s, fourth_order, jerk_i
 
 
 def by_ruckig(start: AxisState, finish: AxisState, sizes: Sizes) -> float | None:
-    """The same by another library; None where it refuses the states."""
+    """The same by another library; None if it refuses the states."""
     ruckig = pytest.importorskip("ruckig")
     asked = ruckig.InputParameter(1)
     for name, state in (("current", start), ("target", finish)):

@@ -119,7 +119,7 @@ def test_many_errors_are_counted_where_the_words_end() -> None:
     assert card.words <= CARD_WORDS
     assert card.errors[0] == SAYS.format(0)
     assert len(card.errors) + card.more == 40 + len(one.causes)
-    assert f"{card.more} more errors stand below." in card.sentences
+    assert f"{card.more} more errors are listed below." in card.sentences
     assert "10.9 %" in str(card.improvement)
     assert not any("10.9 %" in said for said in card.errors)
 

@@ -162,9 +162,9 @@ def test_peaks_are_those_recomputed(
 
 
 def test_the_jerk_of_joint_4_is_above_its_limit_as_printed() -> None:
-    """133.0 °/s³. Its way is the longest, so that rounding of the points to 0.01 rad matters least.
+    """133.0 °/s³. Its way is the longest, so rounding of the points to 0.01 rad matters least.
 
-    Some motion within the rounding of all keeps every limit, so that the claim is supported.
+    Some motion within the rounding of all keeps every limit, so the claim is supported.
     """
     case = example(AUBO)
     durations = case.claim_durations(case.claim("exp-1")).value

@@ -53,7 +53,7 @@ def test_durations_alone_say_nothing_of_limits_and_peaks(one: CaseAudit) -> None
 def test_a_total_alone_is_excluded_by_speed_alone() -> None:
     q = np.array([[0.3, -1.0], [0.9, -0.55], [0.2, 0.35], [-0.45, 0.1]])
     limits = Limits([1.1, 1.7], [3.0, 2.2], [20.0, 15.0])
-    # Every duration has a lower bound, so that a search over them would start.
+    # Every duration has a lower bound, so a search over them would start.
     problem = Problem(q, limits, quintic_spline(4, virtual=(2,)), duration_lower=0.3)
     assert excludes_total(problem, 2.0) is False
     # 0.6 rad at 1.1 rad/s, 0.3 s twice, 0.65 rad at 1.1 rad/s: 1.736 s.

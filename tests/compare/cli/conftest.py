@@ -25,7 +25,7 @@ def run(capsys: pytest.CaptureFixture[str]) -> Run:
 
 @pytest.fixture
 def stand_in(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
-    """A finished audit in place of minutes of work."""
+    """A finished audit instead of minutes of work."""
     seen: dict[str, Any] = {}
 
     def audit(cases: Any, **options: Any) -> Any:

@@ -52,7 +52,7 @@ def test_json_keeps_to_the_schema_and_repeats(run: Run, folder: Path) -> None:
     (result,) = document["results"]
     assert result["reading"] == "durations-positive"
     assert {one["optimizer"] for one in result["standings"]} == {"pso", "random"}
-    # The case's own settings but for the one given, the budget in place of its iterations.
+    # The case's own settings but for the one given, the budget instead of its iterations.
     (pso,) = (one for one in result["standings"] if one["optimizer"] == "pso")
     assert '"position_initial":[0.3,3' in pso["settings"]
     assert '"particles":9,' in pso["settings"]

@@ -52,7 +52,7 @@ def test_show_says_how_to_verify_and_the_command_does(
     one = load_instance("353-irb460")
     assert f"between {one.lower!r} and {one.upper!r}" in out
     file = one.certificate_file()
-    # A command stands on one line, so that it can be copied from the narrowest window.
+    # A command stands on one line, so it can be copied from the narrowest window.
     monkeypatch.setenv("COLUMNS", "60")
     narrow = run.done("suite", "show", "353-irb460")
     for lines in (out.splitlines(), narrow.splitlines()):

@@ -272,7 +272,7 @@ UNBOUNDED = Problem(WAYPOINTS, Limits(velocity=[0.0, 1.0]), cubic_spline(3))
         (problem_with(**LONG), {"feasible_time": None}, {"joint": None, "quantity": "duration"}),
         (
             problem_with(Limits(joints=2)),
-            {"worst": None, "worst_why": "only positions are limited", "tight_time": None},
+            {"worst": None, "worst_why": "nothing is limited", "tight_time": None},
             {},
         ),
         (UNBOUNDED, {"feasible_time": None}, {"ratio": None, "ratio_why": "unbounded"}),

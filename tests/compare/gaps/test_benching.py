@@ -80,7 +80,7 @@ def test_running_time_interval() -> None:
     rng = np.random.default_rng(3)
     hits = rng.exponential(200, 400) + 1
     low, high = running_time_interval(hits, np.full(400, 1e4))
-    # The mean of 400 exponential times: a normal interval, since there are so many.
+    # The mean of 400 exponential times: a normal interval, because there are so many.
     half = 1.96 * hits.std() / 20
     assert (low, high) == pytest.approx((hits.mean() - half, hits.mean() + half), rel=0.03)
 

@@ -364,7 +364,7 @@ def test_a_gallery_shows_each_picture_once(tmp_path):
     page = scrape_pictures((), block, {"src_dir": str(tmp_path)})
     assert "one.svg" in page
     assert "In double precision" in page
-    assert '<title id="one-title">T</title>' in page  # inside the page, so that it has its colours
+    assert '<title id="one-title">T</title>' in page  # inside the page, so it has its colours
     assert (tmp_path / "one.svg").read_text(encoding="utf-8").startswith("<?xml")
     assert scrape_pictures((), block, {"src_dir": str(tmp_path)}) == ""
     assert not (tmp_path / "two.svg").exists()

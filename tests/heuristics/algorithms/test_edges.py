@@ -122,7 +122,7 @@ def test_against_mealpy(shift: float) -> None:
     """mealpy 3.0.3, OriginalWOA: alike once its departures from the paper are set alike.
 
     Its departures: a whale moves only if it is then better; one r for A and C; δ counted from 1;
-    a fresh random point in place of a random whale. The first three are settings here, the last is
+    a fresh random point instead of a random whale. The first three are settings here, the last is
     undone there. It is not a requirement of the tests: its metadata asks for numpy below 2.
     """
     mealpy = pytest.importorskip("mealpy")

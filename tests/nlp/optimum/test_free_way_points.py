@@ -21,7 +21,7 @@ Q = np.array([[0.3, -1.0], [0.9, -0.55], [0.2, 0.35], [-0.45, 0.1]])
 LIMITS = Limits([1.1, 1.7], [3.0, 2.2], [20.0, 15.0])
 LOW, HIGH = np.array([-0.62, -1.02]), np.array([0.915, 0.36])
 SAMPLES = 41
-"""Of each segment: limits are asked for there alone, so that scipy's total is a little short."""
+"""Of each segment: limits are asked for there alone, so scipy's total is a little short."""
 
 
 def by_scipy(problem: Problem, ranges: bool) -> float:

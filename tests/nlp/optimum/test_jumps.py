@@ -111,7 +111,7 @@ def test_a_joint_without_a_jerk_limit_makes_it_feasible_only() -> None:
     assert not same_motions(some)
     solution = solve(some)
     assert solution.status is Status.FEASIBLE
-    assert "held as smooth as the others" in str(solution.why)
+    assert "kept as smooth as the others" in str(solution.why)
     assert check(some, solution.durations, solution.nodal).verdict is Verdict.PASS
     # A joint that stands still is smooth by itself.
     still = replace(some, waypoints=np.column_stack([Q[:, 0], np.full(4, 0.3)]))
@@ -174,7 +174,7 @@ UNEQUAL = Problem(
 @pytest.mark.parametrize(
     ("problem", "reason"),
     [
-        (TURNING, "the velocity of joint 1 jumps at way-point 1, whatever the durations"),
+        (TURNING, "the velocity of joint 1 jumps at way-point 1 for any durations"),
         (UNEQUAL, "without a jump of acceleration of joint 1 segment 2 takes at least 2.40788 s"),
     ],
 )
@@ -196,10 +196,7 @@ def test_a_jump_that_no_durations_avoid_is_a_proof(problem: Problem, reason: str
 
 def test_a_still_segment_beside_a_moving_one_jumps() -> None:
     problem = Problem(np.array([[0.2], [0.2], [1.0]]), Limits(1.0, 2.0, 3.0), rest_to_rest(2, 3))
-    assert (
-        joined(problem)
-        == "the acceleration of joint 1 jumps at way-point 1, whatever the durations"
-    )
+    assert joined(problem) == "the acceleration of joint 1 jumps at way-point 1 for any durations"
     two = Problem(
         np.array([[0.2, 1.0], [0.5, 1.4], [1.0, 1.7]]),
         Limits(1.0, joints=2),
@@ -388,4 +385,4 @@ def test_more_equations_than_ratios_are_named() -> None:
     q = np.column_stack([ONWARDS, ONWARDS**2, np.sqrt(ONWARDS)])
     solution = solve(determined(q, TOO_FEW))
     assert solution.status is Status.NONE_FOUND
-    assert "it would take 2 ratios of durations that meet 3 equations" in str(solution.why)
+    assert "2 ratios of durations would have to satisfy 3 equations" in str(solution.why)

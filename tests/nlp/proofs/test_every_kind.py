@@ -289,7 +289,7 @@ def test_a_stopped_run_goes_on_where_it_stopped(name: str, monkeypatch: pytest.M
         whole = truth(name) if name in UNLUCKY else certify(problem, gap=gap)
         assert second.nodes < whole.nodes
     other = replace(problem, waypoints=2.0 * problem.waypoints)
-    with pytest.raises(TrajgapError, match="about another problem"):
+    with pytest.raises(TrajgapError, match="belongs to another problem"):
         certify(other, subject=subject, resume=state)
     state["proof"]["total"] = str((second.upper or 0) * 2)
     with pytest.raises(TrajgapError, match="the state is not proved"):

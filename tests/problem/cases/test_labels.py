@@ -18,7 +18,7 @@ RAD = "angles in radians, durations only positive"
 @pytest.mark.parametrize(
     ("plain", "rad", "said"),
     [
-        # What a reading changes and the others do not; its own label stands in place of that.
+        # What a reading changes and the others do not; its own label stands instead of that.
         (None, None, (PLAIN, RAD)),
         ("as the header says", None, ("as the header says", RAD)),
         (

@@ -15,7 +15,7 @@ NAMES = ("3-5-3", "cubic", "quintic", "rest 7", "4-2-3", "lines", "uneven")
 
 @pytest.mark.parametrize("name", [*NAMES, "timed"])
 def test_the_furthest_are_the_largest_of_all_extrema(name: str) -> None:
-    """Errors differ between pieces, so that another piece than that of the peak may count."""
+    """Errors differ between pieces, so another piece than that of the peak may count."""
     for seed in range(4):
         timed = name == "timed"
         problem, h = uniform(name, seed) if timed else sample_problem(DECLARATIONS[name], 11 + seed)

@@ -74,7 +74,7 @@ def test_an_excess_and_a_jump_break_what_is_asked(referee):
 def test_floors_in_closed_form(referee, planners):
     second, third = setting(planners, "default"), setting(planners, "TOPP3-SOCP, 50")
     away_and_back = question(planners, [[0.0], [3.0], [1.0]])
-    # 3 rad and back by 2 rad, each from rest to rest, since the joint stands where it turns.
+    # 3 rad and back by 2 rad, each from rest to rest, because the joint stands where it turns.
     runs = shortest(3.0, 2.0, 4.0, np.inf) + shortest(2.0, 2.0, 4.0, np.inf)
     assert referee.floor_of(second, away_and_back) == pytest.approx(runs)
     assert referee.floor_of(third, away_and_back) == pytest.approx(runs)

@@ -123,7 +123,7 @@ def document(base: str) -> Document:
 
 
 def altered(base: str, changes: Changes) -> Document:
-    """A certificate with new values and right hashes, so that mathematics alone may refuse it."""
+    """A certificate with new values and right hashes, so mathematics alone may refuse it."""
     data = document(base)
     if callable(changes):
         changes(data)

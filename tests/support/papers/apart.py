@@ -56,7 +56,7 @@ def apart(seed: int) -> str:
 
 
 def moving(seed: int) -> str:
-    """A case file of a profile whose motion starts or ends at speed, so that it takes less time."""
+    """A case file of a profile whose motion starts or ends at speed, so it takes less time."""
     rng = np.random.default_rng([20261125, seed])
     way, speed, size = float(rng.uniform(20, 90)), 60.0, float(rng.uniform(30, 300))
     at = float(rng.uniform(0.2, 0.9)) * min(speed, (2 * size * way) ** 0.5)

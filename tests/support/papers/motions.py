@@ -302,7 +302,7 @@ class Family:
 
     ``extra`` segments beside those between way-points; ``still`` orders vanish at both ends;
     ``smooth`` is the highest derivative that is continuous; ``apart`` says that each segment has
-    its duration to itself, so that the shortest is found segment by segment.
+    its duration to itself, so the shortest is found segment by segment.
     """
 
     block: dict[str, Any]

@@ -273,7 +273,7 @@ def test_quoted_bounds_on_durations_are_intervals(lower: str | float, verdict: s
 
 @pytest.mark.parametrize(("value", "verdict"), [("3.884", "supported"), ("3.880", "refuted")])
 def test_durations_may_all_have_been_rounded_up(value: str, verdict: str) -> None:
-    """0.7767 s five times is 3.8835 s: printed as 0.777 s, so that each keeps its limit."""
+    """0.7767 s five times is 3.8835 s: printed as 0.777 s, so each keeps its limit."""
     times = "0.777 0.777 0.777 0.778 0.778"
     text = paper([[0, 1, 2, 3, 4, 5]], row("d", times, total=value), velocity=2)
     assert finding(text, "d", "TG101").verdict == verdict

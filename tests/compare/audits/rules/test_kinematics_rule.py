@@ -191,7 +191,7 @@ def test_a_column_has_a_unit_of_its_own_where_joints_have() -> None:
     points = np.stack([1000 * x, 1000 * y, 300 + drop], axis=1)
     shown = [[f"{v:.1f}" for v in point] for point in points]
     units = {"position": ["deg", "deg"]}
-    with pytest.raises(CaseError, match=r"columns\[0\].unit: is needed where units.position lists"):
+    with pytest.raises(CaseError, match=r"columns\[0\].unit: is needed if units.position lists"):
         one(shown, table, column(drop.tolist()), units=units)
     for unit, verdict in (("mm", "supported"), ("cm", "inconsistent")):
         found = one(shown, table, column(drop.tolist(), unit=unit), units=units)

@@ -201,7 +201,7 @@ MOVING = {"family": "polynomials", "degrees": [5], "finish_derivatives": [0, 0]}
 @pytest.mark.parametrize(
     ("profile", "value", "more", "verdict"),
     [
-        # 1 rad from 1 rad/s: the peak is sqrt(4.5), above 2 rad/s, so that 1/16 s of cruise remain.
+        # 1 rad from 1 rad/s: the peak is sqrt(4.5), above 2 rad/s, so 1/16 s of cruise remain.
         ("trapezoidal", "0.8125", {}, "supported"),
         ("trapezoidal", "0.8325", {}, "inconsistent"),
         ("sine-jerk", "0.8125", {}, "not checkable"),

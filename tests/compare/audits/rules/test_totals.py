@@ -173,7 +173,7 @@ def near(true: list[Fraction], places: int) -> list[str]:
 
 def held(slow: str, fast: str, printed: str, true: list[Fraction], **stated: str) -> bool:
     """Whether some value that rounds to the digits is true; a difference and a share are monotone
-    in each total, so that the enumerated ends are the ends."""
+    in each total, so the enumerated ends are the ends."""
     least, _, most = alike(printed)
     fits = min(true) <= most and least <= max(true)
     found = judged(slow, fast, **stated)

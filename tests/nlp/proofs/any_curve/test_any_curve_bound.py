@@ -219,7 +219,7 @@ NO_VALUE = [
     (TURNING, "nothing moves between the way-points, but the two end velocities differ"),
     (
         spline_problem([0.0, 1.0, 0.5], 2.0, 8.0, duration_upper=0.45),
-        "segment 1 cannot be done within its upper bound",
+        "segment 1 cannot be traversed within its upper bound",
     ),
     (
         spline_problem([0.0, 1.0, 0.5], 2.0, 1.0, duration_upper=0.9),

@@ -139,7 +139,7 @@ def test_a_run_without_time_has_a_proof_and_no_altered_state_is_taken_up() -> No
         if value != [["?"]]:
             with pytest.raises((ValueError, IndexError)):
                 regrown(search, broken["proof"], 1.0)
-    with pytest.raises(TrajgapError, match="about another problem"):
+    with pytest.raises(TrajgapError, match="belongs to another problem"):
         certify(problem, resume=state)
 
 

@@ -200,7 +200,7 @@ def test_a_resumed_bound_alone_proves_nothing_infeasible(monkeypatch: pytest.Mon
         ("claim", {"durations": ["0.1", "0.1", "0.1"]}, "not proved .answer"),
         ("claim", {"durations": ["0.4", "0.4"]}, "not proved .answer: one duration per segment"),
         ("claim", {"lower": "1e-9"}, "not proved .the lower bound exceeds the total"),
-        ("problem", {"unit": "deg"}, "about another problem"),
+        ("problem", {"unit": "deg"}, "belongs to another problem"),
     ],
 )
 def test_a_bad_state_is_refused(part: str, change: dict[str, Any], reason: str) -> None:
