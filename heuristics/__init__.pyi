@@ -66,7 +66,6 @@ __all__ = [
     "State",
     "Stretch",
     "TentCollapse",
-    "compile_judge",
     "evaluations_of",
     "find_optimizer",
     "from_settings",

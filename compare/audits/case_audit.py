@@ -83,9 +83,6 @@ class CaseAudit(InNotebooks):
     day: date | None = None
     """Date of the audit; by default the day on which its document is made."""
 
-    made: VerdictCard | None = None
-    """A card made by hand; otherwise `card` makes it."""
-
     made_waterfalls: tuple[Waterfall, ...] | None = None
     """Waterfalls made by hand; otherwise `waterfalls` computes them."""
 

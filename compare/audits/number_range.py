@@ -61,7 +61,7 @@ class NumberRange:
             low = self.others <= self.jump[0]
             parts = [self.others[low], self.others[~low]]
         for part in parts:
-            # As much again, since corners need not be the extremes of a curved function.
+            # As much again, because corners need not be the extremes of a curved function.
             width = float(part[-1] - part[0]) + ROUNDING * float(np.abs(part).max())
             if meet((lower, upper), (part[0] - width, part[-1] + width)):
                 return True

@@ -32,7 +32,7 @@ _NONE = "–"
 _MANY = 10
 """Distance, as a share, beyond which a multiple says more than a percentage."""
 _SAME = 5e-4
-"""Distance, as a share, whose one decimal is 0, so that its sign would say nothing."""
+"""Distance, as a share, whose one decimal is 0, so its sign would say nothing."""
 _NOTED = (*OPTIMA_STEPS, OPTIMUM_RETIMED, THIRD_ORDER)
 """Steps whose note stands in the open: the optimum, its proof and routes, and its cross-check."""
 

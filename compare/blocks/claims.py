@@ -128,7 +128,7 @@ def _sentence(caveat: Caveat) -> Caveat:
 
 
 def answered(claim: StatedClaim) -> str:
-    """What the authors say of a claim, or that they were asked; empty where they were not."""
+    """What the authors say of a claim, or that they were asked; empty if they were not."""
     answer = claim.answer
     if isinstance(answer, Why):
         return ""

@@ -201,7 +201,7 @@ class Claimed:
     id: str
     """Of the claim in the case file."""
     answer: str = ""
-    """What the authors say; empty where they were not asked."""
+    """What the authors say; empty if they were not asked."""
     beside: tuple[str, ...] = ()
     """What else is said of it, such as an innocent explanation."""
     also: tuple[str, ...] = ()

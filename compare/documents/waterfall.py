@@ -37,7 +37,7 @@ OPTIMA_STEPS = (SHARED_OPTIMUM, STAND_IN_OPTIMUM, RATIOS_OPTIMUM)
 
 
 class Step(Entry):
-    """One value on the way down."""
+    """One value of a waterfall."""
 
     name: str
     time: OrWhy[float]
@@ -49,7 +49,7 @@ class Step(Entry):
     """Whether the value is best known or certified; none for printed and derived values."""
     note: str = ""
     keeping: OrLeftOut[Keeping] = None
-    """Whether the motion of a printed total keeps the limits; left out where nothing was judged."""
+    """Whether the motion of a printed total keeps the limits; left out if nothing was judged."""
 
     def total(self, ends: bool = True) -> str:
         """The value, with the ends of its interval where it is one.

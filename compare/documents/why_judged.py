@@ -26,7 +26,7 @@ class Said:
     kind: str
     sentences: tuple[str, ...]
     reading: str | None = None
-    """None where it depends on none."""
+    """None if it depends on none."""
 
 
 @dataclass(frozen=True)

@@ -306,7 +306,7 @@ def measure_gaps(runs: Runs, optimum: Solution | Reference | float) -> BenchResu
     ----------
     runs : Runs
     optimum : Solution, Reference or float
-        Of the same problem: what `solve` returned, or its total, s.
+        Optimum of the same problem: the answer of `solve`, or its total, s.
 
     Returns
     -------

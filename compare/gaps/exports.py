@@ -105,23 +105,6 @@ def check_export(path: Path) -> None:
         _arrow(name)
 
 
-@contextmanager
-def _drafted(path: Path) -> Iterator[Path]:
-    draft = path.with_name(f".trajgap-{uuid4().hex}{path.suffix}")
-    try:
-        yield draft
-        os.rename(draft, path)
-    except OSError as error:
-        reason = error.strerror or type(error).__name__
-        raise CaseError(
-            str(path), "--export", f"cannot be written ({reason}); give a writable place"
-        ) from None
-    finally:
-        with suppress(OSError):
-            draft.unlink()
-        shutil.rmtree(draft, ignore_errors=True)
-
-
 def flat(row: Row) -> dict[str, Any]:
     """Values of `COLUMNS`; None if there is none."""
     found = {name: getattr(row, name) for name in COLUMNS if hasattr(row, name)}

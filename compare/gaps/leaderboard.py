@@ -58,7 +58,7 @@ class Board:
     budget: int
     handling: str
     problems: tuple[str, ...]
-    """On which each of them has all its runs."""
+    """Problems on which each of them has all its runs."""
     standings: tuple[Ranked, ...]
     """The largest share of runs within 0.1 % first, then within 0.01 %, then within 1 %."""
     missing: tuple[str, ...]

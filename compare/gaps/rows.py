@@ -41,7 +41,7 @@ class Bracket:
     upper: float
     """Total of a feasible trajectory."""
     lower: float | None = None
-    """Certified lower bound; None where there is none."""
+    """Certified lower bound; None if there is none."""
 
     def __post_init__(self) -> None:
         if not 0 < self.upper < float("inf"):

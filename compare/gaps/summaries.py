@@ -43,7 +43,7 @@ class Summary:
     lower_quartile: float
     median: float
     upper_quartile: float
-    """Gap of the feasible time to the upper end of the optimum, relative; inf if so many runs have
+    """Relative gap of the feasible time to the upper end of the optimum; inf if that quantile
     no feasible answer."""
     within: tuple[int, ...]
     """Number of runs that come within each gap of `LADDER`."""

@@ -12,6 +12,8 @@ from ...problem import Array
 from .rows import Row
 from .statistics import SAMPLES, interval, quantiles
 
+_Z = 1.959963984540054
+"""Quantile of the normal distribution at 97.5 %."""
 TARGETS = (0.1, 0.01, 1e-3, 1e-4, 1e-6)
 """Relative gaps that are asked for: 10 % is a poor answer, 1 % and 0.1 % are what papers' printed
 digits can tell apart, 0.01 % is below them, 1e-6 is a solver's answer."""

@@ -45,7 +45,7 @@ class Anytime:
     evaluations: Array
     """Shape (points,)."""
     gaps: Array
-    """Lower quartile, median and upper quartile over the runs, relative; inf where that many know
+    """Lower quartile, median and upper quartile over the runs, relative; inf if that many know
     no answer; shape (3, points)."""
     steps: Array
     shares: Array

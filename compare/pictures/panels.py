@@ -66,7 +66,7 @@ class Line:
     unit: Unit
     times: Array
     values: Array
-    """s, and rad or m; NaN where the curve jumps."""
+    """s, and rad or m; NaN if the curve jumps."""
     limits: Sequence[float]
     """All that hold on either side; infinite ones are none."""
     marks: Sequence[Mark] = ()

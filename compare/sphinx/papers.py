@@ -53,12 +53,12 @@ class Distance:
     """The optimum, s; an interval where each joint is planned by itself."""
     least: float | None
     """How far above its optimum the total is at least, however the digits were rounded: 0 where
-    rounding may explain all of it, None where nothing bounds it."""
+    rounding may explain all of it, None if nothing bounds it."""
     evidence: str
     broken: bool
     """Whether the printed motion breaks a limit."""
     timed: bool
-    """Whether time alone was minimised, so that the distance is one from the optimum."""
+    """Whether time alone was minimised, so the distance is one from the optimum."""
 
     @property
     def shares(self) -> tuple[float, float]:
@@ -97,7 +97,7 @@ class PaperRow:
     cited: str
     title: str
     distance: Distance | None
-    """None where no problem is complete, or no total is printed."""
+    """None if no problem is complete, or no total is printed."""
     reached: str
     """Median gap of the paper's algorithm in its own way of searching."""
     found: str

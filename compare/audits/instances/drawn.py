@@ -11,7 +11,7 @@ from typing import Any, cast
 
 import numpy as np
 
-from ....heuristics import Algorithm, AskedRun, Run, compile_judge, run_asked
+from ....heuristics import Algorithm, AskedRun, Run, run_asked
 from ....nlp import Solution
 from ....problem import (
     TOLERANCE,
@@ -80,9 +80,6 @@ def examine(
     """
     todo = list(tasks)
     found: list[Sample] = []
-    if workers > 1:
-        for problem in (todo[0].slower[0], todo[0].faster[0]):
-            compile_judge(_fast_form(problem), todo[0].objectives[0])
     with closing(_each(todo, workers)) as results:
         for done, samples in enumerate(results, start=1):
             found += samples
