@@ -34,11 +34,6 @@ class KeptOptima(KeptFiles):
 
     kind = "optima"
 
-    @property
-    def searches(self) -> int:
-        """How often a group had to be searched."""
-        return self._files.searches
-
     def solved(self, asked: Sequence[AskedOptimum], again: bool = True) -> Sequence[Solution]:
         """Answers of `solve`: those of an earlier audit, or else found now and kept.
 

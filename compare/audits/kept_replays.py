@@ -47,11 +47,6 @@ class KeptReplays(KeptFiles):
 
     kind = "runs"
 
-    @property
-    def searches(self) -> int:
-        """How often a group had to be searched."""
-        return self._files.searches
-
     def runs(
         self, asked: Sequence[AskedReplay], compute: Callable[[], Iterable[Run]]
     ) -> tuple[Run, ...]:
