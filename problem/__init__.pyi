@@ -1,5 +1,4 @@
 from .arrays import Array
-from .bounds import shown_bound
 from .cases import (
     Case,
     CaseFile,
@@ -15,7 +14,19 @@ from .cases import (
     scaffold,
 )
 from .characters import escaped, visible
-from .checker import TOLERANCE, Check, Peak, Verdict, check
+from .checks import (
+    TOLERANCE,
+    Check,
+    Evaluation,
+    Jump,
+    Peak,
+    Verdict,
+    check,
+    evaluate,
+    keeps_limits,
+    peak_gradients,
+    reachable_total,
+)
 from .curves import (
     ClampedBSpline,
     ClampedReading,
@@ -47,7 +58,6 @@ from .curves import (
     three_five_three,
     uniform_cubic_b_spline,
 )
-from .described import Described
 from .errors import (
     CaseError,
     CurveError,
@@ -57,26 +67,44 @@ from .errors import (
     SingularError,
     TrajgapError,
 )
-from .evaluation import Evaluation, evaluate, keeps_limits, reachable_total
-from .fields import LimitPair, Strict
-from .file_names import LONGEST_NAME, file_name
 from .files import (
+    LONGEST_NAME,
     check_name,
     check_regular,
+    file_name,
     new_draft,
     new_file,
+    parse_toml,
     read_regular,
+    read_text,
     recover_folder,
     remove_drafts,
     replace_file,
     replace_folder,
     try_writing_in,
 )
-from .gradient import peak_gradients
 from .in_notebooks import InNotebooks
-from .jumps import Jump
 from .limits import QUANTITIES, Limits, half_range
-from .printed import Interval, Printed, down, read_float, up
+from .printed import (
+    CHOICES,
+    Described,
+    Interval,
+    LimitPair,
+    Measured,
+    Printed,
+    Quantity,
+    Scale,
+    Strict,
+    down,
+    from_si,
+    is_linear,
+    read_float,
+    scale,
+    shown_bound,
+    shown_unit,
+    to_si,
+    up,
+)
 from .problem import Coupling, Problem
 from .processes import LostWork, Processes, in_processes, kept_processes
 from .robots import (
@@ -101,8 +129,6 @@ from .robots import (
     sample_workspace,
     waypoint_sequences,
 )
-from .textfile import parse_toml, read_text
-from .units import CHOICES, Measured, Quantity, Scale, from_si, is_linear, scale, shown_unit, to_si
 
 __all__ = [
     "CHOICES",

@@ -9,11 +9,9 @@ import numpy as np
 
 from ..arrays import Array
 from ..errors import CaseError
-from ..fields import UnitOrEach, spelling_hint
-from ..printed import Printed
+from ..printed import CHOICES, Measured, Printed, Quantity, UnitOrEach, spelling_hint
 from ..problem import Coupling, Problem
 from ..robots import Chain, Convention, DhTable
-from ..units import CHOICES, Measured, Quantity
 from .claim import AnyClaim, Claim, DurationsClaim, MaximumClaim
 from .clue import AnyClue
 from .digits import Digits

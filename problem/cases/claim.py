@@ -9,8 +9,7 @@ from typing import Annotated, Literal, Self
 from pydantic import AfterValidator, Discriminator, Field, StrictInt, model_validator
 
 from ..errors import TrajgapError
-from ..fields import Id, Length, Number, OneOrEachLength, PrintedRows, Strict, Text, fault
-from ..printed import Printed
+from ..printed import Id, Length, Number, OneOrEachLength, Printed, PrintedRows, Strict, Text, fault
 from ..problem import Coupling
 
 

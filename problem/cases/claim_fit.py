@@ -5,9 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Iterable, Sequence
 
-from ..fields import spelling_hint
-from ..printed import Printed
-from ..units import Quantity
+from ..printed import Printed, Quantity, spelling_hint
 from .claim import (
     AnyClaim,
     ControlVerticesClaim,

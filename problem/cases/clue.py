@@ -6,8 +6,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Discriminator, Field, model_validator
 
-from ..fields import MOST_ENTRIES, Id, Number, Strict, Text, TextOrEach, fault
-from ..units import CHOICES
+from ..printed import CHOICES, MOST_ENTRIES, Id, Number, Strict, Text, TextOrEach, fault
 
 Known = Literal["velocity", "acceleration", "jerk"]
 """Derivatives that have a unit."""

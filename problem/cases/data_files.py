@@ -13,8 +13,8 @@ from typing import Any, TypeVar
 from pydantic import BaseModel, ValidationError
 
 from ..errors import CaseError
-from ..fields import spelling_hint
-from ..textfile import read_hashed
+from ..files import read_hashed
+from ..printed import spelling_hint
 from .faults import all_faults, refusal
 
 M = TypeVar("M", bound=BaseModel)

@@ -29,8 +29,7 @@ from ..curves import (
     uniform_cubic_b_spline,
 )
 from ..errors import TrajgapError
-from ..fields import Number, OneOrEachNumber, Strict, fault
-from ..printed import Printed
+from ..printed import Number, OneOrEachNumber, Printed, Strict, fault
 from .literature import meant_by
 
 Ends = tuple[Derivatives, Derivatives]

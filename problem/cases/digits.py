@@ -9,7 +9,7 @@ from math import tau
 import numpy as np
 
 from ..arrays import Array
-from ..units import Measured
+from ..printed import Measured
 
 
 class Digits(StrEnum):

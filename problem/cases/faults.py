@@ -9,7 +9,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from ..errors import CaseError
-from ..fields import UNION_TAGS, describe, spelling_hint
+from ..printed import UNION_TAGS, describe, spelling_hint
 from .claim import QUANTITY_KINDS
 from .clue import CLUE_KINDS
 

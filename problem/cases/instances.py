@@ -8,8 +8,7 @@ import numpy as np
 from pydantic import Field, StrictInt, field_validator
 
 from ..arrays import Array
-from ..fields import LARGEST_SEED, MOST_ENTRIES, Id, Length, Strict, Text, fault
-from ..printed import Printed
+from ..printed import LARGEST_SEED, MOST_ENTRIES, Id, Length, Printed, Strict, Text, fault
 from ..robots import Chain, StepKind, sample_workspace, waypoint_sequences
 
 Count = Annotated[StrictInt, Field(ge=1, le=10_000)]

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from ..printed import is_linear
 from ..robots import Chain, JointKind
-from ..units import is_linear
 from .clue import AnyClue, AxisClue, DataSheetClue, HalfTurnsClue
 from .faults import Faults
 from .joint_units import units_of

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from ..fields import (
+from ..printed import (
+    CHOICES,
     AccelerationUnits,
     JerkUnits,
     PositionUnits,
@@ -12,8 +13,8 @@ from ..fields import (
     TimeUnit,
     UnitOrEach,
     VelocityUnits,
+    is_linear,
 )
-from ..units import CHOICES, is_linear
 
 OF_JOINTS = tuple(name for name in CHOICES if name != "time")
 """Quantities that each joint may have in a unit of its own."""

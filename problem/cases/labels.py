@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 
+from ..printed import CHOICES, is_linear, shown_unit
 from ..problem import Coupling
-from ..units import CHOICES, is_linear, shown_unit
 from .declaration import InterpolantBlock, Values
 from .schema import CaseFile, Reading
 

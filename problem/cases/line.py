@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from ..errors import CaseError, TrajgapError
-from ..fields import read_number
+from ..printed import from_si, read_number, to_si
 from ..robots import Chain, JointKind, ctraj, forward_kinematics
-from ..units import from_si, to_si
 from .schema import Waypoints
 
 _SAME = 1e-6

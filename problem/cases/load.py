@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from ..textfile import parse_toml
+from ..files import parse_toml
 from .case import Case
 from .claim_fit import check_claims
 from .data_files import PUBLISHED, case_files, check_format, validated

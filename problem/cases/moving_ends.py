@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import Array
-from ..units import Quantity
+from ..printed import Quantity
 from .statement import Statement
 
 _ORDERS: tuple[Quantity, ...] = ("velocity", "acceleration")

@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import TypeVar
 
-from ..fields import Strict, UnitOrEach
+from ..printed import Strict, UnitOrEach, is_linear
 from ..problem import Coupling
-from ..units import is_linear
 from .faults import Faults
 from .joint_units import OF_JOINTS, Units, units_of
 from .schema import CaseFile, Override, ProblemBlock, Reading, Waypoints

@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from ..errors import TrajgapError
-from ..fields import spelling_hint
+from ..printed import CHOICES, spelling_hint
 from ..robots import Chain, check_equation
-from ..units import CHOICES
 from .claim import (
     Claim,
     ConditionsClaim,

@@ -5,8 +5,8 @@ from __future__ import annotations
 from functools import lru_cache
 from pathlib import Path
 
+from ..files import parse_toml
 from ..robots import Chain, Convention
-from ..textfile import parse_toml
 from .data_files import ROBOTS, check_format, validated
 from .schema import RobotFile
 

@@ -13,10 +13,9 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from ..errors import CaseError, TrajgapError
+from ..files import read_text
 from ..limits import QUANTITIES, Limits
-from ..printed import MINUS_SIGNS, Printed
-from ..textfile import read_text
-from ..units import CHOICES, Quantity, check_unit, is_linear, scale
+from ..printed import CHOICES, MINUS_SIGNS, Printed, Quantity, check_unit, is_linear, scale
 from .declaration import FAMILIES
 from .faults import Faults
 from .literature import meant_by, unknown

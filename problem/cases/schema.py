@@ -9,18 +9,20 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import BeforeValidator, Field, StrictBool, StrictInt, WithJsonSchema, model_validator
 
 from ..errors import TrajgapError
-from ..fields import (
+from ..printed import (
     MOST_POSES,
     MOST_WAYPOINTS,
     Id,
     JointLabels,
     Label,
+    LengthUnit,
     Number,
     OneOrEachLength,
     OneOrEachLowerPosition,
     OneOrEachSized,
     OneOrEachUpper,
     OneOrEachUpperPosition,
+    Printed,
     PrintedRows,
     Ratios,
     Strict,
@@ -28,10 +30,8 @@ from ..fields import (
     describe,
     fault,
 )
-from ..printed import Printed
 from ..problem import Coupling
 from ..robots import DhTable, Equation
-from ..units import LengthUnit
 from .claim import AnyClaim
 from .clue import AnyClue
 from .declaration import InterpolantBlock

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from ..errors import CaseError
-from ..fields import MOST_ENTRIES
+from ..printed import MOST_ENTRIES
 from .schema import LISTS, CaseFile
 
 _MOST_VALUES = 100_000

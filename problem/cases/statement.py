@@ -12,11 +12,9 @@ from ..arrays import Array
 from ..curves import MOST_OPEN, Curve, Derivatives, as_piecewise, counts_in_words
 from ..duration_ratios import ratio_word
 from ..errors import CaseError, RatiosError, TrajgapError
-from ..fields import LimitPair
 from ..limits import Limits
-from ..printed import Printed
+from ..printed import CHOICES, LimitPair, Measured, Printed, Quantity, is_linear, to_si
 from ..problem import Coupling, Problem
-from ..units import CHOICES, Measured, Quantity, is_linear, to_si
 from .declaration import InterpolantBlock, Values, declare
 from .digits import Digits, end, turned
 from .faults import Faults

@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import CaseError
-from ..fields import spelt_like
 from ..motions import BRAKING, read_yaml
+from ..printed import spelt_like
 from .precedence import Range, StatedLimits
 
 _SIZES = ("velocity", "acceleration", BRAKING, "jerk")

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import CaseError, TrajgapError
-from ..fields import spelling_hint, spelt_like
 from ..motions import BRAKING, ORDERS, JointLimits, check_range
+from ..printed import spelling_hint, spelt_like
 
 Range = tuple[float, float]
 """Lower and upper limit, rad and s; infinite if that side has none."""

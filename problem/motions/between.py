@@ -13,7 +13,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..checker import Verdict
+from ..checks import Verdict
 from ..limits import half_range
 from .divided import divided_extremes
 from .joint_limits import BRAKING, ORDERS, JointLimits

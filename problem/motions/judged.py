@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..arrays import Array
-from ..checker import Verdict
+from ..checks import Verdict
 from ..curves import Trajectory, furthest
 from ..errors import TrajgapError
 from ..limits import half_range

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from ..arrays import Array
 from ..curves import MAX_COEFFICIENTS, PERM
 from ..errors import TrajgapError
-from ..fields import MOST_JOINTS
+from ..printed import MOST_JOINTS
 
 if TYPE_CHECKING:
     from scipy.interpolate import PPoly

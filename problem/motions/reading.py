@@ -12,7 +12,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..errors import CaseError, TrajgapError
-from ..units import is_linear, scale
+from ..printed import is_linear, scale
 from .digits import HalfUnits
 from .motion import Motion
 from .parquet_file import read_parquet

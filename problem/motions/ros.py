@@ -10,7 +10,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..errors import CaseError, TrajgapError
-from ..fields import MOST_JOINTS, spelt_like
+from ..printed import MOST_JOINTS, spelt_like
 from .digits import HalfUnits, digits_of_values, half_units
 from .motion import MOST_VALUES
 from .samples import Samples

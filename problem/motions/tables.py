@@ -12,8 +12,8 @@ import numpy as np
 
 from ..arrays import Array
 from ..errors import CaseError, TrajgapError
-from ..fields import MOST_JOINTS
 from ..files import read_regular
+from ..printed import MOST_JOINTS
 from .digits import HalfUnits, digits_of_text, half_units
 from .motion import MOST_VALUES, numbered
 from .samples import Samples

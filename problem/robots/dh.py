@@ -12,18 +12,21 @@ import numpy as np
 from pydantic import Field, PlainSerializer, PlainValidator, WithJsonSchema, model_validator
 
 from ..arrays import Array
-from ..fields import (
+from ..printed import (
     MOST_JOINTS,
+    AngleUnit,
     JointLabels,
+    LengthUnit,
     LowerPosition,
+    Measured,
     Number,
+    Printed,
     Strict,
     UpperPosition,
     fault,
     read_number,
+    to_si,
 )
-from ..printed import Printed
-from ..units import AngleUnit, LengthUnit, Measured, to_si
 from .chain import Chain, Convention, JointKind
 
 _PI_MULTIPLE = re.compile(r"([+-]?)\s*([0-9]*)\s*(?:π|pi)\s*(?:/\s*([1-9][0-9]*))?")

@@ -13,7 +13,7 @@ from pydantic import model_validator
 
 from ..arrays import Array
 from ..errors import TrajgapError
-from ..fields import Id, Strict, Text, fault
+from ..printed import Id, Strict, Text, fault
 from .chain import Chain, link_frames
 
 SAMPLES = 200

@@ -11,7 +11,7 @@ from typing import Annotated, Literal
 from pydantic import ConfigDict, Field
 
 from ..cases import SUITE_PREFIX, Case, load_case
-from ..described import Described
+from ..printed import Described
 from ..problem import Problem
 
 Seconds = Annotated[float, Field(ge=0)]

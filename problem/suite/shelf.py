@@ -10,7 +10,7 @@ from pydantic import BaseModel, ConfigDict
 
 from ..cases import SUITE_PREFIX, Case
 from ..errors import TrajgapError
-from ..fields import spelt_like
+from ..printed import spelt_like
 from .instance import BenchmarkInstance
 
 _TABLE = "suite.json"

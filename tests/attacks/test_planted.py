@@ -137,7 +137,7 @@ PLANTED: dict[tuple[str, str, int], dict[str, Any]] = {
     },
     ("damaged case files", "two lines", 10): {f"{CLI}app._fail": two_lines},
     ("killed", "files by and by", 12): {f"{CLI}output.new_file": files_by_and_by},
-    ("interrupted", "drafts stay", 8): {"trajgap.problem.files._remove": nothing},
+    ("interrupted", "drafts stay", 8): {"trajgap.problem.files.atomic._remove": nothing},
     ("full disk", "writing raises", 6): {f"{CLI}output._writing": writing_raises},
     ("no rights", "writing raises", 6): {f"{CLI}output._writing": writing_raises},
     ("certificates", "leaves are not proved", 120): {

@@ -34,7 +34,7 @@ from trajgap.problem import (
     rest_to_rest,
     three_five_three,
 )
-from trajgap.problem.checker import TOLERANCE
+from trajgap.problem.checks.checker import TOLERANCE
 from trajgap.problem.curves import kernel
 
 

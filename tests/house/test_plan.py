@@ -16,6 +16,6 @@ def test_the_picture_in_contributing_is_drawn_from_the_imports() -> None:
 
 def test_the_plan_sees_imports_through_faces() -> None:
     own = arrows()["trajgap.nlp.optimum.solver"]
-    assert "trajgap.problem.checker" in own  # `from ...problem import check`
+    assert "trajgap.problem.checks.checker" in own  # `from ...problem import check`
     assert "trajgap.nlp.optimum.basins" in own
     assert "trajgap.nlp.optimum.solver" not in own

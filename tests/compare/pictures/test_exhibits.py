@@ -19,7 +19,7 @@ from trajgap.compare.pictures.polygon import polygon_picture
 from trajgap.compare.pictures.tent import TentScatter, tent_picture, tent_scatter
 from trajgap.problem import Limits, Printed, Problem, TrajgapError, file_name, three_five_three
 from trajgap.problem.curves import control_vertices, uniform_cubic_b_spline
-from trajgap.problem.printed import Interval
+from trajgap.problem.printed.rounded import Interval
 
 WAYPOINTS = np.array([[0.3, 1.9], [1.4, 1.2], [0.9, 2.6], [2.0, 2.1], [1.6, 0.7]])
 DURATIONS = np.array([0.7, 1.1, 0.4, 0.9])

@@ -16,7 +16,7 @@ from trajgap.problem.cases.case import Case
 from trajgap.problem.cases.load import load_case, parse_case, published_ids
 from trajgap.problem.cases.schema import case_schema
 from trajgap.problem.errors import CaseError
-from trajgap.problem.printed import Printed
+from trajgap.problem.printed.rounded import Printed
 
 
 @cache

@@ -12,7 +12,7 @@ from support.checkout import ROOT
 from trajgap.problem import CaseError, jtraj, quintic_spline, uniform_cubic_b_spline
 from trajgap.problem.cases import StatementClaim
 from trajgap.problem.cases.load import load_case, parse_case, published_ids
-from trajgap.problem.printed import Printed
+from trajgap.problem.printed.rounded import Printed
 
 TABLES = ROOT / "tests" / "support" / "published_tables"
 PUMA, IRB = "puma560-mnam-pso-353", "irb460-pso-353"

@@ -16,7 +16,7 @@ from trajgap.problem.cases.load import load_case, parse_case
 from trajgap.problem.cases.robot_file import load_robot, parse_robot, robot_file, robot_ids
 from trajgap.problem.cases.schema import case_schema
 from trajgap.problem.errors import CaseError, TrajgapError
-from trajgap.problem.printed import Printed
+from trajgap.problem.printed.rounded import Printed
 from trajgap.problem.robots.chain import Convention, JointKind, forward_kinematics
 from trajgap.problem.robots.dh import DhTable, PiMultiple, read_angle
 

@@ -23,7 +23,7 @@ from hashlib import sha256
 from pathlib import Path
 from uuid import uuid4
 
-from .errors import CaseError
+from ..errors import CaseError
 
 _PREFIX = ".trajgap-"
 """Start of the name of every draft; hidden, and told apart from files of others."""

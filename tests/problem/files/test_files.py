@@ -9,7 +9,6 @@ import pytest
 from trajgap.problem import (
     CaseError,
     check_regular,
-    files as module,
     load_case,
     new_file,
     read_regular,
@@ -19,6 +18,7 @@ from trajgap.problem import (
     replace_folder,
     try_writing_in,
 )
+from trajgap.problem.files import atomic as module
 
 ODD = "half a pair \ud800"
 """What no file can hold, so writing it fails half-way."""
@@ -47,7 +47,7 @@ import ctypes, fcntl, importlib, os, sys
 from itertools import count
 from pathlib import Path
 from trajgap.problem import new_file, replace_file, replace_folder
-module = importlib.import_module("trajgap.problem.files")
+module = importlib.import_module("trajgap.problem.files.atomic")
 target = Path("target")
 for step in count(1):
     os.mkdir(str(step))

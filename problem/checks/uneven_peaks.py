@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .arrays import Array
-from .curves import Extremum, Furthest, Trajectory, furthest
-from .limits import Limits
+from ..arrays import Array
+from ..curves import Extremum, Furthest, Trajectory, furthest
+from ..limits import Limits
 
 
 @dataclass(frozen=True)

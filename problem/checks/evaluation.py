@@ -9,12 +9,12 @@ from functools import cached_property, lru_cache, partial
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .arrays import Array
+from ..arrays import Array
+from ..curves import Asked, as_durations
+from ..errors import TrajgapError
+from ..limits import Limits, half_range
+from ..problem import Problem
 from .checker import TOLERANCE
-from .curves import Asked, as_durations
-from .errors import TrajgapError
-from .limits import Limits, half_range
-from .problem import Problem
 
 
 @dataclass(frozen=True, eq=False)

@@ -21,10 +21,10 @@ from pydantic import (
 )
 from pydantic_core import PydanticCustomError
 
+from ..duration_ratios import RATIO_WORDS
+from ..errors import TrajgapError
 from .described import Described
-from .duration_ratios import RATIO_WORDS
-from .errors import TrajgapError
-from .printed import Printed
+from .rounded import Printed
 from .units import CHOICES, Quantity, check_unit
 
 MOST_WAYPOINTS = 10_000

@@ -10,8 +10,8 @@ from functools import lru_cache
 from types import MappingProxyType
 from typing import Literal, get_args
 
-from .errors import TrajgapError
-from .printed import Printed, down, up
+from ..errors import TrajgapError
+from .rounded import Printed, down, up
 
 Quantity = Literal["position", "velocity", "acceleration", "jerk", "time"]
 AngleUnit = Literal["rad", "deg"]

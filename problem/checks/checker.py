@@ -9,13 +9,13 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .arrays import Array
-from .curves import Enclosed, Extremum, Trajectory, as_durations, furthest
-from .errors import CurveError, SingularError
-from .in_notebooks import InNotebooks
+from ..arrays import Array
+from ..curves import Enclosed, Extremum, Trajectory, as_durations, furthest
+from ..errors import CurveError, SingularError
+from ..in_notebooks import InNotebooks
+from ..limits import QUANTITIES, half_range
+from ..problem import Problem
 from .jumps import Jump, jumps_of
-from .limits import QUANTITIES, half_range
-from .problem import Problem
 from .uneven_peaks import uneven_peaks
 
 TOLERANCE = 1e-9

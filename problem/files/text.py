@@ -8,8 +8,8 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
-from .errors import CaseError
-from .files import read_regular
+from ..errors import CaseError
+from .atomic import read_regular
 
 LARGEST_BYTES = 5_000_000
 """Two hundred times the longest case file shipped: what is larger is not a case file."""

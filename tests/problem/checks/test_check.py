@@ -17,7 +17,6 @@ from trajgap.problem import (
     TrajgapError,
     Verdict,
     check,
-    checker,
     cubic_spline,
     evaluate,
     extrema,
@@ -29,9 +28,10 @@ from trajgap.problem import (
     three_five_three,
     uniform_cubic_b_spline,
 )
+from trajgap.problem.checks import checker
+from trajgap.problem.checks.jumps import jumps_of
+from trajgap.problem.checks.uneven_peaks import uneven_peaks
 from trajgap.problem.curves import Trajectory
-from trajgap.problem.jumps import jumps_of
-from trajgap.problem.uneven_peaks import uneven_peaks
 
 
 def one_joint(waypoints: list[float], curve: Interpolant, **limits: float | np.ndarray) -> Problem:

@@ -9,8 +9,16 @@ import numpy as np
 import pytest
 from hypothesis import given, strategies as st
 from trajgap.problem.errors import CaseError, TrajgapError
-from trajgap.problem.printed import Printed, down, read_float, up
-from trajgap.problem.units import CHOICES, Scale, check_unit, from_si, is_linear, scale, to_si
+from trajgap.problem.printed.rounded import Printed, down, read_float, up
+from trajgap.problem.printed.units import (
+    CHOICES,
+    Scale,
+    check_unit,
+    from_si,
+    is_linear,
+    scale,
+    to_si,
+)
 
 decimals = st.decimals(
     min_value=-1000, max_value=1000, allow_nan=False, allow_infinity=False, places=9

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from .arrays import Array
-from .curves import Extremum, PeakGradients
-from .problem import Problem
+from ..arrays import Array
+from ..curves import Extremum, PeakGradients
+from ..problem import Problem
 
 
 def peak_gradients(

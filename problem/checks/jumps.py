@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .arrays import Array
-from .curves import Trajectory
-from .problem import Problem
+from ..arrays import Array
+from ..curves import Trajectory
+from ..problem import Problem
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,15 @@
+from .checker import (
+    TOLERANCE as TOLERANCE,
+    Check as Check,
+    Peak as Peak,
+    Verdict as Verdict,
+    check as check,
+)
+from .evaluation import (
+    Evaluation as Evaluation,
+    evaluate as evaluate,
+    keeps_limits as keeps_limits,
+    reachable_total as reachable_total,
+)
+from .gradient import peak_gradients as peak_gradients
+from .jumps import Jump as Jump
