@@ -24,7 +24,7 @@ ADDRESS = "127.0.0.1"
 """Where the server listens: no other machine reaches it."""
 _LARGEST = 20_000_000
 """Bytes of a request: half an hour of six joints at 125 rows a second takes that much as text."""
-_KEPT = 20
+_PAGES_KEPT = 20
 """Audits whose pages are kept in memory, the last ones."""
 _POLICY = (
     "default-src 'none'; img-src 'self' data:; style-src 'unsafe-inline'; form-action 'self'; "
@@ -125,7 +125,7 @@ def make_form() -> Flask:
                 files = page_files(audit(case).cases[0], _links(case.id))
                 number = next(reversed(kept), 0) + 1
                 kept[number] = files | {f"{case.id}.toml": text}
-                if len(kept) > _KEPT:
+                if len(kept) > _PAGES_KEPT:
                     kept.popitem(last=False)
         except FormError as error:
             return form_page(fields, error.faults), 422

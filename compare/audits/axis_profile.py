@@ -13,7 +13,7 @@ from numpy.polynomial import Polynomial
 
 from .rounding import FEW_ROUNDINGS
 
-_CLOSE = 1e-9
+_ARRIVED = 1e-9
 """How far a profile may miss the goal, and a phase may be negative, where all sizes are about 1:
 well above the rounding of a quartic's roots, well below any printed digit."""
 
@@ -363,16 +363,16 @@ def _roots(coefficients: Sequence[float]) -> Iterator[float]:
 
 
 def _keeps(profile: AxisProfile, finish: AxisState, top: float, most: float) -> bool:
-    """Whether a motion reaches the last state within the limits, to `_CLOSE`.
+    """Whether a motion reaches the last state within the limits, to `_ARRIVED`.
 
     A velocity that starts above its limit may be so until it is first within.
     """
-    if any(phase.time < -_CLOSE for phase in profile.phases):
+    if any(phase.time < -_ARRIVED for phase in profile.phases):
         return False
     corners = profile.corners
     missed = np.abs(np.subtract(corners[-1], finish)).max()
     return bool(
-        missed <= _CLOSE
-        and not any(dropwhile(bool, (abs(one.velocity) > top + _CLOSE for one in corners)))
-        and all(abs(one.acceleration) <= most + _CLOSE for one in corners)
+        missed <= _ARRIVED
+        and not any(dropwhile(bool, (abs(one.velocity) > top + _ARRIVED for one in corners)))
+        and all(abs(one.acceleration) <= most + _ARRIVED for one in corners)
     )

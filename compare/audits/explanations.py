@@ -43,7 +43,7 @@ _OF_MOTIONS = {"TG201", "TG203", "TG208", "TG211"}
 """Rules that rebuild motions from printed durations."""
 _OF_DIGITS = {"TG101", "TG102", "TG103", "TG105"}
 """Rules that set printed numbers beside each other."""
-_JUDGED = 6
+_JUDGED_AT_MOST = 6
 """Changes of each kind that the rules judge, the likeliest first: judging one takes as long as
 judging the paper's own row."""
 _NAMED = 3
@@ -344,7 +344,7 @@ def _likeliest(tried: Iterable[tuple[Slip, bool]]) -> Iterator[tuple[Slip, bool]
     seen: Counter[str] = Counter()
     for slip, reached in tried:
         seen[slip.kind] += 1
-        if seen[slip.kind] <= _JUDGED:
+        if seen[slip.kind] <= _JUDGED_AT_MOST:
             yield slip, reached
 
 

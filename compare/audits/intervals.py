@@ -16,7 +16,7 @@ ALLOWANCES = 3.0
 """For all problems of a case, in what one problem is allowed: most declared and short spline
 problems are certified in it, and a usual audit still ends in about a minute. Boxes are counted and
 not seconds, so no verdict depends on how busy the machine is."""
-_GAP = 1e-4
+_AUDITED_GAP = 1e-4
 """Relative width that is asked for: far below the digits that papers print, and cheap to reach."""
 _SHARE = 1 / 3
 """Of what is left of the budget, for one problem: later ones get their turn too."""
@@ -94,7 +94,9 @@ class Intervals:
             self._progress(f"certifying {called}, at most {amount}")
         began = time.monotonic()
         try:
-            answer = certify(problem, gap=_GAP, seconds=seconds, boxes=boxes, cache=self._cache)
+            answer = certify(
+                problem, gap=_AUDITED_GAP, seconds=seconds, boxes=boxes, cache=self._cache
+            )
         except TrajgapError:
             return None  # nothing limits its total
         # What was proved with kept proofs costs nothing, and counts as if it had been searched.

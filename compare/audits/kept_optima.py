@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 from ...nlp import Route, Solution, Status, kkt, problem_seal, with_other_route
-from ...nlp.optimum import KKT_TOLERANCE, SAME, STARTS, solve
+from ...nlp.optimum import KKT_TOLERANCE, SAME_TOTAL, STARTS, solve
 from ...nlp.proofs import KeptFiles, as_text, from_text, search_code
 from ...problem import Array, Problem, Verdict, check
 
@@ -105,7 +105,7 @@ def _judged(asked: AskedOptimum, left: Sequence[Any]) -> Solution:
         return _solved(asked)
     problem, h = asked.problem, from_text(durations)
     other_total = None if other is None else float(other)
-    if other_total is not None and abs(other_total - h.sum()) > SAME * h.sum():
+    if other_total is not None and abs(other_total - h.sum()) > SAME_TOTAL * h.sum():
         return _solved(asked)
     free = None if nodal is None else from_text(nodal).reshape(problem.curve.free, -1)
     verdict = check(problem, h, free)

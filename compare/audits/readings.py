@@ -37,7 +37,7 @@ from .rules import held_otherwise, reading_clues
 from .stated import other_objective
 from .study import Pair, Study
 
-SAME = 1e-6
+ALIKE_READINGS = 1e-6
 """Relative difference below which two readings are called alike."""
 
 
@@ -63,7 +63,7 @@ def readings_summary(
         why = f"no way-points are printed: {missing}" if missing else "no problem is posed"
     fits = _fits(one for one in outcomes if _shortest(study, one))
     least = fits[0].factor if fits else 0.0
-    nearest = tuple(fit.reading for fit in fits if fit.factor <= least * (1 + SAME))
+    nearest = tuple(fit.reading for fit in fits if fit.factor <= least * (1 + ALIKE_READINGS))
     tallies = tuple(
         Tally(
             claim=j.claim,

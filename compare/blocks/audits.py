@@ -31,7 +31,7 @@ _NONE = "–"
 """A cell without a value."""
 _MANY = 10
 """Distance, as a share, beyond which a multiple says more than a percentage."""
-_SAME = 5e-4
+_NO_DISTANCE = 5e-4
 """Distance, as a share, whose one decimal is 0, so its sign would say nothing."""
 _NOTED = (*OPTIMA_STEPS, OPTIMUM_RETIMED, THIRD_ORDER)
 """Steps whose note stands in the open: the optimum, its proof and routes, and its cross-check."""
@@ -81,7 +81,7 @@ def distances_table(waterfall: Waterfall, caption: str = "") -> Grid:
 def _above(first: float, time: float) -> str | None:
     if time <= 0 or first == time:
         return None
-    if abs(first / time - 1) < _SAME:
+    if abs(first / time - 1) < _NO_DISTANCE:
         return f"0.0{_NO_BREAK}%"
     if first / time > 1 + _MANY:
         return f"{first / time:.1f} times"

@@ -280,7 +280,7 @@ def _writing(name: str, field: str) -> Iterator[None]:
 
 _NARROWEST = 16
 """Columns that prose keeps in the narrowest window."""
-_GAP = 2
+_BETWEEN = 2
 """Columns between two columns of a table."""
 _WEIGHTS = {
     "heading": "bold",
@@ -348,7 +348,7 @@ class Columns:
     def _total(self, prose: int) -> int:
         widths = zip(self._widths, self._kinds, strict=True)
         firm = sum(w if kind not in ("~", "…") else min(w, prose) for w, kind in widths)
-        return firm + _GAP * (len(self._widths) - 1)
+        return firm + _BETWEEN * (len(self._widths) - 1)
 
     def __rich_measure__(self, console: Console, options: ConsoleOptions) -> Measurement:
         return Measurement(self._total(_NARROWEST), self._total(options.max_width))

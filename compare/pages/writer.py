@@ -9,7 +9,7 @@ from pathlib import Path
 
 from pydantic import BaseModel, Field
 
-from ...nlp.optimum import KKT_TOLERANCE, SAME, STARTS
+from ...nlp.optimum import KKT_TOLERANCE, SAME_TOTAL, STARTS
 from ...problem import LONGEST_NAME, TOLERANCE, Case, CaseError, file_name, read_regular
 from ..audits import AuditReport, CaseAudit, package_version
 from ..blocks import (
@@ -262,7 +262,8 @@ def _reproduced(one: CaseAudit) -> Section:
         ("seeds", f"0 to {made.seeds - 1} for every replay"),
         ("starts", f"{STARTS} starts of every solve, first seed 0"),
         ("tolerances", f"{TOLERANCE:g} relative excess that still keeps a limit; "
-         f"{KKT_TOLERANCE:g} KKT residual of an optimum; totals within {SAME:g} count as the same"),
+         f"{KKT_TOLERANCE:g} KKT residual of an optimum; totals within {SAME_TOTAL:g} count as "
+         "the same"),
     ]  # fmt: skip
     proved = tuple((c.file, f"SHA-256 {c.sha256}; about {c.subject}") for c in made.certificates)
     blocks: list[Block] = [Prose(made.citation, "source"), Terms(tuple(pairs))]

@@ -12,7 +12,7 @@ from ...problem import Array, TrajgapError
 from ..objective import Bounds, Objective
 from ..settings import clean, positive, whole
 
-_ROUNDING = 1e-9
+_OUT_OF_CUBE = 1e-9
 """Share of a duration's range by which a position may leave it: libraries that map a unit cube
 onto the bounds round there. It is set to the bound before it is judged."""
 
@@ -110,7 +110,7 @@ class Guarded:
             raise self._wrong(f"{doing} NaN")
         lower, upper = self._box.T
         away = np.maximum(lower - x, x - upper)
-        if (away > _ROUNDING * (upper - lower)).any():
+        if (away > _OUT_OF_CUBE * (upper - lower)).any():
             at = int(np.argmax(away.max(axis=0)))
             value = x[int(np.argmax(away[:, at])), at]
             raise self._wrong(

@@ -1,6 +1,6 @@
-from .descent import KEPT
+from .descent import ROWS_KEPT
 from .feasibility import apart
-from .judgement import SAME
+from .judgement import SAME_TOTAL
 from .limit_rows import NEAR, exact_rows
 from .optimality import KKT, KKT_TOLERANCE, Active, kkt
 from .other_route import with_other_route
@@ -13,11 +13,11 @@ from .starts import random_starts
 
 __all__ = [
     "IPOPT_OPTIONS",
-    "KEPT",
     "KKT",
     "KKT_TOLERANCE",
     "NEAR",
-    "SAME",
+    "ROWS_KEPT",
+    "SAME_TOTAL",
     "STARTS",
     "Active",
     "Evidence",

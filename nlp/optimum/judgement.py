@@ -32,7 +32,7 @@ def better_of(one: Solution, other: Solution) -> Solution:
     return replace(other, build_seconds=one.build_seconds, iterations=iterations)
 
 
-SAME = 1e-6
+SAME_TOTAL = 1e-6
 """Relative difference below which two totals count as the same."""
 ROUNDED = 2.0 * TOLERANCE
 """Relative difference of totals that the checker's tolerance makes: of both ends at most."""
@@ -76,7 +76,7 @@ def judged(
         answer, report = _sharper(problem, tight, report) or (best, report)
     beyond = 0.0 if answer.tight is None else max(0.0, answer.total / float(tight.sum()) - 1.0)
     notes = [] if report.unmet is None else [report.unmet]
-    status = Status.FEASIBLE if notes or beyond > SAME else Status.CONVERGED
+    status = Status.FEASIBLE if notes or beyond > SAME_TOTAL else Status.CONVERGED
     if beyond > KKT_TOLERANCE:
         longer = f"longer by {beyond:.1e} (relative) than a tight motion"
         notes += [f"{longer}, within rounding errors"]
@@ -97,7 +97,7 @@ def judged(
         kkt_residual=report.residual if np.isfinite(report.residual) else None,
         active=report.active,
         starts=starts,
-        starts_at_best=sum(local.total <= best.total * (1 + SAME) for local in feasible),
+        starts_at_best=sum(local.total <= best.total * (1 + SAME_TOTAL) for local in feasible),
         iterations=iterations,
         build_seconds=sum(local.build_seconds for local in found),
         totals=tuple(local.total if local.feasible else float("inf") for local in found),

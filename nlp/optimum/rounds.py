@@ -48,7 +48,7 @@ and the later ones. The first rows are not the last: with 1e-3 and 1e-6 a thousa
 take half as long again. IPOPT's own barrier of 0.1 costs quintics half as many iterations again,
 and the later rows hardly move. The last tolerance is for short segments, whose high derivatives
 carry a small residual far: to 8e-7 of the total at 1e-9."""
-JUDGED = len(STAGES) - 2
+JUDGED_FROM = len(STAGES) - 2
 """Round, counted from 0, from which the answer is judged: its tolerance is that of an answer."""
 FAILURES = 3
 """Rounds without success after which a search is given up; each begins again from the best motion
@@ -280,7 +280,7 @@ def program_search(
         if trajectory is not None:
             longer = within(problem, motion, excess)
             rough = longer if rough is None or longer[0].sum() < rough[0].sum() else rough
-        if not success and turn > JUDGED:
+        if not success and turn > JUDGED_FROM:
             break  # rounding allows no more
         if not success or trajectory is None:
             failures += 1
@@ -292,9 +292,9 @@ def program_search(
         if turn and excess <= TOLERANCE:  # a stretch, which costs as much, repairs it
             report = _report(program, longer, trajectory, rows, state)
             # A round with an eased tolerance leaves its barrier's gap: 1.6e-7 of a total was seen.
-            if best is None or turn == JUDGED or report.residual < best[1].residual:
+            if best is None or turn == JUDGED_FROM or report.residual < best[1].residual:
                 best = longer, report
-            if turn >= JUDGED:
+            if turn >= JUDGED_FROM:
                 if report.residual <= KKT_TOLERANCE:
                     break
                 flat = min(FLAT[1], 10.0 * flat)

@@ -24,7 +24,7 @@ from .closed_forms import (
 )
 from .decided import AIM, Local, decided, incumbent, widened
 from .feasibility import apart, forbidden_jumps
-from .judgement import BETTER, SAME, better_of, judged, on_floor
+from .judgement import BETTER, SAME_TOTAL, better_of, judged, on_floor
 from .jumps import as_answer, carried_over, smoother
 from .rounds import program_search
 from .solution import Route, Solution, Status
@@ -126,7 +126,7 @@ def solve(
         answer = unsearched(problem) if problem.ratios is None else _at_ratios(problem)
         if answer is None:
             best = incumbent(problem, points, nodal)
-            proved = best is not None and best.total <= lower * (1.0 + SAME)
+            proved = best is not None and best.total <= lower * (1.0 + SAME_TOTAL)
             answer = _solve(problem, _Ask(starts, seed, first, best, proved))
             answer = cut_short(answer) if time_up() else answer
     return replace(answer, solve_seconds=time.perf_counter() - began - answer.build_seconds)
@@ -286,7 +286,9 @@ def _above_floors(
             ratio, total = share / wide, lower.total_time
             slope = max(0.0, answer.total_time - total) / (1.0 - ratio)
             lower = replace(lower, infimum=max(0.0, total - slope * ratio))
-            near = total - lower.best <= SAME * total  # further, the estimate may be off by more
+            near = (
+                total - lower.best <= SAME_TOTAL * total
+            )  # further, the estimate may be off by more
             if near and not _rises_below(problem, lower.durations, floor):
                 return lower
         answer = lower

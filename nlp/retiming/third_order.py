@@ -13,7 +13,7 @@ from .path import jump
 CELLS = 240
 """Cells of a path, shared out evenly over its segments: twice as many change the time by less than
 0.2 %, and take three times as long."""
-_STILL = 1e-9
+_AT_REST = 1e-9
 """Speed at an end, beside the largest on the path, below which the motion is at rest there."""
 _STRATEGIES = ("adaptive", "monotone")
 """Of IPOPT's barrier, one after the other. Alone the second ends nowhere on one random path in
@@ -139,7 +139,7 @@ def _bounds(trajectory: Trajectory, count: int) -> tuple[Array, Array]:
     speeds = np.abs(trajectory([0.0, trajectory.total_time], order=1)).max(axis=1)
     top = max(float(np.abs(trajectory.derivatives(1)).sum(axis=0).max()), 1e-300)
     for at, speed in ((0, speeds[0]), (count, speeds[1])):
-        if speed > _STILL * top:
+        if speed > _AT_REST * top:
             lower[at] = upper[at] = 1.0
             lower[count + 1 + at] = upper[count + 1 + at] = 0.0
     return lower, upper

@@ -9,7 +9,7 @@ from ..printed import from_si, read_number, to_si
 from ..robots import Chain, JointKind, ctraj, forward_kinematics
 from .schema import Waypoints
 
-_SAME = 1e-6
+_OTHER_BRANCH = 1e-6
 """Difference of joints at the far end, rad, above which the inverse kinematics has come to another
 branch than the one that is stated: its own residual is a thousand times less."""
 
@@ -62,7 +62,7 @@ def on_line(
     except TrajgapError as error:
         raise fail("line", str(error).removeprefix("ctraj: ")) from None
     away = np.abs(found[-1] - last)
-    if away.max() > _SAME or np.abs(found[0] - first).max() > _SAME:
+    if away.max() > _OTHER_BRANCH or np.abs(found[0] - first).max() > _OTHER_BRANCH:
         reason = "the robot cannot go straight from the first angles to the last on one branch"
         raise fail("line", f"{reason} of its inverse kinematics; give other angles, or rows")
     inner = [

@@ -107,7 +107,7 @@ _USUAL = (
     (6, (1, 2, 3)),
 )  # fmt: skip
 """Continuity and orders at rest that papers use, the most usual first."""
-_CLOSE = 0.8
+_MISSPELT = 0.8
 """Likeness from which one word is taken for a misspelt other one."""
 
 
@@ -163,7 +163,7 @@ def unknown(name: str, families: Iterable[str]) -> str:
         )
     named = {one: _words(one) for one in known if not _degrees(one)}
     vocabulary = {word for each in named.values() for word in each}
-    close = [get_close_matches(word, vocabulary, n=1, cutoff=_CLOSE) for word in words]
+    close = [get_close_matches(word, vocabulary, n=1, cutoff=_MISSPELT) for word in words]
     meant = {found[0] for found in close if found}
     near = [one for one, each in named.items() if meant <= each] if words and all(close) else []
     fewest = min((len(named[one]) for one in near), default=0)

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 WIDTHS = (1, 2, 4, 8, 16, 32)
 """Segments in a block, tried in turn: one gives a close bound for splines of degrees 3 and 5, two
 or four for 7. Beyond 32 what is left is near singular, and a block costs the cube of its width."""
-CLOSE = 1e-11
+CLOSE_BOUND = 1e-11
 """Share of a joint's largest coefficient that its bound may have before wider blocks are tried: a
 hundredth of what the checker's tolerance leaves."""
 
@@ -84,9 +84,9 @@ def _by_blocks(rows: System, values: Array) -> tuple[NDArray[np.floating], Array
             continue
         best = flat, error
         # A joint that stands still at 0 has what is added to every bound, and no more.
-        still = POSITIVE / CLOSE**2
+        still = POSITIVE / CLOSE_BOUND**2
         sizes = over_rows(np.maximum, np.abs(flat))
-        if (over_rows(np.maximum, error) <= CLOSE * sizes + still).all():
+        if (over_rows(np.maximum, error) <= CLOSE_BOUND * sizes + still).all():
             break
     return best
 

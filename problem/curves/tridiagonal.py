@@ -32,7 +32,7 @@ _MORE = 1.001
 """Covers the rounding of bounds."""
 _FAR = 1e9
 """Durations, s, between whose reciprocal and which powers neither overflow nor underflow."""
-_STILL = 1e-250
+_NO_SPEED = 1e-250
 """Speed, rad/s, of a joint that stands still: far below any angle."""
 _NOUGHT = 1e-30
 """Share of a joint's largest speed that is added to local ones: what underflows is below it."""
@@ -78,7 +78,7 @@ def tridiagonal_fit(ends: tuple[Derivatives, Derivatives], q: Array, h: Array) -
     # Sizes of all joints together, as shares of each one's largest speed: of v, of s, of all terms
     # of A and B, which round by two spacings of these and in the residual by six, and of that.
     sizes_v, sizes_s = np.abs(v), np.abs(s)
-    speed = np.maximum(over_rows(np.maximum, sizes_v), over_rows(np.maximum, sizes_s)) + _STILL
+    speed = np.maximum(over_rows(np.maximum, sizes_v), over_rows(np.maximum, sizes_s)) + _NO_SPEED
     at_breaks, slopes = sizes_v @ (1.0 / speed), sizes_s @ (1.0 / speed)
     a0, a1 = at_breaks[:-1], at_breaks[1:]
     terms = 2.0 * (a0 + a1) + 3.0 * slopes + _NOUGHT

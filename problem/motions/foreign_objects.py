@@ -15,7 +15,7 @@ from .motion import Motion
 from .ros import plain_message, samples_of_message, trajectories
 from .samples import Interpolation
 
-_SAME = 1e-9
+_ON_GRID = 1e-9
 """Share of a grid cell within which a knot of the path is the grid point: far above rounding, and
 its cube, by which the motion is off there, far below."""
 
@@ -113,7 +113,7 @@ def _toppra_steps(given: Any, joints: Sequence[str]) -> Motion:
         push = (speeds[k + 1] ** 2 - speeds[k] ** 2) / (2 * length)
         cuts = [0.0]
         # A knot that differs from a grid point by rounding, as 1/3 does, is that grid point.
-        near = _SAME * length
+        near = _ON_GRID * length
         for knot in path.x[(path.x > grid[k] + near) & (path.x < grid[k + 1] - near)]:
             way = knot - grid[k]
             root = np.sqrt(max(0.0, speeds[k] ** 2 + 2 * push * way))

@@ -24,7 +24,7 @@ _STANDING = 1e-9
 """Share of a joint's largest speed below which it stands: rounding of planners is below it."""
 _JUMP = 1e-9
 """Relative to the terms of a derivative: what differs less at a break is rounding."""
-_ROUNDING = 32 * 2.0**-52
+_HORNER = 32 * 2.0**-52
 """Relative to a polynomial's absolute terms: Horner's rounding of ten coefficients is 20 · 2⁻⁵³."""
 _BLURRED = "Rounding may change the result by as much as the distance to a limit."
 """Why a motion is not decided whose numbers are taken exactly."""
@@ -288,7 +288,7 @@ def _peaks(motion: Motion, limits: JointLimits) -> tuple[tuple[MotionPeak, ...],
     """Peaks of all joints, and the speed below which each stands."""
     pieces, powers, _ = motion.scaled.shape
     trajectory = Trajectory(motion.durations, motion.scaled, (powers - 1,) * pieces)
-    errors = motion.error + _ROUNDING * derivative_terms(motion.scaled, motion.durations)
+    errors = motion.error + _HORNER * derivative_terms(motion.scaled, motion.durations)
     reach = [furthest(trajectory, r, errors[:, r]) for r in range(4)]
     standing = _STANDING * np.abs(reach[1].values).max(axis=0)
     peaks: list[MotionPeak] = []

@@ -18,7 +18,7 @@ _TINY = float(np.finfo(_FINE).eps)
 """Spacing of that type at 1."""
 _Numbers = NDArray[np.floating]
 """Float64 or that type."""
-_UP = 1.0 + 1e-9
+_SOLVED_UP = 1.0 + 1e-9
 """Covers the rounding of bounds."""
 _SLACK = 1.001
 """By so much a solved bound is larger than asked, so its rounding leaves it a bound where
@@ -198,7 +198,7 @@ def _fill(clock: _Times, q: Array, doubt: Array, scaled: Array, error: Array) ->
         )
     ]
     bent = np.concatenate([[float(outer[0])], bent, [float(outer[1])]])
-    bent = _UP * bent
+    bent = _SOLVED_UP * bent
     first, last = bending[:-1], bending[1:]
     for power, one in enumerate(
         (
@@ -225,7 +225,7 @@ def _fill(clock: _Times, q: Array, doubt: Array, scaled: Array, error: Array) ->
     rounded = 16 * _TINY * (np.abs(fine[:-1]) + np.abs(step) + h * h * size)
     terms = derivative_terms(scaled[:, :, None], h.astype(np.float64))[:, :, 0]
     for r in range(4):
-        error[:, r] = _UP * (error[:, r] + 4 * EPS * terms[:, r] + 12 * rounded / h**r)
+        error[:, r] = _SOLVED_UP * (error[:, r] + 4 * EPS * terms[:, r] + 12 * rounded / h**r)
 
 
 def _bounded(bound: _Rows | None, excess: Array) -> Array:

@@ -20,7 +20,7 @@ from .ros import message_of_samples, samples_of_message
 from .samples import Interpolation, Samples
 from .tables import parse_csv
 
-_STILL = 1e-9
+_RESTING = 1e-9
 """Speed, rad/s, below which the end of a motion is a rest: within a nanosecond it moves nowhere."""
 _APART = 0.3
 """Share of a step that rows are apart at least: near the end and near breaks of the motion."""
@@ -80,7 +80,7 @@ def sampled(
     times = _rows(np.asarray(motion.breaks) - begin, step, breaks)
     if whole_nanoseconds:
         # At rest the end may come a part of a nanosecond late; a motion that continues may not.
-        still = not np.abs(np.asarray(motion(end, 1))).max() > _STILL
+        still = not np.abs(np.asarray(motion(end, 1))).max() > _RESTING
         last = (np.ceil if still else np.floor)(total * 1e9)
         whole = np.unique(np.minimum(np.append(np.round(times[:-1] * 1e9), last), last))
         times = whole // 10**9 + 1e-9 * (whole % 10**9)

@@ -8,10 +8,10 @@ from numpy.typing import ArrayLike
 from ..arrays import Array
 from ..errors import TrajgapError
 from .chain import Chain, Convention
-from .inverse import TOLERANCE, question, residual_norms
+from .inverse import REACHED, question, residual_norms
 
 
-def closed_form_inverse(chain: Chain, target: ArrayLike, tolerance: float = TOLERANCE) -> Array:
+def closed_form_inverse(chain: Chain, target: ArrayLike, tolerance: float = REACHED) -> Array:
     """Joint values of every branch that brings the end of a palletiser to a pose.
 
     Its end stands at Rz(θ₁) (ρ, 0, z) with ρ = a₂ c₂ + a₃ c₂₃ and z = −(a₂ s₂ + a₃ s₂₃), and is

@@ -18,7 +18,7 @@ POSITION = ("x", "y", "z")
 POSE = (*POSITION, "rx", "ry", "rz")
 """Components of a pose: position, and rotation vector to the target in the base frame."""
 
-TOLERANCE = 1e-9
+REACHED = 1e-9
 """Largest residual that counts as reached, m and rad."""
 _DAMPING = (1e-14, 1e-3, 1e12)
 """Least, first and largest damping, in units of the normal matrix's largest entry."""
@@ -81,7 +81,7 @@ def inverse_kinematics(
     components: Sequence[str] | None = None,
     guess: ArrayLike | None = None,
     starts: int = 32,
-    tolerance: float = TOLERANCE,
+    tolerance: float = REACHED,
     iterations: int = 300,
 ) -> IkSolution:
     """Find joint values that bring the end of a chain to a point or pose.

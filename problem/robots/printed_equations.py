@@ -22,7 +22,7 @@ told from one that holds at all."""
 LONGEST_EQUATION = 400
 """Characters of an equation with its definitions: twice the longest printed one, and no deeper
 than a stack bears."""
-_SAME = 1e-9
+_EQUAL_SIDES = 1e-9
 """Difference of the two sides, beside the larger of them and 1, that float64 alone may leave."""
 _OPERATORS: dict[type[ast.AST], Callable[[Any, Any], Any]] = {
     ast.Add: np.add,
@@ -134,7 +134,7 @@ def check_equation(chain: Chain, text: str, samples: int = SAMPLES, seed: int = 
                 _apart(left, right, wraps=bool(re.fullmatch(r"\s*t\d\s*", sides[0])))
             )
     apart = np.broadcast_to(np.fmin(*differences), (samples,))
-    return EquationCheck(text, float(np.mean(apart <= _SAME)), float(apart.max()))
+    return EquationCheck(text, float(np.mean(apart <= _EQUAL_SIDES)), float(apart.max()))
 
 
 def _apart(left: Array, right: Array, wraps: bool) -> Array:

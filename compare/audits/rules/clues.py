@@ -41,7 +41,7 @@ from .peaks import jump_size, jump_unit, largest, largest_of_each_kind
 _FILLED = 0.1
 """Share of an axis that a curve fills at least, and of a data sheet's limits that printed ones use:
 a plot scales its axes to its curves, and nobody buys a robot ten times too fast."""
-_SAME = 1e-3
+_DATA_SHEET = 1e-3
 """Relative difference that rounding in a data sheet leaves: 3.1415 rad/s is 180 °/s."""
 _STEPS = 10
 """Steps a segment on which limits held at samples only are tried: a coarse figure's."""
@@ -138,14 +138,14 @@ def _data_sheet(study: Study, clue: DataSheetClue, reading: str) -> _Said:
     ratios = [ours.value / sheet.value for ours, sheet in pairs]
     low, high = (f"{ratio:.3g}" for ratio in (min(ratios), max(ratios)))
     times = low if low == high else f"{low} to {high}"
-    below = all(ours.lower <= sheet.upper * (1 + _SAME) for ours, sheet in pairs)
+    below = all(ours.lower <= sheet.upper * (1 + _DATA_SHEET) for ours, sheet in pairs)
     within = below and min(ratios) >= _FILLED
     speaks = Speaks.FOR if within else Speaks.AGAINST
     return speaks, f"{clue.quantity} limits {times} times those of the data sheet"
 
 
 def _alike(one: Measured, other: Measured) -> bool:
-    slack = _SAME * other.value
+    slack = _DATA_SHEET * other.value
     return one.lower <= other.upper + slack and other.lower <= one.upper + slack
 
 

@@ -20,7 +20,7 @@ from .rule_group import INFORMS, Explained, rule_group
 
 _FEWEST = 3
 """Durations that two rows need in common before equal digits are worth a word."""
-_CLOSE = 0.01
+_FITS = 0.01
 """Share by which a row may miss the limits of another and still be said to fit it."""
 
 _informing = partial(Finding, rule="TG108", decides=False)
@@ -104,7 +104,7 @@ def _row_elsewhere(study: Study, claim: DurationsClaim) -> Iterator[Finding]:
             for j, label in enumerate(problem.joints)
             if label != claim.joint
         )
-        if best <= _CLOSE:
+        if best <= _FITS:
             yield row.finding(
                 "TG108",
                 decides=False,

@@ -217,7 +217,7 @@ def test_the_guide_says_what_is_there(client: Any) -> None:
     text = client.get("/").get_data(as_text=True)
     for word in re.findall(r"\*([A-Z]\w+)\*", GUIDE):
         assert f">{word}<" in text or word == "Save", word
-    assert f"Up to {server._KEPT} audits" in " ".join(GUIDE.split())
+    assert f"Up to {server._PAGES_KEPT} audits" in " ".join(GUIDE.split())
     assert server.ADDRESS in GUIDE
     assert (ROOT / "docs/pictures/form.png").is_file()
 
