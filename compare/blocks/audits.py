@@ -66,15 +66,15 @@ def counts_said(judgements: Sequence[Judgement]) -> str:
     return f"{many}: {said or 'none to judge'}"
 
 
-def distances_table(waterfall: Waterfall, caption: str = "") -> Grid:
-    """Each step in seconds, and how far the first one lies above it."""
+def distances_table(waterfall: Waterfall, caption: str = "", *, ends: bool = True) -> Grid:
+    """Each step in seconds, with or without ends, and how far the first one lies above it."""
     known = [step for step in waterfall.steps if not isinstance(step.time, Why)]
     rows = [
-        (s.name, s.total(), _above(known[0].value, s.value), s.known and word(s.known),
+        (s.name, s.total(ends), _above(known[0].value, s.value), s.known and word(s.known),
          s.note if s.name in _NOTED else None)
         for s in known
     ]  # fmt: skip
-    columns = ("step", ">total", ">first step relative to this one", "evidence", "found how")
+    columns = ("~step", ">total", ">first step relative to this one", "evidence", "found how")
     return table(columns, rows, caption)
 
 

@@ -264,7 +264,7 @@ def _time_goes(waterfalls: Sequence[Waterfall], case: Case) -> Iterator[Block]:
     for pid in dict.fromkeys(one.problem for one in waterfalls):
         one = first[pid]
         under = f"; {in_words(case, pid, one.reading)}" if several else ""
-        grid = distances_table(one, f"Where the time goes{under}")
+        grid = distances_table(one, f"Where the time goes{under}", ends=False)
         if grid.rows:
             yield grid.without(_HOW)
         notes |= dict.fromkeys(one.without_optimum)
