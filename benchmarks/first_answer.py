@@ -20,7 +20,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from trajgap.nlp.proofs.kept import VARIABLE
+from trajgap.nlp.proofs.kept_files import VARIABLE
 
 PAPERS = (
     "puma560-mnam-pso-353",
