@@ -219,7 +219,7 @@ def run(
     algorithm : Algorithm or Search
         Such as ``PSO()``, what `from_settings` returns, or an adapted library.
     problem : Problem
-        Its coupling is not looked at; see `run_per_joint`.
+        Its coupling is ignored; see `run_per_joint`.
     seed : int
         0 or more.
     iterations : int, optional

@@ -21,7 +21,7 @@ def shown_bound(
     ----------
     value : Fraction or float
     side : {"lower", "upper"}
-        "lower" where something is at least the value, "upper" where it is at most.
+        "lower" if something is at least the value, "upper" if it is at most the value.
     digits : int, optional
         Significant digits at most; zeros at the end are left out.
     places : int, optional
@@ -30,7 +30,7 @@ def shown_bound(
     Returns
     -------
     str
-        Of an infinite value "inf" or "-inf".
+        "inf" or "-inf" for an infinite value.
 
     Examples
     --------

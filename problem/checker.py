@@ -49,8 +49,8 @@ class Peak:
     joint : str or None
         Joint label; None for a segment duration.
     quantity : str
-        "position", "velocity", "acceleration", "jerk", "duration"; or "curve" where the durations
-        define none.
+        "position", "velocity", "acceleration", "jerk", "duration"; or "curve" if the durations "
+        "define none.
     segment : int
         Segment, from 0.
     time : float or None
@@ -58,7 +58,7 @@ class Peak:
     value, limit : float
         In rad, s; the limit of a derivative as a size, that of the side with the larger ratio.
     ratio : float
-        |value|/limit; above 1 the limit is exceeded. 0 where only the other side is limited.
+        |value|/limit; above 1 the limit is exceeded. 0 if only the other side is limited.
     error : float
         Bound on the rounding error of ``value``.
     """

@@ -27,7 +27,7 @@ def file_name(*parts: str) -> str:
     Parameters
     ----------
     *parts : str
-        Of any length, with any characters.
+        Texts of any length, with any characters.
 
     Returns
     -------

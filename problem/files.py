@@ -264,7 +264,7 @@ def try_writing_in(folder: Path) -> None:
 
 
 def remove_drafts() -> None:
-    """Remove every draft of this process, which is about to end, at whatever moment."""
+    """Remove every draft of this process, which may be about to end at any moment."""
     for folder in list(_stepping):
         with suppress(OSError):
             recover_folder(folder)

@@ -25,7 +25,7 @@ class Jump:
     time : float
         s.
     size : float
-        Value after the break less the value before it, rad/sᵒʳᵈᵉʳ.
+        Value after the break minus the value before it, rad/sᵒʳᵈᵉʳ.
     """
 
     joint: str

@@ -39,8 +39,7 @@ def read_float(text: str) -> float:
     Parameters
     ----------
     text : str
-        Digits as `Printed` reads them; or ``inf``, ``+inf``, ``-inf`` in letters of
-        either size.
+        Digits as `Printed` reads them; or ``inf``, ``+inf``, ``-inf`` in upper or lower case.
 
     Returns
     -------

@@ -24,9 +24,8 @@ def check_durations(
 def check_answer(problem: StatedProblem, h: Sequence[Fraction], clock: Clock) -> None:
     """Refuse durations of other ratios, or whose trajectory does not keep every limit at all times.
 
-    The velocity does not jump, nor does the acceleration of a joint whose jerk is limited, but
-    where each segment is stretched in time by itself: there the limits are those inside the
-    segments.
+    The velocity does not jump, nor does the acceleration of a joint whose jerk is limited, unless
+    each segment is stretched in time separately: there the limits are those inside the segments.
 
     Parameters
     ----------

@@ -36,7 +36,7 @@ class Spans:
 
 
 def spans_of(problem: StatedProblem) -> Spans:
-    """What remains of a problem if the curve is left open: a virtual way-point is none."""
+    """What remains of a problem if the curve is left open: virtual way-points do not count."""
     virtual = [] if problem.declaration is None else problem.declaration.virtual
     firsts = [k for k in range(problem.segments) if k not in virtual]
     held = [slice(a, b) for a, b in pairwise([*firsts, problem.segments])]

@@ -33,11 +33,11 @@ class Refused(ValueError):
 
 
 class OutOfTime(Exception):
-    """The time that was given is over, and nothing is decided."""
+    """The time limit has passed, and nothing is decided."""
 
 
 class Clock:
-    """What is left of the seconds that were given."""
+    """The time that remains."""
 
     def __init__(self, seconds: float) -> None:
         self.seconds = seconds
@@ -57,11 +57,11 @@ class Clock:
 
     @property
     def left(self) -> float:
-        """Seconds; below 0 where time is up."""
+        """Seconds; negative once time is up."""
         return self.end - time.monotonic()
 
     def check(self, ahead: float = 0.0) -> None:
-        """Stop when time is up, or when a stage that takes so many seconds would end later."""
+        """Stop if time is up, or if a stage of the given length would end later."""
         if time.monotonic() + ahead > self.end:
             raise OutOfTime
 

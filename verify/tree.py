@@ -29,7 +29,7 @@ The last one stands in the proposals of a state only: no proof has it.
 
 
 class Subject(StrEnum):
-    """What a certificate speaks about."""
+    """The motions that a certificate is about."""
 
     DECLARED = "the declared curve"
     """Curves of the declared kind through the way-points."""

@@ -93,7 +93,7 @@ class CertifiedQuestion:
 
 @dataclass(frozen=True)
 class CertificateVerdict:
-    """What a certificate is worth.
+    """Verdict on a certificate.
 
     Attributes
     ----------
@@ -151,7 +151,7 @@ def verify_certificate(
     clock: Clock | None = None,
     spread: Spread | None = None,
 ) -> CertificateVerdict:
-    """Prove a certificate, or what a state has proved so far, again.
+    """Verify a certificate, or what a state has proved so far.
 
     Parameters
     ----------

@@ -11,8 +11,8 @@ from .rounding import FEW_ROUNDINGS, RoundingBox
 _MOST_SPLIT = 8
 """Segments above which splitting boxes of durations cannot come to an end in time."""
 BOXES = 1000
-"""Boxes of durations that are looked at, each in milliseconds: some seconds at most, and what they
-decide does not depend on the machine."""
+"""Boxes of durations that are examined, each in milliseconds: a few seconds at most, and the result
+does not depend on the machine."""
 
 
 def excludes_total(
@@ -34,7 +34,7 @@ def excludes_total(
     waypoints : RoundingBox, shape (way-points, joints), optional
         rad; those of the problem, exactly, by default.
     boxes : int
-        Most boxes of durations that are looked at.
+        Largest number of boxes of durations that are examined.
 
     Notes
     -----

@@ -133,7 +133,7 @@ def check(
     JointTrajectory (YAML, JSON, rosbag). Flags count before --limits, and that before --urdf.
 
     Durations of a case are judged for all t, as printed and however the digits were rounded.
-    Under per-joint coupling each joint is judged by itself as well.
+    Under per-joint coupling each joint is judged separately as well.
     """
     options = MotionOptions(
         {

@@ -171,7 +171,7 @@ def solve(
 
     With --samples the motion of the answer goes into a file, which is read back and checked.
 
-    With --certify, Ctrl-C leaves the best interval, and a state to go on from.
+    With --certify, Ctrl-C leaves the best interval, and a state to continue from.
     """
     flags = {
         "velocity": velocity,

@@ -171,7 +171,7 @@ class Provenance(Entry):
     seeds: Count
     """Seeds of each replay, from 0 on."""
     case_sha256: OrWhy[str]
-    """Of the case file."""
+    """Hash of the case file."""
     certificates: tuple[UsedCertificate, ...]
     command: str
     """What makes the audit again."""

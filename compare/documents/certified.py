@@ -165,7 +165,7 @@ class AskedQuestion(Entry):
     joint: str | None
     """Null for all joints together."""
     case_sha256: str | None
-    """Of the case file."""
+    """Hash of the case file."""
 
 
 class VerifiedFile(Entry):

@@ -114,9 +114,9 @@ class Gap(Entry):
 
     kind: GapKind
     lowest: Real
-    """(T − U)/U at the low end of the time's interval; negative where T is below the reference."""
+    """(T − U)/U at the low end of the time's interval; negative if T is below the reference."""
     highest: Real
-    """(T − U)/U at its high end; against the lower bound instead, where one is certified."""
+    """(T − U)/U at its high end; relative to the lower bound instead, if one is certified."""
     reference: Reference
 
     @property
@@ -144,7 +144,7 @@ class Finding(Entry):
     verdict: ClaimVerdict = ClaimVerdict.NOT_CHECKABLE
     severity: Severity = Field(default_factory=_severity)
     scope: Scope = Scope.NO
-    """Under how many admissible readings the verdict of this finding holds; the audit says."""
+    """Under how many admissible readings the verdict of this finding holds; set by the audit."""
     evidence: Evidence = Evidence.NONE
     """Whether the reference value is best known or certified; none if none is used."""
     basis: Basis
@@ -153,9 +153,9 @@ class Finding(Entry):
     claim: str | None = None
     """What it is about; null if it is about the case or a table and judges no claim."""
     problem: str | None = None
-    """Null where it depends on none."""
+    """Null if it depends on none."""
     reading: str | None = None
-    """Null where it depends on none."""
+    """Null if it depends on none."""
     confidence: OrWhy[Confidence] = Field(default_factory=_confidence)
     """How it is known; null if it decides nothing."""
     printed: str | None = None
@@ -180,7 +180,7 @@ class Finding(Entry):
     doubts: tuple[str, ...] = Field(default=(), exclude=True)
     """Joints whose printed way-points it puts in doubt; not in JSON."""
     farthest: str = Field(default="", exclude=True)
-    """Claim whose total lies as far from a shorter motion as `gap` says; not in JSON."""
+    """Claim to whose total `gap` refers; not in JSON."""
 
     def adding(self, *sentences: str) -> Finding:
         """The same finding with more to say."""
@@ -237,7 +237,7 @@ class Judgement(Entry):
     why: str = Field(default_factory=_whole)
     """All sentences in one text."""
     opening: OrLeftOut[str] = Field(default_factory=_opening)
-    """The first sentences of a long reason, where it has no room; left out of a shorter one."""
+    """The first sentences of a long reason, for places without room; null for a shorter one."""
     caveats: tuple[
         Annotated[Caveat, PlainSerializer(str), WithJsonSchema({"type": "string"})], ...
     ] = ()
@@ -245,8 +245,9 @@ class Judgement(Entry):
     caveats_in_short: tuple[str, ...] = ()
     """Each of them without its reason."""
     beside: str = ""
-    """What stands beside the word wherever it is shown, such as "but on doubtful numbers"."""
+    """Addition shown with the verdict everywhere, such as "but on doubtful numbers"."""
     readings: dict[str, ClaimVerdict]
     """The verdict under each reading separately."""
     informs: bool = Field(default=False, exclude=True)
-    """Whether ``why`` is of a finding that informs, and no reason for the verdict."""
+    """Whether ``why`` comes from a finding that only informs and is not the reason for the
+    verdict."""

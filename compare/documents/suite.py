@@ -47,7 +47,7 @@ class SuiteInstance(Entry):
     lower_subject: str
     """Over which curves the lower bound is proved."""
     segment_durations: tuple[float, ...]
-    """Of the best known answer, s."""
+    """Durations of the best known answer, s."""
     case_sha256: str
     certificate: OrWhy[str]
     """Its file, as the suite ships it."""

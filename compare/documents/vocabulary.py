@@ -64,7 +64,7 @@ class ClaimVerdict(StrEnum):
 class Scope(StrEnum):
     """Under how many admissible readings of the text the verdict holds.
 
-    Where they disagree, or where only some of them were computed, it holds under some.
+    If they disagree, or only some of them were computed, it holds under some.
     """
 
     ALL = "all"
@@ -155,7 +155,7 @@ class Speaks(StrEnum):
 
 
 class GapKind(StrEnum):
-    """What a gap is a gap of."""
+    """The quantity that a gap refers to."""
 
     OPTIMALITY = "optimality gap"
     """(T − U)/U for a motion that keeps its limits, with U the reference total; an interval if T is

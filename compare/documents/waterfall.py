@@ -35,7 +35,7 @@ OPTIMA_STEPS = (SHARED_OPTIMUM, STAND_IN_OPTIMUM, RATIOS_OPTIMUM)
 
 
 class Step(Entry):
-    """One value on the way down."""
+    """One value of a waterfall."""
 
     name: str
     time: OrWhy[float]
@@ -47,7 +47,7 @@ class Step(Entry):
     """Whether the value is best known or certified; none for printed and derived values."""
     note: str = ""
     keeping: OrLeftOut[Keeping] = None
-    """Whether the motion of a printed total keeps the limits; left out where nothing was judged."""
+    """Whether the motion of a printed total keeps the limits; left out if nothing was judged."""
 
     @classmethod
     def missing(cls, name: str, note: str) -> Self:

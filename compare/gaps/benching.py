@@ -103,7 +103,7 @@ class BenchPlan:
         Its names in rows.
     entrants : tuple of Entrant
     trials : tuple of Trial
-        By entrant, then by seed.
+        Ordered by entrant, then by seed.
     budget, seeds : int
         Evaluations of a run, for optimisers without their own iterations; seeds of each optimiser.
     notes : tuple of str
@@ -316,7 +316,7 @@ def measure_gaps(runs: Runs, optimum: Solution | Reference | float) -> BenchResu
     ----------
     runs : Runs
     optimum : Solution, Reference or float
-        Of the same problem: what `solve` returned, or its total, s.
+        Optimum of the same problem: the answer of `solve`, or its total, s.
 
     Returns
     -------

@@ -68,7 +68,7 @@ def on_dask(address: str) -> Iterator[Engine]:
     Parameters
     ----------
     address : str
-        Of the scheduler, such as "tcp://node1:8786".
+        Address of the scheduler, such as "tcp://node1:8786".
 
     Raises
     ------
@@ -104,7 +104,7 @@ def outcomes(trials: Iterable[Trial], engine: Engine) -> Iterator[TrialOutcome]:
     Parameters
     ----------
     trials : iterable of Trial
-        Read as workers become free.
+        They are read one by one, as workers become free.
     engine : Engine
 
     Raises

@@ -26,7 +26,7 @@ def overall(results: Sequence[BenchResult]) -> tuple[OverallStanding, ...]:
     Parameters
     ----------
     results : sequence of BenchResult
-        Of the same optimisers.
+        Results of the same optimisers, one for each problem.
 
     Returns
     -------

@@ -176,7 +176,7 @@ class Row:
     reported_time : float or None
         Its total by the objective, s.
     verdict : str or None
-        Of `trajgap.problem.check` on the durations.
+        Verdict of `trajgap.problem.check` on the durations.
     worst_ratio : float or None
         Largest ratio of a value to its limit; None if nothing is limited.
     feasible_time : float or None
@@ -186,7 +186,7 @@ class Row:
     reference_upper, reference_lower : float or None
         Reference for the gaps, s.
     reported_gap, feasible_gap : (float, float) or None
-        Of either time, [(T − U)/U, (T − L)/L]. That of the reported time is an optimality gap
+        Of either time, [(T − U)/U, (T − L)/L]. The gap of the reported time is an optimality gap
         only if the verdict is "pass", else a difference of reported time.
     trace : tuple of (int, float)
         Number of evaluations and the best total by the objective after them, s, at log-spaced

@@ -167,7 +167,7 @@ def vargha_delaney(first: Array, second: Array) -> float:
     Parameters
     ----------
     first, second : ndarray
-        Totals, s; inf for a run without answer, which ties with its like.
+        Totals, s; inf for a run without answer, and such runs tie with each other.
 
     Returns
     -------

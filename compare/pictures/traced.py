@@ -35,8 +35,8 @@ def sampled(trajectory: Trajectory, column: int, order: int) -> tuple[Array, Arr
     Returns
     -------
     times, values : ndarray, shape (samples,)
-        s and rad/sᵒʳᵈᵉʳ (m/sᵒʳᵈᵉʳ of a joint that slides); a value is NaN at a jump. Of more pieces
-        than a panel has pixels, the exact extrema alone.
+        s and rad/sᵒʳᵈᵉʳ (m/sᵒʳᵈᵉʳ of a joint that slides); a value is NaN at a jump. If there are
+        more pieces than a panel has pixels, only the exact extrema.
     """
     if len(trajectory.durations) > POINTS:
         places, found = (one[:, :, column] for one in trajectory.turns(order))

@@ -92,8 +92,8 @@ class GA:
     position_range : tuple of float
         Range that durations are drawn, encoded and mutated in, s; not printed.
     crossover : Crossover
-        "arithmetic", "one-point" or "uniform"; not printed. Arithmetic crossover of bit strings "
-        "acts on the numbers that they encode.
+        "arithmetic", "one-point" or "uniform"; not printed. Arithmetic crossover of bit strings
+        acts on the numbers that they encode.
     mutation : Mutation
         "redraw" or "creep"; not printed. Bits are flipped.
     mutated : MutationUnit

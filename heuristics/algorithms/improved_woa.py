@@ -34,7 +34,8 @@ from .woa import (
 
 OPEN_CHOICES = (
     "s: a constant above −1 in (22), not printed; 0, with which w falls linearly",
-    "exploration: (21) leaves the branch (20) out, Step 3 names it; kept, without a weight",
+    "exploration: (21) leaves out the branch (20), which Step 3 names; it is kept, without a "
+    "weight",
     "counter: (22) gives w = 0 at I = T, the point 0 itself for A = 0; with I = 0..N−1 the last "
     "weight is above 0",
     "D and D' of (14)(18) keep X* without a weight; (21) prints it on the target only",

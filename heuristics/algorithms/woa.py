@@ -29,7 +29,8 @@ OPEN_CHOICES = (
     "algorithm's authors",
     "threshold: the |A| from which (20) is used is not printed; 1, as in the source that the paper "
     "cites (Mirjalili & Lewis 2016)",
-    "coefficients: A and C are called coefficients and r a number, the source has vectors; one A "
+    "coefficients: A and C are called coefficients and r a number, whereas the source has "
+    "vectors; one A "
     "and one C for each whale",
     "threshold_rule: |A| of a vector; each coordinate by its own |A| (the same for numbers)",
     "r_rule: (16) prints one r in A and in C; drawn separately, as in the authors' program",
@@ -184,7 +185,7 @@ class WOA:
     whales : int
         Printed.
     iterations : int
-        T, moves of the population; printed. Also the T that δ falls over.
+        T, moves of the population; printed. Also the T over which δ falls.
     spiral : float
         b of (17); not printed.
     threshold : float

@@ -136,7 +136,7 @@ def find_optimizer(
 
 
 def optimizer_name(text: str) -> str:
-    """Name of an optimiser as rows and tables have it.
+    """Name of an optimiser as it appears in rows and tables.
 
     Parameters
     ----------

@@ -21,14 +21,14 @@ FLOOR = 1e-4
 def with_other_route(solution: Solution) -> Solution:
     """The answer with the total that the other route reaches from a longer motion beside it.
 
-    The exact NLP, solved by IPOPT, beside a descent or a formula; a descent beside the NLP. Both
+    For a descent or a formula, the exact NLP solved by IPOPT; for the NLP, a descent. Both
     state the same limits, by different code: symbolic derivatives and multipliers on one side,
     exact extrema and their gradients on the other.
 
     Returns
     -------
     Solution
-        With `other_total`, where the other route knows the curve and ends within the limits.
+        With `other_total`, if the other route knows the curve and ends within the limits.
     """
     problem, h = solution.problem, solution.vector
     if h is None or solution.infimum is not None:

@@ -222,7 +222,7 @@ class Clock:
         self._t = [ca.mtimes(ca.DM(at), durations) for at in nodes.transpose(1, 0, 2)]
 
     def motion(self, k: Indices, j: Indices) -> tuple[Any, Any]:
-        """Derivatives in time and dt/ds, functions of the place, of pieces with their joints."""
+        """Derivatives in time and dt/ds of pieces and their joints, as functions of the place."""
         q, t = (np.empty(len(self._t), dtype=object) for _ in range(2))
         for m, coefficients in enumerate(self._t):
             q[m], t[m] = ca.MX(ca.DM(self._scaled[k, m, j])), coefficients[k.tolist()]

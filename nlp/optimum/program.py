@@ -244,7 +244,7 @@ class Program:
         return Places(joint, segment, order, whole[:, 3])
 
     def at_places(self, places: Places, weight: Array) -> Any:
-        """Derivatives at places that follow their extremum, over their limits (positions plain)."""
+        """Derivatives at places that follow their extremum, by their limits (positions plain)."""
         found, numbers = [], []
         degree = self.degrees[places.segment]
         for r, d in sorted(set(zip(places.order.tolist(), degree.tolist(), strict=True))):
@@ -266,7 +266,7 @@ class Program:
         return together if (np.diff(back) == 1).all() else together[back.tolist()]
 
     def _motion(self, k: Indices, j: Indices, lowest: int, degree: int) -> tuple[Any, Any]:
-        """Derivatives in time and dt/ds, functions of the place, of pieces with their joints."""
+        """Derivatives in time and dt/ds of pieces and their joints, as functions of the place."""
         if self._clock is not None:
             return self._clock.motion(k, j)
         # One number, taken several times, is a row.
@@ -284,9 +284,9 @@ class Program:
         return value, lambda s: h
 
     def slope(self, trajectory: Trajectory, places: Places, times: int) -> Array:
-        """Derivatives by the place of f, a derivative in time as a function of the place.
+        """Derivatives, with respect to the place, of f, which is a derivative in time.
 
-        Times 1 for f′, 2 for f″; with a clock 2, and at places where f turns.
+        ``times`` is 1 for f′ and 2 for f″. With a clock it is 2, and f′ is 0 at the places.
         """
         unit = self.unit**places.order / self.angle[places.joint]
         if self._clock is not None:
@@ -296,7 +296,7 @@ class Program:
         return np.asarray(found * unit / trajectory.durations[places.segment] ** places.order)
 
     def followed(self, trajectory: Trajectory, rows: Rows) -> Rows:
-        """Rows where a motion has them: those that follow an extremum at its side."""
+        """The rows at the places of a motion: rows that follow an extremum move with it."""
         table = rows.table.copy()
         step = rows.weight * self.slope(trajectory, rows.places, 1)
         table[:, 3] -= REACH * np.tanh(step / REACH)
@@ -311,7 +311,7 @@ class Program:
         return np.asarray(np.where(places.order == 0, (at - first[j]) / self.angle[j], side))
 
     def stated(self) -> tuple[Any, Array, Array]:
-        """Equalities, rows at ends, and that a clock continues, with what they lie between."""
+        """Equalities, rows at ends and conditions for a continuous clock, with their bounds."""
         ends, zero = self.ends, np.zeros(self.equalities.numel())
         low, high = (self.rooms(ends, np.full(ends.s.size, sign)) for sign in (-1.0, 1.0))
         at_ends = self.at_places(ends, np.zeros(ends.s.size))
@@ -366,12 +366,12 @@ class Program:
     ) -> tuple[Places, Array, Array]:
         """Multipliers of limits at places and of bounds on durations, in seconds.
 
-        From those of the bounds on variables, of what the program states, and of the rows: places;
+        They are computed from those of variables, of stated conditions and of rows. Returns places;
         the multipliers of the limits there, in shares of the larger side (positions in rad), signed
         by the side; and those of the bounds on durations, s per s, signed by the side.
         """
         low, high = (bound[self.segments :] for bound in self.bounds())
-        # What is given is no limit, nor is what has none.
+        # A given value is not a limit, and some variables have none.
         at = (low < high) & (np.isfinite(low) | np.isfinite(high))
         parts, first = (self.left, self.ends, rows.places), self.equalities.numel()
         keep = np.append(at, np.ones(self.ends.s.size + duals.size, dtype=bool))

@@ -157,7 +157,7 @@ class Solution(SearchResult):
     lower_bound : float or None
         A lower bound that `trajgap.verify` has proved, s.
     kkt_residual : float or None
-        Of the reduced problem, scaled, with all active peaks found again.
+        Scaled residual for the reduced problem, with all active peaks found again.
     active : tuple of Active
         Limits that are reached, with multipliers and sensitivities.
     starts, starts_at_best : int

@@ -81,7 +81,7 @@ def solve(
     Parameters
     ----------
     problem : Problem
-        Its coupling is not looked at: durations are shared by all joints of the problem. See
+        Its coupling is ignored: durations are shared by all joints of the problem. See
         `solve_per_joint` for the other procedure.
     starts : int
         Number of starts, 1 or more.

@@ -53,7 +53,7 @@ def solve(
     Parameters
     ----------
     problem : Problem
-        Its coupling is not looked at: durations are shared by all joints of the problem. See
+        Its coupling is ignored: durations are shared by all joints of the problem. See
         `solve_per_joint` for the other procedure.
     exact : ExactProblem, optional
         The same problem in the numbers that are printed. Without it the floats count as exact,

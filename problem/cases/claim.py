@@ -344,11 +344,10 @@ class StatementClaim(Claim):
         "none",
     ]
     """How it can be checked on the claims named in ``of``; "jumps" says that acceleration does,
-    "at_rest" that velocity is 0 at both ends. Without ``of``: "kinematics" says that the joint "
-    "angles and the positions agree, "varies_most" and "varies_much" that ``joint`` does, "above" "
-    "that
-    the first of ``positions`` lies above the second, "equations" that those of the file hold on the
-    printed robot."""
+    "at_rest" that velocity is 0 at both ends. Without ``of``: "kinematics" says that the joint
+    angles and the positions agree, "varies_most" and "varies_much" that ``joint`` does, "above"
+    that the first of ``positions`` lies above the second, "equations" that those of the file hold
+    on the printed robot."""
     of: tuple[Id, ...] = ()
     """The claims whose durations it speaks about."""
     positions: tuple[Id, ...] = ()

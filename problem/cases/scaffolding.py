@@ -50,7 +50,7 @@ class FileLimits:
     source : str
         Name of the file.
     doubt : str
-        What the limits leave out, in a sentence; empty if nothing.
+        Doubt about the limits, such as sides that they leave out, in a sentence; empty if none.
     """
 
     joints: tuple[str, ...]

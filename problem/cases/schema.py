@@ -393,7 +393,7 @@ class CaseFile(ProblemData):
     source: Source
     robot: Robot
     objective: Text | None = None
-    """What the paper minimises, where that is not time alone."""
+    """What the paper minimises, if not time alone."""
     transcription: Transcription | None = None
     problems: tuple[ProblemBlock, ...] = ()
     readings: tuple[Reading, ...] = ()

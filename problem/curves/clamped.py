@@ -57,10 +57,10 @@ class ClampedBSpline(ClampedDeclaration, StretchedCurve):
         What determines the knots. With chords the inner knots lie at fixed fractions of the
         total time.
     time : Timing or str
-        "timed": e is time, the way-points are passed where the durations say. "stretched": the "
-        "way-points lie at the parameters themselves and each segment is stretched in time "
-        "separately, so the velocity may jump; with parameters from the times there is no "
-        "difference, so this is refused.
+        "timed": e is time, the way-points are passed where the durations say. "stretched": the
+        way-points lie at the parameters themselves and each segment is stretched in time
+        separately, so the velocity may jump; with parameters from the times there is no
+        difference, so this is refused.
     end_orders : tuple of int
         Derivatives that are 0 at both ends.
     fractions : tuple, optional
@@ -109,7 +109,7 @@ class ClampedBSpline(ClampedDeclaration, StretchedCurve):
         return replace(fixed, fractions=(fixed.fractions[index],))
 
     def polynomial_form(self) -> Curve:
-        """The C(p−1) spline of degree p, which inner knots at the way-points' times make it."""
+        """The C(p−1) spline of degree p, if the inner knots lie at the way-points' times."""
         if self.knots is not Knots.WAYPOINTS or self.parameters is not Parameters.TIMES:
             return self
         if (self.degree, self.end_orders) == (5, (1, 2)):
@@ -122,7 +122,7 @@ class ClampedBSpline(ClampedDeclaration, StretchedCurve):
         return clamped_shape(self, waypoints) if self.stretched else None
 
     def segment_of(self, durations: Array, point: Extremum) -> int:
-        """Segment by time: pieces end at knots."""
+        """Find the segment by time, because pieces end at knots."""
         inner = np.cumsum(durations)[:-1]
         return int(np.searchsorted(inner, point.time, side="left"))
 
@@ -143,7 +143,7 @@ class ClampedBSpline(ClampedDeclaration, StretchedCurve):
         return clamped_reach(self, values, as_batch(self, durations), asked)
 
     def by_durations(self, waypoints: Array, durations: Array, points: list[Extremum]) -> Array:
-        """By complex steps; segments that are stretched in closed form."""
+        """Computed by complex steps; for stretched segments in closed form."""
         if self.stretched:
             return super().by_durations(waypoints, durations, points)
         return clamped_by_durations(self, waypoints, durations, points)

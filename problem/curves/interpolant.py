@@ -194,7 +194,7 @@ class Interpolant(Curve):
 
     @cached_property
     def prescribed_joints(self) -> int | None:
-        """Joints that prescribed derivatives differ between."""
+        """Number of joints, if prescribed derivatives differ between them."""
         several = (v for at in {*self.prescribed} for _, v in at if isinstance(v, tuple))
         return next(map(len, several), None)
 

@@ -161,12 +161,12 @@ class Curve(ABC):
         """`fit` in extended precision, with a bound on the error of every extremum."""
 
     def fitted(self, waypoints: Array, durations: Array, nodal: Array | None = None) -> Trajectory:
-        """`fit` of arrays that are checked already."""
+        """`fit` for arrays that are already checked."""
         return self.enclosed(waypoints, durations, nodal).trajectory
 
     @abstractmethod
     def motion_values(self, waypoints: Array, nodal: Array | None = None) -> Array:
-        """What `batch_reach` needs to know of the way-points; its last axis is the joint."""
+        """Values computed from the way-points for `batch_reach`; the last axis is the joint."""
 
     @abstractmethod
     def batch_reach(self, values: Array, durations: Array, asked: Asked) -> Array:
@@ -243,7 +243,7 @@ class Curve(ABC):
         return point.segment
 
     def fixed_by(self, waypoints: Array) -> Curve:
-        """The same curve with all that it takes from the way-points' lengths held as it is here."""
+        """The same curve, with all that depends on the way-points' lengths fixed as it is here."""
         return self
 
     def for_joint(self, waypoints: Array, index: int) -> Curve:

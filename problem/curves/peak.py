@@ -52,8 +52,8 @@ class PeakGradients:
     nodal : ndarray, shape (extrema, free)
         d value / d free derivative of the extremum's own joint.
     by_waypoints : callable
-        Computes `waypoints`, which searches over durations do without: of long B-splines it takes
-        hundreds of times as long as the rest.
+        Computes `waypoints` on request: searches over durations do not need it, and for long
+        B-splines it takes hundreds of times as long as the rest.
     """
 
     durations: Array

@@ -53,7 +53,7 @@ def solve_in_closed_form(curve: Curve, waypoints: ArrayLike, limits: ArrayLike) 
     With t linear in a segment, v = q′/l, a = q″/l², j = q‴/l³, and no duration enters another
     segment: the total is least when each is, l = max over joints of
     max(max|q′|/V, √(max|q″|/A), ∛(max|q‴|/J)). Jumps of the velocity between segments are not
-    limited by V, A, J inside the segments, and are not looked at here.
+    limited by V, A, J inside the segments, and are ignored here.
 
     Parameters
     ----------

@@ -76,7 +76,7 @@ def _least_speed(speed: Array) -> tuple[Array, Array]:
 
 @dataclass(frozen=True, eq=False)
 class ClockedTrajectory(Trajectory):
-    """Joint angles over a parameter e whose time grows with it.
+    """Joint angles over a parameter e, with time a growing function of e.
 
     ``polynomial`` maps e, 0 to the number of pieces, to the joint angles; ``scaled`` holds the
     same in each piece's own 0..1.

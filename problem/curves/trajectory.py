@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Trajectory:
-    """Joint angles over time, with the scaled coefficients that exact peaks are found from.
+    """Joint angles over time, with the scaled coefficients from which exact peaks are found.
 
     Attributes
     ----------
@@ -118,7 +118,7 @@ class Trajectory:
         ----------
         order : int
         pieces : ndarray of int, optional
-            Those that are asked for; all by default.
+            Pieces to be evaluated; all by default.
 
         Returns
         -------
@@ -148,7 +148,7 @@ class Trajectory:
         return valued(self.derivative(piece, joint, order), places)
 
     def times(self, pieces: int | NDArray[np.int64], places: Array) -> Array:
-        """Times of places of a piece, or each on a piece of its own, s."""
+        """Times of places on one piece, or of each place on its own piece, s."""
         return np.asarray(self.breaks[pieces] + places * self.durations[pieces])
 
     def level(self, piece: int, joint: int, order: int, value: float) -> Array:

@@ -197,7 +197,7 @@ class TimedUniformBSpline(UniformBSpline):
         return masked(found, asked, valid)
 
     def by_durations(self, waypoints: Array, durations: Array, points: list[Extremum]) -> Array:
-        """By complex steps: every number is a rational function of the durations."""
+        """Computed by complex steps: every number is a rational function of the durations."""
         scaled = shape_matrix(self.waypoints).astype(np.float64) @ waypoints
         nodes = self.clock.astype(np.float64)
         clock, found = nodes @ durations, np.empty((len(points), self.segments))
@@ -222,8 +222,8 @@ def uniform_cubic_b_spline(
 
     Raises
     ------
-    TrajgapError
-        If the word is another, if a stretched clock shall be natural, or if there are fewer than
+    TrajgapError If the word is unknown, if a stretched clock is to be natural, or if there are
+    fewer than
         two way-points.
     """
     if time not in tuple(Timing):

@@ -32,7 +32,7 @@ class HalfUnits:
     time : float
         s.
     values : ndarray, shape (3, joints) or broadcast to it
-        Of positions, velocities and accelerations, rad, s.
+        Uncertainty of positions, velocities and accelerations, rad, s.
     """
 
     time: float = 0.0

@@ -78,7 +78,7 @@ def divided_extremes(
 
 
 def neighbours(samples: Samples, order: int) -> tuple[Array, Array, Array]:
-    """What samples side by side prove of a derivative, from the highest that every row states.
+    """What neighbouring samples prove about a derivative, from the highest one in every row.
 
     Parameters
     ----------

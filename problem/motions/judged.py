@@ -70,7 +70,7 @@ class MotionJump:
     time : float
         s.
     size : float
-        rad/sᵒʳᵈᵉʳ; value after less value before.
+        rad/sᵒʳᵈᵉʳ; value after minus value before.
     count : int
         Number of breaks at which it jumps.
     """

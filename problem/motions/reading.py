@@ -115,7 +115,7 @@ def read_motion(
     joints : sequence of str, optional
         Names, for a table without a header.
     topic : str, optional
-        Of a rosbag with several trajectories.
+        Topic to read from a rosbag with several trajectories.
     time_noise : float, optional
         Uncertainty of the times, s; by default it follows from their digits.
     """

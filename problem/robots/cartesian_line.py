@@ -88,7 +88,7 @@ def ctraj(
     guess : array_like, shape (joints,), optional
         Joints near those of the first pose; chooses the branch.
     seed : int
-        Of the inverse kinematics' starts.
+        Seed of the inverse kinematics' starts.
     largest_step : float
         Joint motion between neighbours above which the branch is taken to have changed, rad.
 

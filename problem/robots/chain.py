@@ -23,7 +23,7 @@ class Convention(StrEnum):
 
 
 class JointKind(StrEnum):
-    """What the variable of a joint is."""
+    """The kind of a joint's variable: an angle or a length."""
 
     REVOLUTE = "revolute"
     """An angle, rad, added to the offset of θ."""
@@ -127,7 +127,7 @@ class Chain:
     def arms(self) -> Array:
         """Bound on how fast the end moves with each joint, m/rad (m/m where it slides).
 
-        Nothing of a joint's own d moves with its angle, and of a only in the standard convention.
+        A joint's own d does not move with its angle, and its a only in the standard convention.
         """
         lengths = np.abs(self.a) + self.slides
         beyond = np.append(np.cumsum(lengths[::-1])[::-1][1:], 0.0)

@@ -35,7 +35,7 @@ class IkStatus(StrEnum):
     SOLVED = "solved"
     """Residual within the tolerances and every joint within its bounds."""
     NOT_FOUND = "not found"
-    """No start came within the tolerances; this does not show that nothing does."""
+    """No start came within the tolerances; this does not prove that the target is out of reach."""
     OUT_OF_REACH = "out of reach"
     """The target is farther from the base than all links together are long."""
 

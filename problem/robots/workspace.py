@@ -85,7 +85,7 @@ def sample_workspace(chain: Chain, count: int, seed: int) -> Workspace:
     Parameters
     ----------
     seed : int
-        Of a PCG64 generator; the first samples do not depend on ``count``.
+        Seed of a PCG64 generator; the first samples do not depend on ``count``.
 
     Raises
     ------

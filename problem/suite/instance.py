@@ -45,7 +45,7 @@ class Hardness(_Strict):
     basins: Count
     """Different totals that they ended in, more than 0.01 % apart."""
     best_basin_share: Share
-    """Of the descents, those that ended within 0.1 % of the best known total."""
+    """Share of the descents that ended within 0.1 % of the best known total."""
     drawn: Count
     """Durations drawn uniformly within their bounds."""
     feasible_share: Share
@@ -87,11 +87,11 @@ class BenchmarkInstance(_Strict):
     upper_proved: bool
     """Whether the certificate proves the answer feasible; otherwise `check` passes it."""
     durations: tuple[float, ...]
-    """Of the best known answer."""
+    """Durations of the best known answer."""
     case_sha256: Hash
-    """Of the case file."""
+    """Hash of the case file."""
     problem_hash: Hash | None
-    """Of the problem as the certificate states it."""
+    """Hash of the problem as the certificate states it."""
     certificate: str | None
     """Name of its file; None if it is too large to ship, or if there is none."""
     certificate_sha256: Hash | None

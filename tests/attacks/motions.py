@@ -143,8 +143,8 @@ ATTACKS = (
         "motions through every reader and interpolation, written exactly, rounded, scaled or "
         "measured, at even and uneven times; one limit from 1e-12 to 0.5 beside its peak, others "
         "one-sided, absent or of braking",
-        "never *pass* where a peak in rational arithmetic exceeds or the speed jumps, never "
-        "*violated* where every peak keeps; the repair repairs",
+        "never *pass* if a peak in rational arithmetic exceeds its limit or the speed jumps, "
+        "never *violated* if every peak keeps it; the repair succeeds",
         verdicts,
         share=2.0,
         quick=30,

@@ -124,7 +124,7 @@ def _nodes(trajectory: Trajectory, piece: int, order: int) -> tuple[Array, Array
 
 
 def sampled(trajectory: Trajectory, order: int, measure: str) -> list[MotionMeasure]:
-    """The same from samples, as programs take it: one for each number of samples."""
+    """The same value computed from samples, one for each number of samples."""
     start, end = trajectory.breaks[0], trajectory.breaks[-1]
     found = []
     for count in SAMPLES:

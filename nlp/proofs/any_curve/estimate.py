@@ -84,7 +84,7 @@ def estimate_any_curve(
     Parameters
     ----------
     problem : Problem
-        Its coupling is not looked at: durations are shared.
+        Its coupling is ignored: durations are shared.
     starts : int
         Number of starts: rest at every way-point first, then random ones.
     seed : int

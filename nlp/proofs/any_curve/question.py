@@ -56,7 +56,7 @@ def question(problem: ExactProblem) -> FreeQuestion:
     """Strip a problem of what does not matter for curves of any kind.
 
     From the interpolant, only the velocities prescribed at the two ends are used. Limits of jerk
-    and position are not looked at.
+    and position are ignored.
     """
     stated = stated_problem(problem)
     limits = [[*row[:2], None] for row in stated.limits]

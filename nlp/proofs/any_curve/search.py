@@ -124,13 +124,13 @@ class Node:
 
 
 class Search:
-    """What bounds the boxes of one question.
+    """Bounds the boxes of one question.
 
     Parameters
     ----------
     asked : FreeQuestion
     cap : Fraction
-        Totals below it are looked at, s.
+        Only totals below it are searched, s.
 
     Attributes
     ----------

@@ -29,7 +29,7 @@ def test_runs_are_drawn_against_an_optimum(problem: tg.Problem, best: tg.Solutio
     runs = tg.bench(problem, "random", seeds=2, budget=40, baselines=False)
     assert "random" in tg.plot(runs, best).description
     assert sound(lambda: tg.plot(runs, best.best))
-    with pytest.raises(TrajgapError, match=r"give the optimum beside the runs"):
+    with pytest.raises(TrajgapError, match=r"give the optimum as well"):
         tg.plot(runs)
 
 
@@ -54,7 +54,7 @@ def test_a_motion_from_elsewhere_with_its_limits(problem: tg.Problem, best: tg.S
     motion = as_motion(best.trajectory.polynomial, problem.joints)
     assert "joint 2: largest jerk" in sound(lambda: tg.plot(motion, limits))
     assert "largest velocity" in tg.plot(best.sample(0.01), limits).description
-    with pytest.raises(TrajgapError, match=r"give the limits beside the motion"):
+    with pytest.raises(TrajgapError, match=r"give the limits as well"):
         tg.plot(motion)
 
 
