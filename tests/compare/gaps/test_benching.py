@@ -267,7 +267,7 @@ def test_bounds_and_first_positions_are_said() -> None:
 
 
 def test_what_cannot_take_part_is_refused_before_anything_runs() -> None:
-    with pytest.raises(TrajgapError, match="defined at the top of a module"):
+    with pytest.raises(TrajgapError, match="defined at the top level of a module"):
         plan_bench(TOY, lambda fun, bounds, budget, rng: None)
 
 

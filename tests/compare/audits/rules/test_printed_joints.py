@@ -53,7 +53,7 @@ def test_a_joint_that_varies_much_is_never_accused(joint: str) -> None:
 @pytest.mark.parametrize(
     ("values", "verdict", "words"),
     [
-        (None, "not checkable", "beside no other joint in print"),
+        (None, "not checkable", "compared with no other printed joint"),
         (["1.0", "9.0"], "supported", "8.00 of joint 2"),
         (["1.0", "99.0"], "inconsistent", "Joint 2 varies more."),
     ],
@@ -91,8 +91,8 @@ def placed(*above: str, kinematics: str = sentence("table", "kinematics")) -> st
         ("0.50 -0.30 -0.25", "not checkable", "-0.25 m above"),
         ("0.50 0.30 0.25", "not checkable", "another sign of y it would be 0 m"),
         ("-0.50 0.30 0.25", "not checkable", "another sign of x and y"),
-        ("0.90 -0.30 0.25", "not checkable", "stands 0.4 m beside place"),
-        ("0.10 -0.30 0.25", "not checkable", "stands 0.4 m beside place"),
+        ("0.90 -0.30 0.25", "not checkable", "lies 0.4 m beside place"),
+        ("0.10 -0.30 0.25", "not checkable", "lies 0.4 m beside place"),
     ],
 )
 def test_a_position_above_another(values: str, verdict: str, words: str) -> None:
