@@ -299,16 +299,16 @@ PRINTED = {"parameters": "given", "time": "stretched"}
         ({"knots": "waypoints", "end_orders": (1, 1)}, "orders must be distinct and lie in 1..deg"),
         ({"knots": "waypoints", "end_orders": (1, 5)}, "orders must be distinct and lie in 1..deg"),
         ({"knots": "waypoints", "fractions": ((0.0, 1.0),)}, "expected 5 numbers from 0 to 1"),
-        ({"knot_vector": ()}, 'knot_vector: is missing where knots are "given"'),
+        ({"knot_vector": ()}, 'knot_vector: is missing, although knots are "given"'),
         (
             {"knots": "waypoints", "knot_vector": vector(5)},
             'knot_vector: is for knots that are "gi',
         ),
         (
             {"parameters": "chord"},
-            'where knots are "given" and time is "timed", way-points are pas',
+            'if knots are "given" and time is "timed", way-points are pas',
         ),
-        ({**PRINTED, "parameters": "chord"}, 'where knots are "given" and time is "stretched"'),
+        ({**PRINTED, "parameters": "chord"}, 'if knots are "given" and time is "stretched"'),
         (PRINTED, 'fractions: are missing where parameters are "given"'),
         (
             {**PRINTED, "fractions": ((0.0, 0.5, 0.4, 0.8, 1.0),)},

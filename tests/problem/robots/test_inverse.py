@@ -212,7 +212,7 @@ def test_faults(target, options, message):
     [
         ([1, 2], [0, 0], "point: is not a finite position; give three numbers, m"),
         ([1, 2, np.inf], [0, 0], "point: is not a finite position; give three numbers, m"),
-        ([1, 2, 3], [0], "held: shape (1,) for 2 joints; give one number each, NaN where"),
+        ([1, 2, 3], [0], "held: shape (1,) for 2 joints; give one number each, NaN for"),
         ([1, 2, 3], [0, np.inf], "held: shape (2,) for 2 joints; give one number each, NaN"),
     ],
 )
