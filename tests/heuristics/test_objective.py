@@ -258,7 +258,7 @@ def test_set_to_an_upper_bound_that_costs_nothing() -> None:
         ),
         (
             two_joints(Limits(6.0, 8.0, position_upper=0.5, joints=2)),
-            r"lead joint 1 beyond a position limit; no uniform",
+            r"lead joint 1 beyond a position limit, and no uniform",
         ),
         (two_joints(Limits([0.0, 3.0])), "a joint with limit 0 moves"),
         (two_joints(Limits(joints=2)), "nothing moves or nothing is limited"),
@@ -315,7 +315,7 @@ def test_equal_durations_that_swing_too_far_are_no_baseline() -> None:
     tight = limited(cubic_spline(3), 0.001)
     with pytest.raises(
         TrajgapError,
-        match=r"no upper bound .* joint \d beyond a position limit; .*; give them",
+        match=r"no upper bound .* joint \d beyond a position limit, .*; give them",
     ):
         search_box(replace(tight, duration_upper=np.inf))
     np.testing.assert_array_equal(search_box(tight).upper, [6.0, 6.0, 6.0])

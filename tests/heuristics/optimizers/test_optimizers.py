@@ -328,7 +328,7 @@ REFUSED = [
     (lambda: given(iterations=-1), "^x: iterations: expected a whole number of 0 or more, got -1"),
     (lambda: given(per_iteration=0), "^x: per_iteration: expected a whole number of 1 or more, g"),
     (lambda: given(penalty=0), "^x: penalty: expected a positive number, got 0"),
-    (lambda: run(given(), PROBLEM, 0), "^x: judged no position; call the objective"),
+    (lambda: run(given(), PROBLEM, 0), "^x: evaluated no position; call the objective"),
     *(
         (lambda s=s: Budgeted(len, 3, 9)(np.ones(s)), r"^objective: .* \(batch, 3\).* as x\[None\]")
         for s in ((3,), (2, 4), (1, 2, 3))

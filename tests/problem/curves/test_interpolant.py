@@ -96,7 +96,7 @@ def test_free_coefficients_that_are_not_nodal() -> None:
     assert loose.free_derivatives == tuple((b, order) for order in (2, 3, 4) for b in (0, 1))
     torn = piecewise((3, 3, 3), 0, ())
     with pytest.raises(
-        TrajgapError, match="6 free coefficients, of which only 4 are nodal derivatives; raise"
+        TrajgapError, match="6 free coefficients, but only 4 of them are nodal derivatives; raise"
     ):
         torn.completed()
 
