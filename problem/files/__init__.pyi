@@ -10,5 +10,5 @@ from .atomic import (
     replace_folder as replace_folder,
     try_writing_in as try_writing_in,
 )
-from .names import LONGEST_NAME as LONGEST_NAME, file_name as file_name
-from .text import parse_toml as parse_toml, read_hashed as read_hashed, read_text as read_text
+from .file_names import LONGEST_NAME as LONGEST_NAME, file_name as file_name
+from .textfile import parse_toml as parse_toml, read_hashed as read_hashed, read_text as read_text

@@ -19,7 +19,7 @@ from trajgap.problem.cases.load import check_case, load_case, parse_case
 from trajgap.problem.cases.schema import CaseFile
 from trajgap.problem.cases.statement import _LARGEST
 from trajgap.problem.errors import CaseError
-from trajgap.problem.files.text import read_text
+from trajgap.problem.files.textfile import read_text
 
 
 @each_refusal("base")
