@@ -131,7 +131,7 @@ def _without_totals(study: Study, words: Mapping[str, Judgement]) -> str:
     curves = dict.fromkeys(c.other_curve for c in timed if c.other_curve is not None)
     if curves:
         named = ", ".join(curves)
-        return f"Printed times are on another curve ({named}), so no optimum applies."
+        return f"The printed times belong to another curve ({named}), so no optimum applies."
     return "No printed total can be compared with an optimum."
 
 

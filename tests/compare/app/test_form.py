@@ -185,7 +185,7 @@ def test_only_the_last_audits_are_kept(client: Any, monkeypatch: pytest.MonkeyPa
 
     monkeypatch.setattr(server, "audit", lambda _: Stub)
     monkeypatch.setattr(server, "page_files", lambda *_: {"a.html": "x"})
-    monkeypatch.setattr(server, "_KEPT", 2)
+    monkeypatch.setattr(server, "_PAGES_KEPT", 2)
     places = [client.post("/audit", data=FIELDS).location for _ in range(3)]
     assert [client.get(place).status_code for place in places] == [404, 200, 200]
 
