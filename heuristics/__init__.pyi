@@ -1,87 +1,45 @@
-from .algorithm import Algorithm, Search, State
+from .algorithm import Algorithm as Algorithm, Search as Search, State as State
 from .algorithms import (
-    GA,
-    KINDS,
-    MNAMPSO,
-    PSO,
-    WOA,
-    ConstrainedPSO,
-    ImprovedGA,
-    ImprovedWOA,
-    from_settings,
-    open_choices,
+    GA as GA,
+    KINDS as KINDS,
+    MNAMPSO as MNAMPSO,
+    PSO as PSO,
+    WOA as WOA,
+    ConstrainedPSO as ConstrainedPSO,
+    ImprovedGA as ImprovedGA,
+    ImprovedWOA as ImprovedWOA,
+    from_settings as from_settings,
+    open_choices as open_choices,
 )
-from .baseline import uniform_rescaling
-from .hazards import TentCollapse, tent_collapse
+from .baseline import uniform_rescaling as uniform_rescaling
+from .hazards import TentCollapse as TentCollapse, tent_collapse as tent_collapse
 from .loop import (
-    AskedRun,
-    joined_runs,
-    run,
-    run_as_left,
-    run_asked,
-    run_many,
-    run_many_per_joint,
-    run_per_joint,
-    states,
+    AskedRun as AskedRun,
+    joined_runs as joined_runs,
+    run as run,
+    run_as_left as run_as_left,
+    run_asked as run_asked,
+    run_many as run_many,
+    run_many_per_joint as run_many_per_joint,
+    run_per_joint as run_per_joint,
+    states as states,
 )
-from .objective import Bounds, Counted, DeathPenalty, Objective
+from .objective import (
+    Bounds as Bounds,
+    Counted as Counted,
+    DeathPenalty as DeathPenalty,
+    Objective as Objective,
+)
 from .optimizers import (
-    BASELINES,
-    BUDGET,
-    Borrowed,
-    BorrowedTask,
-    evaluations_of,
-    find_optimizer,
-    optimizer_name,
+    BASELINES as BASELINES,
+    BUDGET as BUDGET,
+    Borrowed as Borrowed,
+    BorrowedTask as BorrowedTask,
+    evaluations_of as evaluations_of,
+    find_optimizer as find_optimizer,
+    optimizer_name as optimizer_name,
 )
-from .repair import Handling, Stretch, judge_of
-from .result import JointRuns, Run
-from .search_boxes import search_box
-from .within_budget import BudgetedRun, run_within
-
-__all__ = [
-    "BASELINES",
-    "BUDGET",
-    "GA",
-    "KINDS",
-    "MNAMPSO",
-    "PSO",
-    "WOA",
-    "Algorithm",
-    "AskedRun",
-    "Borrowed",
-    "BorrowedTask",
-    "Bounds",
-    "BudgetedRun",
-    "ConstrainedPSO",
-    "Counted",
-    "DeathPenalty",
-    "Handling",
-    "ImprovedGA",
-    "ImprovedWOA",
-    "JointRuns",
-    "Objective",
-    "Run",
-    "Search",
-    "State",
-    "Stretch",
-    "TentCollapse",
-    "evaluations_of",
-    "find_optimizer",
-    "from_settings",
-    "joined_runs",
-    "judge_of",
-    "open_choices",
-    "optimizer_name",
-    "run",
-    "run_as_left",
-    "run_asked",
-    "run_many",
-    "run_many_per_joint",
-    "run_per_joint",
-    "run_within",
-    "search_box",
-    "states",
-    "tent_collapse",
-    "uniform_rescaling",
-]
+from .repair import Handling as Handling, Stretch as Stretch, judge_of as judge_of
+from .result import JointRuns as JointRuns, Run as Run
+from .search_boxes import search_box as search_box
+from .within_budget import BudgetedRun as BudgetedRun, run_within as run_within

@@ -1,3 +1,1 @@
-from .server import make_server
-
-__all__ = ["make_server"]
+from .server import make_server as make_server

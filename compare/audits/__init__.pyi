@@ -1,46 +1,24 @@
-from .card_errors import plainly
-from .case_audit import AuditReport, CaseAudit, audit
-from .fixed_ratios import at_ratios, planned_apart
-from .options import AuditOptions
-from .paper_runs import searched_for
-from .printed_row import PrintedRow, printed_rows
-from .provenance import certificate_files, package_version
-from .readings import KEPT, answers, segments
-from .rounding import Point, RoundingBox, RoundingVerdict, judge_rounding
-from .rules import EXPLAINED, RULES
-from .stated import asked_as, claim_text, digits_of, in_words, place
-from .study import Pair, Study
-from .waterfall import routes, waterfalls
-
-__all__ = [
-    "EXPLAINED",
-    "KEPT",
-    "RULES",
-    "AuditOptions",
-    "AuditReport",
-    "CaseAudit",
-    "Pair",
-    "Point",
-    "PrintedRow",
-    "RoundingBox",
-    "RoundingVerdict",
-    "Study",
-    "answers",
-    "asked_as",
-    "at_ratios",
-    "audit",
-    "certificate_files",
-    "claim_text",
-    "digits_of",
-    "in_words",
-    "judge_rounding",
-    "package_version",
-    "place",
-    "plainly",
-    "planned_apart",
-    "printed_rows",
-    "routes",
-    "searched_for",
-    "segments",
-    "waterfalls",
-]
+from .card_errors import plainly as plainly
+from .case_audit import AuditReport as AuditReport, CaseAudit as CaseAudit, audit as audit
+from .fixed_ratios import at_ratios as at_ratios, planned_apart as planned_apart
+from .options import AuditOptions as AuditOptions
+from .paper_runs import searched_for as searched_for
+from .printed_row import PrintedRow as PrintedRow, printed_rows as printed_rows
+from .provenance import certificate_files as certificate_files, package_version as package_version
+from .readings import KEPT as KEPT, answers as answers, segments as segments
+from .rounding import (
+    Point as Point,
+    RoundingBox as RoundingBox,
+    RoundingVerdict as RoundingVerdict,
+    judge_rounding as judge_rounding,
+)
+from .rules import EXPLAINED as EXPLAINED, RULES as RULES
+from .stated import (
+    asked_as as asked_as,
+    claim_text as claim_text,
+    digits_of as digits_of,
+    in_words as in_words,
+    place as place,
+)
+from .study import Pair as Pair, Study as Study
+from .waterfall import routes as routes, waterfalls as waterfalls

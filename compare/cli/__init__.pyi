@@ -1,3 +1,1 @@
-from .app import main
-
-__all__ = ["main"]
+from .app import main as main

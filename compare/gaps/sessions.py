@@ -74,7 +74,8 @@ def run_study(
     ------
     ProcessError
         If the engine fails.
-    CaseError If the store raises it.
+    CaseError
+        If the store raises it.
     """
     store.note("software", _software())
     left = sum(1 for _ in unfinished(study, store, retry))

@@ -1,12 +1,8 @@
-from .borrowed import Borrowed, BorrowedTask
-from .catalogue import BASELINES, BUDGET, evaluations_of, find_optimizer, optimizer_name
-
-__all__ = [
-    "BASELINES",
-    "BUDGET",
-    "Borrowed",
-    "BorrowedTask",
-    "evaluations_of",
-    "find_optimizer",
-    "optimizer_name",
-]
+from .borrowed import Borrowed as Borrowed, BorrowedTask as BorrowedTask
+from .catalogue import (
+    BASELINES as BASELINES,
+    BUDGET as BUDGET,
+    evaluations_of as evaluations_of,
+    find_optimizer as find_optimizer,
+    optimizer_name as optimizer_name,
+)

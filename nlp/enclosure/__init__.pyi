@@ -1,14 +1,7 @@
-from .balls import EPS, Ball, raised
-from .box_bound import Place, bound_by_bisection, bound_ratio
-from .places import linear_program, rows_at
-
-__all__ = [
-    "EPS",
-    "Ball",
-    "Place",
-    "bound_by_bisection",
-    "bound_ratio",
-    "linear_program",
-    "raised",
-    "rows_at",
-]
+from .balls import EPS as EPS, Ball as Ball, raised as raised
+from .box_bound import (
+    Place as Place,
+    bound_by_bisection as bound_by_bisection,
+    bound_ratio as bound_ratio,
+)
+from .places import linear_program as linear_program, rows_at as rows_at

@@ -20,7 +20,7 @@ STEPS = 80
 """Most steps of one descent; with a superlinear end 10 to 30 suffice."""
 RESTORING_STEPS = 30
 """Most steps towards the limits from a start that exceeds them."""
-ROWS_KEPT = 1e-12
+KEPT = 1e-12
 """Excess that counts as kept: a thousandth of the checker's tolerance."""
 WIDEST_STEP = 1.0
 """Trust region at the start, in log durations: a factor e."""
@@ -100,12 +100,7 @@ def restored(problem: Problem, h: Array, box: LogBox) -> ExactRows:
     rows = exact_rows(problem, np.exp(box.inside(np.log(h))))
     radius, n = WIDEST_STEP, h.size
     for _ in range(RESTORING_STEPS):
-        if (
-            time_up()
-            or rows.worst <= ROWS_KEPT
-            or not np.isfinite(rows.worst)
-            or radius < SMALLEST_STEP
-        ):
+        if time_up() or rows.worst <= KEPT or not np.isfinite(rows.worst) or radius < SMALLEST_STEP:
             break
         matrix, room = _walled(rows, box, radius)
         elastic = np.zeros((len(matrix), 1))
@@ -118,7 +113,7 @@ def restored(problem: Problem, h: Array, box: LogBox) -> ExactRows:
         z = box.inside(np.log(rows.durations) + found[0][:n])
         trial = exact_rows(problem, np.exp(z))
         expected = rows.worst - max(float(found[0][n]), 0.0)
-        if trial.worst <= ROWS_KEPT or trial.worst < rows.worst - 0.1 * expected:
+        if trial.worst <= KEPT or trial.worst < rows.worst - 0.1 * expected:
             rows, radius = trial, min(2.0 * radius, 4.0)
         elif trial.worst < rows.worst:
             rows, radius = trial, 0.5 * radius
@@ -138,10 +133,10 @@ def _onto_limits(problem: Problem, h: Array, box: LogBox) -> ExactRows:
             break
         z = np.log(rows.durations)
         stretch = float(rows.excess[rows.stretched].max(initial=-np.inf))
-        outside = rows.excess[~rows.stretched].max(initial=-np.inf) > ROWS_KEPT
+        outside = rows.excess[~rows.stretched].max(initial=-np.inf) > KEPT
         free = np.isfinite(stretch) and not outside and problem.curve.homogeneous
-        if rows.worst <= ROWS_KEPT:
-            if not (free and stretch < -ROWS_KEPT and (z + stretch >= box.low).all()):
+        if rows.worst <= KEPT:
+            if not (free and stretch < -KEPT and (z + stretch >= box.low).all()):
                 break
             return exact_rows(problem, np.exp(z + stretch))
         if free and (z + stretch <= box.high).all():
@@ -159,7 +154,7 @@ def _onto_limits(problem: Problem, h: Array, box: LogBox) -> ExactRows:
 
 @dataclass(frozen=True, eq=False)
 class Descent:
-    """Where a descent ended: durations, s, and the excess, at most `ROWS_KEPT` if limits are kept.
+    """Where a descent ended: durations, s, and the excess, at most `KEPT` if limits are kept.
 
     It is converged where no step gained any more.
     """
@@ -172,7 +167,7 @@ class Descent:
     @property
     def feasible(self) -> bool:
         """Whether every limit is kept."""
-        return self.excess <= ROWS_KEPT
+        return self.excess <= KEPT
 
 
 def descend(problem: Problem, start: Array, box: LogBox) -> Descent:
@@ -181,9 +176,9 @@ def descend(problem: Problem, start: Array, box: LogBox) -> Descent:
     The curve is a determined one of any kind; the start, s, need not keep the limits.
     """
     rows = _onto_limits(problem, start, box)
-    if rows.worst > ROWS_KEPT:
+    if rows.worst > KEPT:
         rows = restored(problem, rows.durations, box)
-    if rows.worst > ROWS_KEPT:
+    if rows.worst > KEPT:
         return Descent(rows.durations, rows.worst, False, 0)
     total = float(rows.durations.sum())
     hessian, began = _first_hessian(rows), total
@@ -216,7 +211,7 @@ def descend(problem: Problem, start: Array, box: LogBox) -> Descent:
                 other = _onto_limits(problem, np.exp(np.log(beyond.durations) + bent[0]), box)
                 trial = max(trial, other, key=lambda one: _gain(total, one))
         after = float(trial.durations.sum())
-        if trial.worst <= ROWS_KEPT and after < total * (1.0 - 1e-15):
+        if trial.worst <= KEPT and after < total * (1.0 - 1e-15):
             hessian = _curved(hessian, rows, trial, weights[: len(rows.excess)])
             good = _gain(total, trial) > GOOD * expected
             radius = min(2.0 * radius, WIDEST_STEP) if good else 0.5 * max(size, 0.5 * radius)
@@ -236,7 +231,7 @@ def _first_hessian(rows: ExactRows) -> Array:
 
 def _gain(total: float, rows: ExactRows) -> float:
     """Relative gain of a motion over a total; -inf if it exceeds a limit."""
-    return 1.0 - float(rows.durations.sum()) / total if rows.worst <= ROWS_KEPT else -np.inf
+    return 1.0 - float(rows.durations.sum()) / total if rows.worst <= KEPT else -np.inf
 
 
 def _curved(hessian: Array, before: ExactRows, after: ExactRows, weights: Array) -> Array:

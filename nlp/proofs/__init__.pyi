@@ -1,63 +1,41 @@
-from .certifiers import allowance, certify, covered
+from .certifiers import allowance as allowance, certify as certify, covered as covered
 from .document import (
-    certificate,
-    certificate_text,
-    fits,
-    problem_seal,
-    shipped,
-    shipped_file,
-    unlike,
-    write_certificate,
+    certificate as certificate,
+    certificate_text as certificate_text,
+    fits as fits,
+    problem_seal as problem_seal,
+    shipped as shipped,
+    shipped_file as shipped_file,
+    unlike as unlike,
+    write_certificate as write_certificate,
 )
 from .evidence import (
-    ProvedInterval,
-    interval_of,
-    printed_problem_or_none,
-    proved,
-    with_interval,
+    ProvedInterval as ProvedInterval,
+    interval_of as interval_of,
+    printed_problem_or_none as printed_problem_or_none,
+    proved as proved,
+    with_interval as with_interval,
 )
-from .exact import ExactProblem, decimal, exact_problem, printed_problem
-from .kept import search_code
-from .kept_files import KeptFiles, as_text, cache_folder, code_hash, folder_of, from_text
-from .kept_nearby import KeptNearby
-from .outcome import Certified, Outcome, Progress
-from .proven_optimum import solve
-from .state import StateFile, read_state, state_document
-
-__all__ = [
-    "Certified",
-    "ExactProblem",
-    "KeptFiles",
-    "KeptNearby",
-    "Outcome",
-    "Progress",
-    "ProvedInterval",
-    "StateFile",
-    "allowance",
-    "as_text",
-    "cache_folder",
-    "certificate",
-    "certificate_text",
-    "certify",
-    "code_hash",
-    "covered",
-    "decimal",
-    "exact_problem",
-    "fits",
-    "folder_of",
-    "from_text",
-    "interval_of",
-    "printed_problem",
-    "printed_problem_or_none",
-    "problem_seal",
-    "proved",
-    "read_state",
-    "search_code",
-    "shipped",
-    "shipped_file",
-    "solve",
-    "state_document",
-    "unlike",
-    "with_interval",
-    "write_certificate",
-]
+from .exact import (
+    ExactProblem as ExactProblem,
+    decimal as decimal,
+    exact_problem as exact_problem,
+    printed_problem as printed_problem,
+)
+from .kept import search_code as search_code
+from .kept_files import (
+    KeptFiles as KeptFiles,
+    as_text as as_text,
+    cache_folder as cache_folder,
+    code_hash as code_hash,
+    folder_of as folder_of,
+    from_text as from_text,
+)
+from .kept_nearby import KeptNearby as KeptNearby
+from .outcome import Certified as Certified, Outcome as Outcome, Progress as Progress
+from .proven_optimum import solve as solve
+from .state import (
+    StateFile as StateFile,
+    read_state as read_state,
+    state_document as state_document,
+)

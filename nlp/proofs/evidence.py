@@ -13,7 +13,7 @@ import numpy as np
 from ...problem import TOLERANCE, TrajgapError, Verdict, check
 from ...problem.cases import Statement
 from ...verify import CertificateVerdict, Subject, verify_certificate
-from ..optimum import ROWS_KEPT, Solution, Status, close, solve
+from ..optimum import KEPT, Solution, Status, close, solve
 from .certifiers import certify, covered, instant
 from .document import fits, shipped
 from .exact import ExactProblem, printed_problem
@@ -159,7 +159,7 @@ def with_interval(solution: Solution, found: ProvedInterval | None) -> Solution:
     lower = float(found.lower)
     if Fraction(lower) > found.lower:
         lower = math.nextafter(lower, -math.inf)
-    if solution.infimum is None and lower * (1.0 - ROWS_KEPT) <= solution.best < lower:
+    if solution.infimum is None and lower * (1.0 - KEPT) <= solution.best < lower:
         solution = _proved_answer(solution, found.durations)
     if not lower <= solution.best < math.inf:
         return solution

@@ -1,121 +1,70 @@
-from .case import Case, DurationBox
+from .case import Case as Case, DurationBox as DurationBox
 from .claim import (
-    AnyClaim,
-    AuthorsAnswer,
-    Claim,
-    ConditionsClaim,
-    ControlVerticesClaim,
-    ConvergenceClaim,
-    DurationsClaim,
-    ImprovementClaim,
-    MaximumClaim,
-    MeasureClaim,
-    MotionValueClaim,
-    Nature,
-    PeakClaim,
-    PhasesClaim,
-    ProfiledClaim,
-    StatementClaim,
-    TimeClaim,
-    TotalTimeClaim,
-    ValueClaim,
+    AnyClaim as AnyClaim,
+    AuthorsAnswer as AuthorsAnswer,
+    Claim as Claim,
+    ConditionsClaim as ConditionsClaim,
+    ControlVerticesClaim as ControlVerticesClaim,
+    ConvergenceClaim as ConvergenceClaim,
+    DurationsClaim as DurationsClaim,
+    ImprovementClaim as ImprovementClaim,
+    MaximumClaim as MaximumClaim,
+    MeasureClaim as MeasureClaim,
+    MotionValueClaim as MotionValueClaim,
+    Nature as Nature,
+    PeakClaim as PeakClaim,
+    PhasesClaim as PhasesClaim,
+    ProfiledClaim as ProfiledClaim,
+    StatementClaim as StatementClaim,
+    TimeClaim as TimeClaim,
+    TotalTimeClaim as TotalTimeClaim,
+    ValueClaim as ValueClaim,
 )
-from .claim_fit import motions_of, named_places, profile_of
-from .clue import AnyClue, AxisClue, DataSheetClue, HalfTurnsClue, SmoothClue
-from .data_files import PUBLISHED, SUITE_PREFIX, case_files
-from .digits import Digits, end
-from .faults import all_faults, refusal
-from .instances import InstancesBlock, instance_waypoints
-from .joint_units import unit_of, with_unit
-from .labels import ratio_words
-from .load import check_case, load_case, parse_case, published_ids
-from .moving_ends import end_states
-from .robot_file import load_robot, robot_ids
-from .scaffolding import FileLimits, identity_of, scaffold
+from .claim_fit import (
+    motions_of as motions_of,
+    named_places as named_places,
+    profile_of as profile_of,
+)
+from .clue import (
+    AnyClue as AnyClue,
+    AxisClue as AxisClue,
+    DataSheetClue as DataSheetClue,
+    HalfTurnsClue as HalfTurnsClue,
+    SmoothClue as SmoothClue,
+)
+from .data_files import (
+    PUBLISHED as PUBLISHED,
+    SUITE_PREFIX as SUITE_PREFIX,
+    case_files as case_files,
+)
+from .digits import Digits as Digits, end as end
+from .faults import all_faults as all_faults, refusal as refusal
+from .instances import InstancesBlock as InstancesBlock, instance_waypoints as instance_waypoints
+from .joint_units import unit_of as unit_of, with_unit as with_unit
+from .labels import ratio_words as ratio_words
+from .load import (
+    check_case as check_case,
+    load_case as load_case,
+    parse_case as parse_case,
+    published_ids as published_ids,
+)
+from .moving_ends import end_states as end_states
+from .robot_file import load_robot as load_robot, robot_ids as robot_ids
+from .scaffolding import FileLimits as FileLimits, identity_of as identity_of, scaffold as scaffold
 from .schema import (
-    AlgorithmBlock,
-    Assumption,
-    Cartesian,
-    CaseFile,
-    Column,
-    NotCheckable,
-    ProblemBlock,
-    Reading,
-    Robot,
-    Source,
-    Table,
-    Transcription,
-    case_schema,
+    AlgorithmBlock as AlgorithmBlock,
+    Assumption as Assumption,
+    Cartesian as Cartesian,
+    CaseFile as CaseFile,
+    Column as Column,
+    NotCheckable as NotCheckable,
+    ProblemBlock as ProblemBlock,
+    Reading as Reading,
+    Robot as Robot,
+    Source as Source,
+    Table as Table,
+    Transcription as Transcription,
+    case_schema as case_schema,
 )
-from .statement import Statement
-from .transcripts import Difference, compare_transcriptions
-
-__all__ = [
-    "PUBLISHED",
-    "SUITE_PREFIX",
-    "AlgorithmBlock",
-    "AnyClaim",
-    "AnyClue",
-    "Assumption",
-    "AuthorsAnswer",
-    "AxisClue",
-    "Cartesian",
-    "Case",
-    "CaseFile",
-    "Claim",
-    "Column",
-    "ConditionsClaim",
-    "ControlVerticesClaim",
-    "ConvergenceClaim",
-    "DataSheetClue",
-    "Difference",
-    "Digits",
-    "DurationBox",
-    "DurationsClaim",
-    "FileLimits",
-    "HalfTurnsClue",
-    "ImprovementClaim",
-    "InstancesBlock",
-    "MaximumClaim",
-    "MeasureClaim",
-    "MotionValueClaim",
-    "Nature",
-    "NotCheckable",
-    "PeakClaim",
-    "PhasesClaim",
-    "ProblemBlock",
-    "ProfiledClaim",
-    "Reading",
-    "Robot",
-    "SmoothClue",
-    "Source",
-    "Statement",
-    "StatementClaim",
-    "Table",
-    "TimeClaim",
-    "TotalTimeClaim",
-    "Transcription",
-    "ValueClaim",
-    "all_faults",
-    "case_files",
-    "case_schema",
-    "check_case",
-    "compare_transcriptions",
-    "end",
-    "end_states",
-    "identity_of",
-    "instance_waypoints",
-    "load_case",
-    "load_robot",
-    "motions_of",
-    "named_places",
-    "parse_case",
-    "profile_of",
-    "published_ids",
-    "ratio_words",
-    "refusal",
-    "robot_ids",
-    "scaffold",
-    "unit_of",
-    "with_unit",
-]
+from .statement import Statement as Statement
+from .transcripts import Difference as Difference, compare_transcriptions as compare_transcriptions

@@ -28,8 +28,7 @@ def piecewise(
     ends : tuple of (order, value)
         Derivatives prescribed at both ends, rad/sᵒʳᵈᵉʳ: one value for all joints, or one for each.
     finish : tuple of (order, value), optional
-        Derivatives prescribed at the last way-point, if they differ; ``ends`` then applies to the
-        start.
+        Derivatives at the last way-point, if they differ; ``ends`` then applies to the start.
     virtual : tuple of int
         Breaks without a way-point, counted among all breaks with the first way-point as 0.
 
@@ -75,8 +74,7 @@ def cubic_spline(
     ends : tuple of (order, value)
         Derivatives prescribed at both ends, rad/sᵒʳᵈᵉʳ: one value for all joints, or one for each.
     finish : tuple of (order, value), optional
-        Derivatives prescribed at the last way-point, if they differ; ``ends`` then applies to the
-        start.
+        Derivatives at the last way-point, if they differ; ``ends`` then applies to the start.
     virtual : tuple of int
         As `piecewise` takes them.
 

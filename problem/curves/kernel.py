@@ -3,16 +3,25 @@
 A lane is one joint of one duration vector, and the loops over lanes become vector instructions. No
 lane looks at another: order, blocks and threads do not change a bit. The root finder is that of
 `polynomials`, written for lanes that rest at different steps; the tests compare both.
+
+What is asked of one curve is array code. What loops over a population, over the rows of a long
+system or over the boxes of a proof is compiled at its first call, and lies on disk for the next
+process. Nothing is interpreted meanwhile, so no loop stops in its middle. Modules import this one
+in the function that needs it, because numba takes a while.
 """
 
 from __future__ import annotations
 
+import hashlib
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from .compilation import compiler
 from .polynomials import MAX_COEFFICIENTS
+
+Function = Callable[..., Any]
 
 LANES = 192
 """Polynomials handled side by side: loops of that length vectorise, and a block fits a cache."""
@@ -21,6 +30,30 @@ SETTLED = 1e-6
 the square of that of its place."""
 KERNELS = ("kernel.py", "blocks.py")
 """Every file of compiled functions here: they share a stamp."""
+
+
+def compiler(*sources: Path) -> Callable[[Function], Function]:
+    """Make a decorator for functions to be compiled, and cached where there is a writable place.
+
+    numba's cache looks at the file of the function alone, so a function would go on calling an
+    old callee from another file. Functions that call each other are compiled by one decorator, and
+    the hash of all their files stands in their names: ``sources`` are these files.
+    """
+    import numba
+
+    stamp = hashlib.sha256(b"".join(path.read_bytes() for path in sources)).hexdigest()[:16]
+
+    def compiled(function: Function) -> Function:
+        function.__qualname__ = f"{function.__qualname__}_{stamp}"
+        try:
+            made = numba.njit(cache=True, nogil=True, error_model="numpy")(function)
+        except RuntimeError:  # no writable place for the cache: compile in memory
+            made = numba.njit(nogil=True, error_model="numpy")(function)
+        return made
+
+    return compiled
+
+
 compiled = compiler(*(Path(__file__).with_name(name) for name in KERNELS))
 """Compiles a function of one of these files."""
 

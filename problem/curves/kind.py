@@ -88,9 +88,8 @@ class Asked:
     least : int
         0 for positions, counted from the first way-point.
     caps : ndarray, shape (joints, orders), optional
-        Where all that matters of a vector is whether its numbers stay below these. Each number then
-        is on the right side of its cap, unless another of the same vector is beyond its own; it
-        need not be exact, and a curve may find it all the same.
+        Given if it only matters whether the numbers of a vector stay below these. Each number is
+        then on the right side of its cap, unless another of the same vector is beyond its own.
     """
 
     wanted: NDArray[np.bool_]

@@ -228,8 +228,8 @@ def uniform_cubic_b_spline(
 
     Raises
     ------
-    TrajgapError If the word is unknown, if a stretched clock is to be natural, or if there are
-    fewer than
+    TrajgapError
+        If the word is unknown, if a stretched clock is to be natural, or if there are fewer than
         two way-points.
     """
     if time not in tuple(Timing):

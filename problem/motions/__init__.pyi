@@ -1,49 +1,37 @@
-from .between import check_samples
-from .digits import HalfUnits
-from .divided import neighbours
-from .floor import Floor, shortest
-from .foreign_objects import as_motion
-from .interpolation import interpolated
-from .joint_limits import BRAKING, ORDERS, JointLimits, check_range, unstated_words
-from .judged import MOTION_TOLERANCE, MotionCheck, MotionJump, MotionPeak, check_motion
-from .motion import MOST_VALUES, Motion, numbered
-from .plain_data import read_yaml
-from .reading import UNITS, ForeignFile, factors_of, read_motion
-from .samples import Interpolation, Samples
-from .written import Evaluated, MotionForm, csv_text, motion_text, read_back, sampled
-
-__all__ = [
-    "BRAKING",
-    "MOST_VALUES",
-    "MOTION_TOLERANCE",
-    "ORDERS",
-    "UNITS",
-    "Evaluated",
-    "Floor",
-    "ForeignFile",
-    "HalfUnits",
-    "Interpolation",
-    "JointLimits",
-    "Motion",
-    "MotionCheck",
-    "MotionForm",
-    "MotionJump",
-    "MotionPeak",
-    "Samples",
-    "as_motion",
-    "check_motion",
-    "check_range",
-    "check_samples",
-    "csv_text",
-    "factors_of",
-    "interpolated",
-    "motion_text",
-    "neighbours",
-    "numbered",
-    "read_back",
-    "read_motion",
-    "read_yaml",
-    "sampled",
-    "shortest",
-    "unstated_words",
-]
+from .between import check_samples as check_samples
+from .digits import HalfUnits as HalfUnits
+from .divided import neighbours as neighbours
+from .floor import Floor as Floor, shortest as shortest
+from .foreign_objects import as_motion as as_motion
+from .interpolation import interpolated as interpolated
+from .joint_limits import (
+    BRAKING as BRAKING,
+    ORDERS as ORDERS,
+    JointLimits as JointLimits,
+    check_range as check_range,
+    unstated_words as unstated_words,
+)
+from .judged import (
+    MOTION_TOLERANCE as MOTION_TOLERANCE,
+    MotionCheck as MotionCheck,
+    MotionJump as MotionJump,
+    MotionPeak as MotionPeak,
+    check_motion as check_motion,
+)
+from .motion import MOST_VALUES as MOST_VALUES, Motion as Motion, numbered as numbered
+from .plain_data import read_yaml as read_yaml
+from .reading import (
+    UNITS as UNITS,
+    ForeignFile as ForeignFile,
+    factors_of as factors_of,
+    read_motion as read_motion,
+)
+from .samples import Interpolation as Interpolation, Samples as Samples
+from .written import (
+    Evaluated as Evaluated,
+    MotionForm as MotionForm,
+    csv_text as csv_text,
+    motion_text as motion_text,
+    read_back as read_back,
+    sampled as sampled,
+)

@@ -1,40 +1,28 @@
-from .cartesian_line import CartesianLine, ctraj
+from .cartesian_line import CartesianLine as CartesianLine, ctraj as ctraj
 from .chain import (
-    Chain,
-    Convention,
-    JointKind,
-    forward_kinematics,
-    geometric_jacobian,
-    link_frames,
+    Chain as Chain,
+    Convention as Convention,
+    JointKind as JointKind,
+    forward_kinematics as forward_kinematics,
+    geometric_jacobian as geometric_jacobian,
+    link_frames as link_frames,
 )
-from .closed_form import closed_form_inverse
-from .dh import DhTable
-from .inverse import IkSolution, IkStatus, inverse_kinematics
-from .nearness import Proximity, proximity
-from .printed_equations import Equation, EquationCheck, check_equation
-from .workspace import StepKind, Workspace, sample_workspace, waypoint_sequences
-
-__all__ = [
-    "CartesianLine",
-    "Chain",
-    "Convention",
-    "DhTable",
-    "Equation",
-    "EquationCheck",
-    "IkSolution",
-    "IkStatus",
-    "JointKind",
-    "Proximity",
-    "StepKind",
-    "Workspace",
-    "check_equation",
-    "closed_form_inverse",
-    "ctraj",
-    "forward_kinematics",
-    "geometric_jacobian",
-    "inverse_kinematics",
-    "link_frames",
-    "proximity",
-    "sample_workspace",
-    "waypoint_sequences",
-]
+from .closed_form import closed_form_inverse as closed_form_inverse
+from .dh import DhTable as DhTable
+from .inverse import (
+    IkSolution as IkSolution,
+    IkStatus as IkStatus,
+    inverse_kinematics as inverse_kinematics,
+)
+from .nearness import Proximity as Proximity, proximity as proximity
+from .printed_equations import (
+    Equation as Equation,
+    EquationCheck as EquationCheck,
+    check_equation as check_equation,
+)
+from .workspace import (
+    StepKind as StepKind,
+    Workspace as Workspace,
+    sample_workspace as sample_workspace,
+    waypoint_sequences as waypoint_sequences,
+)

@@ -1,24 +1,14 @@
-from .instance import BenchmarkInstance, BoundEvidence, Hardness
-from .plain import LOADER, plain_text
-from .shelf import (
-    instance_of,
-    list_instances,
-    load_instance,
-    select_curve,
-    select_instances,
-    suite_version,
+from .instance import (
+    BenchmarkInstance as BenchmarkInstance,
+    BoundEvidence as BoundEvidence,
+    Hardness as Hardness,
 )
-
-__all__ = [
-    "LOADER",
-    "BenchmarkInstance",
-    "BoundEvidence",
-    "Hardness",
-    "instance_of",
-    "list_instances",
-    "load_instance",
-    "plain_text",
-    "select_curve",
-    "select_instances",
-    "suite_version",
-]
+from .plain import LOADER as LOADER, plain_text as plain_text
+from .shelf import (
+    instance_of as instance_of,
+    list_instances as list_instances,
+    load_instance as load_instance,
+    select_curve as select_curve,
+    select_instances as select_instances,
+    suite_version as suite_version,
+)

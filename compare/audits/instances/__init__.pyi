@@ -1,27 +1,17 @@
-from .drawn import STARTS, examinable, examined, readings_of, unexamined
-from .result import (
-    MIDDLE,
-    InstancesResult,
-    Optimum,
-    Sample,
-    distribution,
-    examined_entry,
-    percent_range,
-    reproduced,
+from .drawn import (
+    STARTS as STARTS,
+    examinable as examinable,
+    examined as examined,
+    readings_of as readings_of,
+    unexamined as unexamined,
 )
-
-__all__ = [
-    "MIDDLE",
-    "STARTS",
-    "InstancesResult",
-    "Optimum",
-    "Sample",
-    "distribution",
-    "examinable",
-    "examined",
-    "examined_entry",
-    "percent_range",
-    "readings_of",
-    "reproduced",
-    "unexamined",
-]
+from .result import (
+    MIDDLE as MIDDLE,
+    InstancesResult as InstancesResult,
+    Optimum as Optimum,
+    Sample as Sample,
+    distribution as distribution,
+    examined_entry as examined_entry,
+    percent_range as percent_range,
+    reproduced as reproduced,
+)

@@ -1,4 +1,2 @@
-from .certifier import ANY_CURVE
-from .estimate import AnyCurveEstimate, estimate_any_curve
-
-__all__ = ["ANY_CURVE", "AnyCurveEstimate", "estimate_any_curve"]
+from .certifier import ANY_CURVE as ANY_CURVE
+from .estimate import AnyCurveEstimate as AnyCurveEstimate, estimate_any_curve as estimate_any_curve

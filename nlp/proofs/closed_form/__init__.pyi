@@ -1,3 +1,5 @@
-from .formulas import FIXED_RATIOS, REST_TO_REST, STRETCHED
-
-__all__ = ["FIXED_RATIOS", "REST_TO_REST", "STRETCHED"]
+from .formulas import (
+    FIXED_RATIOS as FIXED_RATIOS,
+    REST_TO_REST as REST_TO_REST,
+    STRETCHED as STRETCHED,
+)

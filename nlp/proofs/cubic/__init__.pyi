@@ -1,3 +1,1 @@
-from .certifier import CUBIC
-
-__all__ = ["CUBIC"]
+from .certifier import CUBIC as CUBIC

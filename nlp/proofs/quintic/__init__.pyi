@@ -1,3 +1,1 @@
-from .certifier import QUINTIC
-
-__all__ = ["QUINTIC"]
+from .certifier import QUINTIC as QUINTIC
