@@ -31,6 +31,8 @@ from trajgap.problem import (
 
 WAYPOINTS = [[0.1, 0.5], [0.7, 0.2], [1.2, -0.4], [0.9, 0.3]]
 PROBLEM = Problem(WAYPOINTS, Limits(6.0, 8.0, joints=2), three_five_three())
+STRANGERS: set[int] = set()
+"""Processes that other tests have left to this one's process."""
 
 
 @pytest.fixture(autouse=True)
@@ -40,6 +42,8 @@ def no_hang() -> Iterator[None]:
     def give_up(*_: object) -> None:
         raise TimeoutError("hangs")
 
+    STRANGERS.clear()
+    STRANGERS.update(children())
     before = signal.signal(signal.SIGALRM, give_up)
     signal.alarm(500)
     yield
@@ -49,9 +53,9 @@ def no_hang() -> Iterator[None]:
 
 
 def children() -> set[int]:
-    """Processes that this one has started; one that has ended and was not waited for counts."""
+    """Processes that a test has started; one that has ended and was not waited for counts."""
     lists = Path("/proc/self/task").glob("*/children")
-    return {int(pid) for one in lists for pid in one.read_text().split()}
+    return {int(pid) for one in lists for pid in one.read_text().split()} - STRANGERS
 
 
 def test_results_come_in_the_order_of_the_items() -> None:
