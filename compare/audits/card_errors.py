@@ -103,7 +103,7 @@ def _plain(
         "TG205": f"Control vertices {at_place(where)} do not follow from the way-points",
         "TG301": "Shortest times scale inversely with velocity limits: the printed two cannot both "
         "be shortest",
-        "TG304": f"A printed total is not that of the shortest profile ({where})"
+        "TG304": f"A printed total is not that of its profile ({where})"
         if isinstance(claim, TotalTimeClaim)
         else f"A printed number does not follow from its profile ({where})",
         "TG601": "Printed joint angles and positions do not fit the printed robot",

@@ -1,6 +1,6 @@
 """
 A chaotic map that collapses in double precision
-===========================================
+================================================
 
 Figure 1 of the whale paper as printed: thirty points in [0, 5]², filled by the tent map with
 β = 0.5. An orbit for each coordinate spreads them. In exact arithmetic no orbit ever rests; in
