@@ -102,7 +102,7 @@ REACHED_MEANING = (
     "its limits. Gaps are measured from the proven interval of the optimum, if there is one. "
     "Evaluations are those of a run, and those that restarts need on average until one run comes "
     "this near; if each joint is planned separately, until every joint is this near its own "
-    "all joints counted. "
+    "optimum, counted over all joints. "
     "Operators and seeds are not printed, so these runs are information and refute nothing."
 )
 """What the table means."""

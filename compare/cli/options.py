@@ -84,8 +84,8 @@ NoCache = Annotated[
     bool,
     typer.Option(
         "--no-cache",
-        help="Neither keep proofs and replays for later runs nor use kept ones. Kept ones are "
-        "verified or judged again before they count.",
+        help="Neither keep proofs, optima and replays for later runs nor use kept ones. Kept ones "
+        "are verified or judged again before they count.",
     ),
 ]
 Crate = Annotated[

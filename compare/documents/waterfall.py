@@ -86,8 +86,8 @@ class Step(Entry):
     @property
     def ends(self) -> tuple[float, float]:
         """The ends of its interval, s; the value itself where it is none."""
-        low, high = (value_or_none(end) or self.value for end in (self.low, self.high))
-        return low, high
+        low, high = map(value_or_none, (self.low, self.high))
+        return self.value if low is None else low, self.value if high is None else high
 
     @property
     def known(self) -> str:

@@ -191,9 +191,9 @@ class Row:
     """Of either time, [(T − U)/U, (T − L)/L]. That of the reported time is an optimality gap only
     if the verdict is "pass", else a difference of reported time."""
     trace: tuple[tuple[int, float], ...] = field(default=())
-    """Number of evaluations and the best total by the objective after them, s, at log-spaced and
-    only where it changed: the last entry at or before an evaluation holds there, and before the
-    first nothing feasible was known."""
+    """Number of evaluations and the best total by the objective after them, s, at log-spaced
+    numbers and only if it changed: the last entry at or before an evaluation holds there, and
+    before the first entry nothing feasible was known."""
 
     @classmethod
     def begun(cls, trial: Trial, **known: Any) -> Row:

@@ -43,8 +43,8 @@ class Summary:
     lower_quartile: float
     median: float
     upper_quartile: float
-    """Relative gap of the feasible time to the upper end of the optimum; inf if that quantile
-    no feasible answer."""
+    """Relative gap of the feasible time to the upper end of the optimum; inf if that
+    quantile has no feasible answer."""
     within: tuple[int, ...]
     """Number of runs that come within each gap of `LADDER`."""
     spent: tuple[int, ...]

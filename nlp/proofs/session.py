@@ -199,9 +199,9 @@ class Session:
 
     @contextmanager
     def part(self, boxes: float, share: float) -> Iterator[None]:
-        """Within, so many boxes and a share of the time are allowed; then what was allowed before.
+        """Limit what runs within to some boxes and a share of the time that is left.
 
-        The end of a part is no end of the run; the boxes of a part are not counted against it.
+        Reaching that limit does not end the run, and the boxes are not counted against its own.
         """
         request, clock, before = self.request, self.clock, self.nodes
         self.request = replace(request, boxes=before + boxes)

@@ -201,9 +201,7 @@ def _polynomials(
 ) -> ForeignFile:
     if any(stated.noise or ()) or stated.time_noise:
         option = "--noise" if any(stated.noise or ()) else "--time-noise"
-        raise CaseError(
-            name, option, "applies to samples only; polynomials are the motion itself itself"
-        )
+        raise CaseError(name, option, "applies to samples only; polynomials are the motion itself")
     motion = motion_of_json(found, name)
     in_file, count = _stated_units(name, found.get("units", {})), len(motion.joints)
     if in_file and units and _each(in_file, count) != _each(units, count):

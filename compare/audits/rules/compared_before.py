@@ -174,7 +174,6 @@ def comparison_words(known: Comparison, case: Case) -> Iterator[str]:
     runs = known.listed[0].shown.runs
     yield (
         f"A committed study ran both on {known.on}, with {known.budget:,} evaluations per run and "
-        f""
         f"{min(runs)} independent runs each."
     )
     yield (
@@ -190,7 +189,7 @@ def comparison_words(known: Comparison, case: Case) -> Iterator[str]:
         best = max(known.designed, key=lambda one: one.most or 0.0)
         yield (
             f"If everything that the text leaves open is varied together, this is typical (true "
-            f"of at " f"least half of the pairs of runs) for {' and for '.join(counts)}"
+            f"of at least half of the pairs of runs) for {' and for '.join(counts)}"
             + (f", most often with {_settings(known, best)} ({_percent(best.most)})." if best.most
                else ".")
         )  # fmt: skip

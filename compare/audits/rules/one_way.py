@@ -38,7 +38,7 @@ def judge_one_way(study: Study) -> Iterator[Finding]:
             if pair.reading != reading or not (alone and statement.declaration.at_rest):
                 continue
             _, limited, _, _ = statement.data()
-            if limited.uneven:
+            if limited.uneven or not limited.derivatives.all():  # a limit of 0 allows no way
                 continue
             for claim in study.claims:
                 if not isinstance(claim, TotalTimeClaim) or claim.profile not in RESTING:

@@ -218,8 +218,9 @@ def _impossible(asked: _Asked) -> Finding:
         printed=f"{claim.value} {row.study.time_unit}",
         computed="no profile",
         sentences=(
-            f"No {asked.called} with a plateau of {own} {unit} joins the states at both ends, "
-            f"however the digits were rounded: a phase would take less than 0 s.{said}",
+            f"No {asked.called} with a plateau of {own} {unit} joins the states at both ends, at "
+            "the printed numbers or at the ends of what their digits leave: a phase would take "
+            f"less than 0 s.{said}",
         ),
     )
 

@@ -185,10 +185,8 @@ def _compared(study: Study, claim: StatementClaim, against: str) -> Iterator[Fin
             kind="runs",
             sentences=(
                 f"In {seeds} independent runs each under the listed choices, {own} reaches "
-                f""
                 f"{spread(totals[own])} and {other} reaches {spread(totals[other])}; one run "
-                f"of {own} is "
-                f"no longer than one of {other} with probability {_percent(shorter)} "
+                f"of {own} is no longer than one of {other} with probability {_percent(shorter)} "
                 f"({interval_words(low, high)}): {settled}.",
             ),
         )

@@ -282,13 +282,20 @@ def test_a_peak_of_a_profile_of_another_problem_is_refused() -> None:
 
 
 @pytest.mark.parametrize(
-    ("slower", "verdict"),
-    [("2.05", "supported"), ("2.50", "inconsistent"), (None, "not checkable")],
+    ("slower", "velocity", "verdict"),
+    [
+        ("2.05", 2, "supported"),
+        ("2.50", 2, "inconsistent"),
+        ("2.50", 0, "not checkable"),  # no way is possible within 0
+        (None, 2, "not checkable"),
+    ],
 )
-def test_one_way_serves_the_totals_of_all_limits(slower: str | None, verdict: str) -> None:
+def test_one_way_serves_the_totals_of_all_limits(
+    slower: str | None, velocity: int, verdict: str
+) -> None:
     """3 rad within 2 and 4 take 2 s, and within 2 rad/s and 3.636 rad/s² 2.05 s."""
     first = total("t", "2.00", profile="trapezoidal", problem="one", **CLAIM)
-    other = entry("problems", id="two", limits={"velocity": 2, "acceleration": "3.636"})
+    other = entry("problems", id="two", limits={"velocity": velocity, "acceleration": "3.636"})
     parts = [first, entry("problems", id="one"), other]
     if slower is not None:
         parts.append(total("u", slower, profile="trapezoidal", problem="two", **CLAIM))
