@@ -3,24 +3,19 @@
 from __future__ import annotations
 
 import logging
-import math
 from collections.abc import Iterator
 from contextlib import contextmanager
 
 import numpy as np
+from toppra.algorithm import TOPPRA
+from toppra.constraint import (
+    DiscretizationType,
+    JointAccelerationConstraint,
+    JointVelocityConstraint,
+)
 
 from ...problem import Array
 from .grid import SampledPath
-from .toppra_undrawn import undrawn
-
-with undrawn():
-    from toppra.algorithm import TOPPRA
-    from toppra.constants import SMALL, TINY
-    from toppra.constraint import (
-        DiscretizationType,
-        JointAccelerationConstraint,
-        JointVelocityConstraint,
-    )
 
 _UNITS = ((1e4, 10.0), (1e4, 1.0), (1e2, 10.0), (1e4, 3.0), (1e4, 30.0), (1e2, 1.0))
 """Scalings tried: length of the path, and expected path speed.
@@ -83,56 +78,7 @@ class _Solver(TOPPRA):  # type: ignore[misc]
     """
 
     def compute_controllable_sets(self, sdmin: float, sdmax: float) -> Array:
-        """The programs of toppra's own loop, in its order, because each begins where one ended.
-
-        Floats instead of its small arrays, which cost more than the programs.
-        """
-        solver, cells = self.solver_wrapper, self._N
-        solve, fastest = solver.solve_stagewise_optim, np.zeros(solver.get_no_vars())
-        fastest[:2] = 1e-9, -1.0
-        slowest = -fastest
-        sets = np.zeros((cells + 1, 2))
-        low, high = 0.0, float(sdmax) ** 2
-        sets[cells] = low, high
-        solver.setup_solver()
-        for i in range(cells - 1, -1, -1):
-            top = float(solve(i, None, fastest, np.nan, np.nan, low, high)[1])
-            low = float(solve(i, None, slowest, np.nan, np.nan, low, high)[1])
-            low, high = 0.0 if low < 0 else low, top
-            sets[i] = low, high
-            if math.isnan(low) or math.isnan(high):
-                return sets
-        solver.close_solver()
-        return sets
-
-    def fastest_speeds(self, start: float, end: float) -> Array | None:
-        """Path speeds at the points of the grid, as `compute_parameterization` finds them.
-
-        None if there is no parametrisation.
-        """
-        sets = self.compute_controllable_sets(end, end)
-        now = start**2
-        if np.isnan(sets).any() or not sets[0, 0] - SMALL <= now <= sets[0, 1] + SMALL:
-            return None
-        solver = self.solver_wrapper
-        solve, aim = solver.solve_stagewise_optim, np.zeros(solver.get_no_vars())
-        aim[1] = -1.0
-        squares = [now]
-        solver.setup_solver()
-        rest = zip(solver.get_deltas().tolist(), sets[1:].tolist(), strict=True)
-        for i, (step, (low, high)) in enumerate(rest):
-            aim[0] = -2 * step
-            change = float(solve(i, None, aim, now, now, low, high)[0])
-            if math.isnan(change):
-                # toppra tries again from a little slower; it does so rarely.
-                solver.close_solver()
-                speeds = self.compute_parameterization(start, end)[1]
-                return None if speeds is None or np.isnan(speeds).any() else np.asarray(speeds)
-            new = now + 2 * step * change
-            now = min(high, max(low, max(new - TINY, 0.9999 * new)))
-            squares.append(now)
-        solver.close_solver()
-        return np.sqrt(squares)
+        return np.asarray(super().compute_controllable_sets(0.0, sdmax))
 
 
 @contextmanager
@@ -220,8 +166,8 @@ def _attempt(
             if reached < slower * start:
                 return None
             start = min(start, reached)
-        speeds = solver.fastest_speeds(start, end)
-        if speeds is None:
+        speeds = solver.compute_parameterization(start, end)[1]
+        if speeds is None or np.isnan(speeds).any():
             return None
         # At constant acceleration a cell takes its length by the mean speed; added one by one.
         duration = float(np.cumsum(2 * np.diff(grid) / (speeds[:-1] + speeds[1:]))[-1])
