@@ -66,11 +66,12 @@ def _ratios(problem: Problem, question: _Question, durations: Array) -> Array:
     values, limits, asked, plain = question
     peaks = problem.curve.batch_reach(values, durations, asked)[:, 0]
     if plain:
-        return peaks / limits
+        peaks /= limits
+        return peaks
     with np.errstate(invalid="ignore", divide="ignore"):
-        ratios = peaks / limits
-    ratios[np.isnan(ratios)] = 0.0  # 0/0 is kept
-    return ratios
+        peaks /= limits
+    peaks[np.isnan(peaks)] = 0.0  # 0/0 is kept
+    return peaks
 
 
 def evaluate(problem: Problem, durations: ArrayLike, nodal: ArrayLike | None = None) -> Evaluation:
