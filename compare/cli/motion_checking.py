@@ -9,7 +9,7 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from ...problem import Array, CaseError, TrajgapError, Verdict, read_float
+from ...problem import CaseError, TrajgapError, Verdict, read_float
 from ...problem.limit_files import StatedLimits, limits_of_flags, merge, read_limits, read_urdf
 from ...problem.motions import (
     ForeignFile,
@@ -73,8 +73,8 @@ def check_file(source: str, options: MotionOptions, as_json: bool, out: Path | N
     """Judge the motion of a file; 1 with ``strict`` unless it passes and all of it is judged."""
     how = _interpolation(options.interpolation)
     read = _read(Path(source), options)
-    factors = factors_of(read.units, len(read.joints), "--units")
-    limits = stated_limits(read.joints, factors, options)
+    limits, units = stated_limits(read.joints, read.units, options)
+    read = replace(read, units=units)
     repair, plot = options.repair, options.plot
     kind = None if plot is None else _kind_of_picture(plot)
     with (
@@ -214,19 +214,23 @@ def _picture(
     )
 
 
-def stated_limits(joints: Sequence[str], factors: Array, options: MotionOptions) -> JointLimits:
-    """What holds for joints: flag before limits file before URDF.
+def stated_limits(
+    joints: Sequence[str], units: Sequence[str], options: MotionOptions
+) -> tuple[JointLimits, tuple[str, ...]]:
+    """What holds for joints: flag before limits file before URDF; and the unit of each joint.
 
     Parameters
     ----------
-    factors : ndarray, shape (joints,)
-        What a number of a flag is in rad or m.
+    units : sequence of str
+        Of the positions and the flags, one for all joints or one each.
 
     Raises
     ------
     CaseError
-        If nothing is stated, or nothing finite.
+        If nothing is stated, or nothing finite; or a unit does not suit a joint of the URDF.
     """
+    factors = factors_of(units, len(joints), "--units")
+    suited = tuple(units) * (len(joints) if len(units) == 1 else 1)
     sources: list[StatedLimits] = []
     if any(value is not None for value in options.limits.values()):
         sources.append(limits_of_flags(options.limits, joints, factors))
@@ -234,6 +238,7 @@ def stated_limits(joints: Sequence[str], factors: Array, options: MotionOptions)
         sources.append(read_limits(options.limits_file))
     if options.urdf:
         sources.append(read_urdf(options.urdf))
+        suited = sources[-1].units_of(joints, suited)
     if not sources:
         raise CaseError(
             "limits", "", "none are given; add --velocity, --acceleration, ..., --limits or --urdf"
@@ -242,7 +247,7 @@ def stated_limits(joints: Sequence[str], factors: Array, options: MotionOptions)
     ends = (limits.lower, limits.upper, limits.deceleration)
     if all(np.isinf(one).all() for one in ends):
         raise CaseError("limits", "", "none is finite, so nothing can be judged; give one")
-    return limits
+    return limits, suited
 
 
 def _interpolation(text: str | None) -> Interpolation | None:

@@ -84,13 +84,12 @@ def new(
         "time": time_unit,
     }
     limits = {"velocity": velocity, "acceleration": acceleration, "jerk": jerk}
-    beside = MotionOptions(urdf=urdf)
-    limits_of_urdf = None if urdf is None else limits_of_table(str(table), beside)
     with new_output(out, "OUT") as write:
         needed = ["position", *(name for name, limit in limits.items() if limit is not None)]
         given = {name: unit for name, unit in units.items() if unit is not None}
 
         def written(stated: Mapping[str, str]) -> str:
+            beside = MotionOptions(urdf=urdf, units=stated.get("position"))
             return scaffold(
                 table,
                 stated,
@@ -100,7 +99,7 @@ def new(
                 durations=durations,
                 total=total,
                 where=where or "",
-                limits_of=limits_of_urdf,
+                limits_of=None if urdf is None else limits_of_table(str(table), beside),
                 warn=doubts.append,
                 **limits,
             )

@@ -16,7 +16,6 @@ from ...problem.motions import (
     JointLimits,
     MotionForm,
     check_motion,
-    factors_of,
     motion_text,
     numbered,
     read_back,
@@ -70,11 +69,10 @@ def limits_of_table(source: str, options: MotionOptions) -> Callable[[tuple[str,
     """
 
     def found(joints: tuple[str, ...]) -> FileLimits:
-        factors = factors_of(words(options.units) or ("rad",), len(joints), "--units")
         if options.urdf and joints == numbered(len(joints)):
             joints = _names(source, options.urdf, len(joints))
         try:
-            stated = stated_limits(joints, factors, options)
+            stated, _ = stated_limits(joints, words(options.units) or ("rad",), options)
             limits = stated.two_sided
         except CaseError:
             raise

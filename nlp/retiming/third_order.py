@@ -100,10 +100,9 @@ def _options(strategy: str) -> dict[str, Any]:
 
 def jerk_limited_path(trajectory: Trajectory, limits: Limits) -> bool:
     """Whether a path can be timed so: equal limits of jerk, and a motion that does not jump."""
-    limited = np.isfinite(limits.jerk).any()
     return bool(
-        limited
-        and not limits.uneven
+        not limits.uneven
+        and np.isfinite(limits.jerk).any()
         and (limits.derivatives > 0).all()
         and trajectory.polynomial_in_time
         and trajectory.scaled[:, 1:].any()

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from ..errors import CaseError, TrajgapError
 from ..motions import BRAKING, ORDERS, JointLimits, check_range
-from ..printed import spelling_hint, spelt_like
+from ..printed import is_linear, spelling_hint, spelt_like
 
 Range = tuple[float, float]
 """Lower and upper limit, rad and s; infinite if that side has none."""
@@ -30,11 +30,14 @@ class StatedLimits:
         Joint to quantity to (lower, upper), rad and s.
     named : bool
         Whether the joints are named by the source itself, so an unknown name is a fault.
+    slides : mapping
+        Whether a joint slides instead of turning, where the source says so.
     """
 
     source: str
     ranges: Mapping[str, Mapping[str, Range]]
     named: bool = True
+    slides: Mapping[str, bool] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         for joint, quantities in self.ranges.items():
@@ -53,6 +56,29 @@ class StatedLimits:
             If one of them is unknown.
         """
         return merge(joints, [self])
+
+    def units_of(self, joints: Sequence[str], units: Sequence[str]) -> tuple[str, ...]:
+        """Units that suit how joints move; rad and m, the same number, stand for each other.
+
+        Raises
+        ------
+        CaseError
+            If a joint that slides has another angle as its unit, or one that turns a length.
+        """
+        slides = [self.slides.get(x, is_linear(u)) for x, u in zip(joints, units, strict=True)]
+        suited = tuple(
+            unit if is_linear(unit) == slide else ("rad", "m")[slide]
+            for unit, slide in zip(units, slides, strict=True)
+        )
+        for joint, unit, suits, slide in zip(joints, units, suited, slides, strict=True):
+            if unit not in ("rad", "m", suits):
+                raise CaseError(
+                    self.source,
+                    joint,
+                    f"{('turns', 'slides')[slide]}, but its unit is {unit}; give one unit for "
+                    f"each joint, such as {','.join(suited)}",
+                )
+        return suited
 
 
 def merge(joints: Sequence[str], sources: Sequence[StatedLimits]) -> JointLimits:

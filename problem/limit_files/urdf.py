@@ -58,7 +58,7 @@ def read_urdf(path: Path) -> StatedLimits:
         raise CaseError(name, "", "has an encoding that is not known; save it as UTF-8") from None
     if not reader.ranges:
         raise CaseError(name, "", "has no joint that moves and has limits; give the arm's URDF")
-    return StatedLimits(name, reader.ranges)
+    return StatedLimits(name, reader.ranges, slides=reader.slides)
 
 
 class _Reader:
@@ -68,6 +68,7 @@ class _Reader:
         self.name = name
         self.path: list[str] = []
         self.ranges: dict[str, dict[str, Range]] = {}
+        self.slides: dict[str, bool] = {}
         self.joint = ""
         self.kind = ""
         self.limit: dict[str, str] | None = None
@@ -104,6 +105,7 @@ class _Reader:
     def end(self, _: str) -> None:
         if self.path == ["robot", "joint"] and self.kind in _MOVING and not self.mimics:
             self.ranges[self.joint] = self._ranges(self.limit or {})
+            self.slides[self.joint] = self.kind == "prismatic"
         self.path.pop()
 
     def _ranges(self, limit: dict[str, str]) -> dict[str, Range]:

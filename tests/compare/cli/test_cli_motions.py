@@ -283,3 +283,20 @@ def test_what_cannot_be_plotted_is_refused(run, folder):
     durations = ["check", "mine.toml", "--durations", "1,1,1", "--plot", "m.png"]
     assert_refused(run(*durations), "--plot is for a motion")
     assert not (folder / "m.png").exists()
+
+
+def test_a_urdf_says_which_joints_slide(run, folder: Path):
+    (folder / "arm.urdf").write_text(URDF.replace("revolute", "prismatic", 1))
+    flags = ["--urdf", "arm.urdf", "--interpolation", "quintic"]
+    assert run.document("check", "m.csv", *flags, kind="motion_check")["units"] == ["m", "rad"]
+    # In degrees the slide would keep a limit that it exceeds 57 times.
+    assert_refused(
+        run("check", "m.csv", *flags, "--units", "deg"),
+        "arm.urdf: j1: slides, but its unit is deg; give one unit for each joint, such as m,deg",
+    )
+    assert_refused(
+        run("check", "m.csv", *flags, "--units", "mm"),
+        "arm.urdf: j2: turns, but its unit is mm; give one unit for each joint, such as mm,rad",
+    )
+    found = run.document("check", "m.csv", *flags, "--units", "mm,deg", kind="motion_check")
+    assert found["units"] == ["mm", "deg"]

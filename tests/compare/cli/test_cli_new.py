@@ -110,6 +110,13 @@ def arm(folder: Path) -> str:
     return "arm.urdf"
 
 
+def test_new_refuses_an_angle_for_a_joint_that_slides(run: Run, folder: Path, arm: str) -> None:
+    (folder / "t.csv").write_text(f"turn,swing,reach\n{ROWS}", encoding="utf-8")
+    units = ("--position-unit", "deg", "--time-unit", "s")
+    answer = run("new", "out.toml", "--from", "t.csv", "--urdf", arm, *units)
+    assert_refused(answer, "reach: slides, but its unit is deg", "such as deg,deg,m")
+
+
 @pytest.mark.parametrize("header", ["turn,swing,reach", "1,2,3", "point,1,2,3"])
 def test_new_takes_limits_and_names_from_a_urdf(
     run: Run, folder: Path, arm: str, header: str

@@ -63,3 +63,4 @@ def test_where_it_does_not_apply() -> None:
     assert not jerk_limited_path(moving, Limits(1.0, 2.0))
     assert not jerk_limited_path(still, Limits(1.0, 2.0, 5.0))
     assert jerk_limited_path(moving, Limits(1.0, 2.0, 5.0))
+    assert not jerk_limited_path(moving, Limits(1.0, 2.0, [[-5.0, 4.0]]))
