@@ -253,7 +253,11 @@ def _widely(problem: Problem, ask: _Ask) -> Solution:
         return _above_floors(problem, lambda _: given, FLOORS)
     quick = problem.segments >= SPARSE and _moves_throughout(problem)
     found = _programmed(problem, ask) if quick else None
-    if found is None or found.status is not Status.CONVERGED:
+    if as_piecewise(problem.curve) is None:
+        starts = np.array([equal_start(problem), way_start(problem)])
+        found = _descended(problem, starts, made_up(problem, FLOORS[0]))
+    agreed = found is not None and found.starts_at_best == found.starts
+    if found is None or not agreed or found.status is not Status.CONVERGED:
         search = partial(basins, problem, ask.starts, ask.seed)
         searched = _above_floors(problem, search, FLOORS)
         if not searched.found:

@@ -10,10 +10,11 @@ from numpy.typing import NDArray
 
 from ..arrays import Array
 from ..errors import CurveError
+from .adjoint import places_of
 from .clamped_declaration import ClampedDeclaration, average_matrix, fractions_of, inside_support
 from .kind import STEP, Asked, Enclosed, Shape, are_durations, masked, value_errors
 from .peak import Extremum
-from .polynomials import MAX_COEFFICIENTS, PERM, Numbers, derived, tops, valued
+from .polynomials import MAX_COEFFICIENTS, PERM, Numbers, derivative_rows, derived, tops
 from .refined import contained
 from .trajectory import Trajectory
 
@@ -34,18 +35,17 @@ class Spline:
     breaks : ndarray, shape (pieces + 1,)
         Where the pieces meet, without repetition.
     scaled, error : ndarray, shape (pieces, powers, joints)
-        Ascending coefficients in the piece's own 0..1, and a bound on their error; no bound of
-        complex numbers.
+        Ascending coefficients in the piece's own 0..1, and a bound on their error.
     """
 
-    breaks: Numbers
-    scaled: Numbers
+    breaks: Array
+    scaled: Array
     error: Array
 
     @property
     def lengths(self) -> Array:
-        """Of the pieces, in float64."""
-        return np.diff(np.asarray(self.breaks, dtype=np.float64))
+        """Of the pieces."""
+        return np.diff(self.breaks)
 
 
 def _span_bases(knots: Numbers, degree: int, sign: int = -1) -> Numbers:
@@ -58,19 +58,19 @@ def _span_bases(knots: Numbers, degree: int, sign: int = -1) -> Numbers:
     p = degree
     pieces = knots.shape[-1] - 2 * p - 1
     at = p + np.arange(pieces)
-    start = knots[..., at]
-    width = (knots[..., at + 1] - start)[..., None]
+    start = knots[..., at, None, None]
+    width = knots[..., at + 1, None, None] - start
     bases = np.zeros((*knots.shape[:-1], pieces, p + 1, p + 1), dtype=knots.dtype)
     bases[..., 0, 0] = 1
     for q in range(1, p + 1):
+        among = at[:, None] + np.arange(1, q + 1)
+        left, right = knots[..., among - q, None], knots[..., among, None]
+        c = bases[..., :q, :q] / (right - left)
         raised = np.zeros_like(bases)
-        for a in range(q):
-            left, right = knots[..., at - q + 1 + a], knots[..., at + 1 + a]
-            c = bases[..., a, :q] / (right - left)[..., None]
-            raised[..., a + 1, :q] += (start - left)[..., None] * c
-            raised[..., a + 1, 1 : q + 1] += width * c
-            raised[..., a, :q] += (right - start)[..., None] * c
-            raised[..., a, 1 : q + 1] += sign * width * c
+        raised[..., 1 : q + 1, :q] += (start - left) * c
+        raised[..., 1 : q + 1, 1 : q + 1] += width * c
+        raised[..., :q, :q] += (right - start) * c
+        raised[..., :q, 1 : q + 1] += sign * width * c
         bases = raised
     return bases
 
@@ -121,7 +121,7 @@ def _inside(curve: ClampedDeclaration, knots: Array, sites: Array) -> NDArray[np
 
 
 def _interpolated(
-    curve: ClampedDeclaration, sites: Numbers, inner: Numbers, waypoints: Numbers
+    curve: ClampedDeclaration, sites: Numbers, knots: Numbers, waypoints: Numbers
 ) -> Spline:
     """Solve for the control points of the B-spline through the way-points at the sites.
 
@@ -133,14 +133,10 @@ def _interpolated(
     CurveError
         If a site leaves the support of its basis function (Schoenberg and Whitney).
     """
-    p = curve.degree
-    knots = _knots(inner, sites[-1:], p)
-    bases = _span_bases(knots, p)
+    p, bases = curve.degree, _span_bases(knots, curve.degree)
     span, place = _places_on(knots, p, sites)
     matrix = _conditions_at(bases, span, place, curve.end_orders)
-    inside = _inside(curve, *(np.asarray(of.real, dtype=np.float64) for of in (knots, sites)))
-    if not inside.all():
-        raise _not_passing(curve, int(np.argmin(inside)) - len(curve.end_orders))
+    _check_inside(curve, *(of.astype(np.float64) for of in (knots, sites)))
     right = np.zeros((matrix.shape[0], waypoints.shape[1]), dtype=matrix.dtype)
     right[: sites.size] = waypoints
     index = np.arange(bases.shape[0])[:, None] + np.arange(p + 1)
@@ -149,9 +145,6 @@ def _interpolated(
     def powers(control: Numbers, of: Numbers) -> Numbers:
         return np.asarray(np.einsum("pam,paj->pmj", of, control[index]))
 
-    if np.iscomplexobj(matrix):
-        solved = np.linalg.solve(matrix, right)
-        return Spline(breaks, powers(solved, bases), np.empty(0))
     narrow = matrix.astype(np.float64)
     try:
         inverse = np.linalg.inv(narrow)
@@ -177,6 +170,13 @@ def _interpolated(
     return Spline(breaks.astype(np.float64), scaled, error + _EPS * np.abs(scaled))
 
 
+def _check_inside(curve: ClampedDeclaration, knots: Array, sites: Array) -> None:
+    """Refuse a way-point outside the support of its basis function."""
+    inside = _inside(curve, knots, sites)
+    if not inside.all():
+        raise _not_passing(curve, int(np.argmin(inside)) - len(curve.end_orders))
+
+
 def _not_passing(curve: ClampedDeclaration, waypoint: int) -> CurveError:
     k = min(max(waypoint, 0), curve.segments - 1)
     return CurveError(
@@ -196,69 +196,57 @@ def splines_of(curve: ClampedDeclaration, waypoints: Numbers, durations: Numbers
     CurveError
         If no such curve passes the way-points at these times.
     """
-    times = np.concatenate([np.zeros(1, dtype=durations.dtype), np.cumsum(durations)])
-    average, fractions = average_matrix(curve), fractions_of(curve, waypoints.real)
-    if fractions is None:
-        return [_interpolated(curve, times, average @ times, waypoints)]
-    rows = [average @ np.array(row) * times[-1] for row in fractions]
-    groups = np.array_split(np.arange(waypoints.shape[1]), len(rows))
-    return [
-        _interpolated(curve, times, inner, waypoints[:, own])
-        for inner, own in zip(rows, groups, strict=True)
-    ]
+    times, groups = _knots_of(curve, waypoints, durations[None])
+    return [_interpolated(curve, times[0], knots[0], waypoints[:, own]) for own, knots in groups]
 
 
-def _cut(spline: Spline, breaks: Numbers) -> Spline:
+def _parents(own: Array, breaks: Array) -> NDArray[np.int64]:
+    """Which of its own pieces each of the finer ones lies on."""
+    middle = 0.5 * (breaks[:-1] + breaks[1:])
+    return np.clip(np.searchsorted(own, middle, side="right") - 1, 0, own.size - 2)
+
+
+def _cut(spline: Spline, breaks: Array) -> Spline:
     """The same on finer pieces."""
-    real, knots = breaks.real.astype(np.float64), spline.breaks
-    own = np.asarray(knots.real, dtype=np.float64)
-    middle = 0.5 * (real[:-1] + real[1:])
-    parent = np.clip(np.searchsorted(own, middle, side="right") - 1, 0, own.size - 2)
+    knots, parent = spline.breaks, _parents(spline.breaks, breaks)
     width = knots[parent + 1] - knots[parent]
     low = (breaks[:-1] - knots[parent]) / width
     high = (breaks[1:] - knots[parent]) / width
     size = spline.scaled.shape[1]
-    shift = np.zeros((middle.size, size, size), dtype=breaks.dtype)
+    shift = np.zeros((parent.size, size, size))
     for m in range(size):
         for k in range(m, size):
             shift[:, m, k] = comb(k, m) * low ** (k - m) * (high - low) ** m
-    moved = replace(spline, breaks=breaks, scaled=shift @ spline.scaled[parent])
-    if np.iscomplexobj(breaks):
-        return moved
     sizes = spline.error[parent] + 4 * size * _EPS * np.abs(spline.scaled[parent])
-    return replace(moved, error=np.abs(shift) @ sizes)
+    return Spline(breaks, shift @ spline.scaled[parent], np.abs(shift) @ sizes)
 
 
-def _union(breaks: list[Numbers]) -> Numbers:
+def _union(breaks: list[Array]) -> Array:
     """All breaks in order, those that differ by rounding only once.
 
     A sliver between two such breaks would be as long as its own rounding error, and a derivative
     divides by that; its polynomial is that of a neighbour up to the jump at one of its ends.
     """
-    together = np.concatenate(breaks)
-    together = together[np.argsort(together.real, kind="stable")]
-    least = _SLIVER * float(together.real[-1] - together.real[0])
-    keep = np.append(np.diff(together.real) > least, True)
+    together = np.sort(np.concatenate(breaks))
+    keep = np.append(np.diff(together) > _SLIVER * (together[-1] - together[0]), True)
     # The first break of all must stay, whatever follows it closely.
     kept = together[keep]
     kept[0] = together[0]
     return np.asarray(kept)
 
 
-def _joined(splines: list[Spline], cuts: tuple[Numbers, ...] = ()) -> Spline:
+def _joined(splines: list[Spline], cuts: tuple[Array, ...] = ()) -> Spline:
     """All joints on common pieces, also cut at ``cuts``, with ten coefficients each."""
     if len(splines) > 1 or cuts:
         breaks = _union([*(s.breaks for s in splines), *cuts])
         splines = [_cut(s, breaks) for s in splines]
-    more = MAX_COEFFICIENTS - splines[0].scaled.shape[1]
-
-    def padded(parts: list[Numbers]) -> Numbers:
-        return np.pad(np.concatenate(parts, axis=2), ((0, 0), (0, more), (0, 0)))
-
-    found = replace(splines[0], scaled=padded([s.scaled for s in splines]))
-    if np.iscomplexobj(found.scaled):
-        return found
-    return replace(found, error=padded([s.error for s in splines]))
+    first, size = splines[0], splines[0].scaled.shape[1]
+    scaled, error = np.zeros(
+        (2, first.lengths.size, MAX_COEFFICIENTS, sum(s.scaled.shape[2] for s in splines))
+    )
+    scaled[:, :size] = np.concatenate([s.scaled for s in splines], axis=2)
+    error[:, :size] = np.concatenate([s.error for s in splines], axis=2)
+    return Spline(first.breaks, scaled, error)
 
 
 def clamped_shape(curve: ClampedDeclaration, waypoints: Array) -> Shape:
@@ -270,7 +258,8 @@ def clamped_shape(curve: ClampedDeclaration, waypoints: Array) -> Shape:
     splines = []
     for row, own in zip(fractions, groups, strict=True):
         sites = np.array(row, dtype=np.longdouble)
-        spline = _interpolated(curve, sites, average @ sites, wide[:, own])
+        knots = _knots(average @ sites, sites[-1:], curve.degree)
+        spline = _interpolated(curve, sites, knots, wide[:, own])
         splines.append(_on_axis(spline, np.asarray(sites, dtype=np.float64)))
     found = _joined(splines, (np.arange(curve.waypoints, dtype=np.float64),))
     return Shape(
@@ -295,24 +284,66 @@ def clamped_enclosed(curve: ClampedDeclaration, waypoints: Array, durations: Arr
     """Trajectory with pieces between knots, and a bound on the error of every extremum."""
     wide, long = waypoints.astype(np.longdouble), durations.astype(np.longdouble)
     found = _joined(splines_of(curve, wide, long))
-    degrees = (curve.degree,) * found.lengths.size
-    trajectory = Trajectory(found.lengths, found.scaled, degrees)
+    trajectory = _in_time(curve, found)
     return Enclosed(trajectory, value_errors(trajectory, found.error))
+
+
+def clamped_fitted(curve: ClampedDeclaration, waypoints: Array, durations: Array) -> Trajectory:
+    """The trajectory of `clamped_enclosed` in float64."""
+    splines, p = [], curve.degree
+    times, groups = _knots_of(curve, waypoints, durations[None])
+    for own, knots in groups:
+        _check_inside(curve, knots[0], times[0])
+        a, _, regular = _polynomials(curve, waypoints[:, own], times, knots)
+        if not regular.all():
+            raise _not_passing(curve, 0)
+        scaled = a[:, 0].transpose(1, 0, 2)
+        splines.append(Spline(knots[0, p : knots.shape[1] - p], scaled, np.zeros(scaled.shape)))
+    return _in_time(curve, _joined(splines))
+
+
+def _in_time(curve: ClampedDeclaration, spline: Spline) -> Trajectory:
+    return Trajectory(spline.lengths, spline.scaled, (curve.degree,) * spline.lengths.size)
+
+
+def _knots_of(
+    curve: ClampedDeclaration, waypoints: Array, durations: Numbers
+) -> tuple[Numbers, list[tuple[NDArray[np.int64], Numbers]]]:
+    """Times of the way-points of many duration vectors, and the knots of joints that share them."""
+    start = np.zeros((len(durations), 1), durations.dtype)
+    times = np.concatenate([start, np.cumsum(durations, axis=1)], axis=1)
+    average, fractions = average_matrix(curve), fractions_of(curve, waypoints)
+    inner = [np.einsum("vw,iw->vi", times, average)]  # the same bits for any number of vectors
+    if fractions is not None:
+        inner = [times[:, -1:] * (average @ np.array(row)) for row in fractions]
+    joints = np.array_split(np.arange(waypoints.shape[1]), len(inner))
+    knots = [_knots(place, times[:, -1:], curve.degree) for place in inner]
+    return times, list(zip(joints, knots, strict=True))
 
 
 def clamped_by_durations(
     curve: ClampedDeclaration, waypoints: Array, durations: Array, points: list[Extremum]
 ) -> Array:
-    """`Curve.by_durations` of a curve whose time is not stretched, by complex steps."""
+    """`Curve.by_durations` of a curve whose time is not stretched, by complex steps.
+
+    Joints with knots of their own have them at fixed shares of the total, so a place that stays
+    where it is on common pieces does so on theirs.
+    """
+    p, at = curve.degree, places_of(points)
     found = np.empty((len(points), curve.segments))
-    for k in range(curve.segments):
-        step = durations.astype(np.complex128)
-        step[k] += 1j * STEP
-        moved = _joined(splines_of(curve, waypoints, step))
-        widths = np.diff(moved.breaks)
-        for i, e in enumerate(points):
-            own = derived(moved.scaled[e.segment, :, e.joint], e.order)
-            found[i, k] = (valued(own, e.s) / widths[e.segment] ** e.order).imag / STEP
+    steps = durations + 1j * STEP * np.eye(curve.segments)
+    times, groups = _knots_of(curve, waypoints, steps)
+    every = [knots[0, p : knots.shape[1] - p].real for _, knots in groups]
+    breaks = every[0] if len(every) == 1 else _union(every)
+    time = breaks[at.segment] + at.s * np.diff(breaks)[at.segment]
+    for (own, knots), inner in zip(groups, every, strict=True):
+        a, widths, _ = _polynomials(curve, waypoints[:, own], times, knots)
+        mine = np.isin(at.joint, own)
+        piece, order = _parents(inner, breaks)[at.segment[mine]], at.order[mine]
+        s = (time[mine] - inner[piece]) / np.diff(inner)[piece]
+        rows = derivative_rows(s, order)[:, : p + 1]
+        values = np.einsum("mvi,im->vi", a[:, :, piece, at.joint[mine] - own[0]], rows)
+        found[mine] = (values / widths[:, piece] ** order).imag.T / STEP
     return found
 
 
@@ -322,14 +353,8 @@ def clamped_reach(
     """`Curve.batch_reach` of a curve whose time is not stretched, for these way-points."""
     found, wanted, least = asked.room(len(durations)), asked.wanted, asked.least
     valid = are_durations(durations)
-    h = np.where(valid[:, None], durations, 1.0)
-    times = np.concatenate([np.zeros((len(h), 1)), np.cumsum(h, axis=1)], axis=1)
-    average, fractions = average_matrix(curve), fractions_of(curve, waypoints)
-    inner = [np.einsum("vw,iw->vi", times, average)]  # the same bits for any number of vectors
-    if fractions is not None:
-        inner = [times[:, -1:] * (average @ np.array(row)) for row in fractions]
-    for own, place in zip(np.array_split(np.arange(len(wanted)), len(inner)), inner, strict=True):
-        knots = _knots(place, times[:, -1:], curve.degree)
+    times, groups = _knots_of(curve, waypoints, np.where(valid[:, None], durations, 1.0))
+    for own, knots in groups:
         valid &= _inside(curve, knots, times).all(axis=1)
         valid &= (np.diff(knots[:, curve.degree : -curve.degree], axis=1) > 0.0).all(axis=1)
         at = np.flatnonzero(valid)
@@ -345,8 +370,8 @@ def clamped_reach(
 
 
 def _polynomials(
-    curve: ClampedDeclaration, waypoints: Array, times: Array, knots: Array
-) -> tuple[Array, Array, NDArray[np.bool_]]:
+    curve: ClampedDeclaration, waypoints: Array, times: Numbers, knots: Numbers
+) -> tuple[Numbers, Numbers, NDArray[np.bool_]]:
     """Coefficients (powers, vectors, pieces, joints) and widths of pieces where there is a curve.
 
     Beside them which of the vectors have one: a system whose solution is larger than its data by
