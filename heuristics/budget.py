@@ -30,7 +30,6 @@ class Budgeted:
     ----------
     objective : callable
         Maps positions, shape (batch, dimensions), to fitness, shape (batch,).
-    dimensions : int
     budget : int
         Positions that may be judged.
 

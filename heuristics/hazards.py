@@ -32,7 +32,6 @@ class TentCollapse:
     start : Fraction
         Start as a decimal; the double orbit starts at the nearest double.
     doubles : ndarray, shape (steps + 1,)
-    exact : tuple of Fraction, length steps + 1
     zero_at : int or None
         First step at which the double orbit is exactly 0, where it stays.
     exact_zero_at : int or None
@@ -64,13 +63,8 @@ def tent_collapse(
     ----------
     start : str
         Decimal in [0, 1].
-    steps : int
     beta : Fraction
         Between 0 and 1.
-
-    Returns
-    -------
-    TentCollapse
 
     Raises
     ------
@@ -135,17 +129,12 @@ def weight_fall(problem: Problem, best: Array, iterations: int = 500, s: float =
 
     Parameters
     ----------
-    problem : Problem
     best : ndarray, shape (segments,)
         X*, s.
     iterations : int
         T.
     s : float
         Constant of (22).
-
-    Returns
-    -------
-    WeightFall
     """
     weights = np.array([inertia_weight(i, iterations, s) for i in range(iterations + 1)])
     stretches = evaluate(problem, weights[:, None] * best).stretch
@@ -200,15 +189,8 @@ def not_positive(
 
     Parameters
     ----------
-    algorithm : Algorithm
-    problem : Problem
-    seed : int
     box : tuple of float, optional
         Range of each position, s; the problem's duration bounds by default.
-
-    Returns
-    -------
-    NotPositive
     """
     judge = DeathPenalty(problem, algorithm.penalty)
     counts = {"judged": 0, "not_positive": 0, "zero": 0}

@@ -28,10 +28,8 @@ def states(
 
     Parameters
     ----------
-    algorithm : Algorithm
     objective : callable
         Maps positions, shape (batch, dimensions), to fitness, shape (batch,).
-    bounds : Bounds
     rng : numpy.random.Generator
         The only source of randomness.
     """
@@ -88,7 +86,6 @@ class AskedRun:
     ----------
     problem : Problem
         Its coupling is ignored.
-    seed : int
     stream : tuple of int
         Spawn key under the seed.
     handling : str
@@ -126,7 +123,6 @@ def run_asked(method: Method, questions: Sequence[AskedRun]) -> list[Run]:
 
     Parameters
     ----------
-    method : Algorithm or Search
     questions : sequence of AskedRun
         Neighbours with the same problem and handling are evaluated in one call.
 
@@ -160,14 +156,8 @@ def run_as_left(
 
     Parameters
     ----------
-    method : Algorithm or Search
-    question : AskedRun
     trace, position, evaluations
         As the attributes of `Run`.
-
-    Returns
-    -------
-    Run
 
     Raises
     ------
@@ -229,10 +219,6 @@ def run(
         Treatment of vectors that break a limit: "death-penalty", "stretch" or "rescale"; see
         `Handling`. With the latter two, the durations and times of the run are stretched ones.
 
-    Returns
-    -------
-    Run
-
     Raises
     ------
     TrajgapError
@@ -266,18 +252,12 @@ def run_per_joint(
 
     Parameters
     ----------
-    algorithm : Algorithm or Search
-    problem : Problem
     seed : int
         Joint ``i`` draws from child stream ``i`` of the seed, as ``SeedSequence(seed).spawn``.
     iterations : int, optional
         Replaces the algorithm's own.
     objective : str
         As `run`.
-
-    Returns
-    -------
-    JointRuns
 
     Raises
     ------
@@ -295,12 +275,6 @@ def joined_runs(problem: Problem, seed: int, runs: tuple[Run, ...]) -> JointRuns
     ----------
     problem : Problem
         With all joints.
-    seed : int
-    runs : tuple of Run, one per joint
-
-    Returns
-    -------
-    JointRuns
     """
     durations = np.max([one.durations for one in runs], axis=0)
     feasible = all(one.feasible for one in runs)
@@ -377,9 +351,6 @@ def run_many(
 
     Parameters
     ----------
-    algorithm : Algorithm or Search
-    problem : Problem
-    seeds : iterable of int
     workers : int
         Number of processes. More than one costs about a second to start. The work of a killed
         process is repeated once.
@@ -389,10 +360,6 @@ def run_many(
         Called with each run, in order, in the calling process.
     objective : str
         As `run`.
-
-    Returns
-    -------
-    tuple of Run
 
     Raises
     ------

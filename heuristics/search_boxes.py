@@ -28,14 +28,6 @@ def search_box(problem: Problem) -> Bounds:
     shorter motion takes T or longer. So T bounds every duration and excludes no optimum. It limits
     the search, not what is admissible: a vector that is stretched beyond it still counts.
 
-    Parameters
-    ----------
-    problem : Problem
-
-    Returns
-    -------
-    Bounds
-
     Raises
     ------
     TrajgapError

@@ -108,7 +108,6 @@ def checked(hint: Any, name: str, value: object) -> Any:
         Its annotation: an enumeration, or a type with one of the fields of this module.
     name : str
         Words for the message.
-    value : object
 
     Raises
     ------

@@ -67,7 +67,6 @@ def run_within(
     problem : Problem
         All joints share one duration vector. If it states no upper bound, a search with its own
         loop is restricted to `search_box`.
-    seed : int
     budget : int
         Evaluations.
     objective : str
@@ -76,10 +75,6 @@ def run_within(
         Interrupts a search that takes longer; see `time_limit`.
     stream : tuple of int
         Spawn key under the seed; (j,) is what `run_per_joint` gives to joint j.
-
-    Returns
-    -------
-    BudgetedRun
 
     Raises
     ------

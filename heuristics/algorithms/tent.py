@@ -33,7 +33,6 @@ def orbit(start: Array, steps: int, beta: float = 0.5) -> Array:
     ----------
     start : ndarray, shape (orbits,)
         In [0, 1].
-    steps : int
     beta : float
         Between 0 and 1.
 
@@ -55,7 +54,6 @@ def exact_orbit(start: Fraction, steps: int, beta: Fraction = Fraction(1, 2)) ->
     ----------
     start : Fraction
         In [0, 1]; ``Fraction("0.37")`` is the decimal, ``Fraction(0.37)`` the double beside it.
-    steps : int
     beta : Fraction
         Between 0 and 1.
 

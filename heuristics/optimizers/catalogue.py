@@ -87,10 +87,6 @@ def find_optimizer(
     **settings
         Settings of the optimiser; those left out keep their defaults.
 
-    Returns
-    -------
-    Algorithm or Search
-
     Raises
     ------
     TrajgapError
@@ -178,10 +174,6 @@ def evaluations_of(method: Algorithm[Any] | Search) -> int:
     ----------
     method : Algorithm or Search
         From `find_optimizer`.
-
-    Returns
-    -------
-    int
 
     Examples
     --------
