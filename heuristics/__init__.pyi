@@ -8,11 +8,12 @@ from .algorithms import (
     ConstrainedPSO as ConstrainedPSO,
     ImprovedGA as ImprovedGA,
     ImprovedWOA as ImprovedWOA,
+    TentCollapse as TentCollapse,
     from_settings as from_settings,
     open_choices as open_choices,
+    tent_collapse as tent_collapse,
 )
 from .baseline import uniform_rescaling as uniform_rescaling
-from .hazards import TentCollapse as TentCollapse, tent_collapse as tent_collapse
 from .loop import (
     AskedRun as AskedRun,
     joined_runs as joined_runs,

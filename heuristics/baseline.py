@@ -14,10 +14,6 @@ def uniform_rescaling(problem: Problem) -> Array:
     evaluation of any equal durations gives the shortest ones. It needs no search and no random
     numbers: a heuristic must beat it to be worth its parameters.
 
-    Parameters
-    ----------
-    problem : Problem
-
     Returns
     -------
     ndarray, shape (segments,)

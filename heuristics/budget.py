@@ -19,10 +19,6 @@ class BudgetSpent(BaseException):
     """
 
 
-_ROOM = 8192
-"""Evaluations that there is room for at first, more than a paper's budget; then twice as many."""
-
-
 class Budgeted:
     """An objective for searches that own their loop: it counts, remembers the best, and stops them.
 
@@ -30,7 +26,6 @@ class Budgeted:
     ----------
     objective : callable
         Maps positions, shape (batch, dimensions), to fitness, shape (batch,).
-    dimensions : int
     budget : int
         Positions that may be judged.
 
@@ -49,7 +44,8 @@ class Budgeted:
         self._dimensions = dimensions
         self._budget = budget
         # What was judged, in order; the best so far is worked out when somebody asks for it.
-        self._fitness = np.empty(min(budget, _ROOM))
+        # Room for more than a paper's budget at first; then for twice as many.
+        self._fitness = np.empty(min(budget, 8192))
         self._least = np.inf
         self.judged = 0
         self.best: Array | None = None

@@ -6,7 +6,8 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import closing
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Annotated, Any, TypeVar, cast
+from itertools import chain
+from typing import Any, TypeVar, cast
 
 import numpy as np
 
@@ -17,7 +18,7 @@ from .objective import Bounds, Counted, Objective
 from .repair import Handling, Judge, compile_judge, judge_of
 from .result import JointRuns, Run
 from .search_boxes import looked_in
-from .settings import checked, whole
+from .settings import COUNT, SEED, checked
 from .side_by_side import TOGETHER, Start, moves_together, stepped_together
 
 
@@ -28,10 +29,8 @@ def states(
 
     Parameters
     ----------
-    algorithm : Algorithm
     objective : callable
         Maps positions, shape (batch, dimensions), to fitness, shape (batch,).
-    bounds : Bounds
     rng : numpy.random.Generator
         The only source of randomness.
     """
@@ -45,27 +44,14 @@ def states(
         yield state
 
 
-_SEED = Annotated[int, whole(0)]
-"""What numpy takes as entropy, in one line."""
-_WORKERS = Annotated[int, whole(1)]
-"""The calling process counts as one."""
 Method = Algorithm[Any] | Search
 """What can be run: an algorithm step by step, or a search that owns its loop."""
 
-M = TypeVar("M", bound=Method)
-_SHARES = 4
-"""Pieces of work for each process, so none waits long for the last one."""
 
-
-def _at_once(method: Method) -> int:
-    """Runs that are moved side by side at most: one where the algorithm moves runs singly."""
-    return TOGETHER if moves_together(method) else 1
-
-
-def _with_budget(method: M, iterations: int | None) -> M:
+def _with_budget(method: Method, iterations: int | None) -> Method:
     if iterations is None:
         return method
-    return cast(M, replace(cast(Any, method), iterations=iterations))
+    return cast(Method, replace(cast(Any, method), iterations=iterations))
 
 
 def _stepped(
@@ -88,7 +74,6 @@ class AskedRun:
     ----------
     problem : Problem
         Its coupling is ignored.
-    seed : int
     stream : tuple of int
         Spawn key under the seed.
     handling : str
@@ -126,7 +111,6 @@ def run_asked(method: Method, questions: Sequence[AskedRun]) -> list[Run]:
 
     Parameters
     ----------
-    method : Algorithm or Search
     questions : sequence of AskedRun
         Neighbours with the same problem and handling are evaluated in one call.
 
@@ -160,14 +144,8 @@ def run_as_left(
 
     Parameters
     ----------
-    method : Algorithm or Search
-    question : AskedRun
     trace, position, evaluations
         As the attributes of `Run`.
-
-    Returns
-    -------
-    Run
 
     Raises
     ------
@@ -229,10 +207,6 @@ def run(
         Treatment of vectors that break a limit: "death-penalty", "stretch" or "rescale"; see
         `Handling`. With the latter two, the durations and times of the run are stretched ones.
 
-    Returns
-    -------
-    Run
-
     Raises
     ------
     TrajgapError
@@ -248,9 +222,7 @@ def run(
     >>> run(PSO(), problem, seed=1).feasible
     True
     """
-    record = _with_budget(algorithm, iterations)
-    question = AskedRun(problem, checked(_SEED, "seed", seed), (), objective)
-    return run_asked(record, [question])[0]
+    return run_many(algorithm, problem, (seed,), iterations=iterations, objective=objective)[0]
 
 
 def run_per_joint(
@@ -266,8 +238,6 @@ def run_per_joint(
 
     Parameters
     ----------
-    algorithm : Algorithm or Search
-    problem : Problem
     seed : int
         Joint ``i`` draws from child stream ``i`` of the seed, as ``SeedSequence(seed).spawn``.
     iterations : int, optional
@@ -275,17 +245,13 @@ def run_per_joint(
     objective : str
         As `run`.
 
-    Returns
-    -------
-    JointRuns
-
     Raises
     ------
     TrajgapError
         As `run`.
     """
-    root = checked(_SEED, "seed", seed)
-    return _joints_seeds(algorithm, problem, iterations, objective, (root,))[0]
+    asked = {"iterations": iterations, "objective": objective}
+    return run_many_per_joint(algorithm, problem, (seed,), **cast(Any, asked))[0]
 
 
 def joined_runs(problem: Problem, seed: int, runs: tuple[Run, ...]) -> JointRuns:
@@ -295,12 +261,6 @@ def joined_runs(problem: Problem, seed: int, runs: tuple[Run, ...]) -> JointRuns
     ----------
     problem : Problem
         With all joints.
-    seed : int
-    runs : tuple of Run, one per joint
-
-    Returns
-    -------
-    JointRuns
     """
     durations = np.max([one.durations for one in runs], axis=0)
     feasible = all(one.feasible for one in runs)
@@ -321,45 +281,43 @@ _Seeds = tuple[int, ...]
 
 
 def _each(
-    some: Callable[[_Seeds], tuple[R, ...]],
+    some: Callable[[Method, Problem, str, _Seeds], tuple[R, ...]],
+    method: Method,
+    problem: Problem,
+    objective: str,
     seeds: Iterable[int],
     workers: int,
     progress: Callable[[R], None] | None,
-    most: int,
-    compile_first: Callable[[], None],
 ) -> tuple[R, ...]:
-    clean = [checked(_SEED, "seed", seed) for seed in seeds]
-    workers = min(checked(_WORKERS, "workers", workers), max(1, len(clean)))
-    # Processes share what is left evenly only if there is much more of it than there are of them.
-    size = most if workers == 1 else max(1, min(most, len(clean) // (_SHARES * workers)))
+    clean = [checked(SEED, "seed", seed) for seed in seeds]
+    workers = min(checked(COUNT, "workers", workers), max(1, len(clean)))
+    apart = len(problem.joints) if some is _joint_runs else 1
+    most = max(1, TOGETHER // apart) if moves_together(method) else 1
+    # Four pieces for each process, so none waits long for the last one.
+    size = most if workers == 1 else max(1, min(most, len(clean) // (4 * workers)))
     parts = [tuple(clean[i : i + size]) for i in range(0, len(clean), size)]
     collected: list[R] = []
     if workers > 1:
-        compile_first()
+        compile_judge(problem.joint(0) if some is _joint_runs else problem, objective)
     # Threads would be slower than one: half of each iteration holds the interpreter.
-    with closing(in_processes(some, parts, workers)) as results:
-        for part in results:
-            for result in part:
-                collected.append(result)
-                if progress is not None:
-                    progress(result)
+    with closing(in_processes(partial(some, method, problem, objective), parts, workers)) as found:
+        for result in chain.from_iterable(found):
+            collected.append(result)
+            if progress is not None:
+                progress(result)
     return tuple(collected)
 
 
-def _run_seeds(
-    algorithm: Method, problem: Problem, iterations: int | None, objective: str, seeds: _Seeds
-) -> tuple[Run, ...]:
-    record = _with_budget(algorithm, iterations)
-    return tuple(run_asked(record, [AskedRun(problem, s, (), objective) for s in seeds]))
+def _runs(method: Method, problem: Problem, objective: str, seeds: _Seeds) -> tuple[Run, ...]:
+    return tuple(run_asked(method, [AskedRun(problem, s, (), objective) for s in seeds]))
 
 
-def _joints_seeds(
-    algorithm: Method, problem: Problem, iterations: int | None, objective: str, seeds: _Seeds
+def _joint_runs(
+    method: Method, problem: Problem, objective: str, seeds: _Seeds
 ) -> tuple[JointRuns, ...]:
-    record = _with_budget(algorithm, iterations)
     joints = [problem.joint(j) for j in range(len(problem.joints))]
     asked = [AskedRun(one, s, (j,), objective) for j, one in enumerate(joints) for s in seeds]
-    runs = run_asked(record, asked)
+    runs = run_asked(method, asked)
     count = len(seeds)
     return tuple(joined_runs(problem, s, tuple(runs[i::count])) for i, s in enumerate(seeds))
 
@@ -377,9 +335,6 @@ def run_many(
 
     Parameters
     ----------
-    algorithm : Algorithm or Search
-    problem : Problem
-    seeds : iterable of int
     workers : int
         Number of processes. More than one costs about a second to start. The work of a killed
         process is repeated once.
@@ -390,19 +345,14 @@ def run_many(
     objective : str
         As `run`.
 
-    Returns
-    -------
-    tuple of Run
-
     Raises
     ------
     TrajgapError
         As `run`, if workers is not a whole number of 1 or more, or if processes end twice at the
         same run.
     """
-    some = partial(_run_seeds, algorithm, problem, iterations, objective)
-    first = partial(compile_judge, problem, objective)
-    return _each(some, seeds, workers, progress, _at_once(algorithm), first)
+    method = _with_budget(algorithm, iterations)
+    return _each(_runs, method, problem, objective, seeds, workers, progress)
 
 
 def run_many_per_joint(
@@ -415,7 +365,5 @@ def run_many_per_joint(
     objective: str = Handling.DEATH_PENALTY,
 ) -> tuple[JointRuns, ...]:
     """`run_per_joint` with each seed, in the order given; parameters as `run_many`."""
-    some = partial(_joints_seeds, algorithm, problem, iterations, objective)
-    most = max(1, _at_once(algorithm) // len(problem.joints))
-    first = partial(compile_judge, problem.joint(0), objective)
-    return _each(some, seeds, workers, progress, most, first)
+    method = _with_budget(algorithm, iterations)
+    return _each(_joint_runs, method, problem, objective, seeds, workers, progress)

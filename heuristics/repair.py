@@ -134,7 +134,6 @@ def judge_of(problem: Problem, penalty: float, handling: str = Handling.DEATH_PE
 
     Parameters
     ----------
-    problem : Problem
     penalty : float
         Fitness of vectors that remain infeasible, s.
     handling : str
@@ -156,7 +155,6 @@ def compile_judge(problem: Problem, handling: str = Handling.DEATH_PENALTY) -> N
 
     Parameters
     ----------
-    problem : Problem
     handling : str
         As `judge_of`.
 

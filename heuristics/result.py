@@ -29,7 +29,6 @@ class Run:
         The settings that were used, with the number of iterations that were run.
     problem : str
         Name of the problem.
-    seed : int
     stream : tuple of int
         Spawn key of the random stream under the seed; empty for the seed's own.
     durations : ndarray, shape (segments,)
@@ -42,7 +41,6 @@ class Run:
         feasible was found.
     evaluations : int
         Duration vectors judged by the objective.
-    iterations : int
     feasible : bool
         Whether the algorithm's own objective found a feasible vector. `trajgap.problem.check`
         remains the only judge of the answer.
@@ -89,10 +87,6 @@ class JointRuns:
 
     Attributes
     ----------
-    algorithm : str
-    problem : str
-    seed : int
-    runs : tuple of Run, one per joint
     durations : ndarray, shape (segments,)
         Longest duration of each segment, s.
     reported_time : float

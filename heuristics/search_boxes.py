@@ -12,9 +12,6 @@ from .algorithm import Algorithm, Search
 from .baseline import uniform_rescaling
 from .objective import Bounds
 
-_DIGITS = 3
-"""Significant digits of a bound that is found: rounded up, so it still holds."""
-
 
 def looked_in(method: Algorithm[Any] | Search, problem: Problem) -> Bounds:
     """Where a method looks: algorithms of papers, run as printed, within stated bounds alone."""
@@ -27,14 +24,6 @@ def search_box(problem: Problem) -> Bounds:
     Equal durations, stretched until they keep every limit, have some total T; no segment of a
     shorter motion takes T or longer. So T bounds every duration and excludes no optimum. It limits
     the search, not what is admissible: a vector that is stretched beyond it still counts.
-
-    Parameters
-    ----------
-    problem : Problem
-
-    Returns
-    -------
-    Bounds
 
     Raises
     ------
@@ -49,6 +38,7 @@ def search_box(problem: Problem) -> Bounds:
         raise TrajgapError(
             f"durations: have no upper bound and none can be derived ({error}); give them one"
         ) from None
-    scale = 10.0 ** (math.floor(math.log10(total)) - _DIGITS + 1)
+    # Three significant digits, rounded up, so the bound still holds.
+    scale = 10.0 ** (math.floor(math.log10(total)) - 2)
     bound = round(math.ceil(total / scale) * scale, 9)
     return Bounds(problem.duration_lower, np.minimum(problem.duration_upper, bound))

@@ -38,6 +38,12 @@ def whole(least: int) -> Any:
     return Field(strict=True, ge=least, description=f"a whole number of {least} or more")
 
 
+COUNT = Annotated[int, whole(1)]
+"""A number of evaluations or of processes."""
+SEED = Annotated[int, whole(0)]
+"""What numpy takes as entropy, in one line."""
+
+
 def number(*, infinite: bool = False) -> Any:
     """Numbers of 0 or more; infinite only if allowed."""
     return Field(strict=True, ge=0, allow_inf_nan=infinite, description="a number of 0 or more")
@@ -108,7 +114,6 @@ def checked(hint: Any, name: str, value: object) -> Any:
         Its annotation: an enumeration, or a type with one of the fields of this module.
     name : str
         Words for the message.
-    value : object
 
     Raises
     ------

@@ -27,7 +27,6 @@ class Start:
     ----------
     judge : Judge
         Neighbours that share one are judged in one call.
-    bounds : Bounds
     rng : numpy.random.Generator
         Its only source of randomness.
     """

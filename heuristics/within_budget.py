@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated, Any
+from typing import Any
 
 import numpy as np
 
@@ -13,13 +13,8 @@ from .budget import Budgeted, BudgetSpent
 from .loop import states
 from .repair import Handling, judge_of
 from .search_boxes import looked_in
-from .settings import checked, whole
+from .settings import COUNT, SEED, checked
 from .time_limit import TimeSpent, time_limit
-
-_COUNT = Annotated[int, whole(1)]
-"""What a budget may be."""
-_SEED = Annotated[int, whole(0)]
-"""What numpy takes as entropy."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,7 +62,6 @@ def run_within(
     problem : Problem
         All joints share one duration vector. If it states no upper bound, a search with its own
         loop is restricted to `search_box`.
-    seed : int
     budget : int
         Evaluations.
     objective : str
@@ -76,10 +70,6 @@ def run_within(
         Interrupts a search that takes longer; see `time_limit`.
     stream : tuple of int
         Spawn key under the seed; (j,) is what `run_per_joint` gives to joint j.
-
-    Returns
-    -------
-    BudgetedRun
 
     Raises
     ------
@@ -97,11 +87,11 @@ def run_within(
     >>> found.evaluations, len(found.totals)
     (500, 500)
     """
-    budget = checked(_COUNT, "budget", budget)
+    budget = checked(COUNT, "budget", budget)
     judge = judge_of(problem, method.penalty, objective)
     bounds = looked_in(method, problem)
     # The same stream as `run`: the same seed gives the same search.
-    sequence = np.random.SeedSequence(checked(_SEED, "seed", seed), spawn_key=stream)
+    sequence = np.random.SeedSequence(checked(SEED, "seed", seed), spawn_key=stream)
     rng = np.random.Generator(np.random.PCG64(sequence))
     budgeted = Budgeted(judge, problem.segments, budget)
     try:

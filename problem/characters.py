@@ -18,13 +18,8 @@ def visible(text: str, keep: str = "") -> str:
 
     Parameters
     ----------
-    text : str
     keep : str
         Characters to leave alone, such as line feeds where lines have a meaning.
-
-    Returns
-    -------
-    str
 
     Examples
     --------

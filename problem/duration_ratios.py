@@ -60,7 +60,6 @@ def as_ratios(given: ArrayLike | RatioWord, waypoints: Array, segments: int) -> 
     given : array_like or {"equal", "chord"}
     waypoints : ndarray, shape (way-points, joints)
         rad.
-    segments : int
 
     Returns
     -------
@@ -106,10 +105,6 @@ def _by_word(word: str, waypoints: Array, segments: int) -> Array:
 
 def no_formula(curve: Curve) -> str | None:
     """Why the shortest total at fixed ratios is not a formula for a curve; None if it is one.
-
-    Parameters
-    ----------
-    curve : Curve
 
     Returns
     -------

@@ -37,7 +37,6 @@ class CurveError(TrajgapError):
 
     Parameters
     ----------
-    reason : str
     segment : int
         Segment in which it shows, from 0.
     value : float
@@ -61,7 +60,6 @@ class SingularError(CurveError):
 
     Parameters
     ----------
-    reason : str
     segment : int
         The shortest segment, from 0.
     """

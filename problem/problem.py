@@ -40,10 +40,8 @@ class Problem:
         Declaration of the curve: an `Interpolant` or any other kind.
     duration_lower, duration_upper : array_like, shape (segments,) or scalar
         Bounds on the segment durations, s; a lower bound of 0 means "positive".
-    coupling : Coupling
     joints : tuple of str
         Joint labels; "1", "2", ... by default.
-    name : str
     ratios : array_like, shape (segments,), or {"equal", "chord"}, optional
         Ratios of the durations, of any scale: then the total is the only unknown. "chord" uses the
         distances between the way-points over all joints; they are computed here, so the

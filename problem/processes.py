@@ -157,7 +157,6 @@ def in_processes(
     ----------
     one : callable
         Picklable, as are the items and results.
-    items : sequence
     workers : int
         Processes at a time; no more are started than there are items. With 1 this process works.
 

@@ -89,7 +89,6 @@ class Entrant:
             All that does not depend on the optimiser; its stream follows the entrant's own.
         budget : int or None
             As `run_budget` takes it.
-        seeds : range
         """
         one = replace(
             first,
@@ -152,8 +151,6 @@ def bench(
 
     Parameters
     ----------
-    problem : Problem
-    optimizers : str, callable, or iterable of them
     engine : Engine, optional
         Where the runs are made, such as `on_this_machine`; by default in this process, one by one.
     progress : callable, optional
@@ -304,7 +301,6 @@ def measure_gaps(runs: Runs, optimum: Solution | Reference | float) -> BenchResu
 
     Parameters
     ----------
-    runs : Runs
     optimum : Solution, Reference or float
         Optimum of the same problem: the answer of `solve`, or its total, s.
 

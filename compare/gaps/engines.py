@@ -34,11 +34,6 @@ def _processes() -> Processes:
 def run_apart(trial: Trial, processes: Processes | None = None) -> TrialOutcome:
     """Run a trial in another process, which is kept for the next one.
 
-    Parameters
-    ----------
-    trial : Trial
-    processes : Processes, optional
-
     Returns
     -------
     TrialOutcome

@@ -88,12 +88,7 @@ def export_rows(rows: Iterable[Row], path: Path) -> int:
 
 
 def check_export(path: Path) -> None:
-    """Check whether rows can be exported to a path, before anything is computed.
-
-    Raises
-    ------
-    CaseError
-    """
+    """Check whether rows can be exported to a path, before anything is computed."""
     name = str(path)
     if path.suffix not in _WRITERS:
         raise CaseError(name, "--export", f"has an unknown ending; use {', '.join(_WRITERS)}")

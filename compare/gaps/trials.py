@@ -46,7 +46,6 @@ class TrialOutcome:
 
     Attributes
     ----------
-    row : Row
     seconds : float
         That the run took.
     """

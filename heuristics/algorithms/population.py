@@ -27,7 +27,6 @@ class Population:
         Of the positions; the smaller the better.
     best : ndarray, shape (dimensions,)
         Best position so far.
-    best_fitness : float
     """
 
     iteration: int

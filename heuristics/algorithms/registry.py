@@ -51,10 +51,6 @@ def from_settings(kind: str, settings: Mapping[str, object]) -> Algorithm[Any]:
     settings : mapping
         Field of the algorithm's record to value; enumerations by their words.
 
-    Returns
-    -------
-    Algorithm
-
     Raises
     ------
     TrajgapError

@@ -62,7 +62,6 @@ class Swarm:
     personal_fitness : ndarray, shape (particles,)
     best : ndarray, shape (dimensions,)
         Best position of the swarm so far, g.
-    best_fitness : float
     """
 
     iteration: int

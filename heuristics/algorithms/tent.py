@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from enum import StrEnum
 from fractions import Fraction
 
 import numpy as np
 
-from ...problem import Array
+from ...problem import Array, TrajgapError
 
 
 class TentRule(StrEnum):
@@ -33,7 +34,6 @@ def orbit(start: Array, steps: int, beta: float = 0.5) -> Array:
     ----------
     start : ndarray, shape (orbits,)
         In [0, 1].
-    steps : int
     beta : float
         Between 0 and 1.
 
@@ -55,7 +55,6 @@ def exact_orbit(start: Fraction, steps: int, beta: Fraction = Fraction(1, 2)) ->
     ----------
     start : Fraction
         In [0, 1]; ``Fraction("0.37")`` is the decimal, ``Fraction(0.37)`` the double beside it.
-    steps : int
     beta : Fraction
         Between 0 and 1.
 
@@ -83,7 +82,7 @@ def tent_population(
     Notes
     -----
     One random number for each orbit. With β = 0.5 an orbit of doubles ends on exactly 0 after at
-    most 54 steps from a random start (`trajgap.heuristics.hazards.tent_collapse`): "single" fills
+    most 54 steps from a random start (`tent_collapse`): "single" fills
     all later members with 0.
     """
     if rule is TentRule.COORDINATE:
@@ -92,3 +91,82 @@ def tent_population(
         return np.ascontiguousarray(orbit(rng.random(members), dimensions - 1, beta).T)
     whole = orbit(rng.random(1), members * dimensions - 1, beta)
     return whole.reshape(members, dimensions)
+
+
+@dataclass(frozen=True, eq=False)
+class TentCollapse:
+    """An orbit of the tent map in double precision and exactly.
+
+    Attributes
+    ----------
+    start : Fraction
+        Start as a decimal; the double orbit starts at the nearest double.
+    doubles : ndarray, shape (steps + 1,)
+    zero_at : int or None
+        First step at which the double orbit is exactly 0, where it stays.
+    exact_zero_at : int or None
+        The same for the exact orbit.
+    period : tuple of int or None
+        (n, p) if the exact orbit repeats itself from step n on every p steps.
+    """
+
+    start: Fraction
+    doubles: Array
+    exact: tuple[Fraction, ...]
+    zero_at: int | None
+    exact_zero_at: int | None
+    period: tuple[int, int] | None
+
+
+def tent_collapse(
+    start: str = "0.37", steps: int = 100, beta: Fraction = Fraction(1, 2)
+) -> TentCollapse:
+    """Run the tent map (23) in double precision and exactly.
+
+    With β = 1/2 no step of the double orbit rounds: x/β and 1 − x are exact there. But every
+    double is a whole number over a power of two, each step takes one factor from that power, and
+    after at most 54 steps (for a double in [2⁻¹, 1], or any drawn as k·2⁻⁵³) nothing is left: the
+    orbit is 0 for ever. The intended decimal has other factors and never ends there; its
+    orbit is periodic, hence not chaotic either.
+
+    Parameters
+    ----------
+    start : str
+        Decimal in [0, 1].
+    beta : Fraction
+        Between 0 and 1.
+
+    Raises
+    ------
+    TrajgapError
+        If the start or β lies outside its range.
+
+    Examples
+    --------
+    >>> found = tent_collapse("0.37")
+    >>> found.zero_at, found.exact_zero_at, found.period
+    (54, None, (3, 10))
+    """
+    given = Fraction(start)
+    if not 0 <= given <= 1:
+        raise TrajgapError(f"start: expected a number from 0 to 1, got {start}")
+    if not 0 < beta < 1:
+        raise TrajgapError(f"beta: expected a number between 0 and 1, got {beta}")
+    doubles = orbit(np.array([float(given)]), steps, float(beta))[:, 0]
+    exact = tuple(exact_orbit(given, steps, beta))
+    zeros = np.flatnonzero(doubles == 0.0)
+    seen: dict[Fraction, int] = {}
+    period = None
+    for n, x in enumerate(exact):
+        if x in seen:
+            period = (seen[x], n - seen[x])
+            break
+        seen[x] = n
+    return TentCollapse(
+        start=given,
+        doubles=doubles,
+        exact=exact,
+        zero_at=int(zeros[0]) if zeros.size else None,
+        exact_zero_at=exact.index(Fraction(0)) if Fraction(0) in exact else None,
+        period=period,
+    )

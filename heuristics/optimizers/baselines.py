@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Mapping
 from typing import Any
 
@@ -9,17 +10,12 @@ import numpy as np
 
 from .borrowed import BorrowedTask
 
-_BATCH = 1000
-"""Positions of a random search that are judged at a time: enough to be quick, little memory."""
-_HALVINGS = 52
-"""Bisections of one duration: as many as a double has digits, so no more would move it."""
-
 
 def search_randomly(options: Mapping[str, Any], task: BorrowedTask) -> None:
     """Draw every position uniformly within the bounds."""
     left = task.budget
     while left > 0:
-        count = min(_BATCH, left)
+        count = min(1000, left)  # enough at a time to be quick, little memory
         task.fun(task.draw(count))
         left -= count
 
@@ -38,7 +34,8 @@ def rescale_equal(options: Mapping[str, Any], task: BorrowedTask) -> None:
     low, high = float(task.lower.min()), float(task.upper.max())
     if not feasible(high) or feasible(low):
         return
-    for _ in range(min(_HALVINGS, task.budget - 2)):
+    # As many bisections as a double has digits: no more would move it.
+    for _ in range(min(sys.float_info.mant_dig - 1, task.budget - 2)):
         middle = (low + high) / 2
         low, high = (low, middle) if feasible(middle) else (middle, high)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
-from typing import Annotated, Any, cast
+from typing import Any, cast
 
 import numpy as np
 
@@ -13,36 +13,27 @@ from ...problem import Array, TrajgapError
 from ..algorithm import Algorithm, Search
 from ..algorithms import KINDS, from_settings
 from ..objective import Bounds, Counted
-from ..settings import checked, folded, nearest, whole
+from ..settings import COUNT, checked, folded, nearest
 from .baselines import rescale_equal, search_locally, search_randomly
 from .borrowed import Borrowed, BorrowedTask
 from .callables import call_function, call_object, check_call, load_function
 from .libraries import (
-    check_cma,
-    check_mealpy,
-    check_pygmo,
-    check_pymoo,
+    load_package,
+    mealpy_class,
     minimise_by_cma,
     minimise_by_mealpy,
     minimise_by_pygmo,
     minimise_by_pymoo,
+    pygmo_class,
+    pymoo_class,
 )
-from .scipy_methods import (
-    ENDED_BY_BUDGET,
-    check_scipy,
-    check_scipy_settings,
-    minimise_by_scipy,
-    scipy_words,
-)
+from .scipy_methods import ENDED_BY_BUDGET, check_scipy, minimise_by_scipy, scipy_words
 
 Searching = Callable[[Mapping[str, Any], BorrowedTask], object]
 """A search with its settings."""
 
 BUDGET = 6000
 """Evaluations of what counts no iterations, by default: as many as 30 particles take in 200."""
-
-_BUDGET = Annotated[int, whole(1)]
-"""What a budget may be."""
 
 _BASELINES: dict[str, Searching] = {
     "random": search_randomly,
@@ -51,18 +42,17 @@ _BASELINES: dict[str, Searching] = {
 }
 """Searches that need nothing but this package."""
 
-_LIBRARIES: dict[
-    str, tuple[Callable[[str], None], Callable[[str, Mapping[str, Any], BorrowedTask], object]]
-] = {
-    "scipy": (check_scipy, minimise_by_scipy),
-    "mealpy": (check_mealpy, minimise_by_mealpy),
-    "pymoo": (check_pymoo, minimise_by_pymoo),
-    "pygmo": (check_pygmo, minimise_by_pygmo),
+_LIBRARIES: dict[str, tuple[Callable[[str], Any], Callable[..., object]]] = {
+    "mealpy": (mealpy_class, minimise_by_mealpy),
+    "pymoo": (pymoo_class, minimise_by_pymoo),
+    "pygmo": (pygmo_class, minimise_by_pygmo),
 }
-"""By what stands before the colon: whether a name is known, and the search of that name."""
+"""By what stands before the colon: what finds a name or refuses it, and the search by it."""
 
 BASELINES: tuple[str, ...] = tuple(_BASELINES)
 """What every comparison includes."""
+_OWN = (*KINDS, *BASELINES, "cma")
+"""Names that need no prefix."""
 
 
 def find_optimizer(
@@ -87,10 +77,6 @@ def find_optimizer(
     **settings
         Settings of the optimiser; those left out keep their defaults.
 
-    Returns
-    -------
-    Algorithm or Search
-
     Raises
     ------
     TrajgapError
@@ -104,7 +90,7 @@ def find_optimizer(
     'scipy:dual_annealing'
     """
     own = budget is None
-    budget = BUDGET if budget is None else checked(_BUDGET, "budget", budget)
+    budget = BUDGET if budget is None else checked(COUNT, "budget", budget)
     if callable(name):
         said = f"{getattr(name, '__module__', '?')}:{getattr(name, '__qualname__', name)}"
         check_call(said, name, settings)
@@ -116,20 +102,21 @@ def find_optimizer(
     if name in _BASELINES:
         return _borrowed(name, _BASELINES[name], budget, settings)
     if name == "cma":
-        check_cma()
+        load_package(name, name)
         return _borrowed(name, minimise_by_cma, budget, settings)
     source, colon, rest = name.partition(":")
     if not colon:
         raise TrajgapError(
-            f"optimizer {name!r}: unknown; {nearest(name, _by_word())} "
+            f"optimizer {name!r}: unknown; {nearest(name, scipy_words() | {n: n for n in _OWN})} "
             "A function of yours is called module:function, such as mine:evolve for evolve in "
             "mine.py"
         )
+    if source == "scipy":
+        check_scipy(rest, settings)
+        return _borrowed(name, partial(minimise_by_scipy, rest), budget, settings)
     if source in _LIBRARIES:
-        check, minimise = _LIBRARIES[source]
-        check(rest)
-        if source == "scipy":
-            check_scipy_settings(rest, settings)
+        find, minimise = _LIBRARIES[source]
+        find(rest)
         return _borrowed(name, partial(minimise, rest), budget, settings)
     check_call(name, load_function(name), settings)
     return _borrowed(name, partial(call_function, name), budget, settings)
@@ -154,14 +141,8 @@ def optimizer_name(text: str) -> str:
     ('mnam-pso', 'scipy:shgo', 'mine:PSO')
     """
     scipys = (f"scipy:{one}" for one in ENDED_BY_BUDGET)
-    known = {folded(one): one for one in (*KINDS, *_BASELINES, "cma", *scipys)}
+    known = {folded(one): one for one in (*_OWN, *scipys)}
     return known.get(folded(text), text)
-
-
-def _by_word() -> dict[str, str]:
-    """Names of optimisers by the words that somebody may write: scipy's also without its prefix."""
-    own = {name: name for name in (*KINDS, *_BASELINES, "cma")}
-    return scipy_words() | own
 
 
 def _borrowed(
@@ -178,10 +159,6 @@ def evaluations_of(method: Algorithm[Any] | Search) -> int:
     ----------
     method : Algorithm or Search
         From `find_optimizer`.
-
-    Returns
-    -------
-    int
 
     Examples
     --------

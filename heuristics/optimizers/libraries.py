@@ -14,17 +14,6 @@ from ...problem import Array, PackageError, TrajgapError
 from ..settings import nearest
 from .borrowed import BorrowedTask
 
-_SIGMA = 0.3
-"""First step of CMA-ES as a share of each range: what its manual recommends."""
-_CMA_QUIET: Mapping[str, Any] = {"verbose": -9, "verb_log": 0, "seed": np.nan}
-"""No output and no files; no seed, because the numbers come from our generator."""
-_PYGMO_MEMBERS = 20
-"""Members of a pygmo population, which has no default: as in its tutorials."""
-
-
-_WITHIN: Mapping[str, Any] = {"force_bounds": True}
-"""Setting of pygmo's CMA-ES and xNES, which leave the bounds unless told not to."""
-
 
 def load_package(name: str, wanted_by: str) -> Any:
     """Import an optional package.
@@ -43,12 +32,8 @@ def load_package(name: str, wanted_by: str) -> Any:
         ) from None
 
 
-def check_mealpy(name: str) -> None:
-    """Find out whether mealpy has a class of this name."""
-    _mealpy_class(name)
-
-
-def _mealpy_class(name: str) -> Any:
+def mealpy_class(name: str) -> Any:
+    """One of mealpy's optimisers by its name."""
     package = load_package("mealpy", f"mealpy:{name}")
     found = {
         attribute: kind
@@ -71,7 +56,7 @@ def minimise_by_mealpy(name: str, options: Mapping[str, Any], task: BorrowedTask
     """Run one of mealpy's optimisers; its epochs fill the budget."""
     import mealpy
 
-    kind = _mealpy_class(name)
+    kind = mealpy_class(name)
     members = int(options.get("pop_size", kind().pop_size))
     model = kind(**{"epoch": max(1, task.budget // members), **options})
     space = mealpy.FloatVar(lb=task.lower.tolist(), ub=task.upper.tolist())
@@ -79,12 +64,8 @@ def minimise_by_mealpy(name: str, options: Mapping[str, Any], task: BorrowedTask
     model.solve(question, seed=task.number())
 
 
-def check_pymoo(name: str) -> None:
-    """Find out whether pymoo has a single-objective algorithm of this name."""
-    _pymoo_class(name)
-
-
-def _pymoo_class(name: str) -> Any:
+def pymoo_class(name: str) -> Any:
+    """One of pymoo's single-objective algorithms by its name."""
     load_package("pymoo", f"pymoo:{name}")
     from pymoo.core.algorithm import Algorithm
 
@@ -116,15 +97,11 @@ def minimise_by_pymoo(name: str, options: Mapping[str, Any], task: BorrowedTask)
             out["F"] = task.fun(x)[:, None]
 
     question = AskedByPymoo(n_var=len(task.box), n_obj=1, xl=task.lower, xu=task.upper)
-    minimize(question, _pymoo_class(name)(**options), NoTermination(), seed=task.number())
+    minimize(question, pymoo_class(name)(**options), NoTermination(), seed=task.number())
 
 
-def check_pygmo(name: str) -> None:
-    """Find out whether pygmo has an algorithm of this name."""
-    _pygmo_class(name)
-
-
-def _pygmo_class(name: str) -> Any:
+def pygmo_class(name: str) -> Any:
+    """One of pygmo's algorithms by its name."""
     package = load_package("pygmo", f"pygmo:{name}")
     found = {
         attribute: kind
@@ -149,10 +126,11 @@ def minimise_by_pygmo(name: str, options: Mapping[str, Any], task: BorrowedTask)
             return self
 
     given = dict(options)
-    members = int(given.pop("pop_size", _PYGMO_MEMBERS))
-    kind = _pygmo_class(name)
+    members = int(given.pop("pop_size", 20))  # it has no default; its tutorials take 20
+    kind = pygmo_class(name)
     generations = {"gen": max(1, task.budget // members)}
-    for usual in ({**generations, **_WITHIN}, generations, {}):
+    # CMA-ES and xNES leave the bounds unless told not to.
+    for usual in ({**generations, "force_bounds": True}, generations, {}):
         try:
             chosen = kind(**{**usual, **given})
             break
@@ -178,16 +156,14 @@ def minimise_by_cma(options: Mapping[str, Any], task: BorrowedTask) -> None:
 
     width = task.upper - task.lower
     members = int(options.get("popsize", 4 + int(3 * np.log(len(width)))))
+    # No output and no files; no seed, because the numbers come from our generator.
+    quiet = {"verbose": -9, "verb_log": 0, "seed": np.nan}
     while True:
-        kept = {**_CMA_QUIET, "bounds": [0, 1], "randn": normal, **options, "popsize": members}
-        search = cma.CMAEvolutionStrategy(task.rng.random(len(width)), _SIGMA, kept)
+        kept = {**quiet, "bounds": [0, 1], "randn": normal, **options, "popsize": members}
+        # A first step of 0.3 of each range is what its manual recommends.
+        search = cma.CMAEvolutionStrategy(task.rng.random(len(width)), 0.3, kept)
         while not search.stop():
             drawn = search.ask()
             unit = np.clip(np.array(drawn), 0.0, 1.0)
             search.tell(drawn, task.fun(task.lower + width * unit).tolist())
         members *= 2
-
-
-def check_cma() -> None:
-    """Find out whether pycma is installed."""
-    load_package("cma", "cma")

@@ -13,16 +13,14 @@ from ..settings import nearest
 from .borrowed import BorrowedTask
 from .callables import check_settings
 
-_UNENDING = 10**6
-"""Iterations that no budget reaches."""
-ENDED_BY_BUDGET: dict[str, Mapping[str, Any]] = {
-    "basinhopping": {"niter": _UNENDING},
-    "differential_evolution": {"maxiter": _UNENDING},
-    "direct": {"maxiter": _UNENDING, "maxfun": _UNENDING},
-    "dual_annealing": {"maxiter": _UNENDING},
-    "shgo": {},
+ENDED_BY_BUDGET: dict[str, tuple[str, ...]] = {
+    "basinhopping": ("niter",),
+    "differential_evolution": ("maxiter",),
+    "direct": ("maxiter", "maxfun"),
+    "dual_annealing": ("maxiter",),
+    "shgo": (),
 }
-"""Functions of scipy.optimize, with the settings that leave the end to the budget."""
+"""Functions of scipy.optimize, with the settings that leave the end to the budget if large."""
 
 
 def scipy_words() -> dict[str, str]:
@@ -32,27 +30,17 @@ def scipy_words() -> dict[str, str]:
     return {word: f"scipy:{one}" for word, one in (initials | names).items()}
 
 
-def check_scipy(name: str) -> None:
-    """Find out whether scipy's function is known.
+def check_scipy(name: str, settings: Mapping[str, object]) -> None:
+    """Find out whether scipy's function is known, and has such settings.
 
     Raises
     ------
     TrajgapError
-        If it is not; names the nearest.
+        If not; names the nearest.
     """
     if name not in ENDED_BY_BUDGET:
         said = nearest(name.lower(), scipy_words())
         raise TrajgapError(f"scipy:{name}: unknown; {said}")
-
-
-def check_scipy_settings(name: str, settings: Mapping[str, object]) -> None:
-    """Find out whether scipy's function has such settings.
-
-    Raises
-    ------
-    TrajgapError
-        If it has not; names the nearest.
-    """
     if not settings:
         return  # scipy need not be loaded
     from scipy import optimize
@@ -67,7 +55,9 @@ def minimise_by_scipy(name: str, options: Mapping[str, Any], task: BorrowedTask)
     from scipy import optimize
 
     function = getattr(optimize, name)
-    kept = {**ENDED_BY_BUDGET[name], **_random(function, task.rng), **options}
+    # No budget reaches as many iterations.
+    unending = dict.fromkeys(ENDED_BY_BUDGET[name], 10**6)
+    kept = {**unending, **_random(function, task.rng), **options}
     if name == "basinhopping":
         local = {"method": "L-BFGS-B", "bounds": task.box}
         return _hop(function, task, {"minimizer_kwargs": local, **kept})

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import astuple, dataclass, replace
 from functools import cached_property
+from typing import TypeVar
 
 import numpy as np
 
@@ -40,6 +42,8 @@ _ONLY_PROBLEM = ProblemBlock(id="main")
 """Stands for the one problem of a file that lists none; its id is what `--problem` then takes."""
 _ONLY_READING = Reading(id="as-printed", why="the numbers and units as printed", default=True)
 """Stands for the one reading of a file that lists none."""
+
+B = TypeVar("B", AnyClaim, ProblemBlock, Reading)
 
 
 @dataclass(frozen=True)
@@ -211,11 +215,7 @@ class Case:
 
     def claim(self, claim_id: str) -> AnyClaim:
         """Look a claim up by its id."""
-        for claim in self.claims:
-            if claim.id == claim_id:
-                return claim
-        fix = spelling_hint(claim_id, (claim.id for claim in self.claims))
-        raise CaseError(self.file, "claim", f"no claim {claim_id!r}; {fix}")
+        return self._found("claim", self.claims, claim_id)
 
     def table_claims(self, table_id: str) -> tuple[AnyClaim, ...]:
         """Claims that a table prints, in the order of the file."""
@@ -271,12 +271,10 @@ class Case:
         """
         statement = self.statement(problem_id, reading_id)
         problem = statement.problem()
-        if coupling is None:
-            return problem
-        if coupling not in tuple(Coupling):
+        if coupling is not None and coupling not in tuple(Coupling):
             known = ", ".join(Coupling)
             raise CaseError(self.file, "coupling", f"unknown coupling {coupling!r}; use {known}")
-        return replace(problem, coupling=Coupling(coupling))
+        return problem if coupling is None else replace(problem, coupling=Coupling(coupling))
 
     def problem_at(
         self, digits: Digits, problem_id: str | None = None, reading_id: str | None = None
@@ -318,9 +316,8 @@ class Case:
             Joint angles in rad, rounded outwards.
         """
         points = self.statement(problem_id, reading_id).points()
-        lower = np.array([[angle.lower for angle in row] for row in points])
-        upper = np.array([[angle.upper for angle in row] for row in points])
-        return lower, upper
+        ends = np.array([[(angle.lower, angle.upper) for angle in row] for row in points])
+        return ends[..., 0], ends[..., 1]
 
     def printed_durations(self, claim: Claim) -> tuple[Printed, ...]:
         """Segment durations of a claim as printed; empty if it states none."""
@@ -346,11 +343,7 @@ class Case:
             )
         statement = self.statement(claim.problem, reading_id)
         measured = [statement.si(number, "time") for number in printed]
-        return DurationBox(
-            np.array([m.value for m in measured]),
-            np.array([m.lower for m in measured]),
-            np.array([m.upper for m in measured]),
-        )
+        return DurationBox(*(np.array(ends) for ends in zip(*map(astuple, measured), strict=True)))
 
     def measured(
         self,
@@ -407,15 +400,13 @@ class Case:
         return {}
 
     def _problem(self, problem_id: str) -> ProblemBlock:
-        for problem in self.problems:
-            if problem.id == problem_id:
-                return problem
-        fix = spelling_hint(problem_id, (p.id for p in self.problems))
-        raise CaseError(self.file, "problem", f"no problem {problem_id!r}; {fix}")
+        return self._found("problem", self.problems, problem_id)
 
     def _reading(self, reading_id: str) -> Reading:
-        for reading in self.readings:
-            if reading.id == reading_id:
-                return reading
-        fix = spelling_hint(reading_id, (r.id for r in self.readings))
-        raise CaseError(self.file, "reading", f"no reading {reading_id!r}; {fix}")
+        return self._found("reading", self.readings, reading_id)
+
+    def _found(self, kind: str, blocks: Sequence[B], name: str) -> B:
+        by_id = {block.id: block for block in blocks}
+        if name not in by_id:
+            raise CaseError(self.file, kind, f"no {kind} {name!r}; {spelling_hint(name, by_id)}")
+        return by_id[name]

@@ -44,6 +44,17 @@ def check_claims(
             _check_claim(document, faults, claim, every, f"claims[{index}]")
 
 
+_TIMES = ("durations", "total", "blends", "phases", "ramps", "time")
+"""Keys of claims that hold times, one or a list."""
+_SIZES: dict[str, Quantity] = {
+    "deceleration": "acceleration",
+    "snap": "jerk",
+    "plateau": "velocity",
+    "blend_acceleration": "acceleration",
+}
+"""Keys of claims that hold a size for all joints or one for each, and where its unit stands."""
+
+
 def _check_claim(
     document: CaseFile, faults: Faults, claim: AnyClaim, every: Sequence[Statement], at: str
 ) -> None:
@@ -62,25 +73,33 @@ def _check_claim(
             if duration.fraction == 0:
                 why = "is 0; a duration is positive, give its digits"
                 faults.add(f"{at}.durations[{segment}]", why + statement.selected)
-            number(duration, "time", f"durations[{segment}]")
-        if claim.total is not None:
-            number(claim.total, "time", "total")
+    if isinstance(claim, PhasesClaim) and statement.waypoints.number != 2:
+        faults.add(
+            f"{at}.phases",
+            f"describe one segment, but there are {statement.waypoints.number} way-points; "
+            f"state a total instead{statement.selected}",
+        )
+    times = (*_TIMES, "value") if isinstance(claim, TotalTimeClaim) else _TIMES
+    for key in times:
+        value = getattr(claim, key, None)
+        if isinstance(value, tuple):
+            for position, length in enumerate(value):
+                number(length, "time", f"{key}[{position}]")
+        elif value is not None:
+            number(value, "time", key)
+    for key, quantity in _SIZES.items():
+        if getattr(claim, key, None) is not None:
+            _check_each(faults, getattr(claim, key), quantity, every, f"{at}.{key}")
     if isinstance(claim, MaximumClaim):
         _check_curves(document, faults, claim, at)
-    if isinstance(claim, DurationsClaim):
-        _check_blends(faults, claim, every, at)
-    if isinstance(claim, TotalTimeClaim):
-        number(claim.value, "time", "value")
-    if isinstance(claim, PhasesClaim):
-        if statement.waypoints.number != 2:
+    if isinstance(claim, DurationsClaim) and isinstance(claim.blends, tuple):
+        points = statement.waypoints.number
+        if len(claim.blends) != points:
             faults.add(
-                f"{at}.phases",
-                f"describe one segment, but there are {statement.waypoints.number} way-points; "
-                f"state a total instead{statement.selected}",
+                f"{at}.blends",
+                f"{len(claim.blends)} blends for {points} way-points; give one for each, or one "
+                "for all",
             )
-        for key in ("phases", "ramps"):
-            for position, length in enumerate(getattr(claim, key) or ()):
-                number(length, "time", f"{key}[{position}]")
     if isinstance(claim, ProfiledClaim):
         _check_profile(faults, claim, every, at)
     if isinstance(claim, PeakClaim | MeasureClaim | ValueClaim):
@@ -97,9 +116,7 @@ def _check_claim(
         if claim.value is not None and claim.joint is None and len(labels) > 1:
             why = f"is one number for {len(labels)} joints; give values, one for each joint"
             faults.add(f"{at}.value", f"{why}, or name its joint{statement.selected}")
-        if claim.time is not None:
-            number(claim.time, "time", "time")
-        elif claim.place not in (known := named_places(statement)):
+        if claim.time is None and claim.place not in (known := named_places(statement)):
             fix = spelling_hint(claim.place or "", known)
             faults.add(f"{at}.place", f"{claim.place!r} is not a place of the motion; {fix}")
     if isinstance(claim, ControlVerticesClaim):
@@ -177,12 +194,6 @@ def _check_profile(
     """Refuse a profile without the limit that makes it the one that is named."""
     if claim.profile is None:
         return
-    if claim.deceleration is not None:
-        _check_each(faults, claim.deceleration, "acceleration", every, f"{at}.deceleration")
-    if claim.snap is not None:
-        _check_each(faults, claim.snap, "jerk", every, f"{at}.snap")
-    if claim.plateau is not None:
-        _check_each(faults, claim.plateau, "velocity", every, f"{at}.plateau")
     needed = _BOUNDED_BY[claim.profile]
     for statement in every:
         given = getattr(statement.limits, needed)
@@ -220,27 +231,6 @@ def _check_each(
     for joint, number in enumerate(size):
         with faults.noted():
             statement.si(number, quantity, f"{field}[{joint}]", joint)
-
-
-def _check_blends(
-    faults: Faults, claim: DurationsClaim, every: Sequence[Statement], at: str
-) -> None:
-    """Check that blends fit the way-points or the joints, and that they have a unit."""
-    statement = every[0]
-    points = statement.waypoints.number
-    blends, size = claim.blends, claim.blend_acceleration
-    if blends is not None:
-        each = blends if isinstance(blends, tuple) else (blends,)
-        for number in each:
-            with faults.noted():
-                statement.si(number, "time", f"{at}.blends")
-        if isinstance(blends, tuple) and len(blends) != points:
-            faults.add(
-                f"{at}.blends",
-                f"{len(blends)} blends for {points} way-points; give one for each, or one for all",
-            )
-    if size is not None:
-        _check_each(faults, size, "acceleration", every, f"{at}.blend_acceleration")
 
 
 def _check_one_unit(

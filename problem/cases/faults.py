@@ -18,18 +18,8 @@ _OF_SEVERAL_KINDS = {
     "clues": ("kind", CLUE_KINDS, "kind of clue"),
 }
 """Lists whose entries are of several kinds: the key that tells them apart, its values, its name."""
-_ONE_OR_EACH = (
-    "velocity",
-    "acceleration",
-    "jerk",
-    "position_lower",
-    "position_upper",
-    "lower",
-    "upper",
-    "ratios",
-    "unit",
-)
-"""Fields that take one number or a list: pydantic puts the union's tag into their path."""
+_FREE = ("turns", "settings", "chosen")
+"""Tables with keys of any name, which a union's tag may have too."""
 _EXPECTED = {
     "string_type": ("a string", "put it in quotes"),
     "tuple_type": ("a list", "write it in [ ]"),
@@ -152,8 +142,8 @@ def _reason(kind: str, raw: object, context: Mapping[str, Any], message: str) ->
 def _path(location: tuple[str | int, ...]) -> str:
     path = ""
     for position, part in enumerate(location):
-        before = location[position - 1] if position else None
-        if part in UNION_TAGS and before in _ONE_OR_EACH:
+        # Where one number or a list is taken, pydantic puts the union's tag into the path.
+        if part in UNION_TAGS and location[position - 1] not in _FREE:
             continue
         if (
             position == 2

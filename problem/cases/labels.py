@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 
+from ..limits import QUANTITIES
 from ..printed import CHOICES, is_linear, shown_unit
 from ..problem import Coupling
 from .declaration import InterpolantBlock, Values
@@ -72,10 +73,6 @@ _TIME_ENDS = {
     "natural": "natural ends of time",
 }
 """How a smooth time ends."""
-_FEW_RATIOS = 6
-"""Ratios that are listed one by one: more are no label."""
-_DERIVATIVES = {1: "velocity", 2: "acceleration", 3: "jerk"}
-"""Derivatives at the ends, by their order."""
 
 
 def reading_labels(document: CaseFile, readings: Sequence[Reading]) -> dict[str, str]:
@@ -191,7 +188,8 @@ def _declared(block: InterpolantBlock) -> Iterator[str]:
 def _end_words(end: str, orders: tuple[int, ...], values: Values | None) -> Iterator[str]:
     for order, value in zip(orders, values or ("0",) * len(orders), strict=True):
         each = " ".join(map(str, value)) if isinstance(value, tuple) else value
-        yield f"{end} {_DERIVATIVES.get(order, f'derivative {order}')} {each}"
+        name = QUANTITIES[order - 1] if order <= len(QUANTITIES) else f"derivative {order}"
+        yield f"{end} {name} {each}"
 
 
 def _durations(document: CaseFile, reading: Reading) -> Iterator[str]:
@@ -217,7 +215,8 @@ def _ratios(document: CaseFile, reading: Reading) -> Iterator[str]:
 def ratio_words(value: object) -> str:
     """What ratios of durations in a case file say, in words."""
     if isinstance(value, tuple):
-        shown = " : ".join(map(str, value)) if len(value) <= _FEW_RATIOS else "as listed"
+        # More than six in a row are no label.
+        shown = " : ".join(map(str, value)) if len(value) <= 6 else "as listed"
         return f"durations in the ratios {shown}"
     words = {"equal": "durations all alike", "chord": "durations in the ratios of the distances"}
     return words.get(str(value), "each duration chosen")

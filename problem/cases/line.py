@@ -9,10 +9,6 @@ from ..printed import from_si, read_number, to_si
 from ..robots import Chain, JointKind, ctraj, forward_kinematics
 from .schema import Waypoints
 
-_OTHER_BRANCH = 1e-6
-"""Difference of joints at the far end, rad, above which the inverse kinematics has come to another
-branch than the one that is stated: its own residual is a thousand times less."""
-
 
 def on_line(
     waypoints: Waypoints, unit: str | tuple[str, ...], chain: Chain, file: str, selected: str
@@ -55,14 +51,13 @@ def on_line(
         ends.append(
             np.array([to_si(number, one).value for number, one in zip(given, units, strict=True)])
         )
-    first, last = ends
     poses = forward_kinematics(chain, np.array(ends))
     try:
-        found = ctraj(chain, poses[0], poses[1], line.points, guess=first).waypoints
+        found = ctraj(chain, poses[0], poses[1], line.points, guess=ends[0]).waypoints
     except TrajgapError as error:
         raise fail("line", str(error).removeprefix("ctraj: ")) from None
-    away = np.abs(found[-1] - last)
-    if away.max() > _OTHER_BRANCH or np.abs(found[0] - first).max() > _OTHER_BRANCH:
+    # On another branch joints differ by far more; the residual itself is a thousand times less.
+    if np.abs(found[[0, -1]] - ends).max() > 1e-6:
         reason = "the robot cannot go straight from the first angles to the last on one branch"
         raise fail("line", f"{reason} of its inverse kinematics; give other angles, or rows")
     inner = [

@@ -8,9 +8,6 @@ from ..arrays import Array
 from ..printed import Quantity
 from .statement import Statement
 
-_ORDERS: tuple[Quantity, ...] = ("velocity", "acceleration")
-"""What orders 1 and 2 measure."""
-
 
 def end_states(statement: Statement) -> Array:
     """Velocity and acceleration at the start and at the finish as the interpolant prescribes them.
@@ -26,16 +23,17 @@ def end_states(statement: Statement) -> Array:
         ("end_derivatives", block.end_derivatives, block.orders),
         ("finish_derivatives", block.last_derivatives, block.last_orders),
     )
-    found = np.zeros((2, len(statement.joints), len(_ORDERS), 3))
+    measured: tuple[Quantity, ...] = ("velocity", "acceleration")
+    found = np.zeros((2, len(statement.joints), len(measured), 3))
     for row, (key, values, orders) in zip(found, ends, strict=True):
         if values is None:
             continue
         for index, (order, given) in enumerate(zip(orders, values, strict=True)):
             for column, j in enumerate(statement.joints):
                 one = given[j] if isinstance(given, tuple) else given
-                if order > len(_ORDERS) or (one.fraction == 0 and one.exact):
+                if order > len(measured) or (one.fraction == 0 and one.exact):
                     continue
-                quantity = _ORDERS[order - 1]
+                quantity = measured[order - 1]
                 if statement.unit(quantity, j) is not None:  # a zero needs none
                     field = f"interpolant.{key}[{index}]"
                     size = statement.si(one, quantity, field, j).cut_off()

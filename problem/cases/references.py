@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator
 
 from ..errors import TrajgapError
 from ..printed import CHOICES, spelling_hint
 from ..robots import Chain, check_equation
 from .claim import (
-    Claim,
-    ConditionsClaim,
+    AnyClaim,
     ControlVerticesClaim,
     DurationsClaim,
     ImprovementClaim,
@@ -22,13 +21,28 @@ from .claim import (
     TotalTimeClaim,
     ValueClaim,
 )
-from .clue import AxisClue, DataSheetClue, HalfTurnsClue, SmoothClue
+from .clue import AnyClue, AxisClue, DataSheetClue, HalfTurnsClue
 from .faults import Faults
 from .instances import InstancesBlock
 from .schema import LISTS, CaseFile
 
 _BLOCKS = ("units", "waypoints", "limits", "interpolant", "durations", "coupling", "robot")
 """Single blocks that an assumption may say it affects; they have no ids."""
+_REFERS = {
+    "problem": "problems",
+    "interpolant_of": "problems",
+    "algorithm": "algorithms",
+    "against": "algorithms",
+    "table": "tables",
+    "printed_tables": "tables",
+    "slower": "claims",
+    "faster": "claims",
+    "of": "claims",
+    "claim": "claims",
+    "readings": "readings",
+    "positions": "cartesian",
+}
+"""Keys of blocks whose values are ids, and the list that declares them."""
 _OF_ONE_PROBLEM = (
     DurationsClaim,
     MaximumClaim,
@@ -59,59 +73,21 @@ def check_references(document: CaseFile, faults: Faults) -> None:
             faults.add(
                 f"readings[{index}].label", f"{label!r} names another reading; say what differs"
             )
-
-    def known(kind: str, field: str, name: str | None) -> None:
-        if name is not None and name not in ids[kind]:
-            faults.add(field, f"{name!r} is not the id of any of the {kind}; "
-                f"{spelling_hint(name, ids[kind])}"
-            )  # fmt: skip
-
-    for index, reading in enumerate(document.readings):
-        for position, problem_id in enumerate(reading.interpolant_of):
-            known("problems", f"readings[{index}].interpolant_of[{position}]", problem_id)
-    for index, table in enumerate(document.tables):
-        known("algorithms", f"tables[{index}].algorithm", table.algorithm)
+    for name in ("readings", "tables", "claims", "clues", "families"):
+        for index, block in enumerate(getattr(document, name)):
+            for kind, field, referred in _references(block):
+                if referred not in ids[kind]:
+                    hint = spelling_hint(referred, ids[kind])
+                    faults.add(
+                        f"{name}[{index}].{field}",
+                        f"{referred!r} is not the id of any of the {kind}; {hint}",
+                    )
     for index, claim in enumerate(document.claims):
-        at = f"claims[{index}]"
-        known("problems", f"{at}.problem", claim.problem)
-        known("algorithms", f"{at}.algorithm", claim.algorithm)
-        known("tables", f"{at}.table", claim.table)
-        for position, table_id in enumerate(claim.printed_tables):
-            known("tables", f"{at}.printed_tables[{position}]", table_id)
-        if claim.joint is not None and claim.joint not in document.robot.joints:
-            joints = ", ".join(document.robot.joints)
-            faults.add(
-                f"{at}.joint",
-                f"joint {claim.joint!r} is unknown; robot.joints lists {joints}",
-            )
-        for field, name in _claim_references(claim):
-            known("claims", f"{at}.{field}", name)
-        if (
-            claim.problem is None
-            and len(document.problems) > 1
-            and isinstance(claim, _OF_ONE_PROBLEM)
-        ):
-            faults.add(
-                f"{at}.problem",
-                f"is missing, and there are {len(document.problems)} problems; "
-                f"add one of {', '.join(ids['problems'])}",
-            )
-        if isinstance(claim, StatementClaim):
-            known("algorithms", f"{at}.against", claim.against)
-            for position, place in enumerate(claim.positions):
-                known("cartesian", f"{at}.positions[{position}]", place)
-            if claim.checks == "kinematics" and not document.cartesian:
-                faults.add(f"{at}.checks", "kinematics needs printed positions; add [[cartesian]]")
-            if claim.checks == "equations" and not document.equations:
-                faults.add(f"{at}.checks", "equations needs printed ones; add [[equations]]")
-    _check_kinds(document, faults)
-    _check_clues(document, faults, ids["claims"])
+        _check_claim(document, faults, claim, f"claims[{index}]")
+    for index, clue in enumerate(document.clues):
+        _check_clue(document, faults, clue, f"clues[{index}]")
     for index, block in enumerate(document.families):
-        at = f"families[{index}]"
-        known("claims", f"{at}.claim", block.claim)
-        for position, reading_id in enumerate(block.readings):
-            known("readings", f"{at}.readings[{position}]", reading_id)
-        _check_instances(document, faults, block, at)
+        _check_instances(document, faults, block, f"families[{index}]")
     everything = {name for names in ids.values() for name in names} | set(_BLOCKS)
     for index, assumption in enumerate(document.assumptions):
         for position, name in enumerate(assumption.affects):
@@ -121,6 +97,16 @@ def check_references(document: CaseFile, faults: Faults) -> None:
                     f"{name!r} is neither an id in this file nor one of "
                     f"{', '.join(_BLOCKS)}; name what it affects",
                 )
+
+
+def _references(block: object, kinds: Iterable[str] = LISTS) -> Iterator[tuple[str, str, str]]:
+    """List, field and id of everything that a block refers to."""
+    for field, kind in _REFERS.items():
+        value = getattr(block, field, None) if kind in kinds else None
+        if isinstance(value, tuple):
+            yield from ((kind, f"{field}[{k}]", name) for k, name in enumerate(value))
+        elif value is not None:
+            yield kind, field, value
 
 
 def _unique(faults: Faults, kind: str, blocks: Iterable[object]) -> list[str]:
@@ -135,74 +121,70 @@ def _unique(faults: Faults, kind: str, blocks: Iterable[object]) -> list[str]:
     return seen
 
 
-def _claim_references(claim: Claim) -> list[tuple[str, str]]:
-    if isinstance(claim, ImprovementClaim):
-        return [("slower", claim.slower), ("faster", claim.faster)]
-    if isinstance(claim, MaximumClaim | StatementClaim | ConditionsClaim):
-        return [(f"of[{position}]", name) for position, name in enumerate(claim.of)]
-    if isinstance(claim, MotionValueClaim | TotalTimeClaim) and claim.of is not None:
-        return [("of", claim.of)]
-    return []
+def _check_joint(document: CaseFile, faults: Faults, joint: str | None, at: str) -> None:
+    if joint is not None and joint not in document.robot.joints:
+        joints = ", ".join(document.robot.joints)
+        faults.add(f"{at}.joint", f"joint {joint!r} is unknown; robot.joints lists {joints}")
 
 
-def _check_kinds(document: CaseFile, faults: Faults) -> None:
-    by_id = {claim.id: claim for claim in document.claims}
-    totals = (DurationsClaim, MaximumClaim, TotalTimeClaim)
-    for index, claim in enumerate(document.claims):
-        any_time = isinstance(claim, ImprovementClaim) or (
-            isinstance(claim, StatementClaim) and claim.checks in ("optimal", "within_limits")
+def _check_claim(document: CaseFile, faults: Faults, claim: AnyClaim, at: str) -> None:
+    _check_joint(document, faults, claim.joint, at)
+    several = len(document.problems) > 1
+    if claim.problem is None and several and isinstance(claim, _OF_ONE_PROBLEM):
+        faults.add(
+            f"{at}.problem",
+            f"is missing, and there are {len(document.problems)} problems; "
+            f"add one of {', '.join(problem.id for problem in document.problems)}",
         )
-        wanted: tuple[type, ...] = totals if any_time else totals[:2]
-        for field, name in _claim_references(claim):
-            if name in by_id and not isinstance(by_id[name], wanted):
-                if _states_profile(claim, by_id[name]):
-                    continue
-                what = "a time" if any_time else "durations"
-                faults.add(
-                    f"claims[{index}].{field}",
-                    f"{name!r} is a claim of quantity {by_id[name].quantity!r}; "
-                    f"name one that states {what}",
-                )
+    if isinstance(claim, StatementClaim):
+        if claim.checks == "kinematics" and not document.cartesian:
+            faults.add(f"{at}.checks", "kinematics needs printed positions; add [[cartesian]]")
+        if claim.checks == "equations" and not document.equations:
+            faults.add(f"{at}.checks", "equations needs printed ones; add [[equations]]")
+    totals = (DurationsClaim, MaximumClaim, TotalTimeClaim)
+    any_time = isinstance(claim, ImprovementClaim) or (
+        isinstance(claim, StatementClaim) and claim.checks in ("optimal", "within_limits")
+    )
+    wanted: tuple[type, ...] = totals if any_time else totals[:2]
+    _check_kinds(document, faults, claim, at, wanted, "a time" if any_time else "durations")
 
 
-def _states_profile(claim: Claim, named: Claim) -> bool:
+def _check_kinds(
+    document: CaseFile,
+    faults: Faults,
+    block: AnyClaim | AnyClue,
+    at: str,
+    wanted: tuple[type, ...],
+    what: str,
+) -> None:
+    """Check that the claims that a block refers to are of some kinds."""
+    by_id = {claim.id: claim for claim in document.claims}
+    for _, field, name in _references(block, ("claims",)):
+        named = by_id.get(name)
+        if named is not None and not isinstance(named, wanted):
+            if _states_profile(block, named):
+                continue
+            faults.add(
+                f"{at}.{field}",
+                f"{name!r} is a claim of quantity {named.quantity!r}; name one that states {what}",
+            )
+
+
+def _states_profile(block: AnyClaim | AnyClue, named: AnyClaim) -> bool:
     """Whether a claim may speak of the profile of another one: its peaks, values and optimality."""
-    speaks = isinstance(claim, PeakClaim | ValueClaim) or (
-        isinstance(claim, StatementClaim) and claim.checks == "optimal"
+    speaks = isinstance(block, PeakClaim | ValueClaim) or (
+        isinstance(block, StatementClaim) and block.checks == "optimal"
     )
     return speaks and isinstance(named, ProfiledClaim) and named.profile is not None
 
 
-def _check_clues(document: CaseFile, faults: Faults, claims: Sequence[str]) -> None:
-    by_id = {claim.id: claim for claim in document.claims}
-    joints = document.robot.joints
-    for index, clue in enumerate(document.clues):
-        at = f"clues[{index}]"
-        if isinstance(clue, AxisClue | SmoothClue):
-            for position, name in enumerate(clue.of):
-                field = f"{at}.of[{position}]"
-                if name not in by_id:
-                    faults.add(
-                        field, f"{name!r} is not the id of a claim; {spelling_hint(name, claims)}"
-                    )
-                elif not isinstance(by_id[name], DurationsClaim | MaximumClaim):
-                    quantity = by_id[name].quantity
-                    faults.add(
-                        field,
-                        f"{name!r} is a claim of quantity {quantity!r}; "
-                        "name one that states durations",
-                    )
-        named = clue.joint if isinstance(clue, AxisClue | HalfTurnsClue) else None
-        if named is not None and named not in joints:
-            faults.add(
-                f"{at}.joint",
-                f"joint {named!r} is unknown; robot.joints lists {', '.join(joints)}",
-            )
-        if isinstance(clue, DataSheetClue) and len(clue.values) != len(joints):
-            faults.add(
-                f"{at}.values",
-                f"{len(clue.values)} values for {len(joints)} joints; give one each",
-            )
+def _check_clue(document: CaseFile, faults: Faults, clue: AnyClue, at: str) -> None:
+    _check_kinds(document, faults, clue, at, (DurationsClaim, MaximumClaim), "durations")
+    if isinstance(clue, AxisClue | HalfTurnsClue):
+        _check_joint(document, faults, clue.joint, at)
+    joints = len(document.robot.joints)
+    if isinstance(clue, DataSheetClue) and len(clue.values) != joints:
+        faults.add(f"{at}.values", f"{len(clue.values)} values for {joints} joints; give one each")
 
 
 def _check_instances(document: CaseFile, faults: Faults, block: InstancesBlock, at: str) -> None:

@@ -88,7 +88,6 @@ class Check(InNotebooks):
 
     Attributes
     ----------
-    verdict : Verdict
     limits : Verdict
         The verdict on the limits alone, apart from jumps: pass, violated or undecided. The limits
         may be kept inside every piece although the motion jumps between pieces.
@@ -291,17 +290,12 @@ def check(
 
     Parameters
     ----------
-    problem : Problem
     durations : array_like, shape (segments,)
         Segment durations shared by all joints, s.
     nodal : array_like, shape (free, joints), optional
         Values of the free derivatives of an under-determined curve.
     tolerance : float
         Relative excess over a limit that still counts as keeping it.
-
-    Returns
-    -------
-    Check
 
     Raises
     ------

@@ -79,15 +79,10 @@ def evaluate(problem: Problem, durations: ArrayLike, nodal: ArrayLike | None = N
 
     Parameters
     ----------
-    problem : Problem
     durations : array_like, shape (batch, segments)
         Duration vectors, s.
     nodal : array_like, shape (free, joints), optional
         Free derivatives, the same for every vector.
-
-    Returns
-    -------
-    Evaluation
 
     Raises
     ------
@@ -112,7 +107,6 @@ def keeps_limits(problem: Problem, durations: Array, tolerance: float) -> NDArra
 
     Parameters
     ----------
-    problem : Problem
     durations : ndarray, shape (batch, segments)
         s.
     tolerance : float

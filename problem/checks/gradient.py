@@ -17,7 +17,6 @@ def peak_gradients(
 
     Parameters
     ----------
-    problem : Problem
     durations : ndarray, shape (segments,)
     points : list of Extremum
         Local extrema or end points, as `extrema` returns them.

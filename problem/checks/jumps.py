@@ -17,7 +17,6 @@ class Jump:
 
     Attributes
     ----------
-    joint : str
     order : int
         0 position, 1 velocity, 2 acceleration.
     break_index : int
@@ -40,8 +39,6 @@ def jumps_of(problem: Problem, trajectory: Trajectory, error: Array) -> tuple[li
 
     Parameters
     ----------
-    problem : Problem
-    trajectory : Trajectory
     error : ndarray, shape (pieces, 4, joints)
         Bound on the error of each derivative on a piece.
 

@@ -17,7 +17,6 @@ class SidePeak:
 
     Attributes
     ----------
-    extremum : Extremum
     size : float
         Size of the limit on its side.
     ratio : float
@@ -38,14 +37,8 @@ def uneven_peaks(limits: Limits, trajectory: Trajectory, error: Array) -> list[S
 
     Parameters
     ----------
-    limits : Limits
-    trajectory : Trajectory
     error : ndarray, shape (pieces, 4, joints)
         Bound on the error of any extremum on a piece.
-
-    Returns
-    -------
-    list of SidePeak
     """
     sides = limits.sides
     limited = np.isfinite(sides)

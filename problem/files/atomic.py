@@ -48,15 +48,10 @@ def read_regular(path: Path, largest: int, fix: str) -> bytes:
 
     Parameters
     ----------
-    path : Path
     largest : int
         Bytes.
     fix : str
         What to do if it is larger, for the message.
-
-    Returns
-    -------
-    bytes
 
     Raises
     ------
@@ -91,10 +86,6 @@ def check_regular(path: Path) -> None:
     """Refuse what is not a regular file, because reading it might never end.
 
     A file that does not exist is not refused here.
-
-    Raises
-    ------
-    CaseError
     """
     check_name(str(path))
     with suppress(OSError):
@@ -102,12 +93,7 @@ def check_regular(path: Path) -> None:
 
 
 def check_name(name: str) -> None:
-    """Refuse the name of a file that is not UTF-8: no document could state it.
-
-    Raises
-    ------
-    CaseError
-    """
+    """Refuse the name of a file that is not UTF-8: no document could state it."""
     try:
         name.encode("utf-8")
     except UnicodeEncodeError:
@@ -135,10 +121,6 @@ def _without_waiting(path: str, flags: int) -> int:
 def new_file(path: Path) -> Iterator[Callable[[str | bytes], None]]:
     """Reserve a new file, which appears under its name only when complete.
 
-    Parameters
-    ----------
-    path : Path
-
     Yields
     ------
     callable
@@ -165,11 +147,6 @@ def new_file(path: Path) -> Iterator[Callable[[str | bytes], None]]:
 def new_draft(path: Path, is_folder: bool = False) -> Iterator[Path]:
     """Reserve a new file or folder for a writer that needs a path.
 
-    Parameters
-    ----------
-    path : Path
-    is_folder : bool
-
     Yields
     ------
     Path
@@ -195,7 +172,6 @@ def replace_file(path: Path, text: str) -> None:
     ----------
     path : Path
         Missing parent folders are created.
-    text : str
 
     Raises
     ------
@@ -263,10 +239,6 @@ def recover_folder(folder: Path) -> None:
 
 def try_writing_in(folder: Path) -> None:
     """Check whether files can be written into a folder, which need not exist yet.
-
-    Parameters
-    ----------
-    folder : Path
 
     Raises
     ------

@@ -18,10 +18,6 @@ LARGEST_BYTES = 5_000_000
 def read_text(path: Path) -> str:
     """Read a small UTF-8 text file.
 
-    Parameters
-    ----------
-    path : Path
-
     Returns
     -------
     str
@@ -37,10 +33,6 @@ def read_text(path: Path) -> str:
 
 def read_hashed(path: Path) -> tuple[str, str]:
     """As `read_text`, with the SHA-256 of the file's bytes.
-
-    Parameters
-    ----------
-    path : Path
 
     Returns
     -------
@@ -70,13 +62,8 @@ def parse_toml(text: str, file: str) -> dict[str, Any]:
 
     Parameters
     ----------
-    text : str
     file : str
         Name for error messages.
-
-    Returns
-    -------
-    dict
 
     Raises
     ------

@@ -19,7 +19,6 @@ def shown_bound(
 
     Parameters
     ----------
-    value : Fraction or float
     side : {"lower", "upper"}
         "lower" if something is at least the value, "upper" if it is at most the value.
     digits : int, optional

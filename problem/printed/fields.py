@@ -6,7 +6,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 from difflib import get_close_matches
-from typing import Annotated, Any, Literal, TypeAlias
+from functools import partial
+from typing import Annotated, Any, Literal, TypeAlias, TypeVar
 
 from pydantic import (
     BeforeValidator,
@@ -240,65 +241,35 @@ _LIMIT_SCHEMA = {
     ]
 }
 """As a number, and the words for no limit."""
+_PAIR_SCHEMA = {
+    "anyOf": [
+        *_LIMIT_SCHEMA["anyOf"],
+        {"type": "array", "items": _LIMIT_SCHEMA, "minItems": 2, "maxItems": 2},
+    ]
+}
+"""As a limit, and two of them."""
 
-Number = Annotated[
-    Printed, PlainValidator(read_number), PlainSerializer(_plain), WithJsonSchema(_NUMBER_SCHEMA)
-]
+
+def _read_by(read: Any, schema: dict[str, Any], plain: Any = _plain) -> tuple[Any, ...]:
+    """What makes a field of what a file states: its reader, its writer, and its JSON Schema."""
+    return PlainValidator(read), PlainSerializer(plain), WithJsonSchema(schema)
+
+
+Number = Annotated[Printed, *_read_by(read_number, _NUMBER_SCHEMA)]
 """A string is a number rounded to its digits, a bare number is exact."""
-
-Length = Annotated[
-    Printed,
-    PlainValidator(_positive_length),
-    PlainSerializer(_plain),
-    WithJsonSchema(_NUMBER_SCHEMA),
-]
+Length = Annotated[Printed, *_read_by(_positive_length, _NUMBER_SCHEMA)]
 """A `Number` of 0 or more."""
-
-Ratio = Annotated[
-    Printed,
-    PlainValidator(_ratio),
-    PlainSerializer(_plain),
-    WithJsonSchema(_NUMBER_SCHEMA),
-]
+Ratio = Annotated[Printed, *_read_by(_ratio, _NUMBER_SCHEMA)]
 """A `Number` above 0."""
-
-UpperLimit = Annotated[
-    Printed | None,
-    PlainValidator(_upper_limit),
-    PlainSerializer(_plain),
-    WithJsonSchema(_LIMIT_SCHEMA),
-]
+UpperLimit = Annotated[Printed | None, *_read_by(_upper_limit, _LIMIT_SCHEMA)]
 """A `Number` of 0 or more, or inf (kept as None)."""
-
 SizeOrPair = Annotated[
-    Printed | LimitPair | None,
-    PlainValidator(_size_or_pair),
-    PlainSerializer(_plain_entry),
-    WithJsonSchema(
-        {
-            "anyOf": [
-                *_LIMIT_SCHEMA["anyOf"],
-                {"type": "array", "items": _LIMIT_SCHEMA, "minItems": 2, "maxItems": 2},
-            ]
-        }
-    ),
+    Printed | LimitPair | None, *_read_by(_size_or_pair, _PAIR_SCHEMA, _plain_entry)
 ]
 """An `UpperLimit`, or the least and the largest value."""
-
-LowerPosition = Annotated[
-    Printed | None,
-    PlainValidator(_position_limit("-")),
-    PlainSerializer(_plain),
-    WithJsonSchema(_LIMIT_SCHEMA),
-]
+LowerPosition = Annotated[Printed | None, *_read_by(_position_limit("-"), _LIMIT_SCHEMA)]
 """A `Number`, or -inf (kept as None)."""
-
-UpperPosition = Annotated[
-    Printed | None,
-    PlainValidator(_position_limit("+")),
-    PlainSerializer(_plain),
-    WithJsonSchema(_LIMIT_SCHEMA),
-]
+UpperPosition = Annotated[Printed | None, *_read_by(_position_limit("+"), _LIMIT_SCHEMA)]
 """A `Number`, or inf (kept as None)."""
 
 
@@ -314,50 +285,28 @@ def _nonempty(raw: object) -> object:
 
 UNION_TAGS = ("list", "scalar")
 """Union tags that appear in the location of a validation error but not in the file."""
-
-OneOrEachUpper = Annotated[
-    Annotated[UpperLimit, Tag("scalar")]
-    | Annotated[tuple[UpperLimit, ...], BeforeValidator(_nonempty), Tag("list")],
+T = TypeVar("T")
+E = TypeVar("E")
+_OneOrList = Annotated[
+    Annotated[T, Tag("scalar")] | Annotated[tuple[E, ...], BeforeValidator(_nonempty), Tag("list")],
     Discriminator(_form),
 ]
-OneOrEachSized = Annotated[
-    Annotated[UpperLimit, Tag("scalar")]
-    | Annotated[tuple[SizeOrPair, ...], BeforeValidator(_nonempty), Tag("list")],
-    Discriminator(_form),
+"""One value, or a list of entries of another type."""
+_OneOrEach = _OneOrList[T, T]
+"""One value for all, or one for each."""
+OneOrEachUpper = _OneOrEach[UpperLimit]
+OneOrEachSized = _OneOrList[UpperLimit, SizeOrPair]
+OneOrEachLength = _OneOrEach[Length]
+OneOrEachLowerPosition = _OneOrEach[LowerPosition]
+OneOrEachUpperPosition = _OneOrEach[UpperPosition]
+OneOrEachNumber = _OneOrEach[Number]
+_RatioWord = Annotated[
+    str,
+    PlainValidator(_ratio_word),
+    WithJsonSchema({"type": "string", "enum": list(RATIO_CHOICES)}),
 ]
-OneOrEachLength = Annotated[
-    Annotated[Length, Tag("scalar")]
-    | Annotated[tuple[Length, ...], BeforeValidator(_nonempty), Tag("list")],
-    Discriminator(_form),
-]
-OneOrEachLowerPosition = Annotated[
-    Annotated[LowerPosition, Tag("scalar")]
-    | Annotated[tuple[LowerPosition, ...], BeforeValidator(_nonempty), Tag("list")],
-    Discriminator(_form),
-]
-OneOrEachUpperPosition = Annotated[
-    Annotated[UpperPosition, Tag("scalar")]
-    | Annotated[tuple[UpperPosition, ...], BeforeValidator(_nonempty), Tag("list")],
-    Discriminator(_form),
-]
-
-Ratios = Annotated[
-    Annotated[
-        str,
-        PlainValidator(_ratio_word),
-        WithJsonSchema({"type": "string", "enum": list(RATIO_CHOICES)}),
-        Tag("scalar"),
-    ]
-    | Annotated[tuple[Ratio, ...], BeforeValidator(_nonempty), Tag("list")],
-    Discriminator(_form),
-]
+Ratios = _OneOrList[_RatioWord, Ratio]
 """One `Ratio` per segment, or a word."""
-
-OneOrEachNumber = Annotated[
-    Annotated[Number, Tag("scalar")]
-    | Annotated[tuple[Number, ...], BeforeValidator(_nonempty), Tag("list")],
-    Discriminator(_form),
-]
 
 PrintedRows = Annotated[
     tuple[Annotated[tuple[Number, ...], Field(min_length=1, max_length=MOST_WAYPOINTS + 2)], ...],
@@ -370,11 +319,7 @@ Id = Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9.-]*$")]
 
 Text = Annotated[str, Field(min_length=1)]
 
-TextOrEach = Annotated[
-    Annotated[Text, Tag("scalar")]
-    | Annotated[tuple[Text, ...], BeforeValidator(_nonempty), Tag("list")],
-    Discriminator(_form),
-]
+TextOrEach = _OneOrEach[Text]
 
 Label = Annotated[str, Field(min_length=1, max_length=80, pattern=r"^\S(.*\S)?$")]
 """A few words on one line, which stand for what they name within a sentence or a cell."""
@@ -382,14 +327,9 @@ Label = Annotated[str, Field(min_length=1, max_length=80, pattern=r"^\S(.*\S)?$"
 JointLabels = Annotated[tuple[Text, ...], Field(min_length=1, max_length=MOST_JOINTS)]
 
 
-def _unit(quantity: Quantity) -> tuple[PlainValidator, WithJsonSchema]:
-    def read(raw: object) -> str:
-        return check_unit(raw, quantity)
+def _units(quantity: Quantity) -> tuple[Any, ...]:
+    """A unit of a quantity, or one for each joint."""
 
-    return PlainValidator(read), WithJsonSchema(_unit_schema(quantity))
-
-
-def _units(quantity: Quantity) -> tuple[PlainValidator, PlainSerializer, WithJsonSchema]:
     def read(raw: object) -> str | tuple[str, ...]:
         if not isinstance(raw, list | tuple):
             return check_unit(raw, quantity)
@@ -405,7 +345,7 @@ def _units(quantity: Quantity) -> tuple[PlainValidator, PlainSerializer, WithJso
     one = _unit_schema(quantity)
     several = {"type": "array", "minItems": 1, "items": one}
     # What is given may also be the list that a first serializer made of it.
-    return PlainValidator(read), PlainSerializer(_listed), WithJsonSchema({"anyOf": [one, several]})
+    return _read_by(read, {"anyOf": [one, several]}, _listed)
 
 
 def _listed(units: UnitOrEach | list[str]) -> str | list[str] | None:
@@ -422,4 +362,8 @@ PositionUnits = Annotated[UnitOrEach, *_units("position")]
 VelocityUnits = Annotated[UnitOrEach, *_units("velocity")]
 AccelerationUnits = Annotated[UnitOrEach, *_units("acceleration")]
 JerkUnits = Annotated[UnitOrEach, *_units("jerk")]
-TimeUnit = Annotated[str | None, *_unit("time")]
+TimeUnit = Annotated[
+    str | None,
+    PlainValidator(partial(check_unit, quantity="time")),
+    WithJsonSchema(_unit_schema("time")),
+]

@@ -41,10 +41,6 @@ def read_float(text: str) -> float:
     text : str
         Digits as `Printed` reads them; or ``inf``, ``+inf``, ``-inf`` in upper or lower case.
 
-    Returns
-    -------
-    float
-
     Raises
     ------
     TrajgapError
@@ -137,14 +133,6 @@ class Printed:
     @classmethod
     def number(cls, number: int | Decimal) -> Printed:
         """Make an exact number with the digits as written.
-
-        Parameters
-        ----------
-        number : int or Decimal
-
-        Returns
-        -------
-        Printed
 
         Raises
         ------

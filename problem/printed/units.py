@@ -140,10 +140,6 @@ def scale(unit: str) -> Scale:
     unit : str
         One of the units in `CHOICES`.
 
-    Returns
-    -------
-    Scale
-
     Raises
     ------
     TrajgapError
@@ -170,10 +166,6 @@ def check_unit(unit: object, quantity: Quantity) -> str:
         Unit as written.
     quantity : str
         What it should measure.
-
-    Returns
-    -------
-    str
 
     Raises
     ------
@@ -279,10 +271,6 @@ def from_si(value: float, unit: str) -> float:
         Number in radians or metres and seconds; infinities stay.
     unit : str
         The unit to show it in.
-
-    Returns
-    -------
-    float
 
     Raises
     ------

@@ -132,7 +132,7 @@ def test_a_figure_without_a_key_has_a_reason_that_holds():
         assert explained(document, figure, said), (name, figure, said)
     assert len(EXPLAINED) > 50
     assert set(FIGURES) <= {path.relative_to(ROOT).as_posix() for path in PROSE}
-    for said in ("table: study-cost", "printed: irb460", "code: heuristics/hazards.py", "defined: ",
+    for said in ("table: study-cost", "printed: irb460", "code: heuristics/budget.py", "defined: ",
                  "test: tests/no_such_test.py", "once: python benchmarks/no_such.py"):  # fmt: skip
         assert not explained("<!-- csv: study-cost -->", "0.731", said)
 

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from fractions import Fraction
+from typing import Any
 
 import numpy as np
 import pytest
@@ -17,19 +18,21 @@ from trajgap.heuristics import (
     ImprovedWOA,
     run,
     states,
+    tent_collapse,
 )
 from trajgap.heuristics.algorithms import TentRule, tent_population
 from trajgap.heuristics.algorithms.genes import FitnessRule, fitness_values, roulette
-from trajgap.heuristics.algorithms.improved_ga import concentration, rank_chances, schedule
-from trajgap.heuristics.algorithms.tent import exact_orbit, orbit, tent
-from trajgap.heuristics.hazards import (
-    not_positive,
-    not_positive_share,
-    rate_branches,
-    tent_collapse,
-    weight_fall,
+from trajgap.heuristics.algorithms.improved_ga import (
+    THIRD,
+    concentration,
+    crossover_rate,
+    mutation_rate,
+    rank_chances,
+    schedule,
 )
-from trajgap.problem import Limits, Problem, TrajgapError, quintic_spline
+from trajgap.heuristics.algorithms.improved_woa import inertia_weight
+from trajgap.heuristics.algorithms.tent import exact_orbit, orbit, tent
+from trajgap.problem import Array, Limits, Problem, TrajgapError, evaluate, quintic_spline
 
 
 def test_negative_totals_have_a_fitness_by_complement_alone() -> None:
@@ -65,17 +68,20 @@ def test_one_iteration_has_the_first_value_of_13() -> None:
 
 
 def test_the_branches_meet_in_14_and_not_in_15() -> None:
-    found = rate_branches()
-    assert found.crossover_jump == pytest.approx(0.0, abs=1e-15)
-    assert found.mutation_jump == pytest.approx(0.05 / 3 - 0.02 * 2 / 3, rel=1e-12)
+    below = np.nextafter(THIRD, 0.0)
+    assert crossover_rate(below, 1.0, 2.0) == pytest.approx(crossover_rate(THIRD, 1.0, 2.0))
+    jump = mutation_rate(THIRD, 0.05, 0.02) - mutation_rate(below, 0.05, 0.02)
+    assert jump == pytest.approx(0.05 / 3 - 0.02 * 2 / 3, rel=1e-12)
     # A scattered population is crossed and mutated least, where the text wants it mixed most.
-    assert found.crossover[0] == found.crossover[3] == 0.0
+    assert crossover_rate(0.0, 1.0, 2.0) == crossover_rate(1.0, 1.0, 2.0) == 0.0
     # With k1 = 1 and k4 = 2 the branches meet by the choice of constants, not by construction.
-    assert rate_branches(k4=1.0).crossover_jump == pytest.approx(1 / 3)
+    apart = crossover_rate(THIRD, 1.0, 1.0) - crossover_rate(below, 1.0, 1.0)
+    assert apart == pytest.approx(1 / 3)
 
 
 def test_the_arcsine_has_no_value_for_negative_fitness() -> None:
-    assert np.isnan(rate_branches().negative)
+    # -T as fitness, of -2 and -1: the quotient exceeds 1.
+    assert np.isnan(concentration(-1.5, -1.0))
     assert np.isnan(concentration(1.0, 0.0))
     assert concentration(0.0, 0.0) == 1.0
 
@@ -153,30 +159,43 @@ WAY = np.random.default_rng(0).uniform(-2, 2, (8, 6))
 SIX_JOINTS = Problem(WAY, Limits(2.0, 5.0), quintic_spline(7), 0.0, 5.0)
 
 
+def weighted(best: Array, s: float) -> tuple[Array, Array]:
+    """w(I) of (22), and c* of w(I) X*, the centre that (21) moves whales around, I = 0..500."""
+    weights = np.array([inertia_weight(i, 500, s) for i in range(501)])
+    return weights, evaluate(SIX_JOINTS, weights[:, None] * best).stretch
+
+
 @pytest.mark.parametrize("s", [0.0, 5.0, -0.5])
 def test_a_weighted_best_breaks_the_limits_from_the_second_move_on(s: float) -> None:
     best = run(WOA(), SIX_JOINTS, 1, 50, objective="stretch").durations
-    found = weight_fall(SIX_JOINTS, best, 500, s)
-    assert found.first_infeasible == 1
-    assert found.weights[0] == 1.0
-    assert found.weights[-1] == 0.0
+    weights, stretches = weighted(best, s)
+    assert np.flatnonzero(stretches > 1 + 1e-9)[0] == 1
+    assert weights[0] == 1.0
+    assert weights[-1] == 0.0
     # Stretching time: c* of w X* is c*/w.
-    np.testing.assert_allclose(
-        found.stretches[:-1] * found.weights[:-1], found.stretches[0], rtol=1e-9
-    )
-    assert found.stretches[-1] == np.inf
+    np.testing.assert_allclose(stretches[:-1] * weights[:-1], stretches[0], rtol=1e-9)
+    assert stretches[-1] == np.inf
 
 
 def test_a_best_with_room_to_spare_breaks_them_later() -> None:
     best = 1.25 * run(WOA(), SIX_JOINTS, 1, 50, objective="stretch").durations
-    found = weight_fall(SIX_JOINTS, best, 500)
-    assert found.first_infeasible == 101  # w = 0.8 at I = 100 is just enough, w = 0.798 is not
+    _, stretches = weighted(best, 0.0)
+    # w = 0.8 at I = 100 is just enough, w = 0.798 is not.
+    assert np.flatnonzero(stretches > 1 + 1e-9)[0] == 101
 
 
-def test_share_of_a_box() -> None:
-    assert not_positive_share(np.array([-1.0, 0.0]), np.array([3.0, 5.0])) == 0.25
-    assert not_positive_share(np.array([-2.0, 1.0]), np.array([-1.0, 5.0])) == 1.0
-    assert not_positive_share(np.full(2, 0.1), np.full(2, 5.0)) == 0.0
+def judged(algorithm: Any) -> Array:
+    """Every position that a search of seed 0 had judged."""
+    judge, seen = DeathPenalty(SIX_JOINTS, algorithm.penalty), []
+
+    def seeing(positions: Array) -> Array:
+        seen.append(positions)
+        return judge(positions)
+
+    bounds = Bounds.of(SIX_JOINTS)
+    for _ in states(algorithm, seeing, bounds, np.random.Generator(np.random.PCG64(0))):
+        pass
+    return np.concatenate(seen)
 
 
 @pytest.mark.parametrize(
@@ -184,17 +203,16 @@ def test_share_of_a_box() -> None:
 )
 def test_whales_are_set_to_zero_seconds(algorithm: WOA) -> None:
     """The printed bounds [0, 5] s contain 0; whales that leave them are judged there."""
-    found = not_positive(algorithm, SIX_JOINTS, 0)
-    assert found.judged == 30 * 101
-    assert found.box_share == 0.0
-    assert 0 < found.zero == found.not_positive
+    positions = judged(algorithm)
+    assert len(positions) == 30 * 101
+    assert (positions == 0.0).any()
+    assert (positions >= 0.0).all()
 
 
 def test_negative_durations_inside_the_palletisers_bounds() -> None:
-    found = not_positive(ConstrainedPSO(iterations=20), SIX_JOINTS, 0, (-2.0, 2.0))
-    assert found.box_share == 1 - 2.0**-7
-    assert found.not_positive > found.judged / 10
-    assert found.zero == 0
+    """[-x_max, x_max] of irb460, of which all but 2⁻⁷ has a negative duration."""
+    negative = (judged(ConstrainedPSO(iterations=20)) < 0.0).any(axis=1)
+    assert negative.mean() > 0.1
 
 
 def test_equation_23_by_hand() -> None:
