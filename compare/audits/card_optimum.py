@@ -9,12 +9,7 @@ import numpy as np
 
 from ...nlp import Evidence, Solution, Status
 from ...problem import Coupling, shown_bound
-from ...problem.cases import (
-    AnyClaim,
-    MaximumClaim,
-    ProfiledClaim,
-    TimeClaim,
-)
+from ...problem.cases import AnyClaim, MaximumClaim, ProfiledClaim, TimeClaim
 from ..documents import (
     CaveatKind,
     ClaimVerdict,

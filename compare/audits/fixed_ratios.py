@@ -77,14 +77,12 @@ def of_other_ratios(row: PrintedRow[Claim], shown: str, other: str) -> Finding:
     """
     return row.finding(
         "TG302",
+        "other ratios",
+        f"Printed are {other}.",
+        "They answer a question other than the shortest total at these ratios, and are not "
+        "compared with it.",
         basis=Basis.DIGITS,
         printed=shown,
-        kind="other ratios",
-        sentences=(
-            f"Printed are {other}.",
-            "They answer a question other than the shortest total at these ratios, and are not "
-            "compared with it.",
-        ),
         decides=False,
     )
 

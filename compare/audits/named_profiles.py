@@ -10,14 +10,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from ...problem import Array
-from .axis_profile import (
-    AxisProfile,
-    AxisState,
-    Phase,
-    Sizes,
-    shortest_s_curve,
-    shortest_trapezoid,
-)
+from .axis_profile import AxisProfile, AxisState, Phase, Sizes, shortest_s_curve, shortest_trapezoid
 from .rounding import FEW_ROUNDINGS
 
 _GAMMA = 0.99

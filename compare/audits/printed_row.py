@@ -26,13 +26,7 @@ from ...problem import (
     reachable_total,
     shown_unit,
 )
-from ...problem.cases import (
-    AnyClaim,
-    Claim,
-    Digits,
-    DurationBox,
-    Statement,
-)
+from ...problem.cases import AnyClaim, Claim, Digits, DurationBox, Statement
 from ..documents import UNITS, Finding, Keeping, Rounding, noted, si_unit
 from .rounding import RoundingBox, RoundingVerdict, judge_rounding
 from .stated import in_words, in_words_among, own_total, place, prints_durations
@@ -79,10 +73,10 @@ class PrintedRow(Generic[C]):
         """The problem under the reading, in printed digits."""
         return self.study.case.statement(*self.pair)
 
-    def finding(self, rule: str, **facts: Any) -> Finding:
+    def finding(self, rule: str, kind: str, *sentences: str, **facts: Any) -> Finding:
         """A finding of a rule on the claim under this problem and reading."""
         about = {"claim": self.claim.id, "problem": self.problem, "reading": self.reading}
-        return Finding(rule=rule, **about | facts)
+        return Finding(rule=rule, kind=kind, sentences=sentences, **about | facts)
 
     def once(self, what: str, compute: Callable[[], T], *more: object) -> T:
         """A value that the study keeps for this row under a name, computed on first use."""

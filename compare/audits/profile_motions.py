@@ -267,9 +267,7 @@ def with_own_limit(
     return np.column_stack([limits, column])
 
 
-def _own_limit(
-    claim: ProfiledClaim,
-) -> tuple[Printed | tuple[Printed, ...], Quantity] | None:
+def _own_limit(claim: ProfiledClaim) -> tuple[Printed | tuple[Printed, ...], Quantity] | None:
     """What the profile alone has, and in which unit."""
     if claim.deceleration is not None:
         return claim.deceleration, "acceleration"

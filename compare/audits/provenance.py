@@ -19,16 +19,7 @@ from ...verify import Subject
 from ..documents import Provenance, UsedCertificate, Why, known
 from .study import Study
 
-LIBRARIES = (
-    "casadi",
-    "jinja2",
-    "matplotlib",
-    "numba",
-    "numpy",
-    "pydantic",
-    "scipy",
-    "toppra",
-)
+LIBRARIES = ("casadi", "jinja2", "matplotlib", "numba", "numpy", "pydantic", "scipy", "toppra")
 """Libraries whose versions can move a digit or a pixel."""
 _EPOCH = "SOURCE_DATE_EPOCH"
 """Variable of the environment that sets the date, by the convention of reproducible builds."""

@@ -292,11 +292,7 @@ def _lengthen_rows(
 
 
 def _print(
-    draft: _Draft,
-    claim: AnyClaim,
-    problems: Sequence[Problem],
-    durations: Array,
-    trigger: str,
+    draft: _Draft, claim: AnyClaim, problems: Sequence[Problem], durations: Array, trigger: str
 ) -> bool:
     """Put durations, rounded up to the draft's digits, that pass as printed; whether any do."""
     assert isinstance(claim, DurationsClaim | MaximumClaim)

@@ -4,12 +4,7 @@ from __future__ import annotations
 
 from math import inf
 
-from ...problem.cases import (
-    AnyClaim,
-    Claim,
-    TimeClaim,
-    TotalTimeClaim,
-)
+from ...problem.cases import AnyClaim, Claim, TimeClaim, TotalTimeClaim
 from .printed_row import PrintedRow
 from .stated import own_total, place, printed_total, prints_durations
 

@@ -9,13 +9,7 @@ from typing import Any, NamedTuple, Self, TypeVar, cast
 
 import numpy as np
 
-from ...heuristics import (
-    KINDS,
-    Algorithm,
-    DeathPenalty,
-    JointRuns,
-    from_settings,
-)
+from ...heuristics import KINDS, Algorithm, DeathPenalty, JointRuns, from_settings
 from ...nlp import (
     OPTIMUM_SLACK,
     ExactProblem,

@@ -16,10 +16,7 @@ does not depend on the machine."""
 
 
 def excludes_total(
-    problem: Problem,
-    total: float,
-    waypoints: RoundingBox | None = None,
-    boxes: int = BOXES,
+    problem: Problem, total: float, waypoints: RoundingBox | None = None, boxes: int = BOXES
 ) -> bool | None:
     """Prove that no durations of a total or less keep the limits, for all way-points of a box.
 

@@ -6,13 +6,7 @@ from ...nlp import Evidence, Route, Solution, Status, printed_problem_or_none
 from ...nlp.proofs.any_curve import estimate_any_curve
 from ...nlp.retiming import jerk_limited_path, retime, retime_third_order
 from ...problem import down, fit, shown_bound, up
-from ...problem.cases import (
-    AnyClaim,
-    DurationsClaim,
-    MaximumClaim,
-    TimeClaim,
-    TotalTimeClaim,
-)
+from ...problem.cases import AnyClaim, DurationsClaim, MaximumClaim, TimeClaim, TotalTimeClaim
 from ..documents import (
     EXACT,
     FREED_OPTIMUM,
@@ -88,11 +82,7 @@ def _known(name: str, solution: Solution, note: str = "") -> Step:
     )
 
 
-_FOUND = {
-    Route.NLP: "the NLP (IPOPT)",
-    Route.DESCENT: "descents",
-    Route.CLOSED_FORM: "a formula",
-}
+_FOUND = {Route.NLP: "the NLP (IPOPT)", Route.DESCENT: "descents", Route.CLOSED_FORM: "a formula"}
 """Words for what found a total."""
 
 
@@ -232,12 +222,7 @@ def _procedure(study: Study, pair: Pair) -> Step:
             "optimum"
         )
     return Step(
-        name=name,
-        time=answer.total_time,
-        low=low,
-        high=high,
-        evidence=answer.evidence,
-        note=note,
+        name=name, time=answer.total_time, low=low, high=high, evidence=answer.evidence, note=note
     )
 
 

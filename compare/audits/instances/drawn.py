@@ -63,9 +63,7 @@ class Task:
 
 
 def examine(
-    tasks: Iterable[Task],
-    workers: int = 1,
-    progress: Callable[[str], None] | None = None,
+    tasks: Iterable[Task], workers: int = 1, progress: Callable[[str], None] | None = None
 ) -> tuple[Sample, ...]:
     """Solve every instance for both curves and run both procedures on it.
 

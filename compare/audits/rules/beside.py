@@ -236,11 +236,7 @@ def nearest_number(
 
 
 def _farthest(
-    meant: Meant,
-    words: str,
-    durations: RoundingBox,
-    waypoints: RoundingBox,
-    share: float,
+    meant: Meant, words: str, durations: RoundingBox, waypoints: RoundingBox, share: float
 ) -> float:
     """Largest change of a number that is found in the rounding box, ``share`` as wide."""
 

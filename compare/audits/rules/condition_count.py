@@ -15,7 +15,7 @@ from ..printed_row import PrintedRow, left_out, rows_under
 from ..stated import all_called, called_under, prints_durations
 from ..study import Study
 from .peaks import largest
-from .rule_group import Explained, rule_group
+from .rule_group import Explained, finding, rule_group
 
 _REST = 0.01
 """Share of a derivative's peak up to which its value at an end counts as 0: rounding of the printed
@@ -99,17 +99,17 @@ def _counted(study: Study, claim: ConditionsClaim) -> Finding:
     elif wanted > available:
         verdict, severity, kind = ClaimVerdict.NOT_CHECKABLE, Severity.WARNING, "too many"
         more = "All of them can hold only for special way-points."
-    return Finding(
-        rule="TG107",
+    return finding(
+        "TG107",
+        claim,
+        kind,
+        f"{said}.",
+        more,
         severity=severity,
         verdict=verdict,
         basis=Basis.COUNT,
-        claim=claim.id,
         printed=printed,
         computed=computed,
-        kind=kind,
-        sentences=(f"{said}.", more),
-        # A printed count may be wrong; that the declared curve meets its own conditions cannot.
         built=verdict is ClaimVerdict.SUPPORTED and claim.count is None,
     )
 
@@ -198,19 +198,24 @@ def _at_rest(
         others = left_out(study, named, reading)
         unknown = f"No motion is built from {all_called(others)}." if others else ""
         verdict = ClaimVerdict.NOT_CHECKABLE if others else ClaimVerdict.SUPPORTED
-        yield Finding(
-            rule="TG207",
+        yield finding(
+            "TG207",
+            claim,
+            "moving" if moving else "in part" if others else "at rest",
+            *(
+                (
+                    "The motion is said to be at rest at both ends, but on the stated curve "
+                    f"{'; '.join(moving)}.",
+                )
+                if moving
+                else (
+                    f"On the stated curve {names} 0 at both ends of every printed motion.",
+                    unknown,
+                )
+            ),
             verdict=ClaimVerdict.INCONSISTENT if moving else verdict,
             basis=Basis.CHECK,
-            claim=claim.id,
             reading=reading,
-            kind="moving" if moving else "in part" if others else "at rest",
-            sentences=(
-                "The motion is said to be at rest at both ends, but on the stated curve "
-                f"{'; '.join(moving)}.",
-            )
-            if moving
-            else (f"On the stated curve {names} 0 at both ends of every printed motion.", unknown),
             built=built and not moving and not others,
         )
 

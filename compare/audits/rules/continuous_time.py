@@ -7,13 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ....problem import QUANTITIES, Verdict
-from ....problem.cases import (
-    AnyClaim,
-    DurationsClaim,
-    MaximumClaim,
-    StatementClaim,
-    TotalTimeClaim,
-)
+from ....problem.cases import AnyClaim, DurationsClaim, MaximumClaim, StatementClaim, TotalTimeClaim
 from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..digit_ranges import below_certified
 from ..own_result import UNSAID, meant_to_keep, said_of, said_to_keep
@@ -24,7 +18,7 @@ from ..study import Study
 from .judged_rows import JudgedRow, broken, judged_row, ratio_at_print
 from .linear_blends import BLENDS, blended, judge_row
 from .peaks import box_reach, jump_size, jump_unit, largest, largest_of_each_kind
-from .rule_group import INFORMS, Explained, rule_group
+from .rule_group import INFORMS, Explained, finding, rule_group
 
 _ELSEWHERE = "elsewhere"
 """Kind of what is said of durations that are not of the problem's curve."""
@@ -93,11 +87,11 @@ def judge_bare_totals(study: Study) -> Iterator[Finding]:
             if proof is not None:
                 yield row.finding(
                     "TG201",
+                    "total excluded",
+                    *proof,
                     verdict=ClaimVerdict.REFUTED,
                     basis=Basis.ENCLOSURE,
                     printed=f"{claim.value} {study.time_unit}",
-                    sentences=proof,
-                    kind="total excluded",
                     root=f"{LIMITS} {claim.id}",
                 )
 
@@ -109,16 +103,14 @@ def _limits(study: Study, claim: AnyClaim) -> Iterator[Finding]:
         verdict, severity = said_of(study.case, claim, judged.verdict, judged.severity)
         yield row.finding(
             "TG201",
+            judged.kind,
+            *judged.sentences,
+            "" if verdict is ClaimVerdict.SUPPORTED else unsaid,
             severity=severity,
             verdict=verdict,
             basis=Basis.ENCLOSURE,
             printed=study.durations_digits(claim),
             computed=ratio_at_print(row),
-            kind=judged.kind,
-            sentences=(
-                *judged.sentences,
-                "" if verdict is ClaimVerdict.SUPPORTED else unsaid,
-            ),
             decides=meant_to_keep(study.case, claim),
             root=f"{LIMITS} {claim.id}" if judged.verdict is ClaimVerdict.REFUTED else "",
         )
@@ -139,15 +131,13 @@ def _jumps(study: Study, claim: AnyClaim) -> Iterator[Finding]:
         )
         yield row.finding(
             "TG202",
+            "velocity jumps",
+            f"The motion is discontinuous under this reading: velocity jumps {len(velocity)} "
+            f"times at the via-points, the largest jump {most}.",
+            "Limits are judged separately from jumps.",
             basis=Basis.CHECK,
             printed=study.durations_digits(claim),
             computed=f"{len(velocity)} jumps of velocity, up to {' and '.join(sizes)}",
-            kind="velocity jumps",
-            sentences=(
-                f"The motion is discontinuous under this reading: velocity jumps {len(velocity)} "
-                f"times at the via-points, the largest jump {most}.",
-                "Limits are judged separately from jumps.",
-            ),
             decides=False,
         )
 
@@ -189,14 +179,14 @@ def _limits_statement(study: Study, claim: StatementClaim) -> Iterator[Finding]:
                 if one[2].kind in (str(Verdict.DISCONTINUOUS), "total open", _ELSEWHERE)
                 for x in _placed(study, claim, *one)
             ] or [f"The printed digits do not decide whether the limits are kept: {names}."]
-        yield Finding(
-            rule="TG201",
+        yield finding(
+            "TG201",
+            claim,
+            str(verdict),
+            *sentences,
             verdict=verdict,
             basis=Basis.ENCLOSURE,
-            claim=claim.id,
             reading=reading,
-            kind=str(verdict),
-            sentences=tuple(sentences),
             follows=tuple(f"{BLENDS if blended(c) else LIMITS} {c.id}" for c, _, _ in breaking),
         )
 
@@ -261,14 +251,15 @@ def _continuity(study: Study, claim: StatementClaim) -> Iterator[Finding]:
             message = (
                 f"The motion is discontinuous: {len(jumps)} jumps, the largest {largest_ones}."
             )
-        yield Finding(
-            rule="TG202",
+        yield finding(
+            "TG202",
+            claim,
+            kind,
+            message,
+            more,
             verdict=verdict,
             basis=Basis.CHECK,
-            claim=claim.id,
             reading=reading,
-            kind=kind,
-            sentences=(message, more),
             built=built and verdict is ClaimVerdict.SUPPORTED,
         )
 
@@ -314,14 +305,8 @@ def _said_to_jump(study: Study, claim: StatementClaim) -> Iterator[Finding]:
                 f"Under this reading the acceleration{whose} agrees on both sides of every break; "
                 "a steep change is not a discontinuity, and the figures are not in the text."
             )
-        yield Finding(
-            rule="TG206",
-            verdict=verdict,
-            basis=Basis.CHECK,
-            claim=claim.id,
-            reading=reading,
-            kind=kind,
-            sentences=(message,),
+        yield finding(
+            "TG206", claim, kind, message, verdict=verdict, basis=Basis.CHECK, reading=reading
         )
 
 
@@ -350,14 +335,12 @@ def _used_up(study: Study, claim: AnyClaim) -> Iterator[Finding]:
         if tight:
             yield row.finding(
                 "TG204",
+                "reached",
+                "To first order in the rounding of the printed inputs, a limit is reached: "
+                f"{'; '.join(tight)}.",
                 verdict=ClaimVerdict.SUPPORTED,
                 basis=Basis.CHECK,
                 printed=study.durations_digits(claim),
                 computed="; ".join(tight),
-                kind="reached",
-                sentences=(
-                    "To first order in the rounding of the printed inputs, a limit is reached: "
-                    f"{'; '.join(tight)}.",
-                ),
                 decides=False,
             )

@@ -47,7 +47,7 @@ from ..stated import called, called_under, other_objective
 from ..stated_totals import contradicting_lows, is_sum, rounded_up_low, total_excludes, what_agrees
 from ..study import Study, Total
 from .judged_rows import broken
-from .rule_group import INFORMS, Explained, rule_group
+from .rule_group import INFORMS, Explained, finding, rule_group
 
 _BELOW = (
     "The whole printed interval is below the best known total; a misprint or a better optimum may "
@@ -108,10 +108,7 @@ def _beside_optimum(row: PrintedRow[AnyClaim]) -> Iterator[Finding]:
 
 
 def _distance(
-    row: PrintedRow[AnyClaim],
-    total: Total,
-    reference: Reference,
-    shared: bool,
+    row: PrintedRow[AnyClaim], total: Total, reference: Reference, shared: bool
 ) -> Finding:
     claim, solution = row.claim, row.optimum
     shown, interval = total
@@ -153,6 +150,8 @@ def _distance(
     agrees = kept and interval[0] <= solution.best <= interval[1]
     return row.finding(
         "TG303" if shared else "TG302",
+        "other objective" if informs else "distance",
+        *said,
         severity=severity,
         verdict=ClaimVerdict.SUPPORTED if agrees else ClaimVerdict.NOT_CHECKABLE,
         evidence=solution.evidence,
@@ -160,8 +159,6 @@ def _distance(
         printed=shown,
         computed=f"{reference.upper:.6f} s",
         gap=distance,
-        kind="other objective" if informs else "distance",
-        sentences=tuple(said),
         decides=False,
     )
 
@@ -241,13 +238,13 @@ def _beside_procedure(row: PrintedRow[AnyClaim], total: Total) -> Iterator[Findi
     )
     yield row.finding(
         "TG302",
+        "joint by joint",
+        message,
         verdict=ClaimVerdict.SUPPORTED if inside else ClaimVerdict.NOT_CHECKABLE,
         evidence=answer.evidence,
         basis=Basis.OPTIMUM,
         printed=shown,
         computed=f"{ranged(wide.lowest, wide.highest, '.6f')} s",
-        kind="joint by joint",
-        sentences=(message,),
         decides=False,
     )
 
@@ -390,17 +387,17 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
             which = " or the ".join(sorted(called_so))
             whose = what_agrees(len(sides.agreeing), sides.summed)
             said = [f"{whose} the {which}{rounded}."]
-        yield Finding(
-            rule="TG302",
+        yield finding(
+            "TG302",
+            statement,
+            "longer" if longer else "breaks" if breaking else str(evidence),
+            *said,
             verdict=verdict,
             evidence=evidence,
             basis=Basis.ENCLOSURE if breaking and not longer else Basis.OPTIMUM,
-            claim=statement.id,
             reading=reading,
-            sentences=tuple(said),
             gap=known(sides.most, "no time is compared with a motion"),
             farthest=sides.farthest,
-            kind="longer" if longer else "breaks" if breaking else str(evidence),
             root=f"{OPTIMAL} {statement.id}" if longer else "",
             follows=() if longer else tuple(sides.roots),
         )

@@ -58,7 +58,7 @@ class _Found:
         "an optimum, because it does not pass its via-points.",
         "Durations of 2, 1 and 3 s and blends of 0.4 s turn joint 1 from 12.5 to -10 °/s at the "
         "first via-point, which takes 56 °/s². The limit is 50 °/s².",
-    ),
+    )
 )
 def judge_blends(study: Study) -> Iterator[Finding]:
     """Findings of TG210."""
@@ -134,13 +134,16 @@ def _beside(row: PrintedRow[DurationsClaim]) -> Finding:
     verdict, severity = said_of(study.case, claim, verdict, severity)
     return row.finding(
         "TG210",
+        str(found_verdict),
+        message,
+        at_print,
+        passes,
+        UNSAID if verdict is not found_verdict else "",
         severity=severity,
         verdict=verdict,
         basis=Basis.ENCLOSURE,
         printed=study.durations_digits(claim),
         computed=computed,
-        kind=str(found_verdict),
-        sentences=(message, at_print, passes, UNSAID if verdict is not found_verdict else ""),
         decides=meant_to_keep(study.case, claim),
         root=f"{BLENDS} {claim.id}" if verdict is ClaimVerdict.REFUTED else "",
     )

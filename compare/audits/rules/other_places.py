@@ -34,7 +34,7 @@ _informing = partial(Finding, rule="TG108", decides=False)
         "Information, with both distances. It does not say that anything was exchanged. " + INFORMS,
         "The peak printed for joint 2 differs by 40 % from that of its motion and by 0.1 % from "
         "that of joint 3, and vice versa.",
-    ),
+    )
 )
 def judge_places(study: Study) -> Iterator[Finding]:
     """Findings of TG108, which inform and decide nothing."""
@@ -77,15 +77,13 @@ def _peaks_elsewhere(study: Study, claim: PeakClaim, own: AnyClaim) -> Iterator[
         if said:
             yield row.finding(
                 "TG108",
+                "peaks",
+                "Printed peaks fit another place better than their own, as if numbers had been "
+                f"exchanged in print: {'; '.join(said)}.",
                 decides=False,
                 basis=Basis.CHECK,
                 claim=claim.id,
                 printed=", ".join(map(str, claim.printed)),
-                kind="peaks",
-                sentences=(
-                    "Printed peaks fit another place better than their own, as if numbers had been "
-                    f"exchanged in print: {'; '.join(said)}.",
-                ),
             )
 
 
@@ -107,15 +105,13 @@ def _row_elsewhere(study: Study, claim: DurationsClaim) -> Iterator[Finding]:
         if best <= _FITS:
             yield row.finding(
                 "TG108",
+                "rows",
+                f"The durations printed for joint {claim.joint} ({called(claim)}) would have "
+                f"to be stretched by {100 * own:.2g} % for its own limits and fit those of "
+                f"joint {joint} within {100 * best:.2g} %, as if rows had been exchanged in "
+                "print.",
                 decides=False,
                 basis=Basis.CHECK,
-                kind="rows",
-                sentences=(
-                    f"The durations printed for joint {claim.joint} ({called(claim)}) would have "
-                    f"to be stretched by {100 * own:.2g} % for its own limits and fit those of "
-                    f"joint {joint} within {100 * best:.2g} %, as if rows had been exchanged in "
-                    "print.",
-                ),
             )
 
 

@@ -312,7 +312,7 @@ def jump_unit(row: PrintedRow[Claim], jump: Jump) -> str:
         "compared.",
         "A table prints 3.665 rad/s² for the acceleration of joint 2, another the limit 3.6, and "
         "the abstract says that no limit is exceeded.",
-    ),
+    )
 )
 def judge_peak_limits(study: Study) -> Iterator[Finding]:
     """Findings of TG209."""
@@ -332,13 +332,13 @@ def _beyond(study: Study, claim: StatementClaim, peak: PeakClaim) -> Iterator[Fi
             if said:
                 yield row.finding(
                     "TG209",
+                    "beyond",
+                    f"{place(peak)} prints {'; '.join(said)}.",
                     severity=Severity.ERROR,
                     verdict=ClaimVerdict.INCONSISTENT,
                     basis=Basis.DIGITS,
                     claim=claim.id,
                     printed=", ".join(map(str, peak.printed)),
-                    kind="beyond",
-                    sentences=(f"{place(peak)} prints {'; '.join(said)}.",),
                     root=f"peaks beyond limits {claim.id}",
                     between=(claim.id, peak.id),
                 )

@@ -13,7 +13,7 @@ from ....problem.cases import Cartesian, Column, Statement, StatementClaim
 from ....problem.robots import Chain, Convention, DhTable, JointKind, Proximity, proximity
 from ...documents import Basis, ClaimVerdict, Finding, enumerated
 from ..study import Study
-from .rule_group import Explained, rule_group
+from .rule_group import Explained, finding, rule_group
 
 _NEGLIGIBLE = 1e-9
 """Distance that float arithmetic alone could leave, m."""
@@ -69,7 +69,7 @@ class _Match:
         "tried.",
         "For any angles of joints 1 and 3, the end stays at least 0.78 m away from a printed "
         "position.",
-    ),
+    )
 )
 def judge_kinematics(study: Study) -> Iterator[Finding]:
     """Set the joint table against the printed positions, for every reading."""
@@ -345,16 +345,17 @@ def _judged(
             kind = "other signs" if lost else "other twists" if signed else "undecided"
             said = _OPEN[kind], *nearest
     worst = "; ".join(f"{_down(m.worst)} m ({m.convention})" for m in matches)
-    return Finding(
-        rule="TG601",
+    return finding(
+        "TG601",
+        None,
+        kind,
+        *said,
         verdict=verdict,
         basis=Basis.KINEMATICS,
         problem=pid,
         reading=rid,
         printed="; ".join(dict.fromkeys(place.where for _, place in places)),
         computed=f"smallest distance from the farthest position: {worst}",
-        kind=kind,
-        sentences=said,
         doubts=tuple(printed) if verdict is ClaimVerdict.INCONSISTENT else (),
     )
 
@@ -401,10 +402,4 @@ def _up(metres: float) -> str:
 
 
 def _not_checkable(rid: str | None, message: str) -> Finding:
-    return Finding(
-        rule="TG601",
-        basis=Basis.KINEMATICS,
-        reading=rid,
-        kind="not set beside",
-        sentences=(message,),
-    )
+    return finding("TG601", None, "not set beside", message, basis=Basis.KINEMATICS, reading=rid)

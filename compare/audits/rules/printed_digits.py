@@ -6,16 +6,12 @@ from collections.abc import Iterator, Sequence
 from fractions import Fraction
 
 from ....problem import Interval, Printed
-from ....problem.cases import (
-    AnyClaim,
-    DurationsClaim,
-    MaximumClaim,
-)
+from ....problem.cases import AnyClaim, DurationsClaim, MaximumClaim
 from ...documents import Basis, ClaimVerdict, Finding, Severity, ranged
 from ..roots import SUM
 from ..rounding import Agreement, agreement, either, hull, meet
 from ..study import Study
-from .rule_group import ON_DIGITS, Explained, rule_group
+from .rule_group import ON_DIGITS, Explained, finding, rule_group
 
 _SIGNIFICANT = 4
 """Digits that a number needs before its repetition is worth a word."""
@@ -159,16 +155,16 @@ def compared(
                 f"{what} is {plain} {unit} digit by digit, and {computed} for all values that "
                 f"round to the digits; rounding explains the printed {digits}."
             )
-    return Finding(
-        rule=rule,
+    return finding(
+        rule,
+        claim,
+        f"{_KINDS[kind]} in {unit}",
+        message,
         severity=severity,
         verdict=verdict,
         basis=Basis.DIGITS,
-        claim=claim.id,
         printed=digits,
         computed=computed,
-        kind=f"{_KINDS[kind]} in {unit}",
-        sentences=(message,),
         root="" if verdict is ClaimVerdict.SUPPORTED else root,
     )
 
@@ -247,20 +243,18 @@ def _lengths(study: Study) -> Iterator[Finding]:
             if len(claim.durations) == segments:
                 continue
             count = _many(len(claim.durations), "duration")
-            yield Finding(
-                rule="TG109",
+            yield finding(
+                "TG109",
+                claim,
+                "other length",
+                f"{claim.where} prints {count}, but the curve through the way-points has "
+                f"{_many(segments, 'segment')}, so no motion can be built from them.",
+                "If the paper prints another number, correct the case file.",
                 verdict=ClaimVerdict.INCONSISTENT,
                 basis=Basis.COUNT,
-                claim=claim.id,
                 reading=rid,
                 printed=count,
                 computed=_many(segments, "segment"),
-                kind="other length",
-                sentences=(
-                    f"{claim.where} prints {count}, but the curve through the way-points has "
-                    f"{_many(segments, 'segment')}, so no motion can be built from them.",
-                    "If the paper prints another number, correct the case file.",
-                ),
             )
 
 
@@ -284,14 +278,14 @@ def _maxima(study: Study) -> Iterator[Finding]:
             message = "The printed longest durations do not follow from the rows: " + "; ".join(
                 wrong
             )
-        yield Finding(
-            rule="TG102",
+        yield finding(
+            "TG102",
+            claim,
+            "others" if wrong else "longest",
+            message,
             verdict=ClaimVerdict.REFUTED if wrong else ClaimVerdict.SUPPORTED,
             basis=Basis.DIGITS,
-            claim=claim.id,
             printed=", ".join(str(d) for d in claim.durations),
-            kind="others" if wrong else "longest",
-            sentences=(message,),
         )
 
 
@@ -314,20 +308,19 @@ def _repeated_digits(study: Study) -> Iterator[Finding]:
                 and any(v.text.lstrip("+-") == w.text.lstrip("+-") for v in values)
             ]
             if len(repeated) >= 2:
-                yield Finding(
-                    rule="TG106",
+                yield finding(
+                    "TG106",
+                    None,
+                    "repeated digits",
+                    f"{len(repeated)} of the {len(entries)} way-points of joint {label} "
+                    f"({statement.waypoints.where}: {', '.join(repeated)}) repeat digits of "
+                    f"{where}, which states another quantity.",
+                    "The digits alone do not show whether one of the columns is wrong.",
                     severity=Severity.WARNING,
                     basis=Basis.DIGITS,
                     decides=False,
                     doubts=(label,),
                     printed=", ".join(repeated),
-                    kind="repeated digits",
-                    sentences=(
-                        f"{len(repeated)} of the {len(entries)} way-points of joint {label} "
-                        f"({statement.waypoints.where}: {', '.join(repeated)}) repeat digits of "
-                        f"{where}, which states another quantity.",
-                        "The digits alone do not show whether one of the columns is wrong.",
-                    ),
                 )
 
 

@@ -22,7 +22,7 @@ from ..rounding import hull, meet
 from ..stated import printed_total
 from ..study import Study
 from .printed_digits import end_blends
-from .rule_group import Explained, rule_group
+from .rule_group import Explained, finding, rule_group
 
 _Timed = DurationsClaim | MaximumClaim | TotalTimeClaim
 """Claims that state a total, or durations of which it is the sum."""
@@ -138,17 +138,16 @@ def _tables_alike(study: Study) -> Iterator[Finding]:
             f"Their totals are the optimum within rounding (reading {optimal}), which explains it: "
             "two algorithms that both find the optimum print the same numbers."
         )
-        yield Finding(
-            rule="TG104",
+        yield finding(
+            "TG104",
+            None,
+            "differ elsewhere" if apart else "optimum" if optimal else "alike",
+            f"{first.where} ({first.title}) and {second.where} ({second.title}) agree in all "
+            f"{count} numbers, digit by digit{besides}.",
+            explained if optimal is not None else "",
             severity=Severity.ERROR if apart else Severity.INFO if optimal else Severity.WARNING,
             verdict=ClaimVerdict.NOT_CHECKABLE if optimal else ClaimVerdict.INCONSISTENT,
             basis=Basis.OPTIMUM if optimal else Basis.DIGITS,
-            kind="differ elsewhere" if apart else "optimum" if optimal else "alike",
-            sentences=(
-                f"{first.where} ({first.title}) and {second.where} ({second.title}) agree in all "
-                f"{count} numbers, digit by digit{besides}.",
-                explained if optimal is not None else "",
-            ),
             root=f"{TABLES} {first.id} {second.id}",
             between=tuple(
                 c.id
@@ -280,16 +279,13 @@ def _total_shown(study: Study, claim: AnyClaim) -> tuple[str, Interval]:
 
 def _rival(claim: TotalTimeClaim) -> Finding:
     """That a named method's total has nothing else in print to agree with."""
-    return Finding(
-        rule="TG105",
+    return finding(
+        "TG105",
+        claim,
+        "printed once",
+        "This total of a named method is printed only once, so nothing printed can contradict it.",
         basis=Basis.DIGITS,
-        claim=claim.id,
         printed=str(claim.value),
-        kind="printed once",
-        sentences=(
-            "This total of a named method is printed only once, so nothing printed can contradict "
-            "it.",
-        ),
     )
 
 
@@ -324,16 +320,16 @@ def _same_total(study: Study) -> Iterator[Finding]:
         elif not agreeing and weight is not None:
             verdict, severity = ClaimVerdict.INCONSISTENT, weight
         clash = verdict is ClaimVerdict.INCONSISTENT
-        yield Finding(
-            rule="TG105",
+        yield finding(
+            "TG105",
+            claim,
+            kind,
+            message,
             severity=severity,
             verdict=verdict,
             basis=Basis.DIGITS,
-            claim=claim.id,
             printed=printed,
             computed=shown,
-            kind=kind,
-            sentences=(message,),
             follows=doubted(study, [other]) if clash else (),
             between=(claim.id, other.id) if clash else (),
         )
