@@ -29,7 +29,7 @@ from ...problem import (
 from ...problem.cases import AnyClaim, Claim, Digits, DurationBox, Statement
 from ..documents import UNITS, Finding, Keeping, Rounding, noted, si_unit
 from .rounding import RoundingBox, RoundingVerdict, judge_rounding
-from .stated import in_words, in_words_among, own_total, place, prints_durations
+from .stated import RowClaim, in_words, in_words_among, own_total, place
 from .study import Pair, Study, Total
 from .total_bound import BOXES, excludes_total
 
@@ -154,7 +154,7 @@ class PrintedRow(Generic[C]):
         Each number is treated separately: durations may be cut off although the total is rounded.
         """
         found, number = [], own_total(self.claim)
-        if prints_durations(self.claim):
+        if isinstance(self.claim, RowClaim):
             found.append(float(self._duration_box.or_cut_off().upper.sum()))
         if number is not None:
             found.append(self.time(number).cut_off().upper)
@@ -217,7 +217,7 @@ class PrintedRow(Generic[C]):
     @property
     def kept(self) -> bool:
         """Whether the printed durations keep the limits, as printed or within rounding."""
-        if not prints_durations(self.claim) or self.unmoved is not None:
+        if not isinstance(self.claim, RowClaim) or self.unmoved is not None:
             return False
         return self.rounding.verdict in (Rounding.KEEPS, Rounding.CONSISTENT)
 

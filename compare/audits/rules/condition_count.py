@@ -12,14 +12,10 @@ from ....problem import QUANTITIES, Curve, as_piecewise, counts_in_words
 from ....problem.cases import AnyClaim, ConditionsClaim, StatementClaim
 from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..printed_row import PrintedRow, left_out, rows_under
-from ..stated import all_called, called_under, prints_durations
+from ..stated import RowClaim, all_called, called_under
 from ..study import Study
 from .peaks import largest
 from .rule_group import Explained, finding, rule_group
-
-_REST = 0.01
-"""Share of a derivative's peak up to which its value at an end counts as 0: rounding of the printed
-digits moves it by less."""
 
 
 @rule_group(
@@ -179,7 +175,7 @@ def _at_rest(
 ) -> Iterator[Finding]:
     """Evaluate the derivatives that are said to vanish, at both ends of printed motions."""
     named = [study.case.claim(i) for i in of]
-    motions = named or [c for c in study.case.claims if prints_durations(c)]
+    motions = named or [c for c in study.case.claims if isinstance(c, RowClaim)]
     for reading in study.readings:
         moving, judged, built = [], 0, True
         for row in rows_under(study, motions, reading):
@@ -236,7 +232,9 @@ def _moving(row: PrintedRow[AnyClaim], orders: Sequence[int]) -> Iterator[str]:
         quantity = QUANTITIES[order - 1]
         tops = [abs(top.value) for top in largest(row, order)]
         ends = np.abs(trajectory(np.array([0.0, trajectory.total_time]), order))
-        over = np.where(ends > _REST * np.array(tops), ends, 0.0)
+        # 0.01: share of a derivative's peak up to which its value at an end counts as 0: rounding
+        # of the printed digits moves it by less.
+        over = np.where(ends > 0.01 * np.array(tops), ends, 0.0)
         if not over.any():
             continue
         # Angles and lengths are no larger or smaller than each other.

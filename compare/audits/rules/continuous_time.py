@@ -7,13 +7,13 @@ from collections.abc import Iterator
 import numpy as np
 
 from ....problem import QUANTITIES, Verdict
-from ....problem.cases import AnyClaim, DurationsClaim, MaximumClaim, StatementClaim, TotalTimeClaim
+from ....problem.cases import AnyClaim, StatementClaim, TotalTimeClaim
 from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..digit_ranges import below_certified
 from ..own_result import UNSAID, meant_to_keep, said_of, said_to_keep
 from ..printed_row import PrintedRow, left_out, printed_rows, rows_under
 from ..roots import LIMITS
-from ..stated import DERIVATIVES, all_called, called_under
+from ..stated import DERIVATIVES, RowClaim, all_called, called_under
 from ..study import Study
 from .judged_rows import JudgedRow, broken, judged_row, ratio_at_print
 from .linear_blends import BLENDS, blended, judge_row
@@ -22,8 +22,6 @@ from .rule_group import INFORMS, Explained, finding, rule_group
 
 _ELSEWHERE = "elsewhere"
 """Kind of what is said of durations that are not of the problem's curve."""
-_NARROW = 0.01
-"""Share of a limit above which rounding blurs a peak too much to call the limit reached."""
 
 
 @rule_group(
@@ -64,7 +62,7 @@ _NARROW = 0.01
 def judge_motions(study: Study) -> Iterator[Finding]:
     """Findings of TG201, TG202, TG204 and TG206."""
     for claim in study.claims:
-        if isinstance(claim, DurationsClaim | MaximumClaim):
+        if isinstance(claim, RowClaim):
             yield from _limits(study, claim)
             yield from _jumps(study, claim)
             yield from _used_up(study, claim)
@@ -323,7 +321,9 @@ def _used_up(study: Study, claim: AnyClaim) -> Iterator[Finding]:
                 if not np.isfinite(limit):
                     continue
                 reach = box_reach(row, top)
-                if abs(abs(top.value) - limit) <= reach <= _NARROW * limit:
+                # 0.01: share of a limit above which rounding blurs a peak too much to call the
+                # limit reached.
+                if abs(abs(top.value) - limit) <= reach <= 0.01 * limit:
                     label = problem.joints[top.joint]
                     value, around, bound = (
                         row.in_units(quantity, x, label) for x in (abs(top.value), reach, limit)

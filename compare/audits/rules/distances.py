@@ -9,14 +9,7 @@ import numpy as np
 
 from ....nlp import Evidence, Solution, Status, weakest
 from ....problem import shown_bound
-from ....problem.cases import (
-    AnyClaim,
-    DurationsClaim,
-    MaximumClaim,
-    StatementClaim,
-    TimeClaim,
-    TotalTimeClaim,
-)
+from ....problem.cases import AnyClaim, StatementClaim, TimeClaim, TotalTimeClaim
 from ...documents import (
     Basis,
     ClaimVerdict,
@@ -43,7 +36,7 @@ from ..fixed_ratios import (
 from ..printed_row import PrintedRow, left_out, printed_rows, rows_under
 from ..roots import LIMITS, OPTIMAL
 from ..rounding import meet
-from ..stated import called, called_under, other_objective
+from ..stated import RowClaim, called, called_under, other_objective
 from ..stated_totals import contradicting_lows, is_sum, rounded_up_low, total_excludes, what_agrees
 from ..study import Study, Total
 from .judged_rows import broken
@@ -82,7 +75,7 @@ _BELOW_BOUND = (
 def judge_distances(study: Study) -> Iterator[Finding]:
     """Findings of TG302 and TG303."""
     for claim in study.claims:
-        if isinstance(claim, DurationsClaim | MaximumClaim | TotalTimeClaim):
+        if isinstance(claim, RowClaim | TotalTimeClaim):
             for row in printed_rows(study, claim):
                 yield from _beside_optimum(row)
         elif isinstance(claim, StatementClaim) and claim.checks == "optimal":

@@ -30,9 +30,6 @@ from .rule_group import Explained, finding, rule_group
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(10)
 """Gauss-Legendre on -1..1: exact up to degree 19, and squares of declared polynomials have 18."""
-_PARTS = 8
-"""Parts of each piece beside its zeros: norms, and curves that are no polynomial in time, are
-smooth enough there."""
 _POWERS = {"mean": (1, 0), "rms": (1, 0), "integral": (1, 1), "integral-square": (2, 1)}
 """Powers of the derivative's unit and of time in each measure."""
 
@@ -109,7 +106,9 @@ def _finished(
 
 def _nodes(trajectory: Trajectory, piece: int, order: int) -> tuple[Array, Array]:
     """Places of a piece and the time that each stands for."""
-    cuts = [np.linspace(0.0, 1.0, _PARTS + 1)]
+    # 8 parts of each piece beside its zeros: norms, and curves that are no polynomial in time, are
+    # smooth enough there.
+    cuts = [np.linspace(0.0, 1.0, 9)]
     for joint in range(trajectory.joints):
         level = np.trim_zeros(trajectory.level(piece, joint, order, 0.0), "b")
         if level.size > 1:

@@ -11,17 +11,12 @@ from ....problem import check
 from ....problem.cases import AnyClaim, DurationsClaim, PeakClaim, TimeClaim, motions_of
 from ...documents import Basis, Finding
 from ..printed_row import PrintedRow, printed_rows
-from ..stated import called, prints_durations
+from ..stated import RowClaim, called
 from ..study import Study
 from .judged_rows import broken
 from .peaks import beside
 from .printed_tables import doubted
 from .rule_group import INFORMS, Explained, rule_group
-
-_FEWEST = 3
-"""Durations that two rows need in common before equal digits are worth a word."""
-_FITS = 0.01
-"""Share by which a row may miss the limits of another and still be said to fit it."""
 
 _informing = partial(Finding, rule="TG108", decides=False)
 """Nothing here decides: a printer's slip is not a fault of the numbers."""
@@ -48,7 +43,7 @@ def judge_places(study: Study) -> Iterator[Finding]:
 
 
 def _peaks_elsewhere(study: Study, claim: PeakClaim, own: AnyClaim) -> Iterator[Finding]:
-    motions = [c for c in study.case.claims if prints_durations(c)]
+    motions = [c for c in study.case.claims if isinstance(c, RowClaim)]
     for row in printed_rows(study, own):
         joints = study.problem(row.pair).joints
         said = []
@@ -102,7 +97,8 @@ def _row_elsewhere(study: Study, claim: DurationsClaim) -> Iterator[Finding]:
             for j, label in enumerate(problem.joints)
             if label != claim.joint
         )
-        if best <= _FITS:
+        # 0.01: share by which a row may miss the limits of another and still be said to fit it.
+        if best <= 0.01:
             yield row.finding(
                 "TG108",
                 "rows",
@@ -125,7 +121,8 @@ def _equal_rows(study: Study) -> Iterator[Finding]:
     rows = [c for c in study.case.claims if isinstance(c, DurationsClaim)]
     for first, second in combinations(rows, 2):
         texts = [[d.text for d in c.durations] for c in (first, second)]
-        if len(texts[0]) < _FEWEST or texts[0] != texts[1] or len(set(texts[0])) == 1:
+        # 3: durations that two rows need in common before equal digits are worth a word.
+        if len(texts[0]) < 3 or texts[0] != texts[1] or len(set(texts[0])) == 1:
             continue
         if _named(first) == _named(second) or set(doubted(study, [first])) & set(
             doubted(study, [second])

@@ -29,8 +29,6 @@ from .rule_group import Explained, rule_group
 
 _PHASES = 8
 """Offsets at which those samples are tried: the worst of so many comes near the worst of all."""
-_WIDE = 0.05
-"""Share of a peak above which the room that digits leave is said: what then fits tells little."""
 _NORM_PLACES = 65
 """Places of a piece at which the norm is computed before the largest is refined, where it is no
 polynomial in time: many for a curve that turns a few times."""
@@ -252,7 +250,9 @@ def peak_described(row: PrintedRow[AnyClaim], claim: PeakClaim, one: Beside) -> 
     exact = one.around
     said = f"{whose}the exact peak of {claim.derivative} is {exact}, printed as {one.printed}"
     room = ""
-    if one.exact and one.reach > _WIDE * one.exact:
+    # 0.05: share of a peak above which the room that digits leave is said: what then fits tells
+    # little.
+    if one.exact and one.reach > 0.05 * one.exact:
         room = f", which allows {100 * one.reach / one.exact:.2g} % either way"
     norm = "" if one.norm is None else _of_norm(one.norm)
     away = f"{100 * one.distance:+.2g} %"

@@ -10,11 +10,9 @@ from ....problem.cases import AnyClaim, DurationsClaim, MaximumClaim
 from ...documents import Basis, ClaimVerdict, Finding, Severity, ranged
 from ..roots import SUM
 from ..rounding import Agreement, agreement, either, hull, meet
+from ..stated import RowClaim
 from ..study import Study
 from .rule_group import ON_DIGITS, Explained, finding, rule_group
-
-_SIGNIFICANT = 4
-"""Digits that a number needs before its repetition is worth a word."""
 
 
 @rule_group(
@@ -171,7 +169,7 @@ def compared(
 
 def _sums(study: Study) -> Iterator[Finding]:
     for claim in study.claims:
-        if not isinstance(claim, DurationsClaim | MaximumClaim) or claim.total is None:
+        if not isinstance(claim, RowClaim) or claim.total is None:
             continue
         found = _sum_beside(study, claim, claim.total, (), "The sum of the printed durations")
         if found.verdict is ClaimVerdict.REFUTED:
@@ -204,11 +202,7 @@ def end_blends(study: Study, claim: AnyClaim) -> tuple[Printed, ...] | None:
 
 
 def _sum_beside(
-    study: Study,
-    claim: DurationsClaim | MaximumClaim,
-    total: Printed,
-    halves: Sequence[Printed],
-    what: str,
+    study: Study, claim: RowClaim, total: Printed, halves: Sequence[Printed], what: str
 ) -> Finding:
     """A printed total beside the sum of its durations and of half of some further ones."""
     parts = [*claim.durations, *halves]
@@ -236,7 +230,7 @@ def _share(interval: Interval, share: Fraction) -> Interval:
 def _lengths(study: Study) -> Iterator[Finding]:
     """Rows of another length than the motion has segments; a slip in the case file looks alike."""
     for claim in study.claims:
-        if not isinstance(claim, DurationsClaim | MaximumClaim) or claim.other_curve is not None:
+        if not isinstance(claim, RowClaim) or claim.other_curve is not None:
             continue
         for rid in study.readings:
             segments = study.case.statement(claim.problem, rid).curve().segments
@@ -301,10 +295,11 @@ def _repeated_digits(study: Study) -> Iterator[Finding]:
         entries = [row[j] for row in statement.waypoints.points]
         for group in _column_groups([*case.columns, *case.cartesian]):
             where, values = group
+            # 4: digits that a number needs before its repetition is worth a word.
             repeated = [
                 w.text
                 for w in entries
-                if len(_significant(w)) >= _SIGNIFICANT
+                if len(_significant(w)) >= 4
                 and any(v.text.lstrip("+-") == w.text.lstrip("+-") for v in values)
             ]
             if len(repeated) >= 2:

@@ -19,15 +19,13 @@ from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..printed_row import PrintedRow, rows_under
 from ..roots import TABLES
 from ..rounding import hull, meet
-from ..stated import printed_total
+from ..stated import RowClaim, printed_total
 from ..study import Study
 from .printed_digits import end_blends
 from .rule_group import Explained, finding, rule_group
 
-_Timed = DurationsClaim | MaximumClaim | TotalTimeClaim
+_Timed = RowClaim | TotalTimeClaim
 """Claims that state a total, or durations of which it is the sum."""
-_FEWEST = 4
-"""Numbers that a table needs before two tables alike are worth a word."""
 
 
 @rule_group(
@@ -63,7 +61,8 @@ def _alike(case: Case) -> Iterator[tuple[Table, Table]]:
         if first.algorithm == second.algorithm or not rows[0] or len(rows[0]) != len(rows[1]):
             continue
         printed = [[_all_digits(claim) for claim in table] for table in rows]
-        if sum(len(row) for row in printed[0]) >= _FEWEST and printed[0] == printed[1]:
+        # 4: numbers that a table needs before two tables alike are worth a word.
+        if sum(len(row) for row in printed[0]) >= 4 and printed[0] == printed[1]:
             yield first, second
 
 
@@ -158,7 +157,7 @@ def _tables_alike(study: Study) -> Iterator[Finding]:
 
 
 def _all_digits(claim: AnyClaim) -> tuple[str, ...]:
-    if isinstance(claim, DurationsClaim | MaximumClaim):
+    if isinstance(claim, RowClaim):
         total = () if claim.total is None else (claim.total.text,)
         return tuple(d.text for d in claim.durations) + total
     return ()

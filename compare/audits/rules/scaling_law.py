@@ -8,13 +8,13 @@ from itertools import permutations
 import numpy as np
 
 from ....problem import CaseError, Problem
-from ....problem.cases import AnyClaim, Digits, DurationsClaim, MaximumClaim, StatementClaim
+from ....problem.cases import AnyClaim, Digits, StatementClaim
 from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..fixed_ratios import off_ratios
 from ..printed_row import rows_under
 from ..roots import OPTIMAL
 from ..rounding import FEW_ROUNDINGS, ROUNDING
-from ..stated import called_under, other_objective
+from ..stated import RowClaim, called_under, other_objective
 from ..study import Study
 from .rule_group import Explained, finding, rule_group
 
@@ -32,7 +32,7 @@ from .rule_group import Explained, finding, rule_group
 )
 def judge_scaling(study: Study) -> Iterator[Finding]:
     """Stretch one claim's durations to another's limits: a feasible total the other can meet."""
-    claims = [c for c in study.claims if isinstance(c, DurationsClaim | MaximumClaim)]
+    claims = [c for c in study.claims if isinstance(c, RowClaim)]
     statements = [
         c for c in study.claims if isinstance(c, StatementClaim) and c.checks == "optimal"
     ]
