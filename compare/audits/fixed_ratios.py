@@ -91,8 +91,7 @@ def _ratio_box(row: PrintedRow[Claim]) -> tuple[Array, Array]:
     """Ratios of any scale: the least and the largest that the digits may stand for."""
     problem, given = row.study.problem(row.pair), row.statement.durations.ratios
     if isinstance(given, tuple):
-        ends = (np.array([getattr(n, end) for n in given]) for end in ("value", "lower", "upper"))
-        box = RoundingBox(*ends).or_cut_off()
+        box = RoundingBox.of(given).or_cut_off()
         return np.maximum(box.lower, 0.0), box.upper
     if given == "equal":
         assert problem.shares is not None

@@ -332,10 +332,18 @@ def rows_under(study: Study, claims: Iterable[C], reading: str) -> list[PrintedR
     return [row for one in claims for row in printed_rows(study, one) if row.reading == reading]
 
 
-def left_out(study: Study, named: Iterable[AnyClaim], reading: str) -> list[AnyClaim]:
-    """Claims that a statement names and from which no motion is built under a reading.
+def named_rows(
+    study: Study, named: Iterable[str]
+) -> Iterator[tuple[str, list[PrintedRow[AnyClaim]], list[AnyClaim]]]:
+    """For each reading the rows of claims that a statement names, and the claims that have none.
 
-    They are of another curve, or have another number of durations than the curve has segments.
+    From those no motion is built: they are of another curve, or have another number of durations
+    than the curve has segments.
     """
     chosen = (None, *study.problems)
-    return [c for c in named if c.problem in chosen and not rows_under(study, [c], reading)]
+    claims = [study.case.claim(one) for one in named]
+    for reading in study.readings:
+        rows = rows_under(study, claims, reading)
+        with_rows = {row.claim.id for row in rows}
+        others = [c for c in claims if c.problem in chosen and c.id not in with_rows]
+        yield reading, rows, others

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from fractions import Fraction
@@ -23,6 +24,7 @@ from ...problem import (
     Check,
     CurveError,
     Interval,
+    Measured,
     Printed,
     Problem,
     TrajgapError,
@@ -114,6 +116,12 @@ class RoundingBox:
             raise TrajgapError("box: a number is not finite; give finite bounds")
         if (self.lower > self.value).any() or (self.value > self.upper).any():
             raise TrajgapError("box: a value lies outside its bounds; give lower ≤ value ≤ upper")
+
+    @classmethod
+    def of(cls, numbers: Iterable[Measured]) -> RoundingBox:
+        """Box of printed numbers, shape (numbers,)."""
+        ends = zip(*((one.value, one.lower, one.upper) for one in numbers), strict=True)
+        return cls(*map(np.array, ends))
 
     @classmethod
     def exact(cls, value: Array) -> RoundingBox:

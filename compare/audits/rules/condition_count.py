@@ -11,7 +11,7 @@ import numpy as np
 from ....problem import QUANTITIES, Curve, as_piecewise, counts_in_words
 from ....problem.cases import AnyClaim, ConditionsClaim, StatementClaim
 from ...documents import Basis, ClaimVerdict, Finding, Severity
-from ..printed_row import PrintedRow, left_out, rows_under
+from ..printed_row import PrintedRow, named_rows
 from ..stated import RowClaim, all_called, called_under
 from ..study import Study
 from .peaks import largest
@@ -174,11 +174,9 @@ def _at_rest(
     study: Study, claim: AnyClaim, of: Sequence[str], orders: Sequence[int]
 ) -> Iterator[Finding]:
     """Evaluate the derivatives that are said to vanish, at both ends of printed motions."""
-    named = [study.case.claim(i) for i in of]
-    motions = named or [c for c in study.case.claims if isinstance(c, RowClaim)]
-    for reading in study.readings:
+    for reading, rows, others in named_rows(study, of or _rows(study)):
         moving, judged, built = [], 0, True
-        for row in rows_under(study, motions, reading):
+        for row in rows:
             if claim.problem not in (None, row.problem) or not row.has_curve:
                 continue
             judged += 1
@@ -191,29 +189,32 @@ def _at_rest(
             continue
         derivatives = [QUANTITIES[r - 1] for r in orders if r <= len(QUANTITIES)]
         names = f"{' and '.join(derivatives)} {'is' if len(derivatives) == 1 else 'are'}"
-        others = left_out(study, named, reading)
-        unknown = f"No motion is built from {all_called(others)}." if others else ""
-        verdict = ClaimVerdict.NOT_CHECKABLE if others else ClaimVerdict.SUPPORTED
+        verdict, kind, unknown = ClaimVerdict.SUPPORTED, "at rest", ""
+        message = f"On the stated curve {names} 0 at both ends of every printed motion."
+        if moving:
+            verdict, kind = ClaimVerdict.INCONSISTENT, "moving"
+            message = (
+                "The motion is said to be at rest at both ends, but on the stated curve "
+                f"{'; '.join(moving)}."
+            )
+        elif others and of:
+            verdict, kind = ClaimVerdict.NOT_CHECKABLE, "in part"
+            unknown = f"No motion is built from {all_called(others)}."
         yield finding(
             "TG207",
             claim,
-            "moving" if moving else "in part" if others else "at rest",
-            *(
-                (
-                    "The motion is said to be at rest at both ends, but on the stated curve "
-                    f"{'; '.join(moving)}.",
-                )
-                if moving
-                else (
-                    f"On the stated curve {names} 0 at both ends of every printed motion.",
-                    unknown,
-                )
-            ),
-            verdict=ClaimVerdict.INCONSISTENT if moving else verdict,
+            kind,
+            message,
+            unknown,
+            verdict=verdict,
             basis=Basis.CHECK,
             reading=reading,
-            built=built and not moving and not others,
+            built=built and verdict is ClaimVerdict.SUPPORTED,
         )
+
+
+def _rows(study: Study) -> list[str]:
+    return [c.id for c in study.case.claims if isinstance(c, RowClaim)]
 
 
 def _prescribed(curve: Curve, orders: Sequence[int]) -> bool:

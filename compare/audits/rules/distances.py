@@ -33,7 +33,7 @@ from ..fixed_ratios import (
     optimum_called,
     planned_apart,
 )
-from ..printed_row import PrintedRow, left_out, printed_rows, rows_under
+from ..printed_row import PrintedRow, named_rows, printed_rows
 from ..roots import LIMITS, OPTIMAL
 from ..rounding import meet
 from ..stated import RowClaim, called, called_under, other_objective
@@ -343,10 +343,9 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
     durations, stretched as far as those may need, take less than the low end of the printed total.
     Durations that break the limits are not answers within them.
     """
-    for reading in study.readings:
+    for reading, rows, others in named_rows(study, statement.of):
         sides = _Sides()
-        named = [study.case.claim(i) for i in statement.of]
-        for row in rows_under(study, named, reading):
+        for row in rows:
             minimised = other_objective(study.case, row.claim)
             if minimised is None:
                 _weigh(row, sides)
@@ -358,7 +357,7 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
                 )
         if not (sides.longer or sides.breaking or sides.agreeing or sides.open):
             continue
-        for one in left_out(study, named, reading):
+        for one in others:
             sides.open.append(f"{called(one)}: on another curve, so the optimum does not apply")
         evidence = weakest(one.evidence for one in sides.solutions)
         longer, breaking = sides.longer, sides.breaking
