@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 
-from ...problem.cases import (
-    ImprovementClaim,
-)
+from ...problem.cases import ImprovementClaim
 from ..documents import (
     CARD_WORDS,
     Cause,

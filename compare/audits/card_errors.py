@@ -5,14 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 
 from ...problem import Case, shown_bound
-from ...problem.cases import (
-    AnyClaim,
-    DurationsClaim,
-    ImprovementClaim,
-    MaximumClaim,
-    StatementClaim,
-    TotalTimeClaim,
-)
+from ...problem.cases import AnyClaim, ImprovementClaim, StatementClaim, TotalTimeClaim
 from ..documents import (
     Cause,
     ClaimVerdict,
@@ -25,7 +18,7 @@ from ..documents import (
     quoted,
 )
 from .roots import TABLES
-from .stated import at_place, place
+from .stated import RowClaim, at_place, place
 
 
 def plainly(
@@ -156,7 +149,7 @@ def _tables_alike(case: Case, cause: Cause, tables: Sequence[str]) -> str:
     numbers = sum(
         len(c.durations) + (c.total is not None)
         for c in case.table_claims(tables[0])
-        if isinstance(c, DurationsClaim | MaximumClaim)
+        if isinstance(c, RowClaim)
     )
     said = f"{shown} agree in all {numbers} numbers"
     hit = [case.claim(one.claim) for one in cause.consequences if one.claim]

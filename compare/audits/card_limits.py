@@ -5,14 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 
 from ...problem import Verdict
-from ...problem.cases import (
-    AnyClaim,
-    DurationsClaim,
-    MaximumClaim,
-    StatementClaim,
-    TimeClaim,
-    TotalTimeClaim,
-)
+from ...problem.cases import AnyClaim, StatementClaim, TimeClaim, TotalTimeClaim
 from ..documents import (
     CaveatKind,
     ClaimVerdict,
@@ -28,15 +21,11 @@ from .digit_ranges import implausible
 from .own_result import meant_to_keep, own_results, said_to_keep
 from .printed_row import printed_rows
 from .rules import blended, judge_row
-from .stated import at_place, place, prints_durations
+from .stated import RowClaim, at_place, place
 from .study import Study
 
 FEW = 2
 """Readings, places or totals that a sentence names; more are counted."""
-_TELLING = 1.01
-"""Ratio to a limit at the printed digits from which on a card gives it: below, digits end there."""
-_Row = DurationsClaim | MaximumClaim
-"""What prints durations."""
 _Held = Mapping[str, Mapping[str, ClaimVerdict]]
 """What is known of the limits of printed durations, by claim and reading."""
 
@@ -60,12 +49,12 @@ def limits_line(study: Study, words: Mapping[str, Judgement]) -> tuple[str, set[
         for c in case.claims
         if isinstance(c, StatementClaim) and c.checks == "within_limits" and c.id in words
     ]
-    meant = [c for c in case.claims if isinstance(c, _Row) and meant_to_keep(case, c)]
+    meant = [c for c in case.claims if isinstance(c, RowClaim) and meant_to_keep(case, c)]
     elsewhere = [c for c in meant if c.other_curve is not None and not blended(c)]
     rows = [c for c in meant if c not in elsewhere and c.id in words]
     timed = [c for c in case.claims if isinstance(c, TimeClaim) and c.other_curve is None]
     bare = timed and all(isinstance(c, TotalTimeClaim) for c in timed)
-    if bare and not about and not any(prints_durations(c) for c in case.claims):
+    if bare and not about and not any(isinstance(c, RowClaim) for c in case.claims):
         return f"{unknown}: totals are printed, but durations are not.", set()
     apart = {c.id for c in elsewhere}
     if not rows and elsewhere and all(apart.issuperset(c.of) for c in about):
@@ -105,13 +94,15 @@ def _places(rows: Sequence[AnyClaim]) -> str:
     return " and ".join(found) if 0 < len(found) <= FEW else ""
 
 
-def _whose(study: Study, own: Sequence[_Row], held: _Held) -> str:
+def _whose(study: Study, own: Sequence[RowClaim], held: _Held) -> str:
     """The durations that a sentence speaks of: named where it does not hold of all others too."""
     said = [set(held[c.id].values()) for c in own]
     others = [
         c
         for c in study.case.claims
-        if isinstance(c, _Row) and c not in own and set(_of_limits(study, c).values()) not in said
+        if isinstance(c, RowClaim)
+        and c not in own
+        and set(_of_limits(study, c).values()) not in said
     ]
     where = _places(own)
     apart = where and not {place(c) for c in others}.intersection(map(place, own))
@@ -122,7 +113,7 @@ def _whose(study: Study, own: Sequence[_Row], held: _Held) -> str:
     )
 
 
-def _within(study: Study, own: Sequence[_Row]) -> str:
+def _within(study: Study, own: Sequence[RowClaim]) -> str:
     """Whether it takes the rounding of the digits to keep the limits, and of which row how much."""
     found = []
     for row in own:
@@ -138,7 +129,9 @@ def _within(study: Study, own: Sequence[_Row]) -> str:
     cut, ratio, row, worst = max(found, key=lambda one: one[:2])
     how = "if digits were cut off" if cut else "within rounding"
     where = "" if len(own) == 1 or not cut else f", those in {place(row)}"
-    if worst is None or ratio < _TELLING or worst.joint is None:
+    # 1.01: ratio to a limit at the printed digits from which on a card gives it: below, digits end
+    # there.
+    if worst is None or ratio < 1.01 or worst.joint is None:
         return f"{where} {how}"
     share = 100 * (ratio - 1)
     return (
@@ -210,7 +203,7 @@ def _jumping(words: Mapping[str, Judgement], asked: Iterable[str]) -> str:
     return ", on curves whose velocity jumps" if jumps else ""
 
 
-def _broken(study: Study, own: Sequence[_Row], held: _Held) -> str:
+def _broken(study: Study, own: Sequence[RowClaim], held: _Held) -> str:
     """Which of the durations break a limit, and whether anything printed says that they keep it."""
     every = "however the digits were rounded"
     if not own:

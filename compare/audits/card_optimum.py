@@ -9,12 +9,7 @@ import numpy as np
 
 from ...nlp import Evidence, Solution, Status
 from ...problem import Coupling, shown_bound
-from ...problem.cases import (
-    AnyClaim,
-    MaximumClaim,
-    ProfiledClaim,
-    TimeClaim,
-)
+from ...problem.cases import AnyClaim, MaximumClaim, ProfiledClaim, TimeClaim
 from ..documents import (
     CaveatKind,
     ClaimVerdict,
@@ -33,17 +28,13 @@ from .own_result import bare_totals, own_result
 from .printed_row import PrintedRow
 from .profile_motions import above_shortest
 from .rounding import meet
-from .stated import other_objective, printed_total, prints_durations
+from .stated import RowClaim, other_objective, printed_total
 from .stated_totals import contradicts_its_parts, other_totals
 from .study import Pair, Study
 from .waterfall import stands_in
 
 _MANY_TIMES = 10.0
 """Distance beyond which a multiple says more than a percentage."""
-_LONGER = 1e-4
-"""Share above the shortest total from which it is said: a hundredth of a percent, as the claims."""
-_OBJECTIVE_WORDS = 8
-"""Words of an objective that the card repeats; a longer one is left to the claims."""
 _PLURALS = {"proven optimum": "proven optima", "best known total": "best known totals"}
 """What an optimum is called, and several of them."""
 _REMARKS = {
@@ -140,7 +131,9 @@ def _above_shortest(study: Study, claims: Sequence[ProfiledClaim]) -> str:
     main = [pair for pair in study.pairs if pair.reading == study.main_reading]
     rows = [PrintedRow(study, c, p) for c in claims for p in main if c.problem in (None, p.problem)]
     above = {row.problem: above_shortest(row) for row in rows}
-    longer = [f"{100 * more:.2g} %" for more in above.values() if more > _LONGER]
+    # 1e-4: share above the shortest total from which it is said: a hundredth of a percent, as the
+    # claims.
+    longer = [f"{100 * more:.2g} %" for more in above.values() if more > 1e-4]
     if len(longer) > 1:
         return f" The algorithm's totals are {' and '.join(longer)} above the shortest totals."
     return f" One total of the algorithm is {longer[0]} above the shortest." if longer else ""
@@ -283,7 +276,8 @@ def _one_beside(row: PrintedRow[TimeClaim], solution: Solution) -> _Part | None:
     if minimised is not None and share > 0:
         motion = f"shortest {'' if certified else 'known '}motion on the same curve"
         motion += at_ratios(solution.problem)
-        called = f" ({minimised})" if count_words(minimised) <= _OBJECTIVE_WORDS else ""
+        # 8: words of an objective that the card repeats; a longer one is left to the claims.
+        called = f" ({minimised})" if count_words(minimised) <= 8 else ""
         return (
             f"{shown} was not minimised for time alone{called}; the {motion} takes "
             f"{span}{' (proven)' if certified else ''}"
@@ -369,7 +363,7 @@ def _kept_there(row: PrintedRow[TimeClaim]) -> str:
 
     A distance from the optimum is one of a motion only where that motion keeps its limits.
     """
-    if not prints_durations(row.claim) or row.unmoved is not None:
+    if not isinstance(row.claim, RowClaim) or row.unmoved is not None:
         return ""
     if contradicts_its_parts(row):
         return ""  # the total is of other durations than those beside it

@@ -27,7 +27,7 @@ from ..documents import (
     said_beside,
 )
 from .printed_row import rows_under
-from .stated import prints_durations
+from .stated import RowClaim
 from .study import Study
 
 Explained = Callable[[str, Finding], tuple[Explanation, ...]]
@@ -258,6 +258,6 @@ def _rests_on(claim: AnyClaim) -> tuple[str, ...]:
 def _jumps(study: Study, claim: AnyClaim, reading: str) -> bool:
     """Whether the velocity of a motion that a claim speaks about jumps under a reading."""
     about = [claim, *(study.case.claim(i) for i in _rests_on(claim))]
-    motions = rows_under(study, filter(prints_durations, about), reading)
+    motions = rows_under(study, [c for c in about if isinstance(c, RowClaim)], reading)
     checked = [row.check_or_none for row in motions]
     return any(jump.order == 1 for found in checked if found is not None for jump in found.jumps)

@@ -9,15 +9,7 @@ from typing import cast
 import numpy as np
 
 from ...problem import QUANTITIES, Array, Limits, Printed, Problem, Quantity, evaluate
-from ...problem.cases import (
-    AnyClaim,
-    Claim,
-    DurationsClaim,
-    MaximumClaim,
-    PeakClaim,
-    Statement,
-    motions_of,
-)
+from ...problem.cases import AnyClaim, Claim, PeakClaim, Statement, motions_of
 from ..documents import Explanation, Finding
 from .printed_row import PrintedRow
 from .rules import box_reach, largest
@@ -33,12 +25,7 @@ from .slips import (
     values,
     waypoints,
 )
-
-LIKELY = 1.5
-"""Factor by which a number may change where no other printed number speaks for the change: a
-leading digit could always make a duration long enough, and such a change explains nothing."""
-_LEAST_GAIN = 0.9
-"""Share of the excess that a change must leave at most to be called an improvement."""
+from .stated import RowClaim
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +48,7 @@ class _Tried:
 
 
 def changes_of_motion(
-    row: PrintedRow[DurationsClaim | MaximumClaim], finding: Finding, claim: AnyClaim
+    row: PrintedRow[RowClaim], finding: Finding, claim: AnyClaim
 ) -> tuple[list[tuple[Slip, bool]], Explanation | None]:
     """Changes that may settle what is said of a motion, and whether they reach a limit.
 
@@ -90,7 +77,10 @@ def changes_of_motion(
         offs = _offs(row, problem, tried.peaks, room)
         for slip, ratio, far in zip(tried.slips, tried.ratios(), offs, strict=True):
             away = bool(ratio < 1 - room)
-            telling = far < off or not away or slip.share <= LIKELY
+            # 1.5: factor by which a number may change where no other printed number speaks for the
+            # change: a leading digit could always make a duration long enough, and such a change
+            # explains nothing.
+            telling = far < off or not away or slip.share <= 1.5
             if ratio <= least and far <= most and telling and not _breaks_sum(row.claim, slip):
                 ranked.append(((int(far), away, slip.slips, slip.share), slip))
             elif slip.share == 1.0 and (best is None or ratio < best[0]):
@@ -141,7 +131,7 @@ def _meets(
     return abs(meant.value - peak) <= room * peak + meant.upper - meant.lower
 
 
-def _breaks_sum(row: DurationsClaim | MaximumClaim, slip: Slip) -> bool:
+def _breaks_sum(row: RowClaim, slip: Slip) -> bool:
     """Whether a change takes the durations of a row from their printed total."""
     if row.total is None or slip.edits[0][0][-2] != "durations":
         return False
@@ -153,7 +143,7 @@ def _breaks_sum(row: DurationsClaim | MaximumClaim, slip: Slip) -> bool:
     return far[1] > max(far[0], room)
 
 
-def _edited(row: DurationsClaim | MaximumClaim, slip: Slip) -> list[Printed]:
+def _edited(row: RowClaim, slip: Slip) -> list[Printed]:
     """The durations of a row with a change made."""
     found = list(row.durations)
     for path, number in slip.edits:
@@ -163,7 +153,8 @@ def _edited(row: DurationsClaim | MaximumClaim, slip: Slip) -> list[Printed]:
 
 def _nearer(finding: Finding, before: float, best: tuple[float, Slip] | None) -> Explanation | None:
     """An exchange or a turn that brings a motion nearer to its limits, and not within them."""
-    if finding.rule != "TG201" or best is None or best[0] - 1 > _LEAST_GAIN * (before - 1):
+    # 0.9: share of the excess that a change must leave at most to be called an improvement.
+    if finding.rule != "TG201" or best is None or best[0] - 1 > 0.9 * (before - 1):
         return None
     return Explanation(
         change=best[1].change,
@@ -173,9 +164,7 @@ def _nearer(finding: Finding, before: float, best: tuple[float, Slip] | None) ->
     )
 
 
-def _changes(
-    row: PrintedRow[DurationsClaim | MaximumClaim], finding: Finding, printed: Array
-) -> Iterator[_Tried]:
+def _changes(row: PrintedRow[RowClaim], finding: Finding, printed: Array) -> Iterator[_Tried]:
     """Other durations, way-points and limits, with the peaks that follow."""
     case, problem = row.study.case, row.posed()
     statement = row.statement

@@ -10,10 +10,10 @@ import numpy as np
 from ...nlp import Evidence, Status
 from ...nlp.optimum import apart
 from ...problem import Array, Problem, as_piecewise, shown_bound
-from ...problem.cases import Claim, Digits, DurationsClaim, MaximumClaim
+from ...problem.cases import Claim, Digits
 from .printed_row import PrintedRow, rows_under
 from .rounding import ROUNDING, same_limits
-from .stated import other_objective
+from .stated import RowClaim, other_objective
 from .study import Study
 
 
@@ -158,7 +158,7 @@ def _stretch(study: Study, reading: str) -> float | None:
     timed = [
         claim
         for claim in study.case.claims
-        if isinstance(claim, DurationsClaim | MaximumClaim)
+        if isinstance(claim, RowClaim)
         if claim.state != "before" and other_objective(study.case, claim) is None
     ]
     checked = [row.check_or_none for row in rows_under(study, timed, reading)]

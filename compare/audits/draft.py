@@ -28,10 +28,7 @@ _FOLLOWS = "Rests on numbers that change above."
 
 
 def advise(
-    study: Study,
-    causes: Sequence[Cause],
-    judgements: Sequence[Judgement],
-    edits: Sequence[Edit],
+    study: Study, causes: Sequence[Cause], judgements: Sequence[Judgement], edits: Sequence[Edit]
 ) -> tuple[Advice, ...]:
     """What an author can change before submitting, the gravest first.
 

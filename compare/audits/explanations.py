@@ -36,20 +36,15 @@ from .printed_row import PrintedRow
 from .roots import LIMITS, TABLES
 from .rules import RuleGroup, count_conditions, held_otherwise
 from .slips import Slip, durations, misprints, of_rows, totals, values
-from .stated import place, prints_durations
+from .stated import RowClaim, place
 from .study import Pair, Study
 
 _OF_MOTIONS = {"TG201", "TG203", "TG208", "TG211"}
 """Rules that rebuild motions from printed durations."""
 _OF_DIGITS = {"TG101", "TG102", "TG103", "TG105"}
 """Rules that set printed numbers beside each other."""
-_JUDGED_AT_MOST = 6
-"""Changes of each kind that the rules judge, the likeliest first: judging one takes as long as
-judging the paper's own row."""
 _NAMED = 3
 """Changes that are named where they explain as much as each other; of more only the number is."""
-_TRIED = 400
-"""Changes of digits alone that are put to the rule which found the contradiction."""
 
 _ALL_KEPT = "every limit is kept"
 """What holds where a change brings all durations within their limits."""
@@ -163,7 +158,7 @@ class _Trial:
             if after - before:
                 return None
             settled = {rule for rule, _ in before - after}
-            timed = "TG201" in settled and prints_durations(row)
+            timed = "TG201" in settled and isinstance(row, RowClaim)
             rounding = PrintedRow(changed, row, self.pair).rounding.verdict if timed else None
         except TrajgapError:
             return None
@@ -186,7 +181,8 @@ class _Trial:
         slips.sort(key=lambda slip: (slip.slips, slip.share))
         group = next(g for g in self.groups if finding.rule in g.rules)
         found = []
-        for slip in slips[:_TRIED]:
+        # 400: changes of digits alone that are put to the rule which found the contradiction.
+        for slip in slips[:400]:
             try:
                 changed = self.changed(slip)
                 own = changed.only(changed.case.claim(claim.id), pair=self.pair)
@@ -233,14 +229,14 @@ def explained(
         under = f", under {quoted(finding.reading, study.case.labels)}"
         default = finding.reading == study.case.default_reading.id
     found: list[Explanation] = []
-    if kind == LIMITS and isinstance(claim, DurationsClaim | MaximumClaim):
+    if kind == LIMITS and isinstance(claim, RowClaim):
         found += _at_samples(study, claim, finding, under)
     trial = _Trial(study, groups, finding, claim)
     return (*found, *_by_slips(trial, under, default))
 
 
 def _at_samples(
-    study: Study, claim: DurationsClaim | MaximumClaim, finding: Finding, under: str
+    study: Study, claim: RowClaim, finding: Finding, under: str
 ) -> Iterator[Explanation]:
     """Limits that were held at some times only."""
     pair = Pair(str(finding.problem), str(finding.reading))
@@ -344,20 +340,22 @@ def _likeliest(tried: Iterable[tuple[Slip, bool]]) -> Iterator[tuple[Slip, bool]
     seen: Counter[str] = Counter()
     for slip, reached in tried:
         seen[slip.kind] += 1
-        if seen[slip.kind] <= _JUDGED_AT_MOST:
+        # 6: changes of each kind that the rules judge, the likeliest first: judging one takes as
+        # long as judging the paper's own row.
+        if seen[slip.kind] <= 6:
             yield slip, reached
 
 
-def _row(study: Study, finding: Finding, claim: AnyClaim) -> DurationsClaim | MaximumClaim | None:
+def _row(study: Study, finding: Finding, claim: AnyClaim) -> RowClaim | None:
     """The durations whose motion a finding is about; None if it is about digits alone."""
     if finding.rule not in _OF_MOTIONS:
         return None
-    if isinstance(claim, DurationsClaim | MaximumClaim):
+    if isinstance(claim, RowClaim):
         return claim
     if not isinstance(claim, _VALUES):
         return None
     found = [c for c in motions_of(study.case.claims, claim) if c.id in finding.between]
-    return found[0] if found and isinstance(found[0], DurationsClaim | MaximumClaim) else None
+    return found[0] if found and isinstance(found[0], RowClaim) else None
 
 
 # --- what the rules say ---------------------------------------------------------------------------
@@ -403,7 +401,7 @@ def _effect(study: Study, one: _Judged, row: AnyClaim, all_kept: str) -> str:
     parts = []
     broken = [study.case.claim(c) for rule, c in sorted(one.left) if rule == "TG201" and c]
     if "TG201" in one.settled:
-        timed = broken and prints_durations(row)
+        timed = broken and isinstance(row, RowClaim)
         kept = f"the durations in {place(row)} keep every limit" if timed else all_kept
         parts.append(kept + (" within rounding" if one.rounding is Rounding.CONSISTENT else ""))
         if one.reached:

@@ -77,14 +77,12 @@ def of_other_ratios(row: PrintedRow[Claim], shown: str, other: str) -> Finding:
     """
     return row.finding(
         "TG302",
+        "other ratios",
+        f"Printed are {other}.",
+        "They answer a question other than the shortest total at these ratios, and are not "
+        "compared with it.",
         basis=Basis.DIGITS,
         printed=shown,
-        kind="other ratios",
-        sentences=(
-            f"Printed are {other}.",
-            "They answer a question other than the shortest total at these ratios, and are not "
-            "compared with it.",
-        ),
         decides=False,
     )
 
@@ -93,8 +91,7 @@ def _ratio_box(row: PrintedRow[Claim]) -> tuple[Array, Array]:
     """Ratios of any scale: the least and the largest that the digits may stand for."""
     problem, given = row.study.problem(row.pair), row.statement.durations.ratios
     if isinstance(given, tuple):
-        ends = (np.array([getattr(n, end) for n in given]) for end in ("value", "lower", "upper"))
-        box = RoundingBox(*ends).or_cut_off()
+        box = RoundingBox.of(given).or_cut_off()
         return np.maximum(box.lower, 0.0), box.upper
     if given == "equal":
         assert problem.shares is not None

@@ -16,14 +16,6 @@ ALLOWANCES = 3.0
 """For all problems of a case, in what one problem is allowed: most declared and short spline
 problems are certified in it, and a usual audit still ends in about a minute. Boxes are counted and
 not seconds, so no verdict depends on how busy the machine is."""
-_AUDITED_GAP = 1e-4
-"""Relative width that is asked for: far below the digits that papers print, and cheap to reach."""
-_SHARE = 1 / 3
-"""Of what is left of the budget, for one problem: later ones get their turn too."""
-_LEAST = 0.1
-"""Allowances below which no further search is begun: it would prove nothing."""
-_LEAST_SECONDS = 0.5
-"""The same of a budget in seconds."""
 
 
 class Intervals:
@@ -80,8 +72,11 @@ class Intervals:
         found = self._by_document(problem, Subject.DECLARED)
         if found is not None or covered(problem) is not None:
             return found
-        share = self._left * _SHARE
-        if share < (_LEAST if self._counted else _LEAST_SECONDS):
+        # 1 / 3: of what is left of the budget, for one problem: later ones get their turn too.
+        share = self._left * (1 / 3)
+        # 0.1: allowances below which no further search is begun: it would prove nothing.
+        # 0.5: the same of a budget in seconds.
+        if share < (0.1 if self._counted else 0.5):
             if self._left > 0:
                 left = "no boxes were" if self._counted else "no time was"
                 self.left_out.append(f"{called}: {left} left")
@@ -94,9 +89,9 @@ class Intervals:
             self._progress(f"certifying {called}, at most {amount}")
         began = time.monotonic()
         try:
-            answer = certify(
-                problem, gap=_AUDITED_GAP, seconds=seconds, boxes=boxes, cache=self._cache
-            )
+            # 1e-4: relative width that is asked for: far below the digits that papers print, and
+            # cheap to reach.
+            answer = certify(problem, gap=1e-4, seconds=seconds, boxes=boxes, cache=self._cache)
         except TrajgapError:
             return None  # nothing limits its total
         # What was proved with kept proofs costs nothing, and counts as if it had been searched.

@@ -28,9 +28,6 @@ from ...nlp import problem_seal
 from ...nlp.proofs import KeptFiles, as_text, code_hash, folder_of, from_text
 from ...problem import Coupling, Problem, TrajgapError
 
-WORTH_PROCESSES = 50_000
-"""Iterations of all seeds of a replay from which further processes pay: fewer take some seconds
-side by side, and each process takes two to import what it needs."""
 Replays = tuple[Run, ...] | tuple[JointRuns, ...]
 """Runs of one algorithm, one for each seed: of all joints, or of each joint separately."""
 
@@ -133,7 +130,9 @@ class KeptReplays(KeptFiles):
 
 def _worth(iterations: int) -> int:
     """Processes that pay for so many iterations of all seeds."""
-    return (os.cpu_count() or 1) if iterations >= WORTH_PROCESSES else 1
+    # 50_000: iterations of all seeds of a replay from which further processes pay: fewer take some
+    # seconds side by side, and each process takes two to import what it needs.
+    return (os.cpu_count() or 1) if iterations >= 50_000 else 1
 
 
 def _question(asked: Sequence[AskedReplay]) -> dict[str, Any]:

@@ -10,21 +10,8 @@ import numpy as np
 from scipy.optimize import brentq
 
 from ...problem import Array
-from .axis_profile import (
-    AxisProfile,
-    AxisState,
-    Phase,
-    Sizes,
-    shortest_s_curve,
-    shortest_trapezoid,
-)
+from .axis_profile import AxisProfile, AxisState, Phase, Sizes, shortest_s_curve, shortest_trapezoid
 from .rounding import FEW_ROUNDINGS
-
-_GAMMA = 0.99
-"""Factor by which the book shrinks the acceleration until its formulas close: with it, Example 3.11
-ends at the printed 6.9641 = 10·0.99³⁶."""
-_TRIALS = 10_000
-"""Bound of that loop; 0.99¹⁰⁰⁰⁰ is 10⁻⁴⁴."""
 
 
 def double_s(start: AxisState, finish: AxisState, sizes: Sizes) -> AxisProfile | None:
@@ -60,7 +47,8 @@ def double_s(start: AxisState, finish: AxisState, sizes: Sizes) -> AxisProfile |
     if cruise > 0.0:
         return _of_parts(start, (*lengths,), (*ramps,), cruise, jerk)
     size = sizes.acceleration
-    for _ in repeat(None, _TRIALS):
+    # 10_000: bound of that loop; 0.99¹⁰⁰⁰⁰ is 10⁻⁴⁴.
+    for _ in repeat(None, 10_000):
         ramp = size / jerk
         root = (
             size**4 / jerk**2 + 2.0 * (v0**2 + v1**2) + size * (4.0 * way - 2.0 * ramp * (v0 + v1))
@@ -72,7 +60,9 @@ def double_s(start: AxisState, finish: AxisState, sizes: Sizes) -> AxisProfile |
             return _one_sided(start, way, v1, jerk, falling=both[0] < 0.0)
         if min(both) >= 2.0 * ramp:
             return _of_parts(start, (*both,), (ramp, ramp), 0.0, jerk)
-        size *= _GAMMA
+        # 0.99: factor by which the book shrinks the acceleration until its formulas close: with it,
+        # Example 3.11 ends at the printed 6.9641 = 10·0.99³⁶.
+        size *= 0.99
     return None
 
 
@@ -121,12 +111,6 @@ def _of_parts(
     return AxisProfile(start, tuple(phases))
 
 
-_AREA = 16.0 / 35.0
-"""Mean of the impulse 64 t³(1 − t)³ from 0 to 1; its largest value is 1."""
-_WAY = 5.0 / 36.0
-"""Way in the time 1 while such an impulse raises the acceleration from 0 to 1."""
-
-
 def jerk_impulses(start: AxisState, finish: AxisState, sizes: Sizes) -> AxisProfile | None:
     """The profile of Riboli et al. (2023, equations 76 to 98) with a plateau speed.
 
@@ -165,14 +149,16 @@ def _to_plateau(
     velocity: float, acceleration: float, speed: float, sizes: Sizes
 ) -> tuple[list[Phase], float]:
     """Phases from a state to a speed that is kept, and their way."""
-    jerk, phases, way = _AREA * sizes.jerk, [], 0.0
+    # 16.0 / 35.0: mean of the impulse 64 t³(1 − t)³ from 0 to 1; its largest value is 1.
+    jerk, phases, way = (16.0 / 35.0) * sizes.jerk, [], 0.0
 
     def impulse(end: float) -> None:
         nonlocal velocity, acceleration, way
         change = end - acceleration
         time = abs(change) / jerk
         phases.append(Phase(time, acceleration, copysign(jerk, change)))
-        way += time * (velocity + time * (acceleration / 2.0 + change * _WAY))
+        # 5.0 / 36.0: way in the time 1 while such an impulse raises the acceleration from 0 to 1.
+        way += time * (velocity + time * (acceleration / 2.0 + change * (5.0 / 36.0)))
         velocity += time * (acceleration + end) / 2.0
         acceleration = end
 

@@ -11,12 +11,6 @@ from ...problem import Array
 from .profile_motions import ProfileMotion
 from .rounding import ROUNDING, meet
 
-_JUMP = 0.01
-"""Share of a number by which its values for numerically equal inputs must differ to be called a
-jump."""
-_HALVINGS = 40
-"""Times that two inputs are brought halfway together: what they leave of each other is rounding."""
-
 
 @dataclass(frozen=True)
 class NumberRange:
@@ -90,12 +84,16 @@ def _jump(
     if not len(gaps):
         return None
     at = int(np.argmax(gaps))
-    least = _JUMP * abs(found[0][0])
+    # 0.01: share of a number by which its values for numerically equal inputs must differ to be
+    # called a jump.
+    least = 0.01 * abs(found[0][0])
     if gaps[at] <= max(0.5 * gaps.sum(), least):
         return None
     low, high = found[at : at + 2]
     middle = (low[0] + high[0]) / 2.0
-    for _ in range(_HALVINGS):
+    # 40: times that two inputs are brought halfway together: what they leave of each other is
+    # rounding.
+    for _ in range(40):
         between = low[1].asked(low[1].question.halfway(high[1].question))
         if between is None:
             break

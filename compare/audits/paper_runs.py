@@ -20,8 +20,6 @@ RUNS_FORMAT: Literal["trajgap-paper-runs-1"] = "trajgap-paper-runs-1"
 """Of the file of committed runs."""
 _RUNS = "paper_runs.json"
 """The committed runs: written by benchmarks/paper_runs.py, never by hand."""
-_ENDS = (0.0, 0.25, 0.5, 0.75)
-"""Best, lower quartile, median, upper quartile."""
 _NO_ANSWER = "as many runs found no feasible answer"
 """Why a quantile is missing."""
 _NO_OPTIMUM = "no optimum is known"
@@ -124,7 +122,8 @@ def _about(study: Study, group: KeptRuns) -> bool:
 
 def _reached(study: Study, group: KeptRuns, within: tuple[float, ...]) -> Reached:
     totals = np.array([np.inf if run.total is None else run.total for run in group.runs])
-    best, low, median, high = quantiles(totals, _ENDS)
+    # Best, lower quartile, median, upper quartile.
+    best, low, median, high = quantiles(totals, (0.0, 0.25, 0.5, 0.75))
     reference = _reference(study, group)
     spent = np.array([run.evaluations for run in group.runs], dtype=np.float64)
     return Reached(

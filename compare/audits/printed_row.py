@@ -26,16 +26,10 @@ from ...problem import (
     reachable_total,
     shown_unit,
 )
-from ...problem.cases import (
-    AnyClaim,
-    Claim,
-    Digits,
-    DurationBox,
-    Statement,
-)
+from ...problem.cases import AnyClaim, Claim, Digits, DurationBox, Statement
 from ..documents import UNITS, Finding, Keeping, Rounding, noted, si_unit
 from .rounding import RoundingBox, RoundingVerdict, judge_rounding
-from .stated import in_words, in_words_among, own_total, place, prints_durations
+from .stated import RowClaim, in_words, in_words_among, own_total, place
 from .study import Pair, Study, Total
 from .total_bound import BOXES, excludes_total
 
@@ -79,10 +73,10 @@ class PrintedRow(Generic[C]):
         """The problem under the reading, in printed digits."""
         return self.study.case.statement(*self.pair)
 
-    def finding(self, rule: str, **facts: Any) -> Finding:
+    def finding(self, rule: str, kind: str, *sentences: str, **facts: Any) -> Finding:
         """A finding of a rule on the claim under this problem and reading."""
         about = {"claim": self.claim.id, "problem": self.problem, "reading": self.reading}
-        return Finding(rule=rule, **about | facts)
+        return Finding(rule=rule, kind=kind, sentences=sentences, **about | facts)
 
     def once(self, what: str, compute: Callable[[], T], *more: object) -> T:
         """A value that the study keeps for this row under a name, computed on first use."""
@@ -160,7 +154,7 @@ class PrintedRow(Generic[C]):
         Each number is treated separately: durations may be cut off although the total is rounded.
         """
         found, number = [], own_total(self.claim)
-        if prints_durations(self.claim):
+        if isinstance(self.claim, RowClaim):
             found.append(float(self._duration_box.or_cut_off().upper.sum()))
         if number is not None:
             found.append(self.time(number).cut_off().upper)
@@ -223,7 +217,7 @@ class PrintedRow(Generic[C]):
     @property
     def kept(self) -> bool:
         """Whether the printed durations keep the limits, as printed or within rounding."""
-        if not prints_durations(self.claim) or self.unmoved is not None:
+        if not isinstance(self.claim, RowClaim) or self.unmoved is not None:
             return False
         return self.rounding.verdict in (Rounding.KEEPS, Rounding.CONSISTENT)
 
@@ -338,10 +332,18 @@ def rows_under(study: Study, claims: Iterable[C], reading: str) -> list[PrintedR
     return [row for one in claims for row in printed_rows(study, one) if row.reading == reading]
 
 
-def left_out(study: Study, named: Iterable[AnyClaim], reading: str) -> list[AnyClaim]:
-    """Claims that a statement names and from which no motion is built under a reading.
+def named_rows(
+    study: Study, named: Iterable[str]
+) -> Iterator[tuple[str, list[PrintedRow[AnyClaim]], list[AnyClaim]]]:
+    """For each reading the rows of claims that a statement names, and the claims that have none.
 
-    They are of another curve, or have another number of durations than the curve has segments.
+    From those no motion is built: they are of another curve, or have another number of durations
+    than the curve has segments.
     """
     chosen = (None, *study.problems)
-    return [c for c in named if c.problem in chosen and not rows_under(study, [c], reading)]
+    claims = [study.case.claim(one) for one in named]
+    for reading in study.readings:
+        rows = rows_under(study, claims, reading)
+        with_rows = {row.claim.id for row in rows}
+        others = [c for c in claims if c.problem in chosen and c.id not in with_rows]
+        yield reading, rows, others

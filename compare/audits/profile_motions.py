@@ -32,8 +32,6 @@ from .stated import DERIVATIVES
 _CORNERS = 1024
 """Combinations of ends of what digits leave: so many profiles take a few seconds. Where there are
 more, they are drawn: of 30 numbers that add up, the largest drawn sum is half of the largest."""
-_NEARER = 6
-"""Times that numbers at which no profile exists are brought halfway to the printed ones."""
 SIZES = ("largest", "smallest")
 """Places of a motion that are values."""
 
@@ -121,7 +119,8 @@ class ProfileMotion:
 
     def near_to(self, question: ProfileQuestion) -> ProfileMotion:
         """The same for other numbers, or for those nearest to them on the way from its own."""
-        for _ in range(_NEARER):
+        # 6: times that numbers at which no profile exists are brought halfway to the printed ones.
+        for _ in range(6):
             one = self.asked(question)
             if one is not None:
                 return one
@@ -267,9 +266,7 @@ def with_own_limit(
     return np.column_stack([limits, column])
 
 
-def _own_limit(
-    claim: ProfiledClaim,
-) -> tuple[Printed | tuple[Printed, ...], Quantity] | None:
+def _own_limit(claim: ProfiledClaim) -> tuple[Printed | tuple[Printed, ...], Quantity] | None:
     """What the profile alone has, and in which unit."""
     if claim.deceleration is not None:
         return claim.deceleration, "acceleration"

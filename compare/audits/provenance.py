@@ -19,21 +19,10 @@ from ...verify import Subject
 from ..documents import Provenance, UsedCertificate, Why, known
 from .study import Study
 
-LIBRARIES = (
-    "casadi",
-    "jinja2",
-    "matplotlib",
-    "numba",
-    "numpy",
-    "pydantic",
-    "scipy",
-    "toppra",
-)
+LIBRARIES = ("casadi", "jinja2", "matplotlib", "numba", "numpy", "pydantic", "scipy", "toppra")
 """Libraries whose versions can move a digit or a pixel."""
 _EPOCH = "SOURCE_DATE_EPOCH"
 """Variable of the environment that sets the date, by the convention of reproducible builds."""
-_GIT_SECONDS = 5
-"""Time that git gets to name the commit; it needs a hundredth of that."""
 
 
 def provenance(study: Study, day: date | None = None) -> Provenance:
@@ -102,12 +91,13 @@ def commit() -> str | Why:
 
 
 def _git(folder: Path, *arguments: str) -> str:
+    # 5: time that git gets to name the commit; it needs a hundredth of that.
     done = subprocess.run(
         ("git", "-C", str(folder), *arguments),
         capture_output=True,
         text=True,
         check=True,
-        timeout=_GIT_SECONDS,
+        timeout=5,
     )
     return done.stdout.strip()
 

@@ -26,14 +26,9 @@ from ..documents import ClaimVerdict, Edit, Finding, Judgement, Severity
 from .printed_row import PrintedRow, rows_under
 from .reworded import CLAIM, READINGS, Reworded, edited, printed_under
 from .rules import in_digits, recomputed, repeated_total, summed
+from .stated import RowClaim
 from .study import Study
 
-_ROUNDS = 5
-"""Audits of the edited draft at most: durations change what rests on them in one, a sentence that
-no number mends is left out in the next, and one more shows that nothing is left."""
-_UNITS_UP = 20
-"""Units of the last digit by which rounded durations are lengthened at most until they keep the
-limits: rounding up alone nearly always does, because longer segments are slower ones."""
 _LIMITS = ("TG201", "TG302", "TG303")
 """Rules that speak against a time itself, and not against how it is added up or repeated."""
 _FALSE = (ClaimVerdict.REFUTED, ClaimVerdict.INCONSISTENT, ClaimVerdict.DEPENDS)
@@ -62,7 +57,9 @@ def revise(study: Study, first: Audited, again: Callable[[Study], Audited]) -> t
     draft = _Draft(study)
     tried: Counter[str] = Counter()
     found = first
-    for _ in range(_ROUNDS):
+    # 5: audits of the edited draft at most: durations change what rests on them in one, a sentence
+    # that no number mends is left out in the next, and one more shows that nothing is left.
+    for _ in range(5):
         pressing = _pressing(draft.case, *found)
         before = dict(draft.edits)
         for one in sorted(pressing, key=lambda one: _order(draft.case.claim(one))):
@@ -163,7 +160,7 @@ def _mend(draft: _Draft, claim: AnyClaim, rules: set[str], tried: Counter[str]) 
             mended = any(done)
         if not mended:
             draft.put(claim.id, CLAIM, (), claim.id)
-    elif isinstance(claim, DurationsClaim | MaximumClaim):
+    elif isinstance(claim, RowClaim):
         if rules & {*_LIMITS}:
             _lengthen(draft, claim, claim.id)
         if rules - {*_LIMITS}:
@@ -193,7 +190,7 @@ def _repeat(draft: _Draft, claim: TotalTimeClaim, other: AnyClaim, trigger: str 
     """Print the total of another place."""
     if isinstance(other, TotalTimeClaim):
         total = in_digits(other.value.fraction, claim.value)
-    elif isinstance(other, DurationsClaim | MaximumClaim):
+    elif isinstance(other, RowClaim):
         total = summed([other.total] if other.total else other.durations, claim.value)
     if total != claim.value.text:
         draft.put(claim.id, "value", (total,), trigger)
@@ -292,19 +289,17 @@ def _lengthen_rows(
 
 
 def _print(
-    draft: _Draft,
-    claim: AnyClaim,
-    problems: Sequence[Problem],
-    durations: Array,
-    trigger: str,
+    draft: _Draft, claim: AnyClaim, problems: Sequence[Problem], durations: Array, trigger: str
 ) -> bool:
     """Put durations, rounded up to the draft's digits, that pass as printed; whether any do."""
-    assert isinstance(claim, DurationsClaim | MaximumClaim)
+    assert isinstance(claim, RowClaim)
     unit = draft.case.document.units.time or "s"
     places = max(one.places for one in claim.durations)
     step = Decimal(1).scaleb(-max(places, 0))
     least = [Decimal(from_si(float(h), unit)).quantize(step, ROUND_CEILING) for h in durations]
-    for up in range(_UNITS_UP):
+    # 20: units of the last digit by which rounded durations are lengthened at most until they keep
+    # the limits: rounding up alone nearly always does, because longer segments are slower ones.
+    for up in range(20):
         tried = [value + up * step for value in least]
         seconds = np.array([float(value) for value in tried]) / from_si(1.0, unit)
         if all(check(problem, seconds).limits is Verdict.PASS for problem in problems):

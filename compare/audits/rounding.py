@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from fractions import Fraction
@@ -23,6 +24,7 @@ from ...problem import (
     Check,
     CurveError,
     Interval,
+    Measured,
     Printed,
     Problem,
     TrajgapError,
@@ -32,10 +34,6 @@ from ...problem import (
 )
 from ..documents import Rounding
 
-_MOST_STEPS = 12
-"""Linear programs of one descent; those that find a passing point need fewer than 5."""
-_MOST_ROWS = 300
-"""Peaks that one linear program holds: more of them change its answer no further."""
 ROUNDING = 1e-9
 """Relative margin of every comparison of computed numbers: far above what float64 loses in solved
 systems and long sums, and what `check` tolerates; far below any printed digit."""
@@ -118,6 +116,12 @@ class RoundingBox:
             raise TrajgapError("box: a number is not finite; give finite bounds")
         if (self.lower > self.value).any() or (self.value > self.upper).any():
             raise TrajgapError("box: a value lies outside its bounds; give lower ≤ value ≤ upper")
+
+    @classmethod
+    def of(cls, numbers: Iterable[Measured]) -> RoundingBox:
+        """Box of printed numbers, shape (numbers,)."""
+        ends = zip(*((one.value, one.lower, one.upper) for one in numbers), strict=True)
+        return cls(*map(np.array, ends))
 
     @classmethod
     def exact(cls, value: Array) -> RoundingBox:
@@ -365,10 +369,12 @@ def _descend(
     x = np.concatenate([start.durations, start.waypoints.ravel()])
     point, reach, worst = start, 1.0, np.inf
     trial = point
-    for _ in range(_MOST_STEPS):
+    # 12: linear programs of one descent; those that find a passing point need fewer than 5.
+    for _ in range(12):
         there = replace(problem, waypoints=trial.waypoints)
         try:
-            rows = rows_at(there, trial.durations, _MOST_ROWS)
+            # 300: peaks that one linear program holds: more of them change its answer no further.
+            rows = rows_at(there, trial.durations, 300)
             ratios = rows.ratios()
             ratio = float(ratios.max(initial=-np.inf))
         except CurveError:  # no spline passes these way-points at these times

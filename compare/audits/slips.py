@@ -20,9 +20,6 @@ from ...problem.cases import (
 )
 from .stated import place
 
-_TURN_PLACES = 12
-"""Decimals of a full turn in radians: as many as a double-precision angle holds."""
-
 Path = tuple[str | int, ...]
 """Where a number stands in a case file: keys and places in lists."""
 
@@ -233,7 +230,8 @@ def of_rows(case: Case, claim: AnyClaim) -> Iterator[Slip]:
 
 def turns(spots: Sequence[Spot], joint: str, unit: str, radians: Sequence[float]) -> Iterator[Slip]:
     """Angles of a joint a full turn further or less far."""
-    turn = Decimal(str(round(from_si(tau, unit), _TURN_PLACES)))
+    # 12: decimals of a full turn in radians: as many as a double-precision angle holds.
+    turn = Decimal(str(round(from_si(tau, unit), 12)))
     for w, spot in enumerate(spots):
         for sign in (-1, 1):
             number = spot.number.decimal + sign * turn

@@ -24,13 +24,10 @@ from ...problem.cases import (
 )
 from ..documents import StatedAnswer, StatedClaim, StatedSource, enumerated, known, noted
 
+RowClaim = DurationsClaim | MaximumClaim
+"""What prints durations, so a motion can be built from it."""
 _TIME = "time"
 """The objective of a claim that was minimised for time alone, in a file that says another one."""
-
-
-def prints_durations(claim: Claim) -> bool:
-    """Whether a claim prints durations, so a motion can be built from it."""
-    return isinstance(claim, DurationsClaim | MaximumClaim)
 
 
 def stated_claims(case: Case) -> tuple[StatedClaim, ...]:
@@ -91,7 +88,7 @@ def digits_of(case: Case, claim: AnyClaim) -> str:
     """The digits that a claim prints, with the paper's unit; empty if it prints none."""
     units = case.document.units
     time = f" {units.time}" if units.time else ""
-    if isinstance(claim, DurationsClaim | MaximumClaim):
+    if isinstance(claim, RowClaim):
         shown = ", ".join(map(str, claim.durations)) + time
         return shown + (f"; total {claim.total}{time}" if claim.total is not None else "")
     if isinstance(claim, TotalTimeClaim):
@@ -134,7 +131,7 @@ def asked_as(case: Case, problem: str, reading: str) -> str:
 
 def printed_total(claim: Claim) -> Printed | None:
     """The total that a claim prints, if it does."""
-    if isinstance(claim, DurationsClaim | MaximumClaim):
+    if isinstance(claim, RowClaim):
         return claim.total
     return claim.value if isinstance(claim, TotalTimeClaim) else None
 
@@ -142,7 +139,7 @@ def printed_total(claim: Claim) -> Printed | None:
 def own_total(claim: Claim) -> Printed | None:
     """The same; None if it is the sum of the printed digits, which says no more than they do."""
     total = printed_total(claim)
-    if total is None or not isinstance(claim, DurationsClaim | MaximumClaim):
+    if total is None or not isinstance(claim, RowClaim):
         return total
     return None if total.decimal == sum(one.decimal for one in claim.durations) else total
 
@@ -263,7 +260,7 @@ def _said(case: Case, claim: AnyClaim) -> str:
     return _STATEMENTS[claim.checks].format(of=whose, joint=claim.joint)
 
 
-def _timed(claim: DurationsClaim | MaximumClaim | TotalTimeClaim, unit: str, whose: str) -> str:
+def _timed(claim: RowClaim | TotalTimeClaim, unit: str, whose: str) -> str:
     if isinstance(claim, TotalTimeClaim):
         return f"the motion{whose} takes {claim.value} {unit}"
     count = len(claim.durations)

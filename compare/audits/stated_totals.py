@@ -4,14 +4,9 @@ from __future__ import annotations
 
 from math import inf
 
-from ...problem.cases import (
-    AnyClaim,
-    Claim,
-    TimeClaim,
-    TotalTimeClaim,
-)
+from ...problem.cases import AnyClaim, Claim, TimeClaim, TotalTimeClaim
 from .printed_row import PrintedRow
-from .stated import own_total, place, printed_total, prints_durations
+from .stated import RowClaim, own_total, place, printed_total
 
 
 def other_totals(row: PrintedRow[Claim]) -> list[TotalTimeClaim]:
@@ -20,7 +15,7 @@ def other_totals(row: PrintedRow[Claim]) -> list[TotalTimeClaim]:
     Only a row with durations has any. Digits may be rounded or cut off.
     """
     own = row.total
-    if own is None or not prints_durations(row.claim):
+    if own is None or not isinstance(row.claim, RowClaim):
         return []
     low, high = own.interval[0], max(own.interval[1], row.longest_total)
     stated = (
@@ -39,7 +34,7 @@ def other_totals(row: PrintedRow[Claim]) -> list[TotalTimeClaim]:
 def contradicts_its_parts(row: PrintedRow[Claim]) -> bool:
     """Whether a total printed beside durations is not their sum, rounded or cut off."""
     number = printed_total(row.claim)
-    if number is None or not prints_durations(row.claim):
+    if number is None or not isinstance(row.claim, RowClaim):
         return False
     box, total = row.durations, row.time(number)
     longest = float((box.upper + (box.upper - box.lower) / 2).sum())
@@ -74,7 +69,7 @@ def total_excludes(row: PrintedRow[AnyClaim], time: float) -> bool:
     A total that is the sum of the printed digits says no more than they do.
     """
     number = own_total(row.claim)
-    if number is None or not prints_durations(row.claim):
+    if number is None or not isinstance(row.claim, RowClaim):
         return False
     total = row.time(number)
     low = total.lower - (total.upper - total.lower) / 2
@@ -83,7 +78,7 @@ def total_excludes(row: PrintedRow[AnyClaim], time: float) -> bool:
 
 def is_sum(claim: AnyClaim) -> bool:
     """Whether the total of a row is not printed beside its durations but their sum."""
-    return prints_durations(claim) and printed_total(claim) is None
+    return isinstance(claim, RowClaim) and printed_total(claim) is None
 
 
 def what_agrees(count: int, sums: int) -> str:
@@ -107,6 +102,6 @@ def rounded_up_low(row: PrintedRow[AnyClaim], interval: tuple[float, float]) -> 
     beside durations is then the sum of what was rounded up.
     """
     low, high = interval
-    if isinstance(row.claim, TotalTimeClaim) or not prints_durations(row.claim):
+    if isinstance(row.claim, TotalTimeClaim) or not isinstance(row.claim, RowClaim):
         return low - (high - low) / 2
     return min(low, _raised_low(row))

@@ -9,13 +9,7 @@ from typing import Any, NamedTuple, Self, TypeVar, cast
 
 import numpy as np
 
-from ...heuristics import (
-    KINDS,
-    Algorithm,
-    DeathPenalty,
-    JointRuns,
-    from_settings,
-)
+from ...heuristics import KINDS, Algorithm, DeathPenalty, JointRuns, from_settings
 from ...nlp import (
     OPTIMUM_SLACK,
     ExactProblem,
@@ -48,7 +42,7 @@ from .kept_optima import AskedOptimum, KeptOptima
 from .kept_replays import KeptReplays, Replays
 from .options import USUAL, AuditOptions
 from .replay_settings import LISTED, spread_settings
-from .stated import in_words, in_words_among, printed_total, prints_durations
+from .stated import RowClaim, in_words, in_words_among, printed_total
 
 T = TypeVar("T")
 SPREAD_SEEDS = 3
@@ -182,7 +176,7 @@ class Study:
         total = None
         if printed is not None:
             total = self.case.measured(printed, "time", claim.problem, reading)
-        if not prints_durations(claim):
+        if not isinstance(claim, RowClaim):
             return None if total is None else Total(shown, (total.lower, total.upper))
         box = self.case.claim_durations(claim, reading)
         low, high = float(box.lower.sum()), float(box.upper.sum())

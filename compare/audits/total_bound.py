@@ -8,18 +8,13 @@ from ...nlp.enclosure import Ball, bound_ratio
 from ...problem import TOLERANCE, Array, Problem
 from .rounding import FEW_ROUNDINGS, RoundingBox
 
-_MOST_SPLIT = 8
-"""Segments above which splitting boxes of durations cannot come to an end in time."""
 BOXES = 1000
 """Boxes of durations that are examined, each in milliseconds: a few seconds at most, and the result
 does not depend on the machine."""
 
 
 def excludes_total(
-    problem: Problem,
-    total: float,
-    waypoints: RoundingBox | None = None,
-    boxes: int = BOXES,
+    problem: Problem, total: float, waypoints: RoundingBox | None = None, boxes: int = BOXES
 ) -> bool | None:
     """Prove that no durations of a total or less keep the limits, for all way-points of a box.
 
@@ -51,7 +46,8 @@ def excludes_total(
     if low.sum() > total:
         return True
     # Where coefficients are free, durations alone have no ratios to bound.
-    if problem.curve.free or not (low > 0.0).all() or problem.segments > _MOST_SPLIT:
+    # 8: segments above which splitting boxes of durations cannot come to an end in time.
+    if problem.curve.free or not (low > 0.0).all() or problem.segments > 8:
         return False
     todo = [(low, np.minimum(total - (low.sum() - low), problem.duration_upper * target))]
     looked = 0

@@ -6,13 +6,7 @@ from ...nlp import Evidence, Route, Solution, Status, printed_problem_or_none
 from ...nlp.proofs.any_curve import estimate_any_curve
 from ...nlp.retiming import jerk_limited_path, retime, retime_third_order
 from ...problem import down, fit, shown_bound, up
-from ...problem.cases import (
-    AnyClaim,
-    DurationsClaim,
-    MaximumClaim,
-    TimeClaim,
-    TotalTimeClaim,
-)
+from ...problem.cases import AnyClaim, TimeClaim, TotalTimeClaim
 from ..documents import (
     EXACT,
     FREED_OPTIMUM,
@@ -35,7 +29,7 @@ from .fixed_ratios import off_ratios, planned_apart
 from .own_result import bare_totals, own_result
 from .printed_row import PrintedRow
 from .rounding import FEW_ROUNDINGS
-from .stated import other_objective
+from .stated import RowClaim, other_objective
 from .study import Pair, Study
 
 
@@ -53,7 +47,7 @@ def _starting_claim(study: Study, problem: str) -> AnyClaim | None:
     whole = [
         c
         for c in study.case.claims
-        if isinstance(c, DurationsClaim | MaximumClaim)
+        if isinstance(c, RowClaim)
         and study.fits(c, pair)
         and (c.joint is None or len(study.problem(pair).joints) == 1)
     ]
@@ -88,11 +82,7 @@ def _known(name: str, solution: Solution, note: str = "") -> Step:
     )
 
 
-_FOUND = {
-    Route.NLP: "the NLP (IPOPT)",
-    Route.DESCENT: "descents",
-    Route.CLOSED_FORM: "a formula",
-}
+_FOUND = {Route.NLP: "the NLP (IPOPT)", Route.DESCENT: "descents", Route.CLOSED_FORM: "a formula"}
 """Words for what found a total."""
 
 
@@ -167,7 +157,7 @@ def _published(row: PrintedRow[AnyClaim]) -> list[Step]:
         time = row.measured(claim.value, "time").value
         note = f"printed {shown} without durations{_beside(row)}"
         return [Step(name=PUBLISHED, time=time, low=low, high=high, note=note)]
-    number = claim.total if isinstance(claim, DurationsClaim | MaximumClaim) else None
+    number = claim.total if isinstance(claim, RowClaim) else None
     value = None if number is None else row.measured(number, "time").value
     why = row.unmoved
     if why is not None:
@@ -232,12 +222,7 @@ def _procedure(study: Study, pair: Pair) -> Step:
             "optimum"
         )
     return Step(
-        name=name,
-        time=answer.total_time,
-        low=low,
-        high=high,
-        evidence=answer.evidence,
-        note=note,
+        name=name, time=answer.total_time, low=low, high=high, evidence=answer.evidence, note=note
     )
 
 

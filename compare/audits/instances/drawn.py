@@ -35,8 +35,6 @@ from .result import InstancesResult, Optimum, Sample
 
 STARTS = 2
 """Starts of every solve, for there are hundreds; one where the segments are independent."""
-_ROUTES = 3
-"""The slower procedure, its algorithm on the faster one's curve, and the faster procedure."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,9 +61,7 @@ class Task:
 
 
 def examine(
-    tasks: Iterable[Task],
-    workers: int = 1,
-    progress: Callable[[str], None] | None = None,
+    tasks: Iterable[Task], workers: int = 1, progress: Callable[[str], None] | None = None
 ) -> tuple[Sample, ...]:
     """Solve every instance for both curves and run both procedures on it.
 
@@ -124,7 +120,9 @@ def _of_task(task: Task) -> tuple[Sample, ...]:
     _solve_all(kept, [problem for each in routes for problem, _ in each], task.optima)
     found = []
     for reading, each in zip(task.readings, routes, strict=True):
-        totals = np.empty((len(task.objectives), _ROUTES, task.runs))
+        # 3: the slower procedure, its algorithm on the faster one's curve, and the faster
+        # procedure.
+        totals = np.empty((len(task.objectives), 3, task.runs))
         settled = np.empty(totals.shape, dtype=np.intp)
         for at, objective in enumerate(task.objectives):
             for r, (problem, algorithm) in enumerate(each):

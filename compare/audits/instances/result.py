@@ -28,10 +28,6 @@ MIDDLE = 0.9
 """Share of a distribution within which a printed reduction counts as reproduced."""
 
 
-_RESAMPLED = 1000
-"""Samples of instances behind an interval: its ends move by about a tenth of its width."""
-
-
 @dataclass(frozen=True)
 class Optimum:
     """Total (s) of a solve, inf without an answer, and how it ended."""
@@ -199,8 +195,10 @@ class InstancesResult:
             return float(known[0]), float(known[0])
         from scipy.stats import bootstrap  # half a second, and few need it
 
+        # 1000: samples of instances behind an interval: its ends move by about a tenth of its
+        # width.
         found = bootstrap(
-            (known,), np.median, n_resamples=_RESAMPLED, method="percentile", rng=0
+            (known,), np.median, n_resamples=1000, method="percentile", rng=0
         ).confidence_interval
         return float(found.low), float(found.high)
 

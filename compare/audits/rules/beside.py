@@ -17,16 +17,10 @@ Meant = Callable[[Array, Array], dict[str, float]]
 """From way-points and durations to what a number may be, each in words."""
 SAMPLES = (50, 100, 200, 500, 1000)
 """Numbers of samples of which a paper may have taken a mean, with or without the last instant."""
-_ROOTS = (2, 3, 5)
-"""Numbers whose square roots closed forms of peaks hold, such as 10/√3 of degree 5 and 84√5/25 of
-degree 7: one that is lost in print is named as an explanation."""
 UNEXPLAINED = (
     "and neither rounding, cut-off digits nor sampling was found to explain the difference"
 )
 """Said of a printed number of a motion that is not that of the printed durations."""
-_CORNERS = 6
-"""Corners of the rounding box that are looked at in turn at most, each way; a search of all of its
-2ⁿ corners would not end where there are many durations and way-points."""
 _FACTORS = {
     180 / pi: "as between degrees and radians",
     1000.0: "as a thousandth of the unit",
@@ -43,8 +37,6 @@ _LENGTH_FACTORS = {
     60.0: "as per minute instead of per second",
 }
 """The same of joints that slide, whose numbers are not angles."""
-_NEAR_FACTOR = 0.01
-"""Relative distance from such a ratio below which the unit is named as an explanation."""
 
 
 FITS = (Agreement.ROUNDING, Agreement.CUT_OFF, Agreement.SAMPLING, Agreement.NORM)
@@ -151,7 +143,9 @@ class Beside:
             return None
         around = self.exact - self.reach, self.exact + self.reach
         low, high = self.rounded
-        found = (n for n in _ROOTS if meet((n**0.5 * low, n**0.5 * high), around))
+        # (2, 3, 5): numbers whose square roots closed forms of peaks hold, such as 10/√3 of degree
+        # 5 and 84√5/25 of degree 7: one that is lost in print is named as an explanation.
+        found = (n for n in (2, 3, 5) if meet((n**0.5 * low, n**0.5 * high), around))
         return next(found, None)
 
     @property
@@ -177,7 +171,9 @@ def _meant_by_ratio(ratio: float, linear: bool) -> str | None:
     """
     for factor, meaning in (_LENGTH_FACTORS if linear else _FACTORS).items():
         for one in (factor, 1 / factor):
-            if abs(ratio / one - 1) <= _NEAR_FACTOR:
+            # 0.01: relative distance from such a ratio below which the unit is named as an
+            # explanation.
+            if abs(ratio / one - 1) <= 0.01:
                 return f"{one:.6g}, {meaning}"
     return None
 
@@ -236,11 +232,7 @@ def nearest_number(
 
 
 def _farthest(
-    meant: Meant,
-    words: str,
-    durations: RoundingBox,
-    waypoints: RoundingBox,
-    share: float,
+    meant: Meant, words: str, durations: RoundingBox, waypoints: RoundingBox, share: float
 ) -> float:
     """Largest change of a number that is found in the rounding box, ``share`` as wide."""
 
@@ -335,7 +327,9 @@ def largest_change(
     widest, start = 0.0, looked(middle)
     for side in (1.0, -1.0):
         at, here = middle, start
-        for _ in range(_CORNERS):
+        # 6: corners of the rounding box that are looked at in turn at most, each way; a search of
+        # all of its 2ⁿ corners would not end where there are many durations and way-points.
+        for _ in range(6):
             down, up = (
                 np.where(np.isnan(change), -np.inf, side * change)
                 for change in (here.down, here.up)

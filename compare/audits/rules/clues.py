@@ -163,10 +163,7 @@ def _smooth(study: Study, clue: SmoothClue, reading: str) -> _Said:
         for row, jump in largest_of_each_kind(jumps)
     )
     plural = "s" if len(jumps) > 1 else ""
-    return (
-        Speaks.AGAINST,
-        f"{clue.quantity} jumps {len(jumps)} time{plural}, by up to {shown}",
-    )
+    return (Speaks.AGAINST, f"{clue.quantity} jumps {len(jumps)} time{plural}, by up to {shown}")
 
 
 def _half_turns(study: Study, clue: HalfTurnsClue, reading: str) -> _Said:

@@ -12,7 +12,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from ....problem import Case
 from ...documents import Basis, Finding, noted
 from ..study import Study
-from .rule_group import INFORMS, Explained, rule_group
+from .rule_group import INFORMS, Explained, finding, rule_group
 
 _RESULTS = "comparisons.json"
 """The committed results: written by benchmarks/comparison_results.py, never by hand."""
@@ -156,15 +156,15 @@ def cite_comparisons(study: Study) -> Iterator[Finding]:
             continue
         first = known.listed[0]
         both = {one: study.called(getattr(known, one)) for one in ("improved", "standard")}
-        yield Finding(
-            rule="TG405",
+        yield finding(
+            "TG405",
+            claim,
+            "study",
+            *comparison_words(known.model_copy(update=both), study.case),
             basis=Basis.REPLAY,
             decides=False,
-            claim=claim.id,
             printed=known.printed,
             computed=f"holds in {_percent(first.shown.share)} of the pairs",
-            kind="study",
-            sentences=tuple(comparison_words(known.model_copy(update=both), study.case)),
         )
 
 

@@ -11,15 +11,11 @@ import numpy as np
 from ....problem import QUANTITIES, Curve, as_piecewise, counts_in_words
 from ....problem.cases import AnyClaim, ConditionsClaim, StatementClaim
 from ...documents import Basis, ClaimVerdict, Finding, Severity
-from ..printed_row import PrintedRow, left_out, rows_under
-from ..stated import all_called, called_under, prints_durations
+from ..printed_row import PrintedRow, named_rows
+from ..stated import RowClaim, all_called, called_under
 from ..study import Study
 from .peaks import largest
-from .rule_group import Explained, rule_group
-
-_REST = 0.01
-"""Share of a derivative's peak up to which its value at an end counts as 0: rounding of the printed
-digits moves it by less."""
+from .rule_group import Explained, finding, rule_group
 
 
 @rule_group(
@@ -99,17 +95,17 @@ def _counted(study: Study, claim: ConditionsClaim) -> Finding:
     elif wanted > available:
         verdict, severity, kind = ClaimVerdict.NOT_CHECKABLE, Severity.WARNING, "too many"
         more = "All of them can hold only for special way-points."
-    return Finding(
-        rule="TG107",
+    return finding(
+        "TG107",
+        claim,
+        kind,
+        f"{said}.",
+        more,
         severity=severity,
         verdict=verdict,
         basis=Basis.COUNT,
-        claim=claim.id,
         printed=printed,
         computed=computed,
-        kind=kind,
-        sentences=(f"{said}.", more),
-        # A printed count may be wrong; that the declared curve meets its own conditions cannot.
         built=verdict is ClaimVerdict.SUPPORTED and claim.count is None,
     )
 
@@ -178,11 +174,9 @@ def _at_rest(
     study: Study, claim: AnyClaim, of: Sequence[str], orders: Sequence[int]
 ) -> Iterator[Finding]:
     """Evaluate the derivatives that are said to vanish, at both ends of printed motions."""
-    named = [study.case.claim(i) for i in of]
-    motions = named or [c for c in study.case.claims if prints_durations(c)]
-    for reading in study.readings:
+    for reading, rows, others in named_rows(study, of or _rows(study)):
         moving, judged, built = [], 0, True
-        for row in rows_under(study, motions, reading):
+        for row in rows:
             if claim.problem not in (None, row.problem) or not row.has_curve:
                 continue
             judged += 1
@@ -195,24 +189,32 @@ def _at_rest(
             continue
         derivatives = [QUANTITIES[r - 1] for r in orders if r <= len(QUANTITIES)]
         names = f"{' and '.join(derivatives)} {'is' if len(derivatives) == 1 else 'are'}"
-        others = left_out(study, named, reading)
-        unknown = f"No motion is built from {all_called(others)}." if others else ""
-        verdict = ClaimVerdict.NOT_CHECKABLE if others else ClaimVerdict.SUPPORTED
-        yield Finding(
-            rule="TG207",
-            verdict=ClaimVerdict.INCONSISTENT if moving else verdict,
-            basis=Basis.CHECK,
-            claim=claim.id,
-            reading=reading,
-            kind="moving" if moving else "in part" if others else "at rest",
-            sentences=(
+        verdict, kind, unknown = ClaimVerdict.SUPPORTED, "at rest", ""
+        message = f"On the stated curve {names} 0 at both ends of every printed motion."
+        if moving:
+            verdict, kind = ClaimVerdict.INCONSISTENT, "moving"
+            message = (
                 "The motion is said to be at rest at both ends, but on the stated curve "
-                f"{'; '.join(moving)}.",
+                f"{'; '.join(moving)}."
             )
-            if moving
-            else (f"On the stated curve {names} 0 at both ends of every printed motion.", unknown),
-            built=built and not moving and not others,
+        elif others and of:
+            verdict, kind = ClaimVerdict.NOT_CHECKABLE, "in part"
+            unknown = f"No motion is built from {all_called(others)}."
+        yield finding(
+            "TG207",
+            claim,
+            kind,
+            message,
+            unknown,
+            verdict=verdict,
+            basis=Basis.CHECK,
+            reading=reading,
+            built=built and verdict is ClaimVerdict.SUPPORTED,
         )
+
+
+def _rows(study: Study) -> list[str]:
+    return [c.id for c in study.case.claims if isinstance(c, RowClaim)]
 
 
 def _prescribed(curve: Curve, orders: Sequence[int]) -> bool:
@@ -231,7 +233,9 @@ def _moving(row: PrintedRow[AnyClaim], orders: Sequence[int]) -> Iterator[str]:
         quantity = QUANTITIES[order - 1]
         tops = [abs(top.value) for top in largest(row, order)]
         ends = np.abs(trajectory(np.array([0.0, trajectory.total_time]), order))
-        over = np.where(ends > _REST * np.array(tops), ends, 0.0)
+        # 0.01: share of a derivative's peak up to which its value at an end counts as 0: rounding
+        # of the printed digits moves it by less.
+        over = np.where(ends > 0.01 * np.array(tops), ends, 0.0)
         if not over.any():
             continue
         # Angles and lengths are no larger or smaller than each other.

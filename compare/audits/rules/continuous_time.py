@@ -7,29 +7,21 @@ from collections.abc import Iterator
 import numpy as np
 
 from ....problem import QUANTITIES, Verdict
-from ....problem.cases import (
-    AnyClaim,
-    DurationsClaim,
-    MaximumClaim,
-    StatementClaim,
-    TotalTimeClaim,
-)
-from ...documents import Basis, ClaimVerdict, Finding, Severity
+from ....problem.cases import AnyClaim, StatementClaim, TotalTimeClaim
+from ...documents import Basis, ClaimVerdict, Finding
 from ..digit_ranges import below_certified
 from ..own_result import UNSAID, meant_to_keep, said_of, said_to_keep
-from ..printed_row import PrintedRow, left_out, printed_rows, rows_under
+from ..printed_row import PrintedRow, named_rows, printed_rows
 from ..roots import LIMITS
-from ..stated import DERIVATIVES, all_called, called_under
+from ..stated import DERIVATIVES, RowClaim, all_called, called_under
 from ..study import Study
-from .judged_rows import JudgedRow, broken, judged_row, ratio_at_print
-from .linear_blends import BLENDS, blended, judge_row
+from .judged_rows import broken, judged_row, ratio_at_print
+from .linear_blends import judge_row
 from .peaks import box_reach, jump_size, jump_unit, largest, largest_of_each_kind
-from .rule_group import INFORMS, Explained, rule_group
+from .rule_group import INFORMS, Explained, finding, rule_group
 
 _ELSEWHERE = "elsewhere"
 """Kind of what is said of durations that are not of the problem's curve."""
-_NARROW = 0.01
-"""Share of a limit above which rounding blurs a peak too much to call the limit reached."""
 
 
 @rule_group(
@@ -70,7 +62,7 @@ _NARROW = 0.01
 def judge_motions(study: Study) -> Iterator[Finding]:
     """Findings of TG201, TG202, TG204 and TG206."""
     for claim in study.claims:
-        if isinstance(claim, DurationsClaim | MaximumClaim):
+        if isinstance(claim, RowClaim):
             yield from _limits(study, claim)
             yield from _jumps(study, claim)
             yield from _used_up(study, claim)
@@ -93,11 +85,11 @@ def judge_bare_totals(study: Study) -> Iterator[Finding]:
             if proof is not None:
                 yield row.finding(
                     "TG201",
+                    "total excluded",
+                    *proof,
                     verdict=ClaimVerdict.REFUTED,
                     basis=Basis.ENCLOSURE,
                     printed=f"{claim.value} {study.time_unit}",
-                    sentences=proof,
-                    kind="total excluded",
                     root=f"{LIMITS} {claim.id}",
                 )
 
@@ -109,18 +101,16 @@ def _limits(study: Study, claim: AnyClaim) -> Iterator[Finding]:
         verdict, severity = said_of(study.case, claim, judged.verdict, judged.severity)
         yield row.finding(
             "TG201",
+            judged.kind,
+            *judged.sentences,
+            "" if verdict is ClaimVerdict.SUPPORTED else unsaid,
             severity=severity,
             verdict=verdict,
-            basis=Basis.ENCLOSURE,
+            basis=judged.basis,
             printed=study.durations_digits(claim),
             computed=ratio_at_print(row),
-            kind=judged.kind,
-            sentences=(
-                *judged.sentences,
-                "" if verdict is ClaimVerdict.SUPPORTED else unsaid,
-            ),
             decides=meant_to_keep(study.case, claim),
-            root=f"{LIMITS} {claim.id}" if judged.verdict is ClaimVerdict.REFUTED else "",
+            root=judged.root,
         )
 
 
@@ -139,37 +129,30 @@ def _jumps(study: Study, claim: AnyClaim) -> Iterator[Finding]:
         )
         yield row.finding(
             "TG202",
+            "velocity jumps",
+            f"The motion is discontinuous under this reading: velocity jumps {len(velocity)} "
+            f"times at the via-points, the largest jump {most}.",
+            "Limits are judged separately from jumps.",
             basis=Basis.CHECK,
             printed=study.durations_digits(claim),
             computed=f"{len(velocity)} jumps of velocity, up to {' and '.join(sizes)}",
-            kind="velocity jumps",
-            sentences=(
-                f"The motion is discontinuous under this reading: velocity jumps {len(velocity)} "
-                f"times at the via-points, the largest jump {most}.",
-                "Limits are judged separately from jumps.",
-            ),
             decides=False,
         )
 
 
 def _limits_statement(study: Study, claim: StatementClaim) -> Iterator[Finding]:
-    about = [study.case.claim(i) for i in claim.of]
-    for reading in study.readings:
-        judged: list[tuple[AnyClaim, str | None, JudgedRow]] = [
-            (row.claim, row.problem, judged_row(row)) for row in rows_under(study, about, reading)
-        ]
-        judged += [
-            one for c in left_out(study, about, reading) for one in _elsewhere(study, c, reading)
-        ]
+    for reading, rows, others in named_rows(study, claim.of):
+        judged = [judged_row(row) for row in rows]
+        judged += [one for other in others for one in _elsewhere(study, other, reading)]
         if not judged:
             continue
-        breaking = [one for one in judged if one[2].verdict is ClaimVerdict.REFUTED]
+        breaking = [one for one in judged if one.verdict is ClaimVerdict.REFUTED]
         if breaking:
             verdict = ClaimVerdict.REFUTED
-            sentences = [x for one in breaking for x in _placed(study, claim, *one)]
-        elif all(one.verdict is ClaimVerdict.SUPPORTED for _, _, one in judged):
+            sentences = [x for one in breaking for x in _placed(study, claim, one)]
+        elif all(one.verdict is ClaimVerdict.SUPPORTED for one in judged):
             verdict = ClaimVerdict.SUPPORTED
-            every = all_called(c for c, _, _ in judged)
+            every = all_called(study.case.claim(str(one.claim)) for one in judged)
             which = (
                 f"The printed durations ({every}) keep"
                 if len(judged) == 1
@@ -181,54 +164,46 @@ def _limits_statement(study: Study, claim: StatementClaim) -> Iterator[Finding]:
             ]
         else:
             verdict = ClaimVerdict.NOT_CHECKABLE
-            undecided = [one for one in judged if one[2].verdict is ClaimVerdict.NOT_CHECKABLE]
-            names = all_called(c for c, _, _ in undecided)
+            undecided = [one for one in judged if one.verdict is ClaimVerdict.NOT_CHECKABLE]
+            names = all_called(study.case.claim(str(one.claim)) for one in undecided)
             sentences = [
                 x
                 for one in undecided
-                if one[2].kind in (str(Verdict.DISCONTINUOUS), "total open", _ELSEWHERE)
-                for x in _placed(study, claim, *one)
+                if one.kind in (str(Verdict.DISCONTINUOUS), "total open", _ELSEWHERE)
+                for x in _placed(study, claim, one)
             ] or [f"The printed digits do not decide whether the limits are kept: {names}."]
-        yield Finding(
-            rule="TG201",
+        yield finding(
+            "TG201",
+            claim,
+            str(verdict),
+            *sentences,
             verdict=verdict,
             basis=Basis.ENCLOSURE,
-            claim=claim.id,
             reading=reading,
-            kind=str(verdict),
-            sentences=tuple(sentences),
-            follows=tuple(f"{BLENDS if blended(c) else LIMITS} {c.id}" for c, _, _ in breaking),
+            follows=tuple(one.root for one in breaking),
         )
 
 
-def _placed(
-    study: Study, statement: StatementClaim, claim: AnyClaim, problem: str | None, judged: JudgedRow
-) -> tuple[str, ...]:
+def _placed(study: Study, statement: StatementClaim, judged: Finding) -> tuple[str, ...]:
     """What is said of durations, behind their place where the statement stands at another."""
     first, *others = judged.sentences
-    where = called_under(study.case, claim, problem)
+    where = called_under(study.case, study.case.claim(str(judged.claim)), judged.problem)
     return first if where == statement.where else f"{where}: {first}", *others
 
 
-def _elsewhere(
-    study: Study, claim: AnyClaim, reading: str
-) -> Iterator[tuple[AnyClaim, str | None, JudgedRow]]:
+def _elsewhere(study: Study, claim: AnyClaim, reading: str) -> list[Finding]:
     """What is known of the limits where no motion is built: rows with blends have a rule."""
     rows = [row for row in judge_row(study, claim) if row.reading == reading]
-    for row in rows:
-        if row.verdict is not None:
-            judged = JudgedRow(row.verdict, row.severity, row.sentences, _ELSEWHERE)
-            yield claim, str(row.problem), judged
     if not rows:
         said = "No motion is built from these durations here, so they are not judged."
-        judged = JudgedRow(ClaimVerdict.NOT_CHECKABLE, Severity.INFO, (said,), _ELSEWHERE)
-        yield claim, claim.problem, judged
+        problem = claim.problem
+        return [finding("TG201", claim, _ELSEWHERE, said, basis=Basis.TEXT, problem=problem)]
+    return [row.model_copy(update={"kind": _ELSEWHERE}) for row in rows]
 
 
 def _continuity(study: Study, claim: StatementClaim) -> Iterator[Finding]:
-    for reading in study.readings:
+    for reading, motions, others in named_rows(study, claim.of):
         jumps, built = [], True
-        motions = rows_under(study, map(study.case.claim, claim.of), reading)
         for row in motions:
             curve = row.posed().curve
             built &= all(curve.smooth_order(k) >= 2 for k in range(1, curve.segments))
@@ -242,7 +217,7 @@ def _continuity(study: Study, claim: StatementClaim) -> Iterator[Finding]:
             f"In {which} rebuilt from the printed durations, position, velocity and acceleration "
             "agree on both sides of every via-point."
         )
-        if others := left_out(study, map(study.case.claim, claim.of), reading):
+        if others:
             verdict, kind = ClaimVerdict.NOT_CHECKABLE, "in part"
             more = f"No motion is built from {all_called(others)}, which it names too."
         if jumps and all(map(_may_be_smooth, motions)):
@@ -261,14 +236,15 @@ def _continuity(study: Study, claim: StatementClaim) -> Iterator[Finding]:
             message = (
                 f"The motion is discontinuous: {len(jumps)} jumps, the largest {largest_ones}."
             )
-        yield Finding(
-            rule="TG202",
+        yield finding(
+            "TG202",
+            claim,
+            kind,
+            message,
+            more,
             verdict=verdict,
             basis=Basis.CHECK,
-            claim=claim.id,
             reading=reading,
-            kind=kind,
-            sentences=(message, more),
             built=built and verdict is ClaimVerdict.SUPPORTED,
         )
 
@@ -287,8 +263,7 @@ def _may_be_smooth(row: PrintedRow[AnyClaim]) -> bool:
 
 def _said_to_jump(study: Study, claim: StatementClaim) -> Iterator[Finding]:
     """A reading under which acceleration does not jump speaks against itself, not the paper."""
-    for reading in study.readings:
-        motions = rows_under(study, map(study.case.claim, claim.of), reading)
+    for reading, motions, _ in named_rows(study, claim.of):
         jumps = [
             (row, jump)
             for row in motions
@@ -314,14 +289,8 @@ def _said_to_jump(study: Study, claim: StatementClaim) -> Iterator[Finding]:
                 f"Under this reading the acceleration{whose} agrees on both sides of every break; "
                 "a steep change is not a discontinuity, and the figures are not in the text."
             )
-        yield Finding(
-            rule="TG206",
-            verdict=verdict,
-            basis=Basis.CHECK,
-            claim=claim.id,
-            reading=reading,
-            kind=kind,
-            sentences=(message,),
+        yield finding(
+            "TG206", claim, kind, message, verdict=verdict, basis=Basis.CHECK, reading=reading
         )
 
 
@@ -338,7 +307,9 @@ def _used_up(study: Study, claim: AnyClaim) -> Iterator[Finding]:
                 if not np.isfinite(limit):
                     continue
                 reach = box_reach(row, top)
-                if abs(abs(top.value) - limit) <= reach <= _NARROW * limit:
+                # 0.01: share of a limit above which rounding blurs a peak too much to call the
+                # limit reached.
+                if abs(abs(top.value) - limit) <= reach <= 0.01 * limit:
                     label = problem.joints[top.joint]
                     value, around, bound = (
                         row.in_units(quantity, x, label) for x in (abs(top.value), reach, limit)
@@ -350,14 +321,12 @@ def _used_up(study: Study, claim: AnyClaim) -> Iterator[Finding]:
         if tight:
             yield row.finding(
                 "TG204",
+                "reached",
+                "To first order in the rounding of the printed inputs, a limit is reached: "
+                f"{'; '.join(tight)}.",
                 verdict=ClaimVerdict.SUPPORTED,
                 basis=Basis.CHECK,
                 printed=study.durations_digits(claim),
                 computed="; ".join(tight),
-                kind="reached",
-                sentences=(
-                    "To first order in the rounding of the printed inputs, a limit is reached: "
-                    f"{'; '.join(tight)}.",
-                ),
                 decides=False,
             )

@@ -9,14 +9,7 @@ import numpy as np
 
 from ....nlp import Evidence, Solution, Status, weakest
 from ....problem import shown_bound
-from ....problem.cases import (
-    AnyClaim,
-    DurationsClaim,
-    MaximumClaim,
-    StatementClaim,
-    TimeClaim,
-    TotalTimeClaim,
-)
+from ....problem.cases import AnyClaim, StatementClaim, TimeClaim, TotalTimeClaim
 from ...documents import (
     Basis,
     ClaimVerdict,
@@ -40,14 +33,14 @@ from ..fixed_ratios import (
     optimum_called,
     planned_apart,
 )
-from ..printed_row import PrintedRow, left_out, printed_rows, rows_under
+from ..printed_row import PrintedRow, named_rows, printed_rows
 from ..roots import LIMITS, OPTIMAL
 from ..rounding import meet
-from ..stated import called, called_under, other_objective
+from ..stated import RowClaim, called, called_under, other_objective
 from ..stated_totals import contradicting_lows, is_sum, rounded_up_low, total_excludes, what_agrees
 from ..study import Study, Total
 from .judged_rows import broken
-from .rule_group import INFORMS, Explained, rule_group
+from .rule_group import INFORMS, Explained, finding, rule_group
 
 _BELOW = (
     "The whole printed interval is below the best known total; a misprint or a better optimum may "
@@ -82,7 +75,7 @@ _BELOW_BOUND = (
 def judge_distances(study: Study) -> Iterator[Finding]:
     """Findings of TG302 and TG303."""
     for claim in study.claims:
-        if isinstance(claim, DurationsClaim | MaximumClaim | TotalTimeClaim):
+        if isinstance(claim, RowClaim | TotalTimeClaim):
             for row in printed_rows(study, claim):
                 yield from _beside_optimum(row)
         elif isinstance(claim, StatementClaim) and claim.checks == "optimal":
@@ -108,10 +101,7 @@ def _beside_optimum(row: PrintedRow[AnyClaim]) -> Iterator[Finding]:
 
 
 def _distance(
-    row: PrintedRow[AnyClaim],
-    total: Total,
-    reference: Reference,
-    shared: bool,
+    row: PrintedRow[AnyClaim], total: Total, reference: Reference, shared: bool
 ) -> Finding:
     claim, solution = row.claim, row.optimum
     shown, interval = total
@@ -153,6 +143,8 @@ def _distance(
     agrees = kept and interval[0] <= solution.best <= interval[1]
     return row.finding(
         "TG303" if shared else "TG302",
+        "other objective" if informs else "distance",
+        *said,
         severity=severity,
         verdict=ClaimVerdict.SUPPORTED if agrees else ClaimVerdict.NOT_CHECKABLE,
         evidence=solution.evidence,
@@ -160,8 +152,6 @@ def _distance(
         printed=shown,
         computed=f"{reference.upper:.6f} s",
         gap=distance,
-        kind="other objective" if informs else "distance",
-        sentences=tuple(said),
         decides=False,
     )
 
@@ -241,13 +231,13 @@ def _beside_procedure(row: PrintedRow[AnyClaim], total: Total) -> Iterator[Findi
     )
     yield row.finding(
         "TG302",
+        "joint by joint",
+        message,
         verdict=ClaimVerdict.SUPPORTED if inside else ClaimVerdict.NOT_CHECKABLE,
         evidence=answer.evidence,
         basis=Basis.OPTIMUM,
         printed=shown,
         computed=f"{ranged(wide.lowest, wide.highest, '.6f')} s",
-        kind="joint by joint",
-        sentences=(message,),
         decides=False,
     )
 
@@ -353,10 +343,9 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
     durations, stretched as far as those may need, take less than the low end of the printed total.
     Durations that break the limits are not answers within them.
     """
-    for reading in study.readings:
+    for reading, rows, others in named_rows(study, statement.of):
         sides = _Sides()
-        named = [study.case.claim(i) for i in statement.of]
-        for row in rows_under(study, named, reading):
+        for row in rows:
             minimised = other_objective(study.case, row.claim)
             if minimised is None:
                 _weigh(row, sides)
@@ -368,7 +357,7 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
                 )
         if not (sides.longer or sides.breaking or sides.agreeing or sides.open):
             continue
-        for one in left_out(study, named, reading):
+        for one in others:
             sides.open.append(f"{called(one)}: on another curve, so the optimum does not apply")
         evidence = weakest(one.evidence for one in sides.solutions)
         longer, breaking = sides.longer, sides.breaking
@@ -390,17 +379,17 @@ def _optimal_statement(study: Study, statement: StatementClaim) -> Iterator[Find
             which = " or the ".join(sorted(called_so))
             whose = what_agrees(len(sides.agreeing), sides.summed)
             said = [f"{whose} the {which}{rounded}."]
-        yield Finding(
-            rule="TG302",
+        yield finding(
+            "TG302",
+            statement,
+            "longer" if longer else "breaks" if breaking else str(evidence),
+            *said,
             verdict=verdict,
             evidence=evidence,
             basis=Basis.ENCLOSURE if breaking and not longer else Basis.OPTIMUM,
-            claim=statement.id,
             reading=reading,
-            sentences=tuple(said),
             gap=known(sides.most, "no time is compared with a motion"),
             farthest=sides.farthest,
-            kind="longer" if longer else "breaks" if breaking else str(evidence),
             root=f"{OPTIMAL} {statement.id}" if longer else "",
             follows=() if longer else tuple(sides.roots),
         )

@@ -23,7 +23,7 @@ from ....problem.cases import (
 from ....problem.curves import vertex_matrix
 from ...documents import Severity
 from ..printed_row import PrintedRow, printed_rows
-from ..stated import allowed_bases, printed_total
+from ..stated import RowClaim, allowed_bases, printed_total
 from ..study import Study
 from .motion_numbers import measure_beside, value_beside
 from .peaks import beside
@@ -60,7 +60,7 @@ def repeated_total(study: Study, claim: TotalTimeClaim) -> AnyClaim | None:
 
 def _plain(claim: AnyClaim) -> Printed | None:
     """The sum of printed durations, as a number with their digits."""
-    if not isinstance(claim, DurationsClaim | MaximumClaim):
+    if not isinstance(claim, RowClaim):
         return None
     return Printed(f"{sum((one.decimal for one in claim.durations), Decimal(0)):f}")
 

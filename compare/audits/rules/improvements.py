@@ -6,18 +6,14 @@ from collections.abc import Iterator, Sequence
 from fractions import Fraction
 
 from ....problem import Interval, Printed
-from ....problem.cases import (
-    AnyClaim,
-    ImprovementClaim,
-    MaximumClaim,
-)
+from ....problem.cases import AnyClaim, ImprovementClaim, MaximumClaim
 from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..rounding import hull, meet
 from ..stated import allowed_bases, printed_total
 from ..study import Study
 from .printed_digits import compared, shown, span
 from .printed_tables import contradicted, doubted, total_allowed
-from .rule_group import ON_DIGITS, Explained, rule_group
+from .rule_group import ON_DIGITS, Explained, finding, rule_group
 
 _SHARE_OF = {"slower": "the longer total", "faster": "the shorter total"}
 """What a percentage may be a share of; of the longer total, if either fits."""
@@ -198,14 +194,15 @@ def _unquantified(
     else:
         kind = "within rounding"
         message = f"The printed totals {between} do not differ by more than their rounding"
-    return Finding(
-        rule="TG103",
+    return finding(
+        "TG103",
+        claim,
+        kind,
+        f"{message}.",
+        more,
         verdict=verdict,
         basis=Basis.DIGITS,
-        claim=claim.id,
         printed=between,
-        kind=kind,
-        sentences=(f"{message}.", more),
         follows=doubted(study, sides),
     )
 
@@ -228,20 +225,18 @@ def _against_tables(
         return
     allowed = found[0]
     where = " and ".join(t.where for t in tables if t is not None)
-    yield Finding(
-        rule="TG103",
+    yield finding(
+        "TG103",
+        claim,
+        "of the tables",
+        f"{own} the totals printed in the tables ({where}: {slower} and {faster}) the "
+        f"reduction is {span(allowed, 3)} %, however digits were rounded or cut off, not "
+        f"{percent} %.",
         severity=Severity.ERROR,
         verdict=ClaimVerdict.INCONSISTENT,
         basis=Basis.DIGITS,
-        claim=claim.id,
         printed=f"{percent} %",
         computed=f"{span(allowed, 3)} %",
-        kind="of the tables",
-        sentences=(
-            f"{own} the totals printed in the tables ({where}: {slower} and {faster}) the "
-            f"reduction is {span(allowed, 3)} %, however digits were rounded or cut off, not "
-            f"{percent} %.",
-        ),
         follows=doubted(study, [t for t in tables if t is not None]),
         between=(claim.id, *(t.id for t in tables if t is not None)),
     )

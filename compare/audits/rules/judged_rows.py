@@ -2,31 +2,27 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import Any
 
 from ....problem import Verdict, shown_bound
 from ....problem.cases import AnyClaim, TimeClaim, TotalTimeClaim
-from ...documents import ClaimVerdict, Rounding, Severity
+from ...documents import Basis, ClaimVerdict, Finding, Rounding, Severity
 from ..printed_row import PrintedRow
-
-
-@dataclass(frozen=True)
-class JudgedRow:
-    """What the rounding box says of printed durations."""
-
-    verdict: ClaimVerdict
-    severity: Severity
-    sentences: tuple[str, ...]
-    kind: str
-
+from ..roots import LIMITS
 
 _VERDICTS = {
-    Rounding.KEEPS: (ClaimVerdict.SUPPORTED, Severity.INFO),
-    Rounding.CONSISTENT: (ClaimVerdict.SUPPORTED, Severity.INFO),
-    Rounding.BREAKS: (ClaimVerdict.REFUTED, Severity.ERROR),
-    Rounding.UNDECIDED: (ClaimVerdict.NOT_CHECKABLE, Severity.INFO),
+    Rounding.KEEPS: (ClaimVerdict.SUPPORTED, "The printed numbers keep every limit for all t"),
+    Rounding.CONSISTENT: (
+        ClaimVerdict.SUPPORTED,
+        "Some values that round to the printed digits keep every limit for all t",
+    ),
+    Rounding.BREAKS: (ClaimVerdict.REFUTED, "A limit is broken however the digits were rounded"),
+    Rounding.UNDECIDED: (
+        ClaimVerdict.NOT_CHECKABLE,
+        "The printed digits do not decide whether the limits are kept",
+    ),
 }
-"""What a rounding verdict says of the claim, and how much that weighs."""
+"""What a rounding verdict says of the claim."""
 
 
 def ratio_at_print(row: PrintedRow[AnyClaim]) -> str:
@@ -43,22 +39,14 @@ def ratio_at_print(row: PrintedRow[AnyClaim]) -> str:
     return f"the {worst.quantity} of {whose} reaches {value:.6g} {unit}, limit {limit:.6g} {unit}"
 
 
-def judged_row(row: PrintedRow[AnyClaim]) -> JudgedRow:
-    """Whether the durations, or the total, of a row keep the limits, with the reasons."""
+def judged_row(row: PrintedRow[AnyClaim]) -> Finding:
+    """Whether the durations, or the total, of a row keep the limits, with the reasons (TG201)."""
     if isinstance(row.claim, TotalTimeClaim):
         return _judged_total(row)
-    rounding = row.rounding
-    verdict, severity = _VERDICTS[rounding.verdict]
-    at_print = ratio_at_print(row)
-    explained = {
-        Rounding.KEEPS: "The printed numbers keep every limit for all t",
-        Rounding.CONSISTENT: "Some values that round to the printed digits keep every limit for "
-        "all t",
-        Rounding.BREAKS: "A limit is broken however the digits were rounded",
-        Rounding.UNDECIDED: "The printed digits do not decide whether the limits are kept",
-    }[rounding.verdict]
+    rounding, found, cut = row.rounding, row.check, ""
+    verdict, explained = _VERDICTS[rounding.verdict]
+    severity = Severity.INFO
     kind = str(rounding.verdict)
-    found = row.check
     if found.verdict is Verdict.DISCONTINUOUS and rounding.verdict is Rounding.UNDECIDED:
         kind = str(found.verdict)
         jumps = sum(jump.order == 1 for jump in found.jumps)
@@ -67,28 +55,22 @@ def judged_row(row: PrintedRow[AnyClaim]) -> JudgedRow:
             f"segments, but the velocity jumps {jumps} times between them, which requires "
             "infinite acceleration"
         )
-    said = [f"{explained}.", f"At the printed numbers {at_print}."]
-    loose = row.statement.declaration.loose
+    said = [f"{explained}.", f"At the printed numbers {ratio_at_print(row)}."]
+    loose, bound = row.statement.declaration.loose, rounding.lower_bound_of_worst
     if rounding.verdict is Rounding.UNDECIDED and loose:
         said.append(f"{loose} are printed numbers, and no proof covers their rounding.")
-    bound = rounding.lower_bound_of_worst
-    if rounding.verdict is Rounding.BREAKS and bound is not None:
-        said.append(
-            f"In every case, a limit is exceeded by a factor of at least "
-            f"{shown_bound(bound, 'lower')}."
-        )
     if rounding.verdict is Rounding.BREAKS:
-        cut = row.cut.verdict
-        if cut is not Rounding.BREAKS:
-            kept = cut is not Rounding.UNDECIDED
-            verdict = ClaimVerdict.SUPPORTED if kept else ClaimVerdict.NOT_CHECKABLE
-            said.append(f"If digits were cut off instead of rounded: {cut}.")
-            return JudgedRow(verdict, Severity.WARNING, tuple(said), kind)
-        said.append("The same holds if digits were cut off instead of rounded.")
-    return JudgedRow(verdict, severity, tuple(said), kind)
+        if bound is not None:
+            least = shown_bound(bound, "lower")
+            said.append(f"In every case, a limit is exceeded by a factor of at least {least}.")
+        severity, cut = Severity.ERROR, "The same holds if digits were cut off instead of rounded."
+        if row.cut.verdict is not Rounding.BREAKS:
+            severity, (verdict, _) = Severity.WARNING, _VERDICTS[row.cut.verdict]
+            cut = f"If digits were cut off instead of rounded: {row.cut.verdict}."
+    return _found(row, kind, *said, cut, verdict=verdict, severity=severity)
 
 
-def _judged_total(row: PrintedRow[AnyClaim]) -> JudgedRow:
+def _judged_total(row: PrintedRow[AnyClaim]) -> Finding:
     """A total without its durations: refuted where no motion that short keeps the limits."""
     printed = row.study.total_digits(row.claim)
     if row.total_excluded:
@@ -96,13 +78,20 @@ def _judged_total(row: PrintedRow[AnyClaim]) -> JudgedRow:
             f"No motion within the limits takes {printed} or less, however the digits were rounded "
             "or cut off."
         )
-        return JudgedRow(ClaimVerdict.REFUTED, Severity.ERROR, (excluded,), "total excluded")
-    said = (
+        return _found(row, "total excluded", excluded, verdict=ClaimVerdict.REFUTED)
+    return _found(
+        row,
+        "total open",
         f"Only the total is printed, {printed}, without durations, so it cannot be computed "
         "whether the motion keeps the limits.",
         "No proof shows that every motion of that length breaks them.",
     )
-    return JudgedRow(ClaimVerdict.NOT_CHECKABLE, Severity.INFO, said, "total open")
+
+
+def _found(row: PrintedRow[AnyClaim], kind: str, *said: str, **facts: Any) -> Finding:
+    refuted = facts.get("verdict") is ClaimVerdict.REFUTED
+    root = f"{LIMITS} {row.claim.id}" if refuted else ""
+    return row.finding("TG201", kind, *said, basis=Basis.ENCLOSURE, root=root, **facts)
 
 
 def broken(row: PrintedRow[AnyClaim]) -> tuple[str, ...] | None:
@@ -110,9 +99,7 @@ def broken(row: PrintedRow[AnyClaim]) -> tuple[str, ...] | None:
 
     For a total without its durations: that no motion so short keeps the limits.
     """
-    if not isinstance(row.claim, TimeClaim):
-        return None
-    if row.unmoved is not None:
+    if not isinstance(row.claim, TimeClaim) or row.unmoved is not None:
         return None
     judged = judged_row(row)
     return judged.sentences if judged.verdict is ClaimVerdict.REFUTED else None

@@ -13,15 +13,15 @@ finish, where the whole blend takes its part of the segment.
 
 from __future__ import annotations
 
-import itertools
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import TypeGuard
+from typing import Any, TypeGuard
 
 import numpy as np
 
-from ....problem import Array, CaseError, Measured, Printed, Problem
+from ....problem import Array, CaseError, Printed, Problem
 from ....problem.cases import AnyClaim, Claim, Digits, DurationsClaim
 from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..own_result import UNSAID, meant_to_keep, said_of
@@ -32,11 +32,6 @@ from .rule_group import Explained, rule_group
 
 BLENDS = "blends"
 """Root of what follows from a row that breaks a limit."""
-
-
-_NO_SPEED = 1e300
-"""Stands for the speed where none is high enough: no limit allows it, and sums of two stay
-numbers."""
 
 
 @dataclass(frozen=True)
@@ -58,7 +53,7 @@ class _Found:
         "an optimum, because it does not pass its via-points.",
         "Durations of 2, 1 and 3 s and blends of 0.4 s turn joint 1 from 12.5 to -10 °/s at the "
         "first via-point, which takes 56 °/s². The limit is 50 °/s².",
-    ),
+    )
 )
 def judge_blends(study: Study) -> Iterator[Finding]:
     """Findings of TG210."""
@@ -134,80 +129,66 @@ def _beside(row: PrintedRow[DurationsClaim]) -> Finding:
     verdict, severity = said_of(study.case, claim, verdict, severity)
     return row.finding(
         "TG210",
+        str(found_verdict),
+        message,
+        at_print,
+        passes,
+        UNSAID if verdict is not found_verdict else "",
         severity=severity,
         verdict=verdict,
         basis=Basis.ENCLOSURE,
         printed=study.durations_digits(claim),
         computed=computed,
-        kind=str(found_verdict),
-        sentences=(message, at_print, passes, UNSAID if verdict is not found_verdict else ""),
         decides=meant_to_keep(study.case, claim),
         root=f"{BLENDS} {claim.id}" if verdict is ClaimVerdict.REFUTED else "",
     )
 
 
 def _judged(row: PrintedRow[DurationsClaim], problem: Problem, ends: EndBlends) -> _Found:
-    box = row.waypoint_box(problem)
-    claimed = row.durations
-    durations = RoundingBox(claimed.value, claimed.lower, claimed.upper)
-    wide = _blended(row, problem, box, durations, ends, as_printed=False)
-    plain = _blended(row, problem, box, durations, ends, as_printed=True)
-    loose = row.posed(Digits.LOOSEST_CUT).limits.sides.max(axis=0)
-    most = loose[:, :2] * (1.0 + ROUNDING)
+    wide = _blended(row, problem, ends, as_printed=False)
+    plain = _blended(row, problem, ends, as_printed=True)
+    most = row.posed(Digits.LOOSEST_CUT).limits.sides.max(axis=0) * (1.0 + ROUNDING)
     breaks = (
-        bool((wide.velocity.size.low > most[:, 0]).any())
-        or bool((wide.acceleration.low > most[:, 1]).any())
-        or bool((wide.room.high < -ROUNDING * durations.value[:, None]).any())
+        (wide.velocity.size.low > most[:, 0]).any()
+        or (wide.acceleration.low > most[:, 1]).any()
+        or (wide.room.high < -ROUNDING * row.durations.value[:, None]).any()
     )
-    try:
+    keeps = False
+    with suppress(CaseError):  # the tightest ranges may be empty
         tight = row.posed(Digits.TIGHTEST).limits.sides.min(axis=0)
         keeps = (
-            bool((wide.velocity.size.high <= tight[:, 0]).all())
-            and bool((wide.acceleration.high <= tight[:, 1]).all())
-            and bool((wide.room.low >= 0).all())
+            (wide.velocity.size.high <= tight[:, 0]).all()
+            and (wide.acceleration.high <= tight[:, 1]).all()
+            and (wide.room.low >= 0).all()
         )
-    except CaseError:  # the tightest ranges are empty
-        keeps = False
-    return _Found(breaks, keeps, _worst(row, problem, plain))
+    return _Found(bool(breaks), bool(keeps), _worst(row, problem, plain))
 
 
 def _blended(
-    row: PrintedRow[DurationsClaim],
-    problem: Problem,
-    waypoints: RoundingBox,
-    durations: RoundingBox,
-    ends: EndBlends,
-    as_printed: bool,
+    row: PrintedRow[DurationsClaim], problem: Problem, ends: EndBlends, as_printed: bool
 ) -> Blended:
     """What the motion asks for at the printed numbers, or for all rounded or cut off to them."""
-    claim = row.claim
-    waypoints, durations = (_taken(box, as_printed) for box in (waypoints, durations))
+    claim, labels = row.claim, row.study.case.robot.joints
+    durations, waypoints = row.boxes
     if claim.blends is not None:
-        numbers = _each(claim.blends, len(durations.value) + 1)
-        times = [row.time(n) for n in numbers]
-        found = _taken(_box(times), as_printed)
-        return blended_motion(waypoints, durations, ends, times=found)
-    assert claim.blend_acceleration is not None
-    labels = row.study.case.robot.joints
-    given = dict(zip(labels, _each(claim.blend_acceleration, len(labels)), strict=True))
-    sizes = [row.measured(given[label], "acceleration", label) for label in problem.joints]
-    found = _taken(_box(sizes), as_printed)
-    return blended_motion(waypoints, durations, ends, accelerations=found)
+        printed = RoundingBox.of(map(row.time, _each(claim.blends, len(waypoints.value))))
+    else:
+        assert claim.blend_acceleration is not None
+        given = dict(zip(labels, _each(claim.blend_acceleration, len(labels)), strict=True))
+        printed = RoundingBox.of(
+            row.measured(given[label], "acceleration", label) for label in problem.joints
+        )
+    q, h, blends = (
+        RoundingBox.exact(box.value) if as_printed else box.or_cut_off()
+        for box in (waypoints, durations, printed)
+    )
+    if claim.blends is not None:
+        return blended_motion(q, h, ends, times=blends)
+    return blended_motion(q, h, ends, accelerations=blends)
 
 
 def _each(given: Printed | tuple[Printed, ...], count: int) -> tuple[Printed, ...]:
     return given if isinstance(given, tuple) else (given,) * count
-
-
-def _box(measured: Sequence[Measured]) -> RoundingBox:
-    ends: list[Array] = [
-        np.array([getattr(m, end) for m in measured]) for end in ("value", "lower", "upper")
-    ]
-    return RoundingBox(*ends)
-
-
-def _taken(box: RoundingBox, as_printed: bool) -> RoundingBox:
-    return RoundingBox.exact(box.value) if as_printed else box.or_cut_off()
 
 
 def _worst(row: PrintedRow[Claim], problem: Problem, plain: Blended) -> str:
@@ -260,8 +241,8 @@ class Between:
         """Bounds of all differences, as if the numbers were independent."""
         return Between(self.low - other.high, self.high - other.low)
 
-    def times(self, factor: float) -> Between:
-        """Bounds of a multiple, the factor not negative."""
+    def times(self, factor: Array) -> Between:
+        """Bounds of multiples, the factors not negative."""
         return Between(factor * self.low, factor * self.high)
 
     def over(self, divisor: Between) -> Between:
@@ -269,15 +250,12 @@ class Between:
 
         A divisor that may be 0 or less leaves infinite bounds; what is 0 stays 0.
         """
+        pairs = [(x, y) for x in (self.low, self.high) for y in (divisor.low, divisor.high)]
         with np.errstate(divide="ignore", invalid="ignore"):
-            ends = np.stack(np.broadcast_arrays(
-                self.low / divisor.low, self.low / divisor.high,
-                self.high / divisor.low, self.high / divisor.high,
-            ))  # fmt: skip
-        sure = np.broadcast_to(divisor.low > 0, ends.shape[1:])
-        low = np.where(sure, ends.min(axis=0), -np.inf)
-        high = np.where(sure, ends.max(axis=0), np.inf)
-        nothing = np.broadcast_to((self.low == 0) & (self.high == 0), ends.shape[1:])
+            found = np.stack([x / y for x, y in pairs])
+        nothing, sure = (self.low == 0) & (self.high == 0), divisor.low > 0
+        low = np.where(sure, found.min(axis=0), -np.inf)
+        high = np.where(sure, found.max(axis=0), np.inf)
         return Between(np.where(nothing, 0.0, low), np.where(nothing, 0.0, high))
 
     @property
@@ -287,7 +265,7 @@ class Between:
         ends = np.abs(np.stack([self.low, self.high]))
         return Between(np.where(through, 0.0, ends.min(axis=0)), ends.max(axis=0))
 
-    def __getitem__(self, key: int | slice) -> Between:
+    def __getitem__(self, key: Any) -> Between:
         """Bounds of some of the numbers."""
         return Between(self.low[key], self.high[key])
 
@@ -336,58 +314,42 @@ def blended_motion(
     accelerations : RoundingBox, shape (joints,), optional
         rad/s², sizes; those of joints that move are positive.
     """
-    q, h = _ranges(waypoints), _ranges(durations)
-    step, n = q[1:] - q[:-1], len(durations.value)
-    within = ends is EndBlends.WITHIN
+    q, h, n = _ranges(waypoints), _ranges(durations)[:, None], len(durations.value)
+    step = q[1:] - q[:-1]
     # Shares of the blends on both sides that a segment holds; half of each is a turn of speed.
-    shares = [(1.0 if within and k == 0 else 0.5, 1.0 if within and k == n - 1 else 0.5)
-              for k in range(n)]  # fmt: skip
+    first, last = np.full((n, 1), 0.5), np.full((n, 1), 0.5)
+    if ends is EndBlends.WITHIN:
+        first[0] = last[-1] = 1.0
     if times is not None:
-        tau = _ranges(times)
-        speeds = [
-            step[k].over(h[k] - tau[k].times(first - 0.5) - tau[k + 1].times(last - 0.5))
-            for k, (first, last) in enumerate(shares)
-        ]
+        tau = _ranges(times)[:, None]
+        speeds = step.over(h - tau[:-1].times(first - 0.5) - tau[1:].times(last - 0.5))
         changes = _changes(speeds)
-        blends = [tau[k] for k in range(n + 1)]
-        sizes = [change.over(blend) for change, blend in zip(changes, blends, strict=True)]
+        blends, sizes = tau, changes.over(tau)
     else:
         assert accelerations is not None
         a = _ranges(accelerations)
-        speeds = [
-            _with_blend(step[k], h[k], a, both=n == 1)
-            if within and k in (0, n - 1)
-            else step[k].over(h[k])
-            for k in range(n)
-        ]
+        at_end, free = _with_blend(step, h, a, both=n == 1), step.over(h)
+        ending = (first > 0.5) | (last > 0.5)
+        speeds = Between(
+            np.where(ending, at_end.low, free.low), np.where(ending, at_end.high, free.high)
+        )
         changes = _changes(speeds)
-        blends = [change.over(a) for change in changes]
         # Where the speed of a joint does not change, there is no acceleration.
-        sizes = [
-            Between(np.where(change.low > 0, a.low, 0.0), np.where(change.high > 0, a.high, 0.0))
-            for change in changes
-        ]
-    rooms = [
-        h[k] - blends[k].times(first) - blends[k + 1].times(last)
-        for k, (first, last) in enumerate(shares)
-    ]
-    shape = step.low.shape[1:]
-    wide = [Between(*(np.broadcast_to(end, shape) for end in (r.low, r.high))) for r in rooms]
-    return Blended(_stacked(speeds), _stacked(sizes), _stacked(wide))
-
-
-def _stacked(parts: Sequence[Between]) -> Between:
-    return Between(np.stack([p.low for p in parts]), np.stack([p.high for p in parts]))
+        least, most = np.where(changes.low > 0, a.low, 0.0), np.where(changes.high > 0, a.high, 0.0)
+        blends, sizes = changes.over(a), Between(least, most)
+    room = h - blends[:-1].times(first) - blends[1:].times(last)
+    low, high = (np.broadcast_to(end, step.low.shape) for end in (room.low, room.high))
+    return Blended(speeds, sizes, Between(low, high))
 
 
 def _ranges(box: RoundingBox) -> Between:
     return Between(box.lower, box.upper)
 
 
-def _changes(speeds: Sequence[Between]) -> list[Between]:
+def _changes(speeds: Between) -> Between:
     """Sizes of the changes of speed at each way-point, from rest and to rest."""
-    inner = [after - before for before, after in itertools.pairwise(speeds)]
-    return [change.size for change in (speeds[0], *inner, speeds[-1])]
+    low, high = (np.pad(end, ((1, 1), (0, 0))) for end in (speeds.low, speeds.high))
+    return (Between(low[1:], high[1:]) - Between(low[:-1], high[:-1])).size
 
 
 def _with_blend(step: Between, h: Between, a: Between, both: bool) -> Between:
@@ -402,18 +364,12 @@ def _with_blend(step: Between, h: Between, a: Between, both: bool) -> Between:
 
     def speed(ways: Array, length: Array, size: Array) -> Array:
         with np.errstate(divide="ignore", invalid="ignore"):
-            c = 4.0 if both else 2.0
-            root = np.sqrt(length**2 - c * ways / size)
+            root = np.sqrt(length**2 - (4.0 if both else 2.0) * ways / size)
             found = size * (length - root) * (0.5 if both else 1.0)
-        return np.where(ways > 0, found, 0.0)
+        # No root: no motion with these numbers, whatever its speed. No limit allows 1e300, and
+        # sums of two stay numbers.
+        return np.where(ways > 0, np.nan_to_num(found, nan=1e300, posinf=np.inf), 0.0)
 
-    least = speed(way.low, h.high, a.high)
-    most = speed(way.high, h.low, a.low)
-    # No root: no motion with these numbers, whatever its speed.
-    size = Between(
-        np.where(np.isnan(least), _NO_SPEED, least), np.where(np.isnan(most), _NO_SPEED, most)
-    )
+    low, high = speed(way.low, h.high, a.high), speed(way.high, h.low, a.low)
     forward, backward = step.low > 0, step.high < 0
-    return Between(
-        np.where(forward, size.low, -size.high), np.where(backward, -size.low, size.high)
-    )
+    return Between(np.where(forward, low, -high), np.where(backward, -low, high))

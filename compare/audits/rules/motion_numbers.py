@@ -26,13 +26,10 @@ from ..stated import DERIVATIVES, called, place_of_value
 from ..study import Study
 from .beside import SAMPLES, Beside, nearest_number
 from .peaks import beside, peak_described
-from .rule_group import Explained, rule_group
+from .rule_group import Explained, finding, rule_group
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(10)
 """Gauss-Legendre on -1..1: exact up to degree 19, and squares of declared polynomials have 18."""
-_PARTS = 8
-"""Parts of each piece beside its zeros: norms, and curves that are no polynomial in time, are
-smooth enough there."""
 _POWERS = {"mean": (1, 0), "rms": (1, 0), "integral": (1, 1), "integral-square": (2, 1)}
 """Powers of the derivative's unit and of time in each measure."""
 
@@ -109,7 +106,9 @@ def _finished(
 
 def _nodes(trajectory: Trajectory, piece: int, order: int) -> tuple[Array, Array]:
     """Places of a piece and the time that each stands for."""
-    cuts = [np.linspace(0.0, 1.0, _PARTS + 1)]
+    # 8 parts of each piece beside its zeros: norms, and curves that are no polynomial in time, are
+    # smooth enough there.
+    cuts = [np.linspace(0.0, 1.0, 9)]
     for joint in range(trajectory.joints):
         level = np.trim_zeros(trajectory.level(piece, joint, order, 0.0), "b")
         if level.size > 1:
@@ -302,13 +301,7 @@ class MotionNumbers(Generic[_Value]):
                     if known := [one for one in found if one is not None]:
                         yield self._finding(row, claim, known)
             if not meant:
-                yield Finding(
-                    rule=self.rule,
-                    basis=Basis.TEXT,
-                    claim=claim.id,
-                    kind="no motion",
-                    sentences=(self.without,),
-                )
+                yield finding(self.rule, claim, "no motion", self.without, basis=Basis.TEXT)
 
     def _finding(
         self, row: PrintedRow[AnyClaim], claim: _Value, found: Sequence[Beside]
@@ -320,16 +313,14 @@ class MotionNumbers(Generic[_Value]):
         clash = verdict is ClaimVerdict.INCONSISTENT
         return row.finding(
             self.rule,
+            ", ".join(_word(one) for one in wrong or found),
+            f"For the printed durations ({called(row.claim)}): {'; '.join(said)}.",
+            note,
             verdict=verdict,
             basis=Basis.CHECK if all(one.met for one in found) else Basis.COMPUTED,
             claim=claim.id,
             printed=", ".join(map(str, claim.printed)),
             computed="; ".join(one.around for one in found),
-            kind=", ".join(_word(one) for one in wrong or found),
-            sentences=(
-                f"For the printed durations ({called(row.claim)}): {'; '.join(said)}.",
-                note,
-            ),
             root=f"{claim.quantity}s of {row.claim.id}" if clash else "",
             between=(claim.id, row.claim.id) if clash else (),
         )
@@ -351,7 +342,7 @@ judge_peaks = rule_group(
         "names them.",
         "The exact peak is 21.351 rad/s². A printed 21.35 is rounded, 21.34 comes from sampling, "
         "and 1223 is the same number in degrees.",
-    ),
+    )
 )(
     MotionNumbers(
         "TG203",
@@ -371,7 +362,7 @@ judge_measures = rule_group(
         "one number for all joints may be of their norm, of the largest joint, or their mean. "
         "Inconsistent if none of these explains it.",
         "The root mean square of jerk is 5.1920 rad/s³, and 1000 samples give the printed 5.1908.",
-    ),
+    )
 )(
     MotionNumbers(
         "TG208",
@@ -391,7 +382,7 @@ judge_values = rule_group(
         "either side may be meant; a largest or smallest value may also come from samples.",
         "At the second way-point a table prints -175.7 °/s. The spline through the way-points in "
         "the printed times passes it at -175.71 °/s.",
-    ),
+    )
 )(
     MotionNumbers(
         "TG211",

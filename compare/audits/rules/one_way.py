@@ -89,14 +89,12 @@ def _together(group: list[_Ways]) -> Iterator[Finding]:
         )
         yield row.finding(
             "TG304",
+            "one way" if fits else "no one way",
+            f"The {profile_called([str(row.claim.profile)])} from rest to rest takes "
+            f"{row.claim.value} {row.study.time_unit} for a way of {ways[0]} to {ways[1]} "
+            f"{unit}; {serves}.",
             verdict=ClaimVerdict.SUPPORTED if fits else ClaimVerdict.INCONSISTENT,
             basis=Basis.CHECK,
-            kind="one way" if fits else "no one way",
             printed=f"{row.claim.value} {row.study.time_unit}",
             computed=f"{ways[0]} to {ways[1]} {unit}",
-            sentences=(
-                f"The {profile_called([str(row.claim.profile)])} from rest to rest takes "
-                f"{row.claim.value} {row.study.time_unit} for a way of {ways[0]} to {ways[1]} "
-                f"{unit}; {serves}.",
-            ),
         )

@@ -11,17 +11,12 @@ from ....problem import check
 from ....problem.cases import AnyClaim, DurationsClaim, PeakClaim, TimeClaim, motions_of
 from ...documents import Basis, Finding
 from ..printed_row import PrintedRow, printed_rows
-from ..stated import called, prints_durations
+from ..stated import RowClaim, called
 from ..study import Study
 from .judged_rows import broken
 from .peaks import beside
 from .printed_tables import doubted
 from .rule_group import INFORMS, Explained, rule_group
-
-_FEWEST = 3
-"""Durations that two rows need in common before equal digits are worth a word."""
-_FITS = 0.01
-"""Share by which a row may miss the limits of another and still be said to fit it."""
 
 _informing = partial(Finding, rule="TG108", decides=False)
 """Nothing here decides: a printer's slip is not a fault of the numbers."""
@@ -34,7 +29,7 @@ _informing = partial(Finding, rule="TG108", decides=False)
         "Information, with both distances. It does not say that anything was exchanged. " + INFORMS,
         "The peak printed for joint 2 differs by 40 % from that of its motion and by 0.1 % from "
         "that of joint 3, and vice versa.",
-    ),
+    )
 )
 def judge_places(study: Study) -> Iterator[Finding]:
     """Findings of TG108, which inform and decide nothing."""
@@ -48,7 +43,7 @@ def judge_places(study: Study) -> Iterator[Finding]:
 
 
 def _peaks_elsewhere(study: Study, claim: PeakClaim, own: AnyClaim) -> Iterator[Finding]:
-    motions = [c for c in study.case.claims if prints_durations(c)]
+    motions = [c for c in study.case.claims if isinstance(c, RowClaim)]
     for row in printed_rows(study, own):
         joints = study.problem(row.pair).joints
         said = []
@@ -77,15 +72,13 @@ def _peaks_elsewhere(study: Study, claim: PeakClaim, own: AnyClaim) -> Iterator[
         if said:
             yield row.finding(
                 "TG108",
+                "peaks",
+                "Printed peaks fit another place better than their own, as if numbers had been "
+                f"exchanged in print: {'; '.join(said)}.",
                 decides=False,
                 basis=Basis.CHECK,
                 claim=claim.id,
                 printed=", ".join(map(str, claim.printed)),
-                kind="peaks",
-                sentences=(
-                    "Printed peaks fit another place better than their own, as if numbers had been "
-                    f"exchanged in print: {'; '.join(said)}.",
-                ),
             )
 
 
@@ -104,18 +97,17 @@ def _row_elsewhere(study: Study, claim: DurationsClaim) -> Iterator[Finding]:
             for j, label in enumerate(problem.joints)
             if label != claim.joint
         )
-        if best <= _FITS:
+        # 0.01: share by which a row may miss the limits of another and still be said to fit it.
+        if best <= 0.01:
             yield row.finding(
                 "TG108",
+                "rows",
+                f"The durations printed for joint {claim.joint} ({called(claim)}) would have "
+                f"to be stretched by {100 * own:.2g} % for its own limits and fit those of "
+                f"joint {joint} within {100 * best:.2g} %, as if rows had been exchanged in "
+                "print.",
                 decides=False,
                 basis=Basis.CHECK,
-                kind="rows",
-                sentences=(
-                    f"The durations printed for joint {claim.joint} ({called(claim)}) would have "
-                    f"to be stretched by {100 * own:.2g} % for its own limits and fit those of "
-                    f"joint {joint} within {100 * best:.2g} %, as if rows had been exchanged in "
-                    "print.",
-                ),
             )
 
 
@@ -129,7 +121,8 @@ def _equal_rows(study: Study) -> Iterator[Finding]:
     rows = [c for c in study.case.claims if isinstance(c, DurationsClaim)]
     for first, second in combinations(rows, 2):
         texts = [[d.text for d in c.durations] for c in (first, second)]
-        if len(texts[0]) < _FEWEST or texts[0] != texts[1] or len(set(texts[0])) == 1:
+        # 3: durations that two rows need in common before equal digits are worth a word.
+        if len(texts[0]) < 3 or texts[0] != texts[1] or len(set(texts[0])) == 1:
             continue
         if _named(first) == _named(second) or set(doubted(study, [first])) & set(
             doubted(study, [second])

@@ -29,8 +29,6 @@ from .rule_group import Explained, rule_group
 
 _PHASES = 8
 """Offsets at which those samples are tried: the worst of so many comes near the worst of all."""
-_WIDE = 0.05
-"""Share of a peak above which the room that digits leave is said: what then fits tells little."""
 _NORM_PLACES = 65
 """Places of a piece at which the norm is computed before the largest is refined, where it is no
 polynomial in time: many for a curve that turns a few times."""
@@ -252,7 +250,9 @@ def peak_described(row: PrintedRow[AnyClaim], claim: PeakClaim, one: Beside) -> 
     exact = one.around
     said = f"{whose}the exact peak of {claim.derivative} is {exact}, printed as {one.printed}"
     room = ""
-    if one.exact and one.reach > _WIDE * one.exact:
+    # 0.05: share of a peak above which the room that digits leave is said: what then fits tells
+    # little.
+    if one.exact and one.reach > 0.05 * one.exact:
         room = f", which allows {100 * one.reach / one.exact:.2g} % either way"
     norm = "" if one.norm is None else _of_norm(one.norm)
     away = f"{100 * one.distance:+.2g} %"
@@ -312,7 +312,7 @@ def jump_unit(row: PrintedRow[Claim], jump: Jump) -> str:
         "compared.",
         "A table prints 3.665 rad/s² for the acceleration of joint 2, another the limit 3.6, and "
         "the abstract says that no limit is exceeded.",
-    ),
+    )
 )
 def judge_peak_limits(study: Study) -> Iterator[Finding]:
     """Findings of TG209."""
@@ -332,13 +332,13 @@ def _beyond(study: Study, claim: StatementClaim, peak: PeakClaim) -> Iterator[Fi
             if said:
                 yield row.finding(
                     "TG209",
+                    "beyond",
+                    f"{place(peak)} prints {'; '.join(said)}.",
                     severity=Severity.ERROR,
                     verdict=ClaimVerdict.INCONSISTENT,
                     basis=Basis.DIGITS,
                     claim=claim.id,
                     printed=", ".join(map(str, peak.printed)),
-                    kind="beyond",
-                    sentences=(f"{place(peak)} prints {'; '.join(said)}.",),
                     root=f"peaks beyond limits {claim.id}",
                     between=(claim.id, peak.id),
                 )

@@ -13,16 +13,7 @@ from ....problem.cases import Cartesian, Column, Statement, StatementClaim
 from ....problem.robots import Chain, Convention, DhTable, JointKind, Proximity, proximity
 from ...documents import Basis, ClaimVerdict, Finding, enumerated
 from ..study import Study
-from .rule_group import Explained, rule_group
-
-_NEGLIGIBLE = 1e-9
-"""Distance that float arithmetic alone could leave, m."""
-
-_COARSE = 0.1
-"""Share of what rounding explains to which a distance is bounded where signs are searched."""
-
-_CLEAR = 2.0
-"""Multiple of what rounding explains from which on a miss needs no clearer one."""
+from .rule_group import Explained, finding, rule_group
 
 Joints = dict[str, tuple[Measured, ...]]
 """Angles of the printed joints at every way-point."""
@@ -69,7 +60,7 @@ class _Match:
         "tried.",
         "For any angles of joints 1 and 3, the end stays at least 0.78 m away from a printed "
         "position.",
-    ),
+    )
 )
 def judge_kinematics(study: Study) -> Iterator[Finding]:
     """Set the joint table against the printed positions, for every reading."""
@@ -208,7 +199,8 @@ def _match(
         xyz = [to_si(number, place.unit) for number in place.values]
         point = np.array([m.value for m in xyz])
         halves = np.array([(m.upper - m.lower) / 2 for m in xyz])
-        allowed = dh.rounding(variants[0]) + loose + float(np.linalg.norm(halves)) + _NEGLIGIBLE
+        # 1e-9: distance that float arithmetic alone could leave, m.
+        allowed = dh.rounding(variants[0]) + loose + float(np.linalg.norm(halves)) + 1e-9
         slack.append(allowed)
         for found, chain in zip(near, variants, strict=True):
             found.append(proximity(chain, point, held))
@@ -239,15 +231,18 @@ def _unsigned(
         assert k is not None
         point = np.array([to_si(number, place.unit).value for number in place.values])
         held, _ = _held(variants[0], joints, k)
+        # 0.1: share of what rounding explains to which a distance is bounded where signs are
+        # searched.
         least = min(
-            proximity(chain, xyz, angles, tolerance=_COARSE * slack[at]).lower
+            proximity(chain, xyz, angles, tolerance=0.1 * slack[at]).lower
             for chain in variants
             for xyz in _signs(point)
             for angles in _signs(held)
         )
         if least > slack[at] and (clearest is None or least > clearest[1]):
             clearest = at, least
-        if least > _CLEAR * slack[at]:
+        # 2.0: multiple of what rounding explains from which on a miss needs no clearer one.
+        if least > 2.0 * slack[at]:
             break
     return clearest
 
@@ -345,16 +340,17 @@ def _judged(
             kind = "other signs" if lost else "other twists" if signed else "undecided"
             said = _OPEN[kind], *nearest
     worst = "; ".join(f"{_down(m.worst)} m ({m.convention})" for m in matches)
-    return Finding(
-        rule="TG601",
+    return finding(
+        "TG601",
+        None,
+        kind,
+        *said,
         verdict=verdict,
         basis=Basis.KINEMATICS,
         problem=pid,
         reading=rid,
         printed="; ".join(dict.fromkeys(place.where for _, place in places)),
         computed=f"smallest distance from the farthest position: {worst}",
-        kind=kind,
-        sentences=said,
         doubts=tuple(printed) if verdict is ClaimVerdict.INCONSISTENT else (),
     )
 
@@ -401,10 +397,4 @@ def _up(metres: float) -> str:
 
 
 def _not_checkable(rid: str | None, message: str) -> Finding:
-    return Finding(
-        rule="TG601",
-        basis=Basis.KINEMATICS,
-        reading=rid,
-        kind="not set beside",
-        sentences=(message,),
-    )
+    return finding("TG601", None, "not set beside", message, basis=Basis.KINEMATICS, reading=rid)

@@ -6,19 +6,13 @@ from collections.abc import Iterator, Sequence
 from fractions import Fraction
 
 from ....problem import Interval, Printed
-from ....problem.cases import (
-    AnyClaim,
-    DurationsClaim,
-    MaximumClaim,
-)
+from ....problem.cases import AnyClaim, DurationsClaim, MaximumClaim
 from ...documents import Basis, ClaimVerdict, Finding, Severity, ranged
 from ..roots import SUM
 from ..rounding import Agreement, agreement, either, hull, meet
+from ..stated import RowClaim
 from ..study import Study
-from .rule_group import ON_DIGITS, Explained, rule_group
-
-_SIGNIFICANT = 4
-"""Digits that a number needs before its repetition is worth a word."""
+from .rule_group import ON_DIGITS, Explained, finding, rule_group
 
 
 @rule_group(
@@ -159,23 +153,23 @@ def compared(
                 f"{what} is {plain} {unit} digit by digit, and {computed} for all values that "
                 f"round to the digits; rounding explains the printed {digits}."
             )
-    return Finding(
-        rule=rule,
+    return finding(
+        rule,
+        claim,
+        f"{_KINDS[kind]} in {unit}",
+        message,
         severity=severity,
         verdict=verdict,
         basis=Basis.DIGITS,
-        claim=claim.id,
         printed=digits,
         computed=computed,
-        kind=f"{_KINDS[kind]} in {unit}",
-        sentences=(message,),
         root="" if verdict is ClaimVerdict.SUPPORTED else root,
     )
 
 
 def _sums(study: Study) -> Iterator[Finding]:
     for claim in study.claims:
-        if not isinstance(claim, DurationsClaim | MaximumClaim) or claim.total is None:
+        if not isinstance(claim, RowClaim) or claim.total is None:
             continue
         found = _sum_beside(study, claim, claim.total, (), "The sum of the printed durations")
         if found.verdict is ClaimVerdict.REFUTED:
@@ -208,11 +202,7 @@ def end_blends(study: Study, claim: AnyClaim) -> tuple[Printed, ...] | None:
 
 
 def _sum_beside(
-    study: Study,
-    claim: DurationsClaim | MaximumClaim,
-    total: Printed,
-    halves: Sequence[Printed],
-    what: str,
+    study: Study, claim: RowClaim, total: Printed, halves: Sequence[Printed], what: str
 ) -> Finding:
     """A printed total beside the sum of its durations and of half of some further ones."""
     parts = [*claim.durations, *halves]
@@ -240,27 +230,25 @@ def _share(interval: Interval, share: Fraction) -> Interval:
 def _lengths(study: Study) -> Iterator[Finding]:
     """Rows of another length than the motion has segments; a slip in the case file looks alike."""
     for claim in study.claims:
-        if not isinstance(claim, DurationsClaim | MaximumClaim) or claim.other_curve is not None:
+        if not isinstance(claim, RowClaim) or claim.other_curve is not None:
             continue
         for rid in study.readings:
             segments = study.case.statement(claim.problem, rid).curve().segments
             if len(claim.durations) == segments:
                 continue
             count = _many(len(claim.durations), "duration")
-            yield Finding(
-                rule="TG109",
+            yield finding(
+                "TG109",
+                claim,
+                "other length",
+                f"{claim.where} prints {count}, but the curve through the way-points has "
+                f"{_many(segments, 'segment')}, so no motion can be built from them.",
+                "If the paper prints another number, correct the case file.",
                 verdict=ClaimVerdict.INCONSISTENT,
                 basis=Basis.COUNT,
-                claim=claim.id,
                 reading=rid,
                 printed=count,
                 computed=_many(segments, "segment"),
-                kind="other length",
-                sentences=(
-                    f"{claim.where} prints {count}, but the curve through the way-points has "
-                    f"{_many(segments, 'segment')}, so no motion can be built from them.",
-                    "If the paper prints another number, correct the case file.",
-                ),
             )
 
 
@@ -284,14 +272,14 @@ def _maxima(study: Study) -> Iterator[Finding]:
             message = "The printed longest durations do not follow from the rows: " + "; ".join(
                 wrong
             )
-        yield Finding(
-            rule="TG102",
+        yield finding(
+            "TG102",
+            claim,
+            "others" if wrong else "longest",
+            message,
             verdict=ClaimVerdict.REFUTED if wrong else ClaimVerdict.SUPPORTED,
             basis=Basis.DIGITS,
-            claim=claim.id,
             printed=", ".join(str(d) for d in claim.durations),
-            kind="others" if wrong else "longest",
-            sentences=(message,),
         )
 
 
@@ -307,27 +295,27 @@ def _repeated_digits(study: Study) -> Iterator[Finding]:
         entries = [row[j] for row in statement.waypoints.points]
         for group in _column_groups([*case.columns, *case.cartesian]):
             where, values = group
+            # 4: digits that a number needs before its repetition is worth a word.
             repeated = [
                 w.text
                 for w in entries
-                if len(_significant(w)) >= _SIGNIFICANT
+                if len(_significant(w)) >= 4
                 and any(v.text.lstrip("+-") == w.text.lstrip("+-") for v in values)
             ]
             if len(repeated) >= 2:
-                yield Finding(
-                    rule="TG106",
+                yield finding(
+                    "TG106",
+                    None,
+                    "repeated digits",
+                    f"{len(repeated)} of the {len(entries)} way-points of joint {label} "
+                    f"({statement.waypoints.where}: {', '.join(repeated)}) repeat digits of "
+                    f"{where}, which states another quantity.",
+                    "The digits alone do not show whether one of the columns is wrong.",
                     severity=Severity.WARNING,
                     basis=Basis.DIGITS,
                     decides=False,
                     doubts=(label,),
                     printed=", ".join(repeated),
-                    kind="repeated digits",
-                    sentences=(
-                        f"{len(repeated)} of the {len(entries)} way-points of joint {label} "
-                        f"({statement.waypoints.where}: {', '.join(repeated)}) repeat digits of "
-                        f"{where}, which states another quantity.",
-                        "The digits alone do not show whether one of the columns is wrong.",
-                    ),
                 )
 
 

@@ -13,7 +13,7 @@ from ....problem.robots import Chain, Equation, EquationCheck, check_equation
 from ...documents import Basis, ClaimVerdict, Finding
 from ..rounding import meet
 from ..study import Study
-from .rule_group import Explained, rule_group
+from .rule_group import Explained, finding, rule_group
 
 
 @rule_group(
@@ -41,10 +41,7 @@ from .rule_group import Explained, rule_group
 def judge_joints(study: Study) -> Iterator[Finding]:
     """Findings of TG110 and TG602."""
     for claim in study.claims:
-        if isinstance(claim, StatementClaim) and claim.checks in (
-            "varies_most",
-            "varies_much",
-        ):
+        if isinstance(claim, StatementClaim) and claim.checks in ("varies_most", "varies_much"):
             yield _varies(study, claim)
         elif isinstance(claim, StatementClaim) and claim.checks == "above":
             yield _above(study, claim)
@@ -146,14 +143,14 @@ def _finding(
     own: tuple[Fraction, Fraction] | None = None,
 ) -> Finding:
     """What is said of a statement, and the range of its joint where one is computed."""
-    return Finding(
-        rule="TG602" if claim.checks == "above" else "TG110",
+    return finding(
+        "TG602" if claim.checks == "above" else "TG110",
+        claim,
+        kind,
+        *said,
         verdict=verdict,
         basis=Basis.DIGITS,
-        claim=claim.id,
         computed=None if own is None else f"{_middle(*own):.2f} in the printed unit",
-        kind=kind,
-        sentences=tuple(said),
     )
 
 
@@ -220,15 +217,15 @@ def _judged(claim: StatementClaim, equations: tuple[Equation, ...], chain: Chain
         said.append(f"These do not hold as printed: {', '.join(apart)}.")
     if mended or apart:
         said.append("It is unknown whether the paper or the extraction lost what is missing.")
-    return Finding(
-        rule="TG603",
+    return finding(
+        "TG603",
+        claim,
+        "in part" if mended or apart else "all",
+        *said,
         verdict=ClaimVerdict.NOT_CHECKABLE if mended or apart else ClaimVerdict.SUPPORTED,
         basis=Basis.KINEMATICS,
-        claim=claim.id,
         printed="; ".join(equation.where for equation in equations),
         computed=f"{len(held)} hold as printed, {len(mended)} once corrected",
-        kind="in part" if mended or apart else "all",
-        sentences=tuple(said),
     )
 
 

@@ -19,15 +19,13 @@ from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..printed_row import PrintedRow, rows_under
 from ..roots import TABLES
 from ..rounding import hull, meet
-from ..stated import printed_total
+from ..stated import RowClaim, printed_total
 from ..study import Study
 from .printed_digits import end_blends
-from .rule_group import Explained, rule_group
+from .rule_group import Explained, finding, rule_group
 
-_Timed = DurationsClaim | MaximumClaim | TotalTimeClaim
+_Timed = RowClaim | TotalTimeClaim
 """Claims that state a total, or durations of which it is the sum."""
-_FEWEST = 4
-"""Numbers that a table needs before two tables alike are worth a word."""
 
 
 @rule_group(
@@ -63,7 +61,8 @@ def _alike(case: Case) -> Iterator[tuple[Table, Table]]:
         if first.algorithm == second.algorithm or not rows[0] or len(rows[0]) != len(rows[1]):
             continue
         printed = [[_all_digits(claim) for claim in table] for table in rows]
-        if sum(len(row) for row in printed[0]) >= _FEWEST and printed[0] == printed[1]:
+        # 4: numbers that a table needs before two tables alike are worth a word.
+        if sum(len(row) for row in printed[0]) >= 4 and printed[0] == printed[1]:
             yield first, second
 
 
@@ -138,17 +137,16 @@ def _tables_alike(study: Study) -> Iterator[Finding]:
             f"Their totals are the optimum within rounding (reading {optimal}), which explains it: "
             "two algorithms that both find the optimum print the same numbers."
         )
-        yield Finding(
-            rule="TG104",
+        yield finding(
+            "TG104",
+            None,
+            "differ elsewhere" if apart else "optimum" if optimal else "alike",
+            f"{first.where} ({first.title}) and {second.where} ({second.title}) agree in all "
+            f"{count} numbers, digit by digit{besides}.",
+            explained if optimal is not None else "",
             severity=Severity.ERROR if apart else Severity.INFO if optimal else Severity.WARNING,
             verdict=ClaimVerdict.NOT_CHECKABLE if optimal else ClaimVerdict.INCONSISTENT,
             basis=Basis.OPTIMUM if optimal else Basis.DIGITS,
-            kind="differ elsewhere" if apart else "optimum" if optimal else "alike",
-            sentences=(
-                f"{first.where} ({first.title}) and {second.where} ({second.title}) agree in all "
-                f"{count} numbers, digit by digit{besides}.",
-                explained if optimal is not None else "",
-            ),
             root=f"{TABLES} {first.id} {second.id}",
             between=tuple(
                 c.id
@@ -159,7 +157,7 @@ def _tables_alike(study: Study) -> Iterator[Finding]:
 
 
 def _all_digits(claim: AnyClaim) -> tuple[str, ...]:
-    if isinstance(claim, DurationsClaim | MaximumClaim):
+    if isinstance(claim, RowClaim):
         total = () if claim.total is None else (claim.total.text,)
         return tuple(d.text for d in claim.durations) + total
     return ()
@@ -280,16 +278,13 @@ def _total_shown(study: Study, claim: AnyClaim) -> tuple[str, Interval]:
 
 def _rival(claim: TotalTimeClaim) -> Finding:
     """That a named method's total has nothing else in print to agree with."""
-    return Finding(
-        rule="TG105",
+    return finding(
+        "TG105",
+        claim,
+        "printed once",
+        "This total of a named method is printed only once, so nothing printed can contradict it.",
         basis=Basis.DIGITS,
-        claim=claim.id,
         printed=str(claim.value),
-        kind="printed once",
-        sentences=(
-            "This total of a named method is printed only once, so nothing printed can contradict "
-            "it.",
-        ),
     )
 
 
@@ -324,16 +319,16 @@ def _same_total(study: Study) -> Iterator[Finding]:
         elif not agreeing and weight is not None:
             verdict, severity = ClaimVerdict.INCONSISTENT, weight
         clash = verdict is ClaimVerdict.INCONSISTENT
-        yield Finding(
-            rule="TG105",
+        yield finding(
+            "TG105",
+            claim,
+            kind,
+            message,
             severity=severity,
             verdict=verdict,
             basis=Basis.DIGITS,
-            claim=claim.id,
             printed=printed,
             computed=shown,
-            kind=kind,
-            sentences=(message,),
             follows=doubted(study, [other]) if clash else (),
             between=(claim.id, other.id) if clash else (),
         )

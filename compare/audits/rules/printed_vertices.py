@@ -12,7 +12,7 @@ from ....problem.curves import vertex_matrix
 from ...documents import Basis, ClaimVerdict, Finding, Severity, ranged
 from ..rounding import Agreement, agreement, hull
 from ..study import Study
-from .rule_group import Explained, rule_group
+from .rule_group import Explained, finding, rule_group
 
 
 @dataclass(frozen=True)
@@ -62,7 +62,7 @@ class Vertex:
         "otherwise refuted; not checkable on curves other than the uniform cubic B-spline.",
         "The vertex computed from the way-points lies between 0.4317 and 0.4319; 0.4318 is "
         "supported and 0.4381 refuted.",
-    ),
+    )
 )
 def judge_vertices(study: Study) -> Iterator[Finding]:
     """Set every printed control vertex beside the way-points of its problem.
@@ -93,15 +93,13 @@ def has_vertices(statement: Statement) -> bool:
 def _found(claim: ControlVerticesClaim, statement: Statement) -> Finding:
     if has_vertices(statement):
         return _judged(claim, vertices(claim, statement), statement.unit("position") is None)
-    return Finding(
-        rule="TG205",
+    return finding(
+        "TG205",
+        claim,
+        "other curve",
+        "Control vertices are computed only for the uniform cubic B-spline; the case has "
+        f"another curve ({statement.declaration.family}).",
         basis=Basis.DIGITS,
-        claim=claim.id,
-        kind="other curve",
-        sentences=(
-            "Control vertices are computed only for the uniform cubic B-spline; the case has "
-            f"another curve ({statement.declaration.family}).",
-        ),
     )
 
 
@@ -160,13 +158,13 @@ def _judged(claim: ControlVerticesClaim, found: tuple[Vertex, ...], apart: bool)
             f"All {len(found)} printed control vertices lie inside the interval that the rounding "
             f"of the printed way-points allows on the uniform cubic B-spline{widest}."
         )
-    return Finding(
-        rule="TG205",
+    return finding(
+        "TG205",
+        claim,
+        kind,
+        message,
         severity=severity,
         verdict=verdict,
         basis=Basis.DIGITS,
-        claim=claim.id,
         computed=f"{len(found) - len(outside)} of {len(found)} inside",
-        kind=kind,
-        sentences=(message,),
     )

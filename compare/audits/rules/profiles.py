@@ -137,13 +137,7 @@ def judge_profiles(study: Study) -> Iterator[Finding]:
 
 
 def _unknown(asked: _Asked, why: str) -> Finding:
-    return asked.row.finding(
-        "TG304",
-        basis=Basis.CHECK,
-        claim=asked.claim.id,
-        kind="other profile",
-        sentences=(why,),
-    )
+    return asked.row.finding("TG304", "other profile", why, basis=Basis.CHECK, claim=asked.claim.id)
 
 
 def _not_computed(asked: _Asked) -> str | None:

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from typing import Any
 
+from ....problem.cases import Claim
 from ...documents import Finding
 from ..study import Study
 
@@ -65,3 +67,9 @@ def rule_group(
 ) -> Callable[[Judge], RuleGroup]:
     """Make a function the judge of rules, each under its permanent id with its explanation."""
     return lambda judge: RuleGroup(judge, rules, without_waypoints)
+
+
+def finding(rule: str, claim: Claim | None, kind: str, *sentences: str, **facts: Any) -> Finding:
+    """A finding of a rule on a claim, or on none; a sentence may be empty."""
+    about = None if claim is None else claim.id
+    return Finding(rule=rule, claim=about, kind=kind, sentences=sentences, **facts)

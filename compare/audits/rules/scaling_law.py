@@ -8,15 +8,15 @@ from itertools import permutations
 import numpy as np
 
 from ....problem import CaseError, Problem
-from ....problem.cases import AnyClaim, Digits, DurationsClaim, MaximumClaim, StatementClaim
+from ....problem.cases import AnyClaim, Digits, StatementClaim
 from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..fixed_ratios import off_ratios
 from ..printed_row import rows_under
 from ..roots import OPTIMAL
 from ..rounding import FEW_ROUNDINGS, ROUNDING
-from ..stated import called_under, other_objective
+from ..stated import RowClaim, called_under, other_objective
 from ..study import Study
-from .rule_group import Explained, rule_group
+from .rule_group import Explained, finding, rule_group
 
 
 @rule_group(
@@ -28,11 +28,11 @@ from .rule_group import Explained, rule_group
         "rounding of way-points, limits and durations taken into account.",
         "At 80 °/s the total is 1.87 s. At 110 °/s the same motion, run faster, takes 1.36 s. "
         "A printed optimum of 1.60 s at 110 °/s is therefore not the shortest.",
-    ),
+    )
 )
 def judge_scaling(study: Study) -> Iterator[Finding]:
     """Stretch one claim's durations to another's limits: a feasible total the other can meet."""
-    claims = [c for c in study.claims if isinstance(c, DurationsClaim | MaximumClaim)]
+    claims = [c for c in study.claims if isinstance(c, RowClaim)]
     statements = [
         c for c in study.claims if isinstance(c, StatementClaim) and c.checks == "optimal"
     ]
@@ -89,11 +89,7 @@ def _same_ratios(one: Problem, other: Problem) -> bool:
 
 
 def _stretched(
-    study: Study,
-    source: AnyClaim,
-    target: AnyClaim,
-    reading: str,
-    statements: list[StatementClaim],
+    study: Study, source: AnyClaim, target: AnyClaim, reading: str, statements: list[StatementClaim]
 ) -> Iterator[Finding]:
     posed = [rows_under(study, [c], reading)[:1] for c in (source, target)]
     if not posed[0] or not posed[1]:
@@ -126,25 +122,23 @@ def _stretched(
             "account"
         )
     places = [called_under(study.case, row.claim, row.problem) for row in (slow, fast)]
-    beside = Finding(
-        rule="TG301",
+    beside = finding(
+        "TG301",
+        target,
+        "not both shortest",
+        "With velocity limits only, the shortest time multiplied by the limit is constant, so "
+        "the two printed results cannot both be the shortest.",
+        f"The durations in {places[0]} sum to {summed:.6g} s.",
+        f"Multiplied by {factor:.6g}, the ratio of the two limits, that is {exact}.",
+        f"Scaled in this way, they keep the limit of {places[1]}; the {shown} printed there is "
+        "longer.",
         verdict=ClaimVerdict.INCONSISTENT,
         basis=Basis.IDENTITY,
         decides=False,
-        claim=target.id,
         problem=fast.problem,
         reading=reading,
         printed=shown,
         computed=f"{reachable:.6g} s",
-        kind="not both shortest",
-        sentences=(
-            "With velocity limits only, the shortest time multiplied by the limit is constant, so "
-            "the two printed results cannot both be the shortest.",
-            f"The durations in {places[0]} sum to {summed:.6g} s.",
-            f"Multiplied by {factor:.6g}, the ratio of the two limits, that is {exact}.",
-            f"Scaled in this way, they keep the limit of {places[1]}; the {shown} printed there is "
-            "longer.",
-        ),
         follows=tuple(f"{OPTIMAL} {s.id}" for s in statements if target.id in s.of),
     )
     yield beside
