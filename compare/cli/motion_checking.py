@@ -217,15 +217,7 @@ def _picture(
 def stated_limits(joints: Sequence[str], factors: Array, options: MotionOptions) -> JointLimits:
     """What holds for joints: flag before limits file before URDF.
 
-    Parameters
-    ----------
-    factors : ndarray, shape (joints,)
-        What a number of a flag is in rad or m.
-
-    Raises
-    ------
-    CaseError
-        If nothing is stated, or nothing finite.
+    `factors`: shape (joints,), what a number of a flag is in rad or m.
     """
     sources: list[StatedLimits] = []
     if any(value is not None for value in options.limits.values()):
@@ -291,24 +283,8 @@ def repaired(
 ) -> OrWhy[RepairedMotion]:
     """Write the motion slowed down, and what is true of the file when it is read back.
 
-    Parameters
-    ----------
-    found : MotionCheck
-        What was found about it.
-    check : callable
-        Reads a file as this one was read, and judges it.
-    write : callable
-        Writes the text of the file.
-
-    Returns
-    -------
-    RepairedMotion or Why
-        Why nothing was written: no slow-down repairs the motion.
-
-    Raises
-    ------
-    CaseError
-        If the file would be read as another format.
+    Returns why nothing was written where no slow-down repairs the motion. `check`: reads a file as
+    this one was read, and judges it. `write`: writes the text of the file.
     """
     endings = _ENDINGS[read.form]
     if out.suffix.lower() not in endings:
