@@ -48,20 +48,7 @@ _EXAMPLE = {
 def make_server(port: int = 0) -> BaseWSGIServer:
     """Make the server of the form, on this machine alone.
 
-    Parameters
-    ----------
-    port : int
-        0 for any that is free.
-
-    Returns
-    -------
-    BaseWSGIServer
-        Its ``port`` is bound; ``serve_forever()`` serves.
-
-    Raises
-    ------
-    TrajgapError
-        If flask is missing, or the port is taken.
+    Its ``port`` is bound; ``serve_forever()`` serves. `port`: 0 for any that is free.
     """
     app = make_form()
     from werkzeug.serving import make_server as bound
@@ -74,13 +61,7 @@ def make_server(port: int = 0) -> BaseWSGIServer:
 
 
 def make_form() -> Flask:
-    """Make the form and its pages.
-
-    Raises
-    ------
-    PackageError
-        If flask is missing.
-    """
+    """Make the form and its pages."""
     try:
         from flask import Flask, abort, redirect, request
     except ImportError as error:

@@ -38,15 +38,7 @@ class FormError(Exception):
 def case_of(fields: Mapping[str, str]) -> tuple[str, Case]:
     """The case file that the form describes, as text and as a case.
 
-    Parameters
-    ----------
-    fields : mapping of str to str
-        What the form holds, by the names of its fields.
-
-    Raises
-    ------
-    FormError
-        If a field cannot be used.
+    `fields`: what the form holds, by the names of its fields.
     """
     table = fields.get("table", "").strip()
     if not table:
@@ -101,20 +93,8 @@ def judge_motion(
 ) -> tuple[MotionCheck, Interpolation | None]:
     """Judge a motion from a file against the limits of the form.
 
-    Parameters
-    ----------
-    name : str
-        Of the file: its ending says what it is.
-
-    Returns
-    -------
-    (MotionCheck, Interpolation or None)
-        The interpolation between samples; None for polynomials.
-
-    Raises
-    ------
-    FormError
-        If the file or a field cannot be used.
+    The interpolation between samples; None for polynomials. `name`: of the file: its ending says
+    what it is.
     """
     if not content:
         raise FormError({"motion": "choose a file: CSV with a time column, JSON or YAML"})

@@ -39,14 +39,9 @@ def claims_shown(
 ) -> Iterator[Claimed]:
     """Claims with their verdicts, each reason and each long caveat once.
 
-    Parameters
-    ----------
-    chosen : iterable of Judgement
-        Verdicts of this case, in the order in which they are shown.
-    beside : mapping of str to sequence of str, optional
-        What else is said of a claim, by its id.
-    words : int, optional
-        Of a reason that stand in the open, where there is less room than the opening needs.
+    `chosen`: verdicts of this case, in the order in which they are shown. `beside`: what else is
+    said of a claim, by its id. `words`: of a reason that stand in the open, where there is less
+    room than the opening needs.
     """
     stated = {one.claim: one for one in found.claims}
     more = beside or {}
@@ -140,11 +135,8 @@ def answered(claim: StatedClaim) -> str:
 def shown_once(found: Sequence[Claimed]) -> Iterator[Claimed]:
     """Claims in order, without what an earlier one has said.
 
-    Returns
-    -------
-    iterator of Claimed
-        Claims of the same words and the same verdict are one with several places. A reason that an
-        earlier claim gave is named, and a long caveat is given in full once.
+    Claims of the same words and the same verdict are one with several places. A reason that an
+    earlier claim gave is named, and a long caveat is given in full once.
     """
     groups: dict[tuple[str, ...], list[Claimed]] = {}
     for one in found:

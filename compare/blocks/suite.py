@@ -23,14 +23,9 @@ def suite_table(
 ) -> Grid:
     """A row for each instance.
 
-    Parameters
-    ----------
-    place : str
-        What the name of an instance points to, with {} for the name.
-    digits : int, optional
-        Of bounds, rounded outwards; all of them by default.
-    brief : bool
-        Whether limits are their first letters, and how hard an instance is has no room.
+    `place`: what the name of an instance points to, with {} for the name. `digits`: of bounds,
+    rounded outwards; all of them by default. `brief`: whether limits are their first letters, and
+    how hard an instance is has no room.
     """
     rows = []
     for one in instances:

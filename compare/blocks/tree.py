@@ -99,12 +99,8 @@ def table(
 ) -> Grid:
     """A table of cells and plain values.
 
-    Parameters
-    ----------
-    columns : sequence of str
-        Names, each behind one of the marks of `Grid` or none.
-    rows : iterable of sequence
-        A value that is None, or has a reason in its place, is shown as empty.
+    `columns`: names, each behind one of the marks of `Grid` or none. `rows`: a value that is None,
+    or has a reason in its place, is shown as empty.
     """
     marks = tuple(name[0] if name[0:1] in (">", "~", "…") else "" for name in columns)
     return Grid(

@@ -114,15 +114,7 @@ def _trajgap(
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line.
 
-    Parameters
-    ----------
-    arguments : sequence of str, optional
-        Those of the process by default.
-
-    Returns
-    -------
-    int
-        Exit code.
+    Returns the exit code. `arguments`: those of the process by default.
     """
     for name in ("stdout", "stderr"):
         stream = getattr(sys, name)

@@ -155,13 +155,7 @@ def certify_case(
 
 
 def read_certificates(folder: Path) -> list[dict[str, Any]]:
-    """The certificates in a folder; other files of it are left alone.
-
-    Raises
-    ------
-    CaseError
-        If it is not a folder, or holds no certificate.
-    """
+    """The certificates in a folder; other files of it are left alone."""
     if not folder.is_dir():
         raise CaseError(
             str(folder), "--certificates", "is not a folder; give the one with your files"

@@ -230,18 +230,9 @@ def check_result(
 ) -> CheckResult:
     """Result of `check` for one problem under one reading.
 
-    Parameters
-    ----------
-    case, problem, reading : str
-        Ids.
-    found : Check
-        The durations judged at the printed point, with all joints.
-    rounding : RoundingVerdict
-        Judged however the digits were rounded.
-    durations : sequence of float
-        s.
-    joints : iterable of (str, Check, RoundingVerdict), optional
-        The same for each joint separately, by label.
+    `found`: the durations judged at the printed point, with all joints. `rounding`: judged however
+    the digits were rounded. `durations` are in s. `joints`: the same for each joint separately, by
+    label.
     """
     alone = tuple(CheckedJoint(joint=label, **dict(_judged(c, r))) for label, c, r in joints)
     return CheckResult(

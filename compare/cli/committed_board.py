@@ -50,25 +50,9 @@ def stand_against(
 ) -> int:
     """Run optimisers on the instances of the leaderboard, and print where they stand.
 
-    Parameters
-    ----------
-    word : str
-        What the results are set against: "leaderboard".
-    source : str or None
-        Instances of the suite; all of the committed board by default.
-    names : sequence of str
-        Optimisers.
-    settings : mapping
-        By optimiser.
-    seconds : float
-        Limit of each run.
-    store : Path or None
-        Where runs are kept.
-
-    Raises
-    ------
-    CaseError
-        If there are no committed results of this kind, or an optimiser is unknown.
+    `word`: what the results are set against: "leaderboard". `source`: instances of the suite; all
+    of the committed board by default. `names`: optimisers. `settings`: by optimiser. `seconds`:
+    limit of each run. `store`: where runs are kept.
     """
     if word != LEADERBOARD:
         raise CaseError("--against", "", f"{word!r} is unknown; use {LEADERBOARD}")

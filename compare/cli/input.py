@@ -39,12 +39,7 @@ _LARGE = re.compile(
 
 
 def check_numbers(arguments: Sequence[str]) -> None:
-    """Refuse numbers that parsers of options would take for infinite, without a word of it.
-
-    Raises
-    ------
-    CaseError
-    """
+    """Refuse numbers that parsers of options would take for infinite, without a word of it."""
     for before, argument in zip(("", *arguments), arguments, strict=False):
         for word in _LARGE.findall(argument):
             option = before if before.startswith("--") else argument.partition("=")[0]
@@ -66,13 +61,7 @@ def naming(file: str, field: str = "") -> Iterator[None]:
 
 
 def read_case(source: str) -> Case:
-    """Load a published case by id, or a case file by path.
-
-    Raises
-    ------
-    CaseError
-        If it cannot be loaded.
-    """
+    """Load a published case by id, or a case file by path."""
     if not source:
         raise CaseError("CASE", "", "is empty; give a published case or a file")
     try:
@@ -83,13 +72,7 @@ def read_case(source: str) -> Case:
 
 
 def read_cases(sources: Sequence[str]) -> list[Case]:
-    """Load several cases whose ids differ.
-
-    Raises
-    ------
-    CaseError
-        If one cannot be loaded, or two have the same id.
-    """
+    """Load several cases whose ids differ."""
     cases: dict[str, Case] = {}
     for source in sources:
         case = read_case(source)
@@ -108,17 +91,7 @@ def select(
 ) -> list[Selected]:
     """Problems of a case under its readings.
 
-    Parameters
-    ----------
-    problem, reading : str, optional
-        Keep only these; all by default.
-    coupling : str, optional
-        Instead of the case's own.
-
-    Raises
-    ------
-    CaseError
-        If an id or the coupling is unknown.
+    `problem, reading`: keep only these; all by default. `coupling`: instead of the case's own.
     """
     return [
         Selected(pid, rid, case.problem(pid, rid, coupling))
@@ -129,17 +102,7 @@ def select(
 def read_durations(text: str, file: str) -> tuple[Printed, ...]:
     """Read durations as a paper prints them.
 
-    Parameters
-    ----------
-    text : str
-        Separated by commas or blanks.
-    file : str
-        The case that they are for, for messages.
-
-    Raises
-    ------
-    CaseError
-        If one is not a positive finite decimal number.
+    `text`: separated by commas or blanks. `file`: the case that they are for, for messages.
     """
     words = [word for word in re.split(r"[,;\s]+", text) if word]
     if not words:
@@ -158,13 +121,7 @@ def read_durations(text: str, file: str) -> tuple[Printed, ...]:
 
 
 def duration_box(case: Case, selected: Selected, printed: Sequence[Printed]) -> RoundingBox:
-    """Printed durations, in s: the numbers, and the bounds of what rounds to them.
-
-    Raises
-    ------
-    CaseError
-        If their number is not that of the segments.
-    """
+    """Printed durations, in s: the numbers, and the bounds of what rounds to them."""
     wanted = selected.problem.segments
     if len(printed) != wanted:
         raise CaseError(

@@ -219,15 +219,7 @@ def stated_limits(
 ) -> tuple[JointLimits, tuple[str, ...]]:
     """What holds for joints: flag before limits file before URDF; and the unit of each joint.
 
-    Parameters
-    ----------
-    units : sequence of str
-        Of the positions and the flags, one for all joints or one each.
-
-    Raises
-    ------
-    CaseError
-        If nothing is stated, or nothing finite; or a unit does not suit a joint of the URDF.
+    `units`: of the positions and the flags, one for all joints or one each.
     """
     factors = factors_of(units, len(joints), "--units")
     suited = tuple(units) * (len(joints) if len(units) == 1 else 1)
@@ -296,24 +288,8 @@ def repaired(
 ) -> OrWhy[RepairedMotion]:
     """Write the motion slowed down, and what is true of the file when it is read back.
 
-    Parameters
-    ----------
-    found : MotionCheck
-        What was found about it.
-    check : callable
-        Reads a file as this one was read, and judges it.
-    write : callable
-        Writes the text of the file.
-
-    Returns
-    -------
-    RepairedMotion or Why
-        Why nothing was written: no slow-down repairs the motion.
-
-    Raises
-    ------
-    CaseError
-        If the file would be read as another format.
+    Returns why nothing was written where no slow-down repairs the motion. `check`: reads a file as
+    this one was read, and judges it. `write`: writes the text of the file.
     """
     endings = _ENDINGS[read.form]
     if out.suffix.lower() not in endings:

@@ -49,13 +49,7 @@ def warn(doubts: Iterable[str]) -> None:
 
 
 def say(text: str) -> None:
-    """Write text to standard output.
-
-    Raises
-    ------
-    CaseError
-        If that fails for another reason than a closed pipe.
-    """
+    """Write text to standard output."""
     try:
         sys.stdout.write(text)
         sys.stdout.flush()
@@ -134,19 +128,9 @@ class Steps:
 def progress(label: str, total: int | None = None, rate: bool = False) -> Iterator[Steps]:
     """Show a bar on standard error while something runs, if that is a terminal.
 
-    Parameters
-    ----------
-    label : str
-        What runs.
-    total : int, optional
-        Number of steps, where it is known.
-    rate : bool
-        Whether to show how many steps are done, how many a second, and how long the rest takes.
-
-    Yields
-    ------
-    Steps
-        To be called with a short text before each step.
+    What it yields is called with a short text before each step. `label`: what runs. `total`: number
+    of steps, where it is known. `rate`: whether to show how many steps are done, how many a second,
+    and how long the rest takes.
     """
     if not sys.stderr.isatty():
         yield Steps()
@@ -194,22 +178,8 @@ def progress(label: str, total: int | None = None, rate: bool = False) -> Iterat
 def new_output(path: Path | None, field: str = "--out") -> Iterator[Callable[[str | bytes], None]]:
     """Reserve a new file, which appears under its name only when complete.
 
-    Parameters
-    ----------
-    path : Path or None
-        Nothing is written if None.
-    field : str
-        The option that names it, for messages.
-
-    Yields
-    ------
-    callable
-        To be called with the whole content, once.
-
-    Raises
-    ------
-    CaseError
-        If the file exists, or cannot be written.
+    What it yields is called with the whole content, once. `path`: nothing is written if None.
+    `field`: the option that names it, for messages.
     """
     if path is None:
         yield lambda _: None
@@ -229,25 +199,13 @@ def new_output(path: Path | None, field: str = "--out") -> Iterator[Callable[[st
 
 
 def replace_output(path: Path, text: str) -> None:
-    """Write a complete file in a single step, replacing an earlier one.
-
-    Raises
-    ------
-    CaseError
-        If it cannot be written.
-    """
+    """Write a complete file in a single step, replacing an earlier one."""
     with _writing(str(path), "--certificates"):
         replace_file(path, text)
 
 
 def check_certificates(folder: Path) -> None:
-    """Find out before computing whether certificates can be written into a folder.
-
-    Raises
-    ------
-    CaseError
-        If it cannot be made or written to.
-    """
+    """Find out before computing whether certificates can be written into a folder."""
     with _writing(str(folder), "--certificates"):
         try:
             try_writing_in(folder)

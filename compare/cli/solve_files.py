@@ -33,17 +33,7 @@ def points_case(
 ) -> Case:
     """A case without claims: the way-points of a table, and the limits that the options state.
 
-    Parameters
-    ----------
-    source : str
-        CSV, as `scaffold` reads it.
-    degree : int or None
-        As in `scaffold`.
-
-    Raises
-    ------
-    CaseError
-        If the table or an option cannot be used, or a joint has no limit that others have.
+    `source`: CSV, as `scaffold` reads it. `degree`: as in `scaffold`.
     """
     units = words(options.units) or ("rad",)
     text = scaffold(
@@ -61,11 +51,6 @@ def limits_of_table(source: str, options: MotionOptions) -> Callable[[tuple[str,
     """What finds the limits that options state of the joints of a table of way-points.
 
     Joints that the table only numbers take the names of the URDF, in its order.
-
-    Parameters
-    ----------
-    source : str
-        The table.
     """
 
     def found(joints: tuple[str, ...]) -> FileLimits:
@@ -120,13 +105,7 @@ class AskedSamples:
 def asked_samples(
     file: Path, rate: float | None, form: str | None, retimed: bool = False
 ) -> AskedSamples:
-    """What the command line asks to be written.
-
-    Raises
-    ------
-    CaseError
-        If the format is unknown.
-    """
+    """What the command line asks to be written."""
     try:
         wanted = MotionForm(form or "csv")
     except ValueError:
@@ -136,12 +115,7 @@ def asked_samples(
 
 
 def check_one_motion(case: Case, selected: Sequence[Selected]) -> None:
-    """Refuse more than one problem: a file holds one motion, of the first reading.
-
-    Raises
-    ------
-    CaseError
-    """
+    """Refuse more than one problem: a file holds one motion, of the first reading."""
     problems = list(dict.fromkeys(one.problem_id for one in selected))
     if len(problems) > 1:
         raise CaseError(
@@ -150,13 +124,7 @@ def check_one_motion(case: Case, selected: Sequence[Selected]) -> None:
 
 
 def write_motion(one: Selected, answer: Solution, asked: AskedSamples) -> tuple[str, WrittenMotion]:
-    """Text of a motion, and what is true of it when it is read back.
-
-    Raises
-    ------
-    CaseError
-        If there is no motion, or the format cannot hold it.
-    """
+    """Text of a motion, and what is true of it when it is read back."""
     name = str(asked.file)
     try:
         joints = one.problem.joints

@@ -58,16 +58,8 @@ class VerdictCard(Entry):
 def tally(judgements: Sequence[Judgement]) -> str:
     """How many claims have a word, and how that is known: a line below a card.
 
-    Parameters
-    ----------
-    judgements : sequence of Judgement
-        Of all claims.
-
-    Returns
-    -------
-    str
-        Such as "Verdicts on 31 claims: 8 follow from the printed digits, 17 are proven under a
-        reading, 6 are open."
+    Such as "Verdicts on 31 claims: 8 follow from the printed digits, 17 are proven under a reading,
+    6 are open."
     """
     own = [j for j in judgements if evident(j)]
     many = Counter(j.confidence for j in own if isinstance(j.confidence, Confidence))

@@ -67,20 +67,9 @@ def certify_result(
 ) -> CertifiedResult:
     """What was proved of one problem under one reading.
 
-    Parameters
-    ----------
-    case, problem, reading : str
-        Ids.
-    joint : str or None
-        The joint that was optimised by itself; None for all together.
-    subject : Subject
-        What the interval is to speak about.
-    found : Certified or str
-        Or why the problem is not covered.
-    certificate, state : str or None
-        Files that were written.
-    why : str or None
-        Why the outcome is what it is, where that needs to be said.
+    `joint`: the joint that was optimised by itself; None for all together. `subject`: what the
+    interval is to speak about. `found`: or why the problem is not covered. `certificate, state`:
+    files that were written. `why`: why the outcome is what it is, where that needs to be said.
     """
     same: dict[str, Any] = {
         "case": case, "problem": problem, "reading": reading, "joint": joint, "subject": subject,

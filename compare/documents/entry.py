@@ -65,10 +65,7 @@ class Fact:
 def known(value: T | None, why: str | None = None) -> T | Why:
     """A value, or why there is none.
 
-    Parameters
-    ----------
-    why : str, optional
-        Why it is None.
+    `why`: why it is None.
     """
     return Why(why or "not computed") if value is None else value
 

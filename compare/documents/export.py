@@ -70,10 +70,7 @@ class _Named(GenerateJsonSchema):
 def output_schema() -> dict[str, Any]:
     """JSON Schema of every document.
 
-    Returns
-    -------
-    dict
-        JSON Schema, draft 2020-12.
+    Draft 2020-12.
     """
     _, schema = models_json_schema(
         [(document, "validation") for document in DOCUMENTS], schema_generator=_Named
@@ -132,12 +129,8 @@ def _inner(sentence: str) -> str:
 def filled(text: str, rules: Iterable[Rule]) -> str:
     """A Markdown file with its tables of words as they are now.
 
-    Parameters
-    ----------
-    text : str
-        A table stands between ``<!-- table: NAME -->`` and ``<!-- end -->``.
-    rules : iterable of Rule
-        Of the audit, which the documents do not know.
+    `text`: a table stands between ``<!-- table: NAME -->`` and ``<!-- end -->``. `rules`: of the
+    audit, which the documents do not know.
     """
     now = tables(rules)
     return _TABLE.sub(lambda place: f"{place[1]}{now[place[2]]}", text)

@@ -119,15 +119,7 @@ def show_document(
 ) -> ShowDocument:
     """Document of `show`: one case file, its numbers as printed.
 
-    Parameters
-    ----------
-    problem, reading : str, optional
-        Keep only this one, and the claims that speak about it.
-
-    Raises
-    ------
-    CaseError
-        If the problem or reading is unknown.
+    `problem, reading`: keep only this one, and the claims that speak about it.
     """
     pairs = case.selections(problem, reading)
     problems = {pid for pid, _ in pairs}

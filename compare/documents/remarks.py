@@ -65,15 +65,7 @@ def nature_caveat(nature: Nature) -> Caveat:
 def qualified(verdict: str, beside: str) -> str:
     """A verdict with what stands beside it.
 
-    Parameters
-    ----------
-    verdict, beside : str
-        Of a `Judgement`.
-
-    Returns
-    -------
-    str
-        Such as "supported, but on doubtful numbers".
+    Such as "supported, but on doubtful numbers". `verdict, beside`: of a `Judgement`.
     """
     return f"{verdict}, {beside}" if beside else verdict
 
@@ -81,10 +73,7 @@ def qualified(verdict: str, beside: str) -> str:
 def said_beside(verdict: ClaimVerdict, caveats: Iterable[Caveat]) -> str:
     """What stands beside a verdict; what holds by construction rests on no numbers at all.
 
-    Returns
-    -------
-    str
-        Such as "but on doubtful numbers"; empty if nothing does.
+    Such as "but on doubtful numbers"; empty if nothing does.
     """
     doubts, *others = _beside(verdict, caveats)
     joins = "and" if verdict is ClaimVerdict.DEPENDS else "but"
@@ -103,10 +92,7 @@ def _beside(verdict: ClaimVerdict, caveats: Iterable[Caveat]) -> list[str]:
 def worth_little(judgements: Sequence[Judgement]) -> str:
     """How many of some claims hold by construction or on what is doubted; empty if none does.
 
-    Returns
-    -------
-    str
-        Such as "18 on doubtful numbers, 2 by construction".
+    Such as "18 on doubtful numbers, 2 by construction".
     """
     counts = Counter(
         ", ".join(filter(None, _beside(judgement.verdict, judgement.caveats)))
@@ -120,12 +106,8 @@ def worth_little(judgements: Sequence[Judgement]) -> str:
 def same_reason(text: str, where: str, own: str) -> str:
     """What stands instead of a reason that an earlier claim has given.
 
-    Parameters
-    ----------
-    text, where : str
-        Words and place of the earlier claim.
-    own : str
-        Place of this one; where it is the same, the words tell them apart.
+    `text, where`: words and place of the earlier claim. `own`: place of this one; where it is the
+    same, the words tell them apart.
     """
     called = f"at {where}" if where != own else f"for “{text.rstrip('.')}”"
     return f"For the reason given {called}."

@@ -156,17 +156,9 @@ def solve_result(
 ) -> SolveResult:
     """Result of `solve` for one problem under one reading.
 
-    Parameters
-    ----------
-    case, problem, reading : str
-        Ids.
-    answer : Solution or PerJointSolution
-        The latter for joints that do not share their durations.
-    retimings : sequence of Retiming or str, optional
-        TOPPRA on the path of the answer, or why there is none; for a PerJointSolution one per
-        joint.
-    shared : Solution, optional
-        Of joints that do not share their durations: the optimum if they did.
+    `answer`: the latter for joints that do not share their durations. `retimings`: TOPPRA on the
+    path of the answer, or why there is none; for a PerJointSolution one per joint. `shared`: of
+    joints that do not share their durations: the optimum if they did.
     """
     ids = _Asked(case=case, problem=problem, reading=reading, coupling=Coupling.SHARED)
     if isinstance(answer, Solution):

@@ -98,10 +98,7 @@ def suite_document(instances: Iterable[BenchmarkInstance]) -> SuiteDocument:
 def instance_document(one: BenchmarkInstance, file: str | None) -> SuiteShowDocument:
     """Document of `suite show`: one instance.
 
-    Parameters
-    ----------
-    file : str or None
-        Where its certificate lies.
+    `file` is where its certificate lies.
     """
     case = one.case()
     return SuiteShowDocument(

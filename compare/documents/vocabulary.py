@@ -239,11 +239,8 @@ def si_unit(quantity: str, linear: bool) -> str:
 def meanings(*enums: type[StrEnum]) -> dict[str, str]:
     """The words of enumerations that are explained there, with their explanations.
 
-    Returns
-    -------
-    dict
-        Word to the docstring below it, in the order of the members; of a word that several
-        explain, the first one's.
+    Word to the docstring below it, in the order of the members; of a word that several explain, the
+    first one's.
     """
     found: dict[str, str] = {}
     for words in enums:

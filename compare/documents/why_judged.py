@@ -68,18 +68,8 @@ class Reason:
 def grouped(said: Iterable[Said], computed: Sequence[str], named: Named = NAMELESS) -> list[Reason]:
     """What decides, each reason once.
 
-    Parameters
-    ----------
-    said : iterable of Said
-        Of one claim.
-    computed : sequence of str
-        The readings that were computed.
-
-    Returns
-    -------
-    list of Reason
-        The strongest word first; of one word those of the default reading first, and those of
-        implausible readings last.
+    The strongest word first; of one word those of the default reading first, and those of
+    implausible readings last. `said`: of one claim. `computed`: the readings that were computed.
     """
     texts: dict[tuple[str, str, str, int], dict[tuple[str, ...], dict[str, None]]] = {}
     for one in said:
@@ -136,14 +126,8 @@ def with_readings(
 ) -> tuple[str, ...]:
     """The sentences of a reason, the first with the readings under which it holds.
 
-    Parameters
-    ----------
-    computed : sequence of str
-        The readings that were computed.
-    word : bool
-        Whether its word stands in front: where readings give different ones.
-    why : bool
-        Whether an implausible reading has its reason beside it.
+    `computed`: the readings that were computed. `word`: whether its word stands in front: where
+    readings give different ones. `why`: whether an implausible reading has its reason beside it.
     """
     text, notes = _under(one.readings, computed, named, _FEW, why=why)
     if len(one.each) > 1:
@@ -192,19 +176,9 @@ def under(
 ) -> str:
     """Under which readings something holds, in words.
 
-    Parameters
-    ----------
-    computed : sequence of str
-        All readings that were computed.
-    most : int
-        Readings that are named; of more the number is given, and the exceptions if they are few.
-    why : bool
-        Whether an implausible reading has its reason beside it.
-
-    Returns
-    -------
-    str
-        Such as "under “angles in degrees”" or "under 12 of 16 readings".
+    Such as "under “angles in degrees”" or "under 12 of 16 readings". `computed`: all readings that
+    were computed. `most`: readings that are named; of more the number is given, and the exceptions
+    if they are few. `why`: whether an implausible reading has its reason beside it.
     """
     text, notes = _under(readings, computed, named, most, why=why)
     return noted(text, *notes)
@@ -232,17 +206,8 @@ def _under(
 def among(readings: Sequence[str], count: int, far: Iterable[str] = ()) -> str:
     """How many of all readings, and how many of these are implausible.
 
-    Parameters
-    ----------
-    count : int
-        Of all readings.
-    far : iterable of str
-        Those that are implausible.
-
-    Returns
-    -------
-    str
-        Such as "13 of 19 readings (5 implausible)".
+    Such as "13 of 19 readings (5 implausible)". `count`: of all readings. `far`: those that are
+    implausible.
     """
     return noted(f"{len(readings)} of {count} readings", implausibly(readings, far))
 

@@ -69,18 +69,8 @@ _PICTURES = "pictures/bench-"
 def write_bench(results: Sequence[tuple[BenchResult, Runs]], out: Path) -> None:
     """Write the page of a bench into a folder; all of it appears together.
 
-    Parameters
-    ----------
-    results : sequence of (BenchResult, Runs)
-        One for each problem.
-    out : Path
-        A new or an empty folder, or one with an earlier bench, which is replaced. It gets
-        ``index.html``, ``bench.json``, ``rows.csv`` and ``pictures/``.
-
-    Raises
-    ------
-    CaseError
-        If the folder holds anything else, or cannot be written.
+    `results`: one for each problem. `out`: a new or an empty folder, or one with an earlier bench,
+    which is replaced. It gets ``index.html``, ``bench.json``, ``rows.csv`` and ``pictures/``.
     """
     page = _page(results)
     files = {
@@ -100,13 +90,7 @@ def bench_document(results: Sequence[tuple[BenchResult, Runs]]) -> BenchDocument
 
 
 def check_bench_folder(out: Path) -> None:
-    """Find out whether a bench can be written to a folder, before it is computed.
-
-    Raises
-    ------
-    CaseError
-        If it holds anything but an earlier bench.
-    """
+    """Find out whether a bench can be written to a folder, before it is computed."""
     check_folder(out, _foreign, _WHAT)
 
 
@@ -126,10 +110,7 @@ def _rows(result: BenchResult, runs: Runs) -> Iterator[Row]:
 def bench_picture(result: BenchResult, runs: Runs) -> Picture:
     """Anytime gap bands of every optimiser, and the targets that they reach.
 
-    Parameters
-    ----------
-    result : BenchResult
-        What `measure_gaps` returned for the runs.
+    `result`: what `measure_gaps` returned for the runs.
     """
     upper, lower = result.optimum.upper, value_or_none(result.optimum.lower)
     return gap_picture(

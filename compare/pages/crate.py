@@ -32,13 +32,7 @@ _PROFILE = "https://w3id.org/ro/wfrun/process/0.5"
 
 
 def crate_library() -> Any:
-    """The class that writes crates.
-
-    Raises
-    ------
-    TrajgapError
-        If the optional library is not installed.
-    """
+    """The class that writes crates."""
     try:
         return import_module("rocrate.rocrate").ROCrate
     except ImportError:
@@ -50,17 +44,9 @@ def crate_library() -> Any:
 def crate_of(report: AuditReport) -> bytes:
     """The archive that holds an audit and all that it was made from.
 
-    Returns
-    -------
-    bytes
-        A ZIP file, RO-Crate 1.1 or later: the case files as they were read, the pages with their
-        pictures, the JSON, every certificate that was used, and the versions of everything that is
-        installed.
-
-    Raises
-    ------
-    TrajgapError
-        If the optional library is not installed, or a case file has changed since it was read.
+    A ZIP file, RO-Crate 1.1 or later: the case files as they were read, the pages with their
+    pictures, the JSON, every certificate that was used, and the versions of everything that is
+    installed.
     """
     crate = crate_library()()
     made = [one.document.provenance for one in report.cases]

@@ -52,10 +52,7 @@ def _visible(value: object) -> object:
 def fill_template(path: Path, **values: Any) -> str:
     """Fill a template that lies elsewhere, with the style and the safety of all pages.
 
-    Parameters
-    ----------
-    **values
-        What it names; ``style`` is the style sheet.
+    `**values`: what it names; ``style`` is the style sheet.
     """
     shapes = environment().overlay(loader=FileSystemLoader(path.parent))
     return shapes.get_template(path.name).render(style=style(), **values)

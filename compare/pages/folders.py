@@ -16,17 +16,7 @@ Foreign = Callable[[Path, list[str]], str | None]
 def check_folder(out: Path, foreign: Foreign, what: str, option: str = "--out") -> None:
     """Find out whether a folder can be written, before computing what goes into it.
 
-    Parameters
-    ----------
-    what : str
-        What the folder is to be, such as "a bench".
-    option : str
-        What names it, for messages.
-
-    Raises
-    ------
-    CaseError
-        If it holds anything else, or cannot be written.
+    `what`: what the folder is to be, such as "a bench". `option`: what names it, for messages.
     """
     with _writing(out, option):
         recover_folder(out)

@@ -16,10 +16,7 @@ _LIST = re.compile(r"^(\s*)([-+]|\d+[.)])(\s)", re.MULTILINE)
 def markdown(page: Page) -> str:
     """Render a page; pictures are links to the files beside it.
 
-    Returns
-    -------
-    str
-        GitHub-flavoured Markdown, in which text from case files is plain text.
+    GitHub-flavoured Markdown, in which text from case files is plain text.
     """
     parts = [f"# {plain(page.title)}", plain(page.trail)]
     if page.doi_link:

@@ -19,15 +19,8 @@ def suite_pages(
 ) -> dict[str, str]:
     """Files of the suite's pages, by name.
 
-    Parameters
-    ----------
-    step : callable
-        Told the name of each instance before its page.
-
-    Returns
-    -------
-    dict
-        ``index.html``, and ``NAME.html`` and ``NAME.toml``, the plain file, for each instance.
+    ``index.html``, and ``NAME.html`` and ``NAME.toml``, the plain file, for each instance. `step`:
+    told the name of each instance before its page.
     """
     found: dict[str, str] = {}
     for one in instances:

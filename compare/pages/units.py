@@ -14,10 +14,7 @@ def paper_units(statement: Statement) -> dict[tuple[str, str], tuple[str, float]
 
     By joint and quantity.
 
-    Parameters
-    ----------
-    statement : Statement
-        The problem under the reading whose units count.
+    `statement`: the problem under the reading whose units count.
     """
     found = {}
     for joint in statement.joints:
@@ -45,19 +42,9 @@ def both_units(
 ) -> str:
     """Values in the paper's unit of a quantity, with SI in brackets where that is another.
 
-    Parameters
-    ----------
-    statement : Statement
-        The problem under the reading whose units count.
-    quantity : str
-        Such as "velocity".
-    values : sequence of float
-        In SI.
-    form : str
-        Format of each number, such as "+.6g".
-    joints : sequence of int, optional
-        Position of each value's joint in the robot's list; those that take part by default, where
-        one value may stand for all that have one unit.
+    `quantity`: such as "velocity". `values`: in SI. `form`: format of each number, such as "+.6g".
+    `joints`: position of each value's joint in the robot's list; those that take part by default,
+    where one value may stand for all that have one unit.
     """
     places = list(statement.joints if joints is None else joints)
     places = places[: len(values)]

@@ -87,18 +87,7 @@ def write_report(report: AuditReport, out: Path) -> None:
 def check_report_folder(out: Path, cases: Sequence[Case] = (), option: str = "--out") -> None:
     """Find out whether a report can be written, before computing what goes into it.
 
-    Parameters
-    ----------
-    cases : sequence of Case
-        Those that it is about.
-    option : str
-        What names the folder, for messages.
-
-    Raises
-    ------
-    CaseError
-        If the folder holds anything but an earlier report or cannot be written, or if the id of
-        a case is that of another one or the name of another page.
+    `cases`: those that it is about. `option`: what names the folder, for messages.
     """
     names = [case.id for case in cases]
     for case in cases:
@@ -151,10 +140,7 @@ def report_files(report: AuditReport) -> dict[str, str]:
 def page_files(one: CaseAudit, links: tuple[tuple[str, str], ...]) -> dict[str, str]:
     """The page of a case, its pictures and the glossary, by their paths; the page comes first.
 
-    Parameters
-    ----------
-    links : tuple of (str, str)
-        Words and addresses at the head of the page.
+    `links`: words and addresses at the head of the page.
     """
     page = replace(case_page(one), links=links)
     words = replace(Page("glossary", "How to read a verdict", (glossary(),)), links=links[:1])

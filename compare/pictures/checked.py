@@ -38,22 +38,11 @@ def checked_picture(
 ) -> Picture:
     """Position, velocity, acceleration and jerk of a motion from elsewhere, one row per joint.
 
-    Parameters
-    ----------
-    content : Motion or Samples
-        Of samples, dots show what neighbours prove; nothing is drawn between them.
-    limits : JointLimits
-        For the same joints in the same order.
-    found : MotionCheck
-        The verdict on this motion, or on every motion through these samples.
-    units : sequence of str
-        Of positions, one for all joints or one each: rad, deg, m, cm or mm.
-
-    Returns
-    -------
-    Picture
-        Limits are dashed. Red is what surely breaks a limit, or jumps; orange is what may break
-        one, by what the numbers may be off by.
+    Limits are dashed. Red is what surely breaks a limit, or jumps; orange is what may break one, by
+    what the numbers may be off by. `content`: of samples, dots show what neighbours prove; nothing
+    is drawn between them. `limits`: for the same joints in the same order. `found`: the verdict on
+    this motion, or on every motion through these samples. `units`: of positions, one for all joints
+    or one each: rad, deg, m, cm or mm.
     """
     each = [*units] * (len(content.joints) if len(units) == 1 else 1)
     factors = factors_of(units, len(content.joints), "units").tolist()

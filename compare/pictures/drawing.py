@@ -130,12 +130,8 @@ def _font() -> FT2Font:
 def shown(text: str, width: int | None = None, lines: int = 1) -> str:
     """Text as a picture can draw it: on few lines, without characters that the font lacks.
 
-    Parameters
-    ----------
-    width : int, optional
-        Largest number of characters in a line; what does not fit is cut with an ellipsis.
-    lines : int
-        Largest number of lines.
+    `width`: largest number of characters in a line; what does not fit is cut with an ellipsis.
+    `lines`: largest number of lines.
     """
     flat = " ".join(text.split())
     drawn = "".join(c if c.isprintable() and _font().get_char_index(ord(c)) else "?" for c in flat)
@@ -214,15 +210,8 @@ def _shorter(match: re.Match[str]) -> str:
 def svg(figure: Figure) -> str:
     """Render a figure as SVG, the same bytes each time, with title and description.
 
-    Parameters
-    ----------
-    figure : Figure
-        A `Picture` brings its own title and description.
-
-    Returns
-    -------
-    str
-        A complete SVG document. Text is drawn as outlines, so it looks the same everywhere.
+    A complete SVG document. Text is drawn as outlines, so it looks the same everywhere. `figure`: a
+    `Picture` brings its own title and description.
     """
     buffer = io.StringIO()
     canvas, dots = figure.canvas, figure.dpi
@@ -252,10 +241,7 @@ def svg(figure: Figure) -> str:
 def picture_bytes(figure: Figure, kind: str) -> bytes:
     """Render a figure as the content of a file, the same bytes each time.
 
-    Parameters
-    ----------
-    kind : str
-        One of `KINDS`.
+    `kind` is one of `KINDS`.
     """
     if kind == "svg":
         return svg(figure).encode()
@@ -271,10 +257,7 @@ def themed(document: str) -> str:
 
     Its own colours stay in place for every other program.
 
-    Parameters
-    ----------
-    document : str
-        What `svg` returned.
+    `document`: what `svg` returned.
     """
     rules = "".join(
         f'[style*="{what}: {colour}"]{{{what}:{DARK[name]} !important}}'
@@ -290,12 +273,7 @@ def themed(document: str) -> str:
 def embedded(document: str, prefix: str) -> str:
     """Fit an SVG document into a page: own ids, and colours that follow the page's theme.
 
-    Parameters
-    ----------
-    document : str
-        What `svg` returned.
-    prefix : str
-        Unique in the page; made by `file_name`.
+    `document`: what `svg` returned. `prefix`: unique in the page; made by `file_name`.
     """
     text = document[document.index("<svg ") :]
     text = re.sub(r'\bid="([^"]+)"', rf'id="{prefix}-\1"', text)

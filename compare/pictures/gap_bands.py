@@ -63,27 +63,10 @@ def gap_picture(
 ) -> Picture:
     """Anytime gap of each optimiser with its quartiles, and the share of targets reached.
 
-    Parameters
-    ----------
-    optimisers : sequence of Anytime
-        Their order determines colours and line styles.
-    uncertainty : float or None
-        Relative width of the optimum's certified interval, drawn below zero; None if no lower
-        bound is certified.
-    budget : int
-        Evaluations of a run.
-    targets : int
-        How many gaps from 100 % to 0.0001 % each run was asked for.
-
-    Returns
-    -------
-    Picture
-        Two panels over evaluations on a logarithmic axis.
-
-    Raises
-    ------
-    TrajgapError
-        If there is nothing to draw.
+    Two panels over evaluations on a logarithmic axis. `optimisers`: their order determines colours
+    and line styles. `uncertainty`: relative width of the optimum's certified interval, drawn below
+    zero; None if no lower bound is certified. `budget`: evaluations of a run. `targets`: how many
+    gaps from 100 % to 0.0001 % each run was asked for.
     """
     if not optimisers:
         raise TrajgapError("gap bands: no runs to draw")
@@ -194,10 +177,8 @@ def _words(one: Anytime) -> str:
 def profile_picture(profiles: Mapping[str, tuple[Array, Array]], *, title: str) -> Picture:
     """Performance profiles against the optimum: share of runs within each gap.
 
-    Parameters
-    ----------
-    profiles : mapping of str to (ratios, shares)
-        Of each optimiser, as `share_within` gives them; colours and line styles in this order.
+    `profiles`: of each optimiser, as `share_within` gives them; colours and line styles in this
+    order.
     """
     description = "; ".join(
         f"{label}: {100 * float(shares[ratios <= 1.01].max(initial=0.0)):.0f} % of runs end within "

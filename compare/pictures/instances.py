@@ -22,17 +22,9 @@ _SHOWN_OBJECTIVES = 2
 def instances_picture(result: InstancesResult, *, title: str) -> Picture:
     """Reductions of the total on every instance, one row for each reading.
 
-    Parameters
-    ----------
-    result : InstancesResult
-        Its first two objectives are drawn.
-
-    Returns
-    -------
-    Picture
-        Three panels: both together with the printed reduction as a band, the algorithm alone, and
-        the curve alone at the best known optima. Nothing is clipped; pairs without answer are
-        counted beside their row.
+    Three panels: both together with the printed reduction as a band, the algorithm alone, and the
+    curve alone at the best known optima. Nothing is clipped; pairs without answer are counted
+    beside their row. `result`: its first two objectives are drawn.
     """
     described = [
         f"{result.label(reading)}: {effect} {distribution(result.reductions(reading, effect))}"

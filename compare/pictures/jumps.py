@@ -29,15 +29,7 @@ _VELOCITY = 1
 def velocity_jumps(problem: Problem, durations: ArrayLike) -> tuple[Jump, ...]:
     """Jumps of the velocity at the breaks, in order of joint and time.
 
-    Parameters
-    ----------
-    durations : array_like, shape (segments,)
-        s.
-
-    Returns
-    -------
-    tuple of Jump
-        Empty if the velocity is continuous.
+    Empty if the velocity is continuous. `durations`: shape (segments,), s.
     """
     found = [j for j in check(problem, durations).jumps if j.order == _VELOCITY]
     return tuple(sorted(found, key=lambda j: (problem.joints.index(j.joint), j.time)))
@@ -48,22 +40,9 @@ def jump_picture(
 ) -> Picture:
     """Velocity of every joint over time; below it the size of each jump.
 
-    Parameters
-    ----------
-    durations : array_like, shape (segments,)
-        Shared by all joints, s.
-    units : mapping, optional
-        Those of the paper, as for `motion_picture`; SI by default.
-
-    Returns
-    -------
-    Picture
-        The largest jump of each joint is dark, and named with its time and size.
-
-    Raises
-    ------
-    TrajgapError
-        If the durations have the wrong shape.
+    The largest jump of each joint is dark, and named with its time and size. `durations`: shape
+    (segments,), shared by all joints, s. `units`: those of the paper, as for `motion_picture`; SI
+    by default.
     """
     h = np.asarray(durations, dtype=np.float64)
     if h.shape != (problem.segments,):

@@ -25,12 +25,8 @@ _DOT = 9.0
 def place_labels(axes: Axes, points: Array, labels: Sequence[str]) -> None:
     """Write a label beside every point of a panel whose limits and place are settled.
 
-    Parameters
-    ----------
-    points : ndarray, shape (points, 2)
-        In the panel's coordinates.
-    labels : sequence of str
-        Points with the same label, or at the same place, share one.
+    `points`: shape (points, 2), in the panel's coordinates. `labels`: points with the same label,
+    or at the same place, share one.
     """
     figure = axes.get_figure(root=True)
     assert figure is not None

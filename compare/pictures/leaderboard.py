@@ -51,10 +51,7 @@ def leaderboard_picture(
 ) -> Picture:
     """Share of runs within each gap, a panel for each handling.
 
-    Parameters
-    ----------
-    gaps : sequence of float
-        Relative, falling.
+    `gaps`: relative, falling.
     """
     description = "; ".join(
         f"{panel.title}: {label}, " + ", ".join(

@@ -34,30 +34,12 @@ def motion_picture(
 ) -> Picture:
     """Angle, velocity, acceleration (and jerk, if limited) over time, one row per joint.
 
-    Parameters
-    ----------
-    durations : array_like, shape (segments,) or (joints, segments)
-        Segment durations, s, shared by all joints or of each joint separately.
-    check : Check, optional
-        Its verdict is written below the picture.
-    note : str
-        Further words below the picture, such as the verdict over the rounding box.
-    nodal : array_like, shape (free, joints), optional
-        Free derivatives of an under-determined interpolant.
-    units : mapping, optional
-        Those of the paper, by joint and "position", "velocity" and so on; SI where one is
-        missing.
-
-    Returns
-    -------
-    Picture
-        Limits are dashed, largest values are marked at their exact places, and stretches beyond a
-        limit are red.
-
-    Raises
-    ------
-    TrajgapError
-        If the durations have the wrong shape.
+    Limits are dashed, largest values are marked at their exact places, and stretches beyond a limit
+    are red. `durations`: shape (segments,) or (joints, segments), segment durations, s, shared by
+    all joints or of each joint separately. `check`: its verdict is written below the picture.
+    `note`: further words below the picture, such as the verdict over the rounding box. `nodal`:
+    shape (free, joints), free derivatives of an under-determined interpolant. `units`: those of the
+    paper, by joint and "position", "velocity" and so on; SI where one is missing.
     """
     h = np.asarray(durations, dtype=np.float64)
     joints = len(problem.joints)

@@ -106,16 +106,8 @@ def panels_picture(
 ) -> Picture:
     """Panels with the curves of every joint.
 
-    Parameters
-    ----------
-    rows : sequence of sequence of Line
-        By joint, each from the position on.
-    signs : sequence of str
-        What hollow and filled points stand for.
-    note : str
-        Below the picture, after the key.
-    span : (float, float)
-        First and last time, s.
+    `rows`: by joint, each from the position on. `signs`: what hollow and filled points stand for.
+    `note`: below the picture, after the key. `span`: first and last time, s.
     """
     many = len(rows[0])
     description = "; ".join(line.described for row in rows for line in row[1:])

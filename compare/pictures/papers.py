@@ -35,10 +35,7 @@ class PaperBar:
 def papers_picture(bars: Sequence[PaperBar], *, title: str) -> Picture:
     """A bar for each paper, from its optimum at the left to its printed total.
 
-    Returns
-    -------
-    Picture
-        On a logarithmic axis, so no bar is cut.
+    On a logarithmic axis, so no bar is cut.
     """
     description = "; ".join(f"{one.label}: {one.said}" for one in bars)
     top = _ROOM * max([one.highest for one in bars], default=1.0)

@@ -38,24 +38,10 @@ def polygon_picture(
 
     Vertex V_k stands over the parameter k − 1, where its basis function is largest.
 
-    Parameters
-    ----------
-    waypoints : array_like, shape (way-points, joints)
-        In the unit in which they are printed.
-    vertices : sequence of Vertex
-        Printed vertices with the intervals that the way-points allow, joint after joint.
-    quantity : str
-        What the way-points are: "position" where some joint slides.
-
-    Returns
-    -------
-    Picture
-        Below each curve: printed less computed vertices, and how far rounding explains.
-
-    Raises
-    ------
-    TrajgapError
-        If there is not one vertex more at each end than way-points, for every joint.
+    Below each curve: printed less computed vertices, and how far rounding explains. `waypoints`:
+    shape (way-points, joints), in the unit in which they are printed. `vertices`: printed vertices
+    with the intervals that the way-points allow, joint after joint. `quantity`: what the way-points
+    are: "position" where some joint slides.
     """
     w = np.asarray(waypoints, dtype=np.float64)
     joints = tuple(dict.fromkeys(v.joint for v in vertices))

@@ -51,31 +51,13 @@ def convergence(
 ) -> Picture:
     """Best-so-far of every seed, with median and quartiles, beside the optimum.
 
-    Parameters
-    ----------
-    runs : mapping of str to sequence of Run or JointRuns
-        Replays of each algorithm, by its name.
-    optimum : float or sequence of float
-        Reference total, s; one per joint for searches of single joints.
-    printed : mapping of str to float or sequence of float
-        Printed totals by label, s; one per joint (nan where none) for searches of single joints.
-    rounding : float
-        Half the width of the interval that printed digits stand for, s; drawn as a band.
-    evidence : str
-        Word for the evidence of the optimum.
-    joints : sequence of str
-        Joint labels; "1", "2", ... by default.
-
-    Returns
-    -------
-    Picture
-        One panel, or one per joint. The vertical axis is the gap to the optimum in percent,
-        logarithmic beyond 0.01 %, and goes below zero where a search or a printed total does.
-
-    Raises
-    ------
-    TrajgapError
-        If there are no runs, or the optima are not one per joint.
+    One panel, or one per joint. The vertical axis is the gap to the optimum in percent, logarithmic
+    beyond 0.01 %, and goes below zero where a search or a printed total does. `runs`: replays of
+    each algorithm, by its name. `optimum`: reference total, s; one per joint for searches of single
+    joints. `printed`: printed totals by label, s; one per joint (nan where none) for searches of
+    single joints. `rounding`: half the width of the interval that printed digits stand for, s;
+    drawn as a band. `evidence`: word for the evidence of the optimum. `joints`: joint labels; "1",
+    "2", ... by default.
     """
     panels = _panels(runs)
     optima = [float(x) for x in np.atleast_1d(np.asarray(optimum, dtype=np.float64))]
@@ -259,17 +241,8 @@ def endings(
 ) -> Picture:
     """Total of every run, one row per algorithm, beside references and printed totals.
 
-    Parameters
-    ----------
-    ends : mapping of str to ndarray, shape (runs,)
-        Totals by name, s; inf for a run without a feasible answer.
-    references, printed : mapping of str to float
-        Totals by label, s.
-
-    Returns
-    -------
-    Picture
-        Runs without a feasible answer are counted beside their row.
+    Runs without a feasible answer are counted beside their row. `ends`: shape (runs,), totals by
+    name, s; inf for a run without a feasible answer. `references, printed`: totals by label, s.
     """
     lines = [(label, value, INK) for label, value in references.items()]
     lines += [(f"printed: {label}", value, RED) for label, value in printed.items()]
@@ -318,12 +291,7 @@ def reached_picture(
 ) -> Picture:
     """Where the runs of a paper's algorithms end, between the optimum and the printed total.
 
-    Parameters
-    ----------
-    runs : sequence of Reached
-        Of one search.
-    waterfalls : iterable of Waterfall
-        Of the case, which have its printed totals.
+    `runs`: of one search. `waterfalls`: of the case, which have its printed totals.
     """
     ends = {
         f"{one.handling.replace('-', ' ')}: {one.name}": np.array(

@@ -66,12 +66,8 @@ def tent_scatter(
 ) -> TentScatter:
     """Fill populations with orbits of the tent map (23) of `z1-woa-bspline`.
 
-    Parameters
-    ----------
-    bounds : tuple of float
-        Range to which [0, 1] is scaled.
-    beta : float
-        Between 0 and 1; its shortest decimal is meant.
+    `bounds`: range to which [0, 1] is scaled. `beta`: between 0 and 1; its shortest decimal is
+    meant.
     """
     start = repr(float(np.random.default_rng(0).random()))
     share = Fraction(repr(beta))
@@ -115,10 +111,7 @@ def tent_scatter(
 def tent_picture(scatter: TentScatter, *, unit: str, title: str) -> Picture:
     """First two coordinates of every member, exactly and in doubles, and one orbit by steps.
 
-    Parameters
-    ----------
-    unit : str
-        Of the coordinates.
+    `unit`: of the coordinates.
     """
     zero = scatter.orbit.zero_at
     rest = f"exactly 0 from step {zero} on" if zero is not None else "never exactly 0"

@@ -60,28 +60,10 @@ def landscape(
     Every point is a ratio h₁ : h₂ : h₃; its height is T·c*, the total of the durations of that
     ratio stretched until a limit is reached, from the checker's exact peaks.
 
-    Parameters
-    ----------
-    problem : Problem
-        With three segments.
-    optimum : Solution
-        Reference of the contours.
-    printed : sequence of (str, array_like)
-        Label and printed durations, shape (3,), s.
-    ends : mapping of str to array_like
-        Durations that each heuristic ended with, shape (runs, 3), s.
-
-    Returns
-    -------
-    Picture
-        Where a bound on the durations or a position limit forbids the tight total, the map is
-        hatched.
-
-    Raises
-    ------
-    TrajgapError
-        If the problem has not three segments, its trajectories have free derivatives, or there is
-        no optimum.
+    Where a bound on the durations or a position limit forbids the tight total, the map is hatched.
+    `problem`: with three segments. `optimum`: reference of the contours. `printed`: label and
+    printed durations, shape (3,), s. `ends`: durations that each heuristic ended with, shape (runs,
+    3), s.
     """
     if problem.segments != 3:
         raise TrajgapError(f"landscape: drawn for 3 segments, the problem has {problem.segments}")
@@ -170,15 +152,8 @@ def _rescaled(problem: Problem, durations: ArrayLike, best: float) -> str:
 def tight_total(problem: Problem, shares: Array) -> Array:
     """Total after free rescaling of durations with the given shares.
 
-    Parameters
-    ----------
-    shares : ndarray, shape (points, segments)
-        Positive, summing to 1.
-
-    Returns
-    -------
-    ndarray, shape (points,)
-        T·c* in s; inf if a joint with limit 0 moves, or the path leaves a position range.
+    Shape (points,): T·c* in s; inf if a joint with limit 0 moves, or the path leaves a position
+    range. `shares`: shape (points, segments), positive, summing to 1.
     """
     found = evaluate(problem, shares)
     if not found.positions_limited:

@@ -26,16 +26,9 @@ Stretches = Sequence[tuple[float, float]]
 def sampled(trajectory: Trajectory, column: int, order: int) -> tuple[Array, Array]:
     """Times and values, with the exact extrema among them and a gap where the curve jumps.
 
-    Parameters
-    ----------
-    column, order : int
-        Joint and derivative.
-
-    Returns
-    -------
-    times, values : ndarray, shape (samples,)
-        s and rad/sᵒʳᵈᵉʳ (m/sᵒʳᵈᵉʳ of a joint that slides); a value is NaN at a jump. If there are
-        more pieces than a panel has pixels, only the exact extrema.
+    Shape (samples,): s and rad/sᵒʳᵈᵉʳ (m/sᵒʳᵈᵉʳ of a joint that slides); a value is NaN at a jump.
+    If there are more pieces than a panel has pixels, only the exact extrema. `column, order`: joint
+    and derivative.
     """
     if len(trajectory.durations) > POINTS:
         places, found = (one[:, :, column] for one in trajectory.turns(order))
@@ -87,23 +80,12 @@ def beyond(
 ) -> Stretches:
     """Stretches of time in which a derivative lies beyond its limits, from exact crossings.
 
-    Parameters
-    ----------
-    column, order : int
-        Joint and derivative.
-    low, high : float
-        Limits in rad/sᵒʳᵈᵉʳ or m/sᵒʳᵈᵉʳ.
-    slack : float or ndarray, shape (pieces,), optional
-        An excess up to this does not count; by default the checker's relative tolerance. A negative
-        one counts what stays within the limits by less than its size.
-    braking : float
-        Limit of an acceleration while the speed falls, where it has one of its own.
-
-    Returns
-    -------
-    sequence of (float, float)
-        Start and end, s; stretches that touch are joined. If there are more pieces than pixels,
-        pieces shorter than a pixel count in whole, and shorter gaps are closed.
+    Start and end, s; stretches that touch are joined. If there are more pieces than pixels, pieces
+    shorter than a pixel count in whole, and shorter gaps are closed. `column, order`: joint and
+    derivative. `low, high`: limits in rad/sᵒʳᵈᵉʳ or m/sᵒʳᵈᵉʳ. `slack`: shape (pieces,), an excess
+    up to this does not count; by default the checker's relative tolerance. A negative one counts
+    what stays within the limits by less than its size. `braking`: limit of an acceleration while
+    the speed falls, where it has one of its own.
     """
     durations, total = trajectory.durations, trajectory.total_time
     if slack is None:
@@ -173,10 +155,7 @@ def joined_stretches(found: Stretches, gap: float) -> Stretches:
 def without(stretches: Stretches, others: Stretches, least: float) -> Stretches:
     """What others leave of stretches, both in order of time.
 
-    Parameters
-    ----------
-    least : float
-        What is left beside another stretch counts if it is longer than this, s.
+    `least`: what is left beside another stretch counts if it is longer than this, s.
     """
     left: list[tuple[float, float]] = []
     for start, end in stretches:

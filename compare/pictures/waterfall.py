@@ -38,16 +38,9 @@ _WORDS = {
 def waterfall_picture(waterfall: Waterfall, *, title: str, narrow: bool = False) -> Picture:
     """Bars from 0 with the seconds written on them, one per step.
 
-    Parameters
-    ----------
-    narrow : bool
-        For half a page: without steps that have no value, and seconds without their interval.
-
-    Returns
-    -------
-    Picture
-        Certified values are solid, best known ones hatched; an interval is drawn over its bar; a
-        step without a value says why.
+    Certified values are solid, best known ones hatched; an interval is drawn over its bar; a step
+    without a value says why. `narrow`: for half a page: without steps that have no value, and
+    seconds without their interval.
     """
     steps = waterfall.steps
     if narrow:

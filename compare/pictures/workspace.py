@@ -47,25 +47,10 @@ def workspace_picture(
 ) -> Picture:
     """Three views of the sampled positions, with their bounding box and the base.
 
-    Parameters
-    ----------
-    waypoints : array_like, shape (way-points, 3), optional
-        Positions in the base, m, joined by straight lines in order over the cloud.
-    labels : sequence of str, optional
-        Names of the way-points.
-    missed : sequence of bool, optional
-        Which way-points the end cannot reach; they are drawn as red crosses.
-
-    Returns
-    -------
-    Picture
-        The first 2,000 samples are drawn, at one scale in all views; box and numbers are of all
-        samples.
-
-    Raises
-    ------
-    TrajgapError
-        If the way-points are not finite positions, or labels or marks are not one each.
+    The first 2,000 samples are drawn, at one scale in all views; box and numbers are of all
+    samples. `waypoints`: shape (way-points, 3), positions in the base, m, joined by straight lines
+    in order over the cloud. `labels`: names of the way-points. `missed`: which way-points the end
+    cannot reach; they are drawn as red crosses.
     """
     path = _positions(waypoints)
     for name, given in (("labels", labels), ("missed", missed)):

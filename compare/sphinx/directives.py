@@ -113,13 +113,7 @@ class Claims(FromResults):
 
 
 def wanted_words(option: str) -> list[str]:
-    """The verdicts that an option names, separated by commas, in their order.
-
-    Raises
-    ------
-    TrajgapError
-        If one is not a verdict on a claim: such a list would be empty whatever the case says.
-    """
+    """The verdicts that an option names, separated by commas, in their order."""
     words = [" ".join(word.split()) for word in option.split(",") if word.strip()]
     for word in words:
         if word not in tuple(ClaimVerdict):

@@ -18,13 +18,7 @@ from .results import Results
 
 
 def shown(value: object, form: str) -> str:
-    """A value in a sentence, by a format of Python's such as ``.1f`` or ``.1%``.
-
-    Raises
-    ------
-    TrajgapError
-        If the value is none, or not of the format's kind.
-    """
+    """A value in a sentence, by a format of Python's such as ``.1f`` or ``.1%``."""
     if value is None or isinstance(value, dict | list):
         raise TrajgapError(f"{value!r} is not a single value; add another key")
     try:

@@ -124,10 +124,7 @@ class PaperRow:
 def paper_rows(results: Results, kinds: str = "") -> tuple[PaperRow, ...]:
     """Audited cases, what is worth reading first.
 
-    Parameters
-    ----------
-    kinds : str
-        Kinds of source, separated by spaces; all if empty.
+    `kinds`: kinds of source, separated by spaces; all if empty.
     """
     cases = {n: results.audited(n) for n in results.names if "cases" in results.document(n)}
     chosen = (
@@ -198,10 +195,7 @@ def distance_of(case: AuditedCase) -> Distance | None:
     The optimum is that of shared durations; where the paper plans each joint separately, it is what
     the joints' own optima give.
 
-    Returns
-    -------
-    Distance or None
-        None if no problem is complete, or no total is printed.
+    None if no problem is complete, or no total is printed.
     """
     otherwise = {c.claim for c in case.claims if not isinstance(c.objective, Why)}
     for entry in case.waterfalls:

@@ -14,22 +14,7 @@ from ..documents import capital, worth
 def proved_again(path: Path, sha256: str | None = None) -> CertificateVerdict:
     """What a certificate proves.
 
-    Parameters
-    ----------
-    path : Path
-        The file.
-    sha256 : str, optional
-        Of the file that a result or a table was made from.
-
-    Returns
-    -------
-    CertificateVerdict
-        One that proves its claim.
-
-    Raises
-    ------
-    TrajgapError
-        If it is another file, is none, or does not prove what it claims.
+    `sha256`: of the file that a result or a table was made from.
     """
     try:
         if sha256 is not None and hashlib.sha256(path.read_bytes()).hexdigest() != sha256:

@@ -31,13 +31,7 @@ class Results:
         return tuple(sorted(p.stem for p in self.folder.glob("*.json") if p.name != LOCK))
 
     def document(self, name: str) -> dict[str, Any]:
-        """One document.
-
-        Raises
-        ------
-        TrajgapError
-            If there is none of that name, or it is no JSON.
-        """
+        """One document."""
         path = self.folder / f"{name}.json"
         if name not in self.names:
             known = ", ".join(self.names) or "none"
@@ -51,13 +45,7 @@ class Results:
         return read
 
     def case(self, name: str) -> dict[str, Any]:
-        """The audit of one case.
-
-        Raises
-        ------
-        TrajgapError
-            If the document holds none.
-        """
+        """The audit of one case."""
         cases = self.document(name).get("cases")
         if not isinstance(cases, list) or len(cases) != 1:
             raise TrajgapError(
@@ -76,11 +64,6 @@ class Results:
 
         After the name of the document stand keys, and in lists places from 0 or
         ``[key=value]`` for the one entry that says so.
-
-        Raises
-        ------
-        TrajgapError
-            If nothing stands there.
         """
         name, _, path = key.partition(":")
         here: Any = self.document(name)

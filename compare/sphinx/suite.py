@@ -22,13 +22,7 @@ each build; the others, less than a sixth, take half a minute together."""
 
 
 def instances_of(curve: str | None) -> Sequence[BenchmarkInstance]:
-    """Instances of a curve by its whole name, or by a word as `trajgap suite --curve` takes it.
-
-    Raises
-    ------
-    TrajgapError
-        If there is none.
-    """
+    """Instances of a curve by its whole name, or by a word as `trajgap suite --curve` takes it."""
     every = list_instances()
     if curve is None:
         return every
