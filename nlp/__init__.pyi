@@ -46,6 +46,5 @@ from .proofs.any_curve import (
 from .retiming import (
     Retiming as Retiming,
     retime as retime,
-    retime_joints as retime_joints,
     retimed_motion as retimed_motion,
 )

@@ -3,4 +3,4 @@ from .third_order import (
     jerk_limited_path as jerk_limited_path,
     retime_third_order as retime_third_order,
 )
-from .toppra_check import Retiming as Retiming, retime as retime, retime_joints as retime_joints
+from .toppra_check import Retiming as Retiming, retime as retime

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -89,7 +89,7 @@ def retime(
     Parameters
     ----------
     trajectory : Trajectory
-        Shared by all joints; for joints with durations of their own see `retime_joints`.
+        Shared by all joints.
     limits : Limits
         Velocity and acceleration limits count; position is fixed by the path.
     gridpoints : three ints, ascending
@@ -166,26 +166,6 @@ def retime(
         error,
         cuts,
         holds,
-    )
-
-
-def retime_joints(
-    trajectory: Trajectory, limits: Limits, *, gridpoints: Sequence[int] = GRIDPOINTS
-) -> tuple[Retiming, ...]:
-    """`retime` for each joint on its own path, every turning point a cut (per-joint coupling).
-
-    Returns
-    -------
-    tuple of Retiming
-        One per joint.
-    """
-    return tuple(
-        retime(
-            replace(trajectory, scaled=trajectory.scaled[:, :, j : j + 1]),
-            limits.joint(j),
-            gridpoints=gridpoints,
-        )
-        for j in range(trajectory.joints)
     )
 
 

@@ -1,6 +1,7 @@
 """Paths timed anew: known answers, order, the one-sided inequality, and where it applies."""
 
 import logging
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,7 +10,7 @@ from support.retimed import PUMA_353, close, hermite, puma, rest_to_rest_time, t
 from support.same_question import DRESSES, OWN_UNITS, same_question
 from trajgap.nlp.retiming.grid import measure, sample
 from trajgap.nlp.retiming.path import pieces
-from trajgap.nlp.retiming.toppra_check import GRIDPOINTS, extrapolate, retime, retime_joints
+from trajgap.nlp.retiming.toppra_check import GRIDPOINTS, extrapolate, retime
 from trajgap.problem import (
     Limits,
     Problem,
@@ -199,7 +200,8 @@ def test_another_dress_changes_no_time(dress: str) -> None:
 
 def test_each_joint_on_its_own_path() -> None:
     limits = Limits(np.linspace(5.0, 6.0, 6), np.linspace(8.0, 7.0, 6))
-    each = retime_joints(MOTION, limits)
+    alone = [replace(MOTION, scaled=MOTION.scaled[:, :, j : j + 1]) for j in range(6)]
+    each = [retime(one, limits.joint(j)) for j, one in enumerate(alone)]
     assert len(each) == 6
     for j, found in enumerate(each):
         turning = [e for e in extrema(MOTION, j, 0) if abs(MOTION(e.time, 1)[j]) < 1e-9]
