@@ -87,13 +87,18 @@ def shown_check(document: MotionCheckDocument) -> list[Block]:
             _number(one.limit, units[one.joint]),
             units[one.joint] + _POWERS[one.quantity],
             _ratio(one, how is Interpolation.NONE),
-            f"{one.time:.6g}",
+            _instant(one.time),
             one.source,
         )
         for one in result.peaks
     ]
     columns = ("joint", "quantity", ">nearest", ">limit", "unit", ">ratio", ">at s", "~from")
     return [*parts, table(columns, rows)] if rows else parts
+
+
+def _instant(time: float) -> str:
+    """Six digits, and a millisecond even of the seconds since 1970."""
+    return f"{time:.{max(6, len(f'{abs(time):.0f}') + 3)}g}"
 
 
 def _ratio(one: MotionPeakShown, samples_alone: bool) -> str:
@@ -118,11 +123,11 @@ def _verdict(document: MotionCheckDocument, units: Mapping[str, str]) -> list[Bl
     if worst is not None:
         value, limit = (_sized(size, worst, units) for size in (worst.value, worst.limit))
         said = f"worst: joint {worst.joint}, {worst.quantity} {value} against {limit}"
-        parts.append(Prose(f"{said} at {worst.time:.6g} s (limit from {worst.source})"))
+        parts.append(Prose(f"{said} at {_instant(worst.time)} s (limit from {worst.source})"))
     for one in _gravest(result):
         said = f"jump: {one.quantity} of joint {one.joint} by {_sized(one.size, one, units)}"
         breaks = f"it jumps at {one.breaks} break{'s' * (one.breaks > 1)}"
-        parts.append(Prose(f"{said} at {one.time:.6g} s; {breaks}"))
+        parts.append(Prose(f"{said} at {_instant(one.time)} s; {breaks}"))
     repaired = value_or_none(result.feasible_time)
     if repaired is None:
         parts.append(Prose(f"repair: none, {document.repaired}"))

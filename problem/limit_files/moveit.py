@@ -33,7 +33,7 @@ def read_moveit(path: Path) -> StatedLimits:
     ----------
     path : Path
         Under ``joint_limits``, for each joint: ``has_velocity_limits`` and ``max_velocity``, the
-        same of acceleration, deceleration and jerk, and ``has_position_limits`` with
+        same of acceleration, deceleration of either sign and jerk, and ``has_position_limits`` with
         ``min_position`` and ``max_position``; rad, or m. A ``has_...`` that is false says that
         there is no limit; a missing one follows from the other keys. The default
         scaling factors of planners are not limits and are left aside.
@@ -72,6 +72,8 @@ def _ranges(name: str, field: str, block: Mapping[Any, Any]) -> dict[str, Range]
                 raise CaseError(
                     name, f"{field}.max_{quantity}", f"is missing; has_{quantity}_limits is true"
                 )
+            if quantity == BRAKING:
+                top = abs(top)  # Pilz's planner wants it negative
             if top < 0:
                 raise CaseError(name, f"{field}.max_{quantity}", "is negative; give a size")
             ranges[quantity] = (-top, top)

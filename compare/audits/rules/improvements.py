@@ -11,7 +11,7 @@ from ...documents import Basis, ClaimVerdict, Finding, Severity
 from ..rounding import hull, meet
 from ..stated import allowed_bases, printed_total
 from ..study import Study
-from .printed_digits import compared, shown, span
+from .printed_digits import compared, raised, shown, span
 from .printed_tables import contradicted, doubted, total_allowed
 from .rule_group import ON_DIGITS, Explained, finding, rule_group
 
@@ -127,7 +127,10 @@ def _percentage(
         rounded = _share(slower.interval, faster.interval, base)
         cut = _share(slower.truncated, faster.truncated, base)
         mixed = _share(*wide, base)
-        found = compared("TG103", claim, percent, rounded, cut, share, "%", root, mixed=mixed)
+        longer, shorter = raised(slower), raised(faster)
+        up = _share(longer, shorter, base) if longer.lower > 0 < shorter.lower else None
+        said = claim, percent, rounded, cut, share, "%", root
+        found = compared("TG103", *said, mixed=mixed, raised_parts=up)
         tried.append(found.model_copy(update={"computed": f"{_as_printed(rounded, percent)} %"}))
     weights = list(Severity)
     best = max(range(len(tried)), key=lambda k: weights.index(tried[k].severity))

@@ -187,6 +187,8 @@ def value_beside(
     if claim.time is not None:
         measured = row.measured(claim.time, "time")
         instant = measured.value
+        if instant > float(printed_durations.sum()) * (1 + ROUNDING):
+            return None  # the motion has ended, and where the arm goes then is not printed
         ends = [_near(drawn, t, j, order) for t in (measured.lower, measured.upper, instant)]
         spread = unit * max(abs(x - y) for x in ends[2] for end in ends[:2] for y in end)
 

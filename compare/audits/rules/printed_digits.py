@@ -59,7 +59,7 @@ def judge_digits(study: Study) -> Iterator[Finding]:
     yield from _repeated_digits(study)
 
 
-def _raised(number: Printed) -> Interval:
+def raised(number: Printed) -> Interval:
     """Every value that gives the printed digits if what is left over is rounded up, not off.
 
     Times are often printed so, for a longer motion keeps the limits too.
@@ -105,28 +105,26 @@ def compared(
     plain: str = "",
     mixed: Interval | None = None,
     coarser: bool = False,
-    raised: Interval | None = None,
+    raised_parts: Interval | None = None,
 ) -> Finding:
     """A printed number against the interval that its printed ingredients allow.
 
     ``plain`` is what the digits as printed give, shown where the printed number is another;
     ``mixed`` is what the ingredients allow, each rounded or cut off, if that is more than both;
     ``coarser`` says that the number has fewer digits than they, and may have been rounded up;
-    ``raised`` is what they allow if each of them was rounded up, where that is usual.
+    ``raised_parts`` is what they allow if each of them was rounded up, where that is usual.
     """
     digits, computed = f"{printed} {unit}", f"{span(rounded)} {unit}"
     whole = either(either(rounded, cut), mixed or rounded)
-    up = _raised(printed)
+    up = raised(printed)
+    # A longer time keeps the limits too; nothing is gained by a larger percentage.
+    own = (printed.interval,) if unit == "%" else (printed.interval, up)
     kind = agreement(
         (Agreement.ROUNDING, printed.interval, rounded),
         (Agreement.CUT_OFF, printed.truncated, cut),
         (Agreement.MIXED, hull(printed), whole),
         *([(Agreement.RAISED, up, whole)] if coarser else []),
-        *(
-            [(Agreement.RAISED_PARTS, one, raised) for one in (printed.interval, up)]
-            if raised
-            else []
-        ),
+        *([(Agreement.RAISED_PARTS, one, raised_parts) for one in own] if raised_parts else []),
     )
     verdict, severity = ClaimVerdict.SUPPORTED, Severity.WARNING
     if kind is Agreement.OFF:
@@ -139,7 +137,7 @@ def compared(
             Agreement.CUT_OFF: ("digits are cut off instead of rounded", cut),
             Agreement.MIXED: ("some digits are rounded and others cut off", whole),
             Agreement.RAISED: ("it was rounded up", whole),
-            Agreement.RAISED_PARTS: ("parts were rounded up", raised or whole),
+            Agreement.RAISED_PARTS: ("parts were rounded up", raised_parts or whole),
         }[kind]
         message = (
             f"{what} allows {computed} with rounded digits; the printed {digits} fits only if "
@@ -219,7 +217,7 @@ def _sum_beside(
         f"{SUM} {claim.id}",
         shown(plain) if halves else str(sum(d.decimal for d in claim.durations)),
         coarser=total.unit > max(d.unit for d in parts),
-        raised=_sum([_share(_raised(d), s) for d, s in zip(parts, share, strict=True)]),
+        raised_parts=_sum([_share(raised(d), s) for d, s in zip(parts, share, strict=True)]),
     )
 
 
@@ -263,9 +261,11 @@ def _maxima(study: Study) -> Iterator[Finding]:
         rows = [study.case.printed_durations(study.case.claim(i)) for i in claim.of]
         wrong = []
         for k, printed in enumerate(claim.durations):
-            column = [hull(row[k]) for row in rows if len(row) > k]
+            cells = [row[k] for row in rows if len(row) > k]
+            column = [hull(one) for one in cells]
             longest = Interval(max(c.lower for c in column), max(c.upper for c in column))
-            if not meet(hull(printed), longest):
+            coarser = printed.unit > max(one.unit for one in cells)
+            if not (meet(hull(printed), longest) or (coarser and meet(raised(printed), longest))):
                 wrong.append(f"segment {k + 1}: printed {printed}, longest {span(longest)}")
         message = f"The printed longest durations follow from the {len(rows)} rows."
         if wrong:

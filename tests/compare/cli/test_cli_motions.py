@@ -300,3 +300,11 @@ def test_a_urdf_says_which_joints_slide(run, folder: Path):
     )
     found = run.document("check", "m.csv", *flags, "--units", "mm,deg", kind="motion_check")
     assert found["units"] == ["mm", "deg"]
+
+
+def test_a_log_in_seconds_since_1970_is_shown_to_a_millisecond(run, folder: Path):
+    rows = [f"{1_700_000_000 + 0.125 * k:.3f},{0.1 * k}" for k in range(9)]
+    (folder / "log.csv").write_text("\n".join(["time,j1", *rows]) + "\n")
+    shown = run.done("check", "log.csv", "--velocity", "0.5", "--interpolation", "linear")
+    assert "at 1700000000.625 s" in shown
+    assert "e+09" not in shown

@@ -62,6 +62,14 @@ def test_a_urdf(tmp_path):
     assert stated.ranges["slide"] == {"position": (0.0, 0.4), "velocity": (-0.5, 0.5)}
 
 
+@pytest.mark.parametrize("size", ["6.5", "-6.5"])
+def test_a_deceleration_has_either_sign(tmp_path, size):
+    """That of Pilz's planner is negative, that of ros2_control positive."""
+    text = f"joint_limits:\n  turn: {{has_deceleration_limits: true, max_deceleration: {size}}}\n"
+    stated = read_limits(write(tmp_path, "joint_limits.yaml", text))
+    assert stated.ranges["turn"] == {"deceleration": (-6.5, 6.5)}
+
+
 def test_a_moveit_file(tmp_path):
     stated = read_limits(write(tmp_path, "joint_limits.yaml", YAML))
     assert stated.ranges["turn"] == {

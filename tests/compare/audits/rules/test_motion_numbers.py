@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 from scipy.interpolate import CubicSpline
-from support.findings import finding, study_of
+from support.findings import audited_text, finding, study_of, verdicts
 from support.made_up import Numbers, claim, paper, peak, row
 from trajgap.compare.audits import printed_rows
 from trajgap.compare.audits.rules.beside import Beside
@@ -71,6 +71,12 @@ def test_either_side_of_a_jump_may_be_meant() -> None:
 def test_a_printed_instant_is_an_interval() -> None:
     for time, verdict in (("1.3", ClaimVerdict.SUPPORTED), (1.3, ClaimVerdict.INCONSISTENT)):
         assert verdict_of("position", time=time, value=f"{float(SPLINE(1.34)):.3f}") is verdict
+
+
+@pytest.mark.parametrize(("derivative", "value"), [("position", "90"), ("acceleration", "0")])
+def test_nothing_is_said_of_an_instant_after_the_end(derivative: str, value: str) -> None:
+    text = made_up(derivative, time="3.5", value=value)
+    assert verdicts(audited_text(text))["one"] is ClaimVerdict.NOT_CHECKABLE
 
 
 H = 1.25

@@ -234,6 +234,40 @@ def test_a_percentage_may_be_a_share_of_either_total(
         assert (said in found.message) == bool(other)
 
 
+@pytest.mark.parametrize(
+    ("slow", "fast", "percent", "base", "verdict"),
+    [
+        # 9.9 and 3.1 s, both rounded up; rounded to the nearest or cut off, at most 68.2 % fits.
+        ("10", "4", "69", "slower", "supported"),
+        ("10", "4", "71", "slower", "refuted"),
+        ("10", "4", "219", "faster", "supported"),
+        ("10", "4", "235", "faster", "refuted"),
+        ("1", "1", "99", "slower", "refuted"),  # nothing is a share of nothing
+    ],
+)
+def test_an_improvement_may_be_that_of_totals_rounded_up(
+    slow: str, fast: str, percent: str, base: str, verdict: str
+) -> None:
+    found = judged(slow, fast, percent=percent, base=base)
+    assert found.verdict == verdict
+    assert ("parts were rounded up" in found.message) == (verdict == "supported")
+
+
+@pytest.mark.parametrize(
+    ("printed", "verdict"),
+    [
+        ("0.96", "supported"),
+        ("0.97", "supported"),  # rounded up to a hundredth
+        ("0.98", "refuted"),
+        ("0.9601", "supported"),
+        ("0.9603", "refuted"),  # of as many digits as the row: nothing to round up
+    ],
+)
+def test_the_longest_durations_may_be_rounded_up(printed: str, verdict: str) -> None:
+    text = paper([[0, 1]], row("d", "0.9601"), longest("m", printed), velocity=1.9)
+    assert finding(text, "m", "TG102").verdict == verdict
+
+
 @pytest.mark.parametrize("keys", [{}, {"base": "slower"}, {"base": "faster"}])
 @pytest.mark.parametrize("fast", ["0", "0.0", 0])
 def test_nothing_is_a_share_of_a_total_of_nothing(fast: Any, keys: dict[str, str]) -> None:
