@@ -8,7 +8,7 @@ time-optimal." Is that so?
 
 # %%
 # A case file holds what the paper prints. ``scaffold`` writes it from a table of way-points; the
-# digits stay as printed, because they say how precise each number is.
+# digits stay as printed, because they show how precise each number is.
 
 from pathlib import Path
 from tempfile import TemporaryDirectory
