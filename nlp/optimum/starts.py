@@ -98,7 +98,8 @@ def way_start(problem: Problem) -> Array:
     """Durations after the way of each segment, each stretched by what it and its neighbours exceed.
 
     Not by what the worst of all exceeds: among many segments one is always far worse than most.
-    Only where knots lie elsewhere, all are.
+    Where knots follow the durations, only the root of the way counts: durations that are too unequal
+    define no curve.
     """
     way = np.abs(np.diff(problem.waypoints, axis=0))
     velocity, acceleration, _ = problem.limits.sides.min(axis=0).T  # the smaller sides
@@ -112,7 +113,7 @@ def way_start(problem: Problem) -> Array:
         return equal_start(problem)
     h = np.maximum(h, WAY.least * h.mean())
     if as_piecewise(problem.curve) is None:
-        return _rescaled(problem, h)
+        return _rescaled(problem, np.sqrt(h * h.mean()))
     for _ in range(WAY.passes):
         worst = worst_ratios(problem, fit(problem.curve, problem.waypoints, h))
         beside = np.maximum(np.append(worst[1:], 0.0), np.append(0.0, worst[:-1]))
