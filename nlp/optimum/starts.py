@@ -98,8 +98,8 @@ def way_start(problem: Problem) -> Array:
     """Durations after the way of each segment, each stretched by what it and its neighbours exceed.
 
     Not by what the worst of all exceeds: among many segments one is always far worse than most.
-    Where knots follow the durations, only the root of the way counts: durations that are too unequal
-    define no curve.
+    Where knots follow the durations, only the root of the way counts: too unequal durations define
+    no curve.
     """
     way = np.abs(np.diff(problem.waypoints, axis=0))
     velocity, acceleration, _ = problem.limits.sides.min(axis=0).T  # the smaller sides
