@@ -8,7 +8,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...problem import TOLERANCE, Array, Problem, TrajgapError, as_piecewise, evaluate, fit
+from ...problem import TOLERANCE, Array, Problem, TrajgapError, evaluate, fit
 from ...problem.curves import Trajectory
 
 DENSE = 24
@@ -84,21 +84,17 @@ def stretching(problem: Problem) -> Problem:
 
 def equal_start(problem: Problem) -> Array:
     """Equal durations, rescaled uniformly to be tight and put within the bounds, s."""
-    return _rescaled(problem, np.ones(problem.segments))
-
-
-def _rescaled(problem: Problem, h: Array) -> Array:
-    stretch = float(evaluate(stretching(problem), h[None], first_nodal(problem)).stretch[0])
+    h = np.ones((1, problem.segments))
+    stretch = float(evaluate(stretching(problem), h, first_nodal(problem)).stretch[0])
     if not (np.isfinite(stretch) and stretch > 0):
         stretch = 1.0
-    return np.asarray(np.clip(h * stretch, problem.duration_lower, problem.duration_upper))
+    return np.asarray(np.clip(h[0] * stretch, problem.duration_lower, problem.duration_upper))
 
 
 def way_start(problem: Problem) -> Array:
     """Durations after the way of each segment, each stretched by what it and its neighbours exceed.
 
     Not by what the worst of all exceeds: among many segments one is always far worse than most.
-    Only where knots lie elsewhere, all are.
     """
     way = np.abs(np.diff(problem.waypoints, axis=0))
     velocity, acceleration, _ = problem.limits.sides.min(axis=0).T  # the smaller sides
@@ -111,8 +107,6 @@ def way_start(problem: Problem) -> Array:
     if not (np.isfinite(h).all() and h.mean() > 0):
         return equal_start(problem)
     h = np.maximum(h, WAY.least * h.mean())
-    if as_piecewise(problem.curve) is None:
-        return _rescaled(problem, h)
     for _ in range(WAY.passes):
         worst = worst_ratios(problem, fit(problem.curve, problem.waypoints, h))
         beside = np.maximum(np.append(worst[1:], 0.0), np.append(0.0, worst[:-1]))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from math import comb
 
 import numpy as np
@@ -290,15 +291,10 @@ def clamped_enclosed(curve: ClampedDeclaration, waypoints: Array, durations: Arr
 
 def clamped_fitted(curve: ClampedDeclaration, waypoints: Array, durations: Array) -> Trajectory:
     """The trajectory of `clamped_enclosed` in float64."""
-    splines, p = [], curve.degree
-    times, groups = _knots_of(curve, waypoints, durations[None])
-    for own, knots in groups:
-        _check_inside(curve, knots[0], times[0])
-        a, _, regular = _polynomials(curve, waypoints[:, own], times, knots)
-        if not regular.all():
-            raise _not_passing(curve, 0)
-        scaled = a[:, 0].transpose(1, 0, 2)
-        splines.append(Spline(knots[0, p : knots.shape[1] - p], scaled, np.zeros(scaled.shape)))
+    splines = []
+    for _, knots, a, _ in _moved(curve, waypoints, durations):
+        scaled = a[:, 0].real.transpose(1, 0, 2)
+        splines.append(Spline(knots, scaled, np.zeros(scaled.shape)))
     return _in_time(curve, _joined(splines))
 
 
@@ -321,6 +317,30 @@ def _knots_of(
     return times, list(zip(joints, knots, strict=True))
 
 
+def _moved(
+    curve: ClampedDeclaration, waypoints: Array, durations: Array
+) -> list[tuple[NDArray[np.int64], Array, Numbers, Numbers]]:
+    """Joints that share their knots, these, and the splines that each duration steps to."""
+    return _moved_again(curve, waypoints.shape[1], waypoints.tobytes(), durations.tobytes())
+
+
+@lru_cache(maxsize=2)  # a search asks for a motion, then for its gradients
+def _moved_again(
+    curve: ClampedDeclaration, joints: int, waypoints: bytes, durations: bytes
+) -> list[tuple[NDArray[np.int64], Array, Numbers, Numbers]]:
+    q, h = np.frombuffer(waypoints).reshape(-1, joints), np.frombuffer(durations)
+    times, groups = _knots_of(curve, q, h + 1j * STEP * np.eye(h.size))
+    found = []
+    for own, knots in groups:
+        real = knots[0].real
+        _check_inside(curve, real, times[0].real)
+        a, widths, regular = _polynomials(curve, q[:, own], times, knots)
+        if not regular.all():
+            raise _not_passing(curve, 0)
+        found.append((own, real[curve.degree : real.size - curve.degree], a, widths))
+    return found
+
+
 def clamped_by_durations(
     curve: ClampedDeclaration, waypoints: Array, durations: Array, points: list[Extremum]
 ) -> Array:
@@ -329,19 +349,15 @@ def clamped_by_durations(
     Joints with knots of their own have them at fixed shares of the total, so a place that stays
     where it is on common pieces does so on theirs.
     """
-    p, at = curve.degree, places_of(points)
-    found = np.empty((len(points), curve.segments))
-    steps = durations + 1j * STEP * np.eye(curve.segments)
-    times, groups = _knots_of(curve, waypoints, steps)
-    every = [knots[0, p : knots.shape[1] - p].real for _, knots in groups]
-    breaks = every[0] if len(every) == 1 else _union(every)
+    at, found = places_of(points), np.empty((len(points), curve.segments))
+    every = _moved(curve, waypoints, durations)
+    breaks = every[0][1] if len(every) == 1 else _union([inner for _, inner, *_ in every])
     time = breaks[at.segment] + at.s * np.diff(breaks)[at.segment]
-    for (own, knots), inner in zip(groups, every, strict=True):
-        a, widths, _ = _polynomials(curve, waypoints[:, own], times, knots)
+    for own, inner, a, widths in every:
         mine = np.isin(at.joint, own)
         piece, order = _parents(inner, breaks)[at.segment[mine]], at.order[mine]
         s = (time[mine] - inner[piece]) / np.diff(inner)[piece]
-        rows = derivative_rows(s, order)[:, : p + 1]
+        rows = derivative_rows(s, order)[:, : len(a)]
         values = np.einsum("mvi,im->vi", a[:, :, piece, at.joint[mine] - own[0]], rows)
         found[mine] = (values / widths[:, piece] ** order).imag.T / STEP
     return found

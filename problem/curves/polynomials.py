@@ -200,6 +200,7 @@ def _next_level(a: Array, cuts: Array) -> tuple[Array, NDArray[np.bool_]]:
 def _bracketed(a: Array, low: Array, high: Array, s: Array, rising: NDArray[np.bool_]) -> Array:
     """The root of each polynomial in its bracket, begun at ``s``."""
     found, active = s.copy(), np.arange(s.size)
+    noise = _SETTLED * np.abs(a).sum(axis=0)
     for _ in range(100):
         value, slope = a[-1], np.zeros(s.size)
         for coefficient in a[-2::-1]:
@@ -209,11 +210,11 @@ def _bracketed(a: Array, low: Array, high: Array, s: Array, rising: NDArray[np.b
         low, high = np.where(before, s, low), np.where(before, high, s)
         step = s - value / slope  # infinite or NaN where flat: then outside the bracket
         step = np.where((low < step) & (step < high), step, 0.5 * (low + high))
-        step = np.where(value == 0.0, s, step)
+        step = np.where(np.abs(value) <= noise, s, step)
         found[active] = step
         busy = np.abs(step - s) > _SETTLED
         if not busy.any():
             break
-        a, active = a[:, busy], active[busy]
+        a, active, noise = a[:, busy], active[busy], noise[busy]
         low, high, s, rising = low[busy], high[busy], step[busy], rising[busy]
     return found

@@ -192,10 +192,10 @@ class TimedUniformBSpline(UniformBSpline):
         return enclosed_with_clock(q, t, waypoints, durations)
 
     def fitted(self, waypoints: Array, durations: Array, nodal: Array | None = None) -> Trajectory:
-        """`fit` in float64."""
+        """The trajectory of `enclosed`, without the bound."""
         scaled = np.zeros((self.segments, MAX_COEFFICIENTS, waypoints.shape[1]))
-        scaled[:, :4] = shape_matrix(self.waypoints).astype(np.float64) @ waypoints
-        return with_clock(scaled, self.clock.astype(np.float64) @ durations)
+        scaled[:, :4] = shape_matrix(self.waypoints) @ waypoints
+        return with_clock(scaled, np.asarray(self.clock @ durations, dtype=np.float64))
 
     def motion_values(self, waypoints: Array, nodal: Array | None = None) -> Array:
         """Coefficients of q(e), positions counted from the first way-point."""
