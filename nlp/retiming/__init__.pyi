@@ -1,4 +1,5 @@
 from .as_timed_by_toppra import retimed_motion as retimed_motion
+from .squared_speed import shortest_by_squares as shortest_by_squares
 from .third_order import (
     jerk_limited_path as jerk_limited_path,
     retime_third_order as retime_third_order,

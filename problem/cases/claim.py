@@ -138,9 +138,10 @@ class ProfiledClaim(TimeClaim):
     sines; with constant snap; that of the algorithm of Biagiotti and Melchiorri, which is not
     always the shortest; or that of Riboli et al. with a plateau speed. It is at rest at way-points
     in between, and at the ends as the interpolant prescribes."""
-    path: Literal["straight"] | None = None
-    """How the joints go together in a profile: on a straight line between way-points, all by one
-    time law. Each by itself if absent."""
+    path: Literal["straight", "curve"] | None = None
+    """How the joints go together: "straight" in a profile, on a straight line between way-points,
+    all by one time law; each by itself if absent. "curve" without a profile: along the path of the
+    problem's curve at its fixed ratios, timed anew from rest to rest."""
     deceleration: OneOrEachLength | None = None
     """Trapezoids: largest acceleration while the speed falls, in the unit of acceleration, where it
     differs from that while the speed grows."""
@@ -154,8 +155,10 @@ class ProfiledClaim(TimeClaim):
     def _on_another_curve(self) -> Self:
         if self.profile is not None and self.other_curve is None:
             raise fault(".profile", "requires other_curve; name the curve there as the paper does")
-        if self.path is not None and self.profile is None:
+        if self.path == "straight" and self.profile is None:
             raise fault(".path", "requires profile; add it, or leave this out")
+        if self.path == "curve" and (self.profile is not None or self.other_curve is None):
+            raise fault(".path", '"curve" requires other_curve, and excludes profile')
         for key, profile, needed in (
             ("deceleration", "trapezoidal", False),
             ("snap", "fourth-order", True),
