@@ -138,7 +138,7 @@ class ProfiledClaim(TimeClaim):
     sines; with constant snap; that of the algorithm of Biagiotti and Melchiorri, which is not
     always the shortest; or that of Riboli et al. with a plateau speed. It is at rest at way-points
     in between, and at the ends as the interpolant prescribes."""
-    path: Literal["straight", "curve"] | None = None
+    path: Literal["straight", "curve", "sampled"] | None = None
     """How the joints go together: "straight" in a profile, on a straight line between way-points,
     all by one time law; each by itself if absent. "curve" without a profile: along the path of the
     problem's curve at its fixed ratios, timed anew from rest to rest."""
@@ -157,8 +157,9 @@ class ProfiledClaim(TimeClaim):
             raise fault(".profile", "requires other_curve; name the curve there as the paper does")
         if self.path == "straight" and self.profile is None:
             raise fault(".path", "requires profile; add it, or leave this out")
-        if self.path == "curve" and (self.profile is not None or self.other_curve is None):
-            raise fault(".path", '"curve" requires other_curve, and excludes profile')
+        fixed = self.path in ("curve", "sampled")
+        if fixed and (self.profile is not None or self.other_curve is None):
+            raise fault(".path", f'"{self.path}" requires other_curve, and excludes profile')
         for key, profile, needed in (
             ("deceleration", "trapezoidal", False),
             ("snap", "fourth-order", True),
