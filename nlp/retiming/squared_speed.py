@@ -6,8 +6,10 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import permutations, product
 from math import comb
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...problem import Array, Limits, Trajectory, extrema
 from .path import pieces
@@ -244,7 +246,7 @@ def _shortest_found(path: PathCells, limits: Limits) -> float:
     return time * float(np.sqrt(max(1.0, *_worst(path, limits, b))))
 
 
-def _rows(path: PathCells, limits: Limits, scale: float) -> Array:
+def _rows(path: PathCells, limits: Limits, scale: float) -> Any:
     """Accelerations over their limits at both ends of the cells, as a matrix over b/scale."""
     from scipy.sparse import coo_array
 
@@ -282,7 +284,7 @@ def _worst(path: PathCells, limits: Limits, b: Array) -> list[float]:
         ]
 
 
-def _pushed(limits: Limits) -> Array:
+def _pushed(limits: Limits) -> NDArray[np.intp]:
     """Joints whose acceleration is limited; one that may have none stands still."""
     return np.flatnonzero(np.isfinite(limits.acceleration) & (limits.acceleration > 0.0))
 
