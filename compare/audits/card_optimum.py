@@ -30,7 +30,7 @@ from .digit_ranges import all_exact, optimum_range
 from .fixed_ratios import at_ratios, off_ratios, planned_apart
 from .named_profiles import profile_called
 from .own_result import bare_totals, own_result
-from .path_times import outside, path_time
+from .path_times import along_paths
 from .printed_row import PrintedRow
 from .profile_motions import above_shortest
 from .rounding import meet
@@ -129,29 +129,12 @@ def _without_totals(study: Study, words: Mapping[str, Judgement]) -> str:
         profiles = [*dict.fromkeys(str(c.profile) for c in judged)]
         found = _beside_profiles([words[c.id].verdict for c in judged], profiles)
         return found + _above_shortest(study, judged)
-    along = _along_paths(study, [c for c in timed if isinstance(c, TotalTimeClaim)])
-    if along:
+    if along := along_paths(study, timed):
         return along
     curves = dict.fromkeys(c.other_curve for c in timed if c.other_curve is not None)
     if curves:
-        named = ", ".join(curves)
-        return f"The printed times belong to another curve ({named}), so no optimum applies."
+        return f"The printed times belong to another curve ({', '.join(curves)}), so no optimum applies."
     return "No printed total can be compared with an optimum."
-
-
-def _along_paths(study: Study, claims: Sequence[TotalTimeClaim]) -> str:
-    """How far the shortest printed total along each path is from the shortest time."""
-    parts = []
-    for pair in study.pairs:
-        own = [c for c in claims if c.along_path and c.problem in (None, pair.problem)]
-        rows = [PrintedRow(study, c, pair) for c in own if pair.reading == study.main_reading]
-        if rows and path_time(rows[0]).why is None:
-            row = min(rows, key=lambda one: one.time(one.claim.value).value)
-            away = outside(row)
-            far = f"{100 * abs(away):.2f} % {'below' if away < 0 else 'above'}" if away else "near"
-            parts.append(f"{row.claim.value} {study.time_unit} is {far}")
-    where = "their paths" if len(parts) > 1 else "the path"
-    return f"Along {where}, {' and '.join(parts)} the shortest time." if parts else ""
 
 
 def _above_shortest(study: Study, claims: Sequence[ProfiledClaim]) -> str:

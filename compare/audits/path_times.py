@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from ...nlp.retiming import PathTime, bound_along, largest_derivatives
 from ...problem import Array, CaseError, Trajectory, fit
-from ...problem.cases import Digits, TotalTimeClaim
+from ...problem.cases import AnyClaim, Digits, TotalTimeClaim
 from .printed_row import PrintedRow
+from .study import Study
 
 _FEWEST = 20
 """Sampled points from which two interpolations differ by little on a smooth path."""
@@ -29,6 +32,22 @@ def outside(row: PrintedRow[TotalTimeClaim]) -> float:
     if ends.lower > best.upper:
         return number.value / best.upper - 1.0
     return 0.0
+
+
+def along_paths(study: Study, claims: Sequence[AnyClaim]) -> str:
+    """How far the shortest printed total along each path is from the shortest time."""
+    parts = []
+    along = [c for c in claims if isinstance(c, TotalTimeClaim) and c.along_path]
+    for pair in study.pairs:
+        own = [c for c in along if c.problem in (None, pair.problem)]
+        rows = [PrintedRow(study, c, pair) for c in own if pair.reading == study.main_reading]
+        if rows and path_time(rows[0]).why is None:
+            row = min(rows, key=lambda one: one.time(one.claim.value).value)
+            away = outside(row)
+            far = f"{100 * abs(away):.2f} % {'below' if away < 0 else 'above'}" if away else "near"
+            parts.append(f"{row.claim.value} {study.time_unit} is {far}")
+    where = "their paths" if len(parts) > 1 else "the path"
+    return f"Along {where}, {' and '.join(parts)} the shortest time." if parts else ""
 
 
 def _bounded(row: PrintedRow[TotalTimeClaim]) -> PathTime:
