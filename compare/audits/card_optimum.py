@@ -131,9 +131,9 @@ def _without_totals(study: Study, words: Mapping[str, Judgement]) -> str:
         return found + _above_shortest(study, judged)
     if along := along_paths(study, timed):
         return along
-    curves = dict.fromkeys(c.other_curve for c in timed if c.other_curve is not None)
+    curves = ", ".join(dict.fromkeys(c.other_curve for c in timed if c.other_curve is not None))
     if curves:
-        return f"The printed times belong to another curve ({', '.join(curves)}), so no optimum applies."
+        return f"The printed times belong to another curve ({curves}), so no optimum applies."
     return "No printed total can be compared with an optimum."
 
 

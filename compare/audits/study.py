@@ -41,25 +41,23 @@ from ...problem import (
     as_piecewise,
     fit,
 )
-from ...problem.cases import (
-    AnyClaim,
-    Claim,
-    DurationsClaim,
-    MotionValueClaim,
-    ProfiledClaim,
-    TimeClaim,
-)
+from ...problem.cases import AnyClaim, Claim, DurationsClaim, MotionValueClaim, TimeClaim
 from ..documents import capital, noted
 from .intervals import Intervals
 from .kept_optima import AskedOptimum, KeptOptima
 from .kept_replays import KeptReplays, Replays
 from .options import USUAL, AuditOptions
 from .replay_settings import LISTED, spread_settings
-from .stated import in_words, in_words_among, printed_total, prints_durations
+from .stated import (
+    PATH_ALONE,
+    in_words,
+    in_words_among,
+    printed_total,
+    prints_durations,
+    timed_along_path,
+)
 
 T = TypeVar("T")
-PATH_ALONE = "the curve of the case file is a path, and its own timing is not asked for"
-"""Why a curve whose printed times are all of its path has no optimum."""
 SPREAD_SEEDS = 3
 """Seeds under each of the spread settings, of which there are sixteen: enough to see a median
 move across them."""
@@ -157,12 +155,6 @@ class Study:
     def problem(self, pair: Pair) -> Problem:
         """Problem of the case, with its coupling."""
         return self.once(("problem", pair), lambda: self.case.problem(*pair))
-
-    def along_path(self, pair: Pair) -> bool:
-        """Whether every printed time of a problem is of a motion along the path of its curve."""
-        timed = [c for c in self.case.claims if isinstance(c, TimeClaim)]
-        own = [c for c in timed if c.problem in (None, pair.problem)]
-        return bool(own) and all(isinstance(c, ProfiledClaim) and c.along_path for c in own)
 
     def limited(self, pair: Pair) -> bool:
         """Whether a problem limits anything that moves."""
@@ -306,7 +298,7 @@ class Study:
 
         def compute() -> Solution:
             problem = self.problem(pair)
-            if self.along_path(pair):
+            if timed_along_path(self.case, pair.problem):
                 return Solution(problem, Status.FAILED, PATH_ALONE)
             which = "all joints" if joint is None else f"joint {joint}"
             self.progress(f"optimum of {which}; {in_words(self.case, *pair)}")
@@ -396,7 +388,7 @@ class Study:
 
         def compute() -> Solution:
             problem = self.problem(pair)
-            if self.along_path(pair):
+            if timed_along_path(self.case, pair.problem):
                 return Solution(problem, Status.FAILED, PATH_ALONE)
             given = as_piecewise(problem.curve)
             if given is None:

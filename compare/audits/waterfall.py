@@ -39,7 +39,7 @@ from .own_result import bare_totals, own_result
 from .path_times import path_time
 from .printed_row import PrintedRow
 from .rounding import FEW_ROUNDINGS
-from .stated import other_objective
+from .stated import other_objective, timed_along_path
 from .study import Pair, Study
 
 
@@ -114,7 +114,7 @@ def routes(solution: Solution) -> tuple[str, ...]:
 
 def _waterfall(study: Study, pair: Pair) -> Waterfall:
     problem = study.problem(pair)
-    if study.along_path(pair):
+    if timed_along_path(study.case, pair.problem):
         return _along_path(study, pair)
     claim = _starting_claim(study, pair.problem)
     steps: list[Step] = []
