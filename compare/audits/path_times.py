@@ -12,6 +12,8 @@ from ...problem.cases import AnyClaim, Digits, TotalTimeClaim
 from .printed_row import PrintedRow
 from .study import Study
 
+_CLOSE = 1.01
+"""Ratio of both bounds up to which they are near each other."""
 _FEWEST = 20
 """Sampled points from which two interpolations differ by little on a smooth path."""
 _RESERVE = 2.0
@@ -21,6 +23,21 @@ _RESERVE = 2.0
 def path_time(row: PrintedRow[TotalTimeClaim]) -> PathTime:
     """Bounds on the shortest time along the path of a claim, however the digits were rounded."""
     return row.study.once(("along path", row.pair, row.claim.path), lambda: _bounded(row))
+
+
+def close(row: PrintedRow[TotalTimeClaim]) -> bool:
+    """Whether both bounds are near each other, or as far apart as the digits of limits open them.
+
+    Times scale as the inverse of a factor on all velocities whose square is on all accelerations.
+    """
+    plain, loose, tight = (
+        row.posed(digits).limits.derivatives[:, :2]
+        for digits in (Digits.PRINTED, Digits.LOOSEST_CUT, Digits.TIGHTEST)
+    )
+    with np.errstate(invalid="ignore"):
+        factors = [np.nanmax((a / b) ** [1.0, 0.5]) for a, b in ((loose, plain), (plain, tight))]
+    best = path_time(row)
+    return best.upper <= _CLOSE * float(np.prod(factors)) * best.lower
 
 
 def outside(row: PrintedRow[TotalTimeClaim]) -> float:

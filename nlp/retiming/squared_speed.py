@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import permutations, product
 from math import comb
@@ -19,7 +19,7 @@ _MARGIN = 1e-9
 """Relative margin of both bounds, far above the rounding errors of their sums."""
 _ROUNDING = 1e-14
 """Rounding errors of a path's coefficients over the way of the joint, with a reserve."""
-_CELLS = 2000
+CELLS = 2000
 """Cells of a path, about: with them both bounds lie some 0.03 % apart, after some seconds."""
 _QUIET = {"ipopt.print_level": 0, "print_time": False, "ipopt.sb": "yes", "ipopt.max_iter": 500}
 """Options of IPOPT."""
@@ -35,26 +35,24 @@ class PathCells:
         In the parameter u.
     coefficients : ndarray, shape (cells, powers, joints)
         Of q, ascending, over [0, 1] in each cell.
-    first, second : ndarray, shape (cells, joints), or 0
+    first, second : ndarray, shape (cells, joints)
         By how much q′ and q″ (by u) of all paths that are meant may differ from those of this one.
     """
 
     widths: Array
     coefficients: Array
-    first: Array | float = 0.0
-    second: Array | float = 0.0
+    first: Array
+    second: Array
 
     @cached_property
     def slopes(self) -> Array:
         """Coefficients of q′ over [0, 1] in each cell, shape (cells, powers, joints)."""
-        powers = np.arange(1, self.coefficients.shape[1])[:, None]
-        return np.asarray(powers * self.coefficients[:, 1:] / self.widths[:, None, None])
+        return _derived(self.coefficients, self.widths)
 
     @cached_property
     def bends(self) -> Array:
         """Those of q″."""
-        powers = np.arange(1, self.slopes.shape[1])[:, None]
-        return np.asarray(powers * self.slopes[:, 1:] / self.widths[:, None, None])
+        return _derived(self.slopes, self.widths)
 
 
 @dataclass(frozen=True)
@@ -81,6 +79,7 @@ def bound_along(
     loosest: Limits,
     tightest: Limits,
     radius: tuple[Array, Array] | None = None,
+    cells: int = CELLS,
 ) -> PathTime:
     """Bounds on the shortest time along a path, from rest to rest, whatever timed it before.
 
@@ -93,10 +92,14 @@ def bound_along(
         By how much q′ and q″ of the paths that are meant may differ from this one, as
         `largest_derivatives` gives it of the difference: both bounds hold for all of them. 0 by
         default.
+    cells : int
+        Into which the path is cut, about.
     """
     path = trajectory.path
-    jerky = bool(np.isfinite(tightest.derivatives[:, 2]).any())
-    without = [replace(one, jerk=np.inf) for one in (loosest, tightest)]
+    jerky = bool(np.isfinite(tightest.widest[:, 2]).any())
+    without = [
+        one if one.uneven else Limits(one.velocity, one.acceleration) for one in (loosest, tightest)
+    ]
     why = next((w for w in (not_applicable(path, one) for one in without) if w is not None), None)
     if why is None and len(pieces(path)[0]) > 1:
         why = "all joints stand still between its ends"
@@ -104,16 +107,16 @@ def bound_along(
         return PathTime(why=why)
     size = _ROUNDING * np.ptp(path.scaled[:, 0], axis=0) / path.durations[:, None]
     first, second = radius or (np.zeros_like(size), np.zeros_like(size))
-    cells = cut_path(path, _CELLS, (first + size, second + size / path.durations[:, None]))
-    lower = least_time(cells, without[0])[0] * (1.0 - _MARGIN)
-    upper = np.inf if jerky else _shortest_found(cells, without[1]) * (1.0 + _MARGIN)
+    cut = cut_path(path, cells, (first + size, second + size / path.durations[:, None]))
+    lower = least_time(cut, without[0])[0] * (1.0 - _MARGIN)
+    upper = np.inf if jerky else _shortest_found(cut, without[1]) * (1.0 + _MARGIN)
     return PathTime(lower, upper)
 
 
 def largest_derivatives(trajectory: Trajectory) -> tuple[Array, Array]:
     """Largest |q′| and |q″| in each segment, from above, shape (segments, joints)."""
-    whole = PathCells(trajectory.durations, trajectory.scaled)
-    return _largest(whole.slopes), _largest(whole.bends)
+    slopes = _derived(trajectory.scaled, trajectory.durations)
+    return _largest(slopes), _largest(_derived(slopes, trajectory.durations))
 
 
 def cut_path(path: Trajectory, cells: int, radius: tuple[Array, Array]) -> PathCells:
@@ -203,7 +206,7 @@ def _summed(limits: Limits, way: Array, before: Array, after: Array) -> float:
         peak = np.minimum(v, np.sqrt((one**2 + two**2 + gain) / 2.0))
         level = (way - (2.0 * peak**2 - one**2 - two**2) / (2.0 * a)) / peak
         times = (2.0 * peak - one - two) / a + np.maximum(level, 0.0)
-    times = np.where(np.isinf(a), way / v, times)
+        times = np.where(np.isinf(a), way / v, times)
     return float(np.nan_to_num(times, nan=0.0).max(axis=1).sum())
 
 
@@ -234,8 +237,10 @@ def _shortest_found(path: PathCells, limits: Limits) -> float:
     }
     solver = ca.nlpsol("squares", "ipopt", asked, _QUIET)
     # What is left of the limits on the path that q″ b pushes most; b ≤ most.
-    taken = path.second * np.array([most[:-1], most[1:]])[..., None] * scale / limits.acceleration
-    room = np.maximum(1.0 - taken[..., _pushed(limits)], 0.5).transpose(0, 2, 1).ravel()
+    some = _pushed(limits)
+    larger = scale * np.array([most[:-1], most[1:]])[..., None]
+    taken = path.second[:, some] * larger / limits.acceleration[some]
+    room = np.maximum(1.0 - taken, 0.5).transpose(0, 2, 1).ravel()
     found = solver(x0=0.5 * most[moving], lbx=0.0, ubx=most[moving], lbg=-room, ubg=room)
     if not solver.stats()["success"]:
         return np.inf
@@ -292,6 +297,12 @@ def _pushed(limits: Limits) -> NDArray[np.intp]:
 def _at_ends(polynomials: Array) -> tuple[Array, Array]:
     """Values at 0 and at 1, shape (cells, joints) each."""
     return polynomials[:, 0], polynomials.sum(axis=1)
+
+
+def _derived(polynomials: Array, widths: Array) -> Array:
+    """Derivatives of polynomials over [0, 1] by a parameter of which each covers a width."""
+    powers = np.arange(1, polynomials.shape[1])[:, None]
+    return np.asarray(powers * polynomials[:, 1:] / widths[:, None, None])
 
 
 def _product(one: Array, two: Array) -> Array:

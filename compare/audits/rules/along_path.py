@@ -9,13 +9,10 @@ import numpy as np
 
 from ....problem.cases import AnyClaim, StatementClaim, TotalTimeClaim
 from ...documents import Basis, ClaimVerdict, Finding
-from ..path_times import outside, path_time
+from ..path_times import close, outside, path_time
 from ..printed_row import PrintedRow
 from ..study import Study
 from .rule_group import Explained, rule_group
-
-_CLOSE = 1.01
-"""Ratio of both bounds up to which a total between them counts as the shortest."""
 
 
 @rule_group(
@@ -62,7 +59,7 @@ def _beside(row: PrintedRow[TotalTimeClaim], about: str, optimal: bool) -> Findi
     )
     if away < 0.0:
         verdict, kind, said = ClaimVerdict.INCONSISTENT, "shorter", f"is {far} shorter"
-    elif away == 0.0 and best.upper <= _CLOSE * best.lower:
+    elif away == 0.0 and close(row):
         verdict, kind, said = ClaimVerdict.SUPPORTED, "fits", "lies between them"
     elif away == 0.0:
         kind, said = "wide", "is not below the first, and they are far apart"
