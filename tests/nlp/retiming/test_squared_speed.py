@@ -1,12 +1,13 @@
 """Bounds on the time along a path: closed forms, TOPPRA, and laws that need no solver."""
 
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 import pytest
 from support.retimed import rest_to_rest_time, trajectory
 from trajgap.nlp.retiming import bound_along, largest_derivatives, retime
-from trajgap.nlp.retiming.squared_speed import PathTime
+from trajgap.nlp.retiming.squared_speed import PathTime, _worst, cut_path
 from trajgap.problem import Limits, Trajectory, cubic_spline, fit, rest_to_rest
 
 LINE = [[[0.2, -1.0, 3.0], [0.9, 2.5, -0.7]]]
@@ -119,6 +120,30 @@ def test_both_bounds_hold_for_all_paths_within_the_radius() -> None:
         other = along(natural(POINTS + away * random.choice([-1, 1], (6, 2)), SHARES), LIMITS)
         assert wide.lower <= other.lower
         assert other.upper <= wide.upper
+
+
+def test_peaks_are_no_less_than_those_of_any_path_within_the_radius() -> None:
+    # No joint turns, so all these paths have the same cells.
+    points, away = np.cumsum([[1.0, 0.3], [0.4, 1.1], [0.9, 0.8], [0.5, 0.4]], axis=0), 0.01
+    spline = cubic_spline(3, ((2, 0.0),))
+    single = largest_derivatives(fit(spline, np.eye(4), SHARES[:3]))
+    exact = (np.zeros((3, 2)), np.zeros((3, 2)))
+    wide = cut_path(
+        natural(points, SHARES[:3]), 60, tuple(one @ np.full((4, 2), away) for one in single)
+    )
+    b = np.random.default_rng(2).uniform(0.1, 1.0, wide.widths.size + 1)
+    most = np.zeros(2)
+    for signs in product((-away, away), repeat=4):
+        other = natural(points + np.c_[signs, signs[::-1]], SHARES[:3])
+        most = np.maximum(most, _worst(cut_path(other, 60, exact), LIMITS, b))
+    own = _worst(cut_path(natural(points, SHARES[:3]), 60, exact), LIMITS, b)
+    assert (own < most).all()
+    assert (most <= _worst(wide, LIMITS, b)).all()
+    slow = np.full_like(b, 0.3)  # at constant speed, q″ alone pushes
+    for signs in product((-away, away), repeat=4):
+        other = natural(points + np.c_[signs, signs[::-1]], SHARES[:3])
+        found = _worst(cut_path(other, 60, exact), LIMITS, slow)
+        assert found[1] <= _worst(wide, LIMITS, slow)[1]
 
 
 def test_largest_derivatives_are_no_smaller_than_any_value() -> None:
