@@ -99,6 +99,7 @@ def _plain(
         "TG304": f"A printed total is not that of its profile ({where})"
         if isinstance(claim, TotalTimeClaim)
         else f"A printed number does not follow from its profile ({where})",
+        "TG305": f"A printed total is not the shortest along its path ({where})",
         "TG601": "Printed joint angles and positions do not fit the printed robot",
     }.get(cause.rule)
     if cause.rule == "TG103" and not computed:

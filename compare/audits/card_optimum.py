@@ -25,6 +25,7 @@ from .digit_ranges import all_exact, optimum_range
 from .fixed_ratios import at_ratios, off_ratios, planned_apart
 from .named_profiles import profile_called
 from .own_result import bare_totals, own_result
+from .path_times import along_paths
 from .printed_row import PrintedRow
 from .profile_motions import above_shortest
 from .rounding import meet
@@ -119,10 +120,11 @@ def _without_totals(study: Study, words: Mapping[str, Judgement]) -> str:
         profiles = [*dict.fromkeys(str(c.profile) for c in judged)]
         found = _beside_profiles([words[c.id].verdict for c in judged], profiles)
         return found + _above_shortest(study, judged)
-    curves = dict.fromkeys(c.other_curve for c in timed if c.other_curve is not None)
+    if along := along_paths(study, timed):
+        return along
+    curves = ", ".join(dict.fromkeys(c.other_curve for c in timed if c.other_curve is not None))
     if curves:
-        named = ", ".join(curves)
-        return f"The printed times belong to another curve ({named}), so no optimum applies."
+        return f"The printed times belong to another curve ({curves}), so no optimum applies."
     return "No printed total can be compared with an optimum."
 
 

@@ -79,6 +79,16 @@ def other_objective(case: Case, claim: AnyClaim | TimeClaim) -> str | None:
     return None if said is None or said.strip().lower() == _TIME else said.strip().rstrip(".")
 
 
+PATH_ALONE = "the curve of the case file is a path, and its own timing is not asked for"
+"""Why a problem has no optimum if `timed_along_path`."""
+
+
+def timed_along_path(case: Case, problem: str) -> bool:
+    """Whether every printed time of a problem is of a motion along the path of its curve."""
+    timed = [c for c in case.claims if isinstance(c, TimeClaim) and c.problem in (None, problem)]
+    return bool(timed) and all(isinstance(c, TotalTimeClaim) and c.along_path for c in timed)
+
+
 def claim_text(case: Case, claim: AnyClaim) -> str:
     """What a claim says: its own words, or one sentence from what it prints."""
     return claim.text or sentence_of(case, claim)

@@ -42,7 +42,14 @@ from .kept_optima import AskedOptimum, KeptOptima
 from .kept_replays import KeptReplays, Replays
 from .options import USUAL, AuditOptions
 from .replay_settings import LISTED, spread_settings
-from .stated import RowClaim, in_words, in_words_among, printed_total
+from .stated import (
+    PATH_ALONE,
+    RowClaim,
+    in_words,
+    in_words_among,
+    printed_total,
+    timed_along_path,
+)
 
 T = TypeVar("T")
 SPREAD_SEEDS = 3
@@ -285,6 +292,8 @@ class Study:
 
         def compute() -> Solution:
             problem = self.problem(pair)
+            if timed_along_path(self.case, pair.problem):
+                return Solution(problem, Status.FAILED, PATH_ALONE)
             which = "all joints" if joint is None else f"joint {joint}"
             self.progress(f"optimum of {which}; {in_words(self.case, *pair)}")
             index = None if joint is None else problem.joints.index(joint)
@@ -373,6 +382,8 @@ class Study:
 
         def compute() -> Solution:
             problem = self.problem(pair)
+            if timed_along_path(self.case, pair.problem):
+                return Solution(problem, Status.FAILED, PATH_ALONE)
             given = as_piecewise(problem.curve)
             if given is None:
                 why = "only declared piecewise polynomials have a relaxed family"

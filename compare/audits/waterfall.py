@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from ...nlp import Evidence, Route, Solution, Status, printed_problem_or_none
 from ...nlp.proofs.any_curve import estimate_any_curve
 from ...nlp.retiming import jerk_limited_path, retime, retime_third_order
 from ...problem import down, fit, shown_bound, up
 from ...problem.cases import AnyClaim, TimeClaim, TotalTimeClaim
 from ..documents import (
+    ALONG_PATH,
     EXACT,
     FREED_OPTIMUM,
     OPTIMUM_RETIMED,
@@ -27,9 +30,10 @@ from ..documents import (
 from .digit_ranges import optimum_range
 from .fixed_ratios import off_ratios, planned_apart
 from .own_result import bare_totals, own_result
+from .path_times import path_time
 from .printed_row import PrintedRow
 from .rounding import FEW_ROUNDINGS
-from .stated import RowClaim, other_objective
+from .stated import RowClaim, other_objective, timed_along_path
 from .study import Pair, Study
 
 
@@ -100,6 +104,8 @@ def routes(solution: Solution) -> tuple[str, ...]:
 
 def _waterfall(study: Study, pair: Pair) -> Waterfall:
     problem = study.problem(pair)
+    if timed_along_path(study.case, pair.problem):
+        return _along_path(study, pair)
     claim = _starting_claim(study, pair.problem)
     steps: list[Step] = []
     if claim is not None:
@@ -129,6 +135,30 @@ def _waterfall(study: Study, pair: Pair) -> Waterfall:
         claim=claim.id if claim is not None else None,
         steps=tuple(steps),
         longest_optimum=known(longest, "not bounded"),
+    )
+
+
+def _along_path(study: Study, pair: Pair) -> Waterfall:
+    """The first printed total along a path, and the shortest time on it."""
+    along = [c for c in study.case.claims if isinstance(c, TotalTimeClaim) and c.along_path]
+    claim = next(c for c in along if c.problem in (None, pair.problem))
+    row = PrintedRow(study, claim, pair)
+    best = path_time(row)
+    shortest = Step.missing(ALONG_PATH, best.why or "no motion was found")
+    if np.isfinite(best.upper):
+        shortest = Step(
+            name=ALONG_PATH,
+            time=best.upper,
+            low=best.lower,
+            high=best.upper,
+            evidence=Evidence.BEST_KNOWN,
+            note="a checked motion; no motion is shorter than the lower end",
+        )
+    return Waterfall(
+        problem=pair.problem,
+        reading=pair.reading,
+        claim=claim.id,
+        steps=(*_published(row), shortest),
     )
 
 

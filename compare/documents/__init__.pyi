@@ -187,6 +187,7 @@ from .vocabulary import (
     si_unit as si_unit,
 )
 from .waterfall import (
+    ALONG_PATH as ALONG_PATH,
     EXACT as EXACT,
     FREED_OPTIMUM as FREED_OPTIMUM,
     OPTIMA_STEPS as OPTIMA_STEPS,

@@ -25,6 +25,8 @@ RATIOS_OPTIMUM = "shortest total of the same curve at these ratios of the durati
 FREED_OPTIMUM = "the same curve, each duration chosen"
 """Name of the step below it: what fixing the ratios costs."""
 
+ALONG_PATH = "shortest time along the path, from rest to rest"
+"""Name of the step below a total along a fixed path."""
 OPTIMUM_RETIMED = "TOPPRA on the path of that optimum"
 """Name of the step that cross-checks the optimum: no timing of its path is shorter."""
 THIRD_ORDER = "the path of that optimum, timed anew with limited jerk"

@@ -138,9 +138,11 @@ class ProfiledClaim(TimeClaim):
     sines; with constant snap; that of the algorithm of Biagiotti and Melchiorri, which is not
     always the shortest; or that of Riboli et al. with a plateau speed. It is at rest at way-points
     in between, and at the ends as the interpolant prescribes."""
-    path: Literal["straight"] | None = None
-    """How the joints go together in a profile: on a straight line between way-points, all by one
-    time law. Each by itself if absent."""
+    path: Literal["straight", "curve", "sampled"] | None = None
+    """How the joints go together: "straight" in a profile, on a straight line between way-points,
+    all by one time law; each by itself if absent. Without a profile, timed anew from rest to rest:
+    "curve" along the path of the problem's curve at its fixed ratios; "sampled" along a path which
+    the way-points sample and the curve approximates."""
     deceleration: OneOrEachLength | None = None
     """Trapezoids: largest acceleration while the speed falls, in the unit of acceleration, where it
     differs from that while the speed grows."""
@@ -150,12 +152,19 @@ class ProfiledClaim(TimeClaim):
     plateau: Number | None = None
     """Profiles of jerk impulses: the velocity that is kept between both ends, with its sign."""
 
+    @property
+    def along_path(self) -> bool:
+        """Whether the total is of a motion along the path of the problem's curve."""
+        return self.path in ("curve", "sampled")
+
     @model_validator(mode="after")
     def _on_another_curve(self) -> Self:
         if self.profile is not None and self.other_curve is None:
             raise fault(".profile", "requires other_curve; name the curve there as the paper does")
-        if self.path is not None and self.profile is None:
+        if self.path == "straight" and self.profile is None:
             raise fault(".path", "requires profile; add it, or leave this out")
+        if self.along_path and (self.profile is not None or self.other_curve is None):
+            raise fault(".path", f'"{self.path}" requires other_curve, and excludes profile')
         for key, profile, needed in (
             ("deceleration", "trapezoidal", False),
             ("snap", "fourth-order", True),

@@ -192,6 +192,14 @@ def _check_profile(
     faults: Faults, claim: ProfiledClaim, every: Sequence[Statement], at: str
 ) -> None:
     """Refuse a profile without the limit that makes it the one that is named."""
+    if claim.along_path:
+        loose = [one for one in every if one.complete and one.durations.ratios is None]
+        if loose:
+            faults.add(
+                f"{at}.path",
+                f'"{claim.path}" needs durations.ratios, at which the curve has one path; add it'
+                + loose[0].selected,
+            )
     if claim.profile is None:
         return
     needed = _BOUNDED_BY[claim.profile]

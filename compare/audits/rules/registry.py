@@ -5,6 +5,7 @@ from __future__ import annotations
 from itertools import chain
 
 from ...documents import Rule
+from .along_path import judge_along_paths
 from .compared_before import cite_comparisons
 from .condition_count import judge_counts
 from .continuous_time import judge_bare_totals, judge_motions
@@ -44,6 +45,7 @@ GROUPS = (
     judge_scaling,
     judge_distances,
     judge_profiles,
+    judge_along_paths,
     judge_replays,
     judge_instances,
     cite_comparisons,

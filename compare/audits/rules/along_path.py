@@ -1,0 +1,89 @@
+"""TG305: printed totals along a fixed path beside the shortest time that the limits allow."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from ....problem.cases import AnyClaim, StatementClaim, TotalTimeClaim
+from ...documents import Basis, ClaimVerdict, Finding
+from ..path_times import close, outside, path_time
+from ..printed_row import PrintedRow
+from ..study import Study
+from .rule_group import Explained, rule_group
+
+
+@rule_group(
+    TG305=Explained(
+        "A printed total along a fixed path beside the shortest time on it",
+        "Is the printed total the shortest along a path, from rest to rest within limits of "
+        "velocity and acceleration? A convex program in the square of the path speed gives a "
+        "motion, which is checked everywhere; sweeps from both ends give a bound that no motion "
+        "undercuts.",
+        "Supported if it lies between them, inconsistent if it lies below both, else not "
+        "checkable, because a motion may take longer. If it is called optimal, a longer total is "
+        "inconsistent too. Both bounds hold however the digits were rounded, and where points "
+        "sample the path, for all paths that differ from their spline by at most twice as much as "
+        "a quintic spline does.",
+        "A lap is called time-optimal at 1.7000 s, and a motion along it takes 1.6462 s.",
+    ),
+)
+def judge_along_paths(study: Study) -> Iterator[Finding]:
+    """Findings of TG305."""
+    for claim in study.claims:
+        optimal = isinstance(claim, StatementClaim) and claim.checks == "optimal"
+        named: list[AnyClaim] = [claim]
+        if optimal:
+            named = [study.case.claim(name) for name in claim.of]  # type: ignore[union-attr]
+        for one in named:
+            if isinstance(one, TotalTimeClaim) and one.along_path:
+                for pair in study.pairs:
+                    if one.problem in (None, pair.problem):
+                        yield _beside(PrintedRow(study, one, pair), claim.id, optimal)
+
+
+def _beside(row: PrintedRow[TotalTimeClaim], about: str, optimal: bool) -> Finding:
+    claim = row.claim
+    best = path_time(row)
+    if best.why is not None:
+        said = f"The shortest time along the path is not computed: {best.why}."
+        return _found(row, about, ClaimVerdict.NOT_CHECKABLE, "not computed", said)
+    away = outside(row)
+    far = f"{100 * abs(away):.2f} %"
+    verdict, kind, said = (
+        ClaimVerdict.NOT_CHECKABLE,
+        "longer",
+        f"is {far} longer, as a motion may be",
+    )
+    if away < 0.0:
+        verdict, kind, said = ClaimVerdict.INCONSISTENT, "shorter", f"is {far} shorter"
+    elif away == 0.0 and close(row):
+        verdict, kind, said = ClaimVerdict.SUPPORTED, "fits", "lies between them"
+    elif away == 0.0:
+        kind, said = "wide", "is not below the first, and they are far apart"
+    elif optimal:
+        verdict, said = ClaimVerdict.INCONSISTENT, f"is {far} longer"
+    upper = f"takes {best.upper:.6g} s" if np.isfinite(best.upper) else "was not found"
+    printed = f"{claim.value} {row.study.time_unit}"
+    said = (
+        f"Along the path, from rest to rest, no motion within the limits takes less than "
+        f"{best.lower:.6g} s, and one {upper}. The printed {printed} {said}."
+    )
+    computed = f"{best.lower:.6g} to {best.upper:.6g} s"
+    return _found(row, about, verdict, kind, said, printed=printed, computed=computed)
+
+
+def _found(
+    row: PrintedRow[Any], about: str, verdict: ClaimVerdict, kind: str, said: str, **facts: Any
+) -> Finding:
+    return row.finding(
+        "TG305",
+        verdict=verdict,
+        basis=Basis.ENCLOSURE,
+        claim=about,
+        kind=kind,
+        sentences=(said,),
+        **facts,
+    )

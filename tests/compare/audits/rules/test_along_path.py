@@ -1,0 +1,188 @@
+"""Totals along fixed paths: closed forms, and paths that their points leave open."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+from support.findings import audited_text, finding, verdicts
+from support.made_up import claim, paper, sentence, total
+from trajgap.compare.audits.stated import timed_along_path
+from trajgap.compare.documents import ALONG_PATH, Basis, ClaimVerdict, Why
+from trajgap.problem import CaseError, parse_case
+
+NATURAL = {"family": "cubic-spline", "end_orders": [2]}
+SPACED = {"ratios": "equal"}
+LINE = [[0, 1, 2, 3], [0, 0.5, 1, 1.5]]
+"""A straight line: 3 rad of the first joint in 3 s / 2 + 2 s / 4 within 2 rad/s and 4 rad/s^2."""
+LIMITS = {"velocity": [2, 9], "acceleration": [4, 9]}
+DIGITS = {"velocity": ["2", "9"], "acceleration": ["4", "9"]}
+
+
+def along(
+    rows: list[list[Any]],
+    value: str,
+    *parts: str,
+    path: str = "curve",
+    limits: dict[str, Any] = LIMITS,
+    **given: Any,
+) -> str:
+    keys = {"curve": NATURAL, "bounds": SPACED} | given
+    printed = total("t", value, path=path, other_curve="re-timed")
+    return paper(rows, printed, *parts, **keys, **limits)
+
+
+OPTIMAL = sentence("s", "optimal", "t")
+
+
+@pytest.mark.parametrize(
+    ("value", "verdict", "kind"),
+    [
+        ("2.0", ClaimVerdict.SUPPORTED, "fits"),
+        ("1.98", ClaimVerdict.INCONSISTENT, "shorter"),
+        ("1.85", ClaimVerdict.INCONSISTENT, "shorter"),
+        ("2.3", ClaimVerdict.NOT_CHECKABLE, "longer"),
+    ],
+)
+def test_a_total_on_a_straight_line_beside_its_trapezoid(
+    value: str, verdict: ClaimVerdict, kind: str
+) -> None:
+    found = finding(along(LINE, value), "t", "TG305")
+    assert (found.verdict, found.kind, found.basis) == (verdict, kind, Basis.ENCLOSURE)
+
+
+@pytest.mark.parametrize(
+    ("value", "verdict"),
+    [("2.0", ClaimVerdict.SUPPORTED), ("2.3", ClaimVerdict.INCONSISTENT)],
+)
+def test_a_longer_total_is_not_optimal(value: str, verdict: ClaimVerdict) -> None:
+    assert finding(along(LINE, value, OPTIMAL), "s", "TG305").verdict is verdict
+
+
+def test_digits_of_limits_open_both_bounds() -> None:
+    # 3 rad take 1.6 s within the loosest, 3 rad/s and 5 rad/s^2 cut off, and 2.4286 s within the
+    # tightest, 1.5 rad/s and 3.5 rad/s^2.
+    for value, verdict in (
+        ("1.61", ClaimVerdict.SUPPORTED),
+        ("2.42", ClaimVerdict.SUPPORTED),
+        ("1.58", ClaimVerdict.INCONSISTENT),
+        ("2.45", ClaimVerdict.INCONSISTENT),
+    ):
+        found = finding(along(LINE, value, OPTIMAL, limits=DIGITS), "s", "TG305")
+        assert found.verdict is verdict, found.sentences
+    low, high = map(float, str(found.computed).removesuffix(" s").split(" to "))
+    assert (low, high) == pytest.approx((1.6, 3 / 1.5 + 1.5 / 3.5), rel=2e-3)
+    assert low <= 1.6 < 3 / 1.5 + 1.5 / 3.5 < high
+
+
+def wave(points: int, digits: int | None = None) -> list[list[Any]]:
+    x = np.linspace(0.0, 2.0, points)
+    rows = [x, np.sin(2.1 * x)]
+    return [[float(v) if digits is None else f"{v:.{digits}f}" for v in row] for row in rows]
+
+
+EXACT = {"velocity": [1, 1.5], "acceleration": [2, 3]}
+
+
+def test_digits_of_points_bend_the_path() -> None:
+    plain = finding(along(wave(12), "9", limits=EXACT), "t", "TG305")
+    assert plain.kind == "longer"
+    assert finding(along(wave(12, 5), "9", limits=EXACT), "t", "TG305").kind == "longer"
+    lower, upper = map(float, str(plain.computed).removesuffix(" s").split(" to "))
+    assert upper < 1.001 * lower
+    # With two decimals the curvature is open, and a little more is no longer longer.
+    much = f"{1.02 * upper:.4f}"
+    assert finding(along(wave(12, 2), much, OPTIMAL, limits=EXACT), "s", "TG305").kind == "wide"
+    assert finding(along(wave(12), much, OPTIMAL, limits=EXACT), "s", "TG305").kind == "longer"
+
+
+def test_sampled_points_leave_open_what_two_splines_differ() -> None:
+    def ends(points: int, path: str) -> tuple[float, float]:
+        found = finding(along(wave(points), "9", path=path, limits=EXACT), "t", "TG305")
+        low, high = map(float, str(found.computed).removesuffix(" s").split(" to "))
+        return low, high
+
+    truth, coarse, fine = ends(161, "curve"), ends(41, "sampled"), ends(81, "sampled")
+    for low, high in (coarse, fine):
+        assert low < truth[0] < truth[1] < high
+    assert fine[1] - fine[0] < coarse[1] - coarse[0]
+
+
+@pytest.mark.parametrize(
+    ("text", "why"),
+    [
+        (along(wave(12), "9", path="sampled", limits=EXACT), "fewer than 20 points sample"),
+        (along(LINE, "9", bounds={"ratios": ["1.0", "1.0", "1.1"]}), "do not settle the path"),
+        (
+            along(LINE, "9", curve={**NATURAL, "end_orders": [1], "end_derivatives": [0.2]}),
+            "do not settle the path",
+        ),
+        (
+            along(wave(12), "9", curve={"family": "rest-to-rest", "degree": 5}, limits=EXACT),
+            "all joints stand still",
+        ),
+        (along(LINE, "9", limits={"velocity": [2, 9]}), "no acceleration is limited"),
+    ],
+)
+def test_what_is_not_computed_accuses_nobody(text: str, why: str) -> None:
+    found = finding(text, "t", "TG305")
+    assert found.verdict is ClaimVerdict.NOT_CHECKABLE
+    assert why in found.sentences[0]
+
+
+def test_limited_jerk_leaves_what_no_motion_undercuts() -> None:
+    jerky = LIMITS | {"jerk": [50, 50]}
+    assert finding(along(LINE, "1.85", limits=jerky), "t", "TG305").kind == "shorter"
+    found = finding(along(LINE, "2.3", OPTIMAL, limits=jerky), "s", "TG305")
+    assert (found.kind, found.verdict) == ("wide", ClaimVerdict.NOT_CHECKABLE)
+
+
+def test_the_curve_of_a_path_has_no_optimum_of_its_own() -> None:
+    one = audited_text(along(LINE, "2.0"))
+    assert verdicts(one) == {"t": ClaimVerdict.SUPPORTED}
+    (found,) = one.document.waterfalls
+    assert [step.name for step in found.steps] == ["published", ALONG_PATH]
+    low, high = found.steps[1].ends
+    assert low <= 2.0 <= high
+    (pair,) = one.study.pairs
+    assert not one.study.optimum(pair).found
+    assert "its own timing is not asked for" in str(one.study.optimum(pair).why)
+
+
+def test_a_time_of_the_curve_itself_keeps_its_optimum() -> None:
+    for part, alone in ((OPTIMAL, True), (total("own", "3.0"), False)):
+        case = parse_case(along(LINE, "2.0", part), "made-up.toml")
+        assert timed_along_path(case, case.problems[0].id) is alone
+
+
+def test_a_path_that_is_not_computed_is_said_in_its_step() -> None:
+    one = audited_text(along(LINE, "9", limits={"velocity": [2, 9]}))
+    (found,) = one.document.waterfalls
+    assert isinstance(found.steps[-1].time, Why)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (
+            paper(LINE, total("t", "2", path="curve"), curve=NATURAL, bounds=SPACED, **LIMITS),
+            r'path: "curve" requires other_curve, and excludes profile',
+        ),
+        (
+            paper(LINE, total("t", "2", path="sampled", other_curve="o"), curve=NATURAL, **LIMITS),
+            r'path: "sampled" needs durations.ratios, at which the curve has one path; add it',
+        ),
+        (
+            paper(
+                LINE,
+                claim("p", "phases", phases=["1", "0", "1"], path="curve", other_curve="o"),
+                curve=NATURAL,
+                bounds=SPACED,
+                **LIMITS,
+            ),
+            r"profile: is missing",
+        ),
+    ],
+)
+def test_a_path_goes_with_fixed_ratios_and_another_curve(text: str, message: str) -> None:
+    with pytest.raises(CaseError, match=message):
+        parse_case(text, "made-up.toml")
