@@ -122,11 +122,6 @@ class Check(InNotebooks):
     tolerance: float
 
     @property
-    def continuous(self) -> bool:
-        """Whether position, velocity and acceleration agree on both sides of every break."""
-        return not self.jumps
-
-    @property
     def max_violation(self) -> float:
         """Largest relative excess over any limit, 0 if none."""
         return max([0.0, *(p.ratio - 1.0 for p in self.peaks)])

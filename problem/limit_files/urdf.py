@@ -8,13 +8,11 @@ from pathlib import Path
 from xml.parsers import expat
 
 from ..errors import CaseError, TrajgapError
-from ..files import read_regular
+from ..files import MOST, read_regular
 from ..motions import BRAKING
 from ..printed import read_float
 from .precedence import Range, StatedLimits
 
-LARGEST_URDF = 20_000_000
-"""Bytes: a hundred times the URDF of a humanoid."""
 _MOVING = ("revolute", "continuous", "prismatic")
 """Types of joints with one value that moves."""
 _SIZES = ("velocity", "acceleration", BRAKING, "jerk")
@@ -38,7 +36,7 @@ def read_urdf(path: Path) -> StatedLimits:
         If it is not a URDF, or declares entities.
     """
     name = str(path)
-    data = read_regular(path, LARGEST_URDF, "give the URDF alone, without meshes")
+    data = read_regular(path, MOST.robot_bytes, "give the URDF alone, without meshes")
     reader = _Reader(name)
     parser = expat.ParserCreate()
     parser.StartElementHandler = reader.begin

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import TrajgapError
+from .digits import HalfUnits
 from .hermite import hermite
 from .motion import Motion
 from .samples import Interpolation, Samples
@@ -45,21 +48,18 @@ def interpolated(samples: Samples, how: Interpolation) -> Motion:
             )
         degree = np.where(both[0], np.where(both[1], 5, 3), 1)
         # The controller is given these very numbers, however they were rounded before.
-        samples = samples.as_given
+        samples = replace(samples, rounding=HalfUnits())
     else:
         degree = np.full(pairs, {"linear": 1, "cubic": 3, "quintic": 5}[how])
         for order, word, least in ((1, "velocity", 3), (2, "acceleration", 5)):
             missing = (degree >= least) & ~both[order - 1]
             if missing.any():
+                first = int(np.argmax(~samples.has(order))) + 1
                 raise TrajgapError(
-                    f"interpolation {how}: sample {_first_without(samples, order)} has no {word}; "
+                    f"interpolation {how}: sample {first} has no {word}; "
                     "give it, or state another --interpolation"
                 )
     return hermite(samples, degree, _words(how, degree))
-
-
-def _first_without(samples: Samples, order: int) -> int:
-    return int(np.argmax(~samples.has(order))) + 1
 
 
 def _words(how: Interpolation, degree: NDArray[np.int64]) -> str:

@@ -13,13 +13,11 @@ from numpy.typing import ArrayLike
 from ..arrays import Array
 from ..curves import MAX_COEFFICIENTS, PERM
 from ..errors import TrajgapError
-from ..printed import MOST_JOINTS
+from ..files import MOST
 
 if TYPE_CHECKING:
     from scipy.interpolate import PPoly
 
-MOST_VALUES = 10_000_000
-"""Samples times joints of one motion: 10⁵ samples of 100 joints, about half a gigabyte at work."""
 LARGEST = 1e100
 """Size of a position, derivative, coefficient or limit, rad and s; a limit above 0 is at least its
 inverse. Divided by the cube of the shortest step, 1e-30 s, and by a limit, it is still within
@@ -214,8 +212,8 @@ def clock_error(times: Array) -> Array:
 
 def check_joints(labels: Sequence[str], count: int) -> None:
     """Refuse labels that do not fit their joints, and more joints than any arm has."""
-    if not 1 <= count <= MOST_JOINTS:
-        raise TrajgapError(f"joints: {count} of them; give 1 to {MOST_JOINTS}")
+    if not 1 <= count <= MOST.joints:
+        raise TrajgapError(f"joints: {count} of them; give 1 to {MOST.joints}")
     if len(labels) != count:
         raise TrajgapError(f"joints: {len(labels)} names for {count} joints; give one each")
     if len(set(labels)) < count:

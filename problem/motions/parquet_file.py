@@ -11,9 +11,9 @@ import numpy as np
 
 from ..arrays import Array
 from ..errors import CaseError
-from ..files import check_regular, read_regular
+from ..files import MOST, check_regular, read_regular
 from .samples import Samples
-from .tables import LARGEST_FILE, check_size, column_meaning, samples_of_columns
+from .tables import check_size, column_meaning, samples_of_columns
 
 _A_SECOND = {"s": 1, "ms": 10**3, "us": 10**6, "ns": 10**9}
 """How many units of Arrow's types of time a second has."""
@@ -45,7 +45,7 @@ def read_parquet(path: Path, joints: Sequence[str] = ()) -> Samples:
         raise CaseError(
             name, "", "Parquet needs pyarrow; pip install trajgap[parquet], or export CSV"
         ) from None
-    data = read_regular(path, LARGEST_FILE, "split it, or keep fewer rows")
+    data = read_regular(path, MOST.table_bytes, "split it, or keep fewer rows")
     try:
         file = parquet.ParquetFile(io.BytesIO(data))
         names, rows = list(file.schema_arrow.names), file.metadata.num_rows

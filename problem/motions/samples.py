@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 
 from ..arrays import Array
 from ..errors import TrajgapError
+from ..files import MOST
 from .digits import HalfUnits
-from .motion import EPS, LARGEST, MOST_VALUES, check_joints, check_times, numbered
+from .motion import EPS, LARGEST, check_joints, check_times, numbered
 
 
 class Interpolation(StrEnum):
@@ -83,9 +84,9 @@ class Samples:
         check_joints(self.joints, count)
         if self.time.shape != (rows,):
             raise TrajgapError(f"time: {self.time.size} times for {rows} rows; give one a row")
-        if rows * count > MOST_VALUES:
+        if rows * count > MOST.positions:
             raise TrajgapError(
-                f"{rows} samples of {count} joints; at most {MOST_VALUES:,} positions are read"
+                f"{rows} samples of {count} joints; at most {MOST.positions:,} positions are read"
             )
         check_times(self.time, "time")
         self._check_finite("position", self.position)
@@ -174,11 +175,6 @@ class Samples:
         )
 
     @property
-    def as_given(self) -> Samples:
-        """The same samples with digits that count as exact, apart from stated noise."""
-        return replace(self, rounding=HalfUnits())
-
-    @property
     def assumed(self) -> str:
         """Uncertainty of the numbers, in a sentence; empty if they count as exact."""
         parts = []
@@ -217,9 +213,3 @@ class Samples:
             if self.assumed
             else ""
         )
-
-    def natural(self) -> Interpolation:
-        """The smoothest Hermite interpolation that the columns allow for every sample."""
-        if self.has(1).all() and self.has(2).all():
-            return Interpolation.QUINTIC
-        return Interpolation.CUBIC if self.has(1).all() else Interpolation.LINEAR

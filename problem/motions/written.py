@@ -12,8 +12,9 @@ from numpy.typing import ArrayLike
 
 from ..arrays import Array
 from ..errors import TrajgapError
+from ..files import MOST
 from .interpolation import interpolated
-from .motion import MOST_VALUES, Motion
+from .motion import Motion
 from .plain_data import parse_json
 from .polynomial_file import motion_of_json, polynomial_json
 from .ros import message_of_samples, samples_of_message
@@ -75,7 +76,7 @@ def sampled(
     total = end - begin
     if not (np.isfinite(step) and step > 0):
         raise TrajgapError(f"step: {step} is not a time between samples; give seconds, more than 0")
-    if total / step > MOST_VALUES:
+    if total / step > MOST.positions:
         raise TrajgapError(f"step: {total / step:.3g} samples are too many; take a longer step")
     times = _rows(np.asarray(motion.breaks) - begin, step, breaks)
     if whole_nanoseconds:
@@ -86,7 +87,7 @@ def sampled(
         times = whole // 10**9 + 1e-9 * (whole % 10**9)
     at = np.clip(begin + times, begin, end)
     values = [np.asarray(motion(at, order), dtype=np.float64) for order in range(3)]
-    if values[0].size > MOST_VALUES:
+    if values[0].size > MOST.positions:
         raise TrajgapError(f"step: {times.size} samples are too many; take a longer step")
     named = getattr(motion, "joints", ())
     labels = joints or (named if isinstance(named, tuple) else ())

@@ -1,11 +1,6 @@
 from .bounds import shown_bound as shown_bound
 from .described import Described as Described
 from .fields import (
-    LARGEST_SEED as LARGEST_SEED,
-    MOST_ENTRIES as MOST_ENTRIES,
-    MOST_JOINTS as MOST_JOINTS,
-    MOST_POSES as MOST_POSES,
-    MOST_WAYPOINTS as MOST_WAYPOINTS,
     UNION_TAGS as UNION_TAGS,
     AccelerationUnits as AccelerationUnits,
     Id as Id,

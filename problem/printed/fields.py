@@ -24,22 +24,15 @@ from pydantic_core import PydanticCustomError
 
 from ..duration_ratios import RATIO_WORDS
 from ..errors import TrajgapError
+from ..files import MOST
 from .described import Described
 from .rounded import Printed
 from .units import CHOICES, Quantity, check_unit
 
-MOST_WAYPOINTS = 10_000
-"""Way-points of one problem: the curve through them takes half a second and 50 MB to declare."""
 MOST_POSES = 500
 """Poses of a straight line in a case file: each takes some milliseconds of inverse kinematics."""
-MOST_JOINTS = 100
-"""Joints of one robot: no arm and no humanoid has as many."""
-MOST_ENTRIES = 1_000
-"""Entries of one list of a case file, such as its claims: no paper prints as many."""
 RATIO_CHOICES = (*RATIO_WORDS, "free")
 """Words for ratios of durations in case files; "free" takes back what the file fixes."""
-LARGEST_SEED = 2**63 - 1
-"""Largest seed: what TOML promises to keep."""
 
 
 def fault(
@@ -309,8 +302,8 @@ Ratios = _OneOrList[_RatioWord, Ratio]
 """One `Ratio` per segment, or a word."""
 
 PrintedRows = Annotated[
-    tuple[Annotated[tuple[Number, ...], Field(min_length=1, max_length=MOST_WAYPOINTS + 2)], ...],
-    Field(min_length=1, max_length=MOST_WAYPOINTS),
+    tuple[Annotated[tuple[Number, ...], Field(min_length=1, max_length=MOST.waypoints + 2)], ...],
+    Field(min_length=1, max_length=MOST.waypoints),
 ]
 """A table of numbers, no row empty; control vertices are two more than way-points."""
 
@@ -324,7 +317,7 @@ TextOrEach = _OneOrEach[Text]
 Label = Annotated[str, Field(min_length=1, max_length=80, pattern=r"^\S(.*\S)?$")]
 """A few words on one line, which stand for what they name within a sentence or a cell."""
 
-JointLabels = Annotated[tuple[Text, ...], Field(min_length=1, max_length=MOST_JOINTS)]
+JointLabels = Annotated[tuple[Text, ...], Field(min_length=1, max_length=MOST.joints)]
 
 
 def _units(quantity: Quantity) -> tuple[Any, ...]:

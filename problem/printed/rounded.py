@@ -13,6 +13,7 @@ from itertools import pairwise
 from typing import NamedTuple
 
 from ..errors import TrajgapError
+from ..files import MOST
 
 _NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?")
 """One decimal number; group 2 is the exponent."""
@@ -20,10 +21,6 @@ MINUS_SIGNS = str.maketrans({"\u2212": "-", "\u2013": "-", "\ufe63": "-", "\uff0
 """Minus signs that are printed or extracted, to the ASCII one."""
 _INFINITE = ("inf", "+inf", "-inf", "infinity", "+infinity", "-infinity")
 """Words for what has no bound, as Python reads them."""
-_LONGEST = 64
-"""Characters of one number: printed digits are fewer, and arithmetic on more could run away."""
-_LARGEST_EXPONENT = 300
-"""Powers of ten that a float64 holds, with room for units and outward rounding."""
 
 
 class Interval(NamedTuple):
@@ -65,8 +62,8 @@ def read_float(text: str) -> float:
 def _short(text: str) -> str:
     """The characters of a number, of bounded length, with an ASCII minus sign."""
     word = text.strip().translate(MINUS_SIGNS)
-    if len(word) > _LONGEST:
-        raise TrajgapError(f"a number of {len(word)} characters; at most {_LONGEST} are read")
+    if len(word) > MOST.digits:
+        raise TrajgapError(f"a number of {len(word)} characters; at most {MOST.digits} are read")
     return word
 
 
@@ -123,10 +120,10 @@ class Printed:
                 'such as "0.660"'
             )
         exponent = int(match[2][1:]) if match[2] else 0
-        if abs(exponent) > _LARGEST_EXPONENT or Decimal(text).adjusted() > _LARGEST_EXPONENT:
+        if abs(exponent) > MOST.exponent or Decimal(text).adjusted() > MOST.exponent:
             raise TrajgapError(
-                f"{self.text!r} is out of range; magnitudes from 1e-{_LARGEST_EXPONENT} to "
-                f"1e{_LARGEST_EXPONENT} are read"
+                f"{self.text!r} is out of range; magnitudes from 1e-{MOST.exponent} to "
+                f"1e{MOST.exponent} are read"
             )
         object.__setattr__(self, "text", text)
 

@@ -12,8 +12,8 @@ import numpy as np
 from pydantic import Field, PlainSerializer, PlainValidator, WithJsonSchema, model_validator
 
 from ..arrays import Array
+from ..files import MOST
 from ..printed import (
-    MOST_JOINTS,
     AngleUnit,
     JointLabels,
     LengthUnit,
@@ -35,8 +35,6 @@ _MINUS_SIGNS = str.maketrans({"\u2212": "-", "\u2013": "-"})
 """Minus signs that are printed, to the ASCII one."""
 _PI = Fraction(math.pi)
 """π as every toolbox takes it: exactly the double."""
-_LONGEST = 64
-"""Characters of a multiple of π that are read, as of any number."""
 
 
 @dataclass(frozen=True)
@@ -58,7 +56,7 @@ def read_angle(raw: object) -> Printed | PiMultiple:
         return raw
     text = raw.strip().translate(_MINUS_SIGNS) if isinstance(raw, str) else ""
     match = _PI_MULTIPLE.fullmatch(text)
-    if match is None or len(text) > _LONGEST:
+    if match is None or len(text) > MOST.digits:
         return read_number(raw)
     factor = Fraction(int(match[2] or 1), int(match[3] or 1))
     return PiMultiple(text, -factor if match[1] == "-" else factor)
@@ -98,7 +96,7 @@ class DhTable(Strict):
     """Joint labels; those of the robot if absent."""
     kinds: tuple[JointKind, ...] | None = None
     """revolute or prismatic; all revolute if absent."""
-    d: Annotated[tuple[Number, ...], Field(min_length=1, max_length=MOST_JOINTS)]
+    d: Annotated[tuple[Number, ...], Field(min_length=1, max_length=MOST.joints)]
     a: tuple[Number, ...]
     alpha: tuple[Angle, ...]
     theta_offset: tuple[Angle, ...] | None = None

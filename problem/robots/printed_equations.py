@@ -13,15 +13,13 @@ from pydantic import model_validator
 
 from ..arrays import Array
 from ..errors import TrajgapError
+from ..files import MOST
 from ..printed import Id, Strict, Text, fault
 from .chain import Chain, link_frames
 
 SAMPLES = 200
 """Random joint values at which an equation is tried: one that holds nowhere near all of them is
 told from one that holds at all."""
-LONGEST_EQUATION = 400
-"""Characters of an equation with its definitions: twice the longest printed one, and no deeper
-than a stack bears."""
 _EQUAL_SIDES = 1e-9
 """Difference of the two sides, beside the larger of them and 1, that float64 alone may leave."""
 _OPERATORS: dict[type[ast.AST], Callable[[Any, Any], Any]] = {
@@ -114,10 +112,10 @@ def check_equation(chain: Chain, text: str, samples: int = SAMPLES, seed: int = 
     True
     """
     *definitions, sides = (part.split("=") for part in text.split(";"))
-    if len(text) > LONGEST_EQUATION or any(len(part) != 2 for part in (*definitions, sides)):
+    if len(text) > MOST.equation or any(len(part) != 2 for part in (*definitions, sides)):
         raise TrajgapError(
             f"{_short(text)} is not an equation; write left = right, in at most "
-            f"{LONGEST_EQUATION} characters"
+            f"{MOST.equation} characters"
         )
     if chain.joints > 9 or not chain.revolute.all():
         raise TrajgapError("equations: apply only to chains of fewer than ten joints that all turn")
