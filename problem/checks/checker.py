@@ -10,13 +10,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arrays import Array
-from ..curves import Enclosed, Extremum, Trajectory, as_durations, furthest
+from ..curves import Enclosed, Extremum, Furthest, Trajectory, as_durations, furthest
 from ..errors import CurveError, SingularError
 from ..in_notebooks import InNotebooks
 from ..limits import QUANTITIES, half_range
 from ..problem import Problem
 from .jumps import Jump, jumps_of
-from .uneven_peaks import uneven_peaks
 
 TOLERANCE = 1e-9
 """Relative excess over a limit that still counts as keeping it."""
@@ -152,35 +151,61 @@ class Check(InNotebooks):
         return "\n".join(lines)
 
 
-def _ratio(value: float, limit: float, error: float) -> float:
-    if limit == 0.0:
-        return 0.0 if abs(value) <= error else np.inf
-    return abs(value) / limit
-
-
 def _derivative_peaks(
     problem: Problem,
     h: Array,
     trajectory: Trajectory,
     error: Array,
 ) -> list[Peak]:
-    def peak(top: Extremum, limit: float, ratio: float, bound: float) -> Peak:
-        at = problem.curve.segment_of(h, top)
-        label, quantity = problem.joints[top.joint], QUANTITIES[top.order - 1]
-        return Peak(label, quantity, at, top.time, top.value, limit, ratio, bound)
-
-    if problem.limits.uneven:
-        sided = uneven_peaks(problem.limits, trajectory, error)
-        return [peak(p.extremum, p.size, p.ratio, p.error) for p in sided]
-    limits, peaks = problem.limits.derivatives, []
-    wanted = np.isfinite(limits)
-    orders = np.flatnonzero(wanted.any(axis=0)).tolist()
+    """The deciding peak of each limited derivative, by joint, then by order."""
+    sides, peaks = problem.limits.sides, []
+    limited = np.isfinite(sides)
+    orders = np.flatnonzero(limited.any(axis=(0, 1))).tolist()
     reach = {r: furthest(trajectory, r + 1, error[:, r + 1]) for r in orders}
-    for j, r in np.argwhere(wanted).tolist():
-        top, bound = reach[r].largest(trajectory, j, error[:, r + 1])
-        limit = float(limits[j, r])
-        peaks.append(peak(top, limit, _ratio(top.value, limit, bound), bound))
+    for j, r in np.argwhere(limited.any(axis=0)).tolist():
+        top, size, ratio, bound = _nearest(
+            trajectory, reach[r], j, sides[:, j, r].tolist(), error[:, r + 1]
+        )
+        at = problem.curve.segment_of(h, top)
+        label, quantity = problem.joints[j], QUANTITIES[r]
+        peaks.append(Peak(label, quantity, at, top.time, top.value, size, ratio, bound))
     return peaks
+
+
+def _nearest(
+    trajectory: Trajectory, reach: Furthest, j: int, sizes: list[float], errors: Array
+) -> tuple[Extremum, float, float, float]:
+    """The extremum nearest to its limit or furthest beyond it, that limit, its ratio, an error.
+
+    No value on either side goes further beyond its limit than ratio + error/size: the true peak is
+    at least its own extremum less that one's error, and at most what `Furthest` says that none is
+    beyond. So a short segment, whose error is large but whose values are small, does not blur the
+    peak of another.
+    """
+    found = []
+    for side, size in enumerate(sizes):
+        if np.isfinite(size):
+            best, sign = reach.at(trajectory, side, j), (-1.0, 1.0)[side]
+            top, most = sign * best.value, sign * float(reach.outer[side, j])
+            ratio = _size_ratio(top, size, max(float(errors[best.segment, j]), most - top))
+            # What is not a number decides; of equal ones the first in time.
+            order = (np.inf if np.isnan(ratio) else ratio, top, -best.segment, -best.s)
+            found.append((order, best, size, top, most))
+    _, best, size, top, _ = max(found, key=lambda one: one[0])
+    outer = [
+        most if own == size else most / own * size
+        for *_, own, _, most in found
+        if own or own == size
+    ]
+    bound = max(float(errors[best.segment, j]), max(outer) - top)
+    return best, size, _size_ratio(top, size, bound), bound
+
+
+def _size_ratio(top: float, size: float, error: float) -> float:
+    """What lies on one side over its limit; what may be 0 keeps a limit of 0."""
+    if size == 0.0:
+        return 0.0 if top <= error else np.inf
+    return float(np.maximum(0.0, top)) / size
 
 
 def _position_peaks(
@@ -204,7 +229,7 @@ def _position_peaks(
             excess = sign * (top.value - limit)
             half = half_range(low, high, limit)
             bound = float(error[:, 0, j].max())
-            ratio = 1.0 + excess / half if half > 0 else _ratio(excess, 0.0, bound)
+            ratio = 1.0 + excess / half if half > 0 else _size_ratio(abs(excess), 0.0, bound)
             at = problem.curve.segment_of(h, top)
             peaks.append(
                 Peak(label, "position", at, top.time, top.value, float(limit), ratio, bound)
