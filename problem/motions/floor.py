@@ -12,9 +12,6 @@ from ..arrays import Array
 from .joint_limits import JointLimits
 from .motion import Motion
 
-_SAFE = 1.0 - 1e-12
-"""Factor on a floor, far below the rounding of its closed form."""
-
 
 @dataclass(frozen=True)
 class Floor:
@@ -137,7 +134,7 @@ def least_time(
         total += max(each)
         if not motion.scaled[a:b, 1:].any():
             waiting += float(motion.breaks[b] - motion.breaks[a])
-    total *= _SAFE
+    total *= 1.0 - 1e-12  # more than the closed form is rounded by
     if not 0.0 < total < math.inf:
         return None, "nothing moves between the standstills" if total == 0.0 else (
             "a joint that must stand still moves"

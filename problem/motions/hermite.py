@@ -10,11 +10,9 @@ from numpy.typing import NDArray
 
 from ..arrays import Array
 from ..curves import PERM
-from .motion import EPS, Motion
+from .motion import EPS, ROUNDED_UP, Motion
 from .samples import Samples
 
-_POWERS_UP = 1.0 + 1e-12
-"""Covers the rounding of a bound's own sums, products and powers."""
 _BASIS = {
     1: [[1, 0], [0, 1]],
     3: [[1, 0, 0, 0], [0, 0, 1, 0], [0, 3, -2, -1], [0, -2, 1, 1]],
@@ -47,10 +45,8 @@ def _reach(degree: int) -> Array:
             places = np.concatenate([[0.0, 1.0], inside])
             most[order, column] = np.abs(polynomial(places)).max()
             polynomial = polynomial.deriv()
-    return (
-        np.column_stack([most[:, 1], most[:, 2:4].max(axis=1), most[:, 4:].max(axis=1)])
-        * _POWERS_UP
-    )
+    largest = [most[:, 1], most[:, 2:4].max(axis=1), most[:, 4:].max(axis=1)]
+    return np.column_stack(largest) * ROUNDED_UP
 
 
 def hermite(samples: Samples, degree: NDArray[np.int64], between: str) -> Motion:
@@ -131,4 +127,4 @@ def _fill(
                 else:
                     size = (np.abs(data[2 * order]) + np.abs(data[2 * order + 1])) / h**order
                 bound = bound + reach[r, order] * (both * largest + size * shift)
-            error[at, r] = np.where(np.isnan(bound), np.inf, _POWERS_UP * bound)
+            error[at, r] = np.where(np.isnan(bound), np.inf, ROUNDED_UP * bound)

@@ -20,14 +20,9 @@ from .one_sided import one_sided_extreme
 
 MOTION_TOLERANCE = 1e-6
 """Relative excess over a limit that still counts as keeping it: files carry printed digits."""
-_STANDING = 1e-9
-"""Share of a joint's largest speed below which it stands: rounding of planners is below it."""
-_JUMP = 1e-9
-"""Relative to the terms of a derivative: what differs less at a break is rounding."""
-_HORNER = 32 * 2.0**-52
-"""Relative to a polynomial's absolute terms: Horner's rounding of ten coefficients is 20 · 2⁻⁵³."""
-_BLURRED = "Rounding may change the result by as much as the distance to a limit."
-"""Why a motion is not decided whose numbers are taken exactly."""
+_ROUNDING = 1e-9
+"""What planners round by at most: a share of a joint's largest speed below which it stands, and of
+the terms of a derivative that differ at a break."""
 
 
 @dataclass(frozen=True)
@@ -195,7 +190,8 @@ def check_motion(
         if may_jump and not jumping:
             joint, quantity = may_jump[0]
             undecided.append(f"The {quantity} of joint {joint} may jump by less than the noise.")
-        undecided.append(motion.advice or _BLURRED)
+        exact = "Rounding may change the result by as much as the distance to a limit."
+        undecided.append(motion.advice or exact)
     return MotionCheck(
         verdict=verdict,
         limits=about_limits,
@@ -288,9 +284,10 @@ def _peaks(motion: Motion, limits: JointLimits) -> tuple[tuple[MotionPeak, ...],
     """Peaks of all joints, and the speed below which each stands."""
     pieces, powers, _ = motion.scaled.shape
     trajectory = Trajectory(motion.durations, motion.scaled, (powers - 1,) * pieces)
-    errors = motion.error + _HORNER * derivative_terms(motion.scaled, motion.durations)
+    # Horner's rounding of ten coefficients is 20 · 2⁻⁵³ of a polynomial's absolute terms.
+    errors = motion.error + 32 * EPS * derivative_terms(motion.scaled, motion.durations)
     reach = [furthest(trajectory, r, errors[:, r]) for r in range(4)]
-    standing = _STANDING * np.abs(reach[1].values).max(axis=0)
+    standing = _ROUNDING * np.abs(reach[1].values).max(axis=0)
     peaks: list[MotionPeak] = []
     for j in range(len(motion.joints)):
         for r in range(4):
@@ -411,7 +408,7 @@ def _jumps(motion: Motion) -> tuple[tuple[MotionJump, ...], list[tuple[str, str]
         start, end = motion.at_ends(r)
         shown = (motion.durations**-r)[:, None]
         # A jump that the digits of the positions explain is none.
-        digits = _JUMP * terms[:, r] + 64 * EPS * whole * shown
+        digits = _ROUNDING * terms[:, r] + 64 * EPS * whole * shown
         size = start[1:] - end[:-1]
         noise = motion.error[1:, r] + motion.error[:-1, r]
         jumps = np.abs(size) > digits[1:] + digits[:-1] + noise

@@ -24,6 +24,8 @@ inverse. Divided by the cube of the shortest step, 1e-30 s, and by a limit, it i
 float64, which would overflow to inf and NaN."""
 EPS = 2.0**-52
 """Spacing of float64 at 1."""
+ROUNDED_UP = 1.0 + 2.0**12 * EPS
+"""Covers the rounding of a bound's own sums, products and powers."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -28,10 +28,6 @@ _LATEST = 2**31 - 1
 """Largest whole second of a Duration, whose field has 32 bits; nanoseconds are below 10⁹."""
 
 
-_PLACES = 9
-"""Decimal places of a time: messages have whole nanoseconds."""
-
-
 def trajectories(found: Any, depth: int = 6) -> Iterator[Mapping[str, Any]]:
     """Every JointTrajectory in a message, however it is wrapped."""
     if isinstance(found, Mapping):
@@ -129,7 +125,7 @@ def _rounding(times: Array, values: Array, text: bool) -> HalfUnits:
     for order, one in enumerate(values):
         if text and not np.isnan(one).all():
             rounded[order] = half_units(one, digits_of_values(one))
-    nanoseconds = half_units(times[:, None], np.array([[_PLACES, 0]]))
+    nanoseconds = half_units(times[:, None], np.array([[9, 0]]))
     return HalfUnits(float(nanoseconds[0]), rounded)
 
 

@@ -32,8 +32,6 @@ _SYMBOLS = _WORDS | {"v": 1, "a": 2}
 these count only beside a column of positions with that number."""
 _UNIT = re.compile(r".*(?:[\[(][^\])]*[\])]|[ _./-](?P<unit>deg|degrees?|mm|cm))", re.IGNORECASE)
 """A name that ends in a unit: any in brackets, or one that is not the default."""
-_LATEST = 253_402_300_800
-"""Seconds from 1970 to the year 10000: later times are milliseconds or less, not seconds."""
 _GAP = r"[ ._:/-]"
 """What stands between a joint's name and such a word."""
 
@@ -163,7 +161,12 @@ def samples_of_columns(
     else:
         labels = numbered(table.shape[1] - 1)
         time, columns = 0, {(joint, 0): k for k, joint in enumerate(labels, 1)}
-    _check_seconds(name, table[:, time])
+    latest = float(np.abs(table[:, time]).max())
+    # Seconds from 1970 to the year 10000: later times are milliseconds or less.
+    if 253_402_300_800 < latest < np.inf:
+        raise CaseError(
+            name, "time", f"is {latest:g}, which is not a time in seconds; convert it to seconds"
+        )
     parts: list[Array | None] = []
     rounded = np.zeros((3, len(labels)))
     for order, word in enumerate(("position", "velocity", "acceleration")):
@@ -190,14 +193,6 @@ def samples_of_columns(
         )
     except TrajgapError as error:
         raise CaseError(name, "", str(error)) from None
-
-
-def _check_seconds(name: str, times: Array) -> None:
-    latest = float(np.abs(times).max())
-    if _LATEST < latest < np.inf:
-        raise CaseError(
-            name, "time", f"is {latest:g}, which is not a time in seconds; convert it to seconds"
-        )
 
 
 def column_meaning(name: str, header: Sequence[str]) -> tuple[int, dict[tuple[str, int], int]]:

@@ -21,11 +21,6 @@ from .ros import message_of_samples, samples_of_message
 from .samples import Interpolation, Samples
 from .tables import parse_csv
 
-_RESTING = 1e-9
-"""Speed, rad/s, below which the end of a motion is a rest: within a nanosecond it moves nowhere."""
-_APART = 0.3
-"""Share of a step that rows are apart at least: near the end and near breaks of the motion."""
-
 
 class MotionForm(StrEnum):
     """Formats that motions are written in."""
@@ -80,8 +75,9 @@ def sampled(
         raise TrajgapError(f"step: {total / step:.3g} samples are too many; take a longer step")
     times = _rows(np.asarray(motion.breaks) - begin, step, breaks)
     if whole_nanoseconds:
-        # At rest the end may come a part of a nanosecond late; a motion that continues may not.
-        still = not np.abs(np.asarray(motion(end, 1))).max() > _RESTING
+        # At rest, below 1e-9 rad/s, the end may come a part of a nanosecond late; a motion that
+        # continues may not.
+        still = not np.abs(np.asarray(motion(end, 1))).max() > 1e-9
         last = (np.ceil if still else np.floor)(total * 1e9)
         whole = np.unique(np.minimum(np.append(np.round(times[:-1] * 1e9), last), last))
         times = whole // 10**9 + 1e-9 * (whole % 10**9)
@@ -105,7 +101,7 @@ def _rows(breaks: Array, step: float, all_breaks: bool) -> Array:
         np.abs(fixed[np.minimum(after, fixed.size - 1)] - grid),
         np.abs(grid - fixed[np.maximum(after - 1, 0)]),
     )
-    return np.asarray(np.unique(np.append(fixed, grid[near > _APART * step])))
+    return np.asarray(np.unique(np.append(fixed, grid[near > 0.3 * step])))
 
 
 def csv_text(samples: Samples, units: Array | float = 1.0) -> str:

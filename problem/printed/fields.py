@@ -208,7 +208,8 @@ def _position_limit(side: str) -> Any:
     return read
 
 
-def _plain(number: Printed | None) -> str | int | float | None:
+def plain_number(number: Printed | None) -> str | int | float | None:
+    """A number as a file of plain data states it: printed digits as text, exact ones bare."""
     if number is None or not number.exact:
         return None if number is None else number.text
     return int(number.fraction) if number.fraction.denominator == 1 else number.value
@@ -216,8 +217,8 @@ def _plain(number: Printed | None) -> str | int | float | None:
 
 def _plain_entry(entry: Printed | LimitPair | None) -> Any:
     if not isinstance(entry, LimitPair):
-        return _plain(entry)
-    low, high = _plain(entry.lower), _plain(entry.upper)
+        return plain_number(entry)
+    low, high = plain_number(entry.lower), plain_number(entry.upper)
     return ["-inf" if low is None else low, "inf" if high is None else high]
 
 
@@ -243,7 +244,7 @@ _PAIR_SCHEMA = {
 """As a limit, and two of them."""
 
 
-def _read_by(read: Any, schema: dict[str, Any], plain: Any = _plain) -> tuple[Any, ...]:
+def _read_by(read: Any, schema: dict[str, Any], plain: Any = plain_number) -> tuple[Any, ...]:
     """What makes a field of what a file states: its reader, its writer, and its JSON Schema."""
     return PlainValidator(read), PlainSerializer(plain), WithJsonSchema(schema)
 
