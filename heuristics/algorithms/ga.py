@@ -70,7 +70,7 @@ class Selection(StrEnum):
 
 
 @dataclass(frozen=True)
-class GA:
+class GA(Genetics):
     """Standard GA, the "traditional" one of `irb1600-ga-cubic-bspline`, and its settings.
 
     Parameters
@@ -144,11 +144,6 @@ class GA:
         check_population(self.kind, self.population, self.elite, 2)
         check_range(self.kind, self.position_range)
 
-    @property
-    def genetics(self) -> Genetics:
-        """Encoding and operators."""
-        return genetics_of(self)
-
     def parents(self, fitness: Array, rng: np.random.Generator) -> NDArray[np.intp]:
         """Draw as many parents as individuals."""
         size: int = fitness.shape[-1]
@@ -163,7 +158,7 @@ class GA:
     def init(self, bounds: Bounds, rng: np.random.Generator, objective: Objective) -> Population:
         """Draw and judge the initial population."""
         drawn = spread(rng, self.position_range, (self.population, bounds.lower.size))
-        return first_population(self.genetics.on_lattice(drawn), objective)
+        return first_population(self.on_lattice(drawn), objective)
 
     def step(
         self, before: Population, bounds: Bounds, rng: np.random.Generator, objective: Objective
@@ -172,7 +167,7 @@ class GA:
         fitness = fitness_values(before.fitness, self.penalty, self.fitness_rule)
         pool = shuffled(members_of(before.positions, self.parents(fitness, rng)), rng)
         return bred(
-            before, pool, self.genetics, self.crossover_rate, self.mutation_rate, self.elite,
+            before, pool, self, self.crossover_rate, self.mutation_rate, self.elite,
             rng, objective,
         )  # fmt: skip
 
@@ -189,11 +184,6 @@ def check_range(kind: str, span: tuple[float, float]) -> None:
     """Refuse a range without width: nothing could be encoded or mutated."""
     if not span[0] < span[1]:
         raise reject(kind, "position_range", "has no width; give two different numbers")
-
-
-def genetics_of(settings: object) -> Genetics:
-    """Encoding and operators from the settings of the same names."""
-    return Genetics(**{name: getattr(settings, name) for name in Genetics.__dataclass_fields__})
 
 
 def bred(

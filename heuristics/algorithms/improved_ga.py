@@ -19,7 +19,6 @@ from .ga import (
     bred,
     check_population,
     check_range,
-    genetics_of,
 )
 from .genes import (
     Crossover,
@@ -111,7 +110,7 @@ THIRD = math.asin(0.5) / (math.pi / 2)
 
 
 @dataclass(frozen=True)
-class ImprovedGA:
+class ImprovedGA(Genetics):
     """Improved GA of `irb1600-ga-cubic-bspline`, (12)–(15), and its settings.
 
     Parameters
@@ -185,11 +184,6 @@ class ImprovedGA:
         if self.q_worst > self.q_best:
             raise reject(self.kind, "q_worst", "exceeds q_best")
 
-    @property
-    def genetics(self) -> Genetics:
-        """Encoding and operators."""
-        return genetics_of(self)
-
     def rates(self, fitness: Array) -> tuple[Rate, Rate]:
         """P_c and P_z of a population, (14)(15), or the fixed ones."""
         tops, means = fitness.max(axis=-1), fitness.mean(axis=-1)
@@ -224,7 +218,7 @@ class ImprovedGA:
     def init(self, bounds: Bounds, rng: np.random.Generator, objective: Objective) -> Population:
         """Draw and judge the initial population."""
         drawn = spread(rng, self.position_range, (self.population, bounds.lower.size))
-        return first_population(self.genetics.on_lattice(drawn), objective)
+        return first_population(self.on_lattice(drawn), objective)
 
     def step(
         self, before: Population, bounds: Bounds, rng: np.random.Generator, objective: Objective
@@ -235,4 +229,4 @@ class ImprovedGA:
         chosen = self.parents(before.fitness, before.iteration + 1, rng)
         pool = shuffled(members_of(before.positions, chosen), rng)
         elite = self.population // 4 if self.best_quarter is BestQuarter.SURVIVES else 0
-        return bred(before, pool, self.genetics, crossing, mutating, elite, rng, objective)
+        return bred(before, pool, self, crossing, mutating, elite, rng, objective)
