@@ -13,11 +13,11 @@ import numpy as np
 
 from ..problem import Array, Problem, TrajgapError, in_processes
 from .algorithm import Algorithm, S, Search, State
+from .baseline import looked_in
 from .budget import searched
 from .objective import Bounds, Counted, Objective
 from .repair import Handling, Judge, compile_judge, judge_of
 from .result import JointRuns, Run
-from .search_boxes import looked_in
 from .settings import COUNT, SEED, checked
 from .side_by_side import TOGETHER, Start, moves_together, stepped_together
 

@@ -9,10 +9,10 @@ import numpy as np
 
 from ..problem import Array, Problem, TrajgapError
 from .algorithm import Algorithm, Search
+from .baseline import looked_in
 from .budget import Budgeted, BudgetSpent
 from .loop import states
 from .repair import Handling, judge_of
-from .search_boxes import looked_in
 from .settings import COUNT, SEED, checked
 from .time_limit import TimeSpent, time_limit
 

@@ -55,12 +55,8 @@ class Shipped:
         """The file of an id."""
         return files(self.package).joinpath(f"{id.removeprefix(self.prefix)}{_ENDING}")
 
-    def text(self, source: str | Path) -> str:
-        """Text of a shipped file by its id, or of another by its path; raises as `hashed`."""
-        return self.hashed(source)[0]
-
     def hashed(self, source: str | Path) -> tuple[str, str]:
-        """The same, with the SHA-256 of the file's bytes.
+        """Text of a shipped file by its id, or of another by its path, and the bytes' SHA-256.
 
         Raises
         ------

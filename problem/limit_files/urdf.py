@@ -11,6 +11,7 @@ from ..errors import CaseError, TrajgapError
 from ..files import MOST, read_regular
 from ..motions import BRAKING
 from ..printed import read_float
+from .moveit import read_moveit
 from .precedence import Range, StatedLimits
 
 _MOVING = ("revolute", "continuous", "prismatic")
@@ -57,6 +58,11 @@ def read_urdf(path: Path) -> StatedLimits:
     if not reader.ranges:
         raise CaseError(name, "", "has no joint that moves and has limits; give the arm's URDF")
     return StatedLimits(name, reader.ranges)
+
+
+def read_limits(path: Path) -> StatedLimits:
+    """Read a URDF (``.urdf``, ``.xml``), or MoveIt's joint_limits.yaml."""
+    return (read_urdf if path.suffix.lower() in (".urdf", ".xml") else read_moveit)(path)
 
 
 class _Reader:

@@ -1,4 +1,3 @@
-from .bounds import shown_bound as shown_bound
 from .described import Described as Described
 from .fields import (
     UNION_TAGS as UNION_TAGS,
@@ -40,6 +39,7 @@ from .rounded import (
     Printed as Printed,
     down as down,
     read_float as read_float,
+    shown_bound as shown_bound,
     up as up,
 )
 from .units import (
