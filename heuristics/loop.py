@@ -68,22 +68,15 @@ def _stepped(
 
 @dataclass(frozen=True, eq=False)
 class AskedRun:
-    """The specification of one run.
-
-    Attributes
-    ----------
-    problem : Problem
-        Its coupling is ignored.
-    stream : tuple of int
-        Spawn key under the seed.
-    handling : str
-        Treatment of vectors that break a limit; see `Handling`.
-    """
+    """The specification of one run."""
 
     problem: Problem
+    """Its coupling is ignored."""
     seed: int
     stream: tuple[int, ...] = ()
+    """Spawn key under the seed."""
     handling: str = Handling.DEATH_PENALTY
+    """Treatment of vectors that break a limit; see `Handling`."""
 
 
 def _started(method: Method, questions: Sequence[AskedRun]) -> list[Start]:

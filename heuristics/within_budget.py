@@ -19,21 +19,16 @@ from .time_limit import TimeSpent, time_limit
 
 @dataclass(frozen=True, eq=False)
 class BudgetedRun:
-    """The result of one search within its budget, as recorded by the objective.
-
-    Attributes
-    ----------
-    durations : ndarray, shape (segments,)
-        Durations of the best position evaluated, s; with a stretch, those that it represents.
-    reported_time : float
-        Its fitness, s; inf if no feasible vector was evaluated.
-    totals : ndarray, shape (evaluations,)
-        Best fitness after each evaluation, s; inf before anything feasible was judged.
-    """
+    """The result of one search within its budget, as recorded by the objective."""
 
     durations: Array
+    """Shape (segments,). Durations of the best position evaluated, s; with a stretch, those that it
+    represents."""
     reported_time: float
+    """Its fitness, s; inf if no feasible vector was evaluated."""
     totals: Array
+    """Shape (evaluations,). Best fitness after each evaluation, s; inf before anything feasible was
+    judged."""
 
     @property
     def evaluations(self) -> int:

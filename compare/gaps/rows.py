@@ -78,31 +78,6 @@ def canonical(value: object) -> str:
 class Trial:
     """All that determines one run of one optimiser.
 
-    Parameters
-    ----------
-    problem : Problem
-        Searched with one duration vector for all its joints, whatever its coupling.
-    name, reading : str
-        Its names in rows, such as "puma560-mnam-pso-353/six-joints" and "durations-positive".
-    optimizer : str
-        As `find_optimizer` takes it.
-    settings : str
-        Its settings as `canonical` JSON.
-    handling : str
-        What happens to vectors that break a limit; see `Handling`.
-    budget : int
-        Evaluations; the objective enforces it.
-    stream : tuple of int
-        Spawn key under the seed; (j,) if joint j is searched separately, as in `run_per_joint`.
-    origin : str
-        Where the optimiser comes from: a package with its version, or a hash of its source.
-    reference : Bracket or None
-        Reference for the gaps of the row.
-    seconds : float
-        A run that takes longer has failed.
-    problem_sha256 : str
-        Hash of the problem's own numbers, as certificates seal theirs; found if left empty.
-
     Raises
     ------
     TrajgapError
@@ -110,18 +85,29 @@ class Trial:
     """
 
     problem: Problem
+    """Searched with one duration vector for all its joints, whatever its coupling."""
     name: str
     reading: str
+    """Its names in rows, such as "puma560-mnam-pso-353/six-joints" and "durations-positive"."""
     optimizer: str
+    """As `find_optimizer` takes it."""
     settings: str = "{}"
+    """Its settings as `canonical` JSON."""
     handling: str = Handling.DEATH_PENALTY
+    """What happens to vectors that break a limit; see `Handling`."""
     seed: int = 0
     budget: int = 6000  # of what counts no iterations; plans state it
+    """Evaluations; the objective enforces it."""
     stream: tuple[int, ...] = ()
+    """Spawn key under the seed; (j,) if joint j is searched separately, as in `run_per_joint`."""
     origin: str = ""
+    """Where the optimiser comes from: a package with its version, or a hash of its source."""
     reference: Bracket | None = None
+    """Reference for the gaps of the row."""
     seconds: float = float("inf")
+    """A run that takes longer has failed."""
     problem_sha256: str = ""
+    """Hash of the problem's own numbers, as certificates seal theirs; found if left empty."""
 
     def __post_init__(self) -> None:
         if self.handling not in tuple(Handling):

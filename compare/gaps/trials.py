@@ -34,16 +34,11 @@ _PROBLEMS: dict[str, Problem] = {}
 
 @dataclass(frozen=True)
 class TrialOutcome:
-    """A row, and the measured time, which differs from run to run.
-
-    Attributes
-    ----------
-    seconds : float
-        That the run took.
-    """
+    """A row, and the measured time, which differs from run to run."""
 
     row: Row
     seconds: float
+    """That the run took."""
 
 
 @lru_cache(maxsize=256)

@@ -73,38 +73,6 @@ class Selection(StrEnum):
 class GA(Genetics):
     """Standard GA, the "traditional" one of `irb1600-ga-cubic-bspline`, and its settings.
 
-    Parameters
-    ----------
-    population : int
-        Even; not printed.
-    iterations : int
-        Generations after the initial one; not printed.
-    crossover_rate, mutation_rate : float
-        Not printed.
-    selection : Selection
-        "roulette" (said of it) or "tournament".
-    fitness_rule : FitnessRule
-        "inverse" or "complement"; not printed.
-    encoding : Encoding
-        "real" or "binary"; not printed.
-    resolution : float
-        Largest step of the binary encoding, s; printed as the time resolution.
-    position_range : tuple of float
-        Range that durations are drawn, encoded and mutated in, s; not printed.
-    crossover : Crossover
-        "arithmetic", "one-point" or "uniform"; not printed. Arithmetic crossover of bit strings
-        acts on the numbers that they encode.
-    mutation : Mutation
-        "redraw" or "creep"; not printed. Bits are flipped.
-    mutated : MutationUnit
-        "gene" or "individual"; not printed.
-    mutation_reach : float
-        Half-width of "creep" as a share of the range; not printed.
-    elite : int
-        Best individuals that survive instead of the worst children; not printed.
-    penalty : float
-        Total of an infeasible individual, s; not printed.
-
     Raises
     ------
     TrajgapError
@@ -124,20 +92,35 @@ class GA(Genetics):
     open_choices: ClassVar[tuple[str, ...]] = OPEN_CHOICES
 
     population: Annotated[int, whole(2)] = 40
+    """Even; not printed."""
     iterations: Annotated[int, whole(0)] = 200
+    """Generations after the initial one; not printed."""
     crossover_rate: Annotated[float, share()] = 0.8
     mutation_rate: Annotated[float, share()] = 0.05
+    """Not printed."""
     selection: Selection = Selection.ROULETTE
+    """"roulette" (said of it) or "tournament"."""
     fitness_rule: FitnessRule = FitnessRule.INVERSE
+    """"inverse" or "complement"; not printed."""
     encoding: Encoding = Encoding.REAL
+    """"real" or "binary"; not printed."""
     resolution: Annotated[float, positive()] = 0.001
+    """Largest step of the binary encoding, s; printed as the time resolution."""
     position_range: Span = (0.1, 2.0)
+    """Range that durations are drawn, encoded and mutated in, s; not printed."""
     crossover: Crossover = Crossover.ARITHMETIC
+    """"arithmetic", "one-point" or "uniform"; not printed. Arithmetic crossover of bit strings acts
+    on the numbers that they encode."""
     mutation: Mutation = Mutation.REDRAW
+    """"redraw" or "creep"; not printed. Bits are flipped."""
     mutated: MutationUnit = MutationUnit.GENE
+    """"gene" or "individual"; not printed."""
     mutation_reach: Annotated[float, share()] = 0.1
+    """Half-width of "creep" as a share of the range; not printed."""
     elite: Annotated[int, whole(0)] = 0
+    """Best individuals that survive instead of the worst children; not printed."""
     penalty: Annotated[float, positive(infinite=True)] = np.inf
+    """Total of an infeasible individual, s; not printed."""
 
     def __post_init__(self) -> None:
         clean(self)

@@ -28,22 +28,15 @@ FORMAT = 1
 
 @dataclass(frozen=True)
 class Shipped:
-    """A package that holds data files of one kind.
-
-    Attributes
-    ----------
-    kind : str
-        What one of them is, for messages.
-    prefix : str
-        Stands before an id, so ids of several packages cannot be confused.
-    listed_by : str
-        The command that lists the ids, where they are too many for a message.
-    """
+    """A package that holds data files of one kind."""
 
     package: str
     kind: str
+    """What one of them is, for messages."""
     prefix: str = ""
+    """Stands before an id, so ids of several packages cannot be confused."""
     listed_by: str = ""
+    """The command that lists the ids, where they are too many for a message."""
 
     def ids(self) -> tuple[str, ...]:
         """Ids of the files, sorted."""

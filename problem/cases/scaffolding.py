@@ -29,24 +29,16 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class FileLimits:
-    """Limits of joints as a file states them, such as a URDF.
-
-    Attributes
-    ----------
-    joints : tuple of str
-        Names for the joints of the table, in its order.
-    limits : Limits
-        rad, m and s.
-    source : str
-        Name of the file.
-    doubt : str
-        Doubt about the limits, such as sides that they leave out, in a sentence; empty if none.
-    """
+    """Limits of joints as a file states them, such as a URDF."""
 
     joints: tuple[str, ...]
+    """Names for the joints of the table, in its order."""
     limits: Limits
+    """rad, m and s."""
     source: str
+    """Name of the file."""
     doubt: str = ""
+    """Doubt about the limits, such as sides that they leave out, in a sentence; empty if none."""
 
 
 def scaffold(

@@ -41,35 +41,24 @@ class Verdict(StrEnum):
 
 @dataclass(frozen=True)
 class Peak:
-    """The largest value of one quantity of one joint, compared with its limit.
-
-    Attributes
-    ----------
-    joint : str or None
-        Joint label; None for a segment duration.
-    quantity : str
-        "position", "velocity", "acceleration", "jerk", "duration"; or "curve" if the durations "
-        "define none.
-    segment : int
-        Segment, from 0.
-    time : float or None
-        Time on the trajectory, s.
-    value, limit : float
-        In rad, s; the limit of a derivative as a size, that of the side with the larger ratio.
-    ratio : float
-        |value|/limit; above 1 the limit is exceeded. 0 if only the other side is limited.
-    error : float
-        Bound on the rounding error of ``value``.
-    """
+    """The largest value of one quantity of one joint, compared with its limit."""
 
     joint: str | None
+    """Joint label; None for a segment duration."""
     quantity: str
+    """"position", "velocity", "acceleration", "jerk", "duration"; or "curve" if the durations "
+    "define none."""
     segment: int
+    """Segment, from 0."""
     time: float | None
+    """Time on the trajectory, s."""
     value: float
     limit: float
+    """In rad, s; the limit of a derivative as a size, that of the side with the larger ratio."""
     ratio: float
+    """|value|/limit; above 1 the limit is exceeded. 0 if only the other side is limited."""
     error: float
+    """Bound on the rounding error of ``value``."""
 
     @property
     def margin(self) -> float:
@@ -87,38 +76,31 @@ class Check(InNotebooks):
 
     Attributes
     ----------
-    limits : Verdict
-        The verdict on the limits alone, apart from jumps: pass, violated or undecided. The limits
-        may be kept inside every piece although the motion jumps between pieces.
-    worst : Peak or None
-        Largest ratio; None if nothing is limited. A duration counts only beyond its bound.
-    peaks : tuple of Peak
-        One per joint and quantity.
-    jumps : tuple of Jump
-        Discontinuities of position, velocity and acceleration.
-    total_time : float
-        Sum of the durations, s.
-    stretch : float
-        c* = max (|v|/V, √(|a|/A), ∛(|j|/J)): stretching all durations by it makes them tight.
     feasible_time, tight_time : float or None
         T·max(1, c*), the uniform repair; T·c*, the free rescaling. None if there is none; a reason
         is given.
-    tolerance : float
-        Relative excess that counts as kept.
     """
 
     verdict: Verdict
     limits: Verdict
+    """The verdict on the limits alone, apart from jumps: pass, violated or undecided. The limits
+    may be kept inside every piece although the motion jumps between pieces."""
     worst: Peak | None
+    """Largest ratio; None if nothing is limited. A duration counts only beyond its bound."""
     peaks: tuple[Peak, ...]
+    """One per joint and quantity."""
     jumps: tuple[Jump, ...]
+    """Discontinuities of position, velocity and acceleration."""
     total_time: float
+    """Sum of the durations, s."""
     stretch: float
+    """c* = max (|v|/V, √(|a|/A), ∛(|j|/J)): stretching all durations by it makes them tight."""
     feasible_time: float | None
     feasible_why: str | None
     tight_time: float | None
     tight_why: str | None
     tolerance: float
+    """Relative excess that counts as kept."""
 
     @property
     def max_violation(self) -> float:

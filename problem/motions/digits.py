@@ -20,18 +20,13 @@ _NUMBER = re.compile(r"[+-]?(\d*)\.?(\d*)(?:[eE]([+-]?\d{1,4}))?")
 
 @dataclass(frozen=True, eq=False)
 class HalfUnits:
-    """Uncertainty of the numbers in a file from rounding when they were written.
-
-    Attributes
-    ----------
-    time : float
-        s.
-    values : ndarray, shape (3, joints) or broadcast to it
-        Uncertainty of positions, velocities and accelerations, rad, s.
-    """
+    """Uncertainty of the numbers in a file from rounding when they were written."""
 
     time: float = 0.0
+    """s."""
     values: ArrayLike = 0.0
+    """Shape (3, joints) or broadcast to it. Uncertainty of positions, velocities and accelerations,
+    rad, s."""
 
     def of(self, order: int, joints: int) -> Array:
         """Digits of derivative ``order`` of every joint, shape (joints,)."""

@@ -15,24 +15,16 @@ from .motion import Motion
 
 @dataclass(frozen=True)
 class Floor:
-    """The shortest time between the standstills of a motion, over every curve.
-
-    Attributes
-    ----------
-    time : float
-        s; proven: no motion within the limits that stands still at the same places is shorter.
-    stops : int
-        Standstills of all joints, start and end included.
-    waiting : float
-        Time that the motion stands still, s; the floor does not include it.
-    above : float
-        (T − time)/time of the judged motion.
-    """
+    """The shortest time between the standstills of a motion, over every curve."""
 
     time: float
+    """s; proven: no motion within the limits that stands still at the same places is shorter."""
     stops: int
+    """Standstills of all joints, start and end included."""
     waiting: float
+    """Time that the motion stands still, s; the floor does not include it."""
     above: float
+    """(T − time)/time of the judged motion."""
 
     def __str__(self) -> str:
         return (

@@ -26,16 +26,6 @@ GIVEN = "given"
 class JointLimits:
     """Ranges of position, velocity, acceleration and jerk of every joint.
 
-    Attributes
-    ----------
-    lower, upper : ndarray, shape (joints, 4)
-        Range of derivative 0 to 3, rad, s; infinite if there is none.
-    deceleration : ndarray, shape (joints,)
-        Largest |acceleration| while the joint's speed falls, rad/s²; if it is given, the
-        acceleration limit applies only while the speed grows. inf if it is not given.
-    sources : mapping
-        (joint, quantity) to the source of the limit, or of the statement that there is none.
-
     Raises
     ------
     TrajgapError
@@ -46,8 +36,12 @@ class JointLimits:
     joints: tuple[str, ...]
     lower: Array
     upper: Array
+    """Shape (joints, 4). Range of derivative 0 to 3, rad, s; infinite if there is none."""
     deceleration: Array
+    """Shape (joints,). Largest |acceleration| while the joint's speed falls, rad/s²; if it is
+    given, the acceleration limit applies only while the speed grows. inf if it is not given."""
     sources: Mapping[tuple[str, str], str] = field(default_factory=dict)
+    """(joint, quantity) to the source of the limit, or of the statement that there is none."""
 
     def __post_init__(self) -> None:
         for j, joint in enumerate(self.joints):

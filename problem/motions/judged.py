@@ -27,98 +27,68 @@ the terms of a derivative that differ at a break."""
 
 @dataclass(frozen=True)
 class MotionPeak:
-    """The value of one quantity of one joint nearest to its limit, or furthest beyond.
-
-    Attributes
-    ----------
-    joint, quantity : str
-        The quantity is "position", "velocity", "acceleration", "deceleration" or "jerk".
-    time : float
-        s.
-    value, limit : float
-        rad, s; signed.
-    ratio : float
-        value/limit; of a position 1 + excess over half of the range. Above 1 it is exceeded.
-    least_ratio, most_ratio : float
-        Bounds of the ratio, all errors included.
-    source : str
-        Where the limit is stated.
-    """
+    """The value of one quantity of one joint nearest to its limit, or furthest beyond."""
 
     joint: str
     quantity: str
+    """The quantity is "position", "velocity", "acceleration", "deceleration" or "jerk"."""
     time: float
+    """s."""
     value: float
     limit: float
+    """rad, s; signed."""
     ratio: float
+    """value/limit; of a position 1 + excess over half of the range. Above 1 it is exceeded."""
     least_ratio: float
     most_ratio: float
+    """Bounds of the ratio, all errors included."""
     source: str
+    """Where the limit is stated."""
 
 
 @dataclass(frozen=True)
 class MotionJump:
-    """The largest jump of one derivative of one joint, and how many there are.
-
-    Attributes
-    ----------
-    time : float
-        s.
-    size : float
-        rad/sᵒʳᵈᵉʳ; value after minus value before.
-    count : int
-        Number of breaks at which it jumps.
-    """
+    """The largest jump of one derivative of one joint, and how many there are."""
 
     joint: str
     quantity: str
     time: float
+    """s."""
     size: float
+    """rad/sᵒʳᵈᵉʳ; value after minus value before."""
     count: int
+    """Number of breaks at which it jumps."""
 
 
 @dataclass(frozen=True, eq=False)
 class MotionCheck:
-    """The result of a check of a motion, or of all motions through samples.
-
-    Attributes
-    ----------
-    limits : Verdict
-        Verdict on the limits alone, apart from jumps.
-    worst : MotionPeak or None
-        Largest ratio; None if nothing is limited.
-    peaks : tuple of MotionPeak
-        One for each limited quantity of each joint.
-    total_time : float
-        s.
-    stretch : float
-        Uniform slow-down that repairs the motion: all durations times this factor keep the limits;
-        at least 1. For samples: no smaller factor can repair any motion through them.
-    feasible_time : float or None
-        ``total_time`` times ``stretch``; None if there is none, with a reason.
-    floor : Floor or None
-        No motion between the same standstills is shorter.
-    concluded, open : tuple of str
-        Conclusions from the file, and what remains open.
-    not_judged : tuple of (str, str)
-        Joint and quantity wherever no limit is stated: the verdict does not cover them.
-    """
+    """The result of a check of a motion, or of all motions through samples."""
 
     verdict: Verdict
     limits: Verdict
+    """Verdict on the limits alone, apart from jumps."""
     worst: MotionPeak | None
+    """Largest ratio; None if nothing is limited."""
     peaks: tuple[MotionPeak, ...]
+    """One for each limited quantity of each joint."""
     jumps: tuple[MotionJump, ...]
     total_time: float
+    """s."""
     stretch: float
+    """Uniform slow-down that repairs the motion: all durations times this factor keep the limits;
+    at least 1. For samples: no smaller factor can repair any motion through them."""
     feasible_time: float | None
+    """``total_time`` times ``stretch``; None if there is none, with a reason."""
     feasible_why: str | None
     floor: Floor | None
+    """No motion between the same standstills is shorter."""
     floor_why: str | None
     concluded: tuple[str, ...]
     open: tuple[str, ...]
+    """Conclusions from the file, and what remains open."""
     tolerance: float
     not_judged: tuple[tuple[str, str], ...]
+    """Joint and quantity wherever no limit is stated: the verdict does not cover them."""
     joints: tuple[str, ...]
 
     def __str__(self) -> str:

@@ -32,24 +32,6 @@ ROUNDED_UP = 1.0 + 2.0**12 * EPS
 class Motion:
     """Joint values over time, from any source.
 
-    Attributes
-    ----------
-    breaks : ndarray, shape (pieces + 1,)
-        Times at which the pieces meet, s, ascending.
-    scaled : ndarray, shape (pieces, powers, joints)
-        Ascending coefficients in s = (t − t_k)/h_k, rad (m for sliding joints).
-    error : ndarray, shape (pieces, 4, joints)
-        Bound on the error of derivatives 0 to 3 anywhere on a piece, rad/sᵒʳᵈᵉʳ, apart from
-        rounding errors of the evaluation; inf if nothing is known.
-    between : str
-        The assumption about the motion between the points of the file, in words.
-    smooth : int
-        Derivatives up to this one are continuous by construction; −1 if none is known to be.
-    assumed : str
-        Uncertainty of the numbers in the file, in words; empty if they are exact.
-    advice : str
-        Advice if this leaves the verdict open.
-
     Raises
     ------
     TrajgapError
@@ -59,12 +41,21 @@ class Motion:
 
     joints: tuple[str, ...]
     breaks: Array
+    """Shape (pieces + 1,). Times at which the pieces meet, s, ascending."""
     scaled: Array
+    """Shape (pieces, powers, joints). Ascending coefficients in s = (t − t_k)/h_k, rad (m for
+    sliding joints)."""
     error: Array
+    """Shape (pieces, 4, joints). Bound on the error of derivatives 0 to 3 anywhere on a piece,
+    rad/sᵒʳᵈᵉʳ, apart from rounding errors of the evaluation; inf if nothing is known."""
     between: str
+    """The assumption about the motion between the points of the file, in words."""
     smooth: int = -1
+    """Derivatives up to this one are continuous by construction; −1 if none is known to be."""
     assumed: str = ""
+    """Uncertainty of the numbers in the file, in words; empty if they are exact."""
     advice: str = ""
+    """Advice if this leaves the verdict open."""
 
     def __post_init__(self) -> None:
         pieces, powers, joints = self.scaled.shape

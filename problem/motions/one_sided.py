@@ -12,23 +12,16 @@ from ..curves import Trajectory, bernstein, derived, roots_in_unit, valued
 
 @dataclass(frozen=True)
 class OneSided:
-    """The largest |acceleration| of a joint on one side.
-
-    Attributes
-    ----------
-    s, value : float
-        Where on the piece, and what stands there, signed.
-    sure : float
-        Size that some instant surely reaches, errors included.
-    most : float
-        Size that none is above.
-    """
+    """The largest |acceleration| of a joint on one side."""
 
     piece: int
     s: float
     value: float
+    """Where on the piece, and what stands there, signed."""
     sure: float
+    """Size that some instant surely reaches, errors included."""
     most: float
+    """Size that none is above."""
 
 
 def one_sided_extreme(

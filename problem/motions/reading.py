@@ -29,22 +29,15 @@ UNITS = ("rad", "deg", "m", "cm", "mm")
 
 @dataclass(frozen=True, eq=False)
 class ForeignFile:
-    """The content of a file.
-
-    Attributes
-    ----------
-    content : Samples or Motion
-        rad (m), s.
-    units : tuple of str
-        Unit of each joint, in the file and in output.
-    controller : bool
-        Whether a controller's interpolation is known: ROS trajectories.
-    """
+    """The content of a file."""
 
     format: str
     content: Samples | Motion
+    """rad (m), s."""
     units: tuple[str, ...]
+    """Unit of each joint, in the file and in output."""
     controller: bool = False
+    """Whether a controller's interpolation is known: ROS trajectories."""
 
     @property
     def joints(self) -> tuple[str, ...]:

@@ -37,21 +37,6 @@ class Interpolation(StrEnum):
 class Samples:
     """Rows of time and position of every joint, with derivatives if they are given.
 
-    Attributes
-    ----------
-    time : ndarray, shape (rows,)
-        s, ascending.
-    position : ndarray, shape (rows, joints)
-        rad (m for sliding joints).
-    velocity, acceleration : ndarray, shape (rows, joints), or None
-        Derivatives, if given; NaN in rows without them.
-    noise : float or ndarray, shape (joints,)
-        Each position is measured to within this, rad.
-    time_noise : float
-        Each time is measured to within this, s.
-    rounding : HalfUnits
-        Uncertainty of all numbers from rounding when they were written, in addition to the noise.
-
     Raises
     ------
     TrajgapError
@@ -60,12 +45,18 @@ class Samples:
 
     joints: tuple[str, ...]
     time: Array
+    """Shape (rows,); s, ascending."""
     position: Array
+    """Shape (rows, joints); rad (m for sliding joints)."""
     velocity: Array | None = None
     acceleration: Array | None = None
+    """Shape (rows, joints). Derivatives, if given; NaN in rows without them."""
     noise: float | Array = 0.0
+    """One number, or shape (joints,). Each position is measured to within this, rad."""
     time_noise: float = 0.0
+    """Each time is measured to within this, s."""
     rounding: HalfUnits = field(default_factory=HalfUnits)
+    """Uncertainty of all numbers from rounding when they were written, in addition to the noise."""
 
     def __post_init__(self) -> None:
         for name in ("time", "position", "velocity", "acceleration"):

@@ -155,16 +155,11 @@ def _upper_limit(raw: object) -> Printed | None:
 
 @dataclass(frozen=True)
 class LimitPair:
-    """The least and the largest value that a derivative may take, as printed.
-
-    Attributes
-    ----------
-    lower, upper : Printed or None
-        0 or less, and 0 or more; None if there is no limit.
-    """
+    """The least and the largest value that a derivative may take, as printed."""
 
     lower: Printed | None
     upper: Printed | None
+    """0 or less, and 0 or more; None if there is no limit."""
 
     def __str__(self) -> str:
         low, high = (("-inf" if self.lower is None else self.lower), self.upper or "inf")

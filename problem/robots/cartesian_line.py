@@ -16,21 +16,16 @@ from .inverse import inverse_kinematics
 
 @dataclass(frozen=True, eq=False)
 class CartesianLine:
-    """Joint way-points whose poses lie on a straight line.
-
-    Attributes
-    ----------
-    waypoints : ndarray, shape (points, joints)
-        rad (m where a joint slides); between them a curve leaves the line, see `deviation`.
-    poses : ndarray, shape (points, 4, 4)
-    residual : float
-        Largest distance of forward kinematics from a pose, m and rad.
-    """
+    """Joint way-points whose poses lie on a straight line."""
 
     chain: Chain
     waypoints: Array
+    """Shape (points, joints); rad (m where a joint slides); between them a curve leaves the line,
+    see `deviation`."""
     poses: Array
+    """Shape (points, 4, 4)."""
     residual: float
+    """Largest distance of forward kinematics from a pose, m and rad."""
 
     @property
     def table(self) -> str:

@@ -35,30 +35,21 @@ class IkStatus(StrEnum):
 
 @dataclass(frozen=True, eq=False)
 class IkSolution:
-    """Joint values and how far they miss the target.
-
-    Attributes
-    ----------
-    joints : ndarray, shape (joints,)
-        Joint variables, rad (m where a joint slides), within the bounds; if nothing was solved, the
-        values with the smallest residual.
-    position_error : float
-        Norm of the wanted components of the position residual, m.
-    angle_error : float
-        Norm of the wanted components of the rotation vector to the target, rad; 0 if none.
-    starts, solved_starts : int
-        Starts tried, and how many of them came within the tolerances.
-    iterations : int
-        Steps of the longest start.
-    """
+    """Joint values and how far they miss the target."""
 
     status: IkStatus
     joints: Array
+    """Shape (joints,). Joint variables, rad (m where a joint slides), within the bounds; if nothing
+    was solved, the values with the smallest residual."""
     position_error: float
+    """Norm of the wanted components of the position residual, m."""
     angle_error: float
+    """Norm of the wanted components of the rotation vector to the target, rad; 0 if none."""
     starts: int
     solved_starts: int
+    """Starts tried, and how many of them came within the tolerances."""
     iterations: int
+    """Steps of the longest start."""
 
     @property
     def solved(self) -> bool:

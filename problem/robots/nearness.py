@@ -19,19 +19,13 @@ _MOST_BOXES = 400_000
 
 @dataclass(frozen=True, eq=False)
 class Proximity:
-    """Bounds on the smallest distance between the end and a point.
-
-    Attributes
-    ----------
-    lower, upper : float
-        m. The lower one holds for all values of the free joints; the upper one is attained.
-    joints : ndarray, shape (joints,)
-        Where ``upper`` is attained.
-    """
+    """Bounds on the smallest distance between the end and a point."""
 
     lower: float
     upper: float
+    """m. The lower one holds for all values of the free joints; the upper one is attained."""
     joints: Array
+    """Shape (joints,). Where ``upper`` is attained."""
 
 
 def proximity(

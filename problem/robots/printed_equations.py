@@ -61,19 +61,13 @@ class Equation(Strict):
 
 @dataclass(frozen=True)
 class EquationCheck:
-    """How well an equation holds.
-
-    Attributes
-    ----------
-    share : float
-        Share of the samples at which both sides agree, with either sign of "pm".
-    largest : float
-        Largest difference of the sides over the samples; NaN if a side has no value.
-    """
+    """How well an equation holds."""
 
     text: str
     share: float
+    """Share of the samples at which both sides agree, with either sign of "pm"."""
     largest: float
+    """Largest difference of the sides over the samples; NaN if a side has no value."""
 
     @property
     def holds(self) -> bool:

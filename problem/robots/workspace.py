@@ -27,20 +27,14 @@ class StepKind(StrEnum):
 
 @dataclass(frozen=True, eq=False)
 class Workspace:
-    """Seeded sample of the positions of a chain's end.
-
-    Attributes
-    ----------
-    joints : ndarray, shape (samples, joints)
-        Uniform within `Chain.span`, rad (m where a joint slides).
-    points : ndarray, shape (samples, 3)
-        Positions of the end in the base, m.
-    """
+    """Seeded sample of the positions of a chain's end."""
 
     chain: Chain
     seed: int
     joints: Array
+    """Shape (samples, joints). Uniform within `Chain.span`, rad (m where a joint slides)."""
     points: Array
+    """Shape (samples, 3). Positions of the end in the base, m."""
 
     @property
     def lower(self) -> Array:
